@@ -105,7 +105,7 @@ Result<void> Archive::State::connect() {
     if (auto done = set_up_writer(*fresh); !done) return done;
     auto row_writer = RowWriter::open(*fresh);
     if (!row_writer) return row_writer.error();
-    auto key = fresh->prepare(last_key_sql);
+    auto key = fresh->prepare(last_key_sql());
     if (!key) return key.error();
     // The first question makes the log and its shared memory.
     if (auto asked = fresh->integer_of("SELECT max(run) FROM runs"); !asked) return asked.error();
@@ -237,8 +237,9 @@ Result<RunId> Archive::State::add_run(const RunStart& start, const dictionary::D
     const RunId run{static_cast<std::uint32_t>(*next)};
     auto row = database.prepare(
         "INSERT INTO runs (run, scenario, title, venue, seed, case_number, pace, state, outcome, started, start_sclk,"
-        " entry_sclk, correlation_sclk, correlation_scet_us, light_time_s, tone_model, dictionary, scenario_text)"
-        " VALUES (?,?,?,?,?,?,?,'running','running',?,?,?,?,?,?,?,?,?)");
+        " entry_sclk, correlation_sclk, correlation_scet_us, light_time_s, tone_model, dictionary, scenario_text,"
+        " clock_version, clock_rate, leap_seconds)"
+        " VALUES (?,?,?,?,?,?,?,'running','running',?,?,?,?,?,?,?,?,?,?,?,?)");
     if (!row) return row.error();
     row->bind(1, *next)
         .bind(2, std::string_view(start.scenario))
@@ -255,15 +256,11 @@ Result<RunId> Archive::State::add_run(const RunStart& start, const dictionary::D
         .bind(13, start.light_time_s)
         .bind(14, std::string_view(start.tone_model))
         .bind(15, std::int64_t{dictionary.id})
-        .bind(16, std::string_view(start.scenario_text));
+        .bind(16, std::string_view(start.scenario_text))
+        .bind(17, std::int64_t{start.correlation.version})
+        .bind(18, start.correlation.rate)
+        .bind(19, std::int64_t{start.correlation.leap_seconds});
     if (auto done = row->run(); !done) return done.error();
-    auto clock = database.prepare("INSERT INTO run_clocks VALUES (?,?,?,?)");
-    if (!clock) return clock.error();
-    clock->bind(1, *next)
-        .bind(2, std::int64_t{start.correlation.version})
-        .bind(3, start.correlation.rate)
-        .bind(4, std::int64_t{start.correlation.leap_seconds});
-    if (auto done = clock->run(); !done) return done.error();
     auto anchor = database.prepare("INSERT INTO run_anchors VALUES (?,?,?,?)");
     if (!anchor) return anchor.error();
     for (std::size_t i = 0; i < dictionary.anchors.size(); ++i) {

@@ -30,6 +30,14 @@ v1::Item to_item(const AlarmRecord& record);
 v1::Item to_item(const StalenessRecord& record, const dictionary::Dictionary* dictionary);
 v1::Item to_item(const AlarmActionRecord& record);
 v1::Item to_item(const NoteRecord& record);
+/// The same for any kind that has a table.
+template <typename Record>
+v1::Item item_of(const Record& record, const dictionary::Dictionary* dictionary) {
+    if constexpr (requires { to_item(record, dictionary); })
+        return to_item(record, dictionary);
+    else
+        return to_item(record);
+}
 
 /// Of the octets of a command as its history spells them: pairs of lower-case hexadecimal digits.
 std::vector<std::uint8_t> octets_of_hex(std::string_view hex);

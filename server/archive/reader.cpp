@@ -109,7 +109,7 @@ Result<void> Reader::State::same_dictionary(const RunInfo& run) const {
 }
 
 Result<Sequence> Reader::State::last_seq(RunId run) {
-    auto rows = query(last_key_sql);
+    auto rows = query(last_key_sql());
     if (!rows) return rows.error();
     auto& row = **rows;
     row.bind(1, item_key(run, 0)).bind(2, item_key(run, sequence_max));
@@ -129,7 +129,7 @@ Result<std::vector<AuditEntry>> Reader::audit(std::uint64_t after, std::size_t l
 
 namespace {
 
-/// From correlation_sclk, correlation_scet_us, rate, leap_seconds, version in these columns.
+/// From correlation_sclk, correlation_scet_us, clock_rate, leap_seconds, clock_version in these columns.
 ClockCorrelation clock_of(const sqlite::Statement& row, int column) {
     return {Sclk{row.real(column)}, Scet{row.integer(column + 1)}, row.real(column + 2),
             static_cast<std::int32_t>(row.integer(column + 3)), static_cast<std::uint32_t>(row.integer(column + 4))};
@@ -172,8 +172,8 @@ Result<CutOffRun> Reader::cut_off(RunId run) {
     auto snapshot = sqlite::Transaction::begin_read(state_->database);
     if (!snapshot) return snapshot.error();
     static constexpr char run_sql[] =
-        "SELECT state, scenario_text, started, seed, dictionary, correlation_sclk, correlation_scet_us, rate,"
-        " leap_seconds, version FROM runs JOIN run_clocks USING (run) WHERE run = ?";
+        "SELECT state, scenario_text, started, seed, dictionary, correlation_sclk, correlation_scet_us, clock_rate,"
+        " leap_seconds, clock_version FROM runs WHERE run = ?";
     auto rows = state_->query(run_sql);
     if (!rows) return rows.error();
     auto& row = **rows;
@@ -213,9 +213,8 @@ Result<CutOffRun> Reader::cut_off(RunId run) {
 namespace {
 constexpr char runs_sql[] =
     "SELECT r.run, scenario, title, venue, seed, state, outcome, pace, started, last_seq, entry_sclk, start_sclk,"
-    " light_time_s, tone_model, digest, coalesce(progress, 0), correlation_sclk, correlation_scet_us, rate, "
-    "leap_seconds, version"
-    " FROM runs r LEFT JOIN recordings c ON c.run = r.run JOIN run_clocks k ON k.run = r.run"
+    " light_time_s, tone_model, digest, coalesce(progress, 0), correlation_sclk, correlation_scet_us, clock_rate,"
+    " leap_seconds, clock_version FROM runs r LEFT JOIN recordings c ON c.run = r.run"
     " WHERE ?1 IS NULL OR r.run = ?1 ORDER BY r.run DESC";
 constexpr char solution_sql[] = "SELECT name, value FROM run_solution WHERE run = ? ORDER BY position";
 }  // namespace

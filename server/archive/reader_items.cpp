@@ -1,14 +1,34 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "server/archive/item_rows.hpp"
 #include "server/archive/items.hpp"
 #include "server/archive/reader.hpp"
 #include "server/archive/reader_state.hpp"
-#include "server/archive/row_reader.hpp"
 #include "server/archive/schema.hpp"
 
 #include <algorithm>
 
 // Items of all kinds, as one sequence, by reading each table from the same place on.
 namespace aeolis::archive {
+
+template <typename Record>
+Result<v1::Item> Reader::State::item(const sqlite::Statement& row, const dictionary::Dictionary* words) {
+    auto record = read_row<Record>(row);
+    if constexpr (HasParts<Record>) {
+        auto parts = query(parts_sql<PartOf<Record>>());
+        if (!parts) return parts.error();
+        (*parts)->bind(1, row.integer(0));
+        for (;;) {
+            auto found = (*parts)->step();
+            if (!found) return found.error();
+            if (!*found) break;
+            ItemTable<Record>::parts(record).push_back(read_part<PartOf<Record>>(**parts));
+        }
+    }
+    return item_of(record, words);
+}
+template Result<v1::Item> Reader::State::item<ToneRecord>(const sqlite::Statement&, const dictionary::Dictionary*);
+template Result<v1::Item> Reader::State::item<ExplanationRecord>(const sqlite::Statement&,
+                                                                 const dictionary::Dictionary*);
 
 namespace {
 
@@ -51,24 +71,23 @@ void finish(Page& page) {
     page.through = page.items.back().seq();
 }
 
-template <typename Read>
-auto as_item(Read read) {
-    return [read](const sqlite::Statement& row) -> Result<v1::Item> { return to_item(read(row)); };
+/// All of one kind.
+template <typename Record>
+Result<void> collect(Reader::State& reader, const RunInfo& info, Page& page, const char* sql = rows_sql<Record>()) {
+    const auto* words = reader.words_of(info);
+    return collect(reader, sql, page, [&](const auto& row) { return reader.item<Record>(row, words); });
 }
 
 Result<void> collect_alarms(Reader::State& reader, const RunInfo& info, Page& page) {
-    const auto staleness = [words = reader.words_of(info)](const sqlite::Statement& row) -> Result<v1::Item> {
-        return to_item(row::staleness(row), words);
-    };
-    auto done = collect(reader, row::alarm_rows, page, as_item(row::alarm));
-    if (done) done = collect(reader, row::staleness_rows, page, staleness);
-    if (done) done = collect(reader, row::alarm_action_rows, page, as_item(row::alarm_action));
+    auto done = collect<AlarmRecord>(reader, info, page);
+    if (done) done = collect<StalenessRecord>(reader, info, page);
+    if (done) done = collect<AlarmActionRecord>(reader, info, page);
     return done;
 }
 
 /// A unit's row stands for one or two items: itself and, sampled, the next number. The page may begin between them.
 Result<void> collect_units(Reader::State& reader, const RunInfo& info, Page& page, Reader::ItemKinds kinds) {
-    auto rows = reader.query(row::unit_rows);
+    auto rows = reader.query(rows_sql<UnitRecord>());
     if (!rows) return rows.error();
     (*rows)
         ->bind(1, item_key(page.run, page.after))
@@ -82,14 +101,14 @@ Result<void> collect_units(Reader::State& reader, const RunInfo& info, Page& pag
         auto found = (*rows)->step();
         if (!found) return found.error();
         if (!*found) break;
-        const auto unit = row::unit(**rows);
+        const auto unit = read_row<UnitRecord>(**rows);
         last = unit.sampled ? unit.seq + 1 : unit.seq;
         if (kinds.units && unit.seq > page.after) page.items.push_back(to_item(unit, words));
         if (!kinds.samples || !unit.sampled) continue;
         // With another dictionary the values cannot be told; the item still takes its place.
         const SampleRecord sample{unit.seq + 1, unit.packet.value_or(0), unit.sclk, unit.source, {}};
         values.clear();
-        if (words != nullptr && reader.decode((*rows)->octets(row::unit_octets_column))) {
+        if (words != nullptr && reader.decode(octets_of_unit(**rows))) {
             reader.columns.append_values(reader.decoded, values);
             page.items.push_back(to_item(sample, reader.columns.channels(reader.decoded.packet), values));
         } else {
@@ -115,18 +134,12 @@ Result<ItemPage> Reader::items(RunId run, Sequence after, std::size_t limit, Ite
     if (after >= *last) return ItemPage{{}, *last, false};
 
     Page page{run, after, *last, limit, {}};
-    if (kinds.units || kinds.samples)
-        if (auto done = collect_units(*state_, instant->run, page, kinds); !done) return done.error();
-    const auto explanation = [this](const sqlite::Statement& row) { return state_->explanation_item(row); };
-    const auto tone = [this](const sqlite::Statement& row) { return state_->tone_item(row); };
-    auto done = collect(*state_, row::event_rows, page, as_item(row::event));
-    if (done) done = collect(*state_, row::tone_rows, page, tone);
-    if (done) done = collect(*state_, row::stage_rows, page, as_item(row::stage));
-    if (done) done = collect(*state_, row::firing_rows, page, as_item(row::firing));
-    if (done) done = collect(*state_, row::explanation_rows, page, explanation);
-    if (done) done = collect(*state_, row::link_rows, page, as_item(row::link));
-    if (done) done = collect(*state_, row::note_rows, page, as_item(row::note));
-    if (done) done = collect_alarms(*state_, instant->run, page);
+    const auto done = try_item_kinds([&]<typename Record>(ItemKind<Record>) {
+        if constexpr (std::is_same_v<Record, UnitRecord>)
+            return kinds.units || kinds.samples ? collect_units(*state_, instant->run, page, kinds) : Result<void>{};
+        else
+            return collect<Record>(*state_, instant->run, page);
+    });
     if (!done) return done.error();
     finish(page);
     return ItemPage{std::move(page.items), page.through, page.through < *last};
@@ -136,41 +149,18 @@ Result<v1::AlarmList> Reader::alarms(RunId run, Sequence after, std::size_t limi
     if (auto fits = check_limit(limit, rows_page_max); !fits) return fits.error();
     const auto instant = state_->instant(run);
     if (!instant) return instant.error();
+    static const std::string lost_some_time =
+        select_sql<LinkRecord>("key BETWEEN ?1 AND ?2 AND link IN (SELECT link FROM link_changes WHERE lost AND key"
+                               " BETWEEN ?1 >> 40 << 40 AND ?2)");
     Page page{run, std::min(after, sequence_max - 1), sequence_max, limit, {}};
     auto done = collect_alarms(*state_, instant->run, page);
-    if (done) done = collect(*state_, row::lost_link_rows, page, as_item(row::link));
+    if (done) done = collect<LinkRecord>(*state_, instant->run, page, lost_some_time.c_str());
     if (!done) return done.error();
     finish(page);
     v1::AlarmList list;
     for (auto& item : page.items) *list.add_changes() = std::move(item);
     list.set_next_after(page.through == sequence_max ? 0 : page.through);
     return list;
-}
-
-Result<v1::Item> Reader::State::tone_item(const sqlite::Statement& row) {
-    auto record = row::tone(row);
-    auto best = query(row::tone_likelihood_rows);
-    if (!best) return best.error();
-    (*best)->bind(1, row.integer(0));
-    for (;;) {
-        auto found = (*best)->step();
-        if (!found) return found.error();
-        if (!*found) return to_item(record);
-        record.best.push_back(row::tone_likelihood(**best));
-    }
-}
-
-Result<v1::Item> Reader::State::explanation_item(const sqlite::Statement& row) {
-    auto record = row::explanation(row);
-    auto conditions = query(row::condition_rows);
-    if (!conditions) return conditions.error();
-    (*conditions)->bind(1, row.integer(0));
-    for (;;) {
-        auto found = (*conditions)->step();
-        if (!found) return found.error();
-        if (!*found) return to_item(record);
-        record.explanation.conditions.push_back(row::condition(**conditions));
-    }
 }
 
 }  // namespace aeolis::archive

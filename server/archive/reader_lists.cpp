@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dictionaries/timeline_plan.hpp"
+#include "server/archive/item_rows.hpp"
 #include "server/archive/items.hpp"
 #include "server/archive/reader.hpp"
 #include "server/archive/reader_state.hpp"
-#include "server/archive/row_reader.hpp"
 #include "server/archive/schema.hpp"
 #include "telemetry/text.hpp"
 
@@ -25,21 +25,6 @@ std::string hex(std::span<const std::uint8_t> octets) {
     }
     return text;
 }
-
-// The same questions, of those rows alone in which words are found: ?4.
-constexpr char found_events[] =
-    "SELECT key, unit, event, name, level, text, sclk, ert_us, source, duplicate FROM events WHERE key IN"
-    " (SELECT rowid FROM search WHERE search MATCH ?4 AND rowid BETWEEN ?1 AND ?2) ORDER BY key LIMIT ?3";
-constexpr char found_explanations[] =
-    "SELECT key, unit, sclk, decision, verdict, subject, text, source, duplicate FROM explanations WHERE key IN"
-    " (SELECT rowid FROM search WHERE search MATCH ?4 AND rowid BETWEEN ?1 AND ?2) ORDER BY key LIMIT ?3";
-constexpr char found_stages[] =
-    "SELECT key, command, name, stage, status, evidence, at_us, arguments, count, held, needs_approval, asked_by"
-    " FROM command_stages LEFT JOIN command_waits USING (key) WHERE key IN"
-    " (SELECT rowid FROM search WHERE search MATCH ?4 AND rowid BETWEEN ?1 AND ?2) ORDER BY key LIMIT ?3";
-constexpr char found_notes[] =
-    "SELECT key, text, author, at_us, written, sclk FROM notes WHERE key IN"
-    " (SELECT rowid FROM search WHERE search MATCH ?4 AND rowid BETWEEN ?1 AND ?2) ORDER BY key LIMIT ?3";
 
 /// What is asked for in words, as FTS5 wants it.
 struct Wanted {
@@ -140,8 +125,8 @@ Result<v1::PacketList> Reader::packets(RunId run, const PacketQuery& query) {
     if (!complete) return complete.error();
     const auto* words = state_->words_of(instant->run);
     v1::PacketList list;
-    const auto next = scan(*state_, row::unit_rows, run, query.after, [&](const auto& row) -> Result<bool> {
-        const auto unit = row::unit(row);
+    const auto next = scan(*state_, rows_sql<UnitRecord>(), run, query.after, [&](const auto& row) -> Result<bool> {
+        const auto unit = read_row<UnitRecord>(row);
         if ((wanted && unit.packet != wanted) || !range->holds(unit.sclk.seconds)) return false;
         const auto verdict = state_->verdict_on(run, unit, *complete);
         if (!verdict) return verdict.error();
@@ -150,7 +135,7 @@ Result<v1::PacketList> Reader::packets(RunId run, const PacketQuery& query) {
         written.set_verdict(verdict->name);
         written.set_other_hex(hex(verdict->other_octets));
         *written.mutable_unit() = std::move(*to_item(unit, words).mutable_unit());
-        const auto octets = row.octets(row::unit_octets_column);
+        const auto octets = octets_of_unit(row);
         written.set_hex(hex(octets));
         if (query.fields && words != nullptr && state_->other != nullptr)
             add_contents(written, state_->other->contents(octets));
@@ -172,11 +157,11 @@ Result<v1::EventList> Reader::events(RunId run, const EventQuery& query) {
     const Wanted wanted(query.text);
     v1::EventList list;
     if (wanted.nothing()) return list;
-    const char* sql = wanted.asked ? found_events : row::event_rows;
+    const char* sql = wanted.asked ? found_rows_sql<EventRecord>() : rows_sql<EventRecord>();
     const auto next = scan(
         *state_, sql, run, query.after,
         [&](const auto& row) -> Result<bool> {
-            const auto event = row::event(row);
+            const auto event = read_row<EventRecord>(row);
             if ((event.duplicate && !query.duplicates) || !range->holds(event.sclk.seconds)) return false;
             if (!query.levels.empty() &&
                 std::find(query.levels.begin(), query.levels.end(), event.level) == query.levels.end())
@@ -199,10 +184,10 @@ Result<v1::ToneList> Reader::tones(RunId run, const ToneQuery& query) {
     const auto wanted = words_in(query.text);
     v1::ToneList list;
     if (wanted.empty() && !query.text.empty()) return list;  // only signs: no tone has them
-    const auto next = scan(*state_, row::tone_rows, run, query.after, [&](const auto& row) -> Result<bool> {
-        const auto record = row::tone(row);
+    const auto next = scan(*state_, rows_sql<ToneRecord>(), run, query.after, [&](const auto& row) -> Result<bool> {
+        const auto record = read_row<ToneRecord>(row);
         if (!range->holds(record.sclk.seconds) || !has_words(record.name + " " + record.meaning, wanted)) return false;
-        auto tone = state_->tone_item(row);
+        auto tone = state_->item<ToneRecord>(row);
         if (!tone) return tone.error();
         *list.add_tones() = std::move(*tone);
         return static_cast<std::size_t>(list.tones_size()) == query.limit;
@@ -222,12 +207,12 @@ Result<v1::ExplanationList> Reader::explanations(RunId run, const ExplanationQue
     v1::ExplanationList list;
     if (wanted.nothing()) return list;
     const auto next = scan(
-        *state_, wanted.asked ? found_explanations : row::explanation_rows, run, query.after,
+        *state_, wanted.asked ? found_rows_sql<ExplanationRecord>() : rows_sql<ExplanationRecord>(), run, query.after,
         [&](const auto& row) -> Result<bool> {
-            const auto record = row::explanation(row);
+            const auto record = read_row<ExplanationRecord>(row);
             if ((record.duplicate && !query.duplicates) || !range->holds(record.sclk.seconds)) return false;
             if (!query.decision.empty() && record.explanation.decision != query.decision) return false;
-            auto item = state_->explanation_item(row);
+            auto item = state_->item<ExplanationRecord>(row);
             if (!item) return item.error();
             *list.add_explanations() = std::move(item).value();
             return static_cast<std::size_t>(list.explanations_size()) == query.limit;
@@ -246,9 +231,9 @@ Result<v1::NoteList> Reader::notes(RunId run, const NoteQuery& query) {
     v1::NoteList list;
     if (wanted.nothing()) return list;
     const auto next = scan(
-        *state_, wanted.asked ? found_notes : row::note_rows, run, query.after,
+        *state_, wanted.asked ? found_rows_sql<NoteRecord>() : rows_sql<NoteRecord>(), run, query.after,
         [&](const auto& row) -> Result<bool> {
-            *list.add_notes() = to_item(row::note(row));
+            *list.add_notes() = to_item(read_row<NoteRecord>(row));
             return static_cast<std::size_t>(list.notes_size()) == query.limit;
         },
         wanted.words);
@@ -264,14 +249,15 @@ Result<v1::CommandList> Reader::commands(RunId run, const CommandQuery& query) {
     if (!instant) return instant.error();
     std::set<std::uint64_t> in_range;
     std::map<std::uint64_t, v1::CommandHistory> histories;
-    const auto done = scan(*state_, row::stage_rows, run, 0, [&](const auto& row) -> Result<bool> {
-        const auto stage = row::stage(row);
+    const auto done = scan(*state_, rows_sql<StageRecord>(), run, 0, [&](const auto& row) -> Result<bool> {
+        const auto stage = read_row<StageRecord>(row);
         auto& history = histories[stage.command];
         if (history.stages_size() == 0) {
             history.set_command(stage.command);
             history.set_name(stage.name);
             history.set_arguments(stage.arguments);
         }
+        if (!stage.octets.empty()) history.set_octets(hex(stage.octets));
         if (stage.stage == "released") {  // its last word
             history.set_held(stage.held);
             history.set_needs_approval(stage.needs_approval);
@@ -286,27 +272,15 @@ Result<v1::CommandList> Reader::commands(RunId run, const CommandQuery& query) {
         std::set<std::uint64_t> found;
         if (!wanted.nothing()) {
             const auto looked = scan(
-                *state_, found_stages, run, 0,
+                *state_, found_rows_sql<StageRecord>(), run, 0,
                 [&](const auto& row) -> Result<bool> {
-                    found.insert(row::stage(row).command);
+                    found.insert(read_row<StageRecord>(row).command);
                     return false;
                 },
                 wanted.words);
             if (!looked) return looked.error();
         }
         std::erase_if(histories, [&](const auto& history) { return !found.contains(history.first); });
-    }
-    static constexpr char octets_sql[] = "SELECT command, octets FROM commands WHERE run = ?1";
-    auto rows = state_->query(octets_sql);
-    if (!rows) return rows.error();
-    auto& row = **rows;
-    row.bind(1, std::int64_t{run.value});
-    for (;;) {
-        auto found = row.step();
-        if (!found) return found.error();
-        if (!*found) break;
-        if (const auto history = histories.find(static_cast<std::uint64_t>(row.integer(0))); history != histories.end())
-            history->second.set_octets(hex(row.octets(1)));
     }
     v1::CommandList list;
     for (auto& [number, history] : histories) *list.add_commands() = std::move(history);
@@ -359,8 +333,8 @@ Result<v1::TimepointList> Reader::timepoints(RunId run) {
         if (anchor.offset_s) written.set_offset_s(*anchor.offset_s);
     }
     if (auto done = state_->add_predicted_anchors(run, list); !done) return done.error();
-    const auto done = scan(*state_, row::firing_rows, run, 0, [&](const auto& row) -> Result<bool> {
-        const auto firing = row::firing(row);
+    const auto done = scan(*state_, rows_sql<FiringRecord>(), run, 0, [&](const auto& row) -> Result<bool> {
+        const auto firing = read_row<FiringRecord>(row);
         if (firing.timepoint.value >= dictionary.timeline.size()) return false;
         auto& written = *list.mutable_timepoints(firing.timepoint.value);
         if (firing.source == Source::realtime)

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "server/archive/item_rows.hpp"
 #include "server/archive/other_path.hpp"
 #include "server/archive/reader.hpp"
 #include "server/archive/reader_state.hpp"
-#include "server/archive/row_reader.hpp"
 #include "server/archive/schema.hpp"
 #include "telemetry/text.hpp"
 
@@ -179,14 +179,14 @@ Result<v1::ProofReport> Reader::proof(RunId run) {
 Result<void> Reader::add_tones(RunId run, bool complete, v1::ProofReport& report) {
     auto sent = selections(*state_, run);
     if (!sent) return sent.error();
-    auto rows = state_->query(row::tone_rows);
+    auto rows = state_->query(rows_sql<ToneRecord>());
     if (!rows) return rows.error();
     (*rows)->bind(1, item_key(run, 0)).bind(2, item_key(run, sequence_max)).bind(3, std::int64_t{-1});
     for (;;) {
         auto found = (*rows)->step();
         if (!found) return found.error();
         if (!*found) break;
-        *report.add_tones() = verdict_on(row::tone(**rows), *sent, complete);
+        *report.add_tones() = verdict_on(read_row<ToneRecord>(**rows), *sent, complete);
     }
     for (const Selection& each : *sent) {
         if (each.seen) continue;

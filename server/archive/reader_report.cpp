@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "commands/timeline_change.hpp"
 #include "dictionaries/timeline_plan.hpp"
+#include "server/archive/item_rows.hpp"
 #include "server/archive/items.hpp"
 #include "server/archive/reader_state.hpp"
-#include "server/archive/row_reader.hpp"
 #include "server/archive/schema.hpp"
 #include "telemetry/text.hpp"
 
@@ -194,8 +194,9 @@ Result<v1::AsFlownReport> Reader::as_flown(RunId run) {
 }
 
 Result<std::vector<v1::Silence>> Reader::State::silences(RunId run) {
-    auto times = query("SELECT correlation_scet_us + ((entry_sclk - correlation_sclk) * rate + "
-                       "light_time_s) * 1e6 FROM runs JOIN run_clocks USING (run) WHERE run = ?");
+    auto times =
+        query("SELECT correlation_scet_us + ((entry_sclk - correlation_sclk) * clock_rate + light_time_s) * 1e6"
+              " FROM runs WHERE run = ?");
     if (!times) return times.error();
     (*times)->bind(1, std::int64_t{run.value});
     auto found = (*times)->step();
@@ -203,7 +204,7 @@ Result<std::vector<v1::Silence>> Reader::State::silences(RunId run) {
     if (!*found) return Error{"no run " + std::to_string(run.value)};
     const double entry_ert_us = (*times)->real(0);
 
-    auto rows = query(row::link_rows);
+    auto rows = query(rows_sql<LinkRecord>());
     if (!rows) return rows.error();
     (*rows)->bind(1, item_key(run, 0)).bind(2, item_key(run, sequence_max)).bind(3, std::int64_t{-1});
     std::vector<v1::Silence> all;
@@ -212,7 +213,7 @@ Result<std::vector<v1::Silence>> Reader::State::silences(RunId run) {
         auto next = (*rows)->step();
         if (!next) return next.error();
         if (!*next) return all;
-        const LinkRecord change = row::link(**rows);
+        const auto change = read_row<LinkRecord>(**rows);
         const double e_s = (static_cast<double>(change.ert.microseconds) - entry_ert_us) * 1e-6;
         if (const auto before = silent.find(change.link); before != silent.end()) {
             all[before->second].set_to_e_s(e_s);

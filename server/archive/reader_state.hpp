@@ -83,8 +83,10 @@ struct Reader::State {
     Result<v1::RunState> run_state(const sqlite::Statement& row);
     /// When the design had each anchor when the run began.
     Result<void> add_predicted_anchors(RunId run, v1::TimepointList& list);
-    Result<v1::Item> explanation_item(const sqlite::Statement& row);
-    Result<v1::Item> tone_item(const sqlite::Statement& row);
+    /// The item whose row stands ready, with its parts.
+    /// @param words  as to_item() takes them
+    template <typename Record>
+    Result<v1::Item> item(const sqlite::Statement& row, const dictionary::Dictionary* words = nullptr);
     /// When each link brought nothing, and why, as was told. Call within a read transaction.
     Result<std::vector<v1::Silence>> silences(RunId run);
     /// Whether the whole recording of a run is down.

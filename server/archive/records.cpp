@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/archive/records.hpp"
 
+#include "server/archive/item_tables.hpp"
+
 namespace aeolis::archive {
 
 void Extremes::add(const Extremes& later) {
@@ -27,18 +29,8 @@ void Batch::clear() {
     first_seq = last_seq = 0;
     octets.clear();
     values.clear();
-    units.clear();
     samples.clear();
-    events.clear();
-    tones.clear();
-    stages.clear();
-    firings.clear();
-    explanations.clear();
-    links.clear();
-    alarms.clear();
-    staleness.clear();
-    alarm_actions.clear();
-    notes.clear();
+    for_item_kinds([this]<typename Record>(ItemKind<Record>) { (this->*ItemTable<Record>::of_batch).clear(); });
     segments.clear();
     requests.clear();
     pyramid.clear();

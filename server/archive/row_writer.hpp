@@ -2,7 +2,7 @@
 #pragma once
 
 #include "server/archive/column_codec.hpp"
-#include "server/archive/records.hpp"
+#include "server/archive/item_tables.hpp"
 #include "server/archive/sqlite.hpp"
 
 #include <string>
@@ -19,17 +19,8 @@ class RowWriter {
   private:
     /// As the words of the archive have it; a new name becomes one of them.
     Result<std::int64_t> number_of_link(const std::string& name);
-    Result<void> unit(RunId run, const UnitRecord& record, const Batch& batch);
-    Result<void> event(RunId run, const EventRecord& record);
-    Result<void> tone(RunId run, const ToneRecord& record);
-    Result<void> stage(RunId run, const StageRecord& record);
-    Result<void> firing(RunId run, const FiringRecord& record);
-    Result<void> explanation(RunId run, const ExplanationRecord& record);
-    Result<void> link(RunId run, const LinkRecord& record);
-    Result<void> alarm(RunId run, const AlarmRecord& record);
-    Result<void> staleness(RunId run, const StalenessRecord& record);
-    Result<void> alarm_action(RunId run, const AlarmActionRecord& record);
-    Result<void> note(RunId run, const NoteRecord& record);
+    template <typename Record>
+    Result<void> item(RunId run, const Record& record, const Batch& batch);
     /// Of a run's next segment or block, by the question for the largest so far.
     static Result<std::int64_t> next_number(RunId run, sqlite::Statement& largest);
     Result<void> segment(RunId run, const SegmentRecord& record, std::int64_t number);
@@ -39,10 +30,14 @@ class RowWriter {
     Result<void> totals(RunId run, const RecordingTotals& totals);
     Result<void> link_totals(RunId run, const LinkTotals& totals);
 
-    sqlite::Statement unit_, event_, tone_, command_, stage_, wait_, firing_, explanation_, condition_, link_,
-        link_loss_, alarm_, staleness_, alarm_action_, note_, search_, segment_number_, segment_, column_,
-        block_number_, block_, block_column_, link_number_, link_word_, totals_, link_totals_, request_, tone_evidence_,
-        tone_likelihood_;
+    /// INSERT of one kind of item, and of its parts.
+    template <typename Record>
+    struct ItemStatements {
+        sqlite::Statement row, part;
+    };
+    OfItemKinds<ItemStatements> items_;
+    sqlite::Statement search_, segment_number_, segment_, column_, block_number_, block_, block_column_, link_number_,
+        link_word_, totals_, link_totals_, request_;
     ColumnCodec codec_;
 };
 

@@ -2,30 +2,16 @@
 #include "server/archive/schema.hpp"
 
 #include "server/archive/archive.hpp"
+#include "server/archive/item_rows.hpp"
 
 #include <string_view>
 
 namespace aeolis::archive {
 
-const char* const last_key_sql = R"sql(
-SELECT max(key) FROM (
-    SELECT (SELECT key + sampled FROM units WHERE key BETWEEN ?1 AND ?2 ORDER BY key DESC LIMIT 1) AS key
-    UNION ALL SELECT max(key) FROM events WHERE key BETWEEN ?1 AND ?2
-    UNION ALL SELECT max(key) FROM tones WHERE key BETWEEN ?1 AND ?2
-    UNION ALL SELECT max(key) FROM command_stages WHERE key BETWEEN ?1 AND ?2
-    UNION ALL SELECT max(key) FROM timepoint_firings WHERE key BETWEEN ?1 AND ?2
-    UNION ALL SELECT max(key) FROM explanations WHERE key BETWEEN ?1 AND ?2
-    UNION ALL SELECT max(key) FROM link_changes WHERE key BETWEEN ?1 AND ?2
-    UNION ALL SELECT max(key) FROM alarms WHERE key BETWEEN ?1 AND ?2
-    UNION ALL SELECT max(key) FROM staleness WHERE key BETWEEN ?1 AND ?2
-    UNION ALL SELECT max(key) FROM alarm_actions WHERE key BETWEEN ?1 AND ?2
-    UNION ALL SELECT max(key) FROM notes WHERE key BETWEEN ?1 AND ?2)
-)sql";
-
 namespace {
 
-// docs/archive.md explains each table. Times: *_sclk in seconds of the spacecraft clock; *_us in microseconds since
-// 2000-01-01T12:00:00 UTC. key = run << 40 | seq.
+// All tables but those of items (item_tables.hpp). docs/archive.md explains each. Times: *_sclk in seconds of the
+// spacecraft clock; *_us in microseconds since 2000-01-01T12:00:00 UTC. key = run << 40 | seq.
 const char* const tables_sql = R"sql(
 CREATE TABLE dictionaries (
     dictionary INTEGER PRIMARY KEY, mission TEXT NOT NULL, timeline_version INTEGER NOT NULL) STRICT;
@@ -42,13 +28,12 @@ CREATE TABLE runs (
     state TEXT NOT NULL CHECK (state IN ('running', 'finished', 'interrupted')), outcome TEXT NOT NULL,
     outcome_reason TEXT NOT NULL DEFAULT '', digest TEXT NOT NULL DEFAULT '', started TEXT NOT NULL,
     ended TEXT NOT NULL DEFAULT '', last_seq INTEGER, start_sclk REAL NOT NULL, entry_sclk REAL NOT NULL,
-    correlation_sclk REAL NOT NULL, correlation_scet_us INTEGER NOT NULL, light_time_s REAL NOT NULL,
+    correlation_sclk REAL NOT NULL, correlation_scet_us INTEGER NOT NULL, clock_version INTEGER NOT NULL,
+    clock_rate REAL NOT NULL, leap_seconds INTEGER NOT NULL, light_time_s REAL NOT NULL,
     tone_model TEXT NOT NULL, dictionary INTEGER NOT NULL, scenario_text TEXT NOT NULL) STRICT;
 CREATE TABLE run_solution (
     run INTEGER NOT NULL, position INTEGER NOT NULL, name TEXT NOT NULL, value REAL NOT NULL,
     PRIMARY KEY (run, position)) STRICT, WITHOUT ROWID;
-CREATE TABLE run_clocks (
-    run INTEGER PRIMARY KEY, version INTEGER NOT NULL, rate REAL NOT NULL, leap_seconds INTEGER NOT NULL) STRICT;
 CREATE TABLE run_anchors (
     run INTEGER NOT NULL, anchor INTEGER NOT NULL, name TEXT NOT NULL, predicted_e_s REAL,
     PRIMARY KEY (run, anchor)) STRICT, WITHOUT ROWID;
@@ -63,12 +48,7 @@ CREATE TABLE recordings (
     realtime_not_recorded INTEGER NOT NULL, realtime_differs INTEGER NOT NULL, never_seen_live INTEGER NOT NULL,
     not_decoded INTEGER NOT NULL, progress REAL NOT NULL) STRICT;
 
-CREATE TABLE units (
-    key INTEGER PRIMARY KEY, run INTEGER NOT NULL, apid INTEGER NOT NULL, packet INTEGER, sclk REAL NOT NULL,
-    ert_us INTEGER NOT NULL, link INTEGER NOT NULL, source INTEGER NOT NULL, standing INTEGER NOT NULL,
-    sampled INTEGER NOT NULL, refusal TEXT, octets BLOB NOT NULL) STRICT;
 CREATE INDEX units_by_time ON units (run, apid, source, sclk);
-
 CREATE TABLE segments (
     segment INTEGER PRIMARY KEY, run INTEGER NOT NULL, packet INTEGER NOT NULL, source INTEGER NOT NULL,
     position INTEGER NOT NULL, first_unit INTEGER NOT NULL, last_unit INTEGER NOT NULL, samples INTEGER NOT NULL,
@@ -86,57 +66,10 @@ CREATE TABLE pyramid (
     PRIMARY KEY (run, packet, source, level, position)) STRICT, WITHOUT ROWID;
 CREATE TABLE pyramid_columns (key INTEGER PRIMARY KEY, nodes BLOB NOT NULL) STRICT;
 
-CREATE TABLE events (
-    key INTEGER PRIMARY KEY, unit INTEGER NOT NULL, event INTEGER NOT NULL, name TEXT NOT NULL, level TEXT NOT NULL,
-    text TEXT NOT NULL, sclk REAL NOT NULL, ert_us INTEGER NOT NULL, source INTEGER NOT NULL,
-    duplicate INTEGER NOT NULL) STRICT;
-CREATE TABLE tones (
-    key INTEGER PRIMARY KEY, start_us INTEGER NOT NULL, end_us INTEGER NOT NULL, tone INTEGER, name TEXT NOT NULL,
-    meaning TEXT NOT NULL, likelihood REAL NOT NULL, runner_up INTEGER, runner_up_likelihood REAL NOT NULL,
-    c_n0_dbhz REAL NOT NULL, doppler_hz REAL NOT NULL, locked INTEGER NOT NULL, model TEXT NOT NULL,
-    sclk REAL NOT NULL) STRICT;
-CREATE TABLE tone_evidence (key INTEGER PRIMARY KEY, lock TEXT NOT NULL, spectrum BLOB) STRICT;
-CREATE TABLE tone_likelihoods (
-    key INTEGER NOT NULL, position INTEGER NOT NULL, tone INTEGER NOT NULL, likelihood REAL NOT NULL,
-    PRIMARY KEY (key, position)) STRICT, WITHOUT ROWID;
-CREATE TABLE commands (
-    run INTEGER NOT NULL, command INTEGER NOT NULL, name TEXT NOT NULL, arguments TEXT NOT NULL,
-    count INTEGER NOT NULL, octets BLOB NOT NULL, PRIMARY KEY (run, command)) STRICT, WITHOUT ROWID;
-CREATE TABLE command_stages (
-    key INTEGER PRIMARY KEY, command INTEGER NOT NULL, name TEXT NOT NULL, stage TEXT NOT NULL, status TEXT NOT NULL,
-    evidence TEXT NOT NULL, at_us INTEGER NOT NULL, arguments TEXT NOT NULL, count INTEGER NOT NULL) STRICT;
-CREATE TABLE command_waits (
-    key INTEGER PRIMARY KEY, held INTEGER NOT NULL, needs_approval INTEGER NOT NULL, asked_by TEXT NOT NULL) STRICT;
-CREATE TABLE timepoint_firings (
-    key INTEGER PRIMARY KEY, unit INTEGER NOT NULL, timepoint INTEGER NOT NULL, name TEXT NOT NULL,
-    triggered_sclk REAL NOT NULL, fired_sclk REAL NOT NULL, verdict TEXT NOT NULL, source INTEGER NOT NULL,
-    duplicate INTEGER NOT NULL) STRICT;
-CREATE TABLE explanations (
-    key INTEGER PRIMARY KEY, unit INTEGER NOT NULL, sclk REAL NOT NULL, decision TEXT NOT NULL, verdict TEXT NOT NULL,
-    subject TEXT NOT NULL, text TEXT NOT NULL, source INTEGER NOT NULL, duplicate INTEGER NOT NULL) STRICT;
-CREATE TABLE explanation_conditions (
-    key INTEGER NOT NULL, position INTEGER NOT NULL, quantity TEXT NOT NULL, value REAL, comparison TEXT NOT NULL,
-    bound REAL, holds INTEGER NOT NULL, PRIMARY KEY (key, position)) STRICT, WITHOUT ROWID;
-CREATE TABLE link_changes (
-    key INTEGER PRIMARY KEY, link INTEGER NOT NULL, up INTEGER NOT NULL, reason TEXT NOT NULL,
-    ert_us INTEGER NOT NULL) STRICT;
-CREATE TABLE link_losses (key INTEGER PRIMARY KEY) STRICT;
 CREATE TABLE link_totals (
     run INTEGER NOT NULL, link TEXT NOT NULL, octets INTEGER NOT NULL, frames INTEGER NOT NULL, bad_crc INTEGER NOT NULL,
     bad_header INTEGER NOT NULL, skipped_octets INTEGER NOT NULL, gaps INTEGER NOT NULL, missing_frames INTEGER NOT NULL,
     repeated_frames INTEGER NOT NULL, octets_per_s REAL NOT NULL, PRIMARY KEY (run, link)) STRICT, WITHOUT ROWID;
-CREATE TABLE alarms (
-    key INTEGER PRIMARY KEY, unit INTEGER NOT NULL, channel INTEGER NOT NULL, severity TEXT NOT NULL, value REAL,
-    sclk REAL NOT NULL, limit_text TEXT NOT NULL) STRICT;
-CREATE TABLE staleness (
-    key INTEGER PRIMARY KEY, packet INTEGER NOT NULL, stale INTEGER NOT NULL, silent_s REAL NOT NULL,
-    expected_s REAL NOT NULL, reason TEXT NOT NULL, ert_us INTEGER NOT NULL) STRICT;
-CREATE TABLE alarm_actions (
-    key INTEGER PRIMARY KEY, alarm TEXT NOT NULL, action TEXT NOT NULL, note TEXT NOT NULL, author TEXT NOT NULL,
-    at_us INTEGER NOT NULL, until_us INTEGER NOT NULL) STRICT;
-CREATE TABLE notes (
-    key INTEGER PRIMARY KEY, text TEXT NOT NULL, author TEXT NOT NULL, at_us INTEGER NOT NULL, written TEXT NOT NULL,
-    sclk REAL) STRICT;
 
 CREATE TABLE audit (
     entry INTEGER PRIMARY KEY, at TEXT NOT NULL, who TEXT NOT NULL, peer TEXT NOT NULL, action TEXT NOT NULL,
@@ -200,10 +133,10 @@ CREATE VIEW channel_segments AS
 CREATE VIEW tone_evidence_log AS
     SELECT t.key >> 40 AS run, t.key & 0xFFFFFFFFFF AS seq,
            strftime('%Y-%jT%H:%M:%f', t.start_us / 1e6 + 946728000, 'unixepoch') AS ert_start, t.tone, t.c_n0_dbhz,
-           t.doppler_hz, e.lock, t.model, hex(e.spectrum) AS spectrum,
+           t.doppler_hz, t.lock, t.model, hex(t.spectrum) AS spectrum,
            (SELECT group_concat(tone || ': ' || round(likelihood, 6), ', ')
             FROM (SELECT tone, likelihood FROM tone_likelihoods WHERE key = t.key ORDER BY position)) AS best
-    FROM tones t JOIN tone_evidence e ON e.key = t.key;
+    FROM tones t;
 CREATE VIEW staleness_log AS
     SELECT s.key >> 40 AS run, s.key & 0xFFFFFFFFFF AS seq,
            strftime('%Y-%jT%H:%M:%f', s.ert_us / 1e6 + 946728000, 'unixepoch') AS ert, p.name AS packet, s.stale,
@@ -221,26 +154,20 @@ CREATE VIEW shift_log AS
            n.sclk - r.entry_sclk AS e_s, n.text
     FROM notes n JOIN runs r ON r.run = n.key >> 40;
 CREATE VIEW clock_log AS
-    SELECT r.run, r.scenario, k.version, r.correlation_sclk AS sclk,
+    SELECT r.run, r.scenario, r.clock_version AS version, r.correlation_sclk AS sclk,
            strftime('%Y-%jT%H:%M:%f', r.correlation_scet_us / 1e6 + 946728000, 'unixepoch') AS scet,
-           k.rate - 1.0 AS drift, k.leap_seconds, r.entry_sclk,
+           r.clock_rate - 1.0 AS drift, r.leap_seconds, r.entry_sclk,
            strftime('%Y-%jT%H:%M:%f', r.correlation_scet_us / 1e6
-               + (r.entry_sclk - r.correlation_sclk) * k.rate + 946728000, 'unixepoch') AS entry_scet,
+               + (r.entry_sclk - r.correlation_sclk) * r.clock_rate + 946728000, 'unixepoch') AS entry_scet,
            r.light_time_s
-    FROM runs r JOIN run_clocks k ON k.run = r.run;
+    FROM runs r;
 CREATE VIEW command_wait_log AS
-    SELECT w.key >> 40 AS run, w.key & 0xFFFFFFFFFF AS seq,
-           strftime('%Y-%jT%H:%M:%f', c.at_us / 1e6 + 946728000, 'unixepoch') AS at, c.command, c.name, w.held,
-           w.needs_approval, w.asked_by, c.evidence
-    FROM command_waits w JOIN command_stages c ON c.key = w.key;
--- "search" indexes the words of search_text and keeps no text itself: rows leave it before they leave their table.
-CREATE VIEW search_text AS
-    SELECT key, name || ' ' || text AS text FROM events
-    UNION ALL SELECT key, decision || ' ' || verdict || ' ' || text FROM explanations
-    UNION ALL SELECT key, name || ' ' || stage || ' ' || status || ' ' || evidence || ' ' || arguments FROM command_stages
-    UNION ALL SELECT key, author || ' ' || text FROM notes
-    UNION ALL SELECT key, alarm || ' ' || action || ' ' || author || ' ' || note FROM alarm_actions;
-CREATE VIRTUAL TABLE search USING fts5(text, content = 'search_text', content_rowid = 'key');
+    SELECT c.key >> 40 AS run, c.key & 0xFFFFFFFFFF AS seq,
+           strftime('%Y-%jT%H:%M:%f', c.at_us / 1e6 + 946728000, 'unixepoch') AS at, c.command, c.name, c.held,
+           c.needs_approval, c.asked_by, c.evidence
+    FROM command_stages c WHERE c.held OR c.needs_approval;
+CREATE VIEW commands AS
+    SELECT key >> 40 AS run, command, name, arguments, count, octets FROM command_stages WHERE octets IS NOT NULL;
 )sql";
 
 // Of a new archive; SQLite's own is 4 kB. A block of the pyramid, or a packed column, lies in one page, and trees are a
@@ -251,37 +178,51 @@ constexpr char by_key[] = "key BETWEEN ?1 << 40 AND ?1 << 40 | 0xFFFFFFFFFF";
 constexpr char by_run[] = "run = ?1";
 constexpr char by_block[] = "key BETWEEN ?1 << 39 AND (?1 << 39) + 0x7FFFFFFFFF";
 constexpr char by_rowid[] = "rowid BETWEEN ?1 << 40 AND ?1 << 40 | 0xFFFFFFFFFF";
-constexpr RunTable tables_of_runs[] = {
-    {"search", by_rowid, false},
-    {"segment_columns", by_block, true},
-    {"segments", by_run, true},
-    {"pyramid_columns", by_block, true},
-    {"pyramid", by_run, true},
-    {"events", by_key, true},
-    {"timepoint_firings", by_key, true},
-    {"explanation_conditions", by_key, true},
-    {"explanations", by_key, true},
-    {"alarms", by_key, true},
-    {"recordings", by_run, true},
-    {"units", by_key, true},
-    {"tone_likelihoods", by_key, false},
-    {"tone_evidence", by_key, false},
-    {"tones", by_key, false},
-    {"command_waits", by_key, false},
-    {"command_stages", by_key, false},
-    {"commands", by_run, false},
-    {"link_losses", by_key, false},
-    {"link_changes", by_key, false},
-    {"link_totals", by_run, false},
-    {"staleness", by_key, false},
-    {"alarm_actions", by_key, false},
-    {"notes", by_key, false},
-    {"requests", by_run, false},
-    {"run_solution", by_run, false},
-    {"run_clocks", by_run, false},
-    {"run_anchors", by_run, false},
-    {"runs", by_run, false},
-};
+std::vector<RunTable> tables_of_runs() {
+    std::vector<RunTable> tables{
+        {"search", by_rowid, false},     {"segment_columns", by_block, true},
+        {"segments", by_run, true},      {"pyramid_columns", by_block, true},
+        {"pyramid", by_run, true},       {"recordings", by_run, true},
+        {"link_totals", by_run, false},  {"requests", by_run, false},
+        {"run_solution", by_run, false}, {"run_anchors", by_run, false},
+        {"runs", by_run, false},
+    };
+    for_item_kinds([&]<typename Record>(ItemKind<Record>) {
+        if constexpr (HasParts<Record>)
+            tables.push_back({PartTable<PartOf<Record>>::name, by_key, ItemTable<Record>::derived});
+        tables.push_back({ItemTable<Record>::name, by_key, ItemTable<Record>::derived});
+    });
+    return tables;
+}
+
+std::string item_tables_sql() {
+    std::string sql;
+    const auto declared = [](const auto& columns) { return joined(columns, &ColumnText::declared, ", "); };
+    for_item_kinds([&]<typename Record>(ItemKind<Record>) {
+        sql += std::string("CREATE TABLE ") + ItemTable<Record>::name + " (key INTEGER PRIMARY KEY, " +
+               declared(columns_of<ItemTable, Record>()) + ") STRICT;";
+        if constexpr (HasParts<Record>)
+            sql += std::string("CREATE TABLE ") + PartTable<PartOf<Record>>::name +
+                   " (key INTEGER NOT NULL, position INTEGER NOT NULL, " +
+                   declared(columns_of<PartTable, PartOf<Record>>()) +
+                   ", PRIMARY KEY (key, position)) STRICT, WITHOUT ROWID;";
+    });
+    return sql;
+}
+
+// The table "search" indexes the words of the view search_text and keeps no text itself: rows leave it before they
+// leave their table.
+std::string search_sql() {
+    std::string sql;
+    for_item_kinds([&]<typename Record>(ItemKind<Record>) {
+        auto columns = columns_of<ItemTable, Record>();
+        std::erase_if(columns, [](const ColumnText& column) { return !column.searched; });
+        if (columns.empty()) return;
+        sql += (sql.empty() ? "CREATE VIEW search_text AS SELECT key, " : " UNION ALL SELECT key, ") +
+               joined(columns, &ColumnText::name, " || ' ' || ") + " AS text FROM " + ItemTable<Record>::name;
+    });
+    return sql + "; CREATE VIRTUAL TABLE search USING fts5(text, content = 'search_text', content_rowid = 'key')";
+}
 
 Error not_ours(const sqlite::Database& database) {
     return {database.file() + " is not an Aeolis archive"};
@@ -308,7 +249,23 @@ Result<bool> is_empty(sqlite::Database& database) {
 
 }  // namespace
 
-const std::span<const RunTable> run_tables = tables_of_runs;
+const std::vector<RunTable>& run_tables() {
+    static const std::vector<RunTable> tables = tables_of_runs();
+    return tables;
+}
+
+const char* last_key_sql() {
+    static const std::string sql = [] {
+        std::string keys = "SELECT (SELECT key + sampled FROM units WHERE key BETWEEN ?1 AND ?2 ORDER BY key DESC"
+                           " LIMIT 1) AS key";
+        for_item_kinds([&]<typename Record>(ItemKind<Record>) {
+            keys += std::string(" UNION ALL SELECT max(key) FROM ") + ItemTable<Record>::name +
+                    " WHERE key BETWEEN ?1 AND ?2";
+        });
+        return "SELECT max(key) FROM (" + keys + ")";
+    }();
+    return sql.c_str();
+}
 
 Result<void> prepare_for_writing(sqlite::Database& database) {
     auto empty = is_empty(database);
@@ -320,8 +277,9 @@ Result<void> prepare_for_writing(sqlite::Database& database) {
     if (!transaction) return transaction.error();
     const std::string marks = "PRAGMA application_id = " + std::to_string(application_id) +
                               "; PRAGMA user_version = " + std::to_string(schema_version);
-    for (const char* sql : {marks.c_str(), tables_sql, views_sql})
-        if (auto done = database.execute(sql); !done) return done;
+    for (const std::string& sql :
+         {marks, item_tables_sql(), std::string(tables_sql), std::string(views_sql), search_sql()})
+        if (auto done = database.execute(sql.c_str()); !done) return done;
     return transaction->commit();
 }
 

@@ -4,7 +4,7 @@
 #include "server/archive/records.hpp"
 #include "server/archive/sqlite.hpp"
 
-#include <span>
+#include <vector>
 
 namespace aeolis::archive {
 
@@ -35,14 +35,14 @@ constexpr std::int64_t column_key(std::int64_t segment, ChannelId channel) {
     return segment * 65'536 + channel.value;
 }
 
-/// A table whose rows of a run follow from its units, and which of them are the run's: SQL over ?1 = run.
+/// A table with rows of runs, and which of them are the run's: SQL over ?1 = run.
 struct RunTable {
     const char* name;
     const char* rows;
     bool derived;  ///< from the units, all of it; else it holds what only was received or decided once
 };
 /// In an order in which they can be emptied. All tables but those of dictionaries and words.
-extern const std::span<const RunTable> run_tables;
+const std::vector<RunTable>& run_tables();
 
 /// Puts the words of items into the index that finds them (the table "search"), as SQL over ?1, ?2 = their first and
 /// last key. They must not be in it already.
@@ -50,6 +50,6 @@ inline constexpr char add_to_search_sql[] =
     "INSERT INTO search (rowid, text) SELECT key, text FROM search_text WHERE key BETWEEN ?1 AND ?2";
 
 /// The last sequence number of each of the tables, as SQL over ?1 = item_key(run, 0), ?2 = item_key(run, max).
-extern const char* const last_key_sql;
+const char* last_key_sql();
 
 }  // namespace aeolis::archive

@@ -2,6 +2,7 @@
 #include "server/archive/upkeep.hpp"
 
 #include "server/archive/archive.hpp"
+#include "server/archive/item_tables.hpp"
 #include "server/archive/schema.hpp"
 
 #include <cerrno>
@@ -15,11 +16,10 @@ namespace {
 
 /// Every number that an item of the run has.
 std::string item_keys_sql(const std::string& schema) {
-    std::string sql = "SELECT key FROM " + schema + "units WHERE key BETWEEN ?1 AND ?2 UNION ALL SELECT key + 1 FROM " +
-                      schema + "units WHERE key BETWEEN ?1 AND ?2 AND sampled = 1";
-    for (const char* table : {"events", "tones", "command_stages", "timepoint_firings", "explanations", "link_changes",
-                              "alarms", "staleness", "alarm_actions", "notes"})
-        sql += " UNION ALL SELECT key FROM " + schema + table + " WHERE key BETWEEN ?1 AND ?2";
+    std::string sql = "SELECT key + 1 AS key FROM " + schema + "units WHERE key BETWEEN ?1 AND ?2 AND sampled = 1";
+    for_item_kinds([&]<typename Record>(ItemKind<Record>) {
+        sql += " UNION ALL SELECT key FROM " + schema + ItemTable<Record>::name + " WHERE key BETWEEN ?1 AND ?2";
+    });
     return sql;
 }
 
@@ -79,7 +79,7 @@ Result<void> prune(Maintenance& archive, const std::vector<RunId>& runs, AuditRe
         if (!found) return found.error();
         if (!*found) return Error{"no run " + std::to_string(run.value) + " in " + database.file()};
         note->reset();
-        for (const RunTable& table : run_tables) {
+        for (const RunTable& table : run_tables()) {
             auto taken = database.prepare((std::string("DELETE FROM ") + table.name + " WHERE " + table.rows).c_str());
             if (!taken) return taken.error();
             taken->bind(1, std::int64_t{run.value});

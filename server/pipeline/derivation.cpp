@@ -3,7 +3,7 @@
 
 #include "server/archive/archive.hpp"
 #include "server/archive/column_codec.hpp"
-#include "server/archive/row_reader.hpp"
+#include "server/archive/item_rows.hpp"
 #include "server/archive/row_writer.hpp"
 #include "server/archive/schema.hpp"
 #include "server/archive/upkeep.hpp"
@@ -105,8 +105,7 @@ Result<std::optional<std::size_t>> derive(sqlite::Database& database, const RunT
     if (!of_units) return of_units.error();
     auto writer = archive::RowWriter::open(database);
     if (!writer) return writer.error();
-    std::string units_sql = archive::row::unit_rows;
-    units_sql.replace(units_sql.find("FROM units"), std::string_view("FROM units").size(), "FROM archive.units");
+    const auto units_sql = archive::select_sql<archive::UnitRecord>("key BETWEEN ?1 AND ?2", "archive.");
     auto units = database.prepare(units_sql.c_str());
     if (!units) return units.error();
     units->bind(1, archive::item_key(run.run, 0))
@@ -122,8 +121,8 @@ Result<std::optional<std::size_t>> derive(sqlite::Database& database, const RunT
         auto found = units->step();
         if (!found) return found.error();
         if (!*found) break;
-        const auto stored = archive::row::unit(*units);
-        const auto octets = units->octets(archive::row::unit_octets_column);
+        const auto stored = archive::read_row<archive::UnitRecord>(*units);
+        const auto octets = archive::octets_of_unit(*units);
         Numbering numbering(stored.seq);
         intake.take(telemetry::ReceivedPacket{{stored.link, stored.source == archive::Source::recorded},
                                               stored.ert,
@@ -243,7 +242,7 @@ class Comparison {
 Result<void> compare(sqlite::Database& database, const RunToDerive& run, const dictionary::Dictionary& dictionary,
                      Verification& found) {
     Comparison comparison(database, run, dictionary, found.faults);
-    for (const archive::RunTable& table : archive::run_tables) {
+    for (const archive::RunTable& table : archive::run_tables()) {
         const std::string_view name = table.name;
         if (!table.derived) continue;
         const std::string key = name == "segments"     ? "segment"
@@ -318,7 +317,7 @@ Result<Verification> verify(const std::filesystem::path& file, std::optional<Run
         if (found.stopped) return found;
         found.units += **units;
         if (auto done = compare(database, run, dictionary, found); !done) return done.error();
-        for (const archive::RunTable& table : archive::run_tables)
+        for (const archive::RunTable& table : archive::run_tables())
             if (auto done = database.execute((std::string("DELETE FROM main.") + table.name).c_str()); !done)
                 return done.error();
     }
@@ -369,7 +368,7 @@ Result<Rebuilt> rebuild(const std::filesystem::path& file, std::optional<RunId> 
         const auto replaced = [&]() -> Result<std::vector<std::string>> {
             auto transaction = sqlite::Transaction::begin_write(database);
             if (!transaction) return transaction.error();
-            for (const archive::RunTable& table : archive::run_tables) {
+            for (const archive::RunTable& table : archive::run_tables()) {
                 if (!table.derived) continue;
                 auto taken =
                     database.prepare((std::string("DELETE FROM main.") + table.name + " WHERE " + table.rows).c_str());

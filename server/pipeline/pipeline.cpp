@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/pipeline/pipeline.hpp"
 
+#include "server/archive/item_tables.hpp"
 #include "server/archive/items.hpp"
 #include "server/archive/packet_columns.hpp"
 #include "server/pipeline/packet_intake.hpp"
@@ -370,23 +371,13 @@ std::shared_ptr<const PublishedBatch> Pipeline::State::published(RunId of, const
         const auto index = static_cast<std::size_t>(item.seq() - batch.first_seq);
         made->items[index] = std::move(item);
     };
-    for (const auto& unit : batch.units) place(to_item(unit, &dictionary));
     for (const auto& sample : batch.samples)
         place(to_item(sample, columns.channels(sample.packet),
                       std::span(batch.values).subspan(sample.values.first, sample.values.count)));
-    const auto place_all = [&](const auto& records) {
-        for (const auto& record : records) place(archive::to_item(record));
-    };
-    place_all(batch.events);
-    place_all(batch.tones);
-    place_all(batch.stages);
-    place_all(batch.firings);
-    place_all(batch.explanations);
-    place_all(batch.links);
-    place_all(batch.alarms);
-    place_all(batch.alarm_actions);
-    place_all(batch.notes);
-    for (const auto& record : batch.staleness) place(archive::to_item(record, &dictionary));
+    archive::for_item_kinds([&]<typename Record>(archive::ItemKind<Record>) {
+        for (const auto& record : batch.*archive::ItemTable<Record>::of_batch)
+            place(archive::item_of(record, &dictionary));
+    });
     return made;
 }
 

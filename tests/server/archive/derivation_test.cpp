@@ -58,7 +58,7 @@ struct Recorded {
     std::string derived_rows() const {
         auto database = std::move(sqlite::Database::open(file.string(), sqlite::Mode::read_only)).value();
         std::string all;
-        for (const auto& table : archive::run_tables) {
+        for (const auto& table : archive::run_tables()) {
             if (!table.derived) continue;
             auto names = database.prepare(
                 "SELECT group_concat('quote(' || name || ')', '||'',''||') FROM pragma_table_info(?1)");

@@ -66,7 +66,7 @@ TEST_CASE("pruned runs are gone from every table, are noted, and their numbers a
         CHECK(run_lines(archive->database())->size() == 3);
         REQUIRE(prune(*archive, {RunId{1}, RunId{3}}, by).ok());
     }
-    for (const auto& table : run_tables) {
+    for (const auto& table : run_tables()) {
         INFO(table.name);
         const auto total = ask(file, (std::string("SELECT count(*) FROM ") + table.name).c_str());
         std::string of_second = table.rows;
@@ -91,7 +91,7 @@ TEST_CASE("every table of a run is known to prune", "[archive][prune]") {
         REQUIRE(Archive::open(file).ok());
     }
     std::string known = "'dictionaries', 'dictionary_channels', 'dictionary_packets', 'words', 'pruned_runs', 'audit'";
-    for (const auto& table : run_tables) known += std::string(", '") + table.name + "'";
+    for (const auto& table : run_tables()) known += std::string(", '") + table.name + "'";
     CHECK(ask(file, ("SELECT count(*) FROM sqlite_schema WHERE type = 'table' AND name NOT LIKE 'sqlite%' AND name NOT "
                      "LIKE 'search_%' AND name NOT IN (" +
                      known + ")")
@@ -179,7 +179,7 @@ TEST_CASE("numbers that no item has, or two have, are named", "[archive][verify]
     CHECK(sequence_faults(database, RunId{1}, "main.", 10)->empty());
     REQUIRE(database
                 .execute("DELETE FROM units WHERE key = (1 << 40) + 11; INSERT INTO link_changes VALUES ((1 << 40) + "
-                         "21, 1, 1, '', 0);"
+                         "21, 1, 1, '', 0, 0);"
                          "UPDATE units SET sampled = 0 WHERE key = (1 << 40) + 31")
                 .ok());
     CHECK(*sequence_faults(database, RunId{1}, "main.", 10) ==

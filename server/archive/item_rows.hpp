@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "server/archive/item_tables.hpp"
+#include "server/archive/schema.hpp"
+#include "server/archive/sqlite.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <string>
+#include <vector>
+
+// Records to rows and back, by the description of their kind: SQL, binding, reading.
+namespace aeolis::archive {
+
+/// How a value stands in a column: SQL type, whether NULL is one of its values, binding and reading.
+template <typename Value>
+struct Stored;
+
+template <typename Value>
+    requires std::is_integral_v<Value> || std::is_enum_v<Value>
+struct Stored<Value> {
+    static constexpr char type[] = "INTEGER";
+    static constexpr bool nullable = false;
+    static void bind(sqlite::Statement& row, int parameter, Value value) {
+        row.bind(parameter, static_cast<std::int64_t>(value));
+    }
+    static Value read(const sqlite::Statement& row, int column) { return static_cast<Value>(row.integer(column)); }
+};
+
+template <typename Tag, typename Number>
+struct Stored<Id<Tag, Number>> : Stored<Number> {
+    static void bind(sqlite::Statement& row, int parameter, Id<Tag, Number> id) {
+        Stored<Number>::bind(row, parameter, id.value);
+    }
+    static Id<Tag, Number> read(const sqlite::Statement& row, int column) {
+        return {Stored<Number>::read(row, column)};
+    }
+};
+
+template <>
+struct Stored<Ert> : Stored<std::int64_t> {
+    static void bind(sqlite::Statement& row, int parameter, Ert ert) { row.bind(parameter, ert.microseconds); }
+    static Ert read(const sqlite::Statement& row, int column) { return {row.integer(column)}; }
+};
+
+/// SQLite stores NaN as NULL.
+template <>
+struct Stored<double> {
+    static constexpr char type[] = "REAL";
+    static constexpr bool nullable = false;
+    static void bind(sqlite::Statement& row, int parameter, double value) { row.bind(parameter, value); }
+    static double read(const sqlite::Statement& row, int column) {
+        return row.is_null(column) ? std::numeric_limits<double>::quiet_NaN() : row.real(column);
+    }
+};
+
+template <>
+struct Stored<Sclk> : Stored<double> {
+    static void bind(sqlite::Statement& row, int parameter, Sclk sclk) { row.bind(parameter, sclk.seconds); }
+    static Sclk read(const sqlite::Statement& row, int column) { return {row.real(column)}; }
+};
+
+template <>
+struct Stored<std::string> {
+    static constexpr char type[] = "TEXT";
+    static constexpr bool nullable = false;
+    static void bind(sqlite::Statement& row, int parameter, const std::string& text) {
+        row.bind(parameter, std::string_view(text));
+    }
+    static std::string read(const sqlite::Statement& row, int column) { return std::string(row.text(column)); }
+};
+
+template <>
+struct Stored<std::vector<std::uint8_t>> {
+    static constexpr char type[] = "BLOB";
+    static constexpr bool nullable = false;
+    static void bind(sqlite::Statement& row, int parameter, std::span<const std::uint8_t> octets) {
+        row.bind_octets(parameter, octets);
+    }
+    static std::vector<std::uint8_t> read(const sqlite::Statement& row, int column) {
+        const auto octets = row.octets(column);
+        return {octets.begin(), octets.end()};
+    }
+};
+
+template <std::size_t count>
+struct Stored<std::array<std::uint8_t, count>> : Stored<std::vector<std::uint8_t>> {
+    static std::array<std::uint8_t, count> read(const sqlite::Statement& row, int column) {
+        std::array<std::uint8_t, count> octets{};
+        const auto stored = row.octets(column);
+        std::ranges::copy(stored.first(std::min(count, stored.size())), octets.begin());
+        return octets;
+    }
+};
+
+template <typename Value>
+struct Stored<std::optional<Value>> : Stored<Value> {
+    static constexpr bool nullable = true;
+    static void bind(sqlite::Statement& row, int parameter, const std::optional<Value>& value) {
+        if (value)
+            Stored<Value>::bind(row, parameter, *value);
+        else
+            row.bind_null(parameter);
+    }
+    static std::optional<Value> read(const sqlite::Statement& row, int column) {
+        if (row.is_null(column)) return {};
+        return Stored<Value>::read(row, column);
+    }
+};
+
+struct ColumnText {
+    std::string name;
+    std::string declared;  ///< as CREATE TABLE has it
+    std::string selected;  ///< as SELECT has it
+    bool searched = false;
+};
+
+/// Columns as SQL has them, for visiting.
+struct DescribeColumns {
+    std::vector<ColumnText> columns;
+
+    void add(const char* name, const char* type, bool nullable, bool searched = false) {
+        columns.push_back({name, std::string(name) + ' ' + type + (nullable ? "" : " NOT NULL"), name, searched});
+    }
+    template <typename Value>
+    void operator()(const char* name, const Value&, Column column = Column::plain) {
+        add(name, Stored<Value>::type, Stored<Value>::nullable || column == Column::optional,
+            column == Column::searched);
+    }
+    void operator()(const char* name, OfRun) { add(name, "INTEGER", false); }
+    void operator()(const char* name, const Slice&) { add(name, "BLOB", false); }
+    template <typename Text>
+    void operator()(const char* name, LinkName<Text>) {
+        add(name, "INTEGER", false);
+        columns.back().selected = std::string("(SELECT word FROM words WHERE kind = 'link' AND number = ") + name + ")";
+    }
+};
+
+/// A record's values to the parameters of a statement, for visiting.
+struct BindColumns {
+    sqlite::Statement& row;
+    int parameter = 1;
+    RunId run{};
+    std::span<const std::uint8_t> batch_octets{};
+    std::int64_t link = 0;  ///< its number
+
+    template <typename Value>
+    void operator()(const char*, const Value& value, Column column = Column::plain) {
+        if constexpr (requires { value.empty(); })
+            if (column == Column::optional && value.empty()) {
+                row.bind_null(parameter++);
+                return;
+            }
+        Stored<Value>::bind(row, parameter++, value);
+    }
+    void operator()(const char*, OfRun) { row.bind(parameter++, std::int64_t{run.value}); }
+    void operator()(const char*, const Slice& octets) {
+        row.bind_octets(parameter++, batch_octets.subspan(octets.first, octets.count));
+    }
+    template <typename Text>
+    void operator()(const char*, LinkName<Text>) {
+        row.bind(parameter++, link);
+    }
+};
+
+/// A row's columns to the members of a record, for visiting. Octets of a unit stay in the row, only their number is
+/// told.
+struct ReadColumns {
+    const sqlite::Statement& row;
+    int column = 0;
+
+    template <typename Value>
+    void operator()(const char*, Value& value, Column = Column::plain) {
+        value = Stored<Value>::read(row, column++);
+    }
+    void operator()(const char*, OfRun) { ++column; }
+    void operator()(const char*, Slice& octets) { octets = {0, row.octets(column++).size()}; }
+    void operator()(const char*, LinkName<std::string> link) { link.name = row.text(column++); }
+};
+
+template <template <typename> typename Table, typename Record>
+std::vector<ColumnText> columns_of() {
+    const Record record{};
+    DescribeColumns describe;
+    Table<Record>::columns(record, describe);
+    return std::move(describe.columns);
+}
+
+template <typename Record>
+bool is_searched() {
+    static const bool searched = std::ranges::any_of(columns_of<ItemTable, Record>(), &ColumnText::searched);
+    return searched;
+}
+
+/// One text of all columns, with something between.
+std::string joined(const std::vector<ColumnText>& columns, std::string ColumnText::* text, const char* between);
+
+/// "SELECT key, … FROM `schema`TABLE WHERE `where` ORDER BY key LIMIT ?3", for read_row().
+template <typename Record>
+std::string select_sql(const std::string& where, const std::string& schema = {}) {
+    return "SELECT key, " + joined(columns_of<ItemTable, Record>(), &ColumnText::selected, ", ") + " FROM " + schema +
+           ItemTable<Record>::name + " WHERE " + where + " ORDER BY key LIMIT ?3";
+}
+/// Rows with keys ?1 to ?2, at most ?3, in order. Lives for ever, as all of these.
+template <typename Record>
+const char* rows_sql() {
+    static const std::string sql = select_sql<Record>("key BETWEEN ?1 AND ?2");
+    return sql.c_str();
+}
+/// The same, of those rows alone in which words are found: ?4.
+template <typename Record>
+const char* found_rows_sql() {
+    static const std::string sql =
+        select_sql<Record>("key IN (SELECT rowid FROM search WHERE search MATCH ?4 AND rowid BETWEEN ?1 AND ?2)");
+    return sql.c_str();
+}
+/// The list of the item with key ?1, in order.
+template <typename Part>
+const char* parts_sql() {
+    static const std::string sql = "SELECT " + joined(columns_of<PartTable, Part>(), &ColumnText::selected, ", ") +
+                                   " FROM " + PartTable<Part>::name + " WHERE key = ?1 ORDER BY position";
+    return sql.c_str();
+}
+
+/// Without its parts, which have rows of their own.
+template <typename Record>
+Record read_row(const sqlite::Statement& row) {
+    Record record;
+    record.seq = sequence_of(row.integer(0));
+    ItemTable<Record>::columns(record, ReadColumns{row, 1});
+    return record;
+}
+template <typename Part>
+Part read_part(const sqlite::Statement& row) {
+    Part part;
+    PartTable<Part>::columns(part, ReadColumns{row});
+    return part;
+}
+/// Octets of the unit whose row stands ready.
+std::span<const std::uint8_t> octets_of_unit(const sqlite::Statement& row);
+
+}  // namespace aeolis::archive

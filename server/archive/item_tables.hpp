@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "server/archive/records.hpp"
+
+#include <tuple>
+
+// Each kind of item, described once: its table, its columns, and what of a record stands in them. The SQL that makes,
+// fills and reads the table, the binding of records, the reading of rows and the text that is searched follow from it
+// (item_rows.hpp). The first column of each table is the item's key.
+namespace aeolis::archive {
+
+/// What is special about a column.
+enum class Column : std::uint8_t {
+    plain,
+    searched,  ///< its words are in the table "search"
+    optional,  ///< NULL stands for an empty text, no octets, an undefined number (NaN)
+};
+
+/// The run's number, which the key has too: for an index.
+struct OfRun {};
+
+/// A link's name, stored as its number among the words of the archive.
+template <typename Text>
+struct LinkName {
+    Text& name;
+};
+template <typename Text>
+LinkName(Text&) -> LinkName<Text>;
+
+/// Of each kind: `name` of the table; `derived`, whether its rows follow from those of units; `of_batch`, where a batch
+/// has its records; `columns`, which calls visit(name, member, Column) for each column but the key. Of a kind with a
+/// list: `parts`, the list, whose own columns PartTable describes.
+template <typename Record>
+struct ItemTable;
+template <typename Part>
+struct PartTable;
+
+template <>
+struct ItemTable<UnitRecord> {
+    static constexpr char name[] = "units";
+    static constexpr bool derived = true;
+    static constexpr auto of_batch = &Batch::units;
+    static void columns(auto& record, auto&& visit) {
+        visit("run", OfRun{});
+        visit("apid", record.apid);
+        visit("packet", record.packet);
+        visit("sclk", record.sclk);
+        visit("ert_us", record.ert);
+        visit("link", LinkName{record.link});
+        visit("source", record.source);
+        visit("standing", record.standing);
+        visit("sampled", record.sampled);
+        visit("refusal", record.refusal, Column::optional);
+        visit("octets", record.octets);
+    }
+};
+
+template <>
+struct ItemTable<EventRecord> {
+    static constexpr char name[] = "events";
+    static constexpr bool derived = true;
+    static constexpr auto of_batch = &Batch::events;
+    static void columns(auto& record, auto&& visit) {
+        visit("unit", record.unit);
+        visit("event", record.id);
+        visit("name", record.name, Column::searched);
+        visit("level", record.level);
+        visit("text", record.text, Column::searched);
+        visit("sclk", record.sclk);
+        visit("ert_us", record.ert);
+        visit("source", record.source);
+        visit("duplicate", record.duplicate);
+    }
+};
+
+template <>
+struct ItemTable<ToneRecord> {
+    static constexpr char name[] = "tones";
+    static constexpr bool derived = false;
+    static constexpr auto of_batch = &Batch::tones;
+    static auto& parts(auto& record) { return record.best; }
+    static void columns(auto& record, auto&& visit) {
+        visit("start_us", record.start);
+        visit("end_us", record.end);
+        visit("tone", record.tone);
+        visit("name", record.name);
+        visit("meaning", record.meaning);
+        visit("likelihood", record.likelihood);
+        visit("runner_up", record.runner_up);
+        visit("runner_up_likelihood", record.runner_up_likelihood);
+        visit("c_n0_dbhz", record.c_n0_dbhz);
+        visit("doppler_hz", record.doppler_hz);
+        visit("locked", record.locked);
+        visit("model", record.model);
+        visit("sclk", record.sclk);
+        visit("lock", record.lock);
+        visit("spectrum", record.spectrum);
+    }
+};
+template <>
+struct PartTable<ToneLikelihood> {
+    static constexpr char name[] = "tone_likelihoods";
+    static void columns(auto& part, auto&& visit) {
+        visit("tone", part.tone);
+        visit("likelihood", part.likelihood);
+    }
+};
+
+template <>
+struct ItemTable<StageRecord> {
+    static constexpr char name[] = "command_stages";
+    static constexpr bool derived = false;
+    static constexpr auto of_batch = &Batch::stages;
+    static void columns(auto& record, auto&& visit) {
+        visit("command", record.command);
+        visit("name", record.name, Column::searched);
+        visit("stage", record.stage, Column::searched);
+        visit("status", record.status, Column::searched);
+        visit("evidence", record.evidence, Column::searched);
+        visit("at_us", record.at);
+        visit("arguments", record.arguments, Column::searched);
+        visit("count", record.count);
+        visit("held", record.held);
+        visit("needs_approval", record.needs_approval);
+        visit("asked_by", record.asked_by);
+        visit("octets", record.octets, Column::optional);
+    }
+};
+
+template <>
+struct ItemTable<FiringRecord> {
+    static constexpr char name[] = "timepoint_firings";
+    static constexpr bool derived = true;
+    static constexpr auto of_batch = &Batch::firings;
+    static void columns(auto& record, auto&& visit) {
+        visit("unit", record.unit);
+        visit("timepoint", record.timepoint);
+        visit("name", record.name);
+        visit("triggered_sclk", record.triggered);
+        visit("fired_sclk", record.fired);
+        visit("verdict", record.verdict);
+        visit("source", record.source);
+        visit("duplicate", record.duplicate);
+    }
+};
+
+template <>
+struct ItemTable<ExplanationRecord> {
+    static constexpr char name[] = "explanations";
+    static constexpr bool derived = true;
+    static constexpr auto of_batch = &Batch::explanations;
+    static auto& parts(auto& record) { return record.explanation.conditions; }
+    static void columns(auto& record, auto&& visit) {
+        visit("unit", record.unit);
+        visit("sclk", record.sclk);
+        visit("decision", record.explanation.decision, Column::searched);
+        visit("verdict", record.explanation.verdict, Column::searched);
+        visit("subject", record.explanation.subject);
+        visit("text", record.explanation.text, Column::searched);
+        visit("source", record.source);
+        visit("duplicate", record.duplicate);
+    }
+};
+template <>
+struct PartTable<telemetry::Condition> {
+    static constexpr char name[] = "explanation_conditions";
+    static void columns(auto& part, auto&& visit) {
+        visit("quantity", part.quantity);
+        visit("value", part.value, Column::optional);
+        visit("comparison", part.comparison);
+        visit("bound", part.bound, Column::optional);
+        visit("holds", part.holds);
+    }
+};
+
+template <>
+struct ItemTable<LinkRecord> {
+    static constexpr char name[] = "link_changes";
+    static constexpr bool derived = false;
+    static constexpr auto of_batch = &Batch::links;
+    static void columns(auto& record, auto&& visit) {
+        visit("link", LinkName{record.link});
+        visit("up", record.up);
+        visit("reason", record.reason);
+        visit("ert_us", record.ert);
+        visit("lost", record.lost);
+    }
+};
+
+template <>
+struct ItemTable<AlarmRecord> {
+    static constexpr char name[] = "alarms";
+    static constexpr bool derived = true;
+    static constexpr auto of_batch = &Batch::alarms;
+    static void columns(auto& record, auto&& visit) {
+        visit("unit", record.unit);
+        visit("channel", record.channel);
+        visit("severity", record.severity);
+        visit("value", record.value, Column::optional);
+        visit("sclk", record.sclk);
+        visit("limit_text", record.limit);
+    }
+};
+
+template <>
+struct ItemTable<StalenessRecord> {
+    static constexpr char name[] = "staleness";
+    static constexpr bool derived = false;
+    static constexpr auto of_batch = &Batch::staleness;
+    static void columns(auto& record, auto&& visit) {
+        visit("packet", record.packet);
+        visit("stale", record.stale);
+        visit("silent_s", record.silent_s);
+        visit("expected_s", record.expected_s);
+        visit("reason", record.reason);
+        visit("ert_us", record.ert);
+    }
+};
+
+template <>
+struct ItemTable<AlarmActionRecord> {
+    static constexpr char name[] = "alarm_actions";
+    static constexpr bool derived = false;
+    static constexpr auto of_batch = &Batch::alarm_actions;
+    static void columns(auto& record, auto&& visit) {
+        visit("alarm", record.alarm, Column::searched);
+        visit("action", record.action, Column::searched);
+        visit("author", record.by, Column::searched);
+        visit("note", record.note, Column::searched);
+        visit("at_us", record.at);
+        visit("until_us", record.until);
+    }
+};
+
+template <>
+struct ItemTable<NoteRecord> {
+    static constexpr char name[] = "notes";
+    static constexpr bool derived = false;
+    static constexpr auto of_batch = &Batch::notes;
+    static void columns(auto& record, auto&& visit) {
+        visit("author", record.by, Column::searched);
+        visit("text", record.text, Column::searched);
+        visit("at_us", record.at);
+        visit("written", record.written);
+        visit("sclk", record.sclk_s);
+    }
+};
+
+template <typename Record>
+concept HasParts = requires(Record& record) { ItemTable<Record>::parts(record); };
+template <HasParts Record>
+using PartOf = typename std::remove_cvref_t<decltype(ItemTable<Record>::parts(std::declval<Record&>()))>::value_type;
+
+/// Names a kind of item where its record is not at hand.
+template <typename Record_>
+struct ItemKind {
+    using Record = Record_;
+};
+
+/// All kinds that have a table: samples have none, they are made again from their units.
+template <template <typename> typename Of>
+using OfItemKinds = std::tuple<Of<UnitRecord>, Of<EventRecord>, Of<ToneRecord>, Of<StageRecord>, Of<FiringRecord>,
+                               Of<ExplanationRecord>, Of<LinkRecord>, Of<AlarmRecord>, Of<StalenessRecord>,
+                               Of<AlarmActionRecord>, Of<NoteRecord>>;
+
+/// Calls act(ItemKind<Record>) for each kind.
+void for_item_kinds(auto act) {
+    std::apply([&](auto... kind) { (act(kind), ...); }, OfItemKinds<ItemKind>{});
+}
+/// The same until an Error, which is then the result.
+Result<void> try_item_kinds(auto act) {
+    Result<void> done;
+    std::apply([&](auto... kind) { ((done = act(kind)).ok() && ...); }, OfItemKinds<ItemKind>{});
+    return done;
+}
+
+}  // namespace aeolis::archive
