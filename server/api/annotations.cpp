@@ -39,7 +39,7 @@ Result<archive::NoteRecord> note_of(const v1::NoteRequest& request, const std::s
     }
     note.text = request.text();
     note.by = by;
-    note.at = now;
+    note.ert = now;
     note.written = wall_clock_text();
     return note;
 }
@@ -72,7 +72,7 @@ Result<archive::AlarmActionRecord> alarm_action_of(const v1::AlarmRequest& reque
     record.action = request.action();
     record.note = request.note();
     record.by = by;
-    record.at = now;
+    record.ert = now;
     return record;
 }
 

@@ -18,10 +18,7 @@ struct Cut {
     std::optional<Ert> on_earth;
 
     bool leaves_out(double sclk_s) const { return on_board && sclk_s > on_board->seconds; }
-    bool leaves_out(const std::string& ert) const {
-        const auto when = ert_from_day_of_year(ert);
-        return on_earth && when && when->microseconds > on_earth->microseconds;
-    }
+    bool leaves_out(const v1::Item& item) const { return on_earth && item.ert_us() > on_earth->microseconds; }
 };
 
 struct Stand {
@@ -32,25 +29,23 @@ struct Stand {
     void take(const v1::Item& item, const Cut& cut) {
         switch (item.item_case()) {
         case v1::Item::kLink:
-            if (!cut.leaves_out(item.link().ert())) links.insert_or_assign(item.link().link(), item);
+            if (!cut.leaves_out(item)) links.insert_or_assign(item.link().link(), item);
             return;
         case v1::Item::kCommandStage:
-            if (!cut.leaves_out(item.command_stage().at()))
-                commands.insert_or_assign(item.command_stage().command(), item);
+            if (!cut.leaves_out(item)) commands.insert_or_assign(item.command_stage().command(), item);
             return;
         case v1::Item::kAlarm:
             if (!cut.leaves_out(item.alarm().sclk()))
                 alarms.insert_or_assign("channel " + std::to_string(item.alarm().channel()), item);
             return;
         case v1::Item::kStaleness:
-            if (!cut.leaves_out(item.staleness().ert()))
-                alarms.insert_or_assign("packet " + item.staleness().packet(), item);
+            if (!cut.leaves_out(item)) alarms.insert_or_assign("packet " + item.staleness().packet(), item);
             return;
         case v1::Item::kTimepoint:  // each fires once; the live report of it comes first
             if (!cut.leaves_out(item.timepoint().fired_sclk())) timepoints.try_emplace(item.timepoint().name(), item);
             return;
         case v1::Item::kTone:
-            if (!cut.leaves_out(item.tone().ert_end())) tone = item;
+            if (!cut.leaves_out(item)) tone = item;
             return;
         default: return;
         }

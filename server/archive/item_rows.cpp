@@ -12,7 +12,7 @@ std::string joined(const std::vector<ColumnText>& columns, std::string ColumnTex
 std::span<const std::uint8_t> octets_of_unit(const sqlite::Statement& row) {
     static const auto columns = columns_of<ItemTable, UnitRecord>();
     static const auto octets = std::ranges::find(columns, "octets", &ColumnText::name) - columns.begin();
-    return row.octets(1 + static_cast<int>(octets));
+    return row.octets(2 + static_cast<int>(octets));
 }
 
 }  // namespace aeolis::archive

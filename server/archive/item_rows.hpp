@@ -196,11 +196,11 @@ bool is_searched() {
 /// One text of all columns, with something between.
 std::string joined(const std::vector<ColumnText>& columns, std::string ColumnText::* text, const char* between);
 
-/// "SELECT key, … FROM `schema`TABLE WHERE `where` ORDER BY key LIMIT ?3", for read_row().
+/// "SELECT key, ert_us, … FROM `schema`TABLE WHERE `where` ORDER BY key LIMIT ?3", for read_row().
 template <typename Record>
 std::string select_sql(const std::string& where, const std::string& schema = {}) {
-    return "SELECT key, " + joined(columns_of<ItemTable, Record>(), &ColumnText::selected, ", ") + " FROM " + schema +
-           ItemTable<Record>::name + " WHERE " + where + " ORDER BY key LIMIT ?3";
+    return "SELECT key, ert_us, " + joined(columns_of<ItemTable, Record>(), &ColumnText::selected, ", ") + " FROM " +
+           schema + ItemTable<Record>::name + " WHERE " + where + " ORDER BY key LIMIT ?3";
 }
 /// Rows with keys ?1 to ?2, at most ?3, in order. Lives for ever, as all of these.
 template <typename Record>
@@ -228,7 +228,8 @@ template <typename Record>
 Record read_row(const sqlite::Statement& row) {
     Record record;
     record.seq = sequence_of(row.integer(0));
-    ItemTable<Record>::columns(record, ReadColumns{row, 1});
+    record.ert = Stored<Ert>::read(row, 1);
+    ItemTable<Record>::columns(record, ReadColumns{row, 2});
     return record;
 }
 template <typename Part>

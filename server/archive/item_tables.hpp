@@ -7,7 +7,7 @@
 
 // Each kind of item, described once: its table, its columns, and what of a record stands in them. The SQL that makes,
 // fills and reads the table, the binding of records, the reading of rows and the text that is searched follow from it
-// (item_rows.hpp). The first column of each table is the item's key.
+// (item_rows.hpp). Each table begins with the item's key and its ERT in microseconds.
 namespace aeolis::archive {
 
 /// What is special about a column.
@@ -29,8 +29,8 @@ template <typename Text>
 LinkName(Text&) -> LinkName<Text>;
 
 /// Of each kind: `name` of the table; `derived`, whether its rows follow from those of units; `of_batch`, where a batch
-/// has its records; `columns`, which calls visit(name, member, Column) for each column but the key. Of a kind with a
-/// list: `parts`, the list, whose own columns PartTable describes.
+/// has its records; `columns`, which calls visit(name, member, Column) for each column but key and ert_us. Of a kind
+/// with a list: `parts`, the list, whose own columns PartTable describes.
 template <typename Record>
 struct ItemTable;
 template <typename Part>
@@ -46,7 +46,6 @@ struct ItemTable<UnitRecord> {
         visit("apid", record.apid);
         visit("packet", record.packet);
         visit("sclk", record.sclk);
-        visit("ert_us", record.ert);
         visit("link", LinkName{record.link});
         visit("source", record.source);
         visit("standing", record.standing);
@@ -68,7 +67,6 @@ struct ItemTable<EventRecord> {
         visit("level", record.level);
         visit("text", record.text, Column::searched);
         visit("sclk", record.sclk);
-        visit("ert_us", record.ert);
         visit("source", record.source);
         visit("duplicate", record.duplicate);
     }
@@ -82,7 +80,6 @@ struct ItemTable<ToneRecord> {
     static auto& parts(auto& record) { return record.best; }
     static void columns(auto& record, auto&& visit) {
         visit("start_us", record.start);
-        visit("end_us", record.end);
         visit("tone", record.tone);
         visit("name", record.name);
         visit("meaning", record.meaning);
@@ -118,7 +115,6 @@ struct ItemTable<StageRecord> {
         visit("stage", record.stage, Column::searched);
         visit("status", record.status, Column::searched);
         visit("evidence", record.evidence, Column::searched);
-        visit("at_us", record.at);
         visit("arguments", record.arguments, Column::searched);
         visit("count", record.count);
         visit("held", record.held);
@@ -183,7 +179,6 @@ struct ItemTable<LinkRecord> {
         visit("link", LinkName{record.link});
         visit("up", record.up);
         visit("reason", record.reason);
-        visit("ert_us", record.ert);
         visit("lost", record.lost);
     }
 };
@@ -214,7 +209,6 @@ struct ItemTable<StalenessRecord> {
         visit("silent_s", record.silent_s);
         visit("expected_s", record.expected_s);
         visit("reason", record.reason);
-        visit("ert_us", record.ert);
     }
 };
 
@@ -228,7 +222,6 @@ struct ItemTable<AlarmActionRecord> {
         visit("action", record.action, Column::searched);
         visit("author", record.by, Column::searched);
         visit("note", record.note, Column::searched);
-        visit("at_us", record.at);
         visit("until_us", record.until);
     }
 };
@@ -241,7 +234,6 @@ struct ItemTable<NoteRecord> {
     static void columns(auto& record, auto&& visit) {
         visit("author", record.by, Column::searched);
         visit("text", record.text, Column::searched);
-        visit("at_us", record.at);
         visit("written", record.written);
         visit("sclk", record.sclk_s);
     }

@@ -14,12 +14,18 @@ static_assert(static_cast<int>(Source::realtime) == v1::SOURCE_REALTIME);
 static_assert(static_cast<int>(Source::recorded) == v1::SOURCE_RECORDED);
 static_assert(static_cast<int>(Source::ground) == v1::SOURCE_GROUND);
 
+v1::Item item_with(const ItemRecord& record) {
+    v1::Item item;
+    item.set_seq(record.seq);
+    item.set_ert_us(record.ert.microseconds);
+    return item;
+}
+
 constexpr double heard_span_s = 8.0e12;  ///< ours: 250 000 years; as microseconds, with any day of year, still an int64
 }  // namespace
 
 v1::Item to_item(const UnitRecord& record, const dictionary::Dictionary* dictionary) {
-    v1::Item item;
-    item.set_seq(record.seq);
+    v1::Item item = item_with(record);
     auto& unit = *item.mutable_unit();
     unit.set_unit(record.seq);
     unit.set_apid(record.apid.value);
@@ -37,8 +43,7 @@ v1::Item to_item(const UnitRecord& record, const dictionary::Dictionary* diction
 }
 
 v1::Item to_item(const SampleRecord& record, std::span<const ChannelId> channels, std::span<const double> values) {
-    v1::Item item;
-    item.set_seq(record.seq);
+    v1::Item item = item_with(record);
     auto& samples = *item.mutable_samples();
     samples.set_sclk(record.sclk.seconds);
     samples.set_source(source_of(record.source));
@@ -53,8 +58,7 @@ v1::Item to_item(const SampleRecord& record, std::span<const ChannelId> channels
 }
 
 v1::Item to_item(const EventRecord& record) {
-    v1::Item item;
-    item.set_seq(record.seq);
+    v1::Item item = item_with(record);
     auto& event = *item.mutable_event();
     event.set_id(record.id.value);
     event.set_name(record.name);
@@ -68,11 +72,10 @@ v1::Item to_item(const EventRecord& record) {
 }
 
 v1::Item to_item(const ToneRecord& record) {
-    v1::Item item;
-    item.set_seq(record.seq);
+    v1::Item item = item_with(record);
     auto& tone = *item.mutable_tone();
     tone.set_ert_start(day_of_year_text(record.start));
-    tone.set_ert_end(day_of_year_text(record.end));
+    tone.set_ert_end(day_of_year_text(record.ert));
     if (record.tone) tone.set_tone(record.tone->value);
     tone.set_name(record.name);
     tone.set_meaning(record.meaning);
@@ -95,15 +98,14 @@ v1::Item to_item(const ToneRecord& record) {
 }
 
 v1::Item to_item(const StageRecord& record) {
-    v1::Item item;
-    item.set_seq(record.seq);
+    v1::Item item = item_with(record);
     auto& stage = *item.mutable_command_stage();
     stage.set_command(record.command);
     stage.set_name(record.name);
     stage.set_stage(record.stage);
     stage.set_status(record.status);
     stage.set_evidence(record.evidence);
-    stage.set_at(day_of_year_text(record.at));
+    stage.set_at(day_of_year_text(record.ert));
     stage.set_arguments(record.arguments);
     stage.set_count(record.count);
     stage.set_held(record.held);
@@ -113,8 +115,7 @@ v1::Item to_item(const StageRecord& record) {
 }
 
 v1::Item to_item(const FiringRecord& record) {
-    v1::Item item;
-    item.set_seq(record.seq);
+    v1::Item item = item_with(record);
     auto& firing = *item.mutable_timepoint();
     firing.set_timepoint(record.timepoint.value);
     firing.set_name(record.name);
@@ -127,8 +128,7 @@ v1::Item to_item(const FiringRecord& record) {
 }
 
 v1::Item to_item(const ExplanationRecord& record) {
-    v1::Item item;
-    item.set_seq(record.seq);
+    v1::Item item = item_with(record);
     auto& said = *item.mutable_explanation();
     said.set_sclk(record.sclk.seconds);
     said.set_text(record.explanation.text);
@@ -148,8 +148,7 @@ v1::Item to_item(const ExplanationRecord& record) {
 }
 
 v1::Item to_item(const LinkRecord& record) {
-    v1::Item item;
-    item.set_seq(record.seq);
+    v1::Item item = item_with(record);
     auto& link = *item.mutable_link();
     link.set_link(record.link);
     link.set_up(record.up);
@@ -160,8 +159,7 @@ v1::Item to_item(const LinkRecord& record) {
 }
 
 v1::Item to_item(const AlarmRecord& record) {
-    v1::Item item;
-    item.set_seq(record.seq);
+    v1::Item item = item_with(record);
     auto& alarm = *item.mutable_alarm();
     alarm.set_channel(record.channel.value);
     alarm.set_severity(record.severity);
@@ -172,8 +170,7 @@ v1::Item to_item(const AlarmRecord& record) {
 }
 
 v1::Item to_item(const StalenessRecord& record, const dictionary::Dictionary* dictionary) {
-    v1::Item item;
-    item.set_seq(record.seq);
+    v1::Item item = item_with(record);
     auto& staleness = *item.mutable_staleness();
     if (dictionary != nullptr) staleness.set_packet(dictionary->packets[record.packet].name);
     staleness.set_stale(record.stale);
@@ -185,25 +182,23 @@ v1::Item to_item(const StalenessRecord& record, const dictionary::Dictionary* di
 }
 
 v1::Item to_item(const AlarmActionRecord& record) {
-    v1::Item item;
-    item.set_seq(record.seq);
+    v1::Item item = item_with(record);
     auto& action = *item.mutable_alarm_action();
     action.set_alarm(record.alarm);
     action.set_action(record.action);
-    if (record.until > record.at) action.set_until(day_of_year_text(record.until));
+    if (record.until > record.ert) action.set_until(day_of_year_text(record.until));
     action.set_note(record.note);
     action.set_by(record.by);
-    action.set_at(day_of_year_text(record.at));
+    action.set_at(day_of_year_text(record.ert));
     return item;
 }
 
 v1::Item to_item(const NoteRecord& record) {
-    v1::Item item;
-    item.set_seq(record.seq);
+    v1::Item item = item_with(record);
     auto& note = *item.mutable_note();
     note.set_text(record.text);
     note.set_by(record.by);
-    note.set_at(day_of_year_text(record.at));
+    note.set_at(day_of_year_text(record.ert));
     note.set_written(record.written);
     if (record.sclk_s) note.set_sclk(*record.sclk_s);
     return item;

@@ -35,7 +35,7 @@ void apply(const v1::Item& item, const dictionary::Dictionary& dictionary, telem
     } else if (item.has_link()) {
         desk.change(name, item.link().lost() ? telemetry::lost_severity : Severity::none, false);
     } else if (const auto act = telemetry::alarm_act(item.alarm_action().action())) {
-        desk.act(name, *act, ert_of(item.alarm_action().at()), ert_of(item.alarm_action().until()));
+        desk.act(name, *act, Ert{item.ert_us()}, ert_of(item.alarm_action().until()));
     }
 }
 

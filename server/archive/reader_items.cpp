@@ -106,7 +106,7 @@ Result<void> collect_units(Reader::State& reader, const RunInfo& info, Page& pag
         if (kinds.units && unit.seq > page.after) page.items.push_back(to_item(unit, words));
         if (!kinds.samples || !unit.sampled) continue;
         // With another dictionary the values cannot be told; the item still takes its place.
-        const SampleRecord sample{unit.seq + 1, unit.packet.value_or(0), unit.sclk, unit.source, {}};
+        const SampleRecord sample{{unit.seq + 1, unit.ert}, unit.packet.value_or(0), unit.sclk, unit.source, {}};
         values.clear();
         if (words != nullptr && reader.decode(octets_of_unit(**rows))) {
             reader.columns.append_values(reader.decoded, values);

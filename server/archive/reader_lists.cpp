@@ -263,7 +263,7 @@ Result<v1::CommandList> Reader::commands(RunId run, const CommandQuery& query) {
             history.set_needs_approval(stage.needs_approval);
         }
         *history.add_stages() = to_item(stage);
-        if (range->from <= stage.at && stage.at <= range->to) in_range.insert(stage.command);
+        if (range->from <= stage.ert && stage.ert <= range->to) in_range.insert(stage.command);
         return false;
     });
     if (!done) return done.error();

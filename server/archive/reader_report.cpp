@@ -39,8 +39,7 @@ std::optional<double> fired_sclk(const v1::TimepointRow& row) {
 bool executed_by(const v1::CommandHistory& command, Ert by) {
     return std::ranges::any_of(command.stages(), [&](const v1::Item& item) {
         const auto& stage = item.command_stage();
-        const auto at = ert_from_day_of_year(stage.at());
-        return stage.stage() == "executed" && stage.status() == "ok" && at && *at <= by;
+        return stage.stage() == "executed" && stage.status() == "ok" && Ert{item.ert_us()} <= by;
     });
 }
 

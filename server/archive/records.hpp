@@ -32,14 +32,18 @@ struct Slice {
     std::size_t count = 0;
 };
 
-/// A unit as received. Its samples, when it has any, are the item seq + 1: they are made again from the octets.
-struct UnitRecord {
+/// What every item has.
+struct ItemRecord {
     Sequence seq = 0;
+    Ert ert;  ///< when all of it had reached Earth, or when it was made there
+};
+
+/// A unit as received. Its samples, when it has any, are the item seq + 1: they are made again from the octets.
+struct UnitRecord : ItemRecord {
     Apid apid;
     std::optional<std::uint16_t> packet;  ///< index in the dictionary's packets; none: not decoded
     std::string refusal;                  ///< why not decoded
     Sclk sclk;
-    Ert ert;
     std::string link;  ///< "uhf_live", "uhf_<orbiter>", "relay", …
     Source source{};
     telemetry::Standing standing{};
@@ -54,28 +58,24 @@ struct UnitRecord {
 
 /// The values of one sampled unit, one column a channel of its packet; NaN where undefined. Only for publishing and
 /// for segments: it has no row of its own.
-struct SampleRecord {
-    Sequence seq = 0;
+struct SampleRecord : ItemRecord {
     std::uint16_t packet = 0;
     Sclk sclk;
     Source source{};
     Slice values;  ///< in Batch::values
 };
 
-struct EventRecord {
-    Sequence seq = 0;
+struct EventRecord : ItemRecord {
     Sequence unit = 0;
     EvrId id;
     std::string name, level, text;
     Sclk sclk;
-    Ert ert;
     Source source{};
     bool duplicate = false;
 };
 
-struct ToneRecord {
-    Sequence seq = 0;
-    Ert start, end;
+struct ToneRecord : ItemRecord {
+    Ert start;                   ///< of the symbol; its end is the ERT
     std::optional<ToneId> tone;  ///< none: erasure
     std::string name, meaning;
     double likelihood = 0.0;
@@ -92,11 +92,9 @@ struct ToneRecord {
 };
 
 /// A stage of a command. The first record of a command carries its arguments and octets.
-struct StageRecord {
-    Sequence seq = 0;
+struct StageRecord : ItemRecord {
     std::uint64_t command = 0;  ///< number of the command in its run, from 1
     std::string name, stage, status, evidence;
-    Ert at;
     std::string arguments;
     std::uint32_t count = 0;
     std::vector<std::uint8_t> octets;
@@ -104,8 +102,7 @@ struct StageRecord {
     std::string asked_by;                       ///< of one that needs approval: who may not give it
 };
 
-struct FiringRecord {
-    Sequence seq = 0;
+struct FiringRecord : ItemRecord {
     Sequence unit = 0;
     TimepointId timepoint;
     std::string name, verdict;
@@ -114,8 +111,7 @@ struct FiringRecord {
     bool duplicate = false;
 };
 
-struct ExplanationRecord {
-    Sequence seq = 0;
+struct ExplanationRecord : ItemRecord {
     Sequence unit = 0;
     Sclk sclk;
     telemetry::Explanation explanation;
@@ -123,17 +119,14 @@ struct ExplanationRecord {
     bool duplicate = false;
 };
 
-struct LinkRecord {
-    Sequence seq = 0;
+struct LinkRecord : ItemRecord {
     std::string link;
     bool up = false;
     std::string reason;
-    Ert ert;
     bool lost = false;  ///< down, and it should be there
 };
 
-struct AlarmRecord {
-    Sequence seq = 0;
+struct AlarmRecord : ItemRecord {
     Sequence unit = 0;
     ChannelId channel;
     std::string severity;  ///< "none": cleared
@@ -143,27 +136,22 @@ struct AlarmRecord {
 };
 
 /// A packet that should come in real time and does not, or comes again.
-struct StalenessRecord {
-    Sequence seq = 0;
+struct StalenessRecord : ItemRecord {
     std::uint16_t packet = 0;  ///< index in the dictionary's packets
     bool stale = false;
     double silent_s = 0.0, expected_s = 0.0;
     std::string reason;
-    Ert ert;
 };
 
 /// What someone did about an alarm, by the alarm's name.
-struct AlarmActionRecord {
-    Sequence seq = 0;
+struct AlarmActionRecord : ItemRecord {
     std::string alarm, action, note, by;
-    Ert at, until;  ///< `until` of shelve only
+    Ert until;  ///< of shelve only
 };
 
 /// A line of the shift log, or a remark at an instant.
-struct NoteRecord {
-    Sequence seq = 0;
+struct NoteRecord : ItemRecord {
     std::string text, by;
-    Ert at;
     std::string written;  ///< wall clock, ISO 8601
     std::optional<double> sclk_s;
 };

@@ -41,7 +41,7 @@ Result<RowWriter> RowWriter::open(sqlite::Database& database) {
     };
     const auto items = try_item_kinds([&]<typename Record>(ItemKind<Record>) {
         auto& [row, part] = std::get<ItemStatements<Record>>(writer.items_);
-        auto done = prepare(row, insert_sql(ItemTable<Record>::name, 1 + columns_of<ItemTable, Record>().size()));
+        auto done = prepare(row, insert_sql(ItemTable<Record>::name, 2 + columns_of<ItemTable, Record>().size()));
         if constexpr (HasParts<Record>)
             if (done)
                 done = prepare(part, insert_sql(PartTable<PartOf<Record>>::name,
@@ -121,7 +121,7 @@ template <typename Record>
 Result<void> RowWriter::item(RunId run, const Record& record, const Batch& batch) {
     auto& [row, part] = std::get<ItemStatements<Record>>(items_);
     const auto key = item_key(run, record.seq);
-    BindColumns bind{row.bind(1, key), 2, run, batch.octets};
+    BindColumns bind{row.bind(1, key).bind(2, record.ert.microseconds), 3, run, batch.octets};
     if constexpr (requires { record.link; }) {
         const auto link = number_of_link(record.link);
         if (!link) return link.error();

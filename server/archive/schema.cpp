@@ -107,7 +107,7 @@ CREATE VIEW tone_log AS
     FROM tones t;
 CREATE VIEW command_log AS
     SELECT c.key >> 40 AS run, c.key & 0xFFFFFFFFFF AS seq, c.command, c.name, c.stage, c.status, c.evidence,
-           strftime('%Y-%jT%H:%M:%f', c.at_us / 1e6 + 946728000, 'unixepoch') AS at
+           strftime('%Y-%jT%H:%M:%f', c.ert_us / 1e6 + 946728000, 'unixepoch') AS at
     FROM command_stages c;
 CREATE VIEW timeline_log AS
     SELECT f.key >> 40 AS run, f.key & 0xFFFFFFFFFF AS seq, f.timepoint, f.name, f.fired_sclk,
@@ -145,12 +145,12 @@ CREATE VIEW staleness_log AS
     JOIN dictionary_packets p ON p.dictionary = r.dictionary AND p.packet = s.packet;
 CREATE VIEW alarm_action_log AS
     SELECT a.key >> 40 AS run, a.key & 0xFFFFFFFFFF AS seq,
-           strftime('%Y-%jT%H:%M:%f', a.at_us / 1e6 + 946728000, 'unixepoch') AS at, a.alarm, a.action, a.author, a.note,
-           CASE WHEN a.until_us > a.at_us THEN strftime('%Y-%jT%H:%M:%f', a.until_us / 1e6 + 946728000, 'unixepoch') END AS until
+           strftime('%Y-%jT%H:%M:%f', a.ert_us / 1e6 + 946728000, 'unixepoch') AS at, a.alarm, a.action, a.author, a.note,
+           CASE WHEN a.until_us > a.ert_us THEN strftime('%Y-%jT%H:%M:%f', a.until_us / 1e6 + 946728000, 'unixepoch') END AS until
     FROM alarm_actions a;
 CREATE VIEW shift_log AS
     SELECT n.key >> 40 AS run, n.key & 0xFFFFFFFFFF AS seq,
-           strftime('%Y-%jT%H:%M:%f', n.at_us / 1e6 + 946728000, 'unixepoch') AS at, n.written, n.author, n.sclk,
+           strftime('%Y-%jT%H:%M:%f', n.ert_us / 1e6 + 946728000, 'unixepoch') AS at, n.written, n.author, n.sclk,
            n.sclk - r.entry_sclk AS e_s, n.text
     FROM notes n JOIN runs r ON r.run = n.key >> 40;
 CREATE VIEW clock_log AS
@@ -163,7 +163,7 @@ CREATE VIEW clock_log AS
     FROM runs r;
 CREATE VIEW command_wait_log AS
     SELECT c.key >> 40 AS run, c.key & 0xFFFFFFFFFF AS seq,
-           strftime('%Y-%jT%H:%M:%f', c.at_us / 1e6 + 946728000, 'unixepoch') AS at, c.command, c.name, c.held,
+           strftime('%Y-%jT%H:%M:%f', c.ert_us / 1e6 + 946728000, 'unixepoch') AS at, c.command, c.name, c.held,
            c.needs_approval, c.asked_by, c.evidence
     FROM command_stages c WHERE c.held OR c.needs_approval;
 CREATE VIEW commands AS
@@ -199,8 +199,9 @@ std::string item_tables_sql() {
     std::string sql;
     const auto declared = [](const auto& columns) { return joined(columns, &ColumnText::declared, ", "); };
     for_item_kinds([&]<typename Record>(ItemKind<Record>) {
-        sql += std::string("CREATE TABLE ") + ItemTable<Record>::name + " (key INTEGER PRIMARY KEY, " +
-               declared(columns_of<ItemTable, Record>()) + ") STRICT;";
+        sql += std::string("CREATE TABLE ") + ItemTable<Record>::name +
+               " (key INTEGER PRIMARY KEY, ert_us INTEGER NOT NULL, " + declared(columns_of<ItemTable, Record>()) +
+               ") STRICT;";
         if constexpr (HasParts<Record>)
             sql += std::string("CREATE TABLE ") + PartTable<PartOf<Record>>::name +
                    " (key INTEGER NOT NULL, position INTEGER NOT NULL, " +

@@ -78,6 +78,7 @@ void add_items(const StreamShape& shape, std::span<const DueItem> due, v1::Batch
             chosen.set_source(samples.source());
             auto& added = *batch.add_items();
             added.set_seq(item->seq());
+            added.set_ert_us(item->ert_us());
             *added.mutable_samples() = std::move(chosen);
         }
         if (item->has_samples()) batch.mutable_items()->rbegin()->mutable_samples()->set_thinned(thinned);

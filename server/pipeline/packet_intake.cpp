@@ -103,8 +103,11 @@ void PacketIntake::sample(const UnitRecord& unit, Numbering& numbering, Batch& b
     const std::size_t first = batch.values.size();
     columns_.append_values(decoded_, batch.values);
     const auto values = std::span<const double>(batch.values).subspan(first);
-    batch.samples.push_back(
-        {numbering.next(batch), *unit.packet, unit.sclk, unit.source, {first, batch.values.size() - first}});
+    batch.samples.push_back({{numbering.next(batch), unit.ert},
+                             *unit.packet,
+                             unit.sclk,
+                             unit.source,
+                             {first, batch.values.size() - first}});
     segments_.add(*unit.packet, unit.source, unit.seq, unit.sclk, values, batch);
     if (unit.source == Source::realtime) judge(unit, values, numbering, batch);
 }
@@ -119,29 +122,48 @@ void PacketIntake::judge(const UnitRecord& unit, std::span<const double> values,
         if (latest->value) alarms_.sample(channels[i], values[i], unit.sclk, changes_);
     }
     for (const auto& change : changes_)
-        batch.alarms.push_back({numbering.next(batch), unit.seq, change.channel, telemetry::name_of(change.severity),
-                                change.value, change.sclk, change.limit});
+        batch.alarms.push_back({{numbering.next(batch), unit.ert},
+                                unit.seq,
+                                change.channel,
+                                telemetry::name_of(change.severity),
+                                change.value,
+                                change.sclk,
+                                change.limit});
 }
 
 void PacketIntake::interpret(const UnitRecord& unit, Numbering& numbering, Batch& batch) const {
     if (const auto* event = telemetry::event_of(dictionary_, decoded_)) {
-        batch.events.push_back({numbering.next(batch), unit.seq, event->id, event->name,
-                                telemetry::name_of(event->level), telemetry::event_text(dictionary_, *event, decoded_),
-                                unit.sclk, unit.ert, unit.source, unit.duplicate()});
+        batch.events.push_back({{numbering.next(batch), unit.ert},
+                                unit.seq,
+                                event->id,
+                                event->name,
+                                telemetry::name_of(event->level),
+                                telemetry::event_text(dictionary_, *event, decoded_),
+                                unit.sclk,
+                                unit.source,
+                                unit.duplicate()});
     }
     if (firing_ && firing_->packet == decoded_.packet) {
         const auto value = [this](std::size_t field) { return decoded_.value[field].value_or(0.0); };
         const auto& fields = dictionary_.packets[decoded_.packet].fields;
         const auto index = static_cast<std::size_t>(value(firing_->timepoint));
-        batch.firings.push_back({numbering.next(batch), unit.seq, TimepointId{static_cast<std::uint16_t>(index)},
+        batch.firings.push_back({{numbering.next(batch), unit.ert},
+                                 unit.seq,
+                                 TimepointId{static_cast<std::uint16_t>(index)},
                                  index < dictionary_.timeline.size() ? dictionary_.timeline[index].name : std::string(),
                                  telemetry::value_text(fields[firing_->verdict].type, decoded_.value[firing_->verdict]),
-                                 Sclk{value(firing_->triggered)}, Sclk{value(firing_->fired)}, unit.source,
+                                 Sclk{value(firing_->triggered)},
+                                 Sclk{value(firing_->fired)},
+                                 unit.source,
                                  unit.duplicate()});
     }
     if (auto explanation = telemetry::explain(dictionary_, decoded_))
-        batch.explanations.push_back(
-            {numbering.next(batch), unit.seq, unit.sclk, std::move(*explanation), unit.source, unit.duplicate()});
+        batch.explanations.push_back({{numbering.next(batch), unit.ert},
+                                      unit.seq,
+                                      unit.sclk,
+                                      std::move(*explanation),
+                                      unit.source,
+                                      unit.duplicate()});
 }
 
 archive::RecordingTotals PacketIntake::totals() const {

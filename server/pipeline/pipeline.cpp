@@ -251,13 +251,17 @@ void Pipeline::State::heard() {
 
 void Pipeline::State::add(std::span<const telemetry::StalenessChange> changes, Ert ert) {
     for (const auto& change : changes)
-        run->pending.staleness.push_back({run->numbering.next(run->pending), static_cast<std::uint16_t>(change.packet),
-                                          change.stale, change.silent_s, change.expected_s, change.reason, ert});
+        run->pending.staleness.push_back({{run->numbering.next(run->pending), ert},
+                                          static_cast<std::uint16_t>(change.packet),
+                                          change.stale,
+                                          change.silent_s,
+                                          change.expected_s,
+                                          change.reason});
 }
 
 void Pipeline::State::take(const telemetry::LinkState& link) {
     run->pending.links.push_back(
-        {run->numbering.next(run->pending), link.link.name, link.up, link.reason, link.ert, link.lost});
+        {{run->numbering.next(run->pending), link.ert}, link.link.name, link.up, link.reason, link.lost});
     if (link.link.recorded) return;
     std::vector<telemetry::StalenessChange> changes;
     using telemetry::LinkIs;
@@ -273,7 +277,7 @@ void Pipeline::State::take(const telemetry::ReceivedTone& tone) {
     archive::ToneRecord record;
     record.seq = run->numbering.next(run->pending);
     record.start = tone.start;
-    record.end = tone.end;
+    record.ert = tone.end;
     record.tone = tone.tone;
     if (tone.tone && tone.tone->value < dictionary.tones.size()) {
         record.name = dictionary.tones[tone.tone->value].name;

@@ -64,7 +64,7 @@ archive::StageRecord record_of(commands::StageReport stage) {
     record.stage = commands::name_of(stage.stage);
     record.status = commands::name_of(stage.status);
     record.evidence = std::move(stage.evidence);
-    record.at = stage.at;
+    record.ert = stage.at;
     record.arguments = std::move(stage.arguments);
     record.count = stage.count;
     record.octets = std::move(stage.octets);

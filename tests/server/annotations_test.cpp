@@ -67,7 +67,7 @@ TEST_CASE("a note is kept as it was written, and refused when it is empty, too l
     REQUIRE(note);
     CHECK(note->text == asked.text());
     CHECK(note->sclk_s == 1000.5);
-    CHECK(note->at == Ert{7});
+    CHECK(note->ert == Ert{7});
     CHECK(refusal_of_note(std::string(note_octets_max, 'x')).empty());
     CHECK_THAT(refusal_of_note(std::string(note_octets_max + 1, 'x')), Catch::StartsWith("text: 4001 octets"));
     CHECK(refusal_of_note(" \n") == "text: the note is empty");

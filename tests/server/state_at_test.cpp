@@ -31,7 +31,7 @@ archive::StageRecord stage(const char* word, Ert at) {
     stage.name = "NO_OP";
     stage.stage = word;
     stage.status = "ok";
-    stage.at = at;
+    stage.ert = at;
     return stage;
 }
 

@@ -45,7 +45,7 @@ v1::Item event_item(archive::Sequence seq) {
 /// What has reached Earth `ert_s` seconds after noon of 1 January 2000.
 v1::Item event_item(archive::Sequence seq, double ert_s) {
     auto item = event_item(seq);
-    item.mutable_event()->set_ert(day_of_year_text(Ert{static_cast<std::int64_t>(ert_s * 1e6)}));
+    item.set_ert_us(static_cast<std::int64_t>(ert_s * 1e6));
     return item;
 }
 
@@ -273,13 +273,15 @@ TEST_CASE("samples are thinned to the rate asked for and say so; nothing else is
 }
 
 TEST_CASE("only the channels of the subscription are sent", "[stream]") {
-    const auto item = samples_item(1, 5.0);
+    auto item = samples_item(1, 5.0);
+    item.set_ert_us(7);
     const std::vector<ItemBefore> items{{&item, {std::nullopt, true}}};
     v1::Batch batch;
     select_items({StreamFormat::json, false, {speed}, 0.0}, 0.0, items, batch);
     REQUIRE(batch.items_size() == 1);
     CHECK(batch.items(0).samples().ids_size() == 1);
     CHECK(batch.items(0).samples().ids(0) == speed);
+    CHECK(batch.items(0).ert_us() == 7);
     batch.clear_items();
     select_items({StreamFormat::json, false, {99}, 0.0}, 0.0, items, batch);
     CHECK(batch.items_size() == 0);
@@ -559,14 +561,17 @@ TEST_CASE("a run that is over comes again at the pace asked for, each item when 
     Venue venue;
     v1::Item tone, stage, link, explanation;
     tone.set_seq(3);
-    tone.mutable_tone()->set_ert_start("2000-001T12:00:20.000");  // noon
-    tone.mutable_tone()->set_ert_end("2000-001T12:00:30.000");
-    explanation.set_seq(4);  // bears no time on Earth
+    tone.mutable_tone();
+    tone.set_ert_us(30'000'000);
+    explanation.set_seq(4);
+    explanation.set_ert_us(30'000'000);
     explanation.mutable_explanation()->set_text("because");
     stage.set_seq(5);
-    stage.mutable_command_stage()->set_at("2000-001T12:00:25.000");  // before the tone was whole
+    stage.mutable_command_stage();
+    stage.set_ert_us(25'000'000);  // before the tone was whole
     link.set_seq(6);
-    link.mutable_link()->set_ert("2000-001T13:00:00.000");  // an hour of cruise
+    link.mutable_link();
+    link.set_ert_us(3'600'000'000);  // an hour of cruise
     venue.flown = {event_item(1, 0.0), samples_item(2, 5.0), tone, explanation, stage, link};
     Client client{venue.hub};
     client.replay(10.0);
@@ -734,7 +739,8 @@ TEST_CASE("who replays and does not read gets all samples when it does, and is b
         const auto seq = venue.flown.size() + 1;
         auto& unit = venue.flown.emplace_back();
         unit.set_seq(seq);
-        unit.mutable_unit()->set_ert(day_of_year_text(Ert{second * 1'000'000}));
+        unit.mutable_unit();
+        unit.set_ert_us(second * 1'000'000);
         for (archive::Sequence i = 1; i <= 8; ++i)
             venue.flown.push_back(samples_item(seq + i, second + 0.125 * static_cast<double>(i)));
     }

@@ -24,10 +24,10 @@ namespace {
 constexpr RunId first_run{1};
 
 archive::NoteRecord note(std::string text) {
-    return {0, std::move(text), "Ada", Ert{7}, "2026-11-22T12:00:00Z", {}};
+    return {{0, Ert{7}}, std::move(text), "Ada", "2026-11-22T12:00:00Z", {}};
 }
 archive::AlarmActionRecord action(std::string alarm, std::string what, std::int64_t at_s, std::int64_t until_s = 0) {
-    return {0, std::move(alarm), std::move(what), "seen", "Ada", Ert{at_s * 1'000'000}, Ert{until_s * 1'000'000}};
+    return {{0, Ert{at_s * 1'000'000}}, std::move(alarm), std::move(what), "seen", "Ada", Ert{until_s * 1'000'000}};
 }
 
 dictionary::Dictionary mission() {

@@ -138,7 +138,7 @@ TEST_CASE("the clocks of runs and what commands waited for are told in plain SQL
     stage.stage = "released";
     stage.status = "pending";
     stage.evidence = "waits for the approval of another controller than Ann";
-    stage.at = Ert{60'000'000};
+    stage.ert = Ert{60'000'000};
     stage.needs_approval = true;
     stage.asked_by = "Ann";
     REQUIRE(ground.pipeline.accept(stage).ok());
@@ -396,7 +396,7 @@ TEST_CASE("commands are found by when Earth heard what left the vehicle in a ran
         stage.name = "NO_OP";
         stage.stage = "queued";
         stage.status = "ok";
-        stage.at = Ert{at_s * 1'000'000};
+        stage.ert = Ert{at_s * 1'000'000};
         REQUIRE(ground.pipeline.accept(stage).ok());
     }
     REQUIRE(ground.pipeline.commit().ok());
