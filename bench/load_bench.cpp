@@ -316,8 +316,8 @@ void under_load(Channels channels) {
                 archive::StageRecord stage;
                 stage.command = sent_stages + 1;
                 stage.name = "LOAD";
-                stage.stage = "radiated";
-                stage.status = "ok";
+                stage.stage = commands::Stage::radiated;
+                stage.status = commands::Status::ok;
                 delivery.entries.emplace_back(std::move(stage));
             }
             must(pipeline.deliver(std::move(delivery)), "deliver");

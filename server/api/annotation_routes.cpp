@@ -60,8 +60,7 @@ void Api::post_alarm(const Asked& asked) {
         if (!links) return error_response(500, links.error());
         auto action = alarm_action_of(wanted, parts_.dictionary, *links, wanted.by(), now);
         if (!action) return error_response(422, action.error());
-        const auto act = telemetry::alarm_act(action->action);
-        if (const auto may = reader.may(id, action->alarm, *act, action->at); !may)
+        if (const auto may = reader.may(id, action->alarm, action->action, action->ert); !may)
             return error_response(409, may.error());
         return std::move(*action);
     });

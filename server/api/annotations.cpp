@@ -69,7 +69,7 @@ Result<archive::AlarmActionRecord> alarm_action_of(const v1::AlarmRequest& reque
     } else if (request.shelve_s() != 0.0) {
         return Error{fmt::format("shelve_s: {} is not for a limited time", request.action())};
     }
-    record.action = request.action();
+    record.action = *act;
     record.note = request.note();
     record.by = by;
     record.ert = now;

@@ -18,7 +18,7 @@ template <typename Value>
 struct Stored;
 
 template <typename Value>
-    requires std::is_integral_v<Value> || std::is_enum_v<Value>
+    requires std::is_integral_v<Value> || (std::is_enum_v<Value> && !requires { Spelling<Value>::count; })
 struct Stored<Value> {
     static constexpr char type[] = "INTEGER";
     static constexpr bool nullable = false;
@@ -26,6 +26,29 @@ struct Stored<Value> {
         row.bind(parameter, static_cast<std::int64_t>(value));
     }
     static Value read(const sqlite::Statement& row, int column) { return static_cast<Value>(row.integer(column)); }
+};
+
+template <typename Value>
+    requires requires { Spelling<Value>::count; }
+struct Stored<Value> {
+    static constexpr char type[] = "TEXT";
+    static constexpr bool nullable = false;
+    static void bind(sqlite::Statement& row, int parameter, Value value) {
+        row.bind(parameter, std::string_view(Spelling<Value>::of(value)));
+    }
+    static Value read(const sqlite::Statement& row, int column) {
+        std::size_t value = 0;
+        while (value + 1 < Spelling<Value>::count && row.text(column) != Spelling<Value>::of(static_cast<Value>(value)))
+            ++value;
+        return static_cast<Value>(value);
+    }
+    /// Other words than these do not come into the file.
+    static std::string check(const char* name) {
+        std::string words;
+        for (std::size_t value = 0; value < Spelling<Value>::count; ++value)
+            words += (value == 0 ? "'" : ", '") + std::string(Spelling<Value>::of(static_cast<Value>(value))) + "'";
+        return std::string(" CHECK (") + name + " IN (" + words + "))";
+    }
 };
 
 template <typename Tag, typename Number>
@@ -127,6 +150,7 @@ struct DescribeColumns {
     void operator()(const char* name, const Value&, Column column = Column::plain) {
         add(name, Stored<Value>::type, Stored<Value>::nullable || column == Column::optional,
             column == Column::searched);
+        if constexpr (requires { Stored<Value>::check(name); }) columns.back().declared += Stored<Value>::check(name);
     }
     void operator()(const char* name, OfRun) { add(name, "INTEGER", false); }
     void operator()(const char* name, const Slice&) { add(name, "BLOB", false); }

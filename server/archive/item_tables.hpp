@@ -2,6 +2,8 @@
 #pragma once
 
 #include "server/archive/records.hpp"
+#include "telemetry/alarms.hpp"
+#include "telemetry/text.hpp"
 
 #include <tuple>
 
@@ -27,6 +29,41 @@ struct LinkName {
 };
 template <typename Text>
 LinkName(Text&) -> LinkName<Text>;
+
+/// An enumeration that stands as its words, for people who open the file with other tools: how many values it has, from
+/// 0 on, and the word of each.
+template <typename Enum>
+struct Spelling;
+template <>
+struct Spelling<commands::Stage> {
+    static constexpr std::size_t count = commands::stage_count;
+    static const char* of(commands::Stage stage) { return commands::name_of(stage); }
+};
+template <>
+struct Spelling<commands::Status> {
+    static constexpr std::size_t count = 4;
+    static const char* of(commands::Status status) { return commands::name_of(status); }
+};
+template <>
+struct Spelling<dictionary::EventLevel> {
+    static constexpr std::size_t count = 7;
+    static const char* of(dictionary::EventLevel level) { return telemetry::name_of(level); }
+};
+template <>
+struct Spelling<dictionary::Severity> {
+    static constexpr std::size_t count = 6;
+    static const char* of(dictionary::Severity severity) { return telemetry::name_of(severity); }
+};
+template <>
+struct Spelling<telemetry::AlarmAct> {
+    static constexpr std::size_t count = 4;
+    static const char* of(telemetry::AlarmAct act) { return telemetry::name_of(act); }
+};
+template <>
+struct Spelling<CarrierLock> {
+    static constexpr std::size_t count = 4;
+    static const char* of(CarrierLock lock) { return to_text(lock); }
+};
 
 /// Of each kind: `name` of the table; `derived`, whether its rows follow from those of units; `of_batch`, where a batch
 /// has its records; `columns`, which calls visit(name, member, Column) for each column but key and ert_us. Of a kind
@@ -88,7 +125,6 @@ struct ItemTable<ToneRecord> {
         visit("runner_up_likelihood", record.runner_up_likelihood);
         visit("c_n0_dbhz", record.c_n0_dbhz);
         visit("doppler_hz", record.doppler_hz);
-        visit("locked", record.locked);
         visit("model", record.model);
         visit("sclk", record.sclk);
         visit("lock", record.lock);

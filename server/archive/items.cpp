@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/archive/items.hpp"
 
+#include "telemetry/alarms.hpp"
+#include "telemetry/text.hpp"
+
 #include <cmath>
 #include <limits>
 
@@ -62,7 +65,7 @@ v1::Item to_item(const EventRecord& record) {
     auto& event = *item.mutable_event();
     event.set_id(record.id.value);
     event.set_name(record.name);
-    event.set_level(record.level);
+    event.set_level(telemetry::name_of(record.level));
     event.set_text(record.text);
     event.set_sclk(record.sclk.seconds);
     event.set_ert(day_of_year_text(record.ert));
@@ -84,10 +87,10 @@ v1::Item to_item(const ToneRecord& record) {
     tone.set_runner_up_likelihood(record.runner_up_likelihood);
     tone.set_c_n0_dbhz(record.c_n0_dbhz);
     tone.set_doppler_hz(record.doppler_hz);
-    tone.set_locked(record.locked);
+    tone.set_locked(record.lock == CarrierLock::locked);
     tone.set_model(record.model);
     tone.set_sclk(record.sclk.seconds);
-    tone.set_lock(record.lock);
+    tone.set_lock(to_text(record.lock));
     for (const ToneLikelihood& each : record.best) {
         auto& written = *tone.add_best();
         written.set_tone(each.tone);
@@ -102,8 +105,8 @@ v1::Item to_item(const StageRecord& record) {
     auto& stage = *item.mutable_command_stage();
     stage.set_command(record.command);
     stage.set_name(record.name);
-    stage.set_stage(record.stage);
-    stage.set_status(record.status);
+    stage.set_stage(commands::name_of(record.stage));
+    stage.set_status(commands::name_of(record.status));
     stage.set_evidence(record.evidence);
     stage.set_at(day_of_year_text(record.ert));
     stage.set_arguments(record.arguments);
@@ -162,7 +165,7 @@ v1::Item to_item(const AlarmRecord& record) {
     v1::Item item = item_with(record);
     auto& alarm = *item.mutable_alarm();
     alarm.set_channel(record.channel.value);
-    alarm.set_severity(record.severity);
+    alarm.set_severity(telemetry::name_of(record.severity));
     alarm.set_value(record.value);
     alarm.set_sclk(record.sclk.seconds);
     alarm.set_limit(record.limit);
@@ -185,7 +188,7 @@ v1::Item to_item(const AlarmActionRecord& record) {
     v1::Item item = item_with(record);
     auto& action = *item.mutable_alarm_action();
     action.set_alarm(record.alarm);
-    action.set_action(record.action);
+    action.set_action(telemetry::name_of(record.action));
     if (record.until > record.ert) action.set_until(day_of_year_text(record.until));
     action.set_note(record.note);
     action.set_by(record.by);

@@ -164,7 +164,7 @@ Result<v1::EventList> Reader::events(RunId run, const EventQuery& query) {
             const auto event = read_row<EventRecord>(row);
             if ((event.duplicate && !query.duplicates) || !range->holds(event.sclk.seconds)) return false;
             if (!query.levels.empty() &&
-                std::find(query.levels.begin(), query.levels.end(), event.level) == query.levels.end())
+                std::ranges::find(query.levels, telemetry::name_of(event.level)) == query.levels.end())
                 return false;
             *list.add_events() = to_item(event);
             return static_cast<std::size_t>(list.events_size()) == query.limit;
@@ -258,7 +258,7 @@ Result<v1::CommandList> Reader::commands(RunId run, const CommandQuery& query) {
             history.set_arguments(stage.arguments);
         }
         if (!stage.octets.empty()) history.set_octets(hex(stage.octets));
-        if (stage.stage == "released") {  // its last word
+        if (stage.stage == commands::Stage::released) {  // its last word
             history.set_held(stage.held);
             history.set_needs_approval(stage.needs_approval);
         }

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "commands/lifecycle.hpp"
 #include "common/ids.hpp"
 #include "common/time.hpp"
 #include "common/tone_evidence.hpp"
+#include "dictionaries/dictionary.hpp"
+#include "telemetry/alarm_desk.hpp"
 #include "telemetry/explanation.hpp"
 #include "telemetry/link_counters.hpp"
 #include "telemetry/unit_identity.hpp"
@@ -68,7 +71,9 @@ struct SampleRecord : ItemRecord {
 struct EventRecord : ItemRecord {
     Sequence unit = 0;
     EvrId id;
-    std::string name, level, text;
+    std::string name;
+    dictionary::EventLevel level{};
+    std::string text;
     Sclk sclk;
     Source source{};
     bool duplicate = false;
@@ -83,18 +88,20 @@ struct ToneRecord : ItemRecord {
     double runner_up_likelihood = 0.0;
     double c_n0_dbhz = 0.0;
     double doppler_hz = 0.0;
-    bool locked = false;
     std::string model;
-    Sclk sclk;         ///< of the vehicle when the symbol began, by light time
-    std::string lock;  ///< worst of the symbol: locked, fluctuating, coasting, searching; empty: not kept
-    std::vector<ToneLikelihood> best;      ///< the likeliest first, five; or none
-    std::optional<ToneSpectrum> spectrum;  ///< of a decision from samples
+    Sclk sclk;                                  ///< of the vehicle when the symbol began, by light time
+    CarrierLock lock = CarrierLock::searching;  ///< the worst of the symbol
+    std::vector<ToneLikelihood> best;           ///< the likeliest first, five; or none
+    std::optional<ToneSpectrum> spectrum;       ///< of a decision from samples
 };
 
 /// A stage of a command. The first record of a command carries its arguments and octets.
 struct StageRecord : ItemRecord {
     std::uint64_t command = 0;  ///< number of the command in its run, from 1
-    std::string name, stage, status, evidence;
+    std::string name;
+    commands::Stage stage{};
+    commands::Status status{};
+    std::string evidence;
     std::string arguments;
     std::uint32_t count = 0;
     std::vector<std::uint8_t> octets;
@@ -129,7 +136,7 @@ struct LinkRecord : ItemRecord {
 struct AlarmRecord : ItemRecord {
     Sequence unit = 0;
     ChannelId channel;
-    std::string severity;  ///< "none": cleared
+    dictionary::Severity severity{};  ///< none: cleared
     double value = 0.0;
     Sclk sclk;
     std::string limit;
@@ -145,7 +152,9 @@ struct StalenessRecord : ItemRecord {
 
 /// What someone did about an alarm, by the alarm's name.
 struct AlarmActionRecord : ItemRecord {
-    std::string alarm, action, note, by;
+    std::string alarm;
+    telemetry::AlarmAct action{};
+    std::string note, by;
     Ert until;  ///< of shelve only
 };
 

@@ -103,7 +103,7 @@ CREATE VIEW event_log AS
 CREATE VIEW tone_log AS
     SELECT t.key >> 40 AS run, t.key & 0xFFFFFFFFFF AS seq,
            strftime('%Y-%jT%H:%M:%f', t.start_us / 1e6 + 946728000, 'unixepoch') AS ert_start, t.tone, t.name,
-           t.meaning, t.likelihood, t.runner_up, t.c_n0_dbhz, t.locked, t.model
+           t.meaning, t.likelihood, t.runner_up, t.c_n0_dbhz, t.lock = 'locked' AS locked, t.model
     FROM tones t;
 CREATE VIEW command_log AS
     SELECT c.key >> 40 AS run, c.key & 0xFFFFFFFFFF AS seq, c.command, c.name, c.stage, c.status, c.evidence,

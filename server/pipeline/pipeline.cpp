@@ -292,8 +292,7 @@ void Pipeline::State::take(const telemetry::ReceivedTone& tone) {
     record.spectrum = tone.spectrum;
     record.c_n0_dbhz = tone.c_n0_dbhz;
     record.doppler_hz = tone.doppler_hz;
-    record.lock = to_text(tone.lock);
-    record.locked = tone.lock == CarrierLock::locked;
+    record.lock = tone.lock;
     record.model = run->start.tone_model;
     // Ground knows when the symbol began on board by light time alone; that is all it knows.
     const double sent_s =

@@ -61,8 +61,8 @@ archive::StageRecord record_of(commands::StageReport stage) {
     archive::StageRecord record;
     record.command = stage.command;
     record.name = std::move(stage.name);
-    record.stage = commands::name_of(stage.stage);
-    record.status = commands::name_of(stage.status);
+    record.stage = stage.stage;
+    record.status = stage.status;
     record.evidence = std::move(stage.evidence);
     record.ert = stage.at;
     record.arguments = std::move(stage.arguments);

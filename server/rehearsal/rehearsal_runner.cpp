@@ -359,9 +359,9 @@ void RehearsalRunner::collect(Rehearsal& rehearsal, const telemetry::Received& r
 
 void RehearsalRunner::take_stages(Rehearsal& rehearsal) {
     for (auto& stage : rehearsal.take_stages()) {
-        const bool ended = stage.status == commands::name_of(commands::Status::failed);
+        const bool ended = stage.status == commands::Status::failed;
         timeline_moved_ = timeline_moved_ || (ended && commands::changes_offsets(stage.name));
-        if (stage.stage == commands::name_of(commands::Stage::queued)) {
+        if (stage.stage == commands::Stage::queued) {
             const std::scoped_lock lock{mutex_};
             names_.emplace(stage.command, stage.name);
         }

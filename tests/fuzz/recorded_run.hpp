@@ -34,7 +34,7 @@ class RecordedRun {
             archive::StageRecord stage;
             stage.command = 1;
             stage.name = "NO_OP";
-            stage.stage = "queued";
+            stage.stage = commands::Stage::queued;
             must(pipeline.accept(stage));
             must(over ? pipeline.finish({"touchdown", "", "d", ""}) : pipeline.commit());
             pipeline.abandon();

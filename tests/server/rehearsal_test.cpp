@@ -123,9 +123,11 @@ TEST_CASE("commands over an uplink that loses frames are sent again, and the lan
         for (int i = 0; i < 64 * 180; ++i) {
             rehearsal.step();
             for (const auto& stage : rehearsal.take_stages()) {
-                again += stage.stage == "radiated" && stage.evidence.starts_with("transmission");
-                executed |= stage.name == "EDL_DO_EDL" && stage.stage == "executed" && stage.status == "ok";
-                reported |= stage.name == "EDL_DO_EDL" && stage.stage == "received" && stage.status == "unknown";
+                again += stage.stage == commands::Stage::radiated && stage.evidence.starts_with("transmission");
+                executed |= stage.name == "EDL_DO_EDL" && stage.stage == commands::Stage::executed &&
+                            stage.status == commands::Status::ok;
+                reported |= stage.name == "EDL_DO_EDL" && stage.stage == commands::Stage::received &&
+                            stage.status == commands::Status::unknown;
             }
         }
         CHECK((executed || reported || !rehearsal.script_refusals().empty()));  // never silence

@@ -25,12 +25,12 @@ archive::RunStart start() {
 Ert heard(double sclk_s) {
     return Ert{static_cast<std::int64_t>((sclk_s + 100.0) * 1.0e6)};
 }
-archive::StageRecord stage(const char* word, Ert at) {
+archive::StageRecord stage(commands::Stage reached, Ert at) {
     archive::StageRecord stage;
     stage.command = 1;
     stage.name = "NO_OP";
-    stage.stage = word;
-    stage.status = "ok";
+    stage.stage = reached;
+    stage.status = commands::Status::ok;
     stage.ert = at;
     return stage;
 }
@@ -47,12 +47,12 @@ TEST_CASE("the state at an instant is what had happened by then, on board and as
     REQUIRE(pipeline.begin(start()));
     const auto accept = [&](auto&& what) { REQUIRE(pipeline.accept(std::forward<decltype(what)>(what)).ok()); };
     accept(telemetry::LinkState{telemetry::uhf_live_link, heard(1000.0), true, "nominal"});
-    accept(stage("queued", heard(1000.5)));
+    accept(stage(commands::Stage::queued, heard(1000.5)));
     accept(live(navigation_packet(0, 1001.0, 10.0F, 6000.0F)));
     accept(live(fired_packet(0, 1002.0, 2)));
     accept(telemetry::LinkState{telemetry::uhf_live_link, heard(1003.0), false, "plasma blackout"});
     accept(telemetry::LinkState{telemetry::x_band_link, heard(1003.2), false, "ground fault: no signal", true});
-    accept(stage("radiated", heard(1003.5)));
+    accept(stage(commands::Stage::radiated, heard(1003.5)));
     accept(live(navigation_packet(1, 1004.0, 20.0F, 5000.0F)));
     REQUIRE(pipeline.commit().ok());
     auto reader = archive::Reader::open(folder / "a.db", dictionary);

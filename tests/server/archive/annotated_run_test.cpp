@@ -26,8 +26,9 @@ constexpr RunId first_run{1};
 archive::NoteRecord note(std::string text) {
     return {{0, Ert{7}}, std::move(text), "Ada", "2026-11-22T12:00:00Z", {}};
 }
-archive::AlarmActionRecord action(std::string alarm, std::string what, std::int64_t at_s, std::int64_t until_s = 0) {
-    return {{0, Ert{at_s * 1'000'000}}, std::move(alarm), std::move(what), "seen", "Ada", Ert{until_s * 1'000'000}};
+archive::AlarmActionRecord action(std::string alarm, telemetry::AlarmAct what, std::int64_t at_s,
+                                  std::int64_t until_s = 0) {
+    return {{0, Ert{at_s * 1'000'000}}, std::move(alarm), what, "seen", "Ada", Ert{until_s * 1'000'000}};
 }
 
 dictionary::Dictionary mission() {
@@ -97,15 +98,15 @@ TEST_CASE("what is done about an alarm is an item of the run, the same when read
     ground.fly(0, 3, 6100.0F);
     REQUIRE(ground.pipeline->commit().ok());
     CHECK(ground.states(3) == "speed_mps unacknowledged warning by ; ");
-    ground.add(action("speed_mps", "acknowledge", 3));
+    ground.add(action("speed_mps", telemetry::AlarmAct::acknowledge, 3));
     CHECK(ground.states(3) == "speed_mps acknowledged warning by Ada; ");
-    ground.add(action("speed_mps", "shelve", 4, 64));
+    ground.add(action("speed_mps", telemetry::AlarmAct::shelve, 4, 64));
     CHECK(ground.states(5) == "speed_mps shelved warning by Ada; ");
     CHECK(ground.states(64) == "speed_mps acknowledged warning by Ada; ");
     ground.fly(3, 5, 5000.0F);
     REQUIRE(ground.pipeline->commit().ok());
     CHECK(ground.states(64) == "speed_mps latched none by Ada; ");
-    ground.add(action("speed_mps", "reset", 65));
+    ground.add(action("speed_mps", telemetry::AlarmAct::reset, 65));
     CHECK(ground.states(65).empty());
     CHECK(ground.reader().may(first_run, "speed_mps", telemetry::AlarmAct::reset, Ert{}).error().message ==
           "alarm speed_mps is not latched: there is nothing to reset");
@@ -156,7 +157,7 @@ TEST_CASE("a link whose silence nothing explains is an alarm under its own name,
     CHECK(list->alarms(0).kind() == "link");
     CHECK(list->alarms(0).reason() == "unexplained: nothing is predicted to silence it now");
     CHECK(ground.reader().links().value() == std::vector<std::string>{"uhf_live", "relay", "x_band"});
-    ground.add(action("x_band", "acknowledge", 21));
+    ground.add(action("x_band", telemetry::AlarmAct::acknowledge, 21));
     tell(30, true, "nominal");
     CHECK(ground.states(30).empty());                                      // seen, and over
     CHECK(ground.reader().alarms(first_run, 0, 10)->changes_size() == 5);  // all of a link that was lost, and the act
@@ -213,7 +214,7 @@ TEST_CASE("states, notes and words survive a restart and a rebuild, and verify f
     ground.fly(0, 3, 6100.0F);
     REQUIRE(ground.pipeline->accept(live(mortar_packet(0, 1003.0, 405.0F), 3'000'000)).ok());
     ground.add(note("the chute looks good"));
-    ground.add(action("speed_mps", "acknowledge", 3));
+    ground.add(action("speed_mps", telemetry::AlarmAct::acknowledge, 3));
     REQUIRE(ground.pipeline->finish({"touchdown", "", "", ""}).ok());
     const auto before = ground.stored();
     const auto state = ground.states(3);
@@ -258,7 +259,7 @@ TEST_CASE("a run that is flown again keeps what people added, at its place, and 
     ground.begin();
     ground.add(note("before anything"));
     ground.fly(0, 3, 6100.0F);
-    ground.add(action("speed_mps", "acknowledge", 3));
+    ground.add(action("speed_mps", telemetry::AlarmAct::acknowledge, 3));
     ground.fly(3, 4, 6100.0F);
     REQUIRE(ground.pipeline->commit().ok());
     const bool after_the_crash = GENERATE(false, true);
@@ -299,7 +300,7 @@ TEST_CASE("plain words find events, explanations, commands and notes, whatever s
     archive::StageRecord stage;
     stage.command = 4;
     stage.name = "EDL_SET_PARAMETERS";
-    stage.stage = "released";
+    stage.stage = commands::Stage::released;
     stage.evidence = "left the station";
     REQUIRE(ground.pipeline->accept(stage).ok());
     ground.add(note("the chute's load: 5.3 g"));

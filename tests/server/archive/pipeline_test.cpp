@@ -69,8 +69,8 @@ struct Ground {
         archive::StageRecord stage;
         stage.command = 1;
         stage.name = "NO_OP";
-        stage.stage = "queued";
-        stage.status = "ok";
+        stage.stage = commands::Stage::queued;
+        stage.status = commands::Status::ok;
         stage.arguments = "a=1";
         stage.octets = {0xAB, 0xCD};
         REQUIRE(pipeline.accept(stage).ok());
@@ -135,8 +135,8 @@ TEST_CASE("the clocks of runs and what commands waited for are told in plain SQL
     archive::StageRecord stage;
     stage.command = 3;
     stage.name = "NO_OP";
-    stage.stage = "released";
-    stage.status = "pending";
+    stage.stage = commands::Stage::released;
+    stage.status = commands::Status::pending;
     stage.evidence = "waits for the approval of another controller than Ann";
     stage.ert = Ert{60'000'000};
     stage.needs_approval = true;
@@ -163,7 +163,7 @@ TEST_CASE("the clocks of runs and what commands waited for are told in plain SQL
 TEST_CASE("the history of a command says in fields that it is held or needs approval, and no longer once it has left",
           "[pipeline][gateway]") {
     Ground ground;
-    const auto say = [&](const char* stage, const char* status, bool held, bool needs_approval) {
+    const auto say = [&](commands::Stage stage, commands::Status status, bool held, bool needs_approval) {
         archive::StageRecord record;
         record.command = 1;
         record.name = "NO_OP";
@@ -179,14 +179,14 @@ TEST_CASE("the history of a command says in fields that it is held or needs appr
         REQUIRE(list.ok());
         return list->commands(0);
     };
-    CHECK_FALSE(say("queued", "ok", false, false).held());
-    const auto waits = say("released", "pending", true, true);
+    CHECK_FALSE(say(commands::Stage::queued, commands::Status::ok, false, false).held());
+    const auto waits = say(commands::Stage::released, commands::Status::pending, true, true);
     CHECK(waits.held());
     CHECK(waits.needs_approval());
     CHECK(waits.stages(1).command_stage().asked_by() == "Ann");
     CHECK(waits.stages(1).command_stage().held());
-    CHECK_FALSE(say("released", "pending", true, false).needs_approval());
-    CHECK_FALSE(say("released", "ok", false, false).held());
+    CHECK_FALSE(say(commands::Stage::released, commands::Status::pending, true, false).needs_approval());
+    CHECK_FALSE(say(commands::Stage::released, commands::Status::ok, false, false).held());
 }
 
 TEST_CASE("items are numbered from 1 without a gap, and read back as they were published", "[pipeline][R42][R43]") {
@@ -394,8 +394,8 @@ TEST_CASE("commands are found by when Earth heard what left the vehicle in a ran
         archive::StageRecord stage;
         stage.command = static_cast<std::uint64_t>(command);
         stage.name = "NO_OP";
-        stage.stage = "queued";
-        stage.status = "ok";
+        stage.stage = commands::Stage::queued;
+        stage.status = commands::Status::ok;
         stage.ert = Ert{at_s * 1'000'000};
         REQUIRE(ground.pipeline.accept(stage).ok());
     }
