@@ -115,6 +115,9 @@ struct Stored<std::array<std::uint8_t, count>> : Stored<std::vector<std::uint8_t
         std::ranges::copy(stored.first(std::min(count, stored.size())), octets.begin());
         return octets;
     }
+    static std::string check(const char* name) {
+        return std::string(" CHECK (length(") + name + ") = " + std::to_string(count) + ")";
+    }
 };
 
 template <typename Value>

@@ -118,8 +118,8 @@ struct ItemTable<ToneRecord> {
     static void columns(auto& record, auto&& visit) {
         visit("start_us", record.start);
         visit("tone", record.tone);
-        visit("name", record.name);
-        visit("meaning", record.meaning);
+        visit("name", record.name, Column::searched);
+        visit("meaning", record.meaning, Column::searched);
         visit("likelihood", record.likelihood);
         visit("runner_up", record.runner_up);
         visit("runner_up_likelihood", record.runner_up_likelihood);

@@ -48,22 +48,16 @@ bool Reader::stopped() const {
     return state_->database.stopped();
 }
 
-std::vector<std::string_view> words_in(std::string_view text) {
+std::string search_words(std::string_view text) {
     const auto in_word = [](char c) {
         return std::isalnum(static_cast<unsigned char>(c)) != 0 || static_cast<unsigned char>(c) >= 0x80;
     };
-    std::vector<std::string_view> words;
+    std::string words;
     for (auto at = text.begin(); at != text.end();) {
         const auto begin = std::find_if(at, text.end(), in_word);
         at = std::find_if_not(begin, text.end(), in_word);
-        if (begin != at) words.emplace_back(begin, at);
+        if (begin != at) words += (words.empty() ? "\"" : " \"") + std::string(begin, at) + "\"*";
     }
-    return words;
-}
-
-std::string search_words(std::string_view text) {
-    std::string words;
-    for (const auto word : words_in(text)) words += (words.empty() ? "\"" : " \"") + std::string(word) + "\"*";
     return words;
 }
 

@@ -10,26 +10,6 @@
 // Items of all kinds, as one sequence, by reading each table from the same place on.
 namespace aeolis::archive {
 
-template <typename Record>
-Result<v1::Item> Reader::State::item(const sqlite::Statement& row, const dictionary::Dictionary* words) {
-    auto record = read_row<Record>(row);
-    if constexpr (HasParts<Record>) {
-        auto parts = query(parts_sql<PartOf<Record>>());
-        if (!parts) return parts.error();
-        (*parts)->bind(1, row.integer(0));
-        for (;;) {
-            auto found = (*parts)->step();
-            if (!found) return found.error();
-            if (!*found) break;
-            ItemTable<Record>::parts(record).push_back(read_part<PartOf<Record>>(**parts));
-        }
-    }
-    return item_of(record, words);
-}
-template Result<v1::Item> Reader::State::item<ToneRecord>(const sqlite::Statement&, const dictionary::Dictionary*);
-template Result<v1::Item> Reader::State::item<ExplanationRecord>(const sqlite::Statement&,
-                                                                 const dictionary::Dictionary*);
-
 namespace {
 
 /// One page being collected. `through` comes down when a table has more rows than fit.

@@ -8,7 +8,6 @@
 #include "telemetry/text.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <set>
 
 namespace aeolis::archive {
@@ -34,18 +33,6 @@ struct Wanted {
     bool nothing() const { return asked && words.empty(); }  ///< only signs: no row has them
 };
 
-/// Whether each of `wanted` begins a word of the text, in any case. For rows of which FTS5 has no words: tones are few.
-bool has_words(std::string_view text, std::span<const std::string_view> wanted) {
-    const auto lower = [](char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); };
-    const auto words = words_in(text);
-    return std::ranges::all_of(wanted, [&](std::string_view beginning) {
-        return std::ranges::any_of(words, [&](std::string_view word) {
-            return word.size() >= beginning.size() &&
-                   std::ranges::equal(word.substr(0, beginning.size()), beginning, {}, lower, lower);
-        });
-    });
-}
-
 /// Rows of one table after `after`, until `take` says that the page is full. Gives the number to go on after; 0: no
 /// more.
 template <typename Take>
@@ -67,6 +54,32 @@ Result<Sequence> scan(Reader::State& reader, const char* sql, RunId run, Sequenc
         if (!full) return full.error();
         if (*full) return last;
     }
+}
+
+/// A page of the items of one kind that `query` asks for by its words, and `wanted` by the record.
+template <typename Record, typename List, typename Query>
+Result<List> page_of(Reader::State& reader, RunId run, const Query& query, auto wanted,
+                     google::protobuf::RepeatedPtrField<v1::Item>* (List::*items)()) {
+    if (auto fits = check_limit(query.limit, rows_page_max); !fits) return fits.error();
+    const auto instant = reader.instant(run);
+    if (!instant) return instant.error();
+    const Wanted words(query.text);
+    List list;
+    if (words.nothing()) return list;
+    auto& page = *(list.*items)();
+    const auto next = scan(
+        reader, words.asked ? found_rows_sql<Record>() : rows_sql<Record>(), run, query.after,
+        [&](const auto& row) -> Result<bool> {
+            if (!wanted(read_row<Record>(row))) return false;
+            auto item = reader.item<Record>(row);
+            if (!item) return item.error();
+            *page.Add() = std::move(*item);
+            return static_cast<std::size_t>(page.size()) == query.limit;
+        },
+        words.words);
+    if (!next) return next.error();
+    list.set_next_after(*next);
+    return list;
 }
 
 struct HeardRange {
@@ -151,95 +164,34 @@ Result<v1::PacketList> Reader::packets(RunId run, const PacketQuery& query) {
 Result<v1::EventList> Reader::events(RunId run, const EventQuery& query) {
     const auto range = closed(query.range);
     if (!range) return range.error();
-    if (auto fits = check_limit(query.limit, rows_page_max); !fits) return fits.error();
-    const auto instant = state_->instant(run);
-    if (!instant) return instant.error();
-    const Wanted wanted(query.text);
-    v1::EventList list;
-    if (wanted.nothing()) return list;
-    const char* sql = wanted.asked ? found_rows_sql<EventRecord>() : rows_sql<EventRecord>();
-    const auto next = scan(
-        *state_, sql, run, query.after,
-        [&](const auto& row) -> Result<bool> {
-            const auto event = read_row<EventRecord>(row);
-            if ((event.duplicate && !query.duplicates) || !range->holds(event.sclk.seconds)) return false;
-            if (!query.levels.empty() &&
-                std::ranges::find(query.levels, telemetry::name_of(event.level)) == query.levels.end())
-                return false;
-            *list.add_events() = to_item(event);
-            return static_cast<std::size_t>(list.events_size()) == query.limit;
-        },
-        wanted.words);
-    if (!next) return next.error();
-    list.set_next_after(*next);
-    return list;
+    const auto wanted = [&](const EventRecord& event) {
+        return (query.duplicates || !event.duplicate) && range->holds(event.sclk.seconds) &&
+               (query.levels.empty() ||
+                std::ranges::find(query.levels, telemetry::name_of(event.level)) != query.levels.end());
+    };
+    return page_of<EventRecord>(*state_, run, query, wanted, &v1::EventList::mutable_events);
 }
 
 Result<v1::ToneList> Reader::tones(RunId run, const ToneQuery& query) {
     const auto range = closed(query.range);
     if (!range) return range.error();
-    if (auto fits = check_limit(query.limit, rows_page_max); !fits) return fits.error();
-    const auto instant = state_->instant(run);
-    if (!instant) return instant.error();
-    const auto wanted = words_in(query.text);
-    v1::ToneList list;
-    if (wanted.empty() && !query.text.empty()) return list;  // only signs: no tone has them
-    const auto next = scan(*state_, rows_sql<ToneRecord>(), run, query.after, [&](const auto& row) -> Result<bool> {
-        const auto record = read_row<ToneRecord>(row);
-        if (!range->holds(record.sclk.seconds) || !has_words(record.name + " " + record.meaning, wanted)) return false;
-        auto tone = state_->item<ToneRecord>(row);
-        if (!tone) return tone.error();
-        *list.add_tones() = std::move(*tone);
-        return static_cast<std::size_t>(list.tones_size()) == query.limit;
-    });
-    if (!next) return next.error();
-    list.set_next_after(*next);
-    return list;
+    const auto wanted = [&](const ToneRecord& tone) { return range->holds(tone.sclk.seconds); };
+    return page_of<ToneRecord>(*state_, run, query, wanted, &v1::ToneList::mutable_tones);
 }
 
 Result<v1::ExplanationList> Reader::explanations(RunId run, const ExplanationQuery& query) {
     const auto range = closed(query.range);
     if (!range) return range.error();
-    if (auto fits = check_limit(query.limit, rows_page_max); !fits) return fits.error();
-    const auto instant = state_->instant(run);
-    if (!instant) return instant.error();
-    const Wanted wanted(query.text);
-    v1::ExplanationList list;
-    if (wanted.nothing()) return list;
-    const auto next = scan(
-        *state_, wanted.asked ? found_rows_sql<ExplanationRecord>() : rows_sql<ExplanationRecord>(), run, query.after,
-        [&](const auto& row) -> Result<bool> {
-            const auto record = read_row<ExplanationRecord>(row);
-            if ((record.duplicate && !query.duplicates) || !range->holds(record.sclk.seconds)) return false;
-            if (!query.decision.empty() && record.explanation.decision != query.decision) return false;
-            auto item = state_->item<ExplanationRecord>(row);
-            if (!item) return item.error();
-            *list.add_explanations() = std::move(item).value();
-            return static_cast<std::size_t>(list.explanations_size()) == query.limit;
-        },
-        wanted.words);
-    if (!next) return next.error();
-    list.set_next_after(*next);
-    return list;
+    const auto wanted = [&](const ExplanationRecord& record) {
+        return (query.duplicates || !record.duplicate) && range->holds(record.sclk.seconds) &&
+               (query.decision.empty() || record.explanation.decision == query.decision);
+    };
+    return page_of<ExplanationRecord>(*state_, run, query, wanted, &v1::ExplanationList::mutable_explanations);
 }
 
 Result<v1::NoteList> Reader::notes(RunId run, const NoteQuery& query) {
-    if (auto fits = check_limit(query.limit, rows_page_max); !fits) return fits.error();
-    const auto instant = state_->instant(run);
-    if (!instant) return instant.error();
-    const Wanted wanted(query.text);
-    v1::NoteList list;
-    if (wanted.nothing()) return list;
-    const auto next = scan(
-        *state_, wanted.asked ? found_rows_sql<NoteRecord>() : rows_sql<NoteRecord>(), run, query.after,
-        [&](const auto& row) -> Result<bool> {
-            *list.add_notes() = to_item(read_row<NoteRecord>(row));
-            return static_cast<std::size_t>(list.notes_size()) == query.limit;
-        },
-        wanted.words);
-    if (!next) return next.error();
-    list.set_next_after(*next);
-    return list;
+    const auto wanted = [](const NoteRecord&) { return true; };
+    return page_of<NoteRecord>(*state_, run, query, wanted, &v1::NoteList::mutable_notes);
 }
 
 Result<v1::CommandList> Reader::commands(RunId run, const CommandQuery& query) {

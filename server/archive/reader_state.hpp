@@ -2,6 +2,8 @@
 #pragma once
 
 #include "server/archive/column_codec.hpp"
+#include "server/archive/item_rows.hpp"
+#include "server/archive/items.hpp"
 #include "server/archive/packet_columns.hpp"
 #include "server/archive/reader.hpp"
 #include "server/archive/sqlite.hpp"
@@ -45,8 +47,6 @@ Result<ClosedRange> closed(const SclkRange& range);
 /// 1 … `most`, or an Error that says so.
 Result<void> check_limit(std::size_t limit, std::size_t most);
 
-/// The words of a text, whatever signs stand between.
-std::vector<std::string_view> words_in(std::string_view text);
 /// What FTS5 looks for when people type words: each as it begins, all of them, whatever signs stand between. Empty when
 /// there is no word in it.
 std::string search_words(std::string_view text);
@@ -114,5 +114,22 @@ struct Reader::State {
     std::vector<double> segment_sclk_s, segment_values;  ///< of the segment that is being read
     std::map<const char*, sqlite::Statement> statements;
 };
+
+template <typename Record>
+Result<v1::Item> Reader::State::item(const sqlite::Statement& row, const dictionary::Dictionary* words) {
+    auto record = read_row<Record>(row);
+    if constexpr (HasParts<Record>) {
+        auto parts = query(parts_sql<PartOf<Record>>());
+        if (!parts) return parts.error();
+        (*parts)->bind(1, row.integer(0));
+        for (;;) {
+            auto found = (*parts)->step();
+            if (!found) return found.error();
+            if (!*found) break;
+            ItemTable<Record>::parts(record).push_back(read_part<PartOf<Record>>(**parts));
+        }
+    }
+    return item_of(record, words);
+}
 
 }  // namespace aeolis::archive
