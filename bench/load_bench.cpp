@@ -10,7 +10,7 @@
 #include "server/api/query_threads.hpp"
 #include "server/archive/reader.hpp"
 #include "server/net/web_server.hpp"
-#include "server/rehearsal/pipeline_thread.hpp"
+#include "server/pipeline/pipeline_thread.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 #include <algorithm>

@@ -3,7 +3,7 @@
 
 #include "server/access/role.hpp"
 #include "server/access/secrets.hpp"
-#include "server/api/json.hpp"
+#include "server/base/json.hpp"
 
 #include <algorithm>
 #include <cerrno>

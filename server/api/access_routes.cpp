@@ -2,8 +2,8 @@
 #include "server/access/account_file.hpp"
 #include "server/access/secrets.hpp"
 #include "server/api/api.hpp"
-#include "server/api/json.hpp"
 #include "server/api/query_text.hpp"
+#include "server/base/json.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

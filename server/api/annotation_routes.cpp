@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/api/annotations.hpp"
 #include "server/api/api.hpp"
-#include "server/api/json.hpp"
 #include "server/api/query_text.hpp"
 #include "server/archive/items.hpp"
+#include "server/base/json.hpp"
+#include "server/pipeline/annotations.hpp"
 
 // What people add to a run, however old: notes, and what they do about alarms. Answered once it is durable.
 namespace aeolis::server {

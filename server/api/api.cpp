@@ -2,13 +2,12 @@
 #include "server/api/api.hpp"
 
 #include "server/api/dictionary_reply.hpp"
-#include "server/api/json.hpp"
 #include "server/api/list_response.hpp"
 #include "server/api/openapi.hpp"
 #include "server/api/query_text.hpp"
 #include "server/api/run_questions.hpp"
-#include "server/net/web_server.hpp"
-#include "server/rehearsal/wall_clock.hpp"
+#include "server/base/json.hpp"
+#include "server/base/wall_clock.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -201,7 +200,7 @@ std::size_t Api::body_octets(const Credentials& credentials, std::string_view me
     const auto route = std::ranges::find_if(
         routes(), [&](const Route& each) { return each.method == method && parts_of(each.path, path); });
     if (route == routes().end() || !who.role || !may(who, route->right)) return body_of_nobody_octets_max;
-    return route->body == Body::whole ? WebServer::body_octets_max : brief_body_octets_max;
+    return route->body == Body::whole ? HttpRequest::body_octets_max : brief_body_octets_max;
 }
 
 void Api::answer(const Route& route, Asked asked) {

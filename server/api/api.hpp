@@ -3,12 +3,12 @@
 
 #include "dictionaries/dictionary.hpp"
 #include "server/access/access.hpp"
+#include "server/api/http_message.hpp"
 #include "server/api/query_threads.hpp"
 #include "server/api/static_files.hpp"
+#include "server/api/stream_hub.hpp"
 #include "server/campaign/campaign_desk.hpp"
-#include "server/net/http_message.hpp"
-#include "server/net/stream_hub.hpp"
-#include "server/rehearsal/pipeline_thread.hpp"
+#include "server/pipeline/pipeline_thread.hpp"
 #include "server/rehearsal/rehearsal_desk.hpp"
 #include "server/scenario/scenario_library.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/api/api.hpp"
-#include "server/api/json.hpp"
 #include "server/api/query_text.hpp"
+#include "server/base/json.hpp"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/api/api.hpp"
-#include "server/api/json.hpp"
+#include "server/base/json.hpp"
 
 #include "commands/authorise.hpp"
 

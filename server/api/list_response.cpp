@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/api/list_response.hpp"
 
-#include "server/api/csv_text.hpp"
-#include "server/api/json.hpp"
-#include "server/api/json_object.hpp"
+#include "server/base/csv_text.hpp"
+#include "server/base/json.hpp"
+#include "server/base/json_object.hpp"
 
 #include <algorithm>
 #include <cctype>

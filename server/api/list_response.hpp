@@ -2,7 +2,7 @@
 #pragma once
 
 #include "common/time.hpp"
-#include "server/net/http_message.hpp"
+#include "server/api/http_message.hpp"
 
 #include <array>
 #include <google/protobuf/message.h>

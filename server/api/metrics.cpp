@@ -2,7 +2,7 @@
 // GET /metrics: figures of each queue, link, commit and client, in Prometheus' text format.
 
 #include "server/api/api.hpp"
-#include "server/version.hpp"
+#include "server/base/version.hpp"
 
 #include <fmt/format.h>
 #include <fstream>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/api/api.hpp"
-#include "server/api/json.hpp"
+#include "server/base/json.hpp"
 
 // The routes of rehearsals: starting one, its pace and its faults. The desk carries out and answers.
 namespace aeolis::server {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/api/run_questions.hpp"
 
-#include "server/api/csv_text.hpp"
-#include "server/api/json.hpp"
 #include "server/api/list_response.hpp"
 #include "server/api/query_text.hpp"
 #include "server/api/series_text.hpp"
 #include "server/api/state_at.hpp"
 #include "server/archive/items.hpp"
+#include "server/base/csv_text.hpp"
+#include "server/base/json.hpp"
 #include "telemetry/text.hpp"
 
 #include <algorithm>

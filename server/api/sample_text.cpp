@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/api/sample_text.hpp"
 
-#include "server/api/csv_text.hpp"
-#include "server/api/json_object.hpp"
+#include "server/base/csv_text.hpp"
+#include "server/base/json_object.hpp"
 
 #include <algorithm>
 #include <charconv>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "server/net/http_message.hpp"
+#include "server/api/http_message.hpp"
 
 #include <filesystem>
 #include <string_view>

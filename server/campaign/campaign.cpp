@@ -2,7 +2,7 @@
 #include "server/campaign/campaign.hpp"
 
 #include "common/check.hpp"
-#include "server/rehearsal/bounded_queue.hpp"
+#include "server/base/bounded_queue.hpp"
 #include "server/rehearsal/scripted_landing.hpp"
 
 #include <chrono>

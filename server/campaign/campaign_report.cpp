@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/campaign/campaign_report.hpp"
 
-#include "server/api/json_object.hpp"
+#include "server/base/json_object.hpp"
 
 #include <algorithm>
 #include <cmath>

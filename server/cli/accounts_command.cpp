@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/access/account_file.hpp"
 #include "server/access/this_user.hpp"
+#include "server/base/wall_clock.hpp"
 #include "server/cli/commands.hpp"
 #include "server/cli/shipped_paths.hpp"
-#include "server/rehearsal/wall_clock.hpp"
 
 #include <fmt/format.h>
 

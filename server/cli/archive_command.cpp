@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/access/this_user.hpp"
 #include "server/archive/upkeep.hpp"
+#include "server/base/wall_clock.hpp"
 #include "server/cli/commands.hpp"
 #include "server/cli/long_work.hpp"
 #include "server/cli/recorded_words.hpp"
 #include "server/cli/shipped_paths.hpp"
 #include "server/pipeline/derivation.hpp"
-#include "server/rehearsal/wall_clock.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>

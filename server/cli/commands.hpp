@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "server/downlink/frame_format.hpp"
+#include "server/links/frame_format.hpp"
 
 #include <filesystem>
 #include <optional>

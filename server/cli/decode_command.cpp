@@ -2,7 +2,7 @@
 #include "common/bytes.hpp"
 #include "common/space_packet.hpp"
 #include "dictionaries/xtce/packet_model.hpp"
-#include "server/api/csv_text.hpp"
+#include "server/base/csv_text.hpp"
 #include "server/cli/commands.hpp"
 #include "server/cli/shipped_paths.hpp"
 #include "server/cli/xtce_file.hpp"

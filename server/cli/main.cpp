@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "server/base/version.hpp"
 #include "server/cli/commands.hpp"
 #include "server/cli/shipped_paths.hpp"
-#include "server/version.hpp"
 
 #include <CLI/CLI.hpp>
 #include <array>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "server/base/wall_clock.hpp"
 #include "server/cli/commands.hpp"
 #include "server/cli/shipped_paths.hpp"
+#include "server/pipeline/pipeline_thread.hpp"
 #include "server/rehearsal/landing_report.hpp"
-#include "server/rehearsal/pipeline_thread.hpp"
 #include "server/rehearsal/rehearsal.hpp"
-#include "server/rehearsal/wall_clock.hpp"
 
 #include <algorithm>
 #include <chrono>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/api/json.hpp"
 #include "server/api/run_questions.hpp"
 #include "server/archive/reader.hpp"
+#include "server/base/json.hpp"
 #include "server/cli/commands.hpp"
 #include "server/cli/recorded_words.hpp"
 #include "server/cli/shipped_paths.hpp"

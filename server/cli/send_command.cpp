@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/api/json.hpp"
+#include "server/base/json.hpp"
 #include "server/cli/commands.hpp"
 #include "server/cli/shipped_paths.hpp"
 #include "server/net/http_client.hpp"

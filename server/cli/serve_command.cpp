@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "server/base/log_line.hpp"
 #include "server/cli/commands.hpp"
-#include "server/cli/log_line.hpp"
 #include "server/cli/shipped_paths.hpp"
 #include "server/cli/xtce_file.hpp"
 #include "server/net/console_backend.hpp"

@@ -2,7 +2,7 @@
 #include "dictionaries/analysis/timeline_analysis.hpp"
 #include "dictionaries/analysis/timeline_diff.hpp"
 #include "dictionaries/words.hpp"
-#include "server/api/json_object.hpp"
+#include "server/base/json_object.hpp"
 #include "server/cli/commands.hpp"
 #include "server/cli/shipped_paths.hpp"
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/cli/commands.hpp"
 #include "server/cli/shipped_paths.hpp"
+#include "server/rehearsal/predicted_doppler.hpp"
 #include "server/tones/doppler_file.hpp"
 #include "server/tones/flown_signal.hpp"
-#include "server/tones/predicted_doppler.hpp"
 #include "server/tones/sample_file.hpp"
 #include "server/tones/tone_bench.hpp"
 #include "simulation/links/x_band_channel.hpp"

@@ -2,7 +2,7 @@
 #include "server/net/console_backend.hpp"
 
 #include "server/access/this_user.hpp"
-#include "server/api/json.hpp"
+#include "server/base/json.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>

@@ -4,7 +4,7 @@
 #include "common/result.hpp"
 #include "dictionaries/dictionary.hpp"
 #include "server/api/api.hpp"
-#include "server/downlink/downlink_follower.hpp"
+#include "server/links/downlink_follower.hpp"
 #include "server/net/web_server.hpp"
 #include "server/rehearsal/timeline_check.hpp"
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "server/net/http_message.hpp"
+#include "server/api/http_message.hpp"
+#include "server/api/stream_session.hpp"
 #include "server/net/sockets.hpp"
-#include "server/net/stream_session.hpp"
 
 #include <boost/beast/http/message.hpp>
 #include <boost/beast/http/string_body.hpp>

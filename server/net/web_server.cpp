@@ -3,7 +3,7 @@
 
 #include "aeolis/v1/run.pb.h"
 #include "server/access/network.hpp"
-#include "server/api/json.hpp"
+#include "server/base/json.hpp"
 #include "server/net/connection_count.hpp"
 #include "server/net/sockets.hpp"
 #include "server/net/stream_connection.hpp"
@@ -288,7 +288,7 @@ Task<> WebServer::State::serve_requests(AnyStream& stream, std::string from) {
     for (;;) {
         error_code error;
         http::request_parser<http::string_body> parser;
-        parser.body_limit(body_octets_max);
+        parser.body_limit(HttpRequest::body_octets_max);
         parser.header_limit(header_octets_max);
         lowest.expires_after(request_max);
         co_await http::async_read_header(stream, buffer, parser, asio::redirect_error(awaiting, error));
@@ -297,10 +297,10 @@ Task<> WebServer::State::serve_requests(AnyStream& stream, std::string from) {
         Credentials credentials{field(http::field::cookie), field(http::field::authorization), from};
         const auto wanted = plain(parser.get().target());
         const std::size_t octets_max = error || parser.is_done() || !handlers.body_octets
-                                           ? body_octets_max
+                                           ? HttpRequest::body_octets_max
                                            : handlers.body_octets(credentials, plain(parser.get().method_string()),
                                                                   wanted.substr(0, wanted.find('?')));
-        if (!error && octets_max < body_octets_max) {
+        if (!error && octets_max < HttpRequest::body_octets_max) {
             parser.body_limit(octets_max);
             if (parser.content_length().value_or(0) > octets_max)
                 error = http::make_error_code(http::error::body_limit);

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "common/result.hpp"
-#include "server/net/http_message.hpp"
-#include "server/net/stream_session.hpp"
+#include "server/api/http_message.hpp"
+#include "server/api/stream_session.hpp"
 
 #include <chrono>
 #include <cstdint>
@@ -26,8 +26,6 @@ namespace aeolis::server {
 ///          carries a content security policy
 class WebServer {
   public:
-    static constexpr std::size_t body_octets_max =
-        256 << 10;  ///< ours: a scenario with every field is under 2 KiB; read as JSON in 25 ms
     static constexpr std::size_t header_octets_max = 16 << 10;   ///< ours
     static constexpr std::size_t message_octets_max = 64 << 10;  ///< ours: a command with every argument is under 2 KiB
     static constexpr std::size_t streams_max = 1000;             ///< ours: what bench/load_bench shows
@@ -37,7 +35,7 @@ class WebServer {
 
     struct Handlers {
         std::function<void(HttpRequest, Respond)> request;
-        /// How long a request's body may be, by who asks for what; null: body_octets_max.
+        /// How long a request's body may be, by who asks for what; null: HttpRequest::body_octets_max.
         std::function<std::size_t(const Credentials&, std::string_view method, std::string_view path)> body_octets;
         /// A client asks for /api/v1/stream: 200 lets it in, anything else is the answer.
         std::function<HttpResponse(const Credentials&)> admit_stream;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/rehearsal/landing_report.hpp"
 
-#include "server/api/json_object.hpp"
+#include "server/base/json_object.hpp"
 #include "server/scenario/scenario_text.hpp"
 #include "server/venue/task_report.hpp"
 

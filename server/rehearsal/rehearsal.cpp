@@ -2,8 +2,8 @@
 #include "server/rehearsal/rehearsal.hpp"
 
 #include "generated/dictionary_flight.hpp"
+#include "server/base/wall_clock.hpp"
 #include "server/rehearsal/command_messages.hpp"
-#include "server/rehearsal/wall_clock.hpp"
 #include "server/scenario/scenario_text.hpp"
 #include "telemetry/packet_stream.hpp"
 #include "telemetry/text.hpp"

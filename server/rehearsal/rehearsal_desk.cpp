@@ -2,7 +2,7 @@
 #include "server/rehearsal/rehearsal_desk.hpp"
 
 #include "commands/command_gateway.hpp"
-#include "server/api/annotations.hpp"
+#include "server/pipeline/annotations.hpp"
 #include "server/scenario/scenario_text.hpp"
 #include "server/scenario/script_check.hpp"
 

@@ -4,8 +4,8 @@
 #include "commands/timeline_change.hpp"
 #include "server/archive/items.hpp"
 #include "server/archive/kept_request.hpp"
+#include "server/base/wall_clock.hpp"
 #include "server/rehearsal/rehearsal.hpp"
-#include "server/rehearsal/wall_clock.hpp"
 #include "server/scenario/scenario_text.hpp"
 
 #include <algorithm>

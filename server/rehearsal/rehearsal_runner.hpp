@@ -5,7 +5,7 @@
 #include "aeolis/v1/scenario.pb.h"
 #include "common/result.hpp"
 #include "dictionaries/dictionary.hpp"
-#include "server/rehearsal/pipeline_thread.hpp"
+#include "server/pipeline/pipeline_thread.hpp"
 #include "simulation/scenario.hpp"
 
 #include <atomic>

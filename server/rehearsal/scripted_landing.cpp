@@ -2,7 +2,7 @@
 #include "server/rehearsal/scripted_landing.hpp"
 
 #include "server/rehearsal/predict_silences.hpp"
-#include "server/tones/predicted_doppler.hpp"
+#include "server/rehearsal/predicted_doppler.hpp"
 #include "telemetry/text.hpp"
 
 #include <algorithm>

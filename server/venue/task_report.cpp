@@ -3,7 +3,7 @@
 
 #include "common/time.hpp"
 #include "flight/kernel/deadlines.hpp"
-#include "server/api/json_object.hpp"
+#include "server/base/json_object.hpp"
 #include "server/venue/flight_names.hpp"
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 // Octets as a peer may send them for an HTTP request, through the parser with the server's limits, to every route: no
 // file outside the console's folder is given out, nothing takes long, and what is refused is refused in words.
 #include "server/api/api.hpp"
-#include "server/api/json.hpp"
+#include "server/base/json.hpp"
 #include "server/net/web_server.hpp"
 #include "tests/fuzz/recorded_run.hpp"
 
@@ -85,7 +85,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     spdlog::set_level(spdlog::level::off);
     http::request_parser<http::string_body> parser;
     parser.eager(true);
-    parser.body_limit(WebServer::body_octets_max);
+    parser.body_limit(HttpRequest::body_octets_max);
     parser.header_limit(WebServer::header_octets_max);
     boost::system::error_code error;
     parser.put(boost::asio::buffer(data, size), error);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The parameters of a question to a recorded run, as anyone may write them behind '?'. The first octet chooses the
 // question and the run. What cannot be answered is refused in words; each answer is of the type that it says.
-#include "server/api/json.hpp"
 #include "server/api/query_text.hpp"
 #include "server/api/run_questions.hpp"
+#include "server/base/json.hpp"
 #include "tests/fuzz/recorded_run.hpp"
 
 #include <array>

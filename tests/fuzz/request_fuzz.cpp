@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // JSON as a client may send it: a CommandRequest to a landing's command path, a StartRehearsal up to its first cycles.
 // The first octet chooses. It is refused in words, or it can be done.
-#include "server/api/json.hpp"
+#include "server/base/json.hpp"
 #include "server/rehearsal/command_messages.hpp"
 #include "server/rehearsal/rehearsal.hpp"
 #include "server/scenario/scenario_library.hpp"

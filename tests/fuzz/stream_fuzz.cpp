@@ -2,8 +2,8 @@
 // What a client of the stream may send, in both subprotocols, while items are published: each batch joins the one
 // before, no event is left out, and the session holds no more than it says. The first octet chooses the subprotocol; a
 // message is preceded by its length in two octets.
-#include "server/api/json.hpp"
-#include "server/net/stream_session.hpp"
+#include "server/api/stream_session.hpp"
+#include "server/base/json.hpp"
 
 #include <cstdlib>
 #include <google/protobuf/stubs/logging.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/api/annotations.hpp"
+#include "server/pipeline/annotations.hpp"
 
 #include "tests/server/small_mission.hpp"
 #include "tests/support/catch.hpp"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "aeolis/v1/stream.pb.h"
 #include "server/access/account_file.hpp"
-#include "server/api/json.hpp"
 #include "server/archive/reader.hpp"
+#include "server/base/json.hpp"
 #include "tests/server/running_server.hpp"
 #include "tests/server/web_client.hpp"
 

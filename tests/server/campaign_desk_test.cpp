@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/campaign/campaign_desk.hpp"
 
-#include "server/api/json.hpp"
+#include "server/base/json.hpp"
 #include "server/campaign/campaign_results.hpp"
 #include "tests/server/running_server.hpp"
 #include "tests/server/web_client.hpp"

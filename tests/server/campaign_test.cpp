@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/campaign/campaign.hpp"
 
-#include "server/api/json.hpp"
+#include "server/base/json.hpp"
 #include "server/campaign/campaign_plots.hpp"
 #include "server/campaign/campaign_report.hpp"
 #include "server/campaign/case_flights.hpp"

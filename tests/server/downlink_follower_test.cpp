@@ -3,7 +3,7 @@
 #include "common/proximity_frame.hpp"
 #include "dictionaries/xtce/packet_model.hpp"
 #include "server/access/this_user.hpp"
-#include "server/downlink/downlink_follower.hpp"
+#include "server/links/downlink_follower.hpp"
 #include "server/net/console_backend.hpp"
 #include "telemetry/other_mission.hpp"
 #include "tests/server/audited.hpp"

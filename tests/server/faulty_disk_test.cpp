@@ -10,7 +10,7 @@
 #include "tests/server/small_mission.hpp"
 #include "tests/server/web_client.hpp"
 
-#include "server/api/json.hpp"
+#include "server/base/json.hpp"
 
 #include <fstream>
 #include <future>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "aeolis/v1/run.pb.h"
 #include "server/access/this_user.hpp"
-#include "server/api/json.hpp"
 #include "server/archive/items.hpp"
+#include "server/base/json.hpp"
 #include "tests/server/archive/faulty_disk.hpp"
 #include "tests/server/audited.hpp"
 #include "tests/server/running_server.hpp"

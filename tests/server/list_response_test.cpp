@@ -2,7 +2,7 @@
 #include "server/api/list_response.hpp"
 
 #include "aeolis/v1/run.pb.h"
-#include "server/api/json.hpp"
+#include "server/base/json.hpp"
 #include "tests/support/catch.hpp"
 
 namespace server_list_response_test {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/cli/log_line.hpp"
+#include "server/base/log_line.hpp"
 
 #include "tests/support/catch.hpp"
 

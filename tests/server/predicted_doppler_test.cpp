@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/tones/predicted_doppler.hpp"
+#include "server/rehearsal/predicted_doppler.hpp"
 
 #include "server/tones/flown_signal.hpp"
 #include "tests/server/running_server.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/rehearsal/refusal_budget.hpp"
+#include "server/pipeline/refusal_budget.hpp"
 
 #include "tests/support/catch.hpp"
 

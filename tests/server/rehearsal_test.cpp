@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/api/json.hpp"
+#include "server/base/json.hpp"
 #include "server/rehearsal/digest.hpp"
 #include "server/rehearsal/landing_report.hpp"
 #include "telemetry/packet_stream.hpp"

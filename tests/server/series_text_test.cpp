@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/api/series_text.hpp"
 
-#include "server/api/json.hpp"
+#include "server/base/json.hpp"
 #include "tests/support/catch.hpp"
 
 #include <google/protobuf/util/message_differencer.h>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/net/stream_session.hpp"
+#include "server/api/stream_session.hpp"
 
-#include "server/api/json.hpp"
 #include "server/api/query_threads.hpp"
+#include "server/base/json.hpp"
 #include "tests/server/archive/faulty_disk.hpp"
 #include "tests/server/small_mission.hpp"
 #include "tests/support/catch.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/api/json.hpp"
+#include "server/base/json.hpp"
 #include "tests/server/running_server.hpp"
 #include "tests/server/web_client.hpp"
 

@@ -2,7 +2,7 @@
 #include "server/venue/task_report.hpp"
 
 #include "flight/kernel/deadlines.hpp"
-#include "server/api/json.hpp"
+#include "server/base/json.hpp"
 #include "server/rehearsal/landing_report.hpp"
 #include "telemetry/packet_stream.hpp"
 #include "tests/server/running_server.hpp"

@@ -135,12 +135,87 @@ const std::vector<std::string>& simulator_folders() {
     return names;
 }
 
+/// The layers of server/, lowest first, each with those right below it. A layer reaches these, what they reach, and
+/// nothing else; the order is that of docs/architecture.md and of server/CMakeLists.txt.
+const std::vector<std::pair<std::string, std::vector<std::string>>>& layers() {
+    static const std::vector<std::pair<std::string, std::vector<std::string>>> order{
+        {"base", {}},
+        {"access", {"base"}},
+        {"archive", {"base"}},
+        {"pipeline", {"archive"}},
+        {"links", {"pipeline"}},
+        {"scenario", {"base"}},
+        {"venue", {"base"}},
+        {"rehearsal", {"pipeline", "scenario", "venue"}},
+        {"campaign", {"rehearsal"}},
+        {"tones", {"rehearsal"}},
+        {"api", {"campaign", "access"}},
+        {"net", {"api", "links"}},
+        {"cli", {"net", "tones"}},
+    };
+    return order;
+}
+
+std::string layer_of(const std::string& file) {
+    if (!file.starts_with("server/")) return "";
+    const auto end = file.find('/', 7);
+    return end == std::string::npos ? "" : file.substr(7, end - 7);
+}
+
+/// Each layer with all that it reaches.
+std::map<std::string, std::set<std::string>> reach() {
+    std::map<std::string, std::set<std::string>> all;
+    for (const auto& [layer, below] : layers()) {
+        std::set<std::string>& reached = all[layer];
+        reached.insert(layer);
+        for (const std::string& one : below) reached.insert(all.at(one).begin(), all.at(one).end());
+    }
+    return all;
+}
+
+using ByFile = std::map<std::string, std::vector<const Include*>>;
+
+ByFile by_file(const std::vector<Include>& includes) {
+    ByFile of_file;
+    for (const Include& include : includes)
+        if (!include.system) of_file[include.file].push_back(&include);
+    return of_file;
+}
+
+/// Chains of includes by which a file of server/ comes to a layer that it may not reach, a line each.
+std::string ways_up(const std::vector<Include>& includes) {
+    const auto allowed_layers = reach();
+    const ByFile of_file = by_file(includes);
+    std::string ways;
+    for (const auto& [file, direct] : of_file) {
+        const std::string layer = layer_of(file);
+        if (layer.empty()) continue;
+        if (!allowed_layers.contains(layer)) {
+            ways += file + ": server/" + layer + " is not among the layers\n";
+            continue;
+        }
+        std::set<std::string> seen{file};
+        std::vector<std::pair<std::string, std::string>> open{{file, file}};  // and the way there
+        while (!open.empty()) {
+            const auto [at, way] = open.back();
+            open.pop_back();
+            const std::string there = layer_of(at);
+            if (!there.empty() && !allowed_layers.at(layer).contains(there)) {
+                ways += way + "\n";
+                break;
+            }
+            if (!of_file.contains(at)) continue;
+            for (const Include* next : of_file.at(at))
+                if (seen.insert(next->target).second) open.emplace_back(next->target, way + " > " + next->target);
+        }
+    }
+    return ways;
+}
+
 /// Chains of includes by which ground code reaches the simulator, a line each. What a folder that may know it includes
 /// in turn is its own affair.
 std::string ways_to_the_simulator(const std::vector<Include>& includes) {
-    std::map<std::string, std::vector<const Include*>> of_file;
-    for (const Include& include : includes)
-        if (!include.system) of_file[include.file].push_back(&include);
+    const ByFile of_file = by_file(includes);
     std::string ways;
     for (const auto& [file, direct] : of_file) {
         if (file.starts_with("simulation/") || starts_with_any(file, simulator_folders())) continue;
@@ -183,6 +258,16 @@ TEST_CASE("ground code reaches no header of the simulator, by whatever it includ
     const auto ways = ways_to_the_simulator(includes);
     CHECK_THAT(ways, Catch::Contains("telemetry/port.hpp > simulation/links/uhf_link.hpp\n"));
     CHECK_THAT(ways, Catch::Contains("telemetry/station/received.hpp > telemetry/port.hpp > simulation/"));
+}
+
+TEST_CASE("a folder of server/ reaches only the layers below it, by whatever it includes", "[structure]") {
+    auto includes = all_includes();
+    CHECK(ways_up(includes) == "");
+    // One that is planted is found, also behind another header.
+    includes.push_back({"server/archive/records.hpp", 1, "server/api/query_text.hpp", false});
+    CHECK_THAT(ways_up(includes),
+               Catch::Contains("server/archive/records.hpp > server/api/query_text.hpp\n") &&
+                   Catch::Contains("server/pipeline/annotations.hpp > server/archive/records.hpp > server/api/"));
 }
 
 TEST_CASE("a folder includes only what stands before it in the house", "[structure]") {

@@ -15,6 +15,8 @@ using Matchers::EndsWith;
 using Matchers::StartsWith;
 using Matchers::VectorContains;
 
+inline constexpr const char* list_names = "--list-tests --verbosity quiet";  ///< the option that prints names alone
+
 inline auto Contains(const std::string& text) {
     return Matchers::ContainsSubstring(text);
 }
@@ -22,4 +24,10 @@ inline auto Contains(const std::string& text) {
 }  // namespace Catch
 #else
 #include <catch2/catch.hpp>
+
+namespace Catch {
+
+inline constexpr const char* list_names = "--list-test-names-only";
+
+}  // namespace Catch
 #endif

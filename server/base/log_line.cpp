@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/cli/log_line.hpp"
+#include "server/base/log_line.hpp"
 
-#include "server/api/json_object.hpp"
+#include "server/base/json_object.hpp"
 
 #include <fmt/format.h>
 #include <iterator>

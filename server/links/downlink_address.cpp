@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/downlink/downlink_address.hpp"
+#include "server/links/downlink_address.hpp"
 
 #include <charconv>
 

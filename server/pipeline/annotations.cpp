@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/api/annotations.hpp"
+#include "server/pipeline/annotations.hpp"
 
-#include "server/rehearsal/wall_clock.hpp"
+#include "server/base/wall_clock.hpp"
 
 #include <algorithm>
 #include <cmath>

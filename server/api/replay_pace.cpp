@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/net/replay_pace.hpp"
+#include "server/api/replay_pace.hpp"
 
 #include <algorithm>
 

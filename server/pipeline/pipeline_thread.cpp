@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/rehearsal/pipeline_thread.hpp"
+#include "server/pipeline/pipeline_thread.hpp"
 
 #include "server/archive/reader.hpp"
 

@@ -5,22 +5,9 @@
 
 #include <algorithm>
 
-namespace structure_checks_test {
+namespace structure_words_in_use_test {
 
 using namespace aeolis::structure;
-
-namespace {
-
-bool some_line(const std::string& file, std::initializer_list<const char*> words) {
-    for (const std::string& line : lines_of(file)) {
-        bool all = !line.starts_with("#");
-        for (const char* word : words) all = all && line.find(word) != std::string::npos;
-        if (all) return true;
-    }
-    return false;
-}
-
-}  // namespace
 
 TEST_CASE("every event and every tone of prime's that the dictionary words is asked for by flight or by a row of the "
           "timeline",
@@ -45,18 +32,4 @@ TEST_CASE("every event and every tone of prime's that the dictionary words is as
     CHECK(unused.empty());
 }
 
-TEST_CASE("static analysis, sanitizers and the memory checker are part of the checks, and reviews are recorded",
-          "[structure][R37]") {
-    CHECK(some_line(".ci/run", {"xargs", "clang-tidy-19"}));
-    CHECK(some_line(".ci/run", {"flight", "status=1"}));
-    CHECK(some_line(".ci/run", {"cppcheck", "--enable"}));
-    CHECK(some_line("test", {"valgrind", "--error-exitcode"}));
-    CHECK(some_line("CMakePresets.json", {"-fsanitize=address,undefined", "-fno-sanitize-recover=all"}));
-    CHECK(some_line("CMakePresets.json", {"-fsanitize=thread"}));
-    CHECK(some_line("test", {"build_target", "dev"}));
-    CHECK(some_line("test", {"build_target", "tsan", "cpp threads tsan '[threads]'"}));
-    CHECK(some_line("test", {"stage", "threads"}));
-    CHECK(files_under("docs/reviews", {".md"}).size() >= 2);  // one beside the README
-}
-
-}  // namespace structure_checks_test
+}  // namespace structure_words_in_use_test

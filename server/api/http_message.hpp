@@ -4,6 +4,7 @@
 #include "common/result.hpp"
 #include "server/access/access.hpp"
 
+#include <cstddef>
 #include <functional>
 #include <optional>
 #include <string>
@@ -11,6 +12,9 @@
 namespace aeolis::server {
 
 struct HttpRequest {
+    /// Ours: a scenario with every field is under 2 KiB; read as JSON in 25 ms.
+    static constexpr std::size_t body_octets_max = 256 << 10;
+
     std::string method;
     std::string path;   ///< decoded, without the query
     std::string query;  ///< as it stands after '?', still percent-encoded

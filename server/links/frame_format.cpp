@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/downlink/frame_format.hpp"
+#include "server/links/frame_format.hpp"
 
 namespace aeolis::server {
 namespace {

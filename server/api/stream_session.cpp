@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/net/stream_session.hpp"
+#include "server/api/stream_session.hpp"
 
-#include "server/api/json.hpp"
-#include "server/version.hpp"
+#include "server/base/json.hpp"
+#include "server/base/version.hpp"
 
 #include <algorithm>
 #include <cmath>

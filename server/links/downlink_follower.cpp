@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/downlink/downlink_follower.hpp"
+#include "server/links/downlink_follower.hpp"
 
-#include "server/rehearsal/wall_clock.hpp"
+#include "server/base/wall_clock.hpp"
 #include "telemetry/station/silence_classifier.hpp"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/downlink/downlink_socket.hpp"
+#include "server/links/downlink_socket.hpp"
 
 #include <algorithm>
 #include <array>

@@ -3,9 +3,9 @@
 
 #include "common/result.hpp"
 #include "server/archive/archive.hpp"
+#include "server/base/bounded_queue.hpp"
 #include "server/pipeline/pipeline.hpp"
-#include "server/rehearsal/bounded_queue.hpp"
-#include "server/rehearsal/refusal_budget.hpp"
+#include "server/pipeline/refusal_budget.hpp"
 
 #include <atomic>
 #include <cstdint>

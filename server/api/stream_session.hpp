@@ -2,8 +2,8 @@
 #pragma once
 
 #include "aeolis/v1/stream.pb.h"
-#include "server/net/replay_pace.hpp"
-#include "server/net/stream_hub.hpp"
+#include "server/api/replay_pace.hpp"
+#include "server/api/stream_hub.hpp"
 
 #include <deque>
 #include <functional>

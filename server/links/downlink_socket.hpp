@@ -2,7 +2,7 @@
 #pragma once
 
 #include "common/result.hpp"
-#include "server/downlink/downlink_address.hpp"
+#include "server/links/downlink_address.hpp"
 
 #include <chrono>
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/tones/predicted_doppler.hpp"
+#include "server/rehearsal/predicted_doppler.hpp"
 
 #include "common/check.hpp"
 #include "simulation/initial_state.hpp"

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "aeolis/v1/run.pb.h"
-#include "server/downlink/downlink_socket.hpp"
-#include "server/downlink/frame_format.hpp"
-#include "server/rehearsal/pipeline_thread.hpp"
+#include "server/links/downlink_socket.hpp"
+#include "server/links/frame_format.hpp"
+#include "server/pipeline/pipeline_thread.hpp"
 
 #include <chrono>
 #include <functional>
