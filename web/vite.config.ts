@@ -5,19 +5,35 @@ import { defineConfig } from 'vitest/config';
 // `npm run dev` shows the page from its sources; the server behind it is `aeolis serve`, at AEOLIS_SERVER.
 const server = process.env.AEOLIS_SERVER ?? 'http://127.0.0.1:8080';
 
-/** The page's first line imports the rest of its script: the document asks for all of it at once. */
+type Output =
+  | { type: 'asset' }
+  | { type: 'chunk'; fileName: string; isEntry: boolean; name: string; imports: string[] };
+
+/** The script that `first.ts` imports, and what that imports itself. */
+function firstLoad(outputs: Output[]): string[] {
+  const chunks = outputs.filter((output) => output.type === 'chunk');
+  const found = new Set<string>();
+  const add = (fileName: string) => {
+    const chunk = chunks.find((each) => each.fileName === fileName);
+    if (!chunk || found.has(fileName)) return;
+    found.add(fileName);
+    for (const each of chunk.imports) add(each);
+  };
+  for (const chunk of chunks) if (chunk.name === 'main') add(chunk.fileName);
+  return chunks.filter(({ fileName, isEntry }) => found.has(fileName) && !isEntry).map(({ fileName }) => fileName);
+}
+
+/** The page's first line imports the rest of its script: the document asks for both at once. Panels that are loaded when opened stay out. */
 const preloadScript: Plugin = {
   name: 'preload-script',
   transformIndexHtml: {
     order: 'post',
     handler: (_html, { bundle = {} }) =>
-      Object.values(bundle)
-        .filter((chunk) => chunk.type === 'chunk' && !chunk.isEntry)
-        .map(({ fileName }) => ({
-          tag: 'link',
-          attrs: { rel: 'modulepreload', crossorigin: true, href: `./${fileName}` },
-          injectTo: 'head' as const,
-        })),
+      firstLoad(Object.values(bundle)).map((fileName) => ({
+        tag: 'link',
+        attrs: { rel: 'modulepreload', crossorigin: true, href: `./${fileName}` },
+        injectTo: 'head' as const,
+      })),
   },
 };
 

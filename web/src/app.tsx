@@ -3,14 +3,12 @@
 import { access } from './access/model';
 import { ExpiredBar, LogIn } from './access/view';
 import { Alarms } from './alarms/view';
-import { Campaigns } from './campaigns/view';
 import { Channels } from './channels/view';
 import { Header } from './clocks/view';
 import { step } from './commands/line';
 import { Commands } from './commands/view';
 import { Descent } from './descent/view';
 import { Events } from './events/view';
-import { Flown } from './flown/view';
 import { guideNow } from './guide/model';
 import { Guide } from './guide/view';
 import { Links } from './links/view';
@@ -18,6 +16,7 @@ import { PastBar, Tape } from './mode/view';
 import { Notes } from './notes/view';
 import { Packets } from './packets/view';
 import { Panel } from './design/panel';
+import { openedLater } from './design/opened_later';
 import { Phases } from './phases/view';
 import { Plots } from './plots/view';
 import { Recorded } from './recorded/view';
@@ -29,22 +28,20 @@ import { TABS, helpShown, ignoreHeldEnter, tab } from './shortcuts/model';
 import { Help } from './shortcuts/view';
 import { Timeline } from './timeline/view';
 import { Tones } from './tones/view';
-import { Users } from './users/view';
-import { Verdicts } from './verdicts/view';
 import { WaitingFor } from './waiting/view';
 
 const DATA = {
   channels: Channels,
   alarms: Alarms,
   notes: Notes,
-  users: Users,
+  users: openedLater(async () => (await import('./users/view')).Users),
   packets: Packets,
-  verdicts: Verdicts,
+  verdicts: openedLater(async () => (await import('./verdicts/view')).Verdicts),
   links: Links,
-  flown: Flown,
+  flown: openedLater(async () => (await import('./flown/view')).Flown),
   recorded: Recorded,
   rehearsal: Rehearsal,
-  campaigns: Campaigns,
+  campaigns: openedLater(async () => (await import('./campaigns/view')).Campaigns),
 };
 
 function Data() {

@@ -2,8 +2,8 @@
 import { create, toBinary } from '@bufbuild/protobuf';
 import type { MessageInitShape } from '@bufbuild/protobuf';
 import { afterEach, beforeEach, expect, it, vi } from 'vitest';
-import { RunStateSchema } from '../gen/worker/aeolis/v1/run_pb';
-import { ServerMessageSchema } from '../gen/worker/aeolis/v1/stream_pb';
+import { RunStateSchema } from '../gen/aeolis/v1/run_pb';
+import { ServerMessageSchema } from '../gen/aeolis/v1/stream_pb';
 import type { FromWorker, ToWorker } from './messages';
 
 const said: FromWorker[] = [];

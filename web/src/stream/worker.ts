@@ -15,10 +15,10 @@ import {
   RecordingSummarySchema,
   ScenarioListSchema,
   TimepointListSchema,
-} from '../gen/worker/aeolis/v1/run_pb';
-import { ClientMessageSchema, ServerMessageSchema } from '../gen/worker/aeolis/v1/stream_pb';
-import type { Batch, RehearsalControlSchema, ServerMessage } from '../gen/worker/aeolis/v1/stream_pb';
-import type { RunState } from '../gen/worker/aeolis/v1/run_pb';
+} from '../gen/aeolis/v1/run_pb';
+import { ClientMessageSchema, ServerMessageSchema } from '../gen/aeolis/v1/stream_pb';
+import type { Batch, RehearsalControlSchema, ServerMessage } from '../gen/aeolis/v1/stream_pb';
+import type { RunState } from '../gen/aeolis/v1/run_pb';
 import { Pace } from '../run/pace';
 import { isSameRun } from '../run/same';
 import { ColumnCollector } from './columns';
