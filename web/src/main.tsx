@@ -10,7 +10,7 @@ import { dictionary } from './run/shown';
 import { onKey } from './shortcuts/model';
 import './style.css';
 
-const EMPTY_MS = 150; // ours: with no answer by then the page is shown without any, and says so
+const EMPTY_MS = 150; // chosen: without an answer by then, the page is shown empty and says so
 
 void begin(); // before all else: while the server answers there is time for it
 document.documentElement.dataset.theme = localStorage.getItem('aeolis-theme') === 'light' ? 'light' : 'dark';

@@ -3,7 +3,7 @@
 import { effect, signal } from '@preact/signals';
 import { Refused, call, turnedAway, wordsFor } from '../run/api';
 
-export interface Session {
+interface Session {
   accounts: boolean;
   user: string;
   role: string;
@@ -16,7 +16,7 @@ export interface Session {
  * "asking": not known yet; "open": no accounts; "in": logged in; "out": a log-in is needed, "expired" when there was one before.
  * "choose": a password of their own is to be chosen first. "none": a server that knows of no sessions.
  */
-export type Access =
+type Access =
   | { state: 'asking' | 'none' | 'open' }
   | { state: 'out'; expired: boolean; user: string }
   | { state: 'choose'; user: string }

@@ -25,7 +25,7 @@ export interface AlarmState {
   note?: string;
   reason?: string; // of staleness and links
 }
-export type Action = 'acknowledge' | 'shelve' | 'unshelve' | 'reset';
+type Action = 'acknowledge' | 'shelve' | 'unshelve' | 'reset';
 
 const ORDER = ['unacknowledged', 'latched', 'returned', 'acknowledged', 'shelved', 'normal'];
 

@@ -16,7 +16,7 @@ export interface CampaignState {
   remaining_s?: number;
   fault: string;
 }
-export interface Spread {
+interface Spread {
   count: number;
   min: number;
   p1: number;
@@ -26,7 +26,7 @@ export interface Spread {
   mean: number;
   sigma: number;
 }
-export interface Ellipse {
+interface Ellipse {
   east_m: number;
   north_m: number;
   major_m: number; // full axes
@@ -218,7 +218,7 @@ const SPREADS = [
   ['propellant left', 'kg', 'propellant_kg', 1, 1],
 ] as const;
 
-export interface SpreadRow {
+interface SpreadRow {
   name: string;
   unit: string;
   numbers: string[]; // least, 1 %, 50 %, 99 %, largest, mean, sigma

@@ -11,9 +11,9 @@ import type { RunStore } from '../run/store';
 import { duration } from '../run/time';
 import { whoseAt } from '../run/whose';
 
-export type ChannelLook = Extract<Status, 'good' | 'caution' | 'alarm' | 'stale' | 'unasked' | 'never'>;
+type ChannelLook = Extract<Status, 'good' | 'caution' | 'alarm' | 'stale' | 'unasked' | 'never'>;
 
-export interface ChannelRow {
+interface ChannelRow {
   id: number;
   name: string;
   alias: string;

@@ -7,7 +7,7 @@ import { MODES, isReal, modeOf } from '../mode/model';
 import type { RunStore } from '../run/store';
 import type { StreamState } from '../stream/messages';
 
-export interface Clock {
+interface Clock {
   label: string;
   value: string;
   id: string;
@@ -33,7 +33,7 @@ export function clocksOf(store: RunStore, past: number | undefined): { entry: st
 }
 
 /** Until when a command must leave Earth, by the clock on top, to come before the next timepoint of the plan that one can still reach; undefined `next`: none can. */
-export interface LatestSend {
+interface LatestSend {
   next: { name: string; at: string; left_s: number } | undefined;
 }
 
@@ -120,7 +120,7 @@ export function streamLine(state: StreamState, attempt: number, gaps: number): L
   };
 }
 
-export interface Badge {
+interface Badge {
   title: string;
   detail: string;
 }

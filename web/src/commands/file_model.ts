@@ -4,7 +4,7 @@ import type { Dictionary } from '../run/dictionary';
 import { isHazardous } from './model';
 
 /** As the file has it: its own words for arguments, hold, release_at and the rest go to the server as they are. */
-export interface FileCommand {
+interface FileCommand {
   command: string;
   [field: string]: unknown;
 }

@@ -12,7 +12,7 @@ import type { CommandIntent } from '../stream/messages';
 /** "type": choosing; "review": all is shown, nothing is sent; "armed": a hazardous one waits for its name. */
 export type Step = 'type' | 'review' | 'armed' | 'sending';
 
-export interface Typed {
+interface Typed {
   words: string[];
   given: Map<string, string>;
 }
@@ -83,7 +83,7 @@ export function isHazardous(command: DictionaryCommand): boolean {
   return command.significance === 'critical' || command.significance === 'severe';
 }
 
-export interface Field {
+interface Field {
   argument: DictionaryArgument;
   text: string; // what is typed, '' when nothing is
   value: number | undefined;
@@ -235,7 +235,7 @@ export function readReleaseAt(text: string, store: RunStore | undefined): string
   return Number.isFinite(ert) ? dayOfYear(ert) : undefined;
 }
 
-export interface Arrival {
+interface Arrival {
   arrives_e_s: number;
   /** What it is to come before, when it must leave at the latest for that, and how long before that it does: negative, it comes too late. */
   before: { name: string; leave_ert: string; slack_s: number } | undefined;
@@ -324,7 +324,7 @@ export function waitingCommands(
     .sort((a, b) => a.row.command - b.row.command);
 }
 
-export interface ReadBackLine {
+interface ReadBackLine {
   name: string;
   sent: string;
   held: number | undefined; // NaN: undefined on board

@@ -3,7 +3,7 @@
 import type { Series } from '../run/series';
 import type { CorridorPoint } from './corridor';
 
-export interface Point {
+interface Point {
   sclk: number;
   speed: number;
   altitude: number;
@@ -68,7 +68,7 @@ export function placeIn(corridor: readonly CorridorPoint[], altitude_m: number, 
 }
 
 export type Box = readonly [left: number, top: number, right: number, bottom: number];
-export type Pixel = readonly [x: number, y: number];
+type Pixel = readonly [x: number, y: number];
 const STEP_PX = 4; // ours: words that keep clear of a point each so many pixels keep clear of the line
 
 /** Of the way that is drawn a point each few pixels. */

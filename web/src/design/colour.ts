@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Colours as eyes see them: contrast, and how far two are apart for each kind of colour vision.
 
-export type Rgb = readonly [number, number, number]; // linear, 0 … 1
+type Rgb = readonly [number, number, number]; // linear, 0 … 1
 
 /** Linear light of "#rrggbb" [wcag-2.2]. */
 export function linear(hex: string): Rgb {

@@ -3,7 +3,7 @@
 import { SOURCES, STATUS } from '../design/status';
 import type { RunStore } from '../run/store';
 
-export interface EventLine {
+interface EventLine {
   key: string;
   seq: number;
   e_s: number;
@@ -39,7 +39,7 @@ const SHAPES: Record<string, string> = {
 export const levelShape = (level: string) => SHAPES[level] ?? STATUS.unknown.shape;
 export const levelWords = (level: string) => level.replace('_HI', ', high').replace('_LO', ', low').toLowerCase();
 
-export interface EventFilter {
+interface EventFilter {
   from: (typeof LEVELS)[number];
   search: string;
   range: { from: number; to: number } | undefined;

@@ -3,7 +3,7 @@
 import type { AsFlownEvent, AsFlownReport, AsFlownTimepoint } from '../gen/aeolis/v1/run_pb';
 import { fromEntry } from '../run/time';
 
-export interface FlownRow {
+interface FlownRow {
   name: string;
   planned: string;
   predicted: string;

@@ -28,7 +28,7 @@ export interface Press {
   type?: string;
   words: string;
 }
-export interface GuideStep {
+interface GuideStep {
   number: number;
   title: string;
   why: string;

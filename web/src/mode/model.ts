@@ -6,7 +6,7 @@ import { fromEntry } from '../run/time';
 
 export type Mode = 'none' | 'live' | 'rehearsal' | 'ended' | 'range' | 'replay';
 
-export interface ModeWords {
+interface ModeWords {
   badge: string; // in the header
   mark: string; // in each panel
   shape: string;

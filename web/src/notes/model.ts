@@ -7,7 +7,7 @@ import { change, read } from '../run/connection';
 import { store } from '../run/shown';
 import type { RunStore } from '../run/store';
 
-export interface NoteRow {
+interface NoteRow {
   seq: number;
   text: string;
   by: string;

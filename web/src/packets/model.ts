@@ -6,7 +6,7 @@ import type { Known, RunStore, UnitTotals } from '../run/store';
 import { secondsOfDayOfYear } from '../run/time';
 import { SOURCE_RECORDED } from '../stream/columns';
 
-export interface Totals {
+interface Totals {
   units: number;
   octets: number;
   duplicates: number;
@@ -15,11 +15,11 @@ export interface Rate {
   units_per_s: number;
   octets_per_s: number;
 }
-export interface LinkRow extends Totals {
+interface LinkRow extends Totals {
   link: string;
   rate: Rate | undefined;
 }
-export interface PacketStream extends Totals {
+interface PacketStream extends Totals {
   apid: number;
   name: string;
   rate: Rate | undefined;
@@ -104,7 +104,7 @@ export function pageWords(page: number, size: number, listed: number, more: bool
   return `units ${first + 1} to ${first + listed} of ${more ? `more than ${first + listed}` : first + listed}, oldest first`;
 }
 
-export interface HexLine {
+interface HexLine {
   at: string;
   first: number; // octet
   octets: string[];

@@ -7,7 +7,7 @@ import type { RunStore } from '../run/store';
 import { heardOf } from '../timeline/heard';
 import type { Prediction } from '../timeline/predict';
 
-export interface PhaseStep {
+interface PhaseStep {
   title: string;
   state: 'done' | 'now' | 'ahead';
   detail: string; // the vehicle's own word for where it is in the phase

@@ -34,7 +34,7 @@ export interface Fact {
   text: string;
   e_s?: number; // on Earth: of what was heard then
 }
-export interface Term {
+interface Term {
   name: string;
   most: number;
   share: number; // 0 … 1
@@ -116,7 +116,7 @@ export function raisedAlarms({ alarms, report, e_sOf, channelName }: Recorded): 
   return raised;
 }
 
-export interface CommandOutcome {
+interface CommandOutcome {
   name: string;
   number: number;
   e_s: number;

@@ -8,7 +8,7 @@ import type { RunStore } from '../run/store';
 
 const REPLAY_PACES = [1, 2, 5, 10, 20, 50] as const;
 
-export interface Bounds {
+interface Bounds {
   from: number;
   to: number;
 }

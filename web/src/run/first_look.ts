@@ -37,7 +37,7 @@ export async function firstLook(
   }
 }
 
-export interface FirstAnswers {
+interface FirstAnswers {
   runs: Promise<RunState[]>;
   look: Promise<FirstLook | undefined>;
 }

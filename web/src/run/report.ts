@@ -7,7 +7,7 @@ import type { Question } from '../stream/messages';
 import { ask } from './connection';
 import { store } from './shown';
 
-export interface ReportOfRun<T> {
+interface ReportOfRun<T> {
   /** In a view: the newest of the run that is shown; undefined until it has come. */
   use(): T | undefined;
   problem: Signal<string | undefined>;

@@ -50,7 +50,7 @@ export function runNow(): RunStore | undefined {
   return shownRun();
 }
 
-export interface Notice {
+interface Notice {
   id: number;
   text: string;
 }

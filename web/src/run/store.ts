@@ -31,7 +31,7 @@ export interface Known<T> {
   fact: T;
 }
 /** `ert`: when it was known on Earth, day of year. */
-export interface ToneRow extends Known<Tone> {
+interface ToneRow extends Known<Tone> {
   ert: string;
 }
 /** What the recording brings again. `heard_s`: when it came live, seconds since 1970; NaN: it did not. */
@@ -40,9 +40,9 @@ interface Twin {
   recorded: boolean;
   heard_s: number;
 }
-export interface EventRow extends Known<Event>, Twin {}
-export interface ExplanationRow extends Known<Explanation>, Twin {}
-export interface FiringPair {
+interface EventRow extends Known<Event>, Twin {}
+interface ExplanationRow extends Known<Explanation>, Twin {}
+interface FiringPair {
   name: string;
   live?: TimepointFiring;
   recorded?: TimepointFiring;

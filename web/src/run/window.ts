@@ -8,7 +8,7 @@ import type { RunStore } from './store';
 export type Choice = 'landing' | 'run' | 'minute' | { from: number; to: number };
 export const choice = signal<Choice>('landing');
 
-export interface Span {
+interface Span {
   from: number;
   to: number;
 }

@@ -75,7 +75,7 @@ function takeBackArmed(): boolean {
   return command || file;
 }
 
-export interface Shortcut {
+interface Shortcut {
   keys: string[];
   shown: string;
   words: string;

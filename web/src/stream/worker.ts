@@ -31,8 +31,8 @@ const POST_SAMPLES_EVERY_MS = 45; // what is drawn does not wait behind what is 
 const PLOTTED_POINTS = 6000; // of a channel that is drawn: a few a pixel, so that one step of zoom still has detail
 const OTHER_POINTS = 400; // of the others: for the table and a first look
 const CHANNELS_A_QUESTION = 64; // the server takes no more
-const SILENT_MS = 5000; // ours: a run that goes on has its clocks told ten times a second
-const LOOKS = 3; // ours: of a silence of fifteen seconds
+const SILENT_MS = 5000; // chosen: a run that goes on sends its clocks ten times a second
+const LOOKS = 3; // chosen: during a silence of fifteen seconds
 const LOOK_EVERY_MS = 1000;
 const MAX_RATE_HZ = 20; // as fast as the page draws; history has the rest
 

@@ -135,7 +135,7 @@ const VERDICTS = {
 } as const;
 
 /** "passed": nothing told of it, and one after it has fired. */
-export type PointState =
+type PointState =
   | (typeof VERDICTS)[keyof typeof VERDICTS]
   | 'passed'
   | 'waiting for reply'
@@ -143,7 +143,7 @@ export type PointState =
   | 'pending'
   | 'undefined';
 
-export interface PointDetail {
+interface PointDetail {
   row: TimepointRow;
   state: PointState;
   /** Of one that has fired: which way it is known, and flight's own word for how it ended. */

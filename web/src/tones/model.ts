@@ -3,7 +3,7 @@ import type { Tone } from '../gen/aeolis/v1/items_pb';
 import type { RunStore } from '../run/store';
 import { fromEntry, secondsOfDayOfYear } from '../run/time';
 
-export interface ToneBar {
+interface ToneBar {
   from_e_s: number;
   to_e_s: number;
   tone: number | undefined; // undefined: an erasure, nothing decoded
@@ -79,7 +79,7 @@ export function bestTones(tone: Tone | undefined): string {
   return (tone?.best ?? []).map((each) => `${each.tone}: ${each.likelihood.toFixed(4)}`).join(' · ');
 }
 
-export interface SpectrumLine {
+interface SpectrumLine {
   tone: number; // and the next one
   level_db: number; // energy over noise
 }

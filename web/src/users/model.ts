@@ -6,19 +6,18 @@ import type { Dictionary } from '../run/dictionary';
 import { dictionary } from '../run/shown';
 
 export const ROLES = ['observer', 'controller', 'director', 'administrator'] as const;
-export type Role = (typeof ROLES)[number];
 
-export interface User {
+interface User {
   user: string;
   role: string;
   commands?: string[]; // only these may be sent; none: all that the role may send
 }
-export interface Token {
+interface Token {
   name: string;
   role: string;
   commands?: string[];
 }
-export interface AuditEntry {
+interface AuditEntry {
   entry: string;
   at: string;
   who: string;

@@ -110,7 +110,7 @@ export interface Octet {
   text: string;
   differs: boolean;
 }
-export interface DiffLine {
+interface DiffLine {
   at: string;
   one: Octet[];
   other: Octet[];

@@ -220,7 +220,7 @@ function statusAgainst(
 }
 
 /** `state`: there is nothing under way, it waits on the ground, or it has left. */
-export interface Missing {
+interface Missing {
   number: number;
   step: FirstStep;
   state: 'unsent' | 'on_ground' | 'sent';
