@@ -6,6 +6,7 @@
 #include "common/result.hpp"
 #include "common/time.hpp"
 #include "dictionaries/telemetry_plan.hpp"
+#include "dictionaries/timeline_rule.hpp"
 
 #include <cstdint>
 #include <filesystem>
@@ -245,18 +246,7 @@ struct OwnerRow {
     unsigned line = 0;  ///< in owners.csv
 };
 
-/// An instant that constraints.csv speaks of.
-struct Moment {
-    enum class Kind {
-        do_edl,     ///< its acceptance: the predecessor of the first timepoint. R16
-        anchor,     ///< NAME:anchor
-        triggered,  ///< NAME:triggered, the action begins
-        fired,      ///< NAME:fired, the reply came or its time-out; the same instant where none is asked for. R14
-    };
-    Kind kind = Kind::do_edl;
-    std::uint16_t index = 0;  ///< in Dictionary::anchors or Dictionary::timeline
-    constexpr bool operator==(const Moment&) const = default;
-};
+using timeline::Moment;  // NAME:anchor, NAME:triggered, NAME:fired, do_edl
 
 /// A row of constraints.csv: minimum_s <= to - from <= maximum_s. R19
 struct ConstraintRow {

@@ -1,97 +1,250 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dictionaries/timeline_plan.hpp"
 
+#include "dictionaries/timeline_rule.hpp"
+
 #include <algorithm>
+#include <cstddef>
 
 namespace aeolis::dictionary {
 
 namespace {
 
-std::optional<double> sum(std::optional<double> a, std::optional<double> b) {
-    if (!a || !b) return {};
-    return *a + *b;
+using Basis = TimelinePrediction::Anchor::Basis;
+using Unknown = TimelinePrediction::Timepoint::Unknown;
+
+constexpr double never_s = std::numeric_limits<double>::infinity();
+
+template <typename Values>
+auto at_or_none(const Values& values, std::size_t index) {
+    return index < values.size() ? values[index] : typename Values::value_type{};
 }
 
-using Times = std::vector<std::optional<double>>;
+MaybeTime time_of(MaybeOffset e_s) {
+    return e_s ? MaybeTime{Sclk{*e_s}} : MaybeTime{};
+}
+MaybeOffset seconds_of(MaybeTime time) {
+    return time.defined() ? MaybeOffset{time.get()->seconds} : MaybeOffset{};
+}
 
-Times anchors_from_entry_s(const Dictionary& dictionary) {
-    Times anchors(dictionary.anchors.size());
-    for (std::size_t i = 0; i < anchors.size(); ++i) {
-        const auto& row = dictionary.anchors[i];
-        if (row.name == "entry")
-            anchors[i] = 0.0;
-        else if (row.parent && row.parent->value < i)  // anchors are in topological order
-            anchors[i] = sum(anchors[row.parent->value], row.offset_s);
+/// One prediction in the making.
+class Predictor {
+  public:
+    Predictor(const Dictionary& dictionary, const TimelineKnowledge& known)
+        : dictionary_(dictionary), known_(known), told_(dictionary.anchors.size()), before_(dictionary.anchors.size()) {
+        prediction_.anchors.resize(dictionary.anchors.size());
+        prediction_.timepoints.resize(dictionary.timeline.size());
     }
-    return anchors;
-}
 
-/// What firings tell of their anchors. A timepoint can be later than its anchor says, never earlier: the earliest tells
-/// it best.
-Times told_anchors(const Dictionary& dictionary, const Times& heard_e_s) {
-    Times told(dictionary.anchors.size());
-    for (std::size_t i = 0; i < heard_e_s.size(); ++i) {
-        const auto& row = dictionary.timeline[i];
-        if (!heard_e_s[i] || !row.anchor || !row.desired_offset_s) continue;
-        auto& anchor = told[row.anchor->value];
-        const double at = *heard_e_s[i] - *row.desired_offset_s;
-        anchor = anchor ? std::min(*anchor, at) : at;
+    TimelinePrediction predict() && {
+        for (std::size_t i = 0; i < dictionary_.timeline.size(); ++i) offsets_.push_back(offsets(i));
+        collect_told();
+        plan_anchors();
+        for (std::size_t i = 0; i < dictionary_.anchors.size(); ++i) predict_anchor(i);
+        predict_timepoints();
+        return std::move(prediction_);
     }
-    return told;
-}
 
-struct Anchors {
-    Times before;  ///< until something was heard of each itself
-    Times now;
+  private:
+    /// What firings tell of an anchor.
+    struct Told {
+        MaybeOffset e_s;                    ///< by the earliest: a timepoint may come later than its anchor says
+        std::optional<TimepointId> firing;  ///< the earliest
+        double at_e_s = never_s;            ///< when that fired
+        double passed_e_s = never_s;        ///< when one fired that comes after all that hang on it
+    };
+
+    std::optional<TimelineKnowledge::Heard> heard(std::size_t timepoint) const {
+        return at_or_none(known_.heard, timepoint);
+    }
+
+    /// As flight has them when the timepoint comes, or had them when it came.
+    timeline::Offsets offsets(std::size_t timepoint) const {
+        const auto& row = dictionary_.timeline[timepoint];
+        auto offsets = timeline::offsets_of(row);
+        const auto fired = heard(timepoint);
+        for (const auto& change : known_.changes) {
+            const auto* of = std::get_if<OffsetChange::OfTimepoint>(&change.what);
+            if (of == nullptr || of->id.value != timepoint || (fired && fired->triggered_e_s <= change.since_e_s))
+                continue;
+            offsets.desired_s = of->desired_s;
+            offsets.minimum_s = of->minimum_s;
+        }
+        return offsets;
+    }
+
+    void collect_told() {
+        for (std::size_t i = 0; i < offsets_.size(); ++i) {
+            const auto& [anchor, desired_s, minimum_s] = offsets_[i];
+            const auto fired = heard(i);
+            if (!fired) continue;
+            for (std::size_t before = 0; before < i; ++before)
+                if (offsets_[before].anchor) {
+                    auto& passed_e_s = told_[offsets_[before].anchor->value].passed_e_s;
+                    passed_e_s = std::min(passed_e_s, fired->triggered_e_s);
+                }
+            if (!anchor || !desired_s) continue;
+            auto& told = told_[anchor->value];
+            told.at_e_s = std::min(told.at_e_s, fired->triggered_e_s);
+            const double e_s = fired->triggered_e_s - *desired_s;
+            if (told.e_s && *told.e_s <= e_s) continue;
+            told.e_s = e_s;
+            told.firing = dictionary_.timeline[i].id;
+        }
+    }
+
+    /// Parents stand before their children.
+    MaybeOffset by_parent(const AnchorRow& row, const std::vector<MaybeOffset>& times, MaybeOffset offset_s) const {
+        if (!row.parent) return {};
+        return seconds_of(timeline::anchor_time(time_of(times[row.parent->value]), offset_s));
+    }
+
+    void plan_anchors() {
+        for (std::size_t i = 0; i < before_.size(); ++i) {
+            const auto& row = dictionary_.anchors[i];
+            before_[i] = row.name == "entry" ? MaybeOffset{0.0} : by_parent(row, before_, row.offset_s);
+        }
+    }
+
+    MaybeOffset now(AnchorId anchor) const { return prediction_.anchors[anchor.value].e_s; }
+
+    /// The last change of an anchor.
+    const OffsetChange* change_of(std::size_t anchor) const {
+        const OffsetChange* last = nullptr;
+        for (const auto& change : known_.changes)
+            if (const auto* of = std::get_if<OffsetChange::OfAnchor>(&change.what); of && of->id.value == anchor)
+                last = &change;
+        return last;
+    }
+
+    void predict_anchor(std::size_t i) {
+        const auto& row = dictionary_.anchors[i];
+        const auto& told = told_[i];
+        const auto design_e_s = at_or_none(known_.design_e_s, i);
+        const bool is_planned = before_[i].has_value();
+        if (!is_planned && design_e_s)
+            before_[i] =
+                last_design_
+                    ? *design_e_s + (*prediction_.anchors[*last_design_].e_s - *known_.design_e_s[*last_design_])
+                    : *design_e_s;
+
+        auto& anchor = prediction_.anchors[i];
+        const auto set = [&](MaybeOffset e_s, Basis basis, bool defined) {
+            anchor.e_s = e_s;
+            anchor.basis = basis;
+            anchor.defined = defined;
+        };
+        const auto parent_e_s = row.parent ? now(*row.parent) : MaybeOffset{};
+        const auto from_parent = [&](MaybeOffset offset_s) {
+            return seconds_of(timeline::anchor_time(time_of(parent_e_s), offset_s));
+        };
+        anchor.offset_s = row.offset_s;
+        const auto* change = change_of(i);
+        const auto changed_s = change ? std::get<OffsetChange::OfAnchor>(change->what).offset_s : MaybeOffset{};
+        if (change != nullptr) anchor.offset_s = changed_s;
+        const auto changed_e_s = from_parent(changed_s);
+        const auto report = at_or_none(known_.reports, i);
+        const bool change_counts = changed_e_s && (told.at_e_s == never_s || change->since_e_s >= told.at_e_s) &&
+                                   (!report || change->since_e_s > report->at_e_s);
+
+        if (!row.parent)
+            set(known_.clock_zero_e_s, Basis::clock, true);
+        else if (change_counts)
+            set(changed_e_s, Basis::command, true);
+        else if (report)
+            set(report->anchor_e_s, Basis::report, true);
+        else if (told.e_s)
+            set(told.e_s, Basis::firing, true), anchor.firing = told.firing;
+        else if (row.offset_s && parent_e_s)
+            set(from_parent(row.offset_s), Basis::parent, prediction_.anchors[row.parent->value].defined);
+        else if (is_planned)
+            set(before_[i], Basis::plan, false);
+        else if (before_[i])
+            predict_by_design(i);
+        if (design_e_s && anchor.e_s && row.parent) last_design_ = i;
+    }
+
+    void predict_by_design(std::size_t i) {
+        auto& anchor = prediction_.anchors[i];
+        const bool overdue = known_.now_e_s && *known_.now_e_s > *before_[i] && told_[i].passed_e_s == never_s;
+        anchor.e_s = overdue ? *known_.now_e_s : std::min(*before_[i], told_[i].passed_e_s);
+        anchor.basis = overdue ? Basis::overdue : Basis::design;
+    }
+
+    void predict_timepoints() {
+        const std::size_t count = offsets_.size();
+        std::vector<double> until_e_s(count + 1, never_s);  // when one fired that comes later in the timeline
+        for (std::size_t i = count; i-- > 0;) {
+            const auto fired = heard(i);
+            until_e_s[i] = fired ? std::min(until_e_s[i + 1], fired->triggered_e_s) : until_e_s[i + 1];
+        }
+        MaybeOffset previous_e_s;
+        std::vector<MaybeOffset> triggered_e_s(count);
+        for (std::size_t i = 0; i < count; ++i) {
+            const auto fired = heard(i);
+            auto& point = prediction_.timepoints[i];
+            const auto fifth_before_e_s = i < timeline::triggered_per_cycle_max
+                                              ? MaybeOffset{}
+                                              : triggered_e_s[i - timeline::triggered_per_cycle_max];
+            point = timepoint(i, previous_e_s, fifth_before_e_s);
+            if (!fired && point.e_s) point.e_s = std::min(*point.e_s, until_e_s[i + 1]);
+            triggered_e_s[i] = fired ? fired->triggered_e_s : point.e_s;
+            previous_e_s = fired ? fired->fired_e_s : point.e_s;
+        }
+    }
+
+    TimelinePrediction::Timepoint timepoint(std::size_t i, MaybeOffset previous_e_s,
+                                            MaybeOffset fifth_before_e_s) const {
+        const auto& offsets = offsets_[i];
+        MaybeOffset anchor_e_s;
+        if (offsets.anchor) anchor_e_s = heard(i) ? before_[offsets.anchor->value] : now(*offsets.anchor);
+        const auto due = timeline::due_times(offsets, time_of(previous_e_s), time_of(anchor_e_s));
+        auto e_s = seconds_of(due.desired);
+        if (!offsets.desired_s || !offsets.minimum_s) return {{}, Unknown::offset};
+        if (!e_s) return {{}, offsets.anchor ? Unknown::anchor : Unknown::previous};
+        const auto not_before = [&](MaybeOffset other_e_s) {
+            if (other_e_s) e_s = std::max(*e_s, *other_e_s);
+        };
+        not_before(seconds_of(due.minimum));
+        not_before(previous_e_s);
+        if (fifth_before_e_s) not_before(*fifth_before_e_s + seconds_per_tick);
+        return {e_s, Unknown::nothing};
+    }
+
+    const Dictionary& dictionary_;
+    const TimelineKnowledge& known_;
+    std::vector<timeline::Offsets> offsets_;  ///< by timepoint
+    std::vector<Told> told_;                  ///< by anchor
+    std::vector<MaybeOffset> before_;         ///< by anchor: until something was heard of it itself
+    std::optional<std::size_t> last_design_;  ///< the last anchor that the design has
+    TimelinePrediction prediction_;
 };
 
-Anchors predicted_anchors(const Dictionary& dictionary, const Times& design_e_s, const Times& told) {
-    Anchors anchors{anchors_from_entry_s(dictionary), Times(dictionary.anchors.size())};
-    std::optional<std::size_t> last;  ///< of those that the design predicts
-    for (std::size_t i = 0; i < anchors.now.size(); ++i) {
-        const auto& row = dictionary.anchors[i];
-        const auto predicted = i < design_e_s.size() ? design_e_s[i] : std::nullopt;
-        if (!anchors.before[i] && predicted)
-            anchors.before[i] = last ? *predicted + (*anchors.now[*last] - *design_e_s[*last])
-                                     : *predicted;  // by its distance to the last
-        const bool from_parent = row.parent && row.parent->value < i && row.offset_s && anchors.now[row.parent->value];
-        anchors.now[i] = told[i]       ? told[i]
-                         : from_parent ? sum(anchors.now[row.parent->value], row.offset_s)
-                                       : anchors.before[i];
-        if (predicted) last = i;
-    }
-    return anchors;
-}
-
-/// The rule of R11 over these anchors; what has been heard of counts from when it fired.
-Times fires_from_entry_s(const Dictionary& dictionary, const Anchors& anchors, const Times& heard_e_s) {
-    Times all(dictionary.timeline.size());
-    std::optional<double> previous;
-    for (std::size_t i = 0; i < all.size(); ++i) {
-        const auto& row = dictionary.timeline[i];
-        const auto heard = i < heard_e_s.size() ? heard_e_s[i] : std::nullopt;
-        const auto& anchor_times = heard ? anchors.before : anchors.now;
-        auto fires = sum(row.anchor ? anchor_times[row.anchor->value] : previous, row.desired_offset_s);
-        if (const auto earliest = sum(previous, row.minimum_offset_s); fires && earliest)
-            fires = std::max(*fires, *earliest);
-        all[i] = fires;
-        previous = heard ? heard : fires;
-    }
-    return all;
+std::vector<MaybeOffset> times_of(const TimelinePrediction& prediction) {
+    std::vector<MaybeOffset> times;
+    times.reserve(prediction.timepoints.size());
+    for (const auto& timepoint : prediction.timepoints) times.push_back(timepoint.e_s);
+    return times;
 }
 
 }  // namespace
 
-std::vector<std::optional<double>> planned_from_entry_s(const Dictionary& dictionary) {
-    const auto planned = anchors_from_entry_s(dictionary);
-    return fires_from_entry_s(dictionary, {planned, planned}, {});
+TimelinePrediction predict(const Dictionary& dictionary, const TimelineKnowledge& known) {
+    return Predictor{dictionary, known}.predict();
 }
 
-std::vector<std::optional<double>> predicted_from_entry_s(const Dictionary& dictionary,
-                                                          const std::vector<std::optional<double>>& design_e_s,
-                                                          const std::vector<std::optional<double>>& heard_e_s) {
-    return fires_from_entry_s(
-        dictionary, predicted_anchors(dictionary, design_e_s, told_anchors(dictionary, heard_e_s)), heard_e_s);
+std::vector<MaybeOffset> planned_from_entry_s(const Dictionary& dictionary) {
+    return times_of(predict(dictionary, {}));
+}
+
+std::vector<MaybeOffset> predicted_from_entry_s(const Dictionary& dictionary,
+                                                const std::vector<MaybeOffset>& design_e_s,
+                                                const std::vector<MaybeOffset>& heard_e_s) {
+    TimelineKnowledge known;
+    known.design_e_s = design_e_s;
+    for (const auto& e_s : heard_e_s)
+        known.heard.push_back(e_s ? std::optional{TimelineKnowledge::Heard{*e_s, *e_s}} : std::nullopt);
+    return times_of(predict(dictionary, known));
 }
 
 }  // namespace aeolis::dictionary

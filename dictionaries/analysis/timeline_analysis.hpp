@@ -9,10 +9,8 @@
 
 // Whether the timeline's explicit constraints imply those of constraints.csv. R19
 //
-// Explicit    As the engine on board decides (R11, R14, R15): a timepoint is triggered as soon as its desired offset
-// has
-//             come, its minimum offset from the previous firing has, and fewer than five were triggered in this cycle;
-//             it fires when its reply comes, at any time until the time-out. Before the first stands "do edl".
+// Explicit    By dictionaries/timeline_rule.hpp, as the engine on board decides: a timepoint is triggered as soon as it
+//             may be, and fires when its reply comes, at any time until the time-out.
 // Free        When "do edl" is accepted, and every anchor whose offset is undefined (ground's entry time, GNC's
 //             triggers), within the given rows of constraints.csv.
 // Left out    Offsets changed by command, but for an undefined offset, which leaves its timepoint free: after its

@@ -7,11 +7,12 @@
 namespace aeolis::dictionary {
 namespace {
 
+using From = timeline::Condition::From;
 using Kind = Moment::Kind;
 using Reason = ChainStep::Reason;
+using timeline::triggered_per_cycle_max;
 
-constexpr std::size_t triggered_per_cycle_max = 5;  // R15
-constexpr std::size_t search_nodes_max = 20'000;    // ours: a hundred times what the landing's hardest row takes
+constexpr std::size_t search_nodes_max = 20'000;  // ours: a hundred times what the landing's hardest row takes
 
 std::int64_t ticks_of(double seconds) {
     return Sclk{seconds}.ticks();
@@ -84,23 +85,23 @@ void TimelineNetwork::add_timepoint(std::size_t index) {
     // Of what is counted from the previous firing only the largest matters; the order of the timeline counts as nil.
     std::int64_t after_previous = 0;
     Reason why = Reason::order;
-    if (row.minimum_offset_s && ticks_of(*row.minimum_offset_s) > after_previous) {
-        after_previous = ticks_of(*row.minimum_offset_s);
-        why = Reason::minimum;
-    }
-    if (!row.anchor && row.desired_offset_s && ticks_of(*row.desired_offset_s) > after_previous) {
-        after_previous = ticks_of(*row.desired_offset_s);
-        why = Reason::desired;
+    const auto [desired, minimum] = timeline::conditions_of(timeline::offsets_of(row));
+    for (const auto& [condition, reason] : {std::pair{minimum, Reason::minimum}, std::pair{desired, Reason::desired}}) {
+        if (condition.from != From::previous_firing || !condition.offset_s) continue;
+        if (ticks_of(*condition.offset_s) <= after_previous) continue;
+        after_previous = ticks_of(*condition.offset_s);
+        why = reason;
     }
     cause(previous, after_previous, why);
-    if (row.anchor && row.desired_offset_s)
-        cause(at(Kind::anchor, row.anchor->value), ticks_of(*row.desired_offset_s), Reason::desired);
+    if (desired.from == From::anchor && desired.offset_s)
+        cause(at(Kind::anchor, row.anchor->value), ticks_of(*desired.offset_s), Reason::desired);
     if (index >= triggered_per_cycle_max)
         cause(at(Kind::triggered, index - triggered_per_cycle_max), 1, Reason::cycle_limit);
-    if (!row.desired_offset_s || !row.minimum_offset_s) causes_[index].clear();  // a command may define it at any time
+    if (!desired.offset_s || !minimum.offset_s) causes_[index].clear();  // a command may define it at any time
 
     add(triggered, fired, 0, Reason::reply, row.line);
-    add(fired, triggered, row.reply_timeout_s ? -ticks_of(*row.reply_timeout_s) : 0, Reason::reply_timeout, row.line);
+    add(fired, triggered, -timeline::latest_firing(Sclk{}, row.reply_timeout_s).ticks(), Reason::reply_timeout,
+        row.line);
 }
 
 void TimelineNetwork::add_given() {

@@ -15,10 +15,10 @@ packet::Explanation explanation(std::uint16_t number, const ConstraintSpec& row,
         e.value_1 = elapsed_s;
         e.comparison_1 = Comparison::ge;
         e.bound_1 = *row.minimum_s;
-        e.holds_1 = elapsed_s >= *row.minimum_s;
+        e.holds_1 = !timeline::bounds_of(row).too_soon(elapsed_s);
     }
     if (!row.maximum_s) return e;
-    const bool holds = elapsed_s <= *row.maximum_s;
+    const bool holds = !timeline::bounds_of(row).too_late(elapsed_s);
     if (++e.condition_count == 1) {
         e.condition_1 = Quantity::elapsed_s;
         e.value_1 = elapsed_s;
@@ -69,9 +69,8 @@ void ConstraintMonitor::judge(std::size_t row) {
     if (!from || !to) return;
     judged_[row] = true;
     const double elapsed_s = *to - *from;
-    const bool too_soon = spec.minimum_s && elapsed_s < *spec.minimum_s;
-    const bool too_late = spec.maximum_s && elapsed_s > *spec.maximum_s;
-    if (!too_soon && !too_late) return;
+    const auto bounds = timeline::bounds_of(spec);
+    if (!bounds.too_soon(elapsed_s) && !bounds.too_late(elapsed_s)) return;
     ++violations_;
     (void)waiting_.try_push({static_cast<std::uint16_t>(row), elapsed_s});
 }
@@ -81,7 +80,7 @@ void ConstraintMonitor::report(Outbox& out) {
         const auto [number, elapsed_s] = waiting_.front();
         waiting_.pop();
         const ConstraintSpec& row = rows_[number];
-        const bool too_soon = row.minimum_s && elapsed_s < *row.minimum_s;
+        const bool too_soon = timeline::bounds_of(row).too_soon(elapsed_s);
         out.event(evr::SUB_CONSTRAINT_VIOLATED{.constraint = number,
                                                .elapsed_s = elapsed_s,
                                                .bound_s = too_soon ? *row.minimum_s : *row.maximum_s,

@@ -11,23 +11,7 @@
 
 namespace aeolis::flight {
 
-/// An instant that constraints.csv speaks of.
-struct Moment {
-    enum class Kind : std::uint8_t {
-        do_edl,     ///< its acceptance
-        anchor,     ///< the time that the anchor stands for; it may lie ahead
-        triggered,  ///< the timepoint's action begins
-        fired,      ///< its reply came, or its time-out; the same instant where none is asked for. R14
-    };
-    Kind kind = Kind::do_edl;
-    std::uint16_t index = 0;  ///< of the anchor or timepoint
-    constexpr bool operator==(const Moment&) const = default;
-
-    static constexpr Moment of_do_edl() { return {}; }
-    static constexpr Moment of_anchor(AnchorId id) { return {Kind::anchor, id.value}; }
-    static constexpr Moment of_triggered(TimepointId id) { return {Kind::triggered, id.value}; }
-    static constexpr Moment of_fired(TimepointId id) { return {Kind::fired, id.value}; }
-};
+using timeline::Moment;
 
 /// A row of constraints.csv, as the autocoder writes it: minimum_s <= to - from <= maximum_s; undefined: no bound.
 struct ConstraintSpec {

@@ -24,7 +24,8 @@ void Timeline::begin(Sclk do_edl_accepted) {
 void Timeline::compute_anchors() {
     for (std::size_t i = 0; i < anchors_.size(); ++i) {
         const auto& parent = anchors_[i].parent;
-        anchor_times_[i] = parent ? anchor_times_[parent->value] + anchor_offset_s_[i] : MaybeTime{Sclk{0.0}};
+        anchor_times_[i] =
+            parent ? timeline::anchor_time(anchor_times_[parent->value], anchor_offset_s_[i]) : MaybeTime{Sclk{0.0}};
     }
 }
 
@@ -33,12 +34,12 @@ void Timeline::pass(Sclk now, ActionContext& context, Firings& firings) {
     if (!begun_) return;
     while (!finished()) {
         if (waiting_) {
-            const bool timed_out = now >= triggered_ + *rows_[current_].reply_timeout_s;
+            const bool timed_out = now >= timeline::latest_firing(triggered_, rows_[current_].reply_timeout_s);
             if (!replied_ && !timed_out) return;
             complete(now, replied_ ? FiringVerdict::replied : FiringVerdict::timed_out, firings);
             continue;
         }
-        if (fired_in_cycle_ == firings_per_cycle_max || !current_may_fire(now)) return;
+        if (fired_in_cycle_ == timeline::triggered_per_cycle_max || !current_due().have_come(now)) return;
         const auto& row = rows_[current_];
 
         ++fired_in_cycle_;
@@ -60,13 +61,18 @@ void Timeline::pass(Sclk now, ActionContext& context, Firings& firings) {
     }
 }
 
-bool Timeline::current_may_fire(Sclk now) const {
-    return may_fire(desired_base(current_), desired_offset_s_[current_], previous_fired_, minimum_offset_s_[current_],
-                    now);
+timeline::Offsets Timeline::offsets(std::size_t row) const {
+    return {rows_[row].anchor, desired_offset_s_[row], minimum_offset_s_[row]};
+}
+
+timeline::DueTimes Timeline::current_due() const {
+    const auto& anchor = rows_[current_].anchor;
+    return timeline::due_times(offsets(current_), previous_fired_, anchor ? anchor_times_[anchor->value] : MaybeTime{});
 }
 
 bool Timeline::limited(Sclk now) const {
-    return fired_in_cycle_ == firings_per_cycle_max && !finished() && !waiting_ && current_may_fire(now);
+    return fired_in_cycle_ == timeline::triggered_per_cycle_max && !finished() && !waiting_ &&
+           current_due().have_come(now);
 }
 
 void Timeline::complete(Sclk now, FiringVerdict verdict, Firings& firings) {
@@ -100,21 +106,17 @@ void Timeline::set_anchor_now(AnchorId id, Sclk now) {
     anchor_offset_s_[id.value] = now - *parent;
 }
 
-MaybeTime Timeline::desired_base(std::size_t row) const {
-    return rows_[row].anchor ? anchor_times_[rows_[row].anchor->value] : previous_fired_;
-}
-
 std::optional<Timeline::Waiting> Timeline::waiting() const {
     if (!waiting_) return std::nullopt;
     return Waiting{triggered_, *rows_[current_].reply_timeout_s};
 }
 
 MaybeTime Timeline::next_desired() const {
-    return finished() ? MaybeTime{} : desired_base(current_) + desired_offset_s_[current_];
+    return finished() ? MaybeTime{} : current_due().desired;
 }
 
 MaybeTime Timeline::next_minimum() const {
-    return finished() ? MaybeTime{} : previous_fired_ + minimum_offset_s_[current_];
+    return finished() ? MaybeTime{} : current_due().minimum;
 }
 
 MaybeTime Timeline::first_desired() const {

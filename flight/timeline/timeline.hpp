@@ -2,6 +2,7 @@
 #pragma once
 
 #include "common/fixed_vector.hpp"
+#include "dictionaries/timeline_rule.hpp"
 #include "flight/kernel/message.hpp"
 #include "flight/timeline/timepoint.hpp"
 
@@ -9,16 +10,8 @@
 
 namespace aeolis::flight {
 
-inline constexpr std::size_t firings_per_cycle_max = 5;  ///< R15: so as not to overload the processor
-inline constexpr std::size_t timeline_rows_max = 160;    ///< ours: twice the shipped timeline
-inline constexpr std::size_t anchors_max = 32;           ///< ours
-
-/// Whether a timepoint may fire now: its desired offset, from the previous firing or from its anchor, has come, and so
-/// has its minimum offset from the previous firing. Comparison with an undefined time is false. R11, R13
-constexpr bool may_fire(MaybeTime desired_base, MaybeOffset desired_offset_s, MaybeTime previous_fired,
-                        MaybeOffset minimum_offset_s, Sclk now) {
-    return now >= desired_base + desired_offset_s && now >= previous_fired + minimum_offset_s;
-}
+inline constexpr std::size_t timeline_rows_max = 160;  ///< ours: twice the shipped timeline
+inline constexpr std::size_t anchors_max = 32;         ///< ours
 
 using FiringVerdict = TimepointVerdict;  // completed, replied, timed_out, no_operation, failed
 
@@ -30,9 +23,9 @@ struct Firing {
 };
 
 /// What one pass completes: the reply that was waited for, and what fires after it.
-using Firings = FixedVector<Firing, firings_per_cycle_max + 1>;
+using Firings = FixedVector<Firing, timeline::triggered_per_cycle_max + 1>;
 
-/// The engine that interprets the timeline: strictly sequential, nearest neighbour or anchor. R11–R18
+/// The engine that interprets the timeline, by dictionaries/timeline_rule.hpp. R11–R18
 ///
 /// In       the clock, replies, changed offsets, anchors that GNC sets "now"
 /// Out      actions through ActionContext; Firing for each timepoint that completed
@@ -99,8 +92,8 @@ class Timeline {
 
   private:
     void complete(Sclk now, FiringVerdict verdict, Firings& firings);
-    MaybeTime desired_base(std::size_t row) const;
-    bool current_may_fire(Sclk now) const;
+    timeline::Offsets offsets(std::size_t row) const;
+    timeline::DueTimes current_due() const;
     bool runs(const TimepointSpec& row) const { return !essential_only_ || row.essential || !row.action; }
 
     std::span<const TimepointSpec> rows_;

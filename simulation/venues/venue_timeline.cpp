@@ -110,8 +110,11 @@ std::vector<VenueTimeline::Line> VenueTimeline::lines() {
 void VenueTimeline::act(Sclk now, flight::DeviceOutputs& out) {
     Touched touched{now, configuration_, out};
     for (std::size_t i = 0; i < rows.size(); ++i) {
+        if (done_[i]) continue;
         const auto& start = rows[i].after ? triggered_[static_cast<std::size_t>(*rows[i].after)] : entry_;
-        if (done_[i] || !start || now < *start + rows[i].offset_s) continue;
+        // No line waits for the one before it.
+        const timeline::Offsets offsets{.anchor = AnchorId{}, .desired_s = rows[i].offset_s, .minimum_s = {}};
+        if (!(now >= timeline::due_times(offsets, {}, start).desired)) continue;
         done_[i] = true;
         rows[i].action(touched);
     }

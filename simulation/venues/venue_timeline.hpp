@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "dictionaries/timeline_rule.hpp"
 #include "flight/devices/device_messages.hpp"
 #include "flight/gnc/edl_gnc.hpp"
 
@@ -37,8 +38,8 @@ class VenueTimeline {
     static constexpr std::size_t rows_max = 32;
 
     flight::gnc::Configuration configuration_;
-    std::optional<Sclk> entry_;
-    std::array<std::optional<Sclk>, flight::gnc::trigger_count> triggered_{};
+    MaybeTime entry_;
+    std::array<MaybeTime, flight::gnc::trigger_count> triggered_{};
     std::array<bool, rows_max> done_{};
 };
 

@@ -206,14 +206,6 @@ TEST_CASE("firings keep the order of the rows whatever the offsets, and never co
     }
 }
 
-TEST_CASE("may_fire compares exactly at the tick", "[timeline][R11][R13]") {
-    const Sclk now{10.0};
-    CHECK(may_fire(Sclk{8.0}, 2.0, Sclk{9.0}, 1.0, now));
-    CHECK_FALSE(may_fire(Sclk{8.0}, 2.015625, Sclk{9.0}, 1.0, now));
-    CHECK_FALSE(may_fire(Sclk{8.0}, 2.0, Sclk{9.0}, 1.015625, now));
-    CHECK_FALSE(may_fire(MaybeTime{}, 2.0, Sclk{9.0}, 1.0, now));
-}
-
 TEST_CASE("the shipped timeline fits the engine, and every row that waits for a reply asks for one",
           "[timeline][R14][R20]") {
     CHECK(timeline_specs.size() >= 60);

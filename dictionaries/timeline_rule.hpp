@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "common/ids.hpp"
+#include "common/time.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+// The timeline's rule: when a timepoint is triggered, when it fires, and whether a constraint holds. The engine on board
+// and its monitor, the analysis, ground's plan and prediction, and the venues without a timeline follow this one text.
+//
+// Sequence     A timepoint is triggered once its desired offset and its minimum offset have come, and the one before
+//              it has fired. The acceptance of "do edl" stands before the first. R11, R16
+// Undefined    An undefined offset or time never comes. R13
+// Reply        A timepoint fires when it is triggered. One that waits for a reply fires when that comes, or at its
+//              time-out. R14
+// Cycle        At most five timepoints are triggered in one cycle. R15
+// Anchors      An anchor stands at its parent's time and its offset. The root is the zero of the clock. R17
+// Constraints  minimum <= to - from <= maximum. R19
+// Memory       None: every function is pure, and fit for flight
+// Clock        Any whose zero all times share: SCLK on board, seconds from entry in a plan
+namespace aeolis::timeline {
+
+inline constexpr std::size_t triggered_per_cycle_max = 5;  ///< so as not to overload the processor. R15
+
+/// An instant that a constraint speaks of.
+struct Moment {
+    enum class Kind : std::uint8_t {
+        do_edl,     ///< its acceptance
+        anchor,     ///< the time that the anchor stands for; it may lie ahead
+        triggered,  ///< the timepoint's action begins
+        fired,      ///< its reply came, or its time-out; the same instant where none is asked for
+    };
+    Kind kind = Kind::do_edl;
+    std::uint16_t index = 0;  ///< of the anchor or timepoint
+    constexpr bool operator==(const Moment&) const = default;
+
+    static constexpr Moment of_do_edl() { return {}; }
+    static constexpr Moment of_anchor(AnchorId id) { return {Kind::anchor, id.value}; }
+    static constexpr Moment of_triggered(TimepointId id) { return {Kind::triggered, id.value}; }
+    static constexpr Moment of_fired(TimepointId id) { return {Kind::fired, id.value}; }
+};
+
+/// The offsets of a timepoint.
+struct Offsets {
+    std::optional<AnchorId> anchor;  ///< none: the desired offset, too, counts from the previous firing
+    MaybeOffset desired_s;
+    MaybeOffset minimum_s;  ///< from the previous firing
+};
+/// Of a row of timeline.csv, as the dictionary or flight holds it.
+template <typename Row>
+constexpr Offsets offsets_of(const Row& row) {
+    return {row.anchor, row.desired_offset_s, row.minimum_offset_s};
+}
+
+/// One of the conditions of a triggering: `offset_s` after `from`.
+struct Condition {
+    enum class From : std::uint8_t { previous_firing, anchor };
+    From from = From::previous_firing;
+    MaybeOffset offset_s;
+};
+struct Conditions {
+    Condition desired, minimum;
+};
+constexpr Conditions conditions_of(const Offsets& offsets) {
+    using From = Condition::From;
+    return {{offsets.anchor ? From::anchor : From::previous_firing, offsets.desired_s},
+            {From::previous_firing, offsets.minimum_s}};
+}
+
+/// The times of both conditions of a triggering.
+struct DueTimes {
+    MaybeTime desired, minimum;
+
+    constexpr bool have_come(Sclk now) const { return now >= desired && now >= minimum; }
+};
+/// @param anchor  the time of the timepoint's anchor, if it has one
+constexpr DueTimes due_times(const Offsets& offsets, MaybeTime previous_fired, MaybeTime anchor) {
+    const auto time_of = [&](const Condition& condition) {
+        return (condition.from == Condition::From::anchor ? anchor : previous_fired) + condition.offset_s;
+    };
+    const auto conditions = conditions_of(offsets);
+    return {time_of(conditions.desired), time_of(conditions.minimum)};
+}
+
+/// The latest time at which a timepoint fires: its time-out, or the instant of its triggering where it asks for no reply.
+constexpr Sclk latest_firing(Sclk triggered, const std::optional<double>& reply_timeout_s) {
+    return reply_timeout_s ? triggered + *reply_timeout_s : triggered;
+}
+
+/// Of any anchor but the root.
+constexpr MaybeTime anchor_time(MaybeTime parent, MaybeOffset offset_s) {
+    return parent + offset_s;
+}
+
+/// How long one moment may be after another; undefined: no bound.
+struct Bounds {
+    MaybeOffset minimum_s, maximum_s;
+
+    constexpr bool too_soon(double elapsed_s) const { return minimum_s && elapsed_s < *minimum_s; }
+    constexpr bool too_late(double elapsed_s) const { return maximum_s && elapsed_s > *maximum_s; }
+};
+/// Of a row of constraints.csv, as the dictionary or flight holds it.
+template <typename Row>
+constexpr Bounds bounds_of(const Row& row) {
+    return {row.minimum_s, row.maximum_s};
+}
+
+}  // namespace aeolis::timeline
