@@ -42,6 +42,10 @@ class Predictor {
         plan_anchors();
         for (std::size_t i = 0; i < dictionary_.anchors.size(); ++i) predict_anchor(i);
         predict_timepoints();
+        prediction_.latest_begin_e_s = seconds_of(timeline::latest_begin(
+            offsets_.size(), [&](std::size_t row) { return offsets_[row]; },
+            [&](std::size_t row) { return dictionary_.timeline[row].reply_timeout_s; },
+            [&](AnchorId anchor) { return time_of(now(anchor)); }));
         return std::move(prediction_);
     }
 

@@ -75,14 +75,15 @@ struct TimelinePrediction {
     };
     std::vector<Anchor> anchors;
     std::vector<Timepoint> timepoints;
+    MaybeOffset latest_begin_e_s;  ///< of an acceptance of "do edl" with which nothing is overdue
 };
 
 /// When each anchor and each timepoint comes, as far as anyone can say.
 ///
-/// Anchors     by the vehicle's report, a change by command, or what has fired of it, whichever is newest of the first
-///             two; else by the plan or the design, moved along with the anchor before it. One of the design that is
-///             overdue comes now at the earliest
-/// Timepoints  by the rule. What holds one up that nobody knows is left out: a previous firing without a time
+/// Anchors     By the vehicle's report or an executed change, whichever is newer; else by what has fired of it, which
+///             overtakes a change made before. Else by the offset from its parent, the plan, or its distance in the
+///             design from the anchor before it; one of the design that is overdue comes now at the earliest
+/// Timepoints  By the rule. A previous firing whose time nobody knows holds nothing up
 TimelinePrediction predict(const Dictionary& dictionary, const TimelineKnowledge& known);
 
 /// When each timepoint would fire if nothing but the plan decided; none where that depends on what happens in flight.

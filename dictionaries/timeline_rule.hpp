@@ -95,6 +95,21 @@ constexpr MaybeTime anchor_time(MaybeTime parent, MaybeOffset offset_s) {
     return parent + offset_s;
 }
 
+/// The latest acceptance of "do edl" with which nothing is overdue: when the first timepoint with an anchor is desired,
+/// less what those before it take. Undefined while that anchor is, and where no timepoint has one. R23
+/// @param offsets_of  Offsets of a row         @param reply_timeout_of  of a row, if any
+/// @param anchor_time_of  MaybeTime of an AnchorId
+constexpr MaybeTime latest_begin(std::size_t rows, const auto& offsets_of, const auto& reply_timeout_of,
+                                 const auto& anchor_time_of) {
+    double before_s = 0.0;
+    for (std::size_t i = 0; i < rows; ++i) {
+        const Offsets offsets = offsets_of(i);
+        if (offsets.anchor) return anchor_time_of(*offsets.anchor) + offsets.desired_s + MaybeOffset{-before_s};
+        before_s += offsets.desired_s.value_or(0.0) + reply_timeout_of(i).value_or(0.0);
+    }
+    return {};
+}
+
 /// How long one moment may be after another; undefined: no bound.
 struct Bounds {
     MaybeOffset minimum_s, maximum_s;

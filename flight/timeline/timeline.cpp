@@ -120,13 +120,10 @@ MaybeTime Timeline::next_minimum() const {
 }
 
 MaybeTime Timeline::first_desired() const {
-    double before_s = 0.0;
-    for (std::size_t i = 0; i < rows_.size(); ++i) {
-        if (rows_[i].anchor)
-            return anchor_times_[rows_[i].anchor->value] + desired_offset_s_[i] + MaybeOffset{-before_s};
-        before_s += desired_offset_s_[i].value_or(0.0) + rows_[i].reply_timeout_s.value_or(0.0);
-    }
-    return {};
+    return timeline::latest_begin(
+        rows_.size(), [&](std::size_t row) { return offsets(row); },
+        [&](std::size_t row) { return rows_[row].reply_timeout_s; },
+        [&](AnchorId anchor) { return anchor_times_[anchor.value]; });
 }
 
 bool Timeline::backtrack(Sclk now) {

@@ -71,8 +71,7 @@ class Timeline {
     /// Times from which the current timepoint may fire; undefined when it is not known yet.
     MaybeTime next_desired() const;
     MaybeTime next_minimum() const;
-    /// Latest time at which the timeline may begin without anything being overdue: when the first row that hangs on an
-    /// anchor is desired, less what the rows before it take. Undefined before the parameters came.
+    /// Latest time at which the timeline may begin without anything being overdue. Undefined before the parameters came.
     MaybeTime first_desired() const;
     void compute_anchors();
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/api/run_questions.hpp"
 
+#include "commands/preconditions.hpp"
+#include "commands/timeline_change.hpp"
 #include "server/api/list_response.hpp"
 #include "server/api/query_text.hpp"
 #include "server/api/series_text.hpp"
@@ -12,6 +14,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -260,8 +263,73 @@ HttpResponse interventions(const Ground& ground, archive::Reader& reader, archiv
         {"interventions", {"fault", "device_fault", "system_fault", "computer_reset", "station_outage", "note"}});
 }
 
-HttpResponse timepoints(const Ground&, archive::Reader& reader, archive::RunId run, const QueryText& query) {
-    return answer_rows({reader, run, query}, reader.timepoints(run), {"timepoints"});
+std::optional<double> number_in(std::string_view text) {
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+    return value;
+}
+
+/// What the command that a question names would change, with its arguments as name=value.
+Result<std::optional<dictionary::OffsetChange>> change_of(const dictionary::Dictionary& dictionary,
+                                                          const QueryText& query) {
+    const auto name = query.text("command");
+    const auto given = query.list("arguments");
+    if (!name && given.empty()) return std::optional<dictionary::OffsetChange>{};
+    if (!name) return Error{"arguments: of which command? command=EDL_SET_TIMEPOINT_OFFSET"};
+    const auto* command = dictionary.command(*name);
+    if (command == nullptr) return Error{fmt::format("command: there is no '{}'", *name)};
+    std::vector<commands::NamedValue> arguments;
+    for (const auto& argument : given) {
+        const auto equals = argument.find('=');
+        const auto value =
+            equals == std::string::npos ? std::nullopt : number_in(std::string_view{argument}.substr(equals + 1));
+        if (!value) return Error{fmt::format("arguments: '{}' is not name=number", argument)};
+        arguments.push_back({argument.substr(0, equals), *value});
+    }
+    return commands::offset_change(dictionary, *name, arguments);
+}
+
+HttpResponse timepoints(const Ground& ground, archive::Reader& reader, archive::RunId run, const QueryText& query) {
+    const auto at = instant_of(query, "at", reader, run);
+    if (!at) return error_response(400, at.error());
+    static constexpr std::array<std::string_view, 2> recorded_words{"true", "false"};
+    const auto recorded = query.one_of("recorded", recorded_words);
+    if (!recorded) return error_response(400, recorded.error());
+    const auto change = change_of(ground.dictionary, query);
+    if (!change) return error_response(400, change.error());
+    return answer_rows(
+        {reader, run, query},
+        reader.timepoints(run, {.at = *at, .now = ground.now, .recorded = *recorded == "true", .change = *change}),
+        {"timepoints"});
+}
+
+/// Of a command, against the newest values that were known.
+HttpResponse preconditions(const Ground& ground, archive::Reader& reader, archive::RunId run, const QueryText& query) {
+    const auto name = query.text("command").value_or("");
+    const auto* command = ground.dictionary.command(name);
+    if (command == nullptr) return error_response(400, fmt::format("command: there is no '{}'", name));
+    const auto at = instant_of(query, "at", reader, run);
+    if (!at) return error_response(400, at.error());
+    const auto state = reader.run(run);
+    if (!state) return error_response(400, state.error());
+    const auto values = reader.latest(run, *at);
+    if (!values) return error_response(400, values.error());
+    double now_s = 0.0;  // where nobody knows it, nothing is old
+    if (*at)
+        now_s = (*at)->seconds;
+    else if (ground.now)
+        now_s = archive::seen_at(*state, *ground.now).seconds;
+    std::vector<commands::LatestValue> latest(ground.dictionary.channels.size());
+    for (const auto& value : *values)
+        latest[value.channel.value] = {value.value, std::max(0.0, now_s - value.sclk.seconds)};
+    v1::PreconditionList list;
+    for (const auto& condition : commands::check(ground.dictionary, *command, latest)) {
+        auto& told = *list.add_preconditions();
+        told.set_text(condition.text);
+        told.set_state(commands::name_of(condition.state));
+    }
+    return answer(Result<v1::PreconditionList>{std::move(list)});
 }
 
 HttpResponse recording(const Ground&, archive::Reader& reader, archive::RunId run, const QueryText&) {
@@ -321,7 +389,8 @@ const std::array questions{
     RunQuestionEntry{"alarms", {"state", "after", "limit", "format"}, list_formats, alarms},
     RunQuestionEntry{"notes", {"text", "after", "limit", "format"}, list_formats, notes},
     RunQuestionEntry{"interventions", {"format"}, list_formats, interventions},
-    RunQuestionEntry{"timepoints", {"format"}, list_formats, timepoints},
+    RunQuestionEntry{"preconditions", {"command", "at"}, {}, preconditions},
+    RunQuestionEntry{"timepoints", {"at", "recorded", "command", "arguments", "format"}, list_formats, timepoints},
     RunQuestionEntry{"explanations",
                      {"decision", "text", "from", "to", "after", "limit", "duplicates", "format"},
                      list_formats,

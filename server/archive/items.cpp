@@ -239,4 +239,8 @@ Ert heard_at(const v1::RunState& run, Sclk at) {
     return {clock.scet_of(at).microseconds + static_cast<std::int64_t>(run.light_time_s() * 1.0e6)};
 }
 
+Sclk seen_at(const v1::RunState& run, Ert ert) {
+    return correlation_of(run).sclk_of(Scet{ert.microseconds - static_cast<std::int64_t>(run.light_time_s() * 1.0e6)});
+}
+
 }  // namespace aeolis::archive

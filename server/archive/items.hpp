@@ -47,6 +47,8 @@ ClockCorrelation correlation_of(const v1::RunState& run);
 /// When what happens on board then is heard on Earth, by the run's own clock and light time. A time too far away for a
 /// date is before or after everything.
 Ert heard_at(const v1::RunState& run, Sclk at);
+/// Back from there: what of the vehicle is heard at `ert`. Not cut to a tick.
+Sclk seen_at(const v1::RunState& run, Ert ert);
 
 inline v1::Item to_item(const Annotation& annotation) {
     return std::visit([](const auto& record) { return to_item(record); }, annotation);

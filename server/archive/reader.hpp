@@ -5,6 +5,7 @@
 #include "aeolis/v1/run.pb.h"
 #include "common/result.hpp"
 #include "dictionaries/dictionary.hpp"
+#include "dictionaries/timeline_plan.hpp"
 #include "server/archive/audit.hpp"
 #include "server/archive/records.hpp"
 #include "telemetry/alarm_desk.hpp"
@@ -80,6 +81,13 @@ struct ToneQuery {
 struct CommandQuery {
     SclkRange range;   ///< with a stage that is dated between when Earth heard of its beginning and when of its end
     std::string text;  ///< words of a stage, as in EventQuery
+};
+
+struct TimepointQuery {
+    std::optional<Sclk> at{};  ///< as it was known when the vehicle was heard at this time; none: as it is known
+    std::optional<Ert> now{};  ///< of a run that goes on: what is overdue comes now at the earliest
+    bool recorded = true;      ///< with what only the recording tells
+    std::optional<dictionary::OffsetChange> change{};  ///< what a command would change
 };
 
 struct ExplanationQuery {
@@ -191,7 +199,8 @@ class Reader {
     Result<v1::NoteList> notes(RunId run, const NoteQuery& query);
     /// What instructors did to the run, in order: for those who are rehearsed only once it is over.
     Result<v1::InterventionList> interventions(RunId run);
-    Result<v1::TimepointList> timepoints(RunId run);
+    /// The timeline: planned, fired as far as it is known, and predicted from what was known.
+    Result<v1::TimepointList> timepoints(RunId run, const TimepointQuery& query = {});
     Result<v1::RecordingSummary> recording(RunId run);
     /// Each unit and tone that was seen live against the recording, in totals; takes as long as reading all units.
     Result<v1::ProofReport> proof(RunId run);

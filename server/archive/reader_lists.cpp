@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dictionaries/timeline_plan.hpp"
 #include "server/archive/item_rows.hpp"
 #include "server/archive/items.hpp"
 #include "server/archive/reader.hpp"
@@ -8,6 +7,7 @@
 #include "telemetry/text.hpp"
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 namespace aeolis::archive {
@@ -236,67 +236,6 @@ Result<v1::CommandList> Reader::commands(RunId run, const CommandQuery& query) {
     }
     v1::CommandList list;
     for (auto& [number, history] : histories) *list.add_commands() = std::move(history);
-    return list;
-}
-
-Result<void> Reader::State::add_predicted_anchors(RunId run, v1::TimepointList& list) {
-    auto rows = query("SELECT anchor, predicted_e_s FROM run_anchors WHERE run = ?1");
-    if (!rows) return rows.error();
-    auto& row = **rows;
-    row.bind(1, std::int64_t{run.value});
-    for (;;) {
-        auto found = row.step();
-        if (!found) return found.error();
-        if (!*found) return {};
-        const auto anchor = row.integer(0);
-        if (anchor < list.anchors_size() && !row.is_null(1))
-            list.mutable_anchors(static_cast<int>(anchor))->set_predicted_e_s(row.real(1));
-    }
-}
-
-Result<v1::TimepointList> Reader::timepoints(RunId run) {
-    const auto instant = state_->instant(run);
-    if (!instant) return instant.error();
-    if (auto same = state_->same_dictionary(instant->run); !same) return same.error();
-    const auto& dictionary = state_->dictionary;
-    const auto planned = planned_from_entry_s(dictionary);
-    v1::TimepointList list;
-    list.set_timeline_version(dictionary.timeline_version);
-    for (std::size_t i = 0; i < dictionary.timeline.size(); ++i) {
-        const auto& row = dictionary.timeline[i];
-        auto& written = *list.add_timepoints();
-        written.set_id(row.id.value);
-        written.set_name(row.name);
-        if (row.anchor) written.set_anchor(dictionary.anchors[row.anchor->value].name);
-        if (row.desired_offset_s) written.set_desired_offset_s(*row.desired_offset_s);
-        if (row.minimum_offset_s) written.set_minimum_offset_s(*row.minimum_offset_s);
-        if (row.tone) written.set_tone(dictionary.tones[row.tone->value].name);
-        written.set_event(row.event);
-        written.set_note(row.note);
-        written.set_waits_for_reply(row.reply_timeout_s.has_value());
-        if (planned[i]) written.set_planned_e_s(*planned[i]);
-        written.set_verdict("pending");
-    }
-    for (const auto& anchor : dictionary.anchors) {
-        auto& written = *list.add_anchors();
-        written.set_id(anchor.id.value);
-        written.set_name(anchor.name);
-        if (anchor.parent) written.set_parent(dictionary.anchors[anchor.parent->value].name);
-        if (anchor.offset_s) written.set_offset_s(*anchor.offset_s);
-    }
-    if (auto done = state_->add_predicted_anchors(run, list); !done) return done.error();
-    const auto done = scan(*state_, rows_sql<FiringRecord>(), run, 0, [&](const auto& row) -> Result<bool> {
-        const auto firing = read_row<FiringRecord>(row);
-        if (firing.timepoint.value >= dictionary.timeline.size()) return false;
-        auto& written = *list.mutable_timepoints(firing.timepoint.value);
-        if (firing.source == Source::realtime)
-            written.set_realtime_sclk(firing.fired.seconds);
-        else
-            written.set_recorded_sclk(firing.fired.seconds);
-        written.set_verdict(firing.verdict);
-        return false;
-    });
-    if (!done) return done.error();
     return list;
 }
 

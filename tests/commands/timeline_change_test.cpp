@@ -53,4 +53,36 @@ TEST_CASE("a row that is not there, and any other command, change nothing", "[co
     CHECK_FALSE(commands::changes_offsets("EDL_SET_PARAMETERS"));
 }
 
+TEST_CASE("a change of offsets is of the timepoint or anchor that the command names; of parameters, of entry",
+          "[commands][timeline][R16]") {
+    using dictionary::OffsetChange;
+    const auto& words = tests::shipped_dictionary();
+    const auto change = [&](const char* command, const std::vector<commands::NamedValue>& arguments) {
+        return commands::offset_change(words, command, arguments);
+    };
+    const auto timepoint = change("EDL_SET_TIMEPOINT_OFFSET",
+                                  {{"timepoint", 3.0}, {"desired_offset_s", -820.0}, {"minimum_offset_s", 1.0}});
+    REQUIRE(timepoint);
+    const auto& of_timepoint = std::get<OffsetChange::OfTimepoint>(timepoint->what);
+    CHECK(of_timepoint.id == TimepointId{3});
+    CHECK(of_timepoint.desired_s == -820.0);
+    CHECK(of_timepoint.minimum_s == 1.0);
+    const auto anchor = change("EDL_SET_ANCHOR_OFFSET", {{"anchor", 2.0}, {"offset_s", -7200.0}});
+    REQUIRE(anchor);
+    CHECK(std::get<OffsetChange::OfAnchor>(anchor->what).id == AnchorId{2});
+    CHECK(std::get<OffsetChange::OfAnchor>(anchor->what).offset_s == -7200.0);
+    const auto entry = change("EDL_SET_PARAMETERS", {{"entry_sclk", 397501714.0}});
+    REQUIRE(entry);
+    const auto& of_entry = std::get<OffsetChange::OfAnchor>(entry->what);
+    CHECK(words.anchors[of_entry.id.value].name == "entry");
+    CHECK(of_entry.offset_s == 397501714.0);
+
+    CHECK_FALSE(change("EDL_SET_TIMEPOINT_OFFSET", {{"timepoint", 3.0}}));
+    CHECK_FALSE(change("EDL_SET_TIMEPOINT_OFFSET",
+                       {{"timepoint", 1.0e6}, {"desired_offset_s", 1.0}, {"minimum_offset_s", 1.0}}));
+    CHECK_FALSE(change("EDL_SET_ANCHOR_OFFSET", {{"anchor", 0.0}, {"offset_s", 5.0}}));  // the root stands still
+    CHECK_FALSE(change("EDL_SET_ANCHOR_OFFSET", {{"anchor", 1.0e6}, {"offset_s", 5.0}}));
+    CHECK_FALSE(change("NO_OP", {}));
+}
+
 }  // namespace commands_timeline_change_test

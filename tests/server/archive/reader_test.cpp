@@ -312,6 +312,59 @@ TEST_CASE("the timeline tells plan, real time and recording of each timepoint", 
     CHECK_FALSE(list->anchors(1).has_offset_s());
 }
 
+TEST_CASE("a timepoint is predicted from what was known, or says why it is not", "[reader][timeline]") {
+    Recorded run(true);
+    const auto list = run.reader.timepoints(RunId{1});
+    REQUIRE(list.ok());
+    CHECK(list->timepoints(0).predicted_e_s() == -826.0);
+    CHECK(list->timepoints(0).heard_by().empty());
+    CHECK(list->timepoints(1).heard_by() == "uhf");
+    CHECK(list->timepoints(1).triggered_sclk() == 1001.75);
+    CHECK(list->timepoints(1).predicted_e_s() == -816.0);  // as it was predicted before
+    CHECK_FALSE(list->timepoints(2).has_predicted_e_s());
+    CHECK(list->timepoints(2).not_predicted() == "its desired offset is undefined");
+    CHECK(list->anchors(0).state() == "defined");
+    CHECK(list->anchors(0).basis() == "clock");
+    CHECK(list->anchors(1).state() == "predicted");
+    CHECK(list->anchors(1).basis() == "plan");
+    CHECK(list->anchors(1).e_s() == 0.0);
+    CHECK_FALSE(list->has_known_at_e_s());
+    CHECK_FALSE(list->command_moves());
+}
+
+TEST_CASE("a timeline of the past knows nothing that came later, or that only the recording told",
+          "[reader][timeline]") {
+    Recorded run(true);
+    const auto before = run.reader.timepoints(RunId{1}, {.at = Sclk{1001.0}});
+    REQUIRE(before.ok());
+    CHECK(before->known_at_e_s() == 1.0);
+    CHECK(before->timepoints(1).heard_by().empty());
+    CHECK(before->timepoints(1).verdict() == "pending");
+    CHECK_FALSE(before->timepoints(1).has_realtime_sclk());
+    const auto live = run.reader.timepoints(RunId{1}, {.recorded = false});
+    REQUIRE(live.ok());
+    CHECK(live->timepoints(1).realtime_sclk() == 1002.0);
+    CHECK_FALSE(live->timepoints(1).has_recorded_sclk());
+}
+
+TEST_CASE("the effect of a command is told for what it moves, and never for what has fired", "[reader][timeline]") {
+    Recorded run(true);
+    const auto with = [&](std::optional<Sclk> at, dictionary::OffsetChange change) {
+        return std::move(run.reader.timepoints(RunId{1}, {.at = at, .change = change})).value();
+    };
+    const dictionary::OffsetChange later{dictionary::OffsetChange::OfTimepoint{TimepointId{1}, 20.0, 0.0}};
+    const auto before = with(Sclk{1001.0}, later);
+    CHECK(before.command_moves());
+    CHECK(before.timepoints(1).predicted_e_s() == -816.0);
+    CHECK(before.timepoints(1).moved_e_s() == -806.0);
+    CHECK_FALSE(before.timepoints(0).has_moved_e_s());
+    CHECK_FALSE(with({}, later).timepoints(1).has_moved_e_s());
+    const dictionary::OffsetChange entry{dictionary::OffsetChange::OfAnchor{AnchorId{1}, 1005.0}};
+    const auto moved = with(Sclk{1001.0}, entry);
+    CHECK(moved.timepoints(0).moved_e_s() == -821.0);
+    CHECK(moved.timepoints(1).moved_e_s() == -811.0);
+}
+
 TEST_CASE("a run is predicted by the design with which it began", "[reader][timeline][R43]") {
     TemporaryFolder folder;
     const auto file = folder / "a.db";
