@@ -84,21 +84,6 @@ export const LAYOUT = {
     { timepoint: 'heatshield_separation', channel: 'speed_mps', comparison: '<=', bound: 'heatshield_speed_mps' },
     { timepoint: 'heatshield_separation', since: 'parachute_deploy', bound: 20 },
   ],
-  /** Commands that move timepoints, by their arguments: what they would do is drawn before they are sent. */
-  moves: [
-    {
-      command: 'EDL_SET_TIMEPOINT_OFFSET',
-      timepoint: 'timepoint',
-      desired: 'desired_offset_s',
-      minimum: 'minimum_offset_s',
-    },
-    { command: 'EDL_SET_PARAMETERS', anchor: 'entry', sclk: 'entry_sclk' },
-    { command: 'EDL_SET_ANCHOR_OFFSET', anchorNumber: 'anchor', offset: 'offset_s' },
-  ],
-
-  /** The vehicle's report of an anchor it holds: the anchor's name with this behind it is a channel. */
-  anchorReports: '_anchor_sclk',
-
   /** Shown first in the table of channels. */
   channels: [
     'edl_phase',
@@ -136,9 +121,6 @@ export const LAYOUT = {
       why: 'starts the timeline on board; from then on the vehicle flies alone',
     },
   ],
-
-  /** Flight refuses the last of them from so long before the first timepoint on the clock: `do_edl_margin_s` of the mission's parameters. */
-  beginMargin_s: 5,
 
   /** What the review of a rehearsal says of its landing: flight's own words, and where the vehicle believed to be. */
   landing: {

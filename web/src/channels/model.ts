@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The table of channels: value, unit, age, alarm and stale state.
-import type { AlarmLimit, DictionaryChannel } from '../gen/aeolis/v1/run_pb';
+import type { DictionaryChannel } from '../gen/aeolis/v1/run_pb';
 import { STATUS } from '../design/status';
 import type { Status } from '../design/status';
 import { LAYOUT } from '../layout';
 import type { Dictionary } from '../run/dictionary';
 import { valueText } from '../run/dictionary';
-import { allLimitsText, isWorst, limitsIn, limitsText, outside } from '../run/limits';
+import { allLimitsText, isWorst, limitsIn, limitsText } from '../run/limits';
 import type { RunStore } from '../run/store';
 import { duration } from '../run/time';
 import { whoseAt } from '../run/whose';
@@ -72,7 +72,7 @@ export function channelRow(
     whose: whoseAt(store, channel.name, sample?.sclk ?? -Infinity),
     value: valueText(channel, sample?.value),
     age: age === undefined ? '' : age < 0.05 ? 'now' : duration(age),
-    look: lookOf(store, channel, limits, sample?.value, age, cutoff, lost),
+    look: lookOf(store, channel, sample?.value, age, cutoff, lost),
     limits: limitsText(limits),
     allLimits: allLimitsText(channel),
     recorded: sample?.recorded ?? false,
@@ -82,15 +82,13 @@ export function channelRow(
 function lookOf(
   store: RunStore | undefined,
   channel: DictionaryChannel,
-  limits: readonly AlarmLimit[],
   value: number | undefined,
   age: number | undefined,
   cutoff: number,
   lost: boolean,
 ): ChannelLook {
   if (value === undefined || age === undefined) return store && !store.askedFor.has(channel.name) ? 'unasked' : 'never';
-  // In a past view the alarms of now do not apply: the limits of then are asked again.
-  const severity = cutoff === Infinity ? store?.alarms.get(channel.id)?.severity : outside(limits, value);
+  const severity = store?.alarmAt(channel.id, cutoff)?.severity;
   if (severity !== undefined) return isWorst(severity) ? 'alarm' : 'caution';
   return isStale(store, channel, age, cutoff, lost) ? 'stale' : 'good';
 }

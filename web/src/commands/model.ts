@@ -144,32 +144,6 @@ export function rangeText(argument: DictionaryArgument): string {
   return `${min === undefined ? '' : numberText(min)} … ${max === undefined ? '' : numberText(max)}`;
 }
 
-export interface Precondition {
-  words: string;
-  holds: boolean | undefined;
-  value: string;
-}
-
-/** Preconditions as the page sees them, for who waits for one; before sending the server is asked, and flight decides by itself. */
-export function preconditionsOf(
-  command: DictionaryCommand,
-  dictionary: Dictionary,
-  store: RunStore | undefined,
-  cutoff = Infinity,
-): Precondition[] {
-  return command.preconditions.map((words, index) => {
-    const condition = command.conditions[index];
-    const channel = condition && dictionary.channel(condition.channel);
-    const sample = channel && store?.latest(channel.id, cutoff);
-    if (!channel || !sample || Number.isNaN(sample.value)) return { words, holds: undefined, value: 'not known' };
-    return {
-      words,
-      holds: compare(sample.value, condition.comparison, condition.value),
-      value: `${channel.name} is ${dictionary.label(channel, sample.value) ?? numberText(sample.value)}`,
-    };
-  });
-}
-
 export function compare(value: number, relation: string, bound: number): boolean {
   switch (relation) {
     case '==':

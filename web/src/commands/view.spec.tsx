@@ -33,7 +33,6 @@ import {
   fieldsOf,
   intentOf,
   isHazardous,
-  preconditionsOf,
   readBackOf,
   readLine,
   readReleaseAt,
@@ -87,11 +86,6 @@ describe('what is typed', () => {
       ['solution', 9],
       ['solution', 405],
     ]);
-  });
-  it('shows preconditions with their live value, and unknown ones as unknown', () => {
-    expect(preconditionsOf(doEdl, aDictionary, aStore())[0]?.holds).toBeUndefined();
-    expect(preconditionsOf(doEdl, aDictionary, aStore([samples(900, { 5: 1 })]))[0]?.holds).toBe(true);
-    expect(preconditionsOf(doEdl, aDictionary, aStore([samples(900, { 5: 0 })]))[0]?.holds).toBe(false);
   });
 });
 

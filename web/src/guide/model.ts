@@ -13,6 +13,8 @@ import type { RunStore } from '../run/store';
 import type { Mode } from '../mode/model';
 import { mayAct, mayRehearse } from '../access/model';
 import { missingStep, tooLate } from '../waiting/model';
+import type { Told } from '../waiting/model';
+import { told as toldNow } from '../waiting/told';
 
 const KEY = 'aeolis-guide';
 export const guideShown = signal(localStorage.getItem(KEY) !== 'hidden');
@@ -74,6 +76,7 @@ export function guideStep(
   at: Step,
   until: number,
   recorded = false,
+  told: Told = {},
 ): GuideStep | undefined {
   if (mode === 'range' || mode === 'replay') {
     return {
@@ -100,11 +103,11 @@ export function guideStep(
   if (mode === 'live') return undefined; // the real thing is not where one learns
   if (mode === 'ended') return afterwards(run);
 
-  const missing = heardOf(run, plan, until).size === 0 ? missingStep(run, words) : undefined;
+  const missing = heardOf(run, plan, until).size === 0 ? missingStep(run, words, Infinity, told.against) : undefined;
   if (missing) {
     const { step, state, evidence, against } = missing;
     const number = missing.number + 1;
-    const late = tooLate(run, words, plan, until);
+    const late = tooLate(run, words, told.beginBy_e_s, until);
     if (late !== undefined) {
       return {
         number: 1,
@@ -138,7 +141,7 @@ export function guideStep(
       return {
         ...nothing,
         title: 'Taken. Waiting for the vehicle’s status to say so',
-        why: `${against.value}: until it changes, “${step.words}” would be refused. The status comes about once a second.`,
+        why: `${against.words.split(' ')[0]} ${against.value}: until it changes, “${step.words}” would be refused. The status comes about once a second.`,
       };
     }
     return {
@@ -216,6 +219,7 @@ export function guideNow(): GuideStep | undefined {
     commandStep.value,
     cutoff.value,
     withRecording.value,
+    toldNow.value,
   );
   // Who only looks on finds nothing to press that would be refused.
   const allowed = step?.wants === 'command' ? mayAct() : modeNow() !== 'rehearsal' || mayRehearse();

@@ -40,7 +40,9 @@ describe('the guide', () => {
     const now = (eS: number, lightTimeS = 0) => {
       const run = at(eS);
       if (run.clocks) run.clocks.lightTimeS = lightTimeS;
-      return guideStep(aStore([], run), aDictionary, aPlan, 'rehearsal', 'type', Infinity);
+      return guideStep(aStore([], run), aDictionary, aPlan, 'rehearsal', 'type', Infinity, false, {
+        beginBy_e_s: -831,
+      });
     };
     expect(keys(now(-832))).toEqual(['/', 'set edl parameters', 'Enter']);
     expect(now(-830)).toMatchObject({
@@ -55,19 +57,18 @@ describe('the guide', () => {
     ]);
     const sent = stage({ command: 2n, name: 'EDL_DO_EDL', stage: 'radiated', status: 'ok' });
     expect(
-      guideStep(aStore([...done(1), sent], at(-820)), aDictionary, aPlan, 'rehearsal', 'type', Infinity)?.title,
+      guideStep(aStore([...done(1), sent], at(-820)), aDictionary, aPlan, 'rehearsal', 'type', Infinity, false, {
+        beginBy_e_s: -831,
+      })?.title,
     ).toContain('Sent');
   });
   it('does not lead to a command that the vehicle’s status still speaks against', () => {
     const taken = (received: number) =>
-      guideStep(
-        aStore([...done(1), samples(899, { 5: received })]),
-        aDictionary,
-        soonPlan,
-        'rehearsal',
-        'type',
-        Infinity,
-      );
+      guideStep(aStore(done(1)), aDictionary, soonPlan, 'rehearsal', 'type', Infinity, false, {
+        ...(received === 0 && {
+          against: { command: 'EDL_DO_EDL', words: 'parameters_received == 1', value: 'is 0' },
+        }),
+      });
     expect(taken(0)).toMatchObject({
       number: 2,
       press: [],

@@ -5,7 +5,7 @@ import type { Dictionary } from '../run/dictionary';
 import type { TimepointRow } from '../gen/aeolis/v1/run_pb';
 import type { RunStore } from '../run/store';
 import { heardOf } from '../timeline/heard';
-import type { Prediction } from '../timeline/predict';
+import type { Prediction } from '../timeline/model';
 
 interface PhaseStep {
   title: string;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import { describe, expect, it } from 'vitest';
 import { aDictionary, aStore, samples } from '../testing/fixtures';
-import { allLimitsText, contextAt, isWorst, limitsIn, limitsOver, limitsText, outside } from './limits';
+import { allLimitsText, contextAt, isWorst, limitsIn, limitsOver, limitsText } from './limits';
 
 const speed = aDictionary.pick(['speed_mps'])!;
 const altitude = aDictionary.pick(['altitude_m'])!;
@@ -17,15 +17,9 @@ const flown = aStore([
 
 describe('limits', () => {
   it('of a context hold in it and nowhere else; where none holds, those without one', () => {
-    const at = (sclk: number, value: number) => outside(limitsIn(speed, contextAt(flown, aDictionary, sclk)), value);
-    expect([at(799, 100), at(800, 100), at(840, 130), at(850, 130), at(850, 7000)]).toEqual([
-      undefined,
-      'watch',
-      'distress',
-      undefined,
-      'watch',
-    ]);
-    expect(outside(limitsIn(speed, undefined), 100)).toBeUndefined();
+    const at = (sclk: number) => limitsIn(speed, contextAt(flown, aDictionary, sclk)).map((limit) => limit.above);
+    expect([at(799), at(800), at(840), at(850)]).toEqual([[6000], [90, 120], [90, 120], [6000]]);
+    expect(limitsIn(speed, undefined).map((limit) => limit.above)).toEqual([6000]);
   });
   it('of a plot are stretches, each with its context; a change of state that changes no limit is none', () => {
     expect(

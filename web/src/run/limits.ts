@@ -22,13 +22,6 @@ export function limitsIn(channel: DictionaryChannel, context: string | undefined
   return own.length > 0 ? own : channel.limits.filter((limit) => limit.context === '');
 }
 
-/** The severity of the worst of `limits` that is passed. */
-export function outside(limits: readonly AlarmLimit[], value: number): string | undefined {
-  return limits.findLast(
-    (limit) => (limit.below !== undefined && value < limit.below) || (limit.above !== undefined && value > limit.above),
-  )?.severity;
-}
-
 export interface Stretch {
   from_sclk: number;
   to_sclk: number;

@@ -3,7 +3,7 @@
 // what it covers. When full, the older half is thinned to the least and the largest of each four.
 
 const LIMIT = 1 << 16; // of points: 1 MB a channel at most
-export const LIMIT_NOT_DRAWN = 1 << 11; // of a channel that is only shown as a number: its limits are judged anew in the past
+export const LIMIT_NOT_DRAWN = 1 << 11; // of a channel that is only shown as a number: a past view asks what it was
 
 export class Series {
   sclk = new Float64Array(64);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What leads from run to run: which one is followed, what of it is learnt from the server and when, and how the page begins.
-import { effect } from '@preact/signals';
+import { batch, effect } from '@preact/signals';
 import type { RunState, ScenarioList, TimepointList } from '../gen/aeolis/v1/run_pb';
 import type { FromWorker, ToWorker } from '../stream/messages';
 import { resumedWords } from '../mode/model';
@@ -14,7 +14,6 @@ import { firstAnswers } from './first_look';
 import type { FirstLook } from './first_look';
 import { isSameRun } from './same';
 import {
-  anchors,
   asHeard,
   dictionary,
   notify,
@@ -30,6 +29,8 @@ import {
 } from './shown';
 import { askDictionary, askRuns, isGoing } from './start';
 import { RunStore } from './store';
+import { refreshAgainst } from '../waiting/told';
+import { TimelinePace, timelineAnswer, timelineQuestion } from '../timeline/asked';
 
 export function backToLive(): void {
   replay.value = undefined;
@@ -49,6 +50,7 @@ function staysInThePast(of: RunStore, run: RunState): void {
 let lostAt_e_s = NaN; // when the connection broke, as the header showed it
 
 const ALARMS_EVERY_S = 5; // ours: what is shelved comes back without an item
+const TIMELINE_LOOK_S = 0.25; // ours: whether there is anything to ask about it
 const FIRST_LOOK_MS = 500; // ours: what follows does not wait longer for it
 const SESSION_MS = 5000; // ours: a stream by which the server does not know this browser is worth more than none
 
@@ -73,7 +75,6 @@ export function watch(run: number): void {
   history.replaceState(null, '', url);
   store.value = undefined;
   timepoints.value = [];
-  anchors.value = [];
   post({ type: 'watch', run });
 }
 
@@ -179,18 +180,25 @@ function takeRun(run: RunState | undefined): void {
 }
 
 let timepointsUnderWay = false;
-let timepointsOf: RunStore | undefined; // whose they are
+const timelinePace = new TimelinePace();
 async function refreshTimepoints(): Promise<void> {
   const of = store.value;
   if (!of || timepointsUnderWay) return;
   timepointsUnderWay = true;
+  const [asked, version] = [timelineQuestion.peek(), of.timelineVersion];
+  let failed = false;
   try {
-    const list = await ask<TimepointList>('timepoints', `/runs/${of.id}/timepoints`);
-    if (store.value === of) [timepoints.value, anchors.value, timepointsOf] = [list.timepoints, list.anchors, of];
+    const list = await ask<TimepointList>('timepoints', `/runs/${of.id}/timepoints${asked.text}`);
+    if (store.value === of)
+      batch(() => {
+        timepoints.value = list.timepoints;
+        timelineAnswer.value = { asked, list, at_ms: performance.now() };
+      });
   } catch {
-    // The timeline says that it has no plan; the next round asks again.
+    failed = true; // The timeline says that it has no plan; the next round asks again.
   } finally {
     timepointsUnderWay = false;
+    timelinePace.asked(of, asked.text, version, performance.now(), failed);
     if (store.value !== of) void refreshTimepoints();
   }
 }
@@ -316,8 +324,10 @@ export async function begin(): Promise<void> {
     await refreshAlarms();
   });
   void everySeconds(3, refreshRuns);
-  void everySeconds(2, async () => {
-    if (store.value?.going || store.value !== timepointsOf) await refreshTimepoints();
+  void everySeconds(1, refreshAgainst);
+  void everySeconds(TIMELINE_LOOK_S, async () => {
+    const run = store.value;
+    if (run && timelinePace.isDue(run, timelineQuestion.peek().text, performance.now())) await refreshTimepoints();
   });
   void everySeconds(5, async () => {
     if (store.value?.thinnedSinceHistory && stream.value.state === 'live') refreshHistory(store.value);

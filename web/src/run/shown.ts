@@ -2,7 +2,7 @@
 // What is shown: the run, the part of it that is looked at as the past, its mode, and what is said to who looks. The signals that the panels read.
 import { computed, effect, signal, untracked } from '@preact/signals';
 import type { Signal } from '@preact/signals';
-import type { AnchorRow, RunState, TimepointRow } from '../gen/aeolis/v1/run_pb';
+import type { RunState, TimepointRow } from '../gen/aeolis/v1/run_pb';
 import { LAYOUT } from '../layout';
 import { modeOf } from '../mode/model';
 import type { Mode } from '../mode/model';
@@ -24,7 +24,6 @@ export function signalOfRun<T>(first: T): Signal<T> {
 }
 export const dictionary = signal<Dictionary | undefined>(undefined);
 export const timepoints = signal<TimepointRow[]>([]);
-export const anchors = signal<AnchorRow[]>([]);
 export const runs = signal<RunState[]>([]);
 export const scenarios = signal<{ name: string; title: string }[]>([]);
 /** The run asked for: 0 is "the one that is going on". */

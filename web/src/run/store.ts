@@ -22,9 +22,11 @@ import { secondsOfDayOfYear } from './time';
 const EVENT_LIMIT = 20000;
 const UNIT_LIMIT = 400;
 const LINK_LIMIT = 5000;
+const ALARM_LIMIT = 1000; // of a channel
 const LATE_S = 2; // ours: what is heard so much later than light takes was kept by an orbiter, or in a queue on board
 export const LATE_LIMIT = 1 << 14; // of a packet: what is older is forgotten, and notTold says so
 const ABOUT_ALARMS: ReadonlySet<string> = new Set(['alarm', 'staleness', 'alarmAction']);
+const ABOUT_TIMELINE: ReadonlySet<string> = new Set(['timepoint', 'tone', 'commandStage']);
 
 export interface Known<T> {
   seq: number;
@@ -98,7 +100,9 @@ export class RunStore {
   firings = new Map<number, FiringPair>();
   commands = new Map<number, CommandRow>();
   links = new Map<string, Known<LinkChange>[]>();
+  /** Those that stand now, by channel. */
   alarms = new Map<number, Alarm>();
+  private readonly alarmChanges = new Map<number, Alarm[]>();
   units: Known<Unit>[] = [];
   /** By link and packet. */
   unitTotals = new Map<string, UnitTotals>();
@@ -110,6 +114,8 @@ export class RunStore {
   /** Count what came about alarms, and about notes: whoever keeps their states asks again. */
   alarmsVersion = 0;
   notesVersion = 0;
+  /** Counts what came from which the timeline is predicted: firings, tones, stages of commands. */
+  timelineVersion = 0;
   /** Of all samples, events and tones. */
   private newestSclk = -Infinity;
   private newestErt = '';
@@ -249,6 +255,12 @@ export class RunStore {
     return live && { ...live, recorded: false };
   }
 
+  /** The alarm of a channel that stood at `cutoff`, as the ground raised it. */
+  alarmAt(channel: number, cutoff: number): Alarm | undefined {
+    const last = this.alarmChanges.get(channel)?.findLast((change) => change.sclk <= cutoff);
+    return last?.severity === 'none' ? undefined : last;
+  }
+
   /** Seconds between the samples that are held of a channel, on average; the series that has more of them counts. */
   spacing(id: number): number {
     const spacings = [this.live.get(id), this.recorded.get(id)].flatMap((series) =>
@@ -315,6 +327,7 @@ export class RunStore {
     if (item.kind === 'event' || item.kind === 'tone') this.sawSclk(item.fact.sclk);
     if (ABOUT_ALARMS.has(item.kind) || this.isAboutLoss(item)) ++this.alarmsVersion;
     if ((item.kind as string) === 'note') ++this.notesVersion;
+    if (ABOUT_TIMELINE.has(item.kind)) ++this.timelineVersion;
     switch (item.kind) {
       case 'event':
         this.addTwin(this.events, item, item.fact.ert, (a, b) => a.id === b.id && a.text === b.text);
@@ -341,6 +354,10 @@ export class RunStore {
         break;
       }
       case 'alarm':
+        this.alarmChanges.set(item.fact.channel, [
+          ...(this.alarmChanges.get(item.fact.channel) ?? []).slice(-ALARM_LIMIT),
+          item.fact,
+        ]);
         if (item.fact.severity === 'none') this.alarms.delete(item.fact.channel);
         else this.alarms.set(item.fact.channel, item.fact);
         break;

@@ -3,6 +3,7 @@
 import { create } from '@bufbuild/protobuf';
 import type { MessageInitShape } from '@bufbuild/protobuf';
 import {
+  AlarmSchema,
   ClocksSchema,
   CommandStageSchema,
   EventSchema,
@@ -160,6 +161,8 @@ export const explanation = (fields: MessageInitShape<typeof ExplanationSchema>) 
   item({ case: 'explanation', value: create(ExplanationSchema, { source: 1, ...fields }) });
 export const link = (fields: MessageInitShape<typeof LinkChangeSchema>) =>
   item({ case: 'link', value: create(LinkChangeSchema, fields) });
+export const alarm = (fields: MessageInitShape<typeof AlarmSchema>) =>
+  item({ case: 'alarm', value: create(AlarmSchema, fields) });
 export const stage = (fields: MessageInitShape<typeof CommandStageSchema>) =>
   item({ case: 'commandStage', value: create(CommandStageSchema, fields) });
 export const unit = (fields: MessageInitShape<typeof UnitSchema>) =>

@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The anchors that timepoints hang from, as a tree: each with its parent, its offset from it, when it is, and what says so.
-import { LAYOUT } from '../layout';
+import { SOURCES } from '../design/status';
 import type { AnchorRow, TimepointRow } from '../gen/aeolis/v1/run_pb';
 import { inWords } from '../run/dictionary';
-import type { Dictionary } from '../run/dictionary';
-import type { RunStore } from '../run/store';
-import { anchorsFound, anchorsNow } from './predict';
-import type { Anchors, Change } from './predict';
 
 export interface AnchorLine {
   id: number;
@@ -22,54 +18,47 @@ export interface AnchorLine {
   by: string;
 }
 
+const STATES = ['defined', 'predicted', 'undefined'] as const;
+
+function basisWords(row: AnchorRow, plan: readonly TimepointRow[]): string {
+  switch (row.basis) {
+    case 'clock':
+      return 'zero of the clock on board';
+    case 'report':
+      return 'the vehicle’s own report';
+    case 'firing': {
+      const by = plan.find((point) => point.name === row.fired)?.heardBy;
+      const source = by === 'uhf' || by === 'recording' || by === 'tone' ? `, ${SOURCES[by].word}` : '';
+      return `${inWords(row.fired)} fired${source}`;
+    }
+    case 'command':
+      return 'a command, carried out';
+    case 'parent':
+      return `offset from ${inWords(row.parent)}`;
+    case 'plan':
+      return 'ground’s plan';
+    case 'design':
+      return 'prediction';
+    case 'overdue':
+      return 'prediction; it is overdue';
+    default:
+      return 'nothing yet';
+  }
+}
+
 /** Each anchor after its parent. */
-export function anchorTree(
-  store: RunStore,
-  words: Dictionary,
-  rows: readonly AnchorRow[],
-  plan: readonly TimepointRow[],
-  predictedAnchors: Anchors,
-  cutoff: number,
-  changes: readonly Change[],
-): AnchorLine[] {
-  const found = anchorsFound(store, plan, cutoff);
-  const now = anchorsNow(store, plan, predictedAnchors, cutoff, changes);
+export function anchorTree(rows: readonly AnchorRow[], plan: readonly TimepointRow[]): AnchorLine[] {
   const lines: AnchorLine[] = [];
   const add = (row: AnchorRow, depth: number): void => {
-    const change = changes.findLast((each) => each.anchor?.name === row.name)?.anchor;
-    const planned = plan.find(
-      (point) => point.anchor === row.name && point.plannedES !== undefined && point.desiredOffsetS !== undefined,
-    );
-    const parent = lines.find((line) => line.name === row.parent);
-    const reports = words.pick([`${row.name}${LAYOUT.anchorReports}`]);
-    const reported = reports && store.latest(reports.id, cutoff)?.value;
-    const known = ((): Pick<AnchorLine, 'e_s' | 'state' | 'by'> => {
-      if (row.parent === '') return { e_s: undefined, state: 'defined', by: 'zero of the clock on board' };
-      if (reports && reported !== undefined && Number.isFinite(reported))
-        return { e_s: reported - store.entrySclk, state: 'defined', by: `the vehicle, ${reports.name}` };
-      const told = found.get(row.name);
-      if (told) return { e_s: told.e_s, state: 'defined', by: `${inWords(told.name)} fired, ${told.how}` };
-      if (change) return { e_s: now.get(row.name), state: 'defined', by: 'a command, carried out' };
-      if (row.offsetS !== undefined && parent?.e_s !== undefined)
-        return { e_s: parent.e_s + row.offsetS, state: parent.state, by: `offset from ${inWords(parent.name)}` };
-      if (planned)
-        return {
-          e_s: (planned.plannedES as number) - (planned.desiredOffsetS as number),
-          state: 'predicted',
-          by: 'ground’s plan',
-        };
-      const e_s = now.get(row.name);
-      return e_s === undefined
-        ? { e_s, state: 'undefined', by: 'nothing yet' }
-        : { e_s, state: 'predicted', by: 'prediction' };
-    })();
     lines.push({
       id: row.id,
       name: row.name,
       depth,
       parent: row.parent,
-      offset_s: change ? change.by_s + (change.after === '' ? store.entrySclk : 0) : row.offsetS,
-      ...known,
+      offset_s: row.currentOffsetS,
+      e_s: row.eS,
+      state: STATES.find((state) => state === row.state) ?? 'undefined',
+      by: basisWords(row, plan),
     });
     if (depth < rows.length) for (const child of rows) if (child.parent === row.name) add(child, depth + 1);
   };

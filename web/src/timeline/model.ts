@@ -9,6 +9,22 @@ import type { TimepointRow } from '../gen/aeolis/v1/run_pb';
 import { heardOf, lastHeard, speaksOf } from './heard';
 import type { Heard } from './heard';
 
+/** The server's; times in seconds from entry. */
+export interface Prediction {
+  id: number;
+  name: string;
+  /** Of what has fired: as it was predicted before its anchor was heard of. */
+  e_s: number;
+  fired: boolean;
+}
+/** A timepoint that a command would move. */
+export interface Moved {
+  id: number;
+  name: string;
+  from_e_s: number;
+  to_e_s: number;
+}
+
 export interface Mark {
   e_s: number;
   id: number;

@@ -1,66 +1,38 @@
 // SPDX-License-Identifier: Apache-2.0
-// The prediction of the run that is shown, and how the command in the form would move it.
+// The server's prediction of the run that is shown, and how the command in the form would move it.
 import { computed } from '@preact/signals';
-import { fields, chosen } from '../commands/line';
-import { anchors, cutoff, dictionary, shownRun, tick, timepoints } from '../run/shown';
+import { pastRange, shownRun, tick } from '../run/shown';
 import { anchorTree } from './anchors';
 import type { AnchorLine } from './anchors';
-import { changeOf, changesMade, movedBy, predictions } from './predict';
-import type { Moved, Prediction } from './predict';
+import { timelineKnown, timelineQuestion } from './asked';
+import type { Moved, Prediction } from './model';
 
-/** As the design had them when the run began. */
-const predictedAnchors = computed(() =>
-  anchors.value.flatMap(({ name, predictedES }) => (predictedES === undefined ? [] : [[name, predictedES] as const])),
+export const predicted = computed<Prediction[]>(() =>
+  (timelineKnown.value?.list.timepoints ?? []).flatMap(({ id, name, predictedES, heardBy }) =>
+    predictedES === undefined ? [] : [{ id, name, e_s: predictedES, fired: heardBy !== '' }],
+  ),
 );
 
-export const predicted = computed<Prediction[]>(() => {
+const BEHIND_S = 5; // ours: less is not worth a word
+
+/** Seconds from entry of the instant whose knowledge the prediction is of, where what is shown has gone on from there. */
+export const predictedAsOf = computed<number | undefined>(() => {
   void tick.value;
-  const run = shownRun();
-  return run
-    ? predictions(
-        run,
-        timepoints.value,
-        predictedAnchors.value,
-        cutoff.value,
-        changesMade(run, anchors.value, cutoff.value),
-      )
-    : [];
+  const known_e_s = timelineKnown.value?.list.knownAtES;
+  const shown_e_s = pastRange.value?.to ?? shownRun()?.seenE;
+  return known_e_s !== undefined && shown_e_s !== undefined && shown_e_s - known_e_s > BEHIND_S ? known_e_s : undefined;
 });
 
-/** Before it is sent: what it would move. Undefined where the chosen command moves nothing by its kind. */
+/** Before it is sent: what it would move. Undefined where the chosen command moves nothing by its kind, and until the server has said it. */
 export const moved = computed<Moved[] | undefined>(() => {
-  const [run, command] = [shownRun(), chosen.value];
-  if (!run || !command) return undefined;
-  const values = new Map(
-    fields.value.flatMap((field) =>
-      field.value === undefined || field.problem !== undefined ? [] : [[field.argument.name, field.value] as const],
-    ),
-  );
-  const change = changeOf(command.name, values, run, anchors.value);
-  return (
-    change &&
-    movedBy(
-      predicted.value,
-      predictions(run, timepoints.value, predictedAnchors.value, cutoff.value, [
-        ...changesMade(run, anchors.value, cutoff.value),
-        change,
-      ]),
-    )
+  const known = timelineKnown.value;
+  if (!known?.list.commandMoves || known.asked.command !== timelineQuestion.value.command) return undefined;
+  return known.list.timepoints.flatMap(({ id, name, predictedES, movedES }) =>
+    predictedES === undefined || movedES === undefined ? [] : [{ id, name, from_e_s: predictedES, to_e_s: movedES }],
   );
 });
 
 export const anchorLines = computed<AnchorLine[]>(() => {
-  void tick.value;
-  const [run, words] = [shownRun(), dictionary.value];
-  return run && words
-    ? anchorTree(
-        run,
-        words,
-        anchors.value,
-        timepoints.value,
-        predictedAnchors.value,
-        cutoff.value,
-        changesMade(run, anchors.value, cutoff.value),
-      )
-    : [];
+  const list = timelineKnown.value?.list;
+  return list ? anchorTree(list.anchors, list.timepoints) : [];
 });

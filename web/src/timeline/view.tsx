@@ -12,7 +12,8 @@ import { cursor } from '../run/cursor';
 import { fromEntry } from '../run/time';
 import { choice, pan, spanNow, zoom } from '../run/window';
 import type { Choice } from '../run/window';
-import { anchorLines, moved, predicted } from './now';
+import { timelineKnown } from './asked';
+import { anchorLines, moved, predicted, predictedAsOf } from './now';
 import { STATUS, SOURCES, held, silenceStatus } from '../design/status';
 import { conditionLine, conditions, noteWords } from '../waiting/model';
 import type { Line } from '../waiting/model';
@@ -455,6 +456,12 @@ function Detail() {
         </dd>
         <dt>minimum</dt>
         <dd>{offset(row.minimumOffsetS)} after the one before</dd>
+        {!foreseen && row.notPredicted !== '' && !isOver && (
+          <>
+            <dt>not predicted</dt>
+            <dd>{row.notPredicted}</dd>
+          </>
+        )}
         {foreseen && (
           <>
             <dt>{foreseen.fired ? 'was predicted' : 'predicted'}</dt>
@@ -573,6 +580,9 @@ export function Timeline() {
       title="Timeline"
       extra={
         <>
+          {predictedAsOf.value !== undefined && (
+            <span data-testid="predicted-as-of">predicted as of {fromEntry(predictedAsOf.value)}</span>
+          )}
           <span data-testid="timepoints-fired">
             {fired.all} of {timepoints.value.length} timepoints fired{fired.byTone > 0 && `, ■ ${fired.byTone} by tone`}
           </span>
@@ -613,7 +623,7 @@ export function Timeline() {
         testId="timeline-canvas"
         keyOf={() => {
           const span = shown(shownRun());
-          return `${shownRun()?.id} ${withRecording.value} ${tick.value} ${span.from} ${span.to} ${timepoints.value.length} ${cutoff.value} ${selected.value} ${cursor.value} ${JSON.stringify(moved.value)}`;
+          return `${shownRun()?.id} ${withRecording.value} ${tick.value} ${span.from} ${span.to} ${timepoints.value.length} ${cutoff.value} ${selected.value} ${cursor.value} ${JSON.stringify(moved.value)} ${timelineKnown.value?.at_ms}`;
         }}
         draw={drawTimeline}
         onPoint={selectAt}

@@ -4,8 +4,7 @@ import type { Explanation, Condition } from '../gen/aeolis/v1/items_pb';
 import type { TimepointRow } from '../gen/aeolis/v1/run_pb';
 import { staleWords } from '../channels/model';
 import { outcomeWords } from '../clocks/model';
-import { compare, preconditionsOf } from '../commands/model';
-import type { Precondition } from '../commands/model';
+import { compare } from '../commands/model';
 import { LAYOUT } from '../layout';
 import { canContinue } from '../mode/model';
 import { inWords, numberText } from '../run/dictionary';
@@ -14,9 +13,22 @@ import type { CommandRow, RunStore } from '../run/store';
 import { duration, fromEntry } from '../run/time';
 import { heardOf, lastHeard, speaksOf } from '../timeline/heard';
 import { isImportant, nextTimepoint } from '../timeline/model';
+import type { Prediction } from '../timeline/model';
 import { momentsOf } from '../timeline/moments';
 import type { Moment } from '../timeline/moments';
-import type { Prediction } from '../timeline/predict';
+
+/** A precondition of a command that fails, in the server's words. A status that never came is no reason to wait, for flight decides by what it knows. */
+export interface Against {
+  command: string;
+  words: string;
+  value: string;
+}
+/** What the server says of how the run may begin. */
+export interface Told {
+  /** At the vehicle, in seconds from entry: from then on it refuses the last of the first steps. */
+  beginBy_e_s?: number | undefined;
+  against?: Against | undefined;
+}
 
 /** holds: yes, no, or not known. */
 export interface Line {
@@ -96,12 +108,13 @@ export function waitingFor(
   plan: readonly TimepointRow[],
   cutoff: number,
   predicted: readonly Prediction[] = [],
+  told: Told = {},
 ): Waiting {
   if (!store.going && cutoff === Infinity) return ended(store);
   const accepted = stepEvidence(store, LAYOUT.firstSteps[LAYOUT.firstSteps.length - 1], cutoff) !== undefined;
   const heard = heardOf(store, plan, cutoff);
   const last = plan[lastHeard(plan, heard)];
-  if (!last && !accepted) return beginning(store, dictionary, plan, cutoff);
+  if (!last && !accepted) return beginning(store, dictionary, told, cutoff);
   const waited = waitedFor(store, plan, cutoff);
   if (!waited) {
     return {
@@ -205,31 +218,23 @@ function stepEvidence(store: RunStore, step: FirstStep | undefined, cutoff = Inf
 const lastWord = (store: RunStore, row: CommandRow, stage: string, cutoff: number) =>
   row.stages.get(stage)?.findLast((word) => store.knownBy(word.at, cutoff));
 
-/**
- * What the vehicle's own status still says against a step that comes next: it would be refused. A status that never came is no
- * reason to wait, for flight decides by what it knows.
- */
-function statusAgainst(
-  store: RunStore,
-  dictionary: Dictionary,
-  step: FirstStep,
-  cutoff = Infinity,
-): Precondition | undefined {
-  const command = dictionary.command(step.command);
-  return command && preconditionsOf(command, dictionary, store, cutoff).find((condition) => condition.holds === false);
-}
-
 /** `state`: there is nothing under way, it waits on the ground, or it has left. */
 interface Missing {
   number: number;
   step: FirstStep;
   state: 'unsent' | 'on_ground' | 'sent';
   evidence: string; // for how far it has come
-  against: Precondition | undefined;
+  /** What the vehicle's own status still says against it: it would be refused. */
+  against: Against | undefined;
 }
 
 /** The first of the commands that begin a landing which the vehicle has not said to be done. */
-export function missingStep(store: RunStore, dictionary: Dictionary, cutoff = Infinity): Missing | undefined {
+export function missingStep(
+  store: RunStore,
+  dictionary: Dictionary,
+  cutoff = Infinity,
+  against?: Against,
+): Missing | undefined {
   const steps = firstSteps(dictionary);
   const number = steps.findIndex((step) => stepEvidence(store, step, cutoff) === undefined);
   const step = steps[number];
@@ -240,7 +245,7 @@ export function missingStep(store: RunStore, dictionary: Dictionary, cutoff = In
     step,
     state,
     evidence,
-    against: number > 0 && state === 'unsent' ? statusAgainst(store, dictionary, step, cutoff) : undefined,
+    against: number > 0 && state === 'unsent' && against?.command === step.command ? against : undefined,
   };
 }
 
@@ -250,29 +255,27 @@ const ANSWERS = 'It answers by a tone of 10 s, which is decided up to 20 s after
 
 /**
  * That this run can begin no more, and by when it had to: the last of the first steps has not left, and would come later than flight takes it,
- * a light time from now. Said by the clock on top, another light time behind.
+ * a light time from now. Said by the clock on top, another light time behind. `beginBy_e_s`: from then on flight refuses it, by the server's word.
  */
 export function tooLate(
   store: RunStore,
   dictionary: Dictionary,
-  plan: readonly TimepointRow[],
+  beginBy_e_s: number | undefined,
   cutoff = Infinity,
 ): string | undefined {
   const step = firstSteps(dictionary).at(-1);
-  const first_e_s = plan.find((row) => row.plannedES !== undefined)?.plannedES;
-  if (!step || first_e_s === undefined || !store.entryKnown || progress(store, step, cutoff).state === 'sent')
-    return undefined;
-  const latest_e_s = first_e_s - LAYOUT.beginMargin_s - 2 * (store.clocks?.lightTimeS ?? store.run.lightTimeS);
+  if (!step || beginBy_e_s === undefined || progress(store, step, cutoff).state === 'sent') return undefined;
+  const latest_e_s = beginBy_e_s - 2 * (store.clocks?.lightTimeS ?? store.run.lightTimeS);
   if (Math.min(store.seenSclk, cutoff) - store.entrySclk < latest_e_s) return undefined;
-  return `“${step.words}” had to leave by ${fromEntry(latest_e_s)}: the vehicle refuses it from ${LAYOUT.beginMargin_s} s before its first timepoint.`;
+  return `“${step.words}” had to leave by ${fromEntry(latest_e_s)}: the vehicle refuses it from ${fromEntry(beginBy_e_s)} on.`;
 }
 
-function beginning(store: RunStore, dictionary: Dictionary, plan: readonly TimepointRow[], cutoff: number): Waiting {
-  const missing = missingStep(store, dictionary, cutoff);
+function beginning(store: RunStore, dictionary: Dictionary, told: Told, cutoff: number): Waiting {
+  const missing = missingStep(store, dictionary, cutoff, told.against);
   if (!missing) return listening(store, dictionary);
   const { step, state, evidence, against } = missing;
   const past = cutoff !== Infinity; // then there was something to be pressed
-  const late = tooLate(store, dictionary, plan, cutoff);
+  const late = tooLate(store, dictionary, told.beginBy_e_s, cutoff);
   const [title, words] =
     late !== undefined
       ? ['Too late for this run', `${late} ${past ? '' : 'End it and start another.'}`]
@@ -294,7 +297,7 @@ function beginning(store: RunStore, dictionary: Dictionary, plan: readonly Timep
         const done = stepEvidence(store, each, cutoff);
         return { words: each.words, value: done ?? progress(store, each, cutoff).evidence, holds: done !== undefined };
       }),
-      ...(against ? [{ words: against.words, value: against.value, holds: against.holds }] : []),
+      ...(against ? [{ words: against.words, value: against.value, holds: false }] : []),
     ],
   };
 }
@@ -426,7 +429,7 @@ function offsetWords(offset_s: number | undefined): string {
   return offset_s < 0 ? `${numberText(-offset_s)} s before` : `${numberText(offset_s)} s after`;
 }
 
-/** `due`: by the vehicle's word, NaN while it has none itself; `foreseen`: by the timeline's rule over predicted anchors. */
+/** `due`: by the vehicle's word, NaN while it has none itself; `foreseen`: as the server predicts it. */
 function timeLine(
   words: string,
   due_sclk: number | undefined,

@@ -25,6 +25,7 @@ import { useForTest } from '../run/session';
 import { timepoints } from '../run/shown';
 import type { ToWorker } from '../stream/messages';
 import { noteWords, waitingFor } from './model';
+import type { Against } from './model';
 import { WaitingFor } from './view';
 
 const commanded = [
@@ -56,21 +57,13 @@ describe('waiting for', () => {
     expect(noteWords('By the clock (see the plan); 75 kg (M)')).toBe('By the clock (see the plan); 75 kg.');
   });
   it('asks for no command that the vehicle’s status still speaks against', () => {
-    const waiting = waitingFor(
-      aStore([...commanded.slice(0, 1), samples(899, { 5: 0 })]),
-      aDictionary,
-      soonPlan,
-      Infinity,
-    );
-    expect(waiting.title).toBe('Waiting for the vehicle’s status');
-    expect(waiting.lines.at(-1)).toMatchObject({
-      words: 'parameters received',
-      value: 'parameters_received is 0',
-      holds: false,
-    });
-    expect(
-      waitingFor(aStore([...commanded.slice(0, 1), samples(899, { 5: 1 })]), aDictionary, soonPlan, Infinity).title,
-    ).toBe('Press / and type “do edl”');
+    const waiting = (against?: Against) =>
+      waitingFor(aStore(commanded.slice(0, 1)), aDictionary, soonPlan, Infinity, [], { against });
+    const against = { command: 'EDL_DO_EDL', words: 'parameters_received == 1', value: 'is 0' };
+    expect(waiting(against).title).toBe('Waiting for the vehicle’s status');
+    expect(waiting(against).lines.at(-1)).toMatchObject({ words: against.words, value: 'is 0', holds: false });
+    expect(waiting().title).toBe('Press / and type “do edl”');
+    expect(waiting({ ...against, command: 'NO_OP' }).title).toBe('Press / and type “do edl”');
   });
   it('takes a tone for an answer where no packet comes', () => {
     const sent = ['EDL_SET_PARAMETERS', 'EDL_DO_EDL'].map((name, i) =>
@@ -146,7 +139,7 @@ describe('waiting for', () => {
   it('says when it is too late for the run to begin, by when it had to, and asks for nothing to be typed', () => {
     const run = aRun();
     if (run.clocks) run.clocks = { ...run.clocks, eS: -700, sclk: 300, seenSclk: 300 };
-    const late = waitingFor(aStore([], run), aDictionary, aPlan, Infinity);
+    const late = waitingFor(aStore([], run), aDictionary, aPlan, Infinity, [], { beginBy_e_s: -831 });
     expect(late).toMatchObject({
       title: 'Too late for this run',
       late: true,

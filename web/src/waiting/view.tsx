@@ -9,6 +9,7 @@ import { ModeMark } from '../mode/view';
 import { focusPanel } from '../shortcuts/model';
 import { predicted } from '../timeline/now';
 import { waitingFor } from './model';
+import { told } from './told';
 import './style.css';
 
 export function WaitingFor() {
@@ -26,7 +27,7 @@ export function WaitingFor() {
       </section>
     );
   }
-  const waiting = waitingFor(run, words, timepoints.value, cutoff.value, predicted.value);
+  const waiting = waitingFor(run, words, timepoints.value, cutoff.value, predicted.value, told.value);
   const isOld = isLost.value && cutoff.value === Infinity && waiting.kind === 'waiting'; // the clocks stand still, what is compared is of then
   return (
     <section
