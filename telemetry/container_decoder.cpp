@@ -18,6 +18,7 @@ namespace aeolis::telemetry {
 namespace {
 
 using namespace dictionary::xtce;
+namespace xtce = dictionary::xtce;  // telemetry has a Condition of its own
 
 constexpr std::size_t steps_max = 4 * ContainerDecoder::values_max;  // entries read, of a packet
 
@@ -30,14 +31,14 @@ std::optional<long double> number_of(const Datum& datum) {
 }
 
 template <typename Left, typename Right>
-bool compared(const Left& left, Condition::Operator op, const Right& right) {
+bool compared(const Left& left, xtce::Condition::Operator op, const Right& right) {
     switch (op) {
-    case Condition::Operator::equal: return left == right;
-    case Condition::Operator::not_equal: return left != right;
-    case Condition::Operator::less: return left < right;
-    case Condition::Operator::less_or_equal: return left <= right;
-    case Condition::Operator::greater: return left > right;
-    case Condition::Operator::greater_or_equal: return left >= right;
+    case xtce::Condition::Operator::equal: return left == right;
+    case xtce::Condition::Operator::not_equal: return left != right;
+    case xtce::Condition::Operator::less: return left < right;
+    case xtce::Condition::Operator::less_or_equal: return left <= right;
+    case xtce::Condition::Operator::greater: return left > right;
+    case xtce::Condition::Operator::greater_or_equal: return left >= right;
     }
     return false;
 }
@@ -82,14 +83,14 @@ class Reading {
         return true;
     }
 
-    bool holds(const Condition& condition) const {
-        const auto part_holds = [&](const Condition& part) { return holds(part); };
+    bool holds(const xtce::Condition& condition) const {
+        const auto part_holds = [&](const xtce::Condition& part) { return holds(part); };
         switch (condition.form) {
-        case Condition::Form::always: return true;
-        case Condition::Form::all: return std::ranges::all_of(condition.parts, part_holds);
-        case Condition::Form::any: return std::ranges::any_of(condition.parts, part_holds);
-        case Condition::Form::compare: return compare(condition);
-        case Condition::Form::unknown: break;
+        case xtce::Condition::Form::always: return true;
+        case xtce::Condition::Form::all: return std::ranges::all_of(condition.parts, part_holds);
+        case xtce::Condition::Form::any: return std::ranges::any_of(condition.parts, part_holds);
+        case xtce::Condition::Form::compare: return compare(condition);
+        case xtce::Condition::Form::unknown: break;
         }
         return false;
     }
@@ -119,7 +120,7 @@ class Reading {
         return found == values.end() ? nullptr : &*found;
     }
 
-    bool compare(const Condition& condition) const {
+    bool compare(const xtce::Condition& condition) const {
         const DecodedValue* value = value_of(condition.parameter, condition.member);
         if (value == nullptr) return false;
         const Datum& datum = condition.calibrated ? value->calibrated : value->raw;
@@ -190,7 +191,7 @@ class Reading {
                               : read_type(type, name, depth + 1);
         const std::size_t count = contents.values.size() - before;
         latest_[entry.index] = {before, count, name};
-        if (parameter.valid.form != Condition::Form::always && !holds(parameter.valid))
+        if (parameter.valid.form != xtce::Condition::Form::always && !holds(parameter.valid))
             for (auto& value : std::span{contents.values}.subspan(before, count)) value.calibrated = {};
         else if (type.kind == PacketType::Kind::time && count == 1)
             note_time(entry.index, type, contents.values.back());

@@ -13,6 +13,7 @@ namespace aeolis::telemetry {
 namespace {
 
 using namespace dictionary::xtce;
+namespace xtce = dictionary::xtce;  // telemetry has a Condition of its own
 
 constexpr unsigned apid_position_bits = 5, apid_bits = 11;  // [ccsds-133.0-b-2]
 
@@ -173,7 +174,7 @@ class OtherMission::Builder {
         std::size_t position = 0;
         for (const PacketEntry& entry : model_.containers[root].entries) {
             if (entry.what != PacketEntry::What::parameter || entry.from != PacketEntry::From::previous ||
-                entry.when.form != Condition::Form::always || fixed_amount(entry.offset_bits) != 0U ||
+                entry.when.form != xtce::Condition::Form::always || fixed_amount(entry.offset_bits) != 0U ||
                 fixed_amount(entry.count) != 1U)
                 return std::nullopt;
             const PacketType& type = model_.types[model_.parameters[entry.index].type];
@@ -197,14 +198,14 @@ class OtherMission::Builder {
         }
     }
 
-    static std::optional<Apid> asked_for(const Condition& condition, std::size_t parameter) {
-        if (condition.form == Condition::Form::compare && condition.parameter == parameter &&
-            condition.member.empty() && condition.op == Condition::Operator::equal) {
+    static std::optional<Apid> asked_for(const xtce::Condition& condition, std::size_t parameter) {
+        if (condition.form == xtce::Condition::Form::compare && condition.parameter == parameter &&
+            condition.member.empty() && condition.op == xtce::Condition::Operator::equal) {
             const auto value = dictionary::to_integer(condition.value);
             if (value && *value >= 0 && *value < 2048) return Apid{static_cast<std::uint16_t>(*value)};
         }
-        if (condition.form != Condition::Form::all) return std::nullopt;
-        for (const Condition& part : condition.parts)
+        if (condition.form != xtce::Condition::Form::all) return std::nullopt;
+        for (const xtce::Condition& part : condition.parts)
             if (const auto apid = asked_for(part, parameter)) return apid;
         return std::nullopt;
     }

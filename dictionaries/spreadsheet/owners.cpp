@@ -11,14 +11,14 @@
 namespace aeolis::dictionary {
 namespace {
 
-using Kind = OwnerRow::Kind;
-using Lines = std::map<std::pair<Kind, std::string>, unsigned>;
+using OwnedKind = OwnerRow::Kind;
+using Lines = std::map<std::pair<OwnedKind, std::string>, unsigned>;
 
-std::optional<Kind> read_owned_kind(RowReader& cells) {
+std::optional<OwnedKind> read_owned_kind(RowReader& cells) {
     const std::string& kind = cells.text("kind");
-    if (kind == "action") return Kind::action;
-    if (kind == "device") return Kind::device;
-    if (kind == "decision") return Kind::decision;
+    if (kind == "action") return OwnedKind::action;
+    if (kind == "device") return OwnedKind::device;
+    if (kind == "decision") return OwnedKind::decision;
     cells.fault("kind " + in_quotes(kind) + " is none of action, device, decision");
     return std::nullopt;
 }
@@ -31,12 +31,12 @@ const Type* decisions_of(const OwnerContext& context) {
 }
 
 /// What the row owns must be there: an action in the timeline, a decision in the enumeration.
-void check_owned(RowReader& cells, Kind kind, const std::string& name, const OwnerContext& context) {
+void check_owned(RowReader& cells, OwnedKind kind, const std::string& name, const OwnerContext& context) {
     const Type* decisions = decisions_of(context);
-    if (kind == Kind::action && context.timeline != nullptr &&
+    if (kind == OwnedKind::action && context.timeline != nullptr &&
         std::ranges::find(*context.timeline, name, &TimelineRow::action) == context.timeline->end())
         cells.fault("no timepoint has an action of that name");
-    if (kind == Kind::decision && decisions != nullptr &&
+    if (kind == OwnedKind::decision && decisions != nullptr &&
         std::ranges::find(decisions->enumeration, name, &EnumValue::label) == decisions->enumeration.end())
         cells.fault("is no label of the enumeration 'Decision'");
 }
@@ -44,15 +44,15 @@ void check_owned(RowReader& cells, Kind kind, const std::string& name, const Own
 /// A finding at the sheet's end for each that no row owns.
 void check_missing(const OwnerContext& context, const Lines& lines, unsigned last_line, Findings& findings) {
     std::vector<std::string> missing;
-    const auto need = [&](Kind kind, const char* word, const std::string& name) {
+    const auto need = [&](OwnedKind kind, const char* word, const std::string& name) {
         const std::string text = std::string{word} + " " + in_quotes(name) + " has no owner";
         if (!name.empty() && !lines.contains({kind, name}) && std::ranges::find(missing, text) == missing.end())
             missing.push_back(text);
     };
     if (context.timeline != nullptr)
-        for (const TimelineRow& row : *context.timeline) need(Kind::action, "action", row.action);
+        for (const TimelineRow& row : *context.timeline) need(OwnedKind::action, "action", row.action);
     if (const Type* decisions = decisions_of(context))
-        for (const EnumValue& label : decisions->enumeration) need(Kind::decision, "decision", label.label);
+        for (const EnumValue& label : decisions->enumeration) need(OwnedKind::decision, "decision", label.label);
     for (const std::string& text : missing) findings.add(last_line, text);
 }
 

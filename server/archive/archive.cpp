@@ -28,10 +28,6 @@ Result<void> set_up_writer(sqlite::Database& database) {
                                 .c_str());
 }
 
-std::int64_t number(std::uint64_t value) {
-    return static_cast<std::int64_t>(value);
-}
-
 std::filesystem::path beside(std::filesystem::path file, const char* suffix) {
     return file += suffix;
 }
@@ -165,7 +161,7 @@ Result<void> Archive::State::mark_interrupted() {
         if (!row) return row.error();
         const Sequence last = last_key.is_null(0) ? 0 : sequence_of(last_key.integer(0));
         last_key.reset();
-        mark->bind(1, std::int64_t{run.value}).bind(2, number(last));
+        mark->bind(1, std::int64_t{run.value}).bind(2, sqlite::number(last));
         if (auto done = mark->run(); !done) return done;
     }
     return transaction->commit();
@@ -222,7 +218,7 @@ Result<void> Archive::State::add_dictionary(const dictionary::Dictionary& dictio
     for (std::size_t i = 0; i < dictionary.packets.size(); ++i) {
         const auto& packet = dictionary.packets[i];
         packet_row->bind(1, id)
-            .bind(2, number(i))
+            .bind(2, sqlite::number(i))
             .bind(3, std::string_view(packet.name))
             .bind(4, std::int64_t{packet.apid.value});
         if (auto done = packet_row->run(); !done) return done;
@@ -245,8 +241,8 @@ Result<RunId> Archive::State::add_run(const RunStart& start, const dictionary::D
         .bind(2, std::string_view(start.scenario))
         .bind(3, std::string_view(start.title))
         .bind(4, std::string_view(start.venue))
-        .bind(5, number(start.seed))
-        .bind(6, number(start.case_number))
+        .bind(5, sqlite::number(start.seed))
+        .bind(6, sqlite::number(start.case_number))
         .bind(7, start.pace)
         .bind(8, std::string_view(start.started))
         .bind(9, start.start.seconds)
@@ -264,7 +260,7 @@ Result<RunId> Archive::State::add_run(const RunStart& start, const dictionary::D
     auto anchor = database.prepare("INSERT INTO run_anchors VALUES (?,?,?,?)");
     if (!anchor) return anchor.error();
     for (std::size_t i = 0; i < dictionary.anchors.size(); ++i) {
-        anchor->bind(1, *next).bind(2, number(i)).bind(3, std::string_view(dictionary.anchors[i].name));
+        anchor->bind(1, *next).bind(2, sqlite::number(i)).bind(3, std::string_view(dictionary.anchors[i].name));
         if (const auto predicted =
                 i < dictionary.predicted_anchor_e_s.size() ? dictionary.predicted_anchor_e_s[i] : std::nullopt)
             anchor->bind(4, *predicted);
@@ -319,7 +315,7 @@ Result<Annotation> Archive::annotate(RunId run, Annotation annotation) {
     auto row =
         state_->database.prepare("UPDATE runs SET last_seq = ?2 WHERE run = ?1 AND state <> 'running' RETURNING run");
     if (!row) return row.error();
-    row->bind(1, std::int64_t{run.value}).bind(2, number(seq));
+    row->bind(1, std::int64_t{run.value}).bind(2, sqlite::number(seq));
     auto updated = row->step();
     if (!updated) return updated.error();
     if (!*updated) return Error{"run " + std::to_string(run.value) + ": there is none that is over"};
@@ -342,7 +338,7 @@ Result<void> Archive::State::end_run(RunId run, const RunEnd& end, Sequence last
         .bind(3, std::string_view(end.reason))
         .bind(4, std::string_view(end.digest))
         .bind(5, std::string_view(end.ended))
-        .bind(6, number(std::max(stored, last_seq)));
+        .bind(6, sqlite::number(std::max(stored, last_seq)));
     return row->run();
 }
 

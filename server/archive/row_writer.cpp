@@ -19,10 +19,6 @@ Result<void> each(const Records& records, Write write) {
     return {};
 }
 
-std::int64_t number(std::uint64_t value) {
-    return static_cast<std::int64_t>(value);
-}
-
 std::string insert_sql(const char* table, std::size_t columns) {
     std::string sql = std::string("INSERT INTO ") + table + " VALUES (?";
     for (std::size_t i = 1; i < columns; ++i) sql += ",?";
@@ -157,10 +153,10 @@ Result<void> RowWriter::segment(RunId run, const SegmentRecord& record, std::int
         .bind(2, std::int64_t{run.value})
         .bind(3, std::int64_t{record.packet})
         .bind(4, static_cast<std::int64_t>(record.source))
-        .bind(5, number(record.position))
-        .bind(6, number(record.first_unit))
-        .bind(7, number(record.last_unit))
-        .bind(8, number(record.sclk_s.size()))
+        .bind(5, sqlite::number(record.position))
+        .bind(6, sqlite::number(record.first_unit))
+        .bind(7, sqlite::number(record.last_unit))
+        .bind(8, sqlite::number(record.sclk_s.size()))
         .bind(9, first)
         .bind(10, last)
         .bind_octets(11, codec_.pack(record.sclk_s));
@@ -178,9 +174,9 @@ Result<void> RowWriter::block(RunId run, const PyramidRecord& record, std::int64
         .bind(2, std::int64_t{record.packet})
         .bind(3, static_cast<std::int64_t>(record.source))
         .bind(4, std::int64_t{record.level})
-        .bind(5, number(record.position))
+        .bind(5, sqlite::number(record.position))
         .bind(6, number_of_block)
-        .bind(7, number(nodes))
+        .bind(7, sqlite::number(nodes))
         .bind(8, std::ranges::min(record.first_sclk_s))
         .bind(9, std::ranges::max(record.last_sclk_s))
         .bind_octets(10, codec_.pack(spans));
@@ -219,19 +215,21 @@ Result<void> RowWriter::column(std::int64_t key, const SegmentRecord& record, st
 }
 
 Result<void> RowWriter::request(RunId run, const RequestRecord& record) {
-    request_.bind(1, std::int64_t{run.value}).bind(2, number(record.cycle)).bind(3, std::string_view(record.request));
+    request_.bind(1, std::int64_t{run.value})
+        .bind(2, sqlite::number(record.cycle))
+        .bind(3, std::string_view(record.request));
     return request_.run();
 }
 
 Result<void> RowWriter::totals(RunId run, const RecordingTotals& totals) {
     totals_.bind(1, std::int64_t{run.value})
-        .bind(2, number(totals.recorded))
-        .bind(3, number(totals.recorded_octets))
-        .bind(4, number(totals.realtime))
-        .bind(5, number(totals.realtime_not_recorded))
-        .bind(6, number(totals.realtime_differs))
-        .bind(7, number(totals.never_seen_live))
-        .bind(8, number(totals.not_decoded))
+        .bind(2, sqlite::number(totals.recorded))
+        .bind(3, sqlite::number(totals.recorded_octets))
+        .bind(4, sqlite::number(totals.realtime))
+        .bind(5, sqlite::number(totals.realtime_not_recorded))
+        .bind(6, sqlite::number(totals.realtime_differs))
+        .bind(7, sqlite::number(totals.never_seen_live))
+        .bind(8, sqlite::number(totals.not_decoded))
         .bind(9, totals.progress);
     return totals_.run();
 }
@@ -240,14 +238,14 @@ Result<void> RowWriter::link_totals(RunId run, const LinkTotals& totals) {
     const telemetry::LinkCounters& counted = totals.counters;
     link_totals_.bind(1, std::int64_t{run.value})
         .bind(2, std::string_view(totals.link))
-        .bind(3, number(counted.octets))
-        .bind(4, number(counted.frames))
-        .bind(5, number(counted.bad_crc))
-        .bind(6, number(counted.bad_header))
-        .bind(7, number(counted.skipped_octets))
-        .bind(8, number(counted.gaps))
-        .bind(9, number(counted.missing_frames))
-        .bind(10, number(counted.repeated_frames))
+        .bind(3, sqlite::number(counted.octets))
+        .bind(4, sqlite::number(counted.frames))
+        .bind(5, sqlite::number(counted.bad_crc))
+        .bind(6, sqlite::number(counted.bad_header))
+        .bind(7, sqlite::number(counted.skipped_octets))
+        .bind(8, sqlite::number(counted.gaps))
+        .bind(9, sqlite::number(counted.missing_frames))
+        .bind(10, sqlite::number(counted.repeated_frames))
         .bind(11, totals.octets_per_s);
     return link_totals_.run();
 }

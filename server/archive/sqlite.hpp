@@ -18,6 +18,11 @@ struct sqlite3_stmt;
 // SQLite's C interface with ownership, types and Result. Nothing of the archive's own rules is here.
 namespace aeolis::archive::sqlite {
 
+/// A count or number as SQLite keeps it.
+inline std::int64_t number(std::uint64_t value) {
+    return static_cast<std::int64_t>(value);
+}
+
 /// A prepared statement. Bound text and octets are not copied: they must live until the next reset().
 class Statement {
   public:

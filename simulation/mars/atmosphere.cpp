@@ -8,7 +8,7 @@
 namespace aeolis::simulation {
 namespace {
 
-struct Row {
+struct AtmosphereRow {
     double altitude_m;  ///< above the landing radius
     double temperature_K;
     double density_kgm3;
@@ -16,7 +16,7 @@ struct Row {
 
 // clang-format off
 /// Gale in the season of the landing, from a general circulation model. [gale-atmosphere]
-constexpr std::array<Row, 35> gale{{
+constexpr std::array<AtmosphereRow, 35> gale{{
     {0,        194.541, 0.0195581    },
     {7352.94,  218.893, 0.00938476   },
     {14705.9,  200.782, 0.00518105   },
@@ -85,8 +85,8 @@ Atmosphere::Atmosphere(std::span<const DensityScale> scales) {
         const double altitude_m = bottom_m + spacing_m * static_cast<double>(i);
         std::size_t above = 1;
         while (above + 1 < gale.size() && altitude_m > gale[above].altitude_m) ++above;
-        const Row& low = gale[above - 1];
-        const Row& high = gale[above];
+        const AtmosphereRow& low = gale[above - 1];
+        const AtmosphereRow& high = gale[above];
         const double part = (altitude_m - low.altitude_m) / (high.altitude_m - low.altitude_m);
         const double log_low = std::log(low.density_kgm3);
         log_density_[i] =

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::array<double, 6> table_angles_deg{0.0, 2.0, 4.0, 6.0, 11.0, 16.0};
 
-struct Row {
+struct CoefficientRow {
     double mach;
     std::array<double, 6> lift;  ///< magnitude; the source gives it a sign by its axes
     std::array<double, 6> drag;
@@ -20,7 +20,7 @@ struct Row {
 
 // clang-format off
 /// 70° sphere-cone against Mach and total angle of attack. [sphere-cone-aerodynamics]
-constexpr std::array<Row, 33> table{{
+constexpr std::array<CoefficientRow, 33> table{{
     {0.4,  {{0, 0.0362, 0.0729, 0.1051, 0.1894, 0.2672}}, {{1.0441, 1.0464, 1.0453, 1.0398, 1.0311, 1.0112}}},
     {0.6,  {{0, 0.0382, 0.0764, 0.1096, 0.1955, 0.2758}}, {{1.0943, 1.0949, 1.0903, 1.0926, 1.0779, 1.0562}}},
     {0.8,  {{0, 0.0407, 0.0785, 0.1172, 0.2071, 0.2904}}, {{1.1618, 1.1633, 1.1569, 1.1601, 1.1532, 1.1237}}},
@@ -116,8 +116,8 @@ AeroCoefficients aeroshell_coefficients(double mach, double angle_of_attack_rad)
         const double value = by_angle(low, used_deg, slope_beyond);
         return value + at.part * (by_angle(high, used_deg, slope_beyond) - value);
     };
-    const Row& low = table[at.below];
-    const Row& high = table[at.below + 1];
+    const CoefficientRow& low = table[at.below];
+    const CoefficientRow& high = table[at.below + 1];
     AeroCoefficients coefficients{between(low.drag, high.drag, 1.0),
                                   lift_of_flight * between(low.lift, high.lift, lift_slope_beyond_table)};
     if (angle_deg > largest_lift_angle_deg)

@@ -127,7 +127,7 @@ double sum_of(const std::vector<ChainStep>& chain) {
 
 }  // namespace
 
-TEST_CASE("the shipped timeline's explicit constraints imply every required one", "[timeline][R19]") {
+TEST_CASE("the shipped timeline's explicit constraints imply every required one", "[timeline][R19][release]") {
     const Loaded loaded = load(tests::shipped_mission);
     REQUIRE(loaded.dictionary);
     const Dictionary& d = *loaded.dictionary;
@@ -146,7 +146,7 @@ TEST_CASE("the shipped timeline's explicit constraints imply every required one"
 }
 
 TEST_CASE("a violation planted in the spreadsheet is found, with a schedule that keeps every explicit constraint",
-          "[timeline][R19]") {
+          "[timeline][R19][release]") {
     struct Plant {
         const char* file;
         const char* find;
@@ -244,7 +244,7 @@ TEST_CASE("a timepoint with an undefined offset may fire at any time after its p
 }
 
 TEST_CASE("an analysis ends when it is asked to, says so, and proves nothing that it has not looked at",
-          "[timeline][R19]") {
+          "[timeline][R19][release]") {
     unsigned asked = 0;
     const auto whole = analyse_timeline(tests::shipped_dictionary(), [&asked] { return ++asked == 0; });
     CHECK_FALSE(whole.stopped);

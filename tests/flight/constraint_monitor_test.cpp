@@ -198,7 +198,7 @@ TEST_CASE("the monitor takes its moments from the timeline: anchors, the trigger
     CHECK(told(f.recorder) == Told{1, 4.0, 1.0});
 }
 
-TEST_CASE("a nominal landing judges every shipped sub-constraint and finds none violated", "[timeline][R39]") {
+TEST_CASE("a nominal landing judges every shipped sub-constraint and finds none violated", "[timeline][R39][release]") {
     Flight flight{tests::gale_scenario(900.0)};
     flight.land();
     CHECK(flight.world.outcome() == simulation::Outcome::touchdown);
@@ -207,7 +207,8 @@ TEST_CASE("a nominal landing judges every shipped sub-constraint and finds none 
     CHECK(flight.judged == constraint_count);
 }
 
-TEST_CASE("a violation planted by command is reported, explained, and changes nothing else", "[timeline][R39]") {
+TEST_CASE("a violation planted by command is reported, explained, and changes nothing else",
+          "[timeline][R39][release]") {
     Flight nominal{tests::gale_scenario(900.0)};
     Flight planted{tests::gale_scenario(900.0)};
     // Safed 3 s after the stage goes, says constraints.csv; by command it is 4 s. The next timepoint is 14 s away.

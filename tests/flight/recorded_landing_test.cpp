@@ -119,7 +119,7 @@ TEST_CASE("all that a landing radiates is in its recording, bit for bit, and not
     CHECK(flown().counters.unexpected_messages == 0);
 }
 
-TEST_CASE("UHF carries channels, events and products, chosen by the state of the vehicle", "[edl_comm][R30]") {
+TEST_CASE("UHF carries channels, events and products, chosen by the state of the vehicle", "[edl_comm][R30][release]") {
     Ground ground;
     std::map<EdlPhase, std::map<std::string, int>> live;  // by the phase in which it was recorded
     std::map<double, EdlPhase> phases{{0.0, EdlPhase::pre_edl}};
@@ -199,7 +199,8 @@ TEST_CASE("the products of a landing are what flight put in: every firing, and t
         if (identity.id <= 2) CHECK(product.content(identity));
 }
 
-TEST_CASE("a landing tells what holds its decisions, live and without flooding the link", "[explanation][R38]") {
+TEST_CASE("a landing tells what holds its decisions, live and without flooding the link",
+          "[explanation][R38][release]") {
     Ground ground;
     std::map<std::string, int> held;
     std::map<double, int> in_second;
