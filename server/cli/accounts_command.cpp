@@ -3,12 +3,21 @@
 #include "server/access/this_user.hpp"
 #include "server/base/wall_clock.hpp"
 #include "server/cli/commands.hpp"
+#include "server/cli/options.hpp"
 #include "server/cli/shipped_paths.hpp"
 
 #include <fmt/format.h>
+#include <memory>
 
 namespace aeolis::server {
+namespace {
 
+struct AccountsOptions {
+    std::filesystem::path file;
+    std::string user;
+};
+
+/// Prints users and tokens of a file of accounts.
 int accounts_list(const AccountsOptions& options) {
     const auto accounts = read_accounts(options.file);
     if (!accounts) return failed("accounts list: " + accounts.error().message);
@@ -21,6 +30,7 @@ int accounts_list(const AccountsOptions& options) {
     return 0;
 }
 
+/// Gives a user a new password, or makes an administrator of that name; prints the password.
 int accounts_reset(const AccountsOptions& options) {
     if (const auto named = check_name(options.user); !named)
         return failed("accounts reset: --user: " + named.error().message, 2);
@@ -40,6 +50,23 @@ int accounts_reset(const AccountsOptions& options) {
     fmt::print("{} '{}': {}\n  It only lets its owner choose another.\n", fresh ? "a new administrator," : "user",
                options.user, password);
     return 0;
+}
+
+}  // namespace
+
+void add_accounts_command(CLI::App& program, int& exit_code) {
+    const auto options = std::make_shared<AccountsOptions>();
+    auto& command = *program.add_subcommand("accounts", "lists and resets the accounts of a server");
+    command.require_subcommand(1);
+    auto& list = *command.add_subcommand("list", "prints users and tokens with their roles");
+    list.add_option("--accounts", options->file, "the file")->required()->envname("AEOLIS_ACCOUNTS");
+    list.callback([options, &exit_code] { exit_code = accounts_list(*options); });
+
+    auto& reset = *command.add_subcommand(
+        "reset", "gives a user a new password, or makes a new administrator; a running server takes it over");
+    reset.add_option("--accounts", options->file, "the file")->required()->envname("AEOLIS_ACCOUNTS");
+    reset.add_option("--user", options->user, "the name")->required();
+    reset.callback([options, &exit_code] { exit_code = accounts_reset(*options); });
 }
 
 }  // namespace aeolis::server

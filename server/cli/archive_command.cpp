@@ -4,15 +4,28 @@
 #include "server/base/wall_clock.hpp"
 #include "server/cli/commands.hpp"
 #include "server/cli/long_work.hpp"
+#include "server/cli/options.hpp"
 #include "server/cli/recorded_words.hpp"
 #include "server/cli/shipped_paths.hpp"
 #include "server/pipeline/derivation.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <memory>
 
 namespace aeolis::server {
 namespace {
+
+struct PruneOptions {
+    std::filesystem::path archive = default_archive;
+    std::vector<std::uint32_t> runs;
+    std::optional<std::size_t> keep;  ///< the newest so many stay
+    bool yes = false;                 ///< else it only says what it would do
+};
+
+struct BackupOptions {
+    std::filesystem::path archive = default_archive, copy;
+};
 
 int failed_at(const char* command, const Error& error) {
     return failed(fmt::format("archive {}: {}", command, error.message));
@@ -56,8 +69,7 @@ Result<std::vector<archive::RunLine>> chosen(const PruneOptions& options, const 
     return runs;
 }
 
-}  // namespace
-
+/// 0 when nothing is wrong.
 int archive_verify(const ArchiveOptions& options) {
     int exit_code = 0;
     const auto words = recorded_words(options.shared.dictionary, options.xtce, exit_code);
@@ -76,6 +88,7 @@ int archive_verify(const ArchiveOptions& options) {
     return found->faults.empty() ? 0 : 1;
 }
 
+/// 0 when every run was made again.
 int archive_rebuild(const ArchiveOptions& options) {
     int exit_code = 0;
     const auto words = recorded_words(options.shared.dictionary, options.xtce, exit_code);
@@ -134,6 +147,70 @@ int archive_backup(const std::filesystem::path& file, const std::filesystem::pat
     fmt::print("{}: {} octets, all of {} as it was\n", copy.string(), std::filesystem::file_size(copy, ignored),
                file.string());
     return 0;
+}
+
+void add_archive_verify(CLI::App& archive, int& exit_code) {
+    const auto options = std::make_shared<ArchiveOptions>();
+    auto& command =
+        *archive.add_subcommand("verify", "checks the file's structure, its sequence numbers, and every derived "
+                                          "row against the packets; a line a fault; exit code 1 when there is one");
+    add_archive_and_words(command, *options);
+    command.add_option("--run", options->run, "only this run")->check(whole_number());
+    command.callback([options, &exit_code] { exit_code = archive_verify(*options); });
+}
+
+void add_archive_rebuild(CLI::App& archive, int& exit_code) {
+    const auto options = std::make_shared<ArchiveOptions>();
+    auto& command =
+        *archive.add_subcommand("rebuild", "derives everything again from the packets, in place of what is there; "
+                                           "not while another program writes");
+    add_archive_and_words(command, *options);
+    command.add_option("--run", options->run, "only this run")->check(whole_number());
+    command.callback([options, &exit_code] { exit_code = archive_rebuild(*options); });
+}
+
+void add_archive_prune(CLI::App& archive, int& exit_code) {
+    const auto options = std::make_shared<PruneOptions>();
+    auto& command = *archive.add_subcommand("prune", "removes runs; without --yes it only names them");
+    add_archive_file(command, options->archive);
+    auto* runs = command.add_option("--run", options->runs, "numbers, separated by commas")
+                     ->delimiter(',')
+                     ->check(whole_number());
+    command.add_option("--keep", options->keep, "number of the newest runs to keep; all others are removed")
+        ->check(whole_number())
+        ->excludes(runs);
+    command.add_flag("--yes", options->yes, "remove them");
+    command.callback([options, &exit_code] { exit_code = archive_prune(*options); });
+}
+
+void add_archive_vacuum(CLI::App& archive, int& exit_code) {
+    const auto file = std::make_shared<std::filesystem::path>(default_archive);
+    auto& command = *archive.add_subcommand(
+        "vacuum", "returns the space of pruned runs to the disk; needs as much again meanwhile");
+    add_archive_file(command, *file);
+    command.callback([file, &exit_code] { exit_code = archive_vacuum(*file); });
+}
+
+void add_archive_backup(CLI::App& archive, int& exit_code) {
+    const auto options = std::make_shared<BackupOptions>();
+    auto& command = *archive.add_subcommand(
+        "backup", "copies the whole archive, as it is now, into a new file, also while another program writes");
+    add_archive_file(command, options->archive);
+    command.add_option("--out", options->copy, "new file")->required();
+    command.callback([options, &exit_code] { exit_code = archive_backup(options->archive, options->copy); });
+}
+
+}  // namespace
+
+void add_archive_command(CLI::App& program, int& exit_code) {
+    auto& archive = *program.add_subcommand("archive", "checks and maintains an archive");
+    archive.require_subcommand(1);
+    add_archive_verify(archive, exit_code);
+    add_archive_rebuild(archive, exit_code);
+    add_archive_samples(archive, exit_code);
+    add_archive_prune(archive, exit_code);
+    add_archive_vacuum(archive, exit_code);
+    add_archive_backup(archive, exit_code);
 }
 
 }  // namespace aeolis::server

@@ -4,14 +4,29 @@
 #include "server/campaign/campaign_report.hpp"
 #include "server/cli/commands.hpp"
 #include "server/cli/long_work.hpp"
+#include "server/cli/options.hpp"
 #include "server/cli/shipped_paths.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <memory>
 #include <thread>
 
 namespace aeolis::server {
 namespace {
+
+constexpr std::uint64_t campaign_cases_max = 10'000'000;  // chosen: a month on many processors
+constexpr unsigned campaign_jobs_max = 256;               // chosen: each holds a landing
+
+struct CampaignOptions {
+    SharedOptions shared;
+    std::string scenario;
+    std::uint64_t cases = 0, seed = 1;
+    unsigned jobs = 0;                             ///< 0: one a processor
+    std::optional<std::filesystem::path> results;  ///< else run-data/campaign-SCENARIO-SEED.db
+    std::optional<std::filesystem::path> plots;    ///< a directory
+    bool json = false;
+};
 
 unsigned jobs_of(const CampaignOptions& options) {
     return options.jobs > 0 ? options.jobs : std::max(1U, std::thread::hardware_concurrency());
@@ -30,8 +45,7 @@ Result<campaign::Call> flown(const CampaignOptions& options, const campaign::Ord
     return campaign::Call{*progress, order.jobs, options.scenario, order.file.string()};
 }
 
-}  // namespace
-
+/// 0 when all cases are flown and each ended in touchdown.
 int run_campaign(const CampaignOptions& options) {
     const auto ready = flyable(options.shared, options.scenario);
     if (!ready) return failed(ready.error().message);
@@ -62,6 +76,31 @@ int run_campaign(const CampaignOptions& options) {
         if (const auto drawn = campaign::write_plots(*results, *summary, *options.plots); !drawn)
             return failed(drawn.error().message);
     return summary->kept == summary->cases && summary->failed == 0 ? 0 : 1;
+}
+
+}  // namespace
+
+void add_campaign_command(CLI::App& program, int& exit_code) {
+    const auto options = std::make_shared<CampaignOptions>();
+    auto& command = *program.add_subcommand(
+        "campaign",
+        "flies dispersed landings and prints statistics; continues where an earlier call ended; exit code 1 when a "
+        "case did not end in touchdown");
+    command.add_option("--scenario", options->scenario, "a file, or the name of a shipped one")->required();
+    command.add_option("--cases", options->cases, "cases 1 … N, each as rehearse --case flies it")
+        ->required()
+        ->check(whole_number())
+        ->check(CLI::Range(std::uint64_t{1}, campaign_cases_max));
+    command.add_option("--seed", options->seed, "seed of the errors")->check(whole_number())->capture_default_str();
+    command.add_option("--jobs", options->jobs, "cases at a time; one a processor if left out")
+        ->check(whole_number())
+        ->check(CLI::Range(1U, campaign_jobs_max));
+    command.add_option("--results", options->results,
+                       "SQLite file of the cases; run-data/campaign-SCENARIO-SEED.db if left out");
+    command.add_option("--plots", options->plots, "write pictures (SVG) into this directory");
+    command.add_flag("--json", options->json, "print one JSON object");
+    add_shared(command, options->shared);
+    command.callback([options, &exit_code] { exit_code = run_campaign(*options); });
 }
 
 }  // namespace aeolis::server

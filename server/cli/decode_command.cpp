@@ -4,6 +4,7 @@
 #include "dictionaries/xtce/packet_model.hpp"
 #include "server/base/csv_text.hpp"
 #include "server/cli/commands.hpp"
+#include "server/cli/options.hpp"
 #include "server/cli/shipped_paths.hpp"
 #include "server/cli/xtce_file.hpp"
 #include "telemetry/container_decoder.hpp"
@@ -13,11 +14,21 @@
 #include <fmt/format.h>
 #include <fstream>
 #include <map>
+#include <memory>
 #include <set>
 #include <vector>
 
 namespace aeolis::server {
 namespace {
+
+struct DecodeOptions {
+    std::filesystem::path xtce, packets;
+    DownlinkForm format{};
+    std::optional<std::filesystem::path> clock_kernel,
+        leap_seconds;                      ///< SPICE text kernels: both, or leap seconds alone
+    std::optional<std::size_t> partition;  ///< of the clock
+    bool csv = false;
+};
 
 constexpr std::size_t piece_octets = std::size_t{1} << 20U;
 
@@ -117,8 +128,7 @@ bool print_losses(const telemetry::PacketSource& source, const Printed& printed)
            printed.problems().empty();
 }
 
-}  // namespace
-
+/// Prints any mission's packets by its XTCE file; 0 when every octet was decoded.
 int decode(const DecodeOptions& options) {
     if (!telemetry::downlink_format(options.format.name))
         return failed(packet_source(options.format, {}).error().message, 2);
@@ -154,6 +164,36 @@ int decode(const DecodeOptions& options) {
     take();
     printed.print_kinds();
     return print_losses(*source, printed) ? 0 : 1;
+}
+
+}  // namespace
+
+void add_decode_command(CLI::App& program, int& exit_code) {
+    const auto options = std::make_shared<DecodeOptions>();
+    auto& command = *program.add_subcommand(
+        "decode", "decodes any mission's packets by its XTCE file; exit code 1 when an octet could not be decoded");
+    command.add_option("--xtce", options->xtce, "the mission's XTCE file, version 1.0 to 1.3")->required();
+    command.add_option("--packets", options->packets, "file of packets or frames")->required();
+    add_stream_format(command, options->format);
+    auto* leap_seconds = command.add_option(
+        "--lsk", options->leap_seconds, "leap seconds (SPICE text kernel): turns packets' GPS or TAI time into UTC");
+    auto* clock_kernel =
+        command
+            .add_option("--sclk", options->clock_kernel,
+                        "the spacecraft's clock (SPICE text kernel, type 1): turns packets' time into SCET, "
+                        "UTC as 2012-219T05:17:57.123")
+            ->needs(leap_seconds);
+    command
+        .add_option("--partition", options->partition,
+                    "partition of the clock; the first that holds the count if left out")
+        ->check(whole_number())
+        ->needs(clock_kernel);
+    command.add_flag("--csv", options->csv,
+                     "print a row a packet: index, APID, count, time, then NAME=RAW|CALIBRATED each. Time is the first "
+                     "absolute time in the packet, seconds since its epoch (UNIX: as UTC). Where the XTCE file "
+                     "has none, it is the two numbers behind the primary header if their names contain 'coarse' "
+                     "and 'fine': counts and their binary fraction (CUC). Otherwise it is empty");
+    command.callback([options, &exit_code] { exit_code = decode(*options); });
 }
 
 }  // namespace aeolis::server

@@ -2,13 +2,21 @@
 #include "dictionaries/autocoder/state_diagram.hpp"
 #include "dictionaries/mission_files.hpp"
 #include "server/cli/commands.hpp"
+#include "server/cli/options.hpp"
 #include "server/cli/shipped_paths.hpp"
 
 #include <cstdio>
 #include <fmt/format.h>
 #include <fstream>
+#include <memory>
 
 namespace aeolis::server {
+namespace {
+
+struct DictionaryOptions {
+    std::filesystem::path directory = SharedOptions{}.dictionary;
+    std::filesystem::path out;  ///< empty: the standard output
+};
 
 int dictionary_check(const std::filesystem::path& directory) {
     std::error_code error;
@@ -25,6 +33,7 @@ int dictionary_check(const std::filesystem::path& directory) {
     return 0;
 }
 
+/// Writes the whole dictionary as one XTCE file, to `out` or, where it is empty, to the standard output.
 int dictionary_export(const std::filesystem::path& directory, const std::filesystem::path& out) {
     std::error_code error;
     if (!std::filesystem::exists(directory, error))
@@ -43,11 +52,38 @@ int dictionary_export(const std::filesystem::path& directory, const std::filesys
     return file ? 0 : failed("dictionary export: " + out.string() + " cannot be written");
 }
 
+/// Prints the state machines as diagrams.
 int dictionary_diagram(const std::filesystem::path& directory) {
     const auto dictionary = loaded_dictionary(directory);
     if (!dictionary) return 1;
     fmt::print("{}", dictionary::autocoder::state_diagrams(*dictionary));
     return 0;
+}
+
+}  // namespace
+
+void add_dictionary_command(CLI::App& program, int& exit_code) {
+    const auto options = std::make_shared<DictionaryOptions>();
+    auto& command = *program.add_subcommand("dictionary", "checks and exports a mission's dictionary");
+    command.require_subcommand(1);
+    const auto add_directory = [&](CLI::App& subcommand, const char* description) {
+        subcommand.add_option("DIR", options->directory, description)->capture_default_str();
+    };
+    auto& check = *command.add_subcommand("check", "checks every rule, and names each error with file and line");
+    add_directory(check, "the dictionary's directory, or a file that export wrote");
+    check.callback([options, &exit_code] { exit_code = dictionary_check(options->directory); });
+
+    auto& diagram = *command.add_subcommand("diagram", "prints the state machines as diagrams (Mermaid)");
+    add_directory(diagram, "the dictionary's directory");
+    diagram.callback([options, &exit_code] { exit_code = dictionary_diagram(options->directory); });
+
+    auto& exported = *command.add_subcommand(
+        "export",
+        "writes the whole dictionary as one XTCE 1.2 file, the spreadsheets as ancillary data; it can be given "
+        "wherever a dictionary's directory can");
+    add_directory(exported, "the dictionary's directory, or such a file");
+    exported.add_option("--out", options->out, "file to write; standard output if left out");
+    exported.callback([options, &exit_code] { exit_code = dictionary_export(options->directory, options->out); });
 }
 
 }  // namespace aeolis::server

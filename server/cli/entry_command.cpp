@@ -1,12 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/cli/commands.hpp"
+#include "server/cli/options.hpp"
 #include "server/cli/shipped_paths.hpp"
 #include "simulation/entry_reference.hpp"
 
 #include <fmt/format.h>
+#include <memory>
 
 namespace aeolis::server {
+namespace {
 
+struct EntryReferenceOptions {
+    SharedOptions shared;
+    std::string scenario;
+};
+
+/// Prints the tables that entry guidance follows in a scenario, as CSV.
 int entry_reference(const EntryReferenceOptions& options) {
     const auto scenario = scenario_given(options.scenario, options.shared.scenarios);
     if (!scenario) return failed(scenario.error().message);
@@ -20,6 +29,19 @@ int entry_reference(const EntryReferenceOptions& options) {
                    row.d_range_d_lift_to_drag_m, row.lift_to_drag);
     }
     return 0;
+}
+
+}  // namespace
+
+void add_entry_command(CLI::App& program, int& exit_code) {
+    const auto options = std::make_shared<EntryReferenceOptions>();
+    auto& command = *program.add_subcommand("entry", "entry guidance");
+    command.require_subcommand(1);
+    auto& reference = *command.add_subcommand(
+        "reference", "prints the tables that entry guidance follows, flown from the scenario (CSV)");
+    reference.add_option("--scenario", options->scenario, "a file, or the name of a shipped one")->required();
+    add_shared(reference, options->shared);
+    reference.callback([options, &exit_code] { exit_code = entry_reference(*options); });
 }
 
 }  // namespace aeolis::server

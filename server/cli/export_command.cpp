@@ -3,6 +3,7 @@
 #include "server/archive/reader.hpp"
 #include "server/archive/sample_table.hpp"
 #include "server/cli/commands.hpp"
+#include "server/cli/options.hpp"
 #include "server/cli/recorded_words.hpp"
 #include "server/cli/shipped_paths.hpp"
 
@@ -14,6 +15,15 @@
 
 namespace aeolis::server {
 namespace {
+
+struct ExportOptions {
+    ArchiveOptions of;
+    std::vector<std::string> channels;   ///< empty: all
+    std::optional<double> from_s, to_s;  ///< SCLK, both included
+    std::string format = "csv";          ///< csv, jsonl
+    std::string align;                   ///< as SampleText::Options has it
+    std::filesystem::path out;           ///< empty: the standard output
+};
 
 using Begin = std::function<Result<void>(const v1::RunState&, const dictionary::Dictionary&)>;
 
@@ -38,8 +48,7 @@ struct CloseFile {
     void operator()(std::FILE* file) const { std::fclose(file); }
 };
 
-}  // namespace
-
+/// Writes a line a sample, or a line an instant.
 int export_samples(const ExportOptions& options) {
     std::unique_ptr<std::FILE, CloseFile> file;
     if (!options.out.empty()) {
@@ -75,6 +84,7 @@ int export_samples(const ExportOptions& options) {
     return std::fflush(to) == 0 ? 0 : failed("export: what was written could not be kept");
 }
 
+/// The same rows as a table of an SQLite file `out`.
 int archive_samples(const ExportOptions& options) {
     auto table = archive::SampleTable::create(options.out);
     if (!table) return failed("archive samples: " + table.error().message);
@@ -97,6 +107,46 @@ int archive_samples(const ExportOptions& options) {
     if (auto done = table->finish(); !done) return failed("archive samples: " + done.error().message);
     fmt::print("{} samples of run {} are the table 'samples' of {}\n", rows, run.value, options.out.string());
     return 0;
+}
+
+/// Which samples of which run.
+void add_selection(CLI::App& command, ExportOptions& options) {
+    add_archive_and_words(command, options.of);
+    command.add_option("--run", options.of.run, "number of the run")->required()->check(whole_number());
+    command
+        .add_option("--channel,--channels", options.channels,
+                    "names or aliases, separated by blanks or commas; all if left out")
+        ->delimiter(',');
+    command.add_option("--from", options.from_s, "first SCLK [s]");
+    command.add_option("--to", options.to_s, "last SCLK [s]");
+}
+
+}  // namespace
+
+void add_export_command(CLI::App& program, int& exit_code) {
+    const auto options = std::make_shared<ExportOptions>();
+    auto& command =
+        *program.add_subcommand("export", "prints a run's samples in order of SCLK, live and recorded as one series, a "
+                                          "row a sample");
+    add_selection(command, *options);
+    auto* format = command.add_option("--format", options->format, "csv or jsonl")
+                       ->check(CLI::IsMember({"csv", "jsonl"}))
+                       ->capture_default_str();
+    command.add_flag("--csv")->description("as CSV, the default")->excludes(format);
+    command.add_option("--align", options->align,
+                       "print a line an instant and a column a channel, each with its newest value: at the "
+                       "times of the named channel, or at multiples of so many seconds");
+    command.add_option("--out", options->out, "new file; standard output if left out");
+    command.callback([options, &exit_code] { exit_code = export_samples(*options); });
+}
+
+void add_archive_samples(CLI::App& archive, int& exit_code) {
+    const auto options = std::make_shared<ExportOptions>();
+    auto& command =
+        *archive.add_subcommand("samples", "writes a run's samples as rows of an SQLite file, for plain SQL");
+    add_selection(command, *options);
+    command.add_option("--out", options->out, "new file")->required();
+    command.callback([options, &exit_code] { exit_code = archive_samples(*options); });
 }
 
 }  // namespace aeolis::server

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/cli/commands.hpp"
+#include "server/cli/options.hpp"
 #include "server/cli/shipped_paths.hpp"
 #include "server/rehearsal/rehearsal.hpp"
 #include "server/venue/message_flow.hpp"
@@ -8,7 +9,15 @@
 #include <memory>
 
 namespace aeolis::server {
+namespace {
 
+struct ModulesOptions {
+    SharedOptions shared;
+    std::string scenario = "nominal_auto";
+    std::uint64_t seed = 1;
+};
+
+/// Prints the flight software's modules, messages, rates and priorities as a document.
 int modules(const ModulesOptions& options) {
     const auto ready = flyable(options.shared, options.scenario);
     if (!ready) return failed(ready.error().message);
@@ -27,6 +36,18 @@ int modules(const ModulesOptions& options) {
                                   rehearsal.outcome(), rehearsal.outcome_reason()));
     fmt::print("{}", flow->document(fmt::format("`{}`, seed {}", scenario.name, options.seed)));
     return 0;
+}
+
+}  // namespace
+
+void add_modules_command(CLI::App& program, int& exit_code) {
+    const auto options = std::make_shared<ModulesOptions>();
+    auto& command = *program.add_subcommand(
+        "modules", "prints the flight software's modules, messages, rates and priorities as Markdown");
+    command.add_option("--scenario", options->scenario, "scenario whose landing is counted")->capture_default_str();
+    command.add_option("--seed", options->seed, "seed of the errors")->check(whole_number())->capture_default_str();
+    add_shared(command, options->shared);
+    command.callback([options, &exit_code] { exit_code = modules(*options); });
 }
 
 }  // namespace aeolis::server

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/base/wall_clock.hpp"
 #include "server/cli/commands.hpp"
+#include "server/cli/options.hpp"
 #include "server/cli/shipped_paths.hpp"
 #include "server/pipeline/pipeline_thread.hpp"
 #include "server/rehearsal/landing_report.hpp"
@@ -16,6 +17,15 @@
 
 namespace aeolis::server {
 namespace {
+
+struct RehearseOptions {
+    SharedOptions shared;
+    std::string scenario;
+    std::uint64_t seed = 1, case_number = 0;
+    std::optional<std::filesystem::path> archive;
+    std::optional<std::filesystem::path> truth;  ///< 16 rows a second of what really happened, as CSV
+    bool json = false;
+};
 
 constexpr std::size_t delivery_entries = 512;  // ours: some 60 KB a hand-over
 
@@ -93,8 +103,6 @@ Result<void> fly_archived(Rehearsal& rehearsal, TruthFile& truth, PipelineThread
     return pipeline.finish({rehearsal.outcome(), rehearsal.outcome_reason(), rehearsal.digest(), wall_clock_text()});
 }
 
-}  // namespace
-
 int rehearse(const RehearseOptions& options) {
     const auto ready = flyable(options.shared, options.scenario);
     if (!ready) return failed(ready.error().message);
@@ -129,6 +137,23 @@ int rehearse(const RehearseOptions& options) {
     else
         fmt::print("{}", landing_table(rehearsal, wall_s));
     return rehearsal.outcome() == "touchdown" ? 0 : 1;
+}
+
+}  // namespace
+
+void add_rehearse_command(CLI::App& program, int& exit_code) {
+    const auto options = std::make_shared<RehearseOptions>();
+    auto& command = *program.add_subcommand("rehearse", "flies one landing without a console, as fast as it goes");
+    command.add_option("--scenario", options->scenario, "a file, or the name of a shipped one")->required();
+    command.add_option("--seed", options->seed, "seed of the errors")->check(whole_number())->capture_default_str();
+    command.add_option("--case", options->case_number, "number of another draw of the errors under the same seed")
+        ->check(whole_number())
+        ->capture_default_str();
+    command.add_option("--archive", options->archive, "store everything in this SQLite file");
+    command.add_option("--truth", options->truth, "write the true path, 16 rows a second, to this CSV file");
+    command.add_flag("--json", options->json, "print one JSON object");
+    add_shared(command, options->shared);
+    command.callback([options, &exit_code] { exit_code = rehearse(*options); });
 }
 
 }  // namespace aeolis::server

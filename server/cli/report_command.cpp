@@ -3,14 +3,21 @@
 #include "server/archive/reader.hpp"
 #include "server/base/json.hpp"
 #include "server/cli/commands.hpp"
+#include "server/cli/options.hpp"
 #include "server/cli/recorded_words.hpp"
 #include "server/cli/shipped_paths.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <memory>
 
 namespace aeolis::server {
 namespace {
+
+struct ReportOptions {
+    ArchiveOptions of;
+    bool json = false, csv = false;
+};
 
 std::string from_entry(double e_s) {
     return fmt::format("E{:+.1f}", e_s);
@@ -84,8 +91,7 @@ void print_notes(const v1::AsFlownReport& report) {
     }
 }
 
-}  // namespace
-
+/// Prints a run as it was flown.
 int report(const ReportOptions& options) {
     int exit_code = 0;
     const auto words = recorded_words(options.of.shared.dictionary, {}, exit_code);
@@ -116,6 +122,22 @@ int report(const ReportOptions& options) {
         }
     print_notes(*report);
     return 0;
+}
+
+}  // namespace
+
+void add_report_command(CLI::App& program, int& exit_code) {
+    const auto options = std::make_shared<ReportOptions>();
+    auto& command = *program.add_subcommand(
+        "report", "prints a run as it was flown: each timepoint and event by plan, tone, UHF and "
+                  "recording, the silences, and the proof");
+    add_archive_file(command, options->of.archive);
+    command.add_option("--dictionary", options->of.shared.dictionary, "directory of the mission's dictionary")
+        ->capture_default_str();
+    command.add_option("--run", options->of.run, "number of the run")->required()->check(whole_number());
+    auto* json = command.add_flag("--json", options->json, "print one JSON object");
+    command.add_flag("--csv", options->csv, "print timepoints and events, a row each")->excludes(json);
+    command.callback([options, &exit_code] { exit_code = report(*options); });
 }
 
 }  // namespace aeolis::server

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/base/json.hpp"
 #include "server/cli/commands.hpp"
+#include "server/cli/options.hpp"
 #include "server/cli/shipped_paths.hpp"
 #include "server/net/http_client.hpp"
 
@@ -9,10 +10,21 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <fstream>
+#include <memory>
 #include <sstream>
 
 namespace aeolis::server {
 namespace {
+
+struct SendOptions {
+    std::filesystem::path file;  ///< a command file: a CommandSequence as JSON
+    std::string server = "http://127.0.0.1:8080";
+    std::string token;                  ///< of a server with accounts
+    std::filesystem::path authorities;  ///< PEM; empty: the system's
+    std::string by;                     ///< who asks, where the file does not say it
+    std::optional<std::uint32_t> run;   ///< the one that goes on
+    bool dry_run = false;
+};
 
 Result<v1::CommandSequence> sequence_of(const SendOptions& options) {
     std::ifstream file{options.file, std::ios::binary};
@@ -53,8 +65,7 @@ int perhaps_taken(const v1::CommandSequence& sequence, const std::string& why, c
         exit_not_known);
 }
 
-}  // namespace
-
+/// Sends a command file to a server; 0 when all was taken, 3 when it is not known whether it was, else nothing was.
 int send(const SendOptions& options) {
     const auto sequence = sequence_of(options);
     if (!sequence) return failed("send: " + sequence.error().message, 2);
@@ -82,6 +93,31 @@ int send(const SendOptions& options) {
                                   reply.reason()));
     if (sequence->dry_run()) fmt::print("a dry run: nothing was sent\n");
     return 0;
+}
+
+}  // namespace
+
+void add_send_command(CLI::App& program, int& exit_code) {
+    const auto options = std::make_shared<SendOptions>();
+    auto& command = *program.add_subcommand(
+        "send", "sends a command file to a server, all of its commands or none; prints a line a command; exit code 1 "
+                "when nothing was sent, 3 when no answer tells whether it was");
+    command.add_option("--file", options->file, "JSON, as POST /api/v1/runs/{run}/sequences takes it")->required();
+    command.add_option("--server", options->server, "http://HOST:PORT or https://HOST:PORT")
+        ->envname("AEOLIS_SERVER")
+        ->capture_default_str();
+    command
+        .add_option("--token", options->token,
+                    "token of a server with accounts, sent over https or to this machine only; other users can read "
+                    "a command line, but not AEOLIS_TOKEN")
+        ->envname("AEOLIS_TOKEN");
+    command.add_option("--authorities", options->authorities,
+                       "PEM file of the authorities that may have signed the server's certificate; the system's if "
+                       "left out");
+    command.add_option("--by", options->by, "name of the sender, for a server without accounts, if the file has none");
+    command.add_option("--run", options->run, "send only if this is the current run")->check(whole_number());
+    command.add_flag("--dry-run", options->dry_run, "only tell what would happen");
+    command.callback([options, &exit_code] { exit_code = send(*options); });
 }
 
 }  // namespace aeolis::server

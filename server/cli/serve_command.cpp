@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/base/log_line.hpp"
 #include "server/cli/commands.hpp"
+#include "server/cli/options.hpp"
+#include "server/cli/settings_file.hpp"
 #include "server/cli/shipped_paths.hpp"
 #include "server/cli/xtce_file.hpp"
 #include "server/net/console_backend.hpp"
@@ -8,13 +10,33 @@
 #include <algorithm>
 #include <charconv>
 #include <csignal>
+#include <cstdlib>
 #include <fmt/format.h>
+#include <memory>
 #include <spdlog/spdlog.h>
 #include <sys/resource.h>
 #include <thread>
 
 namespace aeolis::server {
 namespace {
+
+struct ServeOptions {
+    SharedOptions shared;
+    std::filesystem::path settings;  ///< has been read before: settings_file.hpp
+    std::string listen = "127.0.0.1:8080";
+    std::filesystem::path archive = default_archive;
+    std::filesystem::path web = shipped("web/dist");
+    std::filesystem::path accounts;          ///< empty: none
+    std::filesystem::path certificate, key;  ///< PEM; empty: no TLS
+    std::vector<std::string> names;          ///< by which browsers call the server
+    std::string scenario;                    ///< empty: none is started
+    std::uint64_t seed = 1;
+    double pace = 1.0;
+    std::optional<std::string> downlink;  ///< "tcp://HOST:PORT", "udp://HOST:PORT": follow another mission
+    std::filesystem::path xtce;           ///< of that mission
+    DownlinkForm format{};
+    std::string log_level = "info", log_format = "text";
+};
 
 struct Listen {
     std::string address;
@@ -63,8 +85,6 @@ void allow_open_files() {
         spdlog::warn("this process may have {} files open; all streams, and who asks besides, need {}", files.rlim_cur,
                      wanted);
 }
-
-}  // namespace
 
 int serve(const ServeOptions& options) {
     set_log(options);
@@ -154,6 +174,84 @@ int serve(const ServeOptions& options) {
     (*backend)->run();
     waiter.join();
     return 0;
+}
+
+void add_backend_options(CLI::App& command, ServeOptions& options) {
+    command.add_option("--config", options.settings, "file of options");
+    command
+        .add_option(
+            "--listen", options.listen,
+            "ADDRESS:PORT; port 0 takes a free one. An address that other machines reach needs --accounts and TLS")
+        ->capture_default_str();
+    command.add_option(
+        "--accounts", options.accounts,
+        "file of users and tokens, made at the first start; without it nobody logs in, on loopback only");
+    command.add_option("--tls-certificate", options.certificate,
+                       "PEM file with the server's certificate and its chain; serves https only");
+    command.add_option("--tls-key", options.key, "PEM file with its private key");
+    command
+        .add_option("--host", options.names,
+                    "names by which browsers call this server, separated by commas; loopback names always work")
+        ->delimiter(',');
+    command.add_option("--archive", options.archive, "SQLite file that keeps everything")->capture_default_str();
+    command.add_option("--web", options.web, "directory of the built console")->capture_default_str();
+    command.add_option("--log-level", options.log_level, "what is logged to standard error")
+        ->check(CLI::IsMember({"debug", "info", "warn", "error"}))
+        ->capture_default_str();
+    command.add_option("--log-format", options.log_format, "text for people, or json: an object a line")
+        ->check(CLI::IsMember({"text", "json"}))
+        ->capture_default_str();
+}
+
+CLI::Validator pace() {
+    return {[](std::string& text) {
+                const double given = std::strtod(text.c_str(), nullptr);
+                return given == 0.0 || (given >= 1.0 && given <= 1000.0) ? std::string{}
+                                                                         : "neither 0 nor within 1 … 1000: " + text;
+            },
+            "PACE"};
+}
+
+/// The rehearsal to start, or the mission to follow.
+void add_run_options(CLI::App& command, ServeOptions& options) {
+    auto* scenario = command.add_option("--scenario", options.scenario,
+                                        "rehearsal to start at once: a file, or the name of a shipped one");
+    auto* downlink =
+        command
+            .add_option("--downlink", options.downlink,
+                        "follow another mission instead of rehearsing: tcp://HOST:PORT connects, and reconnects "
+                        "after every end, waiting longer each time up to 30 s; udp://HOST:PORT listens (with "
+                        "--format packets each datagram holds whole packets). What arrives is a run of its own: "
+                        "its packets, and their numbers as channels, are in stream, archive and API")
+            ->excludes(scenario);
+    auto* xtce = command
+                     .add_option("--xtce", options.xtce,
+                                 "that mission's XTCE file; unsupported parts are named with their lines")
+                     ->needs(downlink);
+    downlink->needs(xtce);
+    for (auto* option : add_stream_format(command, options.format)) option->needs(downlink);
+    command.add_option("--seed", options.seed, "seed of that rehearsal's errors")
+        ->check(whole_number())
+        ->capture_default_str();
+    command.add_option("--pace", options.pace, "pace of that rehearsal: 1 … 1000, or 0 for as fast as it goes")
+        ->check(pace())
+        ->capture_default_str();
+}
+
+}  // namespace
+
+void add_serve_command(CLI::App& program, int& exit_code) {
+    const auto options = std::make_shared<ServeOptions>();
+    auto& command = *program.add_subcommand("serve", "serves the console: open the address it prints in a browser.\n"
+                                                     "Each option can also stand in a file (--config), a line each "
+                                                     "without its dashes: archive=/var/lib/aeolis/aeolis.db.\n"
+                                                     "The command line takes precedence over the environment "
+                                                     "variable named beside an option, and that over the file.");
+    add_backend_options(command, *options);
+    add_run_options(command, *options);
+    add_shared(command, options->shared);
+    name_environment(command);
+    command.callback([options, &exit_code] { exit_code = serve(*options); });
 }
 
 }  // namespace aeolis::server

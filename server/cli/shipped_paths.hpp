@@ -3,7 +3,6 @@
 
 #include "common/result.hpp"
 #include "dictionaries/dictionary.hpp"
-#include "server/cli/commands.hpp"
 #include "simulation/scenario.hpp"
 
 #include <filesystem>
@@ -15,6 +14,11 @@ namespace aeolis::server {
 /// A folder that ships ("dictionaries/msl"): beside the program, two folders above it (build/release/aeolis in a
 /// checkout), or where the program was built from; the first that exists.
 std::filesystem::path shipped(const std::string& folder);
+
+/// The dictionary and the scenarios of a subcommand: those that ship, unless others are given.
+struct SharedOptions {
+    std::filesystem::path dictionary = shipped("dictionaries/msl"), scenarios = shipped("simulation/scenarios");
+};
 
 /// Prints every broken rule, a line each, to stderr and gives none when there are any.
 std::optional<dictionary::Dictionary> loaded_dictionary(const std::filesystem::path& directory);

@@ -4,17 +4,29 @@
 #include "dictionaries/words.hpp"
 #include "server/base/json_object.hpp"
 #include "server/cli/commands.hpp"
+#include "server/cli/options.hpp"
 #include "server/cli/shipped_paths.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <memory>
 #include <set>
 #include <tuple>
 #include <utility>
 
 namespace aeolis::server {
 namespace {
+
+struct TimelineAnalyseOptions {
+    std::filesystem::path directory = SharedOptions{}.dictionary;
+    bool json = false;
+};
+
+struct TimelineDiffOptions {
+    std::filesystem::path before, after;
+    bool json = false;
+};
 
 using namespace dictionary;
 
@@ -268,8 +280,7 @@ bool is_folder(const std::filesystem::path& path) {
     return std::filesystem::is_directory(path, error);
 }
 
-}  // namespace
-
+/// 0 when every required row of constraints.csv is proven.
 int timeline_analyse(const TimelineAnalyseOptions& options) {
     if (!is_folder(options.directory))
         return failed(fmt::format("timeline analyse: {} is no directory", options.directory.string()), 2);
@@ -283,6 +294,7 @@ int timeline_analyse(const TimelineAnalyseOptions& options) {
     return analysis.all_proven() ? 0 : 1;
 }
 
+/// 0 when no row differs.
 int timeline_diff(const TimelineDiffOptions& options) {
     for (const auto& directory : {options.before, options.after})
         if (!is_folder(directory))
@@ -297,6 +309,36 @@ int timeline_diff(const TimelineDiffOptions& options) {
     else
         print_diff(diff);
     return diff.same() ? 0 : 1;
+}
+
+void add_timeline_analyse(CLI::App& timeline, int& exit_code) {
+    const auto options = std::make_shared<TimelineAnalyseOptions>();
+    auto& command = *timeline.add_subcommand(
+        "analyse", "proves or refutes each row of constraints.csv; exit code 1 when one is not proven");
+    command.add_option("DIR", options->directory, "the dictionary's directory")->capture_default_str();
+    command.add_flag("--json", options->json, "print one JSON object");
+    command.callback([options, &exit_code] { exit_code = timeline_analyse(*options); });
+}
+
+void add_timeline_diff(CLI::App& timeline, int& exit_code) {
+    const auto options = std::make_shared<TimelineDiffOptions>();
+    auto& command = *timeline.add_subcommand(
+        "diff",
+        "prints rows added, removed, moved or changed between two dictionaries; exit code 1 when there are any");
+    command.add_option("DIR_A", options->before, "the earlier dictionary's directory")->required();
+    command.add_option("DIR_B", options->after, "the later one's")->required();
+    command.add_flag("--json", options->json, "print one JSON object");
+    command.callback([options, &exit_code] { exit_code = timeline_diff(*options); });
+}
+
+}  // namespace
+
+void add_timeline_command(CLI::App& program, int& exit_code) {
+    auto& timeline =
+        *program.add_subcommand("timeline", "proves the timeline's constraints, and compares two versions");
+    timeline.require_subcommand(1);
+    add_timeline_analyse(timeline, exit_code);
+    add_timeline_diff(timeline, exit_code);
 }
 
 }  // namespace aeolis::server

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/cli/commands.hpp"
+#include "server/cli/options.hpp"
 #include "server/cli/shipped_paths.hpp"
 #include "server/rehearsal/predicted_doppler.hpp"
 #include "server/tones/doppler_file.hpp"
@@ -11,9 +12,38 @@
 
 #include <cmath>
 #include <fmt/format.h>
+#include <memory>
 
 namespace aeolis::server {
 namespace {
+
+struct TonesDecodeOptions {
+    SharedOptions shared;
+    std::filesystem::path samples;
+    double rate_hz = 0.0;
+    std::string format;
+    std::optional<std::filesystem::path> predict;  ///< what was removed before sampling
+    double start_s = 0.0;                          ///< of the first sample, in the predict's time
+    bool json = false;
+};
+
+struct TonesSimulateOptions {
+    SharedOptions shared;
+    std::filesystem::path out;
+    double rate_hz = 16384.0;
+    std::string format = "cf32";
+    std::optional<std::string> scenario;  ///< the tones and Doppler of a landing, from entry interface
+    std::optional<std::filesystem::path> tones, doppler, predict;
+    std::optional<std::filesystem::path> predict_out;  ///< made here instead: what ground expects
+    std::optional<double> from_s, length_s;
+    double c_n0_dbhz = 22.0;
+    std::uint64_t seed = 1, case_number = 0;
+};
+
+struct TonesBenchOptions {
+    SharedOptions shared;
+    bool full = false;
+};
 
 constexpr std::size_t block_samples = 65536;
 
@@ -84,8 +114,7 @@ Result<Sending> sending_of_files(const TonesSimulateOptions& options, const dict
     return sending;
 }
 
-}  // namespace
-
+/// Prints a line a symbol. 1 when there is silence, no carrier, or a long carrier without any symbol.
 int tones_decode(const TonesDecodeOptions& options) {
     const auto dictionary = loaded_dictionary(options.shared.dictionary);
     if (!dictionary) return 1;
@@ -131,6 +160,7 @@ int tones_decode(const TonesDecodeOptions& options) {
     return 0;
 }
 
+/// Writes a file of samples.
 int tones_simulate(const TonesSimulateOptions& options) {
     const auto dictionary = options.scenario ? dictionary_of_flight(options.shared.dictionary)
                                              : Result<dictionary::Dictionary>{dictionary::Dictionary{}};
@@ -180,6 +210,7 @@ int tones_simulate(const TonesSimulateOptions& options) {
     return 0;
 }
 
+/// Prints the receiver's figures beside their goals; 1 when one is missed.
 int tones_bench(const TonesBenchOptions& options) {
     const auto landing = flyable(options.shared, "od137");
     if (!landing) return failed(landing.error().message);
@@ -193,6 +224,66 @@ int tones_bench(const TonesBenchOptions& options) {
                                            std::fflush(stdout);
                                        });
     return met ? 0 : 1;
+}
+
+void add_tones_decode(CLI::App& tones, int& exit_code) {
+    const auto options = std::make_shared<TonesDecodeOptions>();
+    auto& command = *tones.add_subcommand("decode", "prints the tones in a file of complex samples, a line a symbol");
+    command.add_option("--samples", options->samples, "the file: in-phase and quadrature, little-endian")->required();
+    command.add_option("--rate", options->rate_hz, "samples a second")->required();
+    command.add_option("--format", options->format, "cf32 or ci16")->required();
+    command.add_option("--predict", options->predict, "CSV of the Doppler that was removed: time, doppler_hz");
+    command.add_option("--start", options->start_s, "time of the first sample [s]")->capture_default_str();
+    command.add_flag("--json", options->json, "a JSON object a line");
+    add_shared(command, options->shared);
+    command.callback([options, &exit_code] { exit_code = tones_decode(*options); });
+}
+
+void add_tones_simulate(CLI::App& tones, int& exit_code) {
+    const auto options = std::make_shared<TonesSimulateOptions>();
+    auto& command = *tones.add_subcommand("simulate", "writes a file of samples, from lists or from a landing");
+    command.add_option("--out", options->out, "file to write")->required();
+    command.add_option("--rate", options->rate_hz, "samples a second")->capture_default_str();
+    command.add_option("--format", options->format, "cf32 or ci16")->capture_default_str();
+    auto* list = command.add_option("--tones", options->tones, "CSV: start_s,tone");
+    auto* doppler = command.add_option("--doppler", options->doppler, "CSV of the Doppler: time, doppler_hz");
+    auto* scenario = command.add_option("--scenario", options->scenario, "tones and Doppler of this landing instead");
+    list->excludes(scenario);
+    doppler->excludes(scenario);
+    auto* predict = command.add_option("--predict", options->predict, "CSV of the Doppler to remove: time, doppler_hz");
+    command
+        .add_option("--predict-out", options->predict_out, "compute the ground's predict, remove it, and write it here")
+        ->excludes(predict);
+    command.add_option("--from", options->from_s, "time of the first sample [s]");
+    command.add_option("--length", options->length_s, "length [s]");
+    command.add_option("--c-n0", options->c_n0_dbhz, "total power to noise density [dB-Hz]")->capture_default_str();
+    command.add_option("--seed", options->seed, "seed of the noise and of the landing")
+        ->check(whole_number())
+        ->capture_default_str();
+    command.add_option("--case", options->case_number, "number of the draw of the landing's errors")
+        ->check(whole_number())
+        ->capture_default_str();
+    add_shared(command, options->shared);
+    command.callback([options, &exit_code] { exit_code = tones_simulate(*options); });
+}
+
+void add_tones_bench(CLI::App& tones, int& exit_code) {
+    const auto options = std::make_shared<TonesBenchOptions>();
+    auto& command = *tones.add_subcommand(
+        "bench", "prints the receiver's figures beside theory; exit code 1 when a goal is missed");
+    command.add_flag("--full", options->full, "measure also the points that take long");
+    add_shared(command, options->shared);
+    command.callback([options, &exit_code] { exit_code = tones_bench(*options); });
+}
+
+}  // namespace
+
+void add_tones_command(CLI::App& program, int& exit_code) {
+    auto& tones = *program.add_subcommand("tones", "decodes and simulates X-band tones in samples");
+    tones.require_subcommand(1);
+    add_tones_decode(tones, exit_code);
+    add_tones_simulate(tones, exit_code);
+    add_tones_bench(tones, exit_code);
 }
 
 }  // namespace aeolis::server
