@@ -1,0 +1,412 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/net/http_connection.hpp"
+
+#include "aeolis/v1/run.pb.h"
+#include "server/base/json.hpp"
+#include "server/net/request_origin.hpp"
+
+#include <algorithm>
+#include <array>
+#include <boost/asio/post.hpp>
+#include <boost/asio/write.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/http.hpp>
+#include <boost/beast/websocket/rfc6455.hpp>
+#include <boost/url/parse.hpp>
+#include <fmt/format.h>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+namespace aeolis::server::net {
+namespace {
+
+namespace http = beast::http;
+namespace websocket = beast::websocket;
+
+using Request = http::request<http::string_body>;
+using Response = http::response<http::string_body>;
+using Parser = http::request_parser<http::string_body>;
+using More = decltype(HttpResponse::more);
+
+constexpr const char* stream_path = "/api/v1/stream";
+constexpr std::size_t slice_octets = 64 << 10;  // chosen: of a long body in parts, written at once
+
+/// The console needs nothing from elsewhere, and nobody may show it in a frame.
+constexpr const char* security_policy =
+    "default-src 'self'; connect-src 'self'; img-src 'self' data:; style-src 'self'; script-src 'self'; worker-src "
+    "'self'; "
+    "object-src 'none'; base-uri 'none'; form-action 'self'; frame-ancestors 'none'";
+
+struct Subprotocol {
+    std::string_view name;
+    StreamFormat format;
+};
+constexpr std::array subprotocols{Subprotocol{"aeolis.v1.protobuf", StreamFormat::protobuf},
+                                  Subprotocol{"aeolis.v1.json", StreamFormat::json}};
+
+std::string_view plain(beast::string_view text) {
+    return {text.data(), text.size()};
+}
+
+/// The first subprotocol that the client offers and the server speaks.
+const Subprotocol* chosen_subprotocol(const Request& request) {
+    for (const auto token : http::token_list{request[http::field::sec_websocket_protocol]})
+        for (const auto& spoken : subprotocols)
+            if (plain(token) == spoken.name) return &spoken;
+    return nullptr;
+}
+
+std::string error_body(const std::string& error) {
+    v1::ErrorReply reply;
+    reply.set_error(error);
+    return to_json(reply);
+}
+
+Response error_reply(const Request& request, http::status status, const std::string& error) {
+    Response response{status, request.version() == 10 ? 10U : 11U};
+    response.set(http::field::content_type, "application/json");
+    response.set(http::field::cache_control, "no-store");
+    response.body() = error_body(error);
+    response.prepare_payload();
+    return response;
+}
+
+/// What a request that is no HTTP, or is too long, is told. @param octets_max  allowed in its body
+Response broken_reply(const Request& request, const error_code& error, std::size_t octets_max) {
+    if (error == http::error::body_limit)
+        return error_reply(request, http::status::payload_too_large,
+                           fmt::format("the body is longer than {} octets", octets_max));
+    if (error == http::error::header_limit)
+        return error_reply(request, http::status::payload_too_large,
+                           fmt::format("the header is longer than {} octets", WebServer::header_octets_max));
+    return error_reply(request, http::status::bad_request, "this is not HTTP: " + error.message());
+}
+
+HttpResponse too_many_answers() {
+    HttpResponse response;
+    response.status = 503;
+    response.body = error_body("too many long answers are under way: try again, or ask for less at once");
+    return response;
+}
+
+/// Takes the body out of `answer`.
+Response response_of(HttpResponse& answer, unsigned version) {
+    Response response{static_cast<http::status>(answer.status), version};
+    response.set(http::field::content_type, answer.content_type);
+    response.set(http::field::cache_control, answer.cache_control);
+    if (!answer.set_cookie.empty()) response.set(http::field::set_cookie, answer.set_cookie);
+    if (!answer.next_after.empty()) response.set("Aeolis-Next-After", answer.next_after);
+    response.body() = std::move(answer.body);
+    return response;
+}
+
+/// Awaits what `ask` is told, from whatever thread.
+template <typename T, typename Ask>
+Task<T> told(asio::io_context& io, Ask ask) {
+    return asio::async_initiate<const asio::use_awaitable_t<Executor>, void(T)>(
+        [&io](auto done, const Ask& asking) {
+            auto shared = std::make_shared<decltype(done)>(std::move(done));
+            asking([&io, shared](T answer) {
+                asio::post(io,
+                           [shared, answer = std::move(answer)]() mutable { std::move (*shared)(std::move(answer)); });
+            });
+        },
+        awaiting, std::move(ask));
+}
+
+/// One request and its answer.
+struct Exchange {
+    Credentials credentials;
+    Request request;
+    std::optional<WaitingPeers::Waiting> waiting;
+    Response response;
+    std::optional<BodyBudget::Share> share;  ///< of the response's body
+    More more;                               ///< null: the response is whole
+};
+
+/// A client's connection: one request after the other.
+template <typename AnyStream>
+class HttpConnection {
+  public:
+    HttpConnection(AnyStream& stream, HttpService& service, std::string from)
+        : stream_(stream), lowest_(beast::get_lowest_layer(stream)), service_(service), from_(std::move(from)) {}
+
+    Task<> serve();
+
+  private:
+    // Each of these that gives false has ended the connection, or leaves it to be closed.
+    Task<bool> read(Exchange& exchange);
+    Task<bool> answer(Exchange& exchange);
+    Task<bool> write(Exchange& exchange);
+    Task<bool> write_whole(Exchange& exchange);
+    Task<bool> write_parts(Response first, More more);
+
+    Credentials credentials_of(const Request& request) const;
+    std::size_t body_octets_max(const Request& request, const Credentials& credentials) const;
+    Task<> answer_broken(const Request& request, error_code error, std::size_t octets_max);
+    std::string refusal_of(const Request& request) const;
+    std::optional<Response> refusal_of_stream(const Exchange& exchange) const;
+    Task<> become_stream(Exchange& exchange);
+    Task<> ask(Exchange& exchange, std::string path, std::string query);
+    void add_fields(Exchange& exchange) const;
+    Task<error_code> write_slice(asio::const_buffer octets, bool chunked);
+    bool tear();
+
+    AnyStream& stream_;
+    Stream& lowest_;
+    HttpService& service_;
+    std::string from_;
+    beast::flat_buffer buffer_;
+};
+
+template <typename AnyStream>
+Task<> HttpConnection<AnyStream>::serve() {
+    for (;;) {
+        Exchange exchange;
+        if (!co_await read(exchange)) co_return;
+        if (!co_await answer(exchange)) co_return;
+        add_fields(exchange);
+        if (!co_await write(exchange)) co_return;
+    }
+}
+
+/// Reads the next request. What breaks HTTP or a limit is answered here.
+template <typename AnyStream>
+Task<bool> HttpConnection<AnyStream>::read(Exchange& exchange) {
+    error_code error;
+    Parser parser;
+    parser.body_limit(HttpRequest::body_octets_max);
+    parser.header_limit(WebServer::header_octets_max);
+    lowest_.expires_after(service_.request_max);
+    co_await http::async_read_header(stream_, buffer_, parser, asio::redirect_error(awaiting, error));
+    std::size_t octets_max = HttpRequest::body_octets_max;
+    exchange.credentials = credentials_of(parser.get());
+    if (!error && !parser.is_done()) octets_max = body_octets_max(parser.get(), exchange.credentials);
+    if (octets_max < HttpRequest::body_octets_max) {
+        parser.body_limit(octets_max);
+        if (parser.content_length().value_or(0) > octets_max) error = http::make_error_code(http::error::body_limit);
+    }
+    if (!error && !parser.is_done())
+        co_await http::async_read(stream_, buffer_, parser, asio::redirect_error(awaiting, error));
+    if (error) {
+        co_await answer_broken(parser.get(), error, octets_max);
+        co_return false;
+    }
+    exchange.request = parser.release();
+    co_return true;
+}
+
+template <typename AnyStream>
+Credentials HttpConnection<AnyStream>::credentials_of(const Request& request) const {
+    return {std::string{plain(request[http::field::cookie])}, std::string{plain(request[http::field::authorization])},
+            from_};
+}
+
+/// How long a body may be, asked before any of it is read: bodies of a thousand strangers are then no burden.
+template <typename AnyStream>
+std::size_t HttpConnection<AnyStream>::body_octets_max(const Request& request, const Credentials& credentials) const {
+    if (!service_.handlers.body_octets) return HttpRequest::body_octets_max;
+    const auto target = plain(request.target());
+    return service_.handlers.body_octets(credentials, plain(request.method_string()),
+                                         target.substr(0, target.find('?')));
+}
+
+/// Only what the peer could have meant as HTTP gets an answer; a broken or silent connection gets none.
+template <typename AnyStream>
+Task<> HttpConnection<AnyStream>::answer_broken(const Request& request, error_code error, std::size_t octets_max) {
+    const bool is_http = error.category() == http::make_error_code(http::error::bad_method).category();
+    if (!is_http || error == http::error::end_of_stream) co_return;
+    auto reply = broken_reply(request, error, octets_max);
+    reply.keep_alive(false);
+    co_await http::async_write(stream_, reply, asio::redirect_error(awaiting, error));
+}
+
+template <typename AnyStream>
+Task<bool> HttpConnection<AnyStream>::answer(Exchange& exchange) {
+    const auto& request = exchange.request;
+    const auto target = boost::urls::parse_origin_form(request.target());
+    if (const auto refusal = refusal_of(request); !refusal.empty()) {
+        exchange.response = error_reply(request, http::status::forbidden, refusal);
+    } else if (!target) {
+        exchange.response = error_reply(request, http::status::bad_request, "the request's target is not a path");
+    } else if (!websocket::is_upgrade(request) || target->path() != stream_path) {
+        co_await ask(exchange, target->path(), std::string{target->encoded_query()});
+    } else if (auto refused = refusal_of_stream(exchange)) {
+        exchange.response = std::move(*refused);
+    } else {
+        co_await become_stream(exchange);
+        co_return false;
+    }
+    co_return true;
+}
+
+/// Why the request is answered with 403; empty: it is not.
+template <typename AnyStream>
+std::string HttpConnection<AnyStream>::refusal_of(const Request& request) const {
+    const auto origin = request.find(http::field::origin);
+    const auto given = origin != request.end() ? std::optional{plain(origin->value())} : std::nullopt;
+    return refusal_of_origin(plain(request[http::field::host]), given, service_.names, service_.secure);
+}
+
+/// The answer to a client that gets no stream; none: it gets one.
+template <typename AnyStream>
+std::optional<Response> HttpConnection<AnyStream>::refusal_of_stream(const Exchange& exchange) const {
+    const auto& request = exchange.request;
+    auto admitted = service_.handlers.admit_stream(exchange.credentials);
+    if (admitted.status != 200) {
+        Response response{static_cast<http::status>(admitted.status), request.version()};
+        response.set(http::field::content_type, admitted.content_type);
+        response.body() = std::move(admitted.body);
+        return response;
+    }
+    if (chosen_subprotocol(request) == nullptr)
+        return error_reply(request, http::status::bad_request,
+                           "the stream speaks the subprotocols aeolis.v1.protobuf and aeolis.v1.json: offer one");
+    if (const auto no_place = service_.streams.refusal(); !no_place.empty())
+        return error_reply(request, http::status::service_unavailable, no_place);
+    return std::nullopt;
+}
+
+template <typename AnyStream>
+Task<> HttpConnection<AnyStream>::become_stream(Exchange& exchange) {
+    const auto* subprotocol = chosen_subprotocol(exchange.request);
+    StreamService stream_service{service_.turn, service_.streams, WebServer::message_octets_max, service_.silence_max,
+                                 [&handlers = service_.handlers,
+                                  credentials = exchange.credentials](StreamFormat format, std::function<void()> wake) {
+                                     return handlers.open_stream(credentials, format, std::move(wake));
+                                 }};
+    co_await serve_stream(std::move(stream_), std::move(exchange.request), subprotocol->format, subprotocol->name,
+                          std::move(stream_service));
+}
+
+/// Has the request answered by the rest of the server.
+template <typename AnyStream>
+Task<> HttpConnection<AnyStream>::ask(Exchange& exchange, std::string path, std::string query) {
+    auto& request = exchange.request;
+    lowest_.expires_never();
+    exchange.waiting.emplace(service_.waiting, lowest_.socket().native_handle());
+    // Named, not made in the call: g++ 12 destroys temporary aggregates of a co_await twice.
+    HttpRequest asked{std::string{plain(request.method_string())},
+                      std::move(path),
+                      std::move(query),
+                      std::move(request.body()),
+                      std::move(exchange.credentials),
+                      exchange.waiting->gone()};
+    const auto hand_on = [this, &asked](const Respond& respond) {
+        service_.handlers.request(std::move(asked), respond);
+    };
+    auto answered = co_await told<HttpResponse>(service_.io, hand_on);
+    if (!service_.answers.has_room(answered.body.size())) answered = too_many_answers();
+    exchange.share.emplace(service_.answers, answered.body.size());
+    exchange.response = response_of(answered, request.version());
+    exchange.more = std::move(answered.more);
+}
+
+/// The header fields that every answer has.
+template <typename AnyStream>
+void HttpConnection<AnyStream>::add_fields(Exchange& exchange) const {
+    auto& response = exchange.response;
+    response.set(http::field::server, "aeolis");
+    response.set("X-Content-Type-Options", "nosniff");
+    response.set("Content-Security-Policy", security_policy);
+    response.set("Referrer-Policy", "no-referrer");
+    response.set("Cross-Origin-Opener-Policy", "same-origin");
+    if (service_.secure && !is_loopback_host(plain(exchange.request[http::field::host])))
+        response.set("Strict-Transport-Security", "max-age=31536000");
+    response.keep_alive(exchange.request.keep_alive());
+}
+
+template <typename AnyStream>
+Task<bool> HttpConnection<AnyStream>::write(Exchange& exchange) {
+    if (exchange.more && exchange.request.method() != http::verb::head)
+        return write_parts(std::move(exchange.response), std::move(exchange.more));
+    return write_whole(exchange);
+}
+
+template <typename AnyStream>
+Task<bool> HttpConnection<AnyStream>::write_whole(Exchange& exchange) {
+    auto& response = exchange.response;
+    response.prepare_payload();
+    if (exchange.request.method() == http::verb::head) response.body().clear();
+    if (exchange.more) response.erase(http::field::content_length);  // nobody knows it
+    http::response_serializer<http::string_body> serializer{response};
+    error_code error;
+    while (!error && !serializer.is_done()) {
+        lowest_.expires_after(service_.request_max);  // a slow client needs only to go on
+        co_await http::async_write_some(stream_, serializer, asio::redirect_error(awaiting, error));
+    }
+    co_return !error && response.keep_alive();
+}
+
+/// A body that comes in parts, each asked for when the client has taken the one before it.
+template <typename AnyStream>
+Task<bool> HttpConnection<AnyStream>::write_parts(Response first, More more) {
+    const bool chunked = first.version() >= 11;  // before that a body ended with its connection
+    if (!chunked) first.keep_alive(false);
+    const bool keep = first.keep_alive();
+    BodyPart part{std::optional{std::move(first.body())}};
+    http::response<http::empty_body> head{std::move(first.base())};
+    head.chunked(chunked);
+    http::response_serializer<http::empty_body> serializer{head};
+    error_code error;
+    lowest_.expires_after(service_.request_max);
+    co_await http::async_write_header(stream_, serializer, asio::redirect_error(awaiting, error));
+    while (!error && part && *part) {
+        for (std::string_view rest = **part; !error && !rest.empty();
+             rest.remove_prefix(std::min(rest.size(), slice_octets)))
+            error = co_await write_slice(asio::buffer(rest.data(), std::min(rest.size(), slice_octets)), chunked);
+        lowest_.expires_never();
+        if (!error) part = co_await told<BodyPart>(service_.io, more);
+    }
+    if (error || !part) co_return tear();
+    if (!chunked) co_return false;
+    lowest_.expires_after(service_.request_max);
+    const auto end = http::make_chunk_last();
+    co_await asio::async_write(stream_, end, asio::redirect_error(awaiting, error));
+    co_return keep && !error;
+}
+
+template <typename AnyStream>
+Task<error_code> HttpConnection<AnyStream>::write_slice(asio::const_buffer octets, bool chunked) {
+    error_code error;
+    lowest_.expires_after(service_.request_max);  // a slow client needs only to go on
+    if (chunked) {
+        const auto chunk = http::make_chunk(octets);
+        co_await asio::async_write(stream_, chunk, asio::redirect_error(awaiting, error));
+    } else {
+        co_await asio::async_write(stream_, octets, asio::redirect_error(awaiting, error));
+    }
+    co_return error;
+}
+
+/// Breaks the connection off: without chunks an orderly end would look like the end of the body.
+template <typename AnyStream>
+bool HttpConnection<AnyStream>::tear() {
+    error_code ignored;
+    lowest_.socket().set_option(asio::socket_base::linger{true, 0}, ignored);
+    lowest_.socket().close(ignored);
+    return false;
+}
+
+}  // namespace
+
+Task<> serve_http(Stream& stream, HttpService& service, std::string from) {
+    HttpConnection<Stream> connection{stream, service, std::move(from)};
+    co_await connection.serve();
+}
+
+Task<> serve_http(TlsStream& stream, HttpService& service, std::string from) {
+    HttpConnection<TlsStream> connection{stream, service, std::move(from)};
+    co_await connection.serve();
+}
+
+Task<> refuse_connection(Stream& stream, const std::string& reason) {
+    auto reply = error_reply({}, http::status::service_unavailable, reason);
+    reply.keep_alive(false);
+    error_code ignored;
+    stream.expires_after(std::chrono::seconds{1});
+    co_await http::async_write(stream, reply, asio::redirect_error(awaiting, ignored));
+}
+
+}  // namespace aeolis::server::net
