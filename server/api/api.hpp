@@ -161,8 +161,8 @@ Result<void> may_send(const Operator& who, const dictionary::Dictionary& diction
                       const v1::CommandRequest& request);
 
 /// The same, asked again later of who may have lost what they had.
-RehearsalDesk::May may_still_send(Access& access, const Credentials& credentials,
-                                  const dictionary::Dictionary& dictionary, const RehearsalDesk& desk);
+RehearsalDesk::AuthorityCheck may_still_send(Access& access, const Credentials& credentials,
+                                             const dictionary::Dictionary& dictionary, const RehearsalDesk& desk);
 
 /// Writes into the request what only the server knows of who asks.
 void name_asker(const Operator& who, v1::CommandRequest& request);

@@ -77,8 +77,8 @@ Result<void> may_send(const Operator& who, const dictionary::Dictionary& diction
     return may_send_named(who, dictionary, request.command(), request.dry_run());
 }
 
-RehearsalDesk::May may_still_send(Access& access, const Credentials& credentials,
-                                  const dictionary::Dictionary& dictionary, const RehearsalDesk& desk) {
+RehearsalDesk::AuthorityCheck may_still_send(Access& access, const Credentials& credentials,
+                                             const dictionary::Dictionary& dictionary, const RehearsalDesk& desk) {
     return [&access, credentials, &dictionary, &desk](const v1::CommandRequest& request) -> Result<void> {
         const auto who = access.identify(credentials);
         if (!may(who, Right::command))

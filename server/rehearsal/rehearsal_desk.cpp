@@ -15,13 +15,15 @@
 namespace aeolis::server {
 namespace {
 
+constexpr const char* nobody_listens = "no run goes on: nothing listens";
+
 Result<double> checked_pace(double pace) {
     if (std::isfinite(pace) && (pace == 0.0 || (pace >= 1.0 && pace <= RehearsalRunner::pace_max))) return pace;
     return Error{
         fmt::format("pace: {} is neither 0 (as fast as it goes) nor within 1 … {}", pace, RehearsalRunner::pace_max)};
 }
 
-/// What of the script changes the timeline, in the order in which it is sent.
+/// The script's commands that change the timeline, in the order in which they are sent.
 std::vector<v1::CommandRequest> timeline_changes(const simulation::Scenario& scenario) {
     auto script = scenario.commands;
     std::ranges::stable_sort(script, std::ranges::greater{}, &simulation::ScriptedCommand::send_before_entry_s);
@@ -100,7 +102,7 @@ void RehearsalDesk::start(Flight flight, Began began) {
 void RehearsalDesk::fly(Flight flight, Began began) {
     if (const auto busy = refusal_while_going_on(); !busy) return began(busy.error());
     runner_.reset();
-    begun_ = false;
+    phase_ = Phase::beginning;
     runner_ = std::make_unique<RehearsalRunner>(std::move(flight.scenario), flight.seed, flight.pace, dictionary_,
                                                 pipeline_, callbacks_for(std::move(began)));
 }
@@ -110,7 +112,7 @@ void RehearsalDesk::continue_run(archive::CutOffRun cut, double pace, Began bega
     auto scenario = scenario_from_text(cut.scenario_text, fmt::format("the scenario of run {}", cut.run.value));
     if (!scenario) return began(scenario.error());
     runner_.reset();
-    begun_ = false;
+    phase_ = Phase::beginning;
     runner_ = std::make_unique<RehearsalRunner>(std::move(*scenario), std::move(cut), pace, dictionary_, pipeline_,
                                                 callbacks_for(std::move(began)));
 }
@@ -118,21 +120,13 @@ void RehearsalDesk::continue_run(archive::CutOffRun cut, double pace, Began bega
 RehearsalRunner::Callbacks RehearsalDesk::callbacks_for(Began began) {
     RehearsalRunner::Callbacks callbacks;
     callbacks.on_begun = [this, began = std::move(began)](Result<v1::RunState> state) {
-        post_([this, began, state = std::move(state)] {
-            if (state) {
-                begun_ = true;
-                state_ = *state;
-                callbacks_.on_state(state_);
-                look_again();  // a crash may have come in between
-            }
-            began(state);
-        });
+        post_([this, began, state = std::move(state)] { begun(state, began); });
     };
     callbacks.on_state = [this](v1::RunState state) {
         post_([this, state = std::move(state)]() mutable {
             state_ = state;
             callbacks_.on_state(std::move(state));
-            if (std::exchange(not_known_, false)) look_again();
+            if (outlook_ == Outlook::unknown) look_again();
         });
     };
     callbacks.on_clocks = [this](v1::Clocks clocks) {
@@ -147,40 +141,14 @@ RehearsalRunner::Callbacks RehearsalDesk::callbacks_for(Began began) {
     return callbacks;
 }
 
-void RehearsalDesk::look_again() {
-    if (!going_on() || !begun_) return;
-    if (std::exchange(looking_again_, true)) {
-        once_more_ = true;
-        return;
+void RehearsalDesk::begun(const Result<v1::RunState>& state, const Began& began) {
+    if (state) {  // else its runner is over
+        phase_ = Phase::under_way;
+        state_ = *state;
+        callbacks_.on_state(state_);
+        look_again();  // a crash may have come in between
     }
-    const auto run = state_.run();
-    timeline_.look_again(archive::RunId{static_cast<std::uint32_t>(run)}, [this,
-                                                                           run](Result<TimelineCheck::Look> look) {
-        post_([this, run, look = std::move(look)] {
-            looking_again_ = false;
-            const bool goes_on = going_on() && begun_ && state_.run() == run;
-            // Else what was found is of what waited before.
-            if (std::exchange(once_more_, false)) return look_again();
-            if (!goes_on) return;
-            const std::string not_known = look ? look->not_known : look.error().message;
-            not_known_ = !not_known.empty();
-            if (not_known_)
-                spdlog::warn("run {}: what becomes of the timeline by what waits is not known yet: {}", run, not_known);
-            if (look) tell_looks(*look);
-        });
-    });
-}
-
-void RehearsalDesk::tell_looks(const TimelineCheck::Look& look) {
-    for (const auto& each : look.known) {
-        v1::CommandRequest said;
-        said.set_action(each.refuted ? commands::timeline_refuted_action : commands::timeline_holds_action);
-        said.set_number(each.number);
-        said.set_request(look.undone);
-        said.set_analysis(each.words);
-        runner_->submit(said, [](const v1::CommandReply&) {
-        });  // of one that nobody doubts it is refused, and that is all it would say
-    }
+    began(state);
 }
 
 std::string RehearsalDesk::not_going_on(std::uint64_t run) const {
@@ -192,93 +160,161 @@ Result<void> RehearsalDesk::control(const v1::RehearsalControl& control, Began b
         start(control.start(), std::move(began));
         return {};
     }
+    return order_of_run(control);
+}
+
+Result<void> RehearsalDesk::order_of_run(const v1::RehearsalControl& control) {
     if (!going_on()) return Error{"no rehearsal goes on"};
     if (control.run() != 0 && control.run() != state_.run()) return Error{not_going_on(control.run())};
+    Intervene intervene;
     switch (control.action_case()) {
-    case v1::RehearsalControl::kPause: runner_->pause(control.pause()); return {};
+    case v1::RehearsalControl::kPause: return runner_->order(PauseRun{control.pause()});
     case v1::RehearsalControl::kPace: {
         const auto pace = checked_pace(control.pace());
         if (!pace) return pace.error();
-        runner_->set_pace(*pace);
-        return {};
+        return runner_->order(PaceRun{*pace});
     }
     case v1::RehearsalControl::kStop:
         if (!control.stop()) return Error{"stop: false asks for nothing"};
-        runner_->stop();
-        return {};
-    case v1::RehearsalControl::kInject: return runner_->inject(control.inject());
+        return runner_->order(StopRun{});
+    case v1::RehearsalControl::kInject:
+        *intervene.intervention.mutable_fault() = control.inject();
+        return runner_->order(std::move(intervene));
     case v1::RehearsalControl::kNote:
         if (auto checked = check_note(control.note().text(), control.note().by()); !checked) return checked;
-        return runner_->note(control.note());
+        *intervene.intervention.mutable_note() = control.note();
+        return runner_->order(std::move(intervene));
     default: return Error{"the control says nothing: start, pause, pace, stop, inject or note is wanted"};
     }
 }
 
-void RehearsalDesk::command(v1::CommandRequest request, const May& may, RehearsalRunner::Reply reply) {
+void RehearsalDesk::command(v1::CommandRequest request, const AuthorityCheck& authority, const Reply& reply) {
     const bool only_check = request.dry_run();
     std::vector<v1::CommandRequest> one;
     one.push_back(std::move(request));
-    sequence(std::move(one), only_check, may,
-             [reply = std::move(reply)](std::vector<v1::CommandReply> replies) { reply(std::move(replies.front())); });
+    sequence(std::move(one), only_check, authority,
+             [reply](std::vector<v1::CommandReply> replies) { reply(std::move(replies.front())); });
 }
 
-void RehearsalDesk::sequence(std::vector<v1::CommandRequest> requests, bool only_check, const May& may,
+void RehearsalDesk::sequence(std::vector<v1::CommandRequest> requests, bool only_check, const AuthorityCheck& authority,
                              Replies replies) {
-    const auto refuse = [&](const std::string& reason) { RehearsalRunner::refuse_all(requests, reason, replies); };
-    if (!going_on() || !begun_) return refuse("no run goes on: nothing listens");
-    if (!only_check && pipeline_.blocked())
-        return refuse("the run waits until its archive can be written again: " + pipeline_.fault());
-    for (const auto& request : requests)
+    receive({std::move(requests), only_check, std::move(replies)}, authority);
+}
+
+void RehearsalDesk::receive(SendCommands order, const AuthorityCheck& authority) {
+    if (const auto refusal = refusal_of(order); !refusal.empty()) return order.refuse(refusal);
+    if (waits(order)) return wait(std::move(order), authority);
+    analyse(std::move(order));
+}
+
+std::string RehearsalDesk::refusal_of(const SendCommands& order) const {
+    if (phase() != Phase::under_way) return nobody_listens;
+    if (!order.only_check && pipeline_.blocked())
+        return "the run waits until its archive can be written again: " + pipeline_.fault();
+    for (const auto& request : order.requests)
         if (request.action() == commands::timeline_holds_action ||
             request.action() == commands::timeline_refuted_action)
-            return refuse(fmt::format("unknown action '{}': that is for the server itself", request.action()));
-    for (const auto& request : requests)
-        if (request.run() != 0 && request.run() != state_.run()) return refuse(not_going_on(request.run()));
-    // In the order in which they came: what follows a change of the timeline waits until that was taken or refused. Not
-    // who stops something: that changes no timeline, and nothing may leave while it waits.
-    const bool stops =
-        std::ranges::all_of(requests, [](const v1::CommandRequest& request) { return request.action() == "hold"; });
-    if (changing_ && !only_check && !stops && later_.size() >= RehearsalRunner::requests_max)
-        return refuse(
-            fmt::format("{} commands wait already, until a change of the timeline is decided", later_.size()));
-    if (changing_ && !only_check && !stops) {
-        for (auto& request : requests)  // their numbers and rights are of this run, not of one that begins meanwhile
-            request.set_run(state_.run());
-        return later_.push_back([this, requests = std::move(requests), may, replies = std::move(replies)]() mutable {
-            for (const auto& request : requests)
-                if (const auto allowed = may(request); !allowed)
-                    return RehearsalRunner::refuse_all(requests, allowed.error().message, replies);
-            sequence(std::move(requests), false, may, std::move(replies));
-        });
-    }
-    const auto run = state_.run();
-    if (!only_check && std::ranges::any_of(requests, changes_timeline)) {
-        changing_ = true;
-        replies = [this, replies = std::move(replies)](std::vector<v1::CommandReply> answers) {
-            changing_ = false;
+            return fmt::format("unknown action '{}': that is for the server itself", request.action());
+    for (const auto& request : order.requests)
+        if (request.run() != 0 && request.run() != state_.run()) return not_going_on(request.run());
+    return {};
+}
+
+bool RehearsalDesk::waits(const SendCommands& order) const {
+    const bool hold = std::ranges::all_of(order.requests,
+                                          [](const v1::CommandRequest& request) { return request.action() == "hold"; });
+    return change_pending_ && !order.only_check && !hold;
+}
+
+void RehearsalDesk::wait(SendCommands order, const AuthorityCheck& authority) {
+    if (waiting_.size() >= RehearsalRunner::requests_max)
+        return order.refuse(
+            fmt::format("{} commands wait already, until a change of the timeline is decided", waiting_.size()));
+    // Their numbers and rights are of this run, not of one that begins meanwhile.
+    for (auto& request : order.requests) request.set_run(state_.run());
+    waiting_.push_back({std::move(order), authority});
+}
+
+void RehearsalDesk::analyse(SendCommands order) {
+    if (!order.only_check && std::ranges::any_of(order.requests, changes_timeline)) {
+        change_pending_ = true;
+        order.replies = [this, replies = std::move(order.replies)](std::vector<v1::CommandReply> answers) {
+            change_pending_ = false;
             replies(std::move(answers));
-            for (auto& order : std::exchange(later_, {})) order();
+            change_decided();
         };
     }
-    timeline_.check(archive::RunId{static_cast<std::uint32_t>(run)}, requests, only_check,
-                    [this, run, requests, only_check, replies, moves = moves_](Result<std::string> timeline) {
-                        post_([this, run, requests, only_check, replies, moves, timeline = std::move(timeline)] {
-                            const auto refuse_all = [&](const std::string& reason) {
-                                RehearsalRunner::refuse_all(requests, reason, replies);
-                            };
-                            if (!timeline) return refuse_all(timeline.error().message);
-                            if (!going_on() || !begun_ || state_.run() != run)
-                                return refuse_all("no run goes on: nothing listens");
-                            if (!only_check && !timeline->empty() && moves != moves_)
-                                return refuse_all("what it was analysed with has come to nothing meanwhile: look at "
-                                                  "the timeline, then send it again");
-                            runner_->submit(requests, only_check,
-                                            [this, replies, says = *timeline](std::vector<v1::CommandReply> answers) {
-                                                for (auto& answer : answers) answer.set_timeline(says);
-                                                post_([replies, answers = std::move(answers)] { replies(answers); });
-                                            });
+    const auto run = state_.run();
+    timeline_.check(archive::RunId{static_cast<std::uint32_t>(run)}, order.requests, order.only_check,
+                    [this, run, order, moves = moves_](Result<std::string> timeline) {
+                        post_([this, run, order, moves, timeline = std::move(timeline)] {
+                            hand_over(order, run, moves, timeline);
                         });
                     });
+}
+
+void RehearsalDesk::hand_over(SendCommands order, std::uint64_t run, std::uint64_t moves,
+                              const Result<std::string>& timeline) {
+    if (!timeline) return order.refuse(timeline.error().message);
+    if (phase() != Phase::under_way || state_.run() != run) return order.refuse(nobody_listens);
+    if (!order.only_check && !timeline->empty() && moves != moves_)
+        return order.refuse("what it was analysed with has come to nothing meanwhile: look at the timeline, then send "
+                            "it again");
+    order.replies = [this, replies = std::move(order.replies),
+                     says = *timeline](std::vector<v1::CommandReply> answers) {
+        for (auto& answer : answers) answer.set_timeline(says);
+        post_([replies, answers = std::move(answers)] { replies(answers); });
+    };
+    static_cast<void>(runner_->order(std::move(order)));  // what refuses it is in the replies
+}
+
+void RehearsalDesk::change_decided() {
+    for (auto& [order, authority] : std::exchange(waiting_, {})) {
+        Result<void> allowed;
+        for (const auto& request : order.requests)
+            if (allowed) allowed = authority(request);
+        if (allowed)
+            receive(std::move(order), authority);
+        else
+            order.refuse(allowed.error().message);
+    }
+}
+
+void RehearsalDesk::look_again() {
+    if (phase() != Phase::under_way) return;
+    const bool asked = outlook_ == Outlook::looking || outlook_ == Outlook::outdated;
+    outlook_ = asked ? Outlook::outdated : Outlook::looking;
+    if (asked) return;
+    const auto run = state_.run();
+    timeline_.look_again(archive::RunId{static_cast<std::uint32_t>(run)},
+                         [this, run](Result<TimelineCheck::Look> look) {
+                             post_([this, run, look = std::move(look)] { looked(run, look); });
+                         });
+}
+
+void RehearsalDesk::looked(std::uint64_t run, const Result<TimelineCheck::Look>& look) {
+    if (std::exchange(outlook_, Outlook::settled) == Outlook::outdated) return look_again();
+    if (phase() != Phase::under_way || state_.run() != run) return;
+    const std::string not_known = look ? look->not_known : look.error().message;
+    if (!not_known.empty()) {
+        outlook_ = Outlook::unknown;
+        spdlog::warn("run {}: what becomes of the timeline by what waits is not known yet: {}", run, not_known);
+    }
+    if (look) tell(*look);
+}
+
+void RehearsalDesk::tell(const TimelineCheck::Look& look) {
+    for (const auto& each : look.known) {
+        v1::CommandRequest told;
+        told.set_action(each.refuted ? commands::timeline_refuted_action : commands::timeline_holds_action);
+        told.set_number(each.number);
+        told.set_request(look.undone);
+        told.set_analysis(each.words);
+        SendCommands order;
+        order.requests.push_back(std::move(told));
+        order.replies = [](const auto&) {};  // refused where nobody doubts it: there is nothing to tell then
+        static_cast<void>(runner_->order(std::move(order)));
+    }
 }
 
 }  // namespace aeolis::server

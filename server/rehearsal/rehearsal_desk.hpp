@@ -17,9 +17,19 @@
 
 namespace aeolis::server {
 
-/// Where rehearsals are started, paced and stopped, and commands are taken to the one that goes on: one at a time.
+/// Decides what is ordered of rehearsals: one run at a time, commands in the order in which they came.
 ///
-/// Thread   the network thread only; Callbacks are given through `post`, which brings a function there
+/// Run       none ──start──► beginning ──begun──► under_way ──its end──► over ──start──► beginning
+///                               └────────── could not begin ────────────►┘
+/// Commands  received ─────────────────► analysing ──► with the runner ──► answered
+///               │  ▲                        └──── refused ──────────────────►┘
+///               ▼  │ decided, and still allowed
+///            waiting, while an earlier order that changes the timeline is analysing or with the runner; never a
+///            hold, which lets nothing leave, nor a dry run
+/// Outlook   settled ──timeline moved, run begun──► looking ──known──► settled
+///           looking ──moved again──► outdated ──answer──► looking
+///           looking ──not known──► unknown ──next state of the run──► looking
+/// Thread    the network thread only; Callbacks come through `post`, which brings a function there
 class RehearsalDesk {
   public:
     struct Callbacks {
@@ -40,7 +50,11 @@ class RehearsalDesk {
         CheckTimeline check;
         LookAgain look_again;
     };
-    using Replies = RehearsalRunner::Replies;
+    using Reply = std::function<void(v1::CommandReply)>;
+    using Replies = SendCommands::Replies;
+    /// Whether the sender may still send a command that has waited, when its turn comes: rights change meanwhile, and
+    /// so do the commands that have its number.
+    using AuthorityCheck = std::function<Result<void>(const v1::CommandRequest&)>;
 
     RehearsalDesk(const ScenarioLibrary& scenarios, const dictionary::Dictionary& dictionary, PipelineThread& pipeline,
                   Post post, ReadCutOff read_cut_off, TimelineQuestions timeline, Callbacks callbacks);
@@ -56,20 +70,18 @@ class RehearsalDesk {
     };
     void start(Flight flight, Began began);
     Result<void> control(const v1::RehearsalControl& control, Began began);
-    /// `may` is asked about what waited for something else, when its turn comes: rights change meanwhile, and so do the
-    /// commands that have its number.
-    using May = std::function<Result<void>(const v1::CommandRequest&)>;
-    void command(v1::CommandRequest request, const May& may, RehearsalRunner::Reply reply);
+    void command(v1::CommandRequest request, const AuthorityCheck& authority, const Reply& reply);
     /// A command file: all or none.
-    void sequence(std::vector<v1::CommandRequest> requests, bool only_check, const May& may, Replies replies);
+    void sequence(std::vector<v1::CommandRequest> requests, bool only_check, const AuthorityCheck& authority,
+                  Replies replies);
 
     /// From now on none can be started, because of `reason`.
     void close(std::string reason) { closed_ = std::move(reason); }
     const v1::RunState& current() const { return state_; }  ///< run 0: none since the server started
-    bool going_on() const { return runner_ && !runner_->over(); }
-    /// Commands, and command files, that are with the run; those that wait until a change of the timeline is decided.
+    bool going_on() const { return phase() == Phase::beginning || phase() == Phase::under_way; }
+    /// Commands, and command files, that the run has not carried out; those that wait for a change of the timeline.
     std::size_t commands_waiting() const { return runner_ ? runner_->waiting() : 0; }
-    std::size_t commands_put_off() const { return later_.size(); }
+    std::size_t commands_put_off() const { return waiting_.size(); }
     std::size_t commands_queued() const { return runner_ ? runner_->queued() : 0; }
     std::size_t commands_at_uplink() const { return runner_ ? runner_->at_uplink() : 0; }
     /// Of a command of the run that goes on, by its number; none: it has none of this number yet.
@@ -78,16 +90,38 @@ class RehearsalDesk {
     }
 
   private:
+    enum class Phase : std::uint8_t { none, beginning, under_way, over };
+    /// Whether it is known to what the timeline comes by the commands that still wait in the run.
+    enum class Outlook : std::uint8_t { settled, looking, outdated, unknown };
+    struct Waiting {
+        SendCommands order;
+        AuthorityCheck authority;
+    };
+
+    Phase phase() const { return runner_ && runner_->over() ? Phase::over : phase_; }
+    Result<void> refusal_while_going_on() const;
     void fly(Flight flight, Began began);
     void continue_run(archive::CutOffRun cut, double pace, Began began);
     RehearsalRunner::Callbacks callbacks_for(Began began);
-    /// What waits and changes the timeline was analysed with another that has come to nothing since: it leaves only
-    /// once that is told in its history, or never. What nobody knows is asked again.
-    void look_again();
-    void tell_looks(const TimelineCheck::Look& look);
-    Result<void> refusal_while_going_on() const;
+    void begun(const Result<v1::RunState>& state, const Began& began);
+    Result<void> order_of_run(const v1::RehearsalControl& control);
     /// Why what is asked of this run is not done: another goes on.
     std::string not_going_on(std::uint64_t run) const;
+
+    // The way of a command, in its order.
+    void receive(SendCommands order, const AuthorityCheck& authority);
+    std::string refusal_of(const SendCommands& order) const;
+    bool waits(const SendCommands& order) const;
+    void wait(SendCommands order, const AuthorityCheck& authority);
+    void analyse(SendCommands order);
+    void hand_over(SendCommands order, std::uint64_t run, std::uint64_t moves, const Result<std::string>& timeline);
+    void change_decided();
+
+    /// A command that changes the timeline was analysed with those before it. When one of these comes to nothing, it
+    /// leaves only once its history says what becomes of the timeline now, or never.
+    void look_again();
+    void looked(std::uint64_t run, const Result<TimelineCheck::Look>& look);
+    void tell(const TimelineCheck::Look& look);
 
     const ScenarioLibrary& scenarios_;
     const dictionary::Dictionary& dictionary_;
@@ -98,11 +132,10 @@ class RehearsalDesk {
     Callbacks callbacks_;
     v1::RunState state_;
     std::string closed_;
-    bool begun_ = false;     ///< the run that goes on is in the archive, and state_ is its own
-    bool changing_ = false;  ///< a change of the timeline is looked at or under way: later orders wait for its reply
-    std::deque<std::function<void()>> later_;
-    bool looking_again_ = false, once_more_ = false;  ///< the latter: what it looks at has changed meanwhile
-    bool not_known_ = false;   ///< of the last look: it is made again with the next state of the run
+    Phase phase_ = Phase::none;    ///< but for `over`; under_way: the run is in the archive, and state_ is its own
+    bool change_pending_ = false;  ///< an order that changes the timeline is analysing or with the runner
+    std::deque<Waiting> waiting_;
+    Outlook outlook_ = Outlook::settled;
     std::uint64_t moves_ = 0;  ///< of the timeline, by commands that came to nothing
     std::unique_ptr<RehearsalRunner> runner_;
 };

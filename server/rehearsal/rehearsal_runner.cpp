@@ -33,8 +33,7 @@ constexpr const char* over_reason = "the run is over: nothing listens on board";
 
 }  // namespace
 
-void RehearsalRunner::refuse_all(const std::vector<v1::CommandRequest>& requests, const std::string& reason,
-                                 const Replies& replies) {
+void SendCommands::refuse(const std::string& reason) const {
     std::vector<v1::CommandReply> refusals;
     for (const auto& request : requests) {
         auto& refusal = refusals.emplace_back();
@@ -49,7 +48,7 @@ RehearsalRunner::RehearsalRunner(simulation::Scenario scenario, std::uint64_t se
                                  Callbacks callbacks)
     : scenario_(std::move(scenario)), seed_(seed), dictionary_(dictionary), pipeline_(pipeline),
       callbacks_(std::move(callbacks)) {
-    control_.pace = pace_ = std::clamp(pace, 0.0, pace_max);
+    pace_ = std::clamp(pace, 0.0, pace_max);
     scenario_.radio.tones_from_samples = from_samples(scenario_.radio, pace_);
     thread_ = std::thread{[this] { run(); }};
 }
@@ -59,86 +58,57 @@ RehearsalRunner::RehearsalRunner(simulation::Scenario scenario, archive::CutOffR
                                  Callbacks callbacks)
     : scenario_(std::move(scenario)), seed_(cut.seed), cut_(std::move(cut)), dictionary_(dictionary),
       pipeline_(pipeline), callbacks_(std::move(callbacks)) {
-    control_.pace = pace_ = std::clamp(pace, 0.0, pace_max);
+    pace_ = std::clamp(pace, 0.0, pace_max);
     thread_ = std::thread{[this] { run(); }};
 }
 
 RehearsalRunner::~RehearsalRunner() {
-    stop();
+    static_cast<void>(order(StopRun{}));
     thread_.join();
 }
 
-void RehearsalRunner::pause(bool paused) {
-    const std::scoped_lock lock{mutex_};
-    control_.paused = paused;
-    control_.changed = true;
-    changed_.notify_one();
-}
-
-void RehearsalRunner::set_pace(double pace) {
-    const std::scoped_lock lock{mutex_};
-    control_.pace = std::clamp(pace, 0.0, pace_max);
-    control_.changed = true;
-    changed_.notify_one();
-}
-
-void RehearsalRunner::stop() {
-    const std::scoped_lock lock{mutex_};
-    control_.stop = true;
-    control_.changed = true;
-    changed_.notify_one();
-}
-
-Result<void> RehearsalRunner::inject(v1::FaultInjection injection) {
-    if (const auto fault = fault_from_message(injection, scenario_); !fault) return fault.error();
-    v1::Intervention intervention;
-    *intervention.mutable_fault() = std::move(injection);
-    return intervene(std::move(intervention), faults_taken_, faults_max, "faults have been injected into");
-}
-
-Result<void> RehearsalRunner::note(v1::InstructorNote note) {
-    v1::Intervention intervention;
-    *intervention.mutable_note() = std::move(note);
-    return intervene(std::move(intervention), notes_taken_, notes_max, "notes have been written about");
-}
-
-Result<void> RehearsalRunner::intervene(v1::Intervention intervention, std::size_t& taken, std::size_t most,
-                                        std::string_view what) {
-    const std::scoped_lock lock{mutex_};
-    if (over_ || control_.stop) return Error{over_reason};
-    if (taken == most) return Error{fmt::format("{} {} this run: no more", most, what)};
-    ++taken;
-    control_.interventions.push_back(std::move(intervention));
-    control_.changed = true;
-    changed_.notify_one();
+Result<void> RehearsalRunner::order(RunOrder order) {
+    const auto refusal = [&]() -> std::string {
+        const std::scoped_lock lock{mutex_};
+        if (auto refused = refusal_of(order); !refused.empty()) return refused;
+        if (const auto* intervene = std::get_if<Intervene>(&order))
+            ++(intervene->intervention.has_fault() ? faults_taken_ : notes_taken_);
+        else if (!std::holds_alternative<SendCommands>(order))  // the last of a kind counts
+            std::erase_if(orders_, [&](const RunOrder& before) { return before.index() == order.index(); });
+        stop_ = stop_ || std::holds_alternative<StopRun>(order);
+        orders_.push_back(std::move(order));
+        changed_.notify_one();
+        return {};
+    }();
+    if (refusal.empty()) return {};
+    const auto* commands = std::get_if<SendCommands>(&order);
+    if (commands == nullptr) return Error{refusal};
+    commands->refuse(refusal);
     return {};
 }
 
-void RehearsalRunner::submit(v1::CommandRequest request, Reply reply) {
-    const bool only_check = request.dry_run();
-    std::vector<v1::CommandRequest> one;
-    one.push_back(std::move(request));
-    submit(std::move(one), only_check,
-           [reply = std::move(reply)](std::vector<v1::CommandReply> replies) { reply(std::move(replies.front())); });
+std::string RehearsalRunner::refusal_of(const RunOrder& order) const {
+    if (std::holds_alternative<SendCommands>(order)) {
+        if (over_ || stop_) return over_reason;
+        return commands_waiting() < requests_max ? "" : fmt::format("{} commands wait already", requests_max);
+    }
+    const auto* intervene = std::get_if<Intervene>(&order);
+    if (intervene == nullptr) return {};
+    const auto& intervention = intervene->intervention;
+    if (intervention.has_fault())
+        if (const auto fault = fault_from_message(intervention.fault(), scenario_); !fault)
+            return fault.error().message;
+    if (over_ || stop_) return over_reason;
+    if (intervention.has_fault() && faults_taken_ == faults_max)
+        return fmt::format("{} faults have been injected into this run: no more", faults_max);
+    if (intervention.has_note() && notes_taken_ == notes_max)
+        return fmt::format("{} notes have been written about this run: no more", notes_max);
+    return {};
 }
 
-void RehearsalRunner::submit(std::vector<v1::CommandRequest> sequence, bool only_check, Replies replies) {
-    Order order{std::move(sequence), only_check, std::move(replies)};
-    std::string reason;
-    {
-        const std::scoped_lock lock{mutex_};
-        if (over_ || control_.stop) {
-            reason = over_reason;
-        } else if (control_.orders.size() >= requests_max) {
-            reason = fmt::format("{} commands wait already", requests_max);
-        } else {
-            control_.orders.push_back(std::move(order));
-            control_.changed = true;
-            changed_.notify_one();
-            return;
-        }
-    }
-    refuse_all(order.requests, reason, order.replies);
+std::size_t RehearsalRunner::commands_waiting() const {
+    return static_cast<std::size_t>(std::ranges::count_if(
+        orders_, [](const RunOrder& order) { return std::holds_alternative<SendCommands>(order); }));
 }
 
 bool RehearsalRunner::over() const {
@@ -148,7 +118,7 @@ bool RehearsalRunner::over() const {
 
 std::size_t RehearsalRunner::waiting() const {
     const std::scoped_lock lock{mutex_};
-    return control_.orders.size();
+    return commands_waiting();
 }
 
 std::optional<std::string> RehearsalRunner::name_of_command(std::uint64_t number) const {
@@ -166,13 +136,14 @@ void RehearsalRunner::run() {
     } else {
         callbacks_.on_begun(begun.error());
     }
-    std::vector<Order> late;
+    std::vector<RunOrder> late;
     {
         const std::scoped_lock lock{mutex_};
         over_ = true;
-        late.swap(control_.orders);
+        late.swap(orders_);
     }
-    for (const auto& order : late) refuse_all(order.requests, over_reason, order.replies);
+    for (const auto& order : late)
+        if (const auto* commands = std::get_if<SendCommands>(&order)) commands->refuse(over_reason);
 }
 
 Result<void> RehearsalRunner::begin(Rehearsal& rehearsal) {
@@ -186,7 +157,7 @@ Result<void> RehearsalRunner::begin(Rehearsal& rehearsal) {
 
 bool RehearsalRunner::stop_wanted() const {
     const std::scoped_lock lock{mutex_};
-    return control_.stop;
+    return stop_;
 }
 
 Result<void> RehearsalRunner::catch_up(Rehearsal& rehearsal) {
@@ -220,62 +191,53 @@ Result<void> RehearsalRunner::catch_up(Rehearsal& rehearsal) {
     return {};
 }
 
+void RehearsalRunner::count_pace_from(const Rehearsal& rehearsal, Clock::time_point now) {
+    pace_since_ = now;
+    pace_since_cycle_ = rehearsal.cycles();
+}
+
+RehearsalRunner::Clock::time_point RehearsalRunner::next_cycle_due(const Rehearsal& rehearsal,
+                                                                   Clock::time_point now) const {
+    if (paused_) return now + clocks_interval;
+    if (pace_ == 0.0) return now;
+    const double flown_s = static_cast<double>(rehearsal.cycles() - pace_since_cycle_) * seconds_per_tick / pace_;
+    return pace_since_ + std::chrono::duration_cast<Clock::duration>(duration<double>{flown_s});
+}
+
+std::vector<RunOrder> RehearsalRunner::take_orders(std::optional<Clock::time_point> due) {
+    std::unique_lock lock{mutex_};
+    if (due) changed_.wait_until(lock, *due, [&] { return !orders_.empty(); });
+    return std::exchange(orders_, {});
+}
+
 void RehearsalRunner::fly(Rehearsal& rehearsal) {
-    auto anchor = Clock::now();  // the pace counts from here
-    auto anchor_cycles = rehearsal.cycles();
-    state_told_ = clocks_told_ = delivered_ = anchor;
+    count_pace_from(rehearsal, Clock::now());
+    state_told_ = clocks_told_ = delivered_ = pace_since_;
     while (!rehearsal.finished() && !stopped_ && !archive_gave_up_) {
         auto now = Clock::now();
-        // Time when the next cycle is due; without pace it always is.
-        auto due = now;
-        if (pace_ > 0.0) {
-            const double flown_s = static_cast<double>(rehearsal.cycles() - anchor_cycles) * seconds_per_tick / pace_;
-            due = anchor + std::chrono::duration_cast<Clock::duration>(duration<double>{flown_s});
-        }
-        if (paused_) due = now + clocks_interval;
+        const auto due = next_cycle_due(rehearsal, now);
         const bool wait = due - now >= shortest_wait;
         if (wait) archive_gave_up_ = !deliver(rehearsal, now);
         tell(rehearsal, now, false);
-
-        Control control;
-        {
-            std::unique_lock lock{mutex_};
-            if (wait) changed_.wait_until(lock, due, [&] { return control_.changed; });
-            control.paused = control_.paused;
-            control.stop = control_.stop;
-            control.pace = control_.pace;
-            control.changed = std::exchange(control_.changed, false);
-            control.orders.swap(control_.orders);
-            control.interventions.swap(control_.interventions);
-        }
+        auto orders = take_orders(wait ? std::optional{due} : std::nullopt);
         now = Clock::now();
-        if (control.changed) {
-            const bool different = paused_ != control.paused || pace_ != control.pace;
-            paused_ = control.paused;
-            pace_ = control.pace;
-            stopped_ = control.stop;
-            bring_about(rehearsal, control.interventions);
-            carry_out(rehearsal, std::move(control.orders));
-            if (different) {
-                anchor = now;
-                anchor_cycles = rehearsal.cycles();
+        if (!orders.empty()) {
+            if (carry_out(rehearsal, std::move(orders))) {
+                count_pace_from(rehearsal, now);
                 tell(rehearsal, now, true);
             }
             continue;
         }
-        if (paused_) {
-            anchor = now;
-            anchor_cycles = rehearsal.cycles();
-            continue;
-        }
-        if (now - due > duration<double>{behind_s_max}) {
-            anchor = now;
-            anchor_cycles = rehearsal.cycles();
-        }
+        if (paused_ || now - due > duration<double>{behind_s_max}) count_pace_from(rehearsal, now);
+        if (paused_) continue;
         collect(rehearsal, rehearsal.step());
         if (now - delivered_ >= delivery_interval || delivery_.entries.size() >= delivery_entries)
             archive_gave_up_ = archive_gave_up_ || !deliver(rehearsal, now);
     }
+    finish(rehearsal);
+}
+
+void RehearsalRunner::finish(Rehearsal& rehearsal) {
     digest_ = rehearsal.digest();
     deliver(rehearsal, Clock::now());
     finished_ = true;
@@ -288,60 +250,68 @@ void RehearsalRunner::fly(Rehearsal& rehearsal) {
     tell(rehearsal, Clock::now(), true);
 }
 
-std::vector<v1::CommandReply> RehearsalRunner::look_at(Rehearsal& rehearsal, const Order& order) {
+std::vector<v1::CommandReply> RehearsalRunner::look_at(Rehearsal& rehearsal, const SendCommands& order) {
     if (!order.only_check && order.requests.size() == 1) return {};  // the one look at it comes when it is taken
     auto replies = rehearsal.look(order.requests);
     if (!order.only_check && std::ranges::all_of(replies, &v1::CommandReply::accepted)) replies.clear();
     return replies;
 }
 
-void RehearsalRunner::carry_out(Rehearsal& rehearsal, std::vector<Order> orders) {
-    for (auto& order : orders) {
-        auto replies = look_at(rehearsal, order);
-        if (!replies.empty()) {
-            order.replies(std::move(replies));
-            continue;
-        }
-        bool any = false;
-        for (const auto& request : order.requests) {
-            auto answer = rehearsal.submit(request);
-            const auto what = request.action().empty() ? request.command()
-                                                       : fmt::format("{} of {}", request.action(), request.number());
-            spdlog::info("run {}: command {} {}", run_id_.value, what,
-                         answer.accepted() ? fmt::format("taken as number {}", answer.command())
-                                           : "refused: " + answer.reason());
-            if (answer.accepted()) {
-                any = true;
-                delivery_.entries.emplace_back(archive::RequestRecord{rehearsal.cycles(), archive::kept_text(request)});
-                take_stages(rehearsal);
-            }
-            replies.push_back(std::move(answer));
-        }
-        if (any)
-            delivery_.answers.push_back(
-                [give = std::move(order.replies), given = std::move(replies)](const std::string& fault) mutable {
-                    for (auto& reply : given)
-                        if (reply.accepted() && !fault.empty()) reply.set_reason(not_stored_yet + fault);
-                    give(std::move(given));
-                });
-        else
-            order.replies(std::move(replies));
-    }
+bool RehearsalRunner::carry_out(Rehearsal& rehearsal, std::vector<RunOrder> orders) {
+    const auto before = std::pair{paused_, pace_};
+    for (const auto& order : orders) std::visit([&](const auto& each) { carry_out(rehearsal, each); }, order);
     if (!delivery_.answers.empty()) archive_gave_up_ = !deliver(rehearsal, Clock::now());
+    return before != std::pair{paused_, pace_};
 }
 
-void RehearsalRunner::bring_about(Rehearsal& rehearsal, const std::vector<v1::Intervention>& interventions) {
-    for (const auto& intervention : interventions) {
-        if (intervention.has_fault()) {
-            if (const auto injected = rehearsal.inject(intervention.fault());
-                !injected) {  // inject() has looked at it already
-                spdlog::error("run {}: fault not injected: {}", run_id_.value, injected.error().message);
-                continue;
-            }
-            spdlog::info("run {}: fault injected: {}", run_id_.value, intervention.fault().ShortDebugString());
+void RehearsalRunner::carry_out(Rehearsal& /*rehearsal*/, const PauseRun& order) {
+    paused_ = order.paused;
+}
+
+void RehearsalRunner::carry_out(Rehearsal& /*rehearsal*/, const PaceRun& order) {
+    pace_ = std::clamp(order.pace, 0.0, pace_max);
+}
+
+void RehearsalRunner::carry_out(Rehearsal& /*rehearsal*/, const StopRun& /*order*/) {
+    stopped_ = true;
+}
+
+void RehearsalRunner::carry_out(Rehearsal& rehearsal, const Intervene& order) {
+    const auto& intervention = order.intervention;
+    if (intervention.has_fault()) {
+        if (const auto injected = rehearsal.inject(intervention.fault()); !injected) {  // has been checked already
+            spdlog::error("run {}: fault not injected: {}", run_id_.value, injected.error().message);
+            return;
         }
-        delivery_.entries.emplace_back(archive::RequestRecord{rehearsal.cycles(), archive::kept_text(intervention)});
+        spdlog::info("run {}: fault injected: {}", run_id_.value, intervention.fault().ShortDebugString());
     }
+    delivery_.entries.emplace_back(archive::RequestRecord{rehearsal.cycles(), archive::kept_text(intervention)});
+}
+
+void RehearsalRunner::carry_out(Rehearsal& rehearsal, const SendCommands& order) {
+    auto replies = look_at(rehearsal, order);
+    if (!replies.empty()) return order.replies(std::move(replies));
+    bool any = false;
+    for (const auto& request : order.requests) {
+        auto answer = rehearsal.submit(request);
+        const auto what =
+            request.action().empty() ? request.command() : fmt::format("{} of {}", request.action(), request.number());
+        spdlog::info("run {}: command {} {}", run_id_.value, what,
+                     answer.accepted() ? fmt::format("taken as number {}", answer.command())
+                                       : "refused: " + answer.reason());
+        if (answer.accepted()) {
+            any = true;
+            delivery_.entries.emplace_back(archive::RequestRecord{rehearsal.cycles(), archive::kept_text(request)});
+            take_stages(rehearsal);
+        }
+        replies.push_back(std::move(answer));
+    }
+    if (!any) return order.replies(std::move(replies));
+    delivery_.answers.push_back([give = order.replies, given = std::move(replies)](const std::string& fault) mutable {
+        for (auto& reply : given)
+            if (reply.accepted() && !fault.empty()) reply.set_reason(not_stored_yet + fault);
+        give(std::move(given));
+    });
 }
 
 bool RehearsalRunner::repeat(Rehearsal& rehearsal, const std::string& request) {

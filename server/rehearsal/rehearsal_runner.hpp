@@ -6,6 +6,7 @@
 #include "common/result.hpp"
 #include "dictionaries/dictionary.hpp"
 #include "server/pipeline/pipeline_thread.hpp"
+#include "server/rehearsal/run_order.hpp"
 #include "simulation/scenario.hpp"
 
 #include <atomic>
@@ -17,7 +18,6 @@
 #include <mutex>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <thread>
 #include <vector>
 
@@ -27,7 +27,7 @@ class Rehearsal;
 
 /// Flies one rehearsal in its own thread, at the pace asked for, and hands what reaches Earth to the archive.
 ///
-/// In       pause, pace, stop, commands, faults, an instructor's notes: from any thread, done between two cycles
+/// In       orders, from any thread: carried out between two cycles, in the order in which they came
 /// Out      deliveries to the pipeline; state on every change and once a second, clocks ten times a second
 /// Pace     1 … 1000 × real time, 0: as fast as it goes. When the machine or the disk cannot keep up, the run is
 ///          slower, nothing is skipped, and `attained_pace` says so.
@@ -57,7 +57,6 @@ class RehearsalRunner {
         /// with it. On the pipeline's thread
         std::function<void()> on_timeline_moved;
     };
-    using Reply = std::function<void(v1::CommandReply)>;
 
     /// Whether tones of a run that begins at `pace` come from samples.
     static bool from_samples(const simulation::Radio& radio, double pace) {
@@ -72,22 +71,9 @@ class RehearsalRunner {
                     const dictionary::Dictionary& dictionary, PipelineThread& pipeline, Callbacks callbacks);
     ~RehearsalRunner();  ///< stops the run and waits for its thread
 
-    void pause(bool paused);
-    void set_pace(double pace);
-    void stop();
-    /// What an Error names cannot be injected into this run.
-    Result<void> inject(v1::FaultInjection injection);
-    /// Kept with the cycle at which it came; nothing on board or on the ground hears of it.
-    Result<void> note(v1::InstructorNote note);
-    /// The reply comes on the pipeline's thread once the command's stages are durable; a refusal at once.
-    void submit(v1::CommandRequest request, Reply reply);
-    /// A command file: all are checked before the first is taken, and when one is refused none is. Replies as of
-    /// submit(); with `only_check`, and when one is refused, they are those of a dry run.
-    using Replies = std::function<void(std::vector<v1::CommandReply>)>;
-    void submit(std::vector<v1::CommandRequest> sequence, bool only_check, Replies replies);
-    /// Gives each the same refusal.
-    static void refuse_all(const std::vector<v1::CommandRequest>& requests, const std::string& reason,
-                           const Replies& replies);
+    /// An Error says why an intervention is not taken. Commands that are not taken are refused by their replies; the
+    /// replies to others come on the pipeline's thread once their stages are durable, those of a dry run at once.
+    Result<void> order(RunOrder order);
     bool over() const;            ///< the thread has nothing more to do
     std::size_t waiting() const;  ///< commands, and command files, for the next cycle
     /// Of those that were taken: what has not left the queue, and what the uplink has and has not radiated. As of the
@@ -99,17 +85,6 @@ class RehearsalRunner {
 
   private:
     using Clock = std::chrono::steady_clock;
-    struct Order {
-        std::vector<v1::CommandRequest> requests;
-        bool only_check = false;
-        Replies replies;
-    };
-    struct Control {
-        bool paused = false, stop = false, changed = false;
-        double pace = 1.0;
-        std::vector<Order> orders;
-        std::vector<v1::Intervention> interventions;  ///< for the next cycle
-    };
 
     void run();
     Result<void> begin(Rehearsal& rehearsal);
@@ -117,13 +92,26 @@ class RehearsalRunner {
     Result<void> catch_up(Rehearsal& rehearsal);
     bool stop_wanted() const;
     void fly(Rehearsal& rehearsal);
-    void carry_out(Rehearsal& rehearsal, std::vector<Order> orders);
-    Result<void> intervene(v1::Intervention intervention, std::size_t& taken, std::size_t most, std::string_view what);
-    void bring_about(Rehearsal& rehearsal, const std::vector<v1::Intervention>& interventions);
+    /// Orders since the last call; waits for one until `due`.
+    std::vector<RunOrder> take_orders(std::optional<Clock::time_point> due);
+    /// Whether pause or pace are others than before.
+    bool carry_out(Rehearsal& rehearsal, std::vector<RunOrder> orders);
+    void carry_out(Rehearsal& rehearsal, const PauseRun& order);
+    void carry_out(Rehearsal& rehearsal, const PaceRun& order);
+    void carry_out(Rehearsal& rehearsal, const StopRun& order);
+    void carry_out(Rehearsal& rehearsal, const Intervene& order);
+    void carry_out(Rehearsal& rehearsal, const SendCommands& order);
+    /// Why the order is not taken; empty: it is. Under mutex_.
+    std::string refusal_of(const RunOrder& order) const;
+    std::size_t commands_waiting() const;  ///< under mutex_
+    void count_pace_from(const Rehearsal& rehearsal, Clock::time_point now);
+    /// When the next cycle is due; without pace it always is.
+    Clock::time_point next_cycle_due(const Rehearsal& rehearsal, Clock::time_point now) const;
+    void finish(Rehearsal& rehearsal);
     /// What was once asked of this run, asked again.
     static bool repeat(Rehearsal& rehearsal, const std::string& request);
     /// @return the replies of those that were refused, or of all in a dry run; empty: each may be taken
-    static std::vector<v1::CommandReply> look_at(Rehearsal& rehearsal, const Order& order);
+    static std::vector<v1::CommandReply> look_at(Rehearsal& rehearsal, const SendCommands& order);
     void collect(Rehearsal& rehearsal, const telemetry::Received& received);
     void take_stages(Rehearsal& rehearsal);
     bool deliver(const Rehearsal& rehearsal, Clock::time_point now);
@@ -141,8 +129,8 @@ class RehearsalRunner {
 
     mutable std::mutex mutex_;
     std::condition_variable changed_;
-    Control control_;  ///< under mutex_
-    bool over_ = false;
+    std::vector<RunOrder> orders_;                    ///< under mutex_; for the next cycle
+    bool stop_ = false, over_ = false;                ///< under mutex_
     std::size_t faults_taken_ = 0, notes_taken_ = 0;  ///< under mutex_; in this sitting
     std::map<std::uint64_t, std::string> names_;      ///< under mutex_; of the run's commands, by number
 
@@ -155,6 +143,8 @@ class RehearsalRunner {
     bool timeline_moved_ = false;  ///< by what is in delivery_
     bool paused_ = false, finished_ = false, stopped_ = false, archive_gave_up_ = false;
     double pace_ = 1.0, attained_pace_ = 0.0;
+    Clock::time_point pace_since_{};  ///< the pace counts from here, and from cycle pace_since_cycle_
+    std::uint64_t pace_since_cycle_ = 0;
     std::string digest_;
     Clock::time_point delivered_{}, clocks_told_{}, state_told_{}, links_told_{};
     std::uint64_t cycles_told_ = 0;

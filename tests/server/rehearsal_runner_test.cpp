@@ -76,9 +76,9 @@ TEST_CASE(
             while (e_s < until_e_s) std::this_thread::sleep_for(std::chrono::milliseconds{1});
         };
         fly_until(-870.0);
-        runner.set_pace(0.0);
+        CHECK(runner.order(PaceRun{0.0}));
         fly_until(-700.0);
-        runner.stop();
+        CHECK(runner.order(StopRun{}));
         while (!runner.over()) std::this_thread::sleep_for(std::chrono::milliseconds{1});
     }
     REQUIRE(begun);
@@ -134,19 +134,19 @@ simulation::Scenario short_landing() {
     callbacks.on_state = [](const auto&) {};
     callbacks.on_clocks = [](const auto&) {};
     RehearsalRunner runner{short_landing(), 7, 0.0, dictionary, pipeline, callbacks};
-    v1::FaultInjection fault;
-    fault.mutable_device_fault()->set_device(v1::DEVICE_IMU);
-    fault.mutable_device_fault()->set_unit(v1::REDUNDANT_UNIT_A);
-    fault.mutable_device_fault()->set_kind(v1::DEVICE_FAULT_KIND_DROPOUT);
-    fault.mutable_device_fault()->set_duration_s(2.0);  // that loses samples: the recording tells of it
-    v1::InstructorNote note;
-    note.set_text("do they see it?");
+    Intervene fault, note;
+    auto& device_fault = *fault.intervention.mutable_fault()->mutable_device_fault();
+    device_fault.set_device(v1::DEVICE_IMU);
+    device_fault.set_unit(v1::REDUNDANT_UNIT_A);
+    device_fault.set_kind(v1::DEVICE_FAULT_KIND_DROPOUT);
+    device_fault.set_duration_s(2.0);  // that loses samples: the recording tells of it
+    note.intervention.mutable_note()->set_text("do they see it?");
     while (!begun) std::this_thread::sleep_for(std::chrono::milliseconds{1});
     for (bool first = true;; first = false) {
         v1::CommandRequest request;
         request.set_command("NO_OP");
-        runner.submit(request, [](const auto&) {});
-        if (first && !(runner.inject(fault) && runner.note(note))) ::_exit(1);
+        if (!runner.order(SendCommands{{request}, false, [](const auto&) {}})) ::_exit(1);
+        if (first && !(runner.order(fault) && runner.order(note))) ::_exit(1);
         std::this_thread::sleep_for(std::chrono::milliseconds{40});
     }
 }
@@ -251,7 +251,7 @@ void kill_and_continue(archive::Sequence published, archive::Sequence further) {
         RehearsalRunner runner{*scenario, *cut, 0.0, dictionary, pipeline, callbacks};
         while (!runner.over() && pipeline.figures().published_items < further)
             std::this_thread::sleep_for(std::chrono::milliseconds{1});
-        runner.stop();
+        CHECK(runner.order(StopRun{}));
         while (!runner.over()) std::this_thread::sleep_for(std::chrono::milliseconds{1});
         CHECK(begun);
     }
@@ -346,7 +346,7 @@ TEST_CASE("what is written down while a cut-off run is being continued keeps its
         RehearsalRunner runner{short_landing(), cut, 0.0, dictionary, pipeline, callbacks};
         while (!runner.over() && pipeline.figures().published_items < 500)
             std::this_thread::sleep_for(std::chrono::milliseconds{1});
-        runner.stop();
+        CHECK(runner.order(StopRun{}));
         while (!runner.over()) std::this_thread::sleep_for(std::chrono::milliseconds{1});
         CHECK(told == cut.last_seq + 1);  // who follows it resumes from there
     }
@@ -392,7 +392,7 @@ TEST_CASE("a run that goes on keeps the clock with which it was begun, whatever 
         callbacks.on_clocks = [](const auto&) {};
         RehearsalRunner runner{short_landing(), cut, 0.0, today, pipeline, callbacks};
         while (!begun) std::this_thread::sleep_for(std::chrono::milliseconds{1});
-        runner.stop();
+        CHECK(runner.order(StopRun{}));
         while (!runner.over()) std::this_thread::sleep_for(std::chrono::milliseconds{1});
     }
     CHECK(failure.empty());
