@@ -7,6 +7,7 @@
 #include "server/net/waiting_peers.hpp"
 #include "server/net/web_server.hpp"
 
+#include <boost/asio/io_context.hpp>
 #include <chrono>
 #include <string>
 #include <vector>
