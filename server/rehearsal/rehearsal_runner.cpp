@@ -257,7 +257,7 @@ std::vector<v1::CommandReply> RehearsalRunner::look_at(Rehearsal& rehearsal, con
     return replies;
 }
 
-bool RehearsalRunner::carry_out(Rehearsal& rehearsal, std::vector<RunOrder> orders) {
+bool RehearsalRunner::carry_out(Rehearsal& rehearsal, const std::vector<RunOrder>& orders) {
     const auto before = std::pair{paused_, pace_};
     for (const auto& order : orders) std::visit([&](const auto& each) { carry_out(rehearsal, each); }, order);
     if (!delivery_.answers.empty()) archive_gave_up_ = !deliver(rehearsal, Clock::now());

@@ -95,7 +95,7 @@ class RehearsalRunner {
     /// Orders since the last call; waits for one until `due`.
     std::vector<RunOrder> take_orders(std::optional<Clock::time_point> due);
     /// Whether pause or pace are others than before.
-    bool carry_out(Rehearsal& rehearsal, std::vector<RunOrder> orders);
+    bool carry_out(Rehearsal& rehearsal, const std::vector<RunOrder>& orders);
     void carry_out(Rehearsal& rehearsal, const PauseRun& order);
     void carry_out(Rehearsal& rehearsal, const PaceRun& order);
     void carry_out(Rehearsal& rehearsal, const StopRun& order);
