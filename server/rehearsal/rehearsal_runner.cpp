@@ -222,7 +222,7 @@ void RehearsalRunner::fly(Rehearsal& rehearsal) {
         auto orders = take_orders(wait ? std::optional{due} : std::nullopt);
         now = Clock::now();
         if (!orders.empty()) {
-            if (carry_out(rehearsal, std::move(orders))) {
+            if (carry_out(rehearsal, orders)) {
                 count_pace_from(rehearsal, now);
                 tell(rehearsal, now, true);
             }
