@@ -16,6 +16,8 @@ namespace {
 // Ours.
 constexpr double pace_without_further_thinning = 8.0;
 
+constexpr std::size_t sessions_ahead = 4;  // ours
+
 double thinning_interval_s(const StreamShape& shape, const v1::RunState& state) {
     if (shape.max_rate_hz <= 0.0) return 0.0;
     return std::max(1.0, state.attained_pace() / pace_without_further_thinning) / shape.max_rate_hz;
@@ -187,7 +189,11 @@ std::size_t StreamHub::sessions_behind() const {
 }
 
 void StreamHub::wake_all() {
-    for (auto* session : sessions_) session->wake();
+    for (std::size_t i = 0; i < sessions_.size(); ++i) {
+        if (i + sessions_ahead < sessions_.size())
+            __builtin_prefetch(sessions_[i + sessions_ahead]);  // sends leave nothing of theirs in the nearest memory
+        sessions_[i]->wake();
+    }
 }
 
 bool StreamHub::holds(archive::Sequence after) const {

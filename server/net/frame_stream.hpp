@@ -58,6 +58,11 @@ class FrameStream {
 
     /// Called each time when all that was kept is gone.
     void when_drained(std::function<void()> tell) { state_->tell = std::move(tell); }
+    /// Has the processor fetch what send() is about to read.
+    void fetch() const {
+        __builtin_prefetch(state_.get());
+        __builtin_prefetch(&state_->next);
+    }
     bool busy() const { return state_->flushing || state_->closing; }
     /// Whole frames, one after the other: append_frame() makes them.
     void send(std::string_view frames);

@@ -25,6 +25,9 @@ class WriteTurn {
       public:
         virtual ~Writer() = default;
         virtual void write() = 0;
+        /// Has the processor fetch what write() is about to read: a send leaves nothing of theirs in the nearest
+        /// memory.
+        virtual void fetch() const = 0;
 
       private:
         friend class WriteTurn;
