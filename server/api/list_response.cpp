@@ -45,7 +45,7 @@ void add_columns(const Descriptor& row, const std::vector<std::string_view>& kin
         const auto* field = row.field(i);
         if (field->real_containing_oneof() != nullptr && std::ranges::find(kinds, field->name()) == kinds.end())
             continue;
-        if (field->name() == "ert_us") continue;  // people read its text
+        if (field->name().ends_with("_us")) continue;  // people read its text
         Column column{above.name + (above.path.empty() ? "" : ".") + field->name(), above.path};
         column.path.push_back(field);
         if (is_message(*field) && !field->is_repeated())

@@ -7,6 +7,7 @@
 #include "server/api/query_text.hpp"
 #include "server/api/series_text.hpp"
 #include "server/api/state_at.hpp"
+#include "server/api/time_texts.hpp"
 #include "server/archive/items.hpp"
 #include "server/base/csv_text.hpp"
 #include "server/base/json.hpp"
@@ -30,8 +31,9 @@ constexpr double scet_text_s =
     1.0e-3;  // day-of-year texts are cut to it: the tick within it is the one that was read off
 
 template <typename Message>
-HttpResponse answer(const Result<Message>& result) {
+HttpResponse answer(Result<Message> result) {
     if (!result) return error_response(400, result.error());
+    write_time_texts(*result);
     HttpResponse response;
     response.body = to_json(*result);
     return response;
@@ -55,8 +57,9 @@ struct Asking {
     const QueryText& query;
 };
 template <typename List>
-HttpResponse answer_rows(const Asking& asking, const Result<List>& list, const Rows& rows) {
+HttpResponse answer_rows(const Asking& asking, Result<List> list, const Rows& rows) {
     if (!list) return error_response(400, list.error());
+    write_time_texts(*list);
     const auto format = format_of(asking.query, list_formats);
     return list_response(format, *list, rows, format == "csv" ? clock_of(asking.reader, asking.run) : std::nullopt);
 }
@@ -354,8 +357,8 @@ std::string csv_of(const v1::ProofReport& report) {
 template <typename Report>
 HttpResponse answer_in_format(const QueryText& query, const std::function<Result<Report>()>& make,
                               std::string (*as_csv)(const Report&)) {
-    const auto report = make();
-    if (format_of(query, report_formats) == "json" || !report) return answer(report);
+    auto report = make();
+    if (format_of(query, report_formats) == "json" || !report) return answer(std::move(report));
     return {200, "text/csv; charset=utf-8", "no-store", as_csv(*report)};
 }
 

@@ -37,7 +37,6 @@ v1::Item to_item(const UnitRecord& record, const dictionary::Dictionary* diction
     else if (dictionary != nullptr)
         unit.set_name(dictionary->packets[*record.packet].name);
     unit.set_sclk(record.sclk.seconds);
-    unit.set_ert(day_of_year_text(record.ert));
     unit.set_octets(static_cast<std::uint32_t>(record.octets.count));
     unit.set_link(record.link);
     unit.set_source(source_of(record.source));
@@ -68,7 +67,6 @@ v1::Item to_item(const EventRecord& record) {
     event.set_level(telemetry::name_of(record.level));
     event.set_text(record.text);
     event.set_sclk(record.sclk.seconds);
-    event.set_ert(day_of_year_text(record.ert));
     event.set_source(source_of(record.source));
     event.set_duplicate(record.duplicate);
     return item;
@@ -77,8 +75,7 @@ v1::Item to_item(const EventRecord& record) {
 v1::Item to_item(const ToneRecord& record) {
     v1::Item item = item_with(record);
     auto& tone = *item.mutable_tone();
-    tone.set_ert_start(day_of_year_text(record.start));
-    tone.set_ert_end(day_of_year_text(record.ert));
+    tone.set_ert_start_us(record.start.microseconds);
     if (record.tone) tone.set_tone(record.tone->value);
     tone.set_name(record.name);
     tone.set_meaning(record.meaning);
@@ -108,7 +105,6 @@ v1::Item to_item(const StageRecord& record) {
     stage.set_stage(commands::name_of(record.stage));
     stage.set_status(commands::name_of(record.status));
     stage.set_evidence(record.evidence);
-    stage.set_at(day_of_year_text(record.ert));
     stage.set_arguments(record.arguments);
     stage.set_count(record.count);
     stage.set_held(record.held);
@@ -156,7 +152,6 @@ v1::Item to_item(const LinkRecord& record) {
     link.set_link(record.link);
     link.set_up(record.up);
     link.set_reason(record.reason);
-    link.set_ert(day_of_year_text(record.ert));
     link.set_lost(record.lost);
     return item;
 }
@@ -180,7 +175,6 @@ v1::Item to_item(const StalenessRecord& record, const dictionary::Dictionary* di
     staleness.set_silent_s(record.silent_s);
     staleness.set_expected_s(record.expected_s);
     staleness.set_reason(record.reason);
-    staleness.set_ert(day_of_year_text(record.ert));
     return item;
 }
 
@@ -189,10 +183,9 @@ v1::Item to_item(const AlarmActionRecord& record) {
     auto& action = *item.mutable_alarm_action();
     action.set_alarm(record.alarm);
     action.set_action(telemetry::name_of(record.action));
-    if (record.until > record.ert) action.set_until(day_of_year_text(record.until));
+    if (record.until > record.ert) action.set_until_us(record.until.microseconds);
     action.set_note(record.note);
     action.set_by(record.by);
-    action.set_at(day_of_year_text(record.ert));
     return item;
 }
 
@@ -201,7 +194,6 @@ v1::Item to_item(const NoteRecord& record) {
     auto& note = *item.mutable_note();
     note.set_text(record.text);
     note.set_by(record.by);
-    note.set_at(day_of_year_text(record.ert));
     note.set_written(record.written);
     if (record.sclk_s) note.set_sclk(*record.sclk_s);
     return item;

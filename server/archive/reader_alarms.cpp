@@ -13,10 +13,6 @@ namespace aeolis::archive {
 
 namespace {
 
-Ert ert_of(const std::string& day_of_year) {
-    return ert_from_day_of_year(day_of_year).value_or(Ert{});
-}
-
 const std::string& name_of_alarm(const v1::Item& item, const dictionary::Dictionary& dictionary) {
     if (item.has_alarm()) return dictionary.channels[item.alarm().channel()].name;
     if (item.has_link()) return item.link().link();
@@ -35,7 +31,7 @@ void apply(const v1::Item& item, const dictionary::Dictionary& dictionary, telem
     } else if (item.has_link()) {
         desk.change(name, item.link().lost() ? telemetry::lost_severity : Severity::none, false);
     } else if (const auto act = telemetry::alarm_act(item.alarm_action().action())) {
-        desk.act(name, *act, Ert{item.ert_us()}, ert_of(item.alarm_action().until()));
+        desk.act(name, *act, Ert{item.ert_us()}, Ert{item.alarm_action().until_us()});
     }
 }
 

@@ -148,6 +148,7 @@ Result<v1::PacketList> Reader::packets(RunId run, const PacketQuery& query) {
         written.set_verdict(verdict->name);
         written.set_other_hex(hex(verdict->other_octets));
         *written.mutable_unit() = std::move(*to_item(unit, words).mutable_unit());
+        written.set_ert_us(unit.ert.microseconds);
         const auto octets = octets_of_unit(row);
         written.set_hex(hex(octets));
         if (query.fields && words != nullptr && state_->other != nullptr)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/api/run_questions.hpp"
+#include "server/api/time_texts.hpp"
 #include "server/archive/reader.hpp"
 #include "server/base/json.hpp"
 #include "server/cli/commands.hpp"
@@ -98,8 +99,9 @@ int report(const ReportOptions& options) {
     if (!words) return exit_code;
     auto reader = archive::Reader::open(options.of.archive, words->dictionary);
     if (!reader) return failed(reader.error().message);
-    const auto report = reader->as_flown(archive::RunId{options.of.run.value_or(0)});
+    auto report = reader->as_flown(archive::RunId{options.of.run.value_or(0)});
     if (!report) return failed(fmt::format("{}: {}", options.of.archive.string(), report.error().message));
+    write_time_texts(*report);
     if (options.json) {
         fmt::print("{}\n", to_json(*report));
         return 0;

@@ -100,7 +100,7 @@ TEST_CASE(
         INFO(i);
         const v1::Tone& tone = heard->tones(static_cast<int>(i)).tone();
         CHECK(tone.model() == "signal");
-        CHECK(tone.ert_start() == day_of_year_text(expected[i].start));
+        CHECK(tone.ert_start_us() == expected[i].start.microseconds);
         CHECK(tone.has_tone() == expected[i].tone.has_value());
         if (expected[i].tone) CHECK(tone.tone() == expected[i].tone->value);
         CHECK(tone.likelihood() == expected[i].likelihood);

@@ -249,7 +249,7 @@ TEST_CASE("a run that is over comes again over the socket at a pace, and not whi
             auto& arrival =
                 arrivals.emplace_back(Arrival{std::chrono::steady_clock::now(), client.complete_through, {}});
             for (const auto& item : client.last.batch().items())
-                if (item.has_tone()) arrival.ert = ert_from_day_of_year(item.tone().ert_end());
+                if (item.has_tone()) arrival.ert = Ert{item.ert_us()};
         }
         return arrivals;
     };

@@ -65,7 +65,7 @@ export function linksOf(store: RunStore, cutoff: number, lost = false): LinkLine
   return [...store.links].map(([link, changes]) => {
     if (lost && cutoff === Infinity && store.going)
       return { name: linkTitle(link), look: 'unknown', detail: 'no connection' };
-    const until = changes.filter((change) => !(store.sclkSeenAt(change.fact.ert) > cutoff));
+    const until = changes.filter((change) => !(store.sclkSeenAt(change.ert_s) > cutoff));
     const last = until[until.length - 1]?.fact;
     return {
       name: linkTitle(link),

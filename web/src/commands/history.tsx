@@ -7,7 +7,7 @@ import type { CommandList } from '../gen/aeolis/v1/run_pb';
 import { ask } from '../run/connection';
 import { cutoff, dictionary, runNow, signalOfRun, store, takesCommands } from '../run/shown';
 import type { CommandRow, RunStore } from '../run/store';
-import { fromEntry } from '../run/time';
+import { dayOfYear, fromEntry } from '../run/time';
 import { act, uplink } from './line';
 import { newestEvidence, readBackOf, stageCells, waitingCommands } from './model';
 import type { StageCell } from './model';
@@ -154,7 +154,7 @@ function Details({
   row: CommandRow;
   cells: StageCell[];
   run: RunStore;
-  known: (at: string) => boolean;
+  known: (ert_s: number) => boolean;
 }) {
   const raw = octets.value?.run === run.id ? octets.value.of.get(row.command) : undefined;
   return (
@@ -169,7 +169,7 @@ function Details({
         </thead>
         <tbody>
           {cells.flatMap((cell) => {
-            const words = (row.stages.get(cell.stage) ?? []).filter((word) => known(word.at));
+            const words = (row.stages.get(cell.stage) ?? []).filter((word) => known(word.ert_s));
             if (words.length === 0)
               return [
                 <tr key={cell.stage} class="status-dim">
@@ -186,7 +186,7 @@ function Details({
                     {STAGE_LOOKS[look].shape} {cell.stage}
                     {look === 'ok' ? '' : `, ${STAGE_LOOKS[look].word}`}
                   </td>
-                  <td>{word.at}</td>
+                  <td>{dayOfYear(word.ert_s, 3)}</td>
                   <td class="evidence">{word.evidence}</td>
                 </tr>
               );
@@ -210,7 +210,7 @@ function Details({
 export function History() {
   const run = runNow();
   if (!run) return null;
-  const known = (at: string) => !(run.sclkSeenAt(at) > cutoff.value);
+  const known = (ert_s: number) => !(run.sclkSeenAt(ert_s) > cutoff.value);
   const rows = [...run.commands.values()]
     .sort((a, b) => b.command - a.command)
     .map((row) => ({ row, cells: stageCells(row, known) }))

@@ -257,15 +257,16 @@ export interface StageCell {
 }
 
 /** Every stage says what is known of it, in a past view what was known then; one never heard of is not green. */
-export function stageCells(row: CommandRow, known: (at: string) => boolean = () => true): StageCell[] {
+export function stageCells(row: CommandRow, known: (ert_s: number) => boolean = () => true): StageCell[] {
   const names = [
     ...STAGES,
     ...[...row.stages.keys()].filter((stage) => !(STAGES as readonly string[]).includes(stage)),
   ];
   return names.map((name) => {
-    const stage = row.stages.get(name)?.findLast((word) => known(word.at));
+    const stage = row.stages.get(name)?.findLast((word) => known(word.ert_s));
     const look = (['ok', 'failed', 'unknown', 'pending'] as const).find((each) => each === stage?.status);
-    return { stage: name, look: look ?? 'none', evidence: stage?.evidence ?? 'nothing is known', at: stage?.at ?? '' };
+    const at = stage ? dayOfYear(stage.ert_s, 3) : '';
+    return { stage: name, look: look ?? 'none', evidence: stage?.evidence ?? 'nothing is known', at };
   });
 }
 
@@ -322,7 +323,7 @@ export function readBackOf(
   const channels = sent.map((argument) => dictionary.pick([argument.name]));
   const packet = channels[0]?.packet;
   if (!packet || channels.some((channel) => channel?.packet !== packet)) return undefined;
-  const radiated = row.stages.get('radiated')?.at(-1)?.at;
+  const radiated = row.stages.get('radiated')?.at(-1)?.ert_s;
   const since = radiated === undefined ? Infinity : store.sclkSeenAt(radiated) + 2 * store.run.lightTimeS; // when it came on board
   const samples = channels.map((channel) => channel && store.latest(channel.id, cutoff));
   const sclk = samples[0]?.sclk;

@@ -204,7 +204,7 @@ describe('what the vehicle holds', () => {
     status: 'ok',
     arguments: 'altitude_m=125.5 speed_mps=0.1',
   });
-  const radiated = stage({ command: 1n, stage: 'radiated', status: 'ok', at: '2012-219T05:00:00.0' });
+  const radiated = stage({ command: 1n, stage: 'radiated', status: 'ok', ert: '2012-219T05:00:00.0' });
   const compared = (...held: ReturnType<typeof samples>[]) => {
     const store = aStore([sent, radiated, ...held]);
     const row = store.commands.get(1);

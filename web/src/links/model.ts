@@ -41,16 +41,15 @@ export function linkViews(store: RunStore, proof: ProofReport | undefined, cutof
   const now = Math.min(store.seenSclk, cutoff) - store.entrySclk;
   return [...names].sort(byImportance).map((link) => {
     const silent = lost && cutoff === Infinity && store.going;
-    const last = (store.links.get(link) ?? []).findLast(
-      (change) => !(store.sclkSeenAt(change.fact.ert) > cutoff),
-    )?.fact;
+    const known = (store.links.get(link) ?? []).findLast((change) => !(store.sclkSeenAt(change.ert_s) > cutoff));
+    const last = known?.fact;
     const total = totals.get(link);
     const judged = proof?.links.find((row) => row.name === link);
     return {
       link,
       state: last === undefined || silent ? 'unknown' : linkLook(last.up, last.reason),
       reason: silent ? 'no connection' : (last?.reason ?? ''),
-      since_e_s: last && store.sclkSeenAt(last.ert) - store.entrySclk,
+      since_e_s: known && store.sclkSeenAt(known.ert_s) - store.entrySclk,
       silences: outages(store, link, now, cutoff),
       units: total?.units ?? 0,
       octets: total?.octets ?? 0,

@@ -6,16 +6,17 @@ import { wordsFor } from '../run/api';
 import { change, read } from '../run/connection';
 import { store } from '../run/shown';
 import type { RunStore } from '../run/store';
+import { secondsOfErt } from '../run/time';
 
 interface NoteRow {
   seq: number;
   text: string;
   by: string;
-  at: string; // ERT
+  ert_s: number;
   sclk: number | undefined;
 }
 interface NoteList {
-  notes?: { seq: string | number; note: { text: string; by?: string; at?: string; sclk?: number } }[];
+  notes?: { seq: string; ert_us: string; note: { text: string; by?: string; sclk?: number } }[];
   next_after?: string | number;
 }
 
@@ -38,9 +39,15 @@ export async function refreshNotes(): Promise<void> {
     let after = all.at(-1)?.seq ?? 0;
     for (let page = 0; page < PAGES; ++page) {
       const list = await read<NoteList>(`/runs/${run.id}/notes${after > 0 ? `?after=${after}` : ''}`);
-      for (const { seq, note } of list.notes ?? []) {
+      for (const { seq, ert_us, note } of list.notes ?? []) {
         if (Number(seq) > (all.at(-1)?.seq ?? 0))
-          all.push({ seq: Number(seq), text: note.text, by: note.by ?? '', at: note.at ?? '', sclk: note.sclk });
+          all.push({
+            seq: Number(seq),
+            text: note.text,
+            by: note.by ?? '',
+            ert_s: secondsOfErt(ert_us),
+            sclk: note.sclk,
+          });
       }
       after = Number(list.next_after ?? 0);
       if (after === 0) break;
@@ -96,7 +103,7 @@ export function found(
   return all
     .filter((row) => {
       const text = `${row.text} ${row.by}`.toLowerCase();
-      return words.every((word) => text.includes(word)) && !(run.sclkSeenAt(row.at) > cutoff);
+      return words.every((word) => text.includes(word)) && !(run.sclkSeenAt(row.ert_s) > cutoff);
     })
     .reverse();
 }

@@ -4,7 +4,8 @@ import { render } from 'preact';
 import { act } from 'preact/test-utils';
 import { beforeEach, describe, expect, it } from 'vitest';
 import { useForTest } from '../run/session';
-import { aDictionary, aStore } from '../testing/fixtures';
+import { secondsOfDayOfYear } from '../run/time';
+import { aDictionary, aStore, ertUs } from '../testing/fixtures';
 import { aServer } from '../testing/server';
 import { found, notes, problem, refreshNotes, write } from './model';
 import { Notes } from './view';
@@ -12,7 +13,8 @@ import { Notes } from './view';
 const server = aServer();
 const a = (seq: number, text: string, at = '2012-219T04:59:00.0') => ({
   seq: String(seq),
-  note: { text, by: 'ann', at },
+  ert_us: String(ertUs(at)),
+  note: { text, by: 'ann' },
 });
 
 beforeEach(() => {
@@ -36,7 +38,13 @@ describe('notes', () => {
     ]);
   });
   it('are found by any words, newest first, and in the past only what had been written', () => {
-    const row = (seq: number, text: string, at: string) => ({ seq, text, by: 'Ann', at, sclk: undefined });
+    const row = (seq: number, text: string, at: string) => ({
+      seq,
+      text,
+      by: 'Ann',
+      ert_s: secondsOfDayOfYear(at),
+      sclk: undefined,
+    });
     const all = [row(1, 'radar late', '2012-219T04:58:00.0'), row(2, 'radar fine', '2012-219T04:59:30.0')];
     const run = aStore();
     expect(found(all, 'ann RADAR', run, Infinity).map((each) => each.seq)).toEqual([2, 1]);
@@ -60,7 +68,7 @@ describe('notes', () => {
     expect([await write('x', undefined), problem.value]).toEqual([false, 'it was not written down: log in']);
   });
   it('are text, whatever stands in them', () => {
-    notes.value = { run: 1, all: [{ seq: 1, text: '<img src=x onerror=alert(1)>', by: '<b>', at: '', sclk: 1000 }] };
+    notes.value = { run: 1, all: [{ seq: 1, text: '<img src=x onerror=alert(1)>', by: '<b>', ert_s: 0, sclk: 1000 }] };
     const root = document.createElement('div');
     act(() => render(<Notes />, root));
     expect(root.querySelector('img')).toBeNull();

@@ -5,7 +5,7 @@ import { useEffect } from 'preact/hooks';
 import { mayAct } from '../access/model';
 import { Signature } from '../commands/signature';
 import { cutoff, pastRange, runNow } from '../run/shown';
-import { fromEntry } from '../run/time';
+import { dayOfYear, fromEntry } from '../run/time';
 import { found, notes, problem, refreshNotes, write, writing } from './model';
 import './style.css';
 
@@ -82,7 +82,7 @@ export function Notes() {
       <ol class="notes table-scroll" tabIndex={0} aria-label="notes, newest first" data-testid="note-list">
         {shown.map((row) => (
           <li key={row.seq}>
-            <time>{row.at}</time> <b>{row.by || 'unsigned'}</b>{' '}
+            <time>{dayOfYear(row.ert_s, 3)}</time> <b>{row.by || 'unsigned'}</b>{' '}
             {row.sclk !== undefined && <i>on {fromEntry(row.sclk - run.entrySclk)}</i>}
             <p>{row.text}</p>
           </li>

@@ -3,7 +3,7 @@
 import type { Unit } from '../gen/aeolis/v1/items_pb';
 import type { PacketField, PacketRow } from '../gen/aeolis/v1/run_pb';
 import type { Known, RunStore, UnitTotals } from '../run/store';
-import { secondsOfDayOfYear } from '../run/time';
+import { secondsOfDayOfYear, secondsOfErt } from '../run/time';
 import { SOURCE_RECORDED } from '../stream/columns';
 
 interface Totals {
@@ -32,9 +32,9 @@ function recentOf(store: RunStore): { units: Unit[]; span_s: number } | undefine
   const now = secondsOfDayOfYear(store.clocks?.ert ?? '');
   const oldest = store.units[0];
   if (!store.going || !oldest || !Number.isFinite(now)) return undefined;
-  const from = Math.max(now - WINDOW_S, secondsOfDayOfYear(oldest.fact.ert));
+  const from = Math.max(now - WINDOW_S, oldest.ert_s);
   if (now <= from) return undefined;
-  const first = store.units.findLastIndex(({ fact }) => secondsOfDayOfYear(fact.ert) < from) + 1;
+  const first = store.units.findLastIndex(({ ert_s }) => ert_s < from) + 1;
   return { units: store.units.slice(first).map(({ fact }) => fact), span_s: now - from };
 }
 
@@ -87,7 +87,9 @@ export function packetStreams(store: RunStore, rated = true): PacketStream[] {
 
 /** Of what a range of the archive has, what had been heard by `cutoff`: neither what only the recording told, nor what an orbiter or a queue on board brought later. */
 export function heardRows(store: RunStore, rows: readonly PacketRow[], cutoff: number): PacketRow[] {
-  return rows.filter(({ unit }) => unit && unit.source !== SOURCE_RECORDED && store.knownBy(unit.ert, cutoff));
+  return rows.filter(
+    ({ unit, ertUs }) => unit && unit.source !== SOURCE_RECORDED && store.knownBy(secondsOfErt(ertUs), cutoff),
+  );
 }
 
 export function newestUnits(store: RunStore, most: number, packet?: string): Known<Unit>[] {

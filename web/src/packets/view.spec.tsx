@@ -3,7 +3,7 @@ import { create } from '@bufbuild/protobuf';
 import { describe, expect, it } from 'vitest';
 import { UnitSchema } from '../gen/aeolis/v1/items_pb';
 import { PacketRowSchema } from '../gen/aeolis/v1/run_pb';
-import { aRun, aStore, unit } from '../testing/fixtures';
+import { aRun, aStore, ertUs, unit } from '../testing/fixtures';
 import {
   fieldsAt,
   heardRows,
@@ -61,7 +61,10 @@ describe('what the links bring', () => {
 
 it('in the past as it was heard are neither units of the recording nor those that an orbiter brought later', () => {
   const row = (unit: number, ert: string, source = 1) =>
-    create(PacketRowSchema, { unit: create(UnitSchema, { unit: BigInt(unit), sclk: 800, ert, source }) });
+    create(PacketRowSchema, {
+      ertUs: ertUs(ert),
+      unit: create(UnitSchema, { unit: BigInt(unit), sclk: 800, source }),
+    });
   const rows = [row(1, at(20)), row(2, at(40)), row(3, at(20), 2)]; // E-100 is heard at 05:00:00, E-130 at 04:59:30
   expect(
     [870, Infinity].map((cutoff) => heardRows(aStore(), rows, cutoff).map(({ unit }) => Number(unit?.unit))),

@@ -173,7 +173,7 @@ describe('the review', () => {
     server.routes['GET /runs/1/interventions'] = { json: {} };
     const pages = 30;
     const acts = (page: number) => [
-      { alarm_action: { alarm: `battery ${page}`, action: 'shelve', by: 'Ann', at: '2012-219T05:00:00.0' } },
+      { ert_us: '397847447000000', alarm_action: { alarm: `battery ${page}`, action: 'shelve', by: 'Ann' } },
     ];
     for (let page = 0; page < pages; ++page)
       server.routes[`GET /runs/1/alarms${page > 0 ? `?after=${page}` : ''}`] = {

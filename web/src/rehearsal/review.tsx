@@ -79,7 +79,7 @@ async function judge(run: RunStore): Promise<void> {
         report,
         alarms,
         interventions,
-        e_sOf: (ert) => run.sclkSeenAt(ert) - run.entrySclk,
+        e_sOf: (ert_s) => run.sclkSeenAt(ert_s) - run.entrySclk,
         channelName: (id) => words?.channel(id)?.name ?? `channel ${id}`,
         isHazardous: (name) => {
           const command = words?.command(name);

@@ -4,22 +4,26 @@ import { create } from '@bufbuild/protobuf';
 import { describe, expect, it } from 'vitest';
 import { NoteSchema } from '../gen/aeolis/v1/items_pb';
 import { AsFlownReportSchema } from '../gen/aeolis/v1/run_pb';
-import { ENTRY_SCLK, aRun, item, stage } from '../testing/fixtures';
+import { secondsOfDayOfYear } from '../run/time';
+import { ENTRY_SCLK, aRun, ertUs, item, stage } from '../testing/fixtures';
 import { commandOutcomes, miss_m, promptness, raisedAlarms, score, scoreText } from './score';
 import type { AlarmChange, Recorded } from './score';
 
 // ERT 05:00:00 is E+0 as it is heard.
 const ert = (e_s: number) =>
   `2012-219T05:${String(Math.floor(e_s / 60)).padStart(2, '0')}:${(e_s % 60).toFixed(1).padStart(4, '0')}`;
-const e_sOf = (at: string) => Number(at.slice(12, 14)) * 60 + Number(at.slice(15));
+const e_sOf = (ert_s: number) => ert_s - secondsOfDayOfYear(ert(0));
+const ert_us = (e_s: number) => String(ertUs(ert(e_s)));
 const limit = (e_s: number, severity: string, channel = 4): AlarmChange => ({
+  ert_us: ert_us(e_s),
   alarm: { channel, severity, sclk: ENTRY_SCLK + e_s, limit: '> 90 m/s' },
 });
 const acknowledged = (e_s: number, alarm = 'speed_mps'): AlarmChange => ({
-  alarm_action: { alarm, action: 'acknowledge', by: 'Ann', at: ert(e_s) },
+  ert_us: ert_us(e_s),
+  alarm_action: { alarm, action: 'acknowledge', by: 'Ann' },
 });
 const said = (name: string, at_e_s: number, word: string, status: string, evidence = '') =>
-  stage({ command: 1n, name, stage: word, status, evidence, at: ert(at_e_s) });
+  stage({ command: 1n, name, stage: word, status, evidence, ert: ert(at_e_s) });
 const radar = (e_s: number) => ({
   e_s,
   fault: {
@@ -66,7 +70,7 @@ describe('an alarm', () => {
   });
   it('may be a packet that is silent', () => {
     const alarms: AlarmChange[] = [
-      { staleness: { packet: 'GncNavigation', stale: true, ert: ert(5) } },
+      { ert_us: ert_us(5), staleness: { packet: 'GncNavigation', stale: true } },
       acknowledged(8, 'GncNavigation'),
     ];
     expect(raisedAlarms({ ...nothing(), alarms })).toMatchObject([
@@ -117,7 +121,7 @@ describe('the score', () => {
     expect([0, 30, 165, 300, 900, undefined].map(promptness)).toEqual([1, 1, 0.5, 0, 0, 0]);
   });
   it('takes as a reaction to a fault the first thing that people did from then on: never what they did before', () => {
-    const note = item({ case: 'note', value: create(NoteSchema, { text: 'radar?', by: 'Bob', at: ert(100) }) });
+    const note = item({ case: 'note', value: create(NoteSchema, { text: 'radar?', by: 'Bob' }) }, ert(100));
     const report = create(AsFlownReportSchema, {
       run: aRun({ outcome: 'touchdown' }),
       notes: [note],

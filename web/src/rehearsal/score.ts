@@ -2,16 +2,17 @@
 // What a rehearsal came to: facts with their times, all from what was recorded, and a score by a stated rule (docs/console.md). Pure.
 import type { AsFlownReport } from '../gen/aeolis/v1/run_pb';
 import { inWords } from '../run/dictionary';
-import { duration, fromEntry } from '../run/time';
+import { duration, fromEntry, secondsOfErt } from '../run/time';
 import { faultWords } from './faults';
 import type { Intervention } from './instructor';
 
 /** An item of /alarms, as the API words it. */
 export interface AlarmChange {
+  ert_us: string;
   alarm?: { channel: number; severity: string; sclk: number; limit?: string };
-  link?: { link: string; lost?: boolean; ert: string };
-  staleness?: { packet: string; stale: boolean; ert: string; reason?: string };
-  alarm_action?: { alarm: string; action: string; by?: string; at: string };
+  link?: { link: string; lost?: boolean };
+  staleness?: { packet: string; stale: boolean; reason?: string };
+  alarm_action?: { alarm: string; action: string; by?: string };
 }
 export interface Landed {
   e_s: number;
@@ -24,8 +25,8 @@ export interface Recorded {
   report: AsFlownReport;
   alarms: readonly AlarmChange[];
   interventions: readonly Intervention[];
-  /** Seconds from entry of what reached Earth at `ert`. */
-  e_sOf: (ert: string) => number;
+  /** Seconds from entry of what reached Earth then, seconds since 1970. */
+  e_sOf: (ert_s: number) => number;
   channelName: (id: number) => string;
   isHazardous: (command: string) => boolean;
 }
@@ -96,21 +97,21 @@ export function raisedAlarms({ alarms, report, e_sOf, channelName }: Recorded): 
     open.set(name, one);
     raised.push(one);
   };
-  for (const { alarm, link, staleness, alarm_action: action } of alarms) {
+  for (const { ert_us, alarm, link, staleness, alarm_action: action } of alarms) {
+    const e_s = e_sOf(secondsOfErt(ert_us));
     if (alarm) {
       const name = channelName(alarm.channel);
       if (alarm.severity === 'none') inside.add(name);
       else raise(name, alarm.limit ?? '', alarm.sclk - (report.run?.entrySclk ?? 0));
     } else if (link) {
-      if (link.lost) raise(link.link, 'lost', e_sOf(link.ert));
+      if (link.lost) raise(link.link, 'lost', e_s);
       else inside.add(link.link);
     } else if (staleness) {
-      if (staleness.stale) raise(staleness.packet, 'silent', e_sOf(staleness.ert));
+      if (staleness.stale) raise(staleness.packet, 'silent', e_s);
       else inside.add(staleness.packet);
     } else if (action?.action === 'acknowledge') {
       const one = open.get(action.alarm);
-      if (one && !one.acknowledged)
-        one.acknowledged = { after_s: e_sOf(action.at) - one.e_s, by: action.by || 'unsigned' };
+      if (one && !one.acknowledged) one.acknowledged = { after_s: e_s - one.e_s, by: action.by || 'unsigned' };
     }
   }
   return raised;
@@ -141,15 +142,15 @@ function senderOf(words: readonly { stage: string; evidence: string }[]): string
 export function commandOutcomes({ report, e_sOf }: Recorded): CommandOutcome[] {
   return report.commands.map((command) => {
     const words = command.stages.flatMap(({ item }) => (item.case === 'commandStage' ? [item.value] : []));
+    const first = command.stages[0];
     const last = new Map(words.map((word) => [word.stage, word]));
-    const at = words.find((word) => word.at !== '')?.at ?? '';
     const failed = [...last.values()].find((stage) => stage.status === 'failed');
     const done = [...last.values()].every((stage) => stage.status === 'ok') && last.has('executed');
     const cancelled = failed?.evidence.startsWith('cancelled') ?? false;
     return {
       name: command.name,
       number: Number(command.command),
-      e_s: e_sOf(at),
+      e_s: first ? e_sOf(secondsOfErt(first.ertUs)) : NaN,
       how: cancelled ? 'cancelled' : failed ? 'failed' : done ? 'done' : 'not known',
       why: failed?.evidence ?? '',
       sender: senderOf(words),
@@ -165,15 +166,21 @@ interface Reaction {
 /** What people did, in the order of time: whether it was because of a fault nobody but they can say. */
 function reactions(of: Recorded): Reaction[] {
   const acts: Reaction[] = [];
-  for (const { alarm_action: action } of of.alarms) {
+  for (const { ert_us, alarm_action: action } of of.alarms) {
     if (action)
-      acts.push({ e_s: of.e_sOf(action.at), words: `${action.by || 'someone'}: ${action.action} ${action.alarm}` });
+      acts.push({
+        e_s: of.e_sOf(secondsOfErt(ert_us)),
+        words: `${action.by || 'someone'}: ${action.action} ${action.alarm}`,
+      });
   }
   for (const { e_s, name, sender } of commandOutcomes(of))
     if (sender) acts.push({ e_s, words: `${sender}: sent ${name}` });
-  for (const { item } of of.report.notes) {
+  for (const { ertUs, item } of of.report.notes) {
     if (item.case === 'note')
-      acts.push({ e_s: of.e_sOf(item.value.at), words: `${item.value.by || 'someone'} wrote “${item.value.text}”` });
+      acts.push({
+        e_s: of.e_sOf(secondsOfErt(ertUs)),
+        words: `${item.value.by || 'someone'} wrote “${item.value.text}”`,
+      });
   }
   return acts.filter((act) => Number.isFinite(act.e_s)).sort((a, b) => a.e_s - b.e_s);
 }

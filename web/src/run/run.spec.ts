@@ -2,7 +2,7 @@
 import { describe, expect, it } from 'vitest';
 import { aStore, event, firing, samples, stage } from '../testing/fixtures';
 import { Series } from './series';
-import { dayOfYear, duration, fromEntry, readFromEntry, secondsOfDayOfYear } from './time';
+import { dayOfYear, duration, fromEntry, readFromEntry, secondsOfDayOfYear, secondsOfErt } from './time';
 
 const f = (...values: number[]) => Float64Array.from(values);
 const sclks = (series: Series) => [...series.sclk.slice(0, series.length)];
@@ -81,15 +81,26 @@ describe('a run', () => {
     expect(store.commands.get(1)?.arguments).toBe('a=1');
   });
   it('tells the SCLK of what was received at an ERT', () => {
-    expect(aStore().sclkSeenAt('2012-219T04:59:50.0')).toBeCloseTo(890);
+    expect(aStore().sclkSeenAt(secondsOfDayOfYear('2012-219T04:59:50.0'))).toBeCloseTo(890);
   });
 });
 
 describe('times', () => {
   it('reads and writes day of year', () => {
     expect(dayOfYear(secondsOfDayOfYear('2012-219T05:10:47.400'))).toBe('2012-219T05:10:47.4');
+    expect(dayOfYear(secondsOfDayOfYear('2012-219T05:10:47.400'), 3)).toBe('2012-219T05:10:47.400');
     expect(secondsOfDayOfYear('2012-08-06T05:10:47')).toBeNaN();
     expect(new Date(secondsOfDayOfYear('2012-219T05:10:47') * 1000).toISOString()).toBe('2012-08-06T05:10:47.000Z');
+  });
+  it('reads the microseconds of the stream, and cuts them as the server does', () => {
+    expect(secondsOfErt(0n)).toBe(secondsOfDayOfYear('2000-001T12:00:00'));
+    for (const [us, text] of [
+      ['397847447015000', '.015'],
+      ['397847447015999', '.015'],
+      ['397847447999999', '.999'],
+      ['397847447000000', '.000'],
+    ] as const)
+      expect(dayOfYear(secondsOfErt(us), 3)).toBe(`2012-223T05:10:47${text}`);
   });
   it('counts from entry', () => {
     expect(fromEntry(268.4, { hours: true })).toBe('E+00:04:28');

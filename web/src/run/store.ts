@@ -17,7 +17,7 @@ import { SOURCE_RECORDED } from '../stream/columns';
 import type { BatchOfFacts, Column, Fact } from '../stream/messages';
 import { LIMIT_NOT_DRAWN, Series } from './series';
 import { isGoing } from './start';
-import { secondsOfDayOfYear } from './time';
+import { secondsOfDayOfYear, secondsOfErt } from './time';
 
 const EVENT_LIMIT = 20000;
 const UNIT_LIMIT = 400;
@@ -28,13 +28,15 @@ export const LATE_LIMIT = 1 << 14; // of a packet: what is older is forgotten, a
 const ABOUT_ALARMS: ReadonlySet<string> = new Set(['alarm', 'staleness', 'alarmAction']);
 const ABOUT_TIMELINE: ReadonlySet<string> = new Set(['timepoint', 'tone', 'commandStage']);
 
+/** `ert_s`: when it had come, seconds since 1970. */
 export interface Known<T> {
   seq: number;
+  ert_s: number;
   fact: T;
 }
-/** `ert`: when it was known on Earth, day of year. */
+/** `known_s`: when it was known on Earth, seconds since 1970. */
 interface ToneRow extends Known<Tone> {
-  ert: string;
+  known_s: number;
 }
 /** What the recording brings again. `heard_s`: when it came live, seconds since 1970; NaN: it did not. */
 interface Twin {
@@ -50,12 +52,13 @@ interface FiringPair {
   recorded?: TimepointFiring;
   heard_s?: number; // as of a twin
 }
+export type StageWord = CommandStage & { ert_s: number };
 export interface CommandRow {
   command: number;
   name: string;
   arguments: string;
   /** What was said of each stage, oldest first: the last word counts, in a past view the last of then. */
-  stages: Map<string, CommandStage[]>;
+  stages: Map<string, StageWord[]>;
 }
 /** Of one packet over one link. */
 export interface UnitTotals {
@@ -72,8 +75,8 @@ export interface Sample {
   recorded: boolean;
 }
 
-/** Texts of one form: day of year. */
-const later = (a: string, b: string): string => (a > b ? a : b);
+/** `b` may be NaN. */
+const later = (a: number, b: number): number => (b > a ? b : a);
 
 /** Channels as they were heard: each is looked at only when it is asked for. */
 class HeardSeries extends Map<number, Series> {
@@ -118,7 +121,7 @@ export class RunStore {
   timelineVersion = 0;
   /** Of all samples, events and tones. */
   private newestSclk = -Infinity;
-  private newestErt = '';
+  private newestErt_s = NaN;
   private heard: { version: number; cutoff: number; run: RunStore } | undefined;
   /** Of each packet, what came live, but late: SCLK of the unit, and of what else was heard then, which grows. */
   private readonly late = new Map<string, { sclk: number[]; heard: number[] }>();
@@ -127,7 +130,7 @@ export class RunStore {
   /** Of each channel, the SCLK of the last sample that an answer of live samples alone brought. */
   private readonly liveAloneThrough = new Map<number, number>();
   private readonly heardSeries = new Map<number, { of: Series; version: number; key: string; series: Series }>();
-  private lastUnit = { ert: '', sclk: NaN };
+  private lastUnit = { ert_s: NaN, sclk: NaN };
   /** Counts what came with samples of what is drawn. */
   samplesDrawn = 0;
   /** Counts changes of anything. */
@@ -160,39 +163,37 @@ export class RunStore {
   get seenE(): number {
     return this.seenSclk - this.entrySclk;
   }
-  /** SCLK of what was received at `ert`. The two run side by side, a light time apart, but for the drift of the clock on board. */
-  sclkSeenAt(ert: string): number {
-    return this.sclkOf(secondsOfDayOfYear(ert));
-  }
-  private sclkOf(ert_s: number): number {
-    const { sclk, ert: at } = this.instant;
-    return sclk + (ert_s - secondsOfDayOfYear(at)) / (this.run.clock?.rate || 1);
+  /** SCLK of what was received at `ert_s`, seconds since 1970. The two run side by side, a light time apart, but for the drift of the clock on board. */
+  sclkSeenAt(ert_s: number): number {
+    const at = this.instant;
+    return at.sclk + (ert_s - at.ert_s) / (this.run.clock?.rate || 1);
   }
   /** When, on Earth, what left the vehicle at `sclk` could be received; in seconds since 1970, NaN while nothing tells. */
   ertOf(sclk: number): number {
-    return secondsOfDayOfYear(this.instant.ert) + (sclk - this.instant.sclk) * (this.run.clock?.rate || 1);
+    const at = this.instant;
+    return at.ert_s + (sclk - at.sclk) * (this.run.clock?.rate || 1);
   }
   /**
    * One instant on both clocks. A run of the day before has no clocks any more; then a tone tells it, whose SCLK is that of
    * its beginning by light time, or else the first event that came live, which was on its way a little longer.
    */
-  private get instant(): { sclk: number; ert: string } {
-    if (this.clocks?.ert) return { sclk: this.seenSclk, ert: this.clocks.ert };
+  private get instant(): { sclk: number; ert_s: number } {
+    if (this.clocks?.ert) return { sclk: this.seenSclk, ert_s: secondsOfDayOfYear(this.clocks.ert) };
     const tone = this.tones[0]?.fact;
-    if (tone) return { sclk: tone.sclk, ert: tone.ertStart };
-    const event = this.events.find((row) => row.live)?.fact;
-    return { sclk: event?.sclk ?? NaN, ert: event?.ert ?? '' };
+    if (tone) return { sclk: tone.sclk, ert_s: secondsOfErt(tone.ertStartUs) };
+    const event = this.events.find((row) => row.live);
+    return { sclk: event?.fact.sclk ?? NaN, ert_s: event?.ert_s ?? NaN };
   }
 
-  /** Whether what is dated `ert` was known on Earth when the vehicle was heard at `cutoff`. */
-  knownBy(ert: string, cutoff: number): boolean {
-    return cutoff === Infinity || !(this.sclkSeenAt(ert) > cutoff);
+  /** Whether what is dated `ert_s` was known on Earth when the vehicle was heard at `cutoff`. */
+  knownBy(ert_s: number, cutoff: number): boolean {
+    return cutoff === Infinity || !(this.sclkSeenAt(ert_s) > cutoff);
   }
   /** Tones that had been decided by then. */
   tonesBy(cutoff: number): readonly ToneRow[] {
     return cutoff === Infinity
       ? this.tones
-      : this.tones.filter(({ fact, ert }) => fact.sclk <= cutoff && this.knownBy(ert, cutoff));
+      : this.tones.filter(({ fact, known_s }) => fact.sclk <= cutoff && this.knownBy(known_s, cutoff));
   }
   /**
    * The same run as it had been heard when the vehicle was heard at `cutoff`: without what only the recording told, and without what an
@@ -323,28 +324,33 @@ export class RunStore {
   }
 
   private addFact(item: Fact): void {
-    if (item.kind === 'event' || item.kind === 'unit') this.newestErt = later(this.newestErt, item.fact.ert);
+    if (item.kind === 'event' || item.kind === 'unit') this.newestErt_s = later(item.ert_s, this.newestErt_s);
     if (item.kind === 'event' || item.kind === 'tone') this.sawSclk(item.fact.sclk);
     if (ABOUT_ALARMS.has(item.kind) || this.isAboutLoss(item)) ++this.alarmsVersion;
     if ((item.kind as string) === 'note') ++this.notesVersion;
     if (ABOUT_TIMELINE.has(item.kind)) ++this.timelineVersion;
     switch (item.kind) {
       case 'event':
-        this.addTwin(this.events, item, item.fact.ert, (a, b) => a.id === b.id && a.text === b.text);
+        this.addTwin(this.events, item, item.ert_s, (a, b) => a.id === b.id && a.text === b.text);
         break;
       case 'explanation':
         // Its unit is the newest that came.
-        this.addTwin(this.explanations, item, this.newestErt, (a, b) => a.text === b.text && a.decision === b.decision);
+        this.addTwin(
+          this.explanations,
+          item,
+          this.newestErt_s,
+          (a, b) => a.text === b.text && a.decision === b.decision,
+        );
         break;
       case 'tone':
         // It is decided some time after its end: what came before it in the order of numbers was known by then.
-        this.tones.push({ ...item, ert: later(item.fact.ertEnd, this.newestErt) });
+        this.tones.push({ ...item, known_s: later(item.ert_s, this.newestErt_s) });
         break;
       case 'timepoint':
         this.addFiring(item.fact);
         break;
       case 'commandStage':
-        this.addStage(item.fact);
+        this.addStage({ ...item.fact, ert_s: item.ert_s });
         break;
       case 'link': {
         const changes = this.links.get(item.fact.link) ?? [];
@@ -376,11 +382,11 @@ export class RunStore {
   private addTwin<T extends { sclk: number; source: number; duplicate: boolean }>(
     rows: (Known<T> & Twin)[],
     item: Known<T>,
-    ert: string,
+    ert_s: number,
     same: (a: T, b: T) => boolean,
   ): void {
     const recorded = item.fact.source === SOURCE_RECORDED;
-    const heard_s = recorded ? NaN : secondsOfDayOfYear(ert);
+    const heard_s = recorded ? NaN : ert_s;
     let index = rows.length;
     while (index > 0 && (rows[index - 1] as Known<T>).fact.sclk > item.fact.sclk) --index;
     for (let i = index - 1; i >= 0; --i) {
@@ -392,17 +398,17 @@ export class RunStore {
         return;
       }
     }
-    rows.splice(index, 0, { seq: item.seq, fact: item.fact, live: !recorded, recorded, heard_s });
+    rows.splice(index, 0, { seq: item.seq, ert_s: item.ert_s, fact: item.fact, live: !recorded, recorded, heard_s });
   }
 
   private addFiring(firing: TimepointFiring): void {
     const pair = this.firings.get(firing.timepoint) ?? { name: firing.name };
     if (firing.source === SOURCE_RECORDED) pair.recorded = firing;
-    else if (!pair.live) [pair.live, pair.heard_s] = [firing, secondsOfDayOfYear(this.newestErt)];
+    else if (!pair.live) [pair.live, pair.heard_s] = [firing, this.newestErt_s];
     this.firings.set(firing.timepoint, pair);
   }
 
-  private addStage(stage: CommandStage): void {
+  private addStage(stage: StageWord): void {
     const number = Number(stage.command);
     let row = this.commands.get(number);
     if (!row) {
@@ -422,13 +428,13 @@ export class RunStore {
     totals.octets += item.fact.octets;
     if (item.fact.duplicate) ++totals.duplicates;
     this.unitTotals.set(key, totals);
-    if (item.fact.source !== SOURCE_RECORDED && !item.fact.duplicate) this.judgeLate(item.fact);
+    if (item.fact.source !== SOURCE_RECORDED && !item.fact.duplicate) this.judgeLate(item);
     this.units.push(item);
     if (this.units.length > UNIT_LIMIT * 2) this.units.splice(0, UNIT_LIMIT);
   }
 
-  private judgeLate(unit: Unit): void {
-    if (unit.ert !== this.lastUnit.ert) this.lastUnit = { ert: unit.ert, sclk: this.sclkSeenAt(unit.ert) };
+  private judgeLate({ fact: unit, ert_s }: Known<Unit>): void {
+    if (ert_s !== this.lastUnit.ert_s) this.lastUnit = { ert_s, sclk: this.sclkSeenAt(ert_s) };
     const heard = this.lastUnit.sclk;
     if (!(heard - unit.sclk > LATE_S)) return;
     let late = this.late.get(unit.name);

@@ -2,6 +2,10 @@
 // Times as controllers write them. All of them come from the stream; the browser's clock is never read.
 
 const DAY_S = 86400;
+const EPOCH_S = Date.UTC(2000, 0, 1, 12) / 1000; // of the stream's times
+
+/** Seconds since 1970 of a time as the stream has it: microseconds since 2000-01-01T12:00:00 UTC, in JSON a text of digits. */
+export const secondsOfErt = (ert_us: bigint | string): number => EPOCH_S + Number(ert_us) / 1e6;
 
 /** Seconds since 1970 of "2012-219T05:10:47.400" (year, day of year), UTC; NaN when it is not such a text. */
 export function secondsOfDayOfYear(text: string): number {
@@ -11,14 +15,15 @@ export function secondsOfDayOfYear(text: string): number {
   return Date.UTC(year, 0, 1) / 1000 + (day - 1) * DAY_S + hours * 3600 + minutes * 60 + seconds;
 }
 
-/** The other way round, to a tenth of a second, cut off and not rounded, as a clock shows it. */
-export function dayOfYear(seconds: number): string {
+/** The other way round, to a tenth of a second or so many digits, cut off and not rounded, as a clock shows it. */
+export function dayOfYear(seconds: number, digits = 1): string {
   if (!Number.isFinite(seconds)) return '—';
-  const tenths = Math.floor(seconds * 10 + 1e-6);
-  const date = new Date(Math.floor(tenths / 10) * 1000);
+  const unit = 10 ** digits;
+  const count = Math.floor(seconds * unit + unit * 4e-7);
+  const date = new Date(Math.floor(count / unit) * 1000);
   const year = date.getUTCFullYear();
   const day = Math.floor((date.getTime() - Date.UTC(year, 0, 1)) / 1000 / DAY_S) + 1;
-  return `${year}-${pad(day, 3)}T${date.toISOString().slice(11, 19)}.${tenths % 10}`;
+  return `${year}-${pad(day, 3)}T${date.toISOString().slice(11, 19)}.${pad(count % unit, digits)}`;
 }
 
 /** "E+00:04:28", "E−19:02"; with tenths "E+04:28.3". Hours only where there are some, unless `hours`. */

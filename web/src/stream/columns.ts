@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Turns the stream's batches into columns: one run of samples a channel, and facts in order of sequence number.
 import type { Batch } from '../gen/aeolis/v1/stream_pb';
+import { secondsOfErt } from '../run/time';
 import type { BatchOfFacts, Column, Fact } from './messages';
 
 export const SOURCE_RECORDED = 2; // Source.RECORDED; so that the page need not load the schema
@@ -40,7 +41,7 @@ export class ColumnCollector {
         this.thinned ||= value.thinned;
         this.addSamples(value.sclk, value.ids, value.values, value.source === SOURCE_RECORDED);
       } else {
-        this.facts.push({ kind, seq, fact: value } as Fact);
+        this.facts.push({ kind, seq, ert_s: secondsOfErt(item.ertUs), fact: value } as Fact);
       }
     }
   }

@@ -22,16 +22,17 @@ export interface Column {
   recorded: boolean;
 }
 
-/** A numbered item that is not a sample, flattened. */
-export type Fact =
-  | { kind: 'event'; seq: number; fact: Event }
-  | { kind: 'tone'; seq: number; fact: Tone }
-  | { kind: 'commandStage'; seq: number; fact: CommandStage }
-  | { kind: 'timepoint'; seq: number; fact: TimepointFiring }
-  | { kind: 'explanation'; seq: number; fact: Explanation }
-  | { kind: 'link'; seq: number; fact: LinkChange }
-  | { kind: 'alarm'; seq: number; fact: Alarm }
-  | { kind: 'unit'; seq: number; fact: Unit };
+/** A numbered item that is not a sample, flattened. `ert_s`: its ERT, seconds since 1970. */
+export type Fact = { seq: number; ert_s: number } & (
+  | { kind: 'event'; fact: Event }
+  | { kind: 'tone'; fact: Tone }
+  | { kind: 'commandStage'; fact: CommandStage }
+  | { kind: 'timepoint'; fact: TimepointFiring }
+  | { kind: 'explanation'; fact: Explanation }
+  | { kind: 'link'; fact: LinkChange }
+  | { kind: 'alarm'; fact: Alarm }
+  | { kind: 'unit'; fact: Unit }
+);
 
 export interface BatchOfFacts {
   run: number;

@@ -19,6 +19,7 @@ import { DictionaryReplySchema, RunStateSchema, TimepointRowSchema } from '../ge
 import { BatchSchema } from '../gen/aeolis/v1/stream_pb';
 import { Dictionary } from '../run/dictionary';
 import { RunStore } from '../run/store';
+import { secondsOfDayOfYear, secondsOfErt } from '../run/time';
 import { ColumnCollector } from '../stream/columns';
 
 export const ENTRY_SCLK = 1000;
@@ -139,14 +140,20 @@ export const aPlan = [
   }),
 ];
 
+/** A day-of-year text as the stream has it. '': long before everything. */
+export const ertUs = (text: string): bigint =>
+  text === '' ? 0n : BigInt(Math.round((secondsOfDayOfYear(text) - secondsOfErt(0n)) * 1e6));
+
 let seq = 0;
-export function item(value: Item['item']): Item {
-  return create(ItemSchema, { seq: BigInt(++seq), item: value });
+export function item(value: Item['item'], ert = ''): Item {
+  return create(ItemSchema, { seq: BigInt(++seq), ertUs: ertUs(ert), item: value });
 }
-export const event = (fields: MessageInitShape<typeof EventSchema>) =>
-  item({ case: 'event', value: create(EventSchema, { source: 1, level: 'ACTIVITY_HI', ...fields }) });
-export const tone = (fields: MessageInitShape<typeof ToneSchema>) =>
-  item({ case: 'tone', value: create(ToneSchema, { likelihood: 1, ...fields }) });
+/** Fields of a message, with the ERT of its item as a text. */
+type Dated<Fields> = Fields & { ert?: string };
+export const event = ({ ert, ...fields }: Dated<MessageInitShape<typeof EventSchema>>) =>
+  item({ case: 'event', value: create(EventSchema, { source: 1, level: 'ACTIVITY_HI', ...fields }) }, ert);
+export const tone = ({ ert, ertStart = '', ...fields }: Dated<MessageInitShape<typeof ToneSchema>>) =>
+  item({ case: 'tone', value: create(ToneSchema, { likelihood: 1, ertStartUs: ertUs(ertStart), ...fields }) }, ert);
 export const firing = (fields: MessageInitShape<typeof TimepointFiringSchema>) =>
   item({
     case: 'timepoint',
@@ -159,14 +166,14 @@ export const firing = (fields: MessageInitShape<typeof TimepointFiringSchema>) =
   });
 export const explanation = (fields: MessageInitShape<typeof ExplanationSchema>) =>
   item({ case: 'explanation', value: create(ExplanationSchema, { source: 1, ...fields }) });
-export const link = (fields: MessageInitShape<typeof LinkChangeSchema>) =>
-  item({ case: 'link', value: create(LinkChangeSchema, fields) });
+export const link = ({ ert, ...fields }: Dated<MessageInitShape<typeof LinkChangeSchema>>) =>
+  item({ case: 'link', value: create(LinkChangeSchema, fields) }, ert);
 export const alarm = (fields: MessageInitShape<typeof AlarmSchema>) =>
   item({ case: 'alarm', value: create(AlarmSchema, fields) });
-export const stage = (fields: MessageInitShape<typeof CommandStageSchema>) =>
-  item({ case: 'commandStage', value: create(CommandStageSchema, fields) });
-export const unit = (fields: MessageInitShape<typeof UnitSchema>) =>
-  item({ case: 'unit', value: create(UnitSchema, { source: 1, link: 'uhf_live', ...fields }) });
+export const stage = ({ ert, ...fields }: Dated<MessageInitShape<typeof CommandStageSchema>>) =>
+  item({ case: 'commandStage', value: create(CommandStageSchema, fields) }, ert);
+export const unit = ({ ert, ...fields }: Dated<MessageInitShape<typeof UnitSchema>>) =>
+  item({ case: 'unit', value: create(UnitSchema, { source: 1, link: 'uhf_live', ...fields }) }, ert);
 export const samples = (sclk: number, values: Record<number, number>, source = 1) =>
   item({
     case: 'samples',

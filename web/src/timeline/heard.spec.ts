@@ -18,6 +18,7 @@ it('what was heard is worked out once for all who ask, and anew once something c
       {
         kind: 'timepoint',
         seq: 9,
+        ert_s: NaN,
         fact: { ...store.firings.get(0)!.live!, timepoint: 1, name: 'entry_interface', firedSclk: 900 },
       },
     ],

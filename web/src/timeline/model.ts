@@ -108,8 +108,8 @@ function markOf(id: number, name: string, e_s: number, verdict: string): Mark {
 export function outages(store: RunStore, link: string, now_e_s: number, cutoff: number): Outage[] {
   const all: Outage[] = [];
   let open: Outage | undefined;
-  for (const { fact } of store.links.get(link) ?? []) {
-    const sclk = store.sclkSeenAt(fact.ert);
+  for (const { fact, ert_s } of store.links.get(link) ?? []) {
+    const sclk = store.sclkSeenAt(ert_s);
     if (!Number.isFinite(sclk) || sclk > cutoff) continue;
     const e_s = sclk - store.entrySclk;
     if (!fact.up && !open) open = { from: e_s, to: now_e_s, words: fact.reason || 'silent' };

@@ -158,7 +158,7 @@ describe('the timeline', () => {
       firing({ timepoint: 0, name: 'coolant_vent', firedSclk: 500 }),
       firing({ timepoint: 1, name: 'entry_interface', firedSclk: 600, source: 2 }),
       samples(600, { 3: 1, 4: 1 }, 2),
-      tone({ sclk: 640, tone: 29, name: 'entry_interface', ertEnd: '2012-219T04:55:50.0' }), // SCLK 650
+      tone({ sclk: 640, tone: 29, name: 'entry_interface', ert: '2012-219T04:55:50.0' }), // SCLK 650
     ]);
     const heard = store.asHeardBy(Infinity, () => undefined);
     expect(lanesOf(store, aPlan, 645).recorded.length).toBe(1);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { Tone } from '../gen/aeolis/v1/items_pb';
 import type { RunStore } from '../run/store';
-import { fromEntry, secondsOfDayOfYear } from '../run/time';
+import { fromEntry, secondsOfErt } from '../run/time';
 
 interface ToneBar {
   from_e_s: number;
@@ -14,8 +14,8 @@ const SYMBOL_S = 10; // R31: one tone for 10 s
 
 export function toneBars(store: RunStore, cutoff: number): ToneBar[] {
   const bars: ToneBar[] = [];
-  for (const { fact } of store.tonesBy(cutoff)) {
-    const span = secondsOfDayOfYear(fact.ertEnd) - secondsOfDayOfYear(fact.ertStart);
+  for (const { fact, ert_s } of store.tonesBy(cutoff)) {
+    const span = ert_s - secondsOfErt(fact.ertStartUs);
     const from = fact.sclk - store.entrySclk;
     bars.push({
       from_e_s: from,

@@ -216,7 +216,7 @@ function stepEvidence(store: RunStore, step: FirstStep | undefined, cutoff = Inf
 
 /** What was said last of a stage, as it was known then. */
 const lastWord = (store: RunStore, row: CommandRow, stage: string, cutoff: number) =>
-  row.stages.get(stage)?.findLast((word) => store.knownBy(word.at, cutoff));
+  row.stages.get(stage)?.findLast((word) => store.knownBy(word.ert_s, cutoff));
 
 /** `state`: there is nothing under way, it waits on the ground, or it has left. */
 interface Missing {

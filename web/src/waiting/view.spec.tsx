@@ -400,8 +400,8 @@ describe('waiting for', () => {
   });
   it('in a past view has the commands as they were known then, and asks for nothing to be pressed', () => {
     const words = (at: string) => [
-      stage({ command: 1n, name: 'EDL_SET_PARAMETERS', stage: 'queued', status: 'ok', at }),
-      stage({ command: 1n, stage: 'executed', status: 'ok', at }),
+      stage({ command: 1n, name: 'EDL_SET_PARAMETERS', stage: 'queued', status: 'ok', ert: at }),
+      stage({ command: 1n, stage: 'executed', status: 'ok', ert: at }),
     ];
     const past = (cutoff: number) => waitingFor(aStore(words('2012-219T04:59:00.0')), aDictionary, soonPlan, cutoff); // 60 s ago: SCLK 840
     expect([past(830).title, past(830).lines[0]?.value]).toEqual([

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/api/time_texts.hpp"
+
+#include "aeolis/v1/run.pb.h"
+#include "common/time.hpp"
+
+#include <vector>
+
+namespace aeolis::server {
+namespace {
+
+using google::protobuf::FieldDescriptor;
+using google::protobuf::Message;
+
+std::string text_of(std::int64_t ert_us) {
+    return day_of_year_text(Ert{ert_us});
+}
+
+void write_item(v1::Item& item) {
+    const auto ert = text_of(item.ert_us());
+    switch (item.item_case()) {
+    case v1::Item::kUnit: item.mutable_unit()->set_ert(ert); break;
+    case v1::Item::kEvent: item.mutable_event()->set_ert(ert); break;
+    case v1::Item::kTone:
+        item.mutable_tone()->set_ert_start(text_of(item.tone().ert_start_us()));
+        item.mutable_tone()->set_ert_end(ert);
+        break;
+    case v1::Item::kCommandStage: item.mutable_command_stage()->set_at(ert); break;
+    case v1::Item::kLink: item.mutable_link()->set_ert(ert); break;
+    case v1::Item::kStaleness: item.mutable_staleness()->set_ert(ert); break;
+    case v1::Item::kAlarmAction: {
+        auto& action = *item.mutable_alarm_action();
+        action.set_at(ert);
+        action.set_until(action.has_until_us() ? text_of(action.until_us()) : "");
+        break;
+    }
+    case v1::Item::kNote: item.mutable_note()->set_at(ert); break;
+    case v1::Item::kSamples:
+    case v1::Item::kTimepoint:
+    case v1::Item::kExplanation:
+    case v1::Item::kAlarm:
+    case v1::Item::ITEM_NOT_SET: break;
+    }
+}
+
+}  // namespace
+
+void write_time_texts(Message& answer) {
+    if (auto* item = dynamic_cast<v1::Item*>(&answer)) return write_item(*item);
+    if (auto* packet = dynamic_cast<v1::PacketRow*>(&answer))
+        packet->mutable_unit()->set_ert(text_of(packet->ert_us()));
+    const auto& reflection = *answer.GetReflection();
+    std::vector<const FieldDescriptor*> fields;
+    reflection.ListFields(answer, &fields);
+    for (const auto* field : fields) {
+        if (field->cpp_type() != FieldDescriptor::CPPTYPE_MESSAGE) continue;
+        if (!field->is_repeated()) {
+            write_time_texts(*reflection.MutableMessage(&answer, field));
+            continue;
+        }
+        for (int i = 0; i < reflection.FieldSize(answer, field); ++i)
+            write_time_texts(*reflection.MutableRepeatedMessage(&answer, field, i));
+    }
+}
+
+}  // namespace aeolis::server
