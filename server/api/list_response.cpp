@@ -60,12 +60,13 @@ void add_columns(const Descriptor& row, const std::vector<std::string_view>& kin
 }
 
 /// As parameters of questions and the samples as CSV have it: SOURCE_REALTIME is "realtime", and what is not said
-/// nothing.
+/// nothing. An enumeration whose first value is not called UNSPECIFIED has its words as names.
 std::string enum_text(const google::protobuf::EnumDescriptor& kind, int number) {
     constexpr std::string_view unsaid =
         "UNSPECIFIED";  // how the name of the first of each ends, behind what all of them begin with
     const auto* value = kind.FindValueByNumber(number);
     if (value == nullptr) return std::to_string(number);
+    if (!kind.value(0)->name().ends_with(unsaid)) return value->name();
     if (value->index() == 0) return {};
     std::string text = value->name().substr(kind.value(0)->name().size() - unsaid.size());
     std::ranges::transform(text, text.begin(),

@@ -53,7 +53,7 @@ struct Stand {
 };
 
 bool stands(const v1::Item& alarm) {
-    return alarm.has_staleness() ? alarm.staleness().stale() : alarm.alarm().severity() != "none";
+    return alarm.has_staleness() ? alarm.staleness().stale() : alarm.alarm().severity() != v1::Alarm::none;
 }
 
 }  // namespace

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/archive/items.hpp"
 
-#include "telemetry/alarms.hpp"
-#include "telemetry/text.hpp"
-
 #include <cmath>
 #include <limits>
 
@@ -16,6 +13,12 @@ v1::Source source_of(Source source) {
 static_assert(static_cast<int>(Source::realtime) == v1::SOURCE_REALTIME);
 static_assert(static_cast<int>(Source::recorded) == v1::SOURCE_RECORDED);
 static_assert(static_cast<int>(Source::ground) == v1::SOURCE_GROUND);
+
+/// Enumerations of the schema have the values of ours; tests/server/archive/items_test.cpp compares their words.
+template <typename Wire, typename Own>
+Wire wire(Own value) {
+    return static_cast<Wire>(static_cast<int>(value));
+}
 
 v1::Item item_with(const ItemRecord& record) {
     v1::Item item;
@@ -64,7 +67,7 @@ v1::Item to_item(const EventRecord& record) {
     auto& event = *item.mutable_event();
     event.set_id(record.id.value);
     event.set_name(record.name);
-    event.set_level(telemetry::name_of(record.level));
+    event.set_level(wire<v1::Event::Level>(record.level));
     event.set_text(record.text);
     event.set_sclk(record.sclk.seconds);
     event.set_source(source_of(record.source));
@@ -87,7 +90,7 @@ v1::Item to_item(const ToneRecord& record) {
     tone.set_locked(record.lock == CarrierLock::locked);
     tone.set_model(record.model);
     tone.set_sclk(record.sclk.seconds);
-    tone.set_lock(to_text(record.lock));
+    tone.set_lock(wire<v1::Carrier::Lock>(record.lock));
     for (const ToneLikelihood& each : record.best) {
         auto& written = *tone.add_best();
         written.set_tone(each.tone);
@@ -102,8 +105,8 @@ v1::Item to_item(const StageRecord& record) {
     auto& stage = *item.mutable_command_stage();
     stage.set_command(record.command);
     stage.set_name(record.name);
-    stage.set_stage(commands::name_of(record.stage));
-    stage.set_status(commands::name_of(record.status));
+    stage.set_stage(wire<v1::CommandStage::Stage>(record.stage));
+    stage.set_status(wire<v1::CommandStage::Status>(record.status));
     stage.set_evidence(record.evidence);
     stage.set_arguments(record.arguments);
     stage.set_count(record.count);
@@ -160,7 +163,7 @@ v1::Item to_item(const AlarmRecord& record) {
     v1::Item item = item_with(record);
     auto& alarm = *item.mutable_alarm();
     alarm.set_channel(record.channel.value);
-    alarm.set_severity(telemetry::name_of(record.severity));
+    alarm.set_severity(wire<v1::Alarm::Severity>(record.severity));
     alarm.set_value(record.value);
     alarm.set_sclk(record.sclk.seconds);
     alarm.set_limit(record.limit);
@@ -182,7 +185,7 @@ v1::Item to_item(const AlarmActionRecord& record) {
     v1::Item item = item_with(record);
     auto& action = *item.mutable_alarm_action();
     action.set_alarm(record.alarm);
-    action.set_action(telemetry::name_of(record.action));
+    action.set_action(wire<v1::AlarmAction::Action>(record.action));
     if (record.until > record.ert) action.set_until_us(record.until.microseconds);
     action.set_note(record.note);
     action.set_by(record.by);

@@ -24,14 +24,14 @@ void apply(const v1::Item& item, const dictionary::Dictionary& dictionary, telem
     const std::string& name = name_of_alarm(item, dictionary);
     if (item.has_alarm()) {
         const auto& alarms = dictionary.channels[item.alarm().channel()].type.alarms;
-        desk.change(name, telemetry::severity_of(item.alarm().severity()).value_or(Severity::none),
-                    telemetry::latches(alarms));
+        desk.change(name, static_cast<Severity>(item.alarm().severity()), telemetry::latches(alarms));
     } else if (item.has_staleness()) {
         desk.change(name, item.staleness().stale() ? telemetry::stale_severity : Severity::none, false);
     } else if (item.has_link()) {
         desk.change(name, item.link().lost() ? telemetry::lost_severity : Severity::none, false);
-    } else if (const auto act = telemetry::alarm_act(item.alarm_action().action())) {
-        desk.act(name, *act, Ert{item.ert_us()}, Ert{item.alarm_action().until_us()});
+    } else {
+        desk.act(name, static_cast<telemetry::AlarmAct>(item.alarm_action().action()), Ert{item.ert_us()},
+                 Ert{item.alarm_action().until_us()});
     }
 }
 

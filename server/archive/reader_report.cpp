@@ -39,7 +39,8 @@ std::optional<double> fired_sclk(const v1::TimepointRow& row) {
 bool executed_by(const v1::CommandHistory& command, Ert by) {
     return std::ranges::any_of(command.stages(), [&](const v1::Item& item) {
         const auto& stage = item.command_stage();
-        return stage.stage() == "executed" && stage.status() == "ok" && Ert{item.ert_us()} <= by;
+        return stage.stage() == v1::CommandStage::executed && stage.status() == v1::CommandStage::ok &&
+               Ert{item.ert_us()} <= by;
     });
 }
 

@@ -169,9 +169,11 @@ std::vector<dictionary::OffsetChange> changes_made(const dictionary::Dictionary&
     for (const auto& command : commands.commands()) {
         const v1::Item* executed = nullptr;
         for (const auto& item : command.stages())
-            if (item.command_stage().stage() == "executed" && Ert{item.ert_us()} <= cut.on_earth) executed = &item;
+            if (item.command_stage().stage() == v1::CommandStage::executed && Ert{item.ert_us()} <= cut.on_earth)
+                executed = &item;
         const auto* known = dictionary.command(command.name());
-        if (executed == nullptr || executed->command_stage().status() != "ok" || known == nullptr) continue;
+        if (executed == nullptr || executed->command_stage().status() != v1::CommandStage::ok || known == nullptr)
+            continue;
         const auto arguments = commands::decode(*known, octets_of_hex(command.octets()));
         if (!arguments) continue;
         auto change = commands::offset_change(dictionary, command.name(), *arguments);

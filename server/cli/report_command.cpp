@@ -119,7 +119,8 @@ int report(const ReportOptions& options) {
     for (const auto& command : report->commands())
         if (command.stages_size() > 0) {
             const auto& last = command.stages(command.stages_size() - 1).command_stage();
-            fmt::print("Command {} {}: {} {}, {}\n", command.command(), command.name(), last.stage(), last.status(),
+            fmt::print("Command {} {}: {} {}, {}\n", command.command(), command.name(),
+                       v1::CommandStage::Stage_Name(last.stage()), v1::CommandStage::Status_Name(last.status()),
                        last.evidence());
         }
     print_notes(*report);

@@ -20,9 +20,10 @@ commands::TimelineChanges changes_of(const v1::CommandList& list) {
         for (const auto& item : history.stages()) {
             const auto& stage = item.command_stage();
             // That it could not be verified does not undo it.
-            command.failed = command.failed || (stage.status() == "failed" && stage.stage() != "verified");
-            if (stage.stage() == "released")
-                command.left = stage.status() == "ok" ? std::optional{item.seq()} : std::nullopt;
+            command.failed = command.failed || (stage.status() == v1::CommandStage::failed &&
+                                                stage.stage() != v1::CommandStage::verified);
+            if (stage.stage() == v1::CommandStage::released)
+                command.left = stage.status() == v1::CommandStage::ok ? std::optional{item.seq()} : std::nullopt;
         }
     }
     return commands::changes_of(std::move(all));

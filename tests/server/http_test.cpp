@@ -556,8 +556,9 @@ TEST_CASE("when a change of the timeline is cancelled, what waits is looked at a
             REQUIRE(from_json(web_request(server.port(), "GET", "/api/v1/runs/latest/commands").body, list));
             if (list.commands_size() >= number)
                 for (const auto& stage : list.commands(number - 1).stages())
-                    if (stage.command_stage().stage() == "released")
-                        newest = stage.command_stage().status() + ": " + stage.command_stage().evidence();
+                    if (stage.command_stage().stage() == v1::CommandStage::released)
+                        newest = v1::CommandStage::Status_Name(stage.command_stage().status()) + ": " +
+                                 stage.command_stage().evidence();
             if (newest.find(says) != std::string::npos) break;
             std::this_thread::sleep_for(std::chrono::milliseconds{20});
         }
@@ -639,8 +640,8 @@ TEST_CASE("a command of a scenario's script that is refused in flight is in the 
     REQUIRE(list.commands_size() == 2);
     CHECK(list.commands(0).name() == "EDL_SET_PARAMETERS");
     const auto& stage = list.commands(0).stages(0).command_stage();
-    CHECK(stage.stage() == "queued");
-    CHECK(stage.status() == "failed");
+    CHECK(stage.stage() == v1::CommandStage::queued);
+    CHECK(stage.status() == v1::CommandStage::failed);
     CHECK_THAT(stage.evidence(),
                Catch::Contains("asked for by the scenario's script, refused: no station sees the vehicle"));
 }

@@ -21,6 +21,7 @@ v1::EventList two_events() {
     auto& first = *list.add_events();
     first.set_seq(7);
     first.mutable_event()->set_name("TOUCHDOWN");
+    first.mutable_event()->set_level(v1::Event::ACTIVITY_HI);
     first.mutable_event()->set_text("a \"quoted\", text\nof two lines");
     first.mutable_event()->set_sclk(397000845.015625);
     first.mutable_event()->set_source(v1::SOURCE_RECORDED);
@@ -39,7 +40,7 @@ TEST_CASE("a list as CSV has a column a field by its path and a row a line, quot
     CHECK(csv.next_after == "9");
     CHECK(csv.body ==
           "seq,event.id,event.name,event.level,event.text,event.sclk,event.ert,event.source,event.duplicate\n"
-          "7,0,TOUCHDOWN,,\"a \"\"quoted\"\", text\nof two lines\",397000845.015625,,recorded,false\n"
+          "7,0,TOUCHDOWN,ACTIVITY_HI,\"a \"\"quoted\"\", text\nof two lines\",397000845.015625,,recorded,false\n"
           "9007199254740993,,,,,,,,\n");
     CHECK(as("csv", v1::EventList{}, {"events", {"event"}})
               .body.starts_with("seq,event.id,"));  // a header also of no rows

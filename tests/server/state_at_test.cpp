@@ -81,7 +81,7 @@ TEST_CASE("the state at an instant is what had happened by then, on board and as
     REQUIRE(then.links_size() == 1);
     CHECK(then.links(0).link().up());
     REQUIRE(then.commands_size() == 1);
-    CHECK(then.commands(0).command_stage().stage() == "queued");
+    CHECK(then.commands(0).command_stage().stage() == v1::CommandStage::queued);
 
     const auto now = at({});
     CHECK(altitude(now) != altitude(then));
@@ -91,7 +91,7 @@ TEST_CASE("the state at an instant is what had happened by then, on board and as
     REQUIRE(now.alarms_size() == 1);  // a silence that was predicted is none
     CHECK(now.alarms(0).link().link() == "x_band");
     CHECK(at(1003.1).alarms().empty());
-    CHECK(now.commands(0).command_stage().stage() == "radiated");
+    CHECK(now.commands(0).command_stage().stage() == v1::CommandStage::radiated);
 
     // Times that no date can have are after everything, or before it.
     for (const double far_s : {1.0e13, 1.0e300}) {

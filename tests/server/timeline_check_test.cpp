@@ -52,8 +52,8 @@ const TimelineCheck::Stop never = [] { return false; };
 const TimelineCheck::Stop at_once = [] { return true; };
 
 struct Stage {
-    const char* stage;
-    const char* status;
+    v1::CommandStage::Stage stage;
+    v1::CommandStage::Status status;
 };
 
 /// As the archive has a command with these stages.
@@ -88,9 +88,12 @@ TEST_CASE("a change is analysed on top of what left and what waits, and a failed
     TimelineCheck check{one_constraint()};
     const std::vector asked{later_separation()};
     v1::CommandList none, waits, left, cancelled;
-    add(waits, later_detumble(), {{"released", "pending"}});
-    add(left, later_detumble(), {{"released", "pending"}, {"released", "ok"}});
-    add(cancelled, later_detumble(), {{"released", "pending"}, {"released", "failed"}});
+    add(waits, later_detumble(), {{v1::CommandStage::released, v1::CommandStage::pending}});
+    add(left, later_detumble(),
+        {{v1::CommandStage::released, v1::CommandStage::pending}, {v1::CommandStage::released, v1::CommandStage::ok}});
+    add(cancelled, later_detumble(),
+        {{v1::CommandStage::released, v1::CommandStage::pending},
+         {v1::CommandStage::released, v1::CommandStage::failed}});
     CHECK_FALSE(check.check(none, asked, false, never));
     CHECK(check.check(waits, asked, false, never));
     CHECK(check.check(left, asked, false, never));
@@ -104,11 +107,11 @@ TEST_CASE("of two changes of one offset the one that leaves last stands, not the
           "[gateway][R19]") {
     TimelineCheck check{one_constraint()};
     v1::CommandList list;
-    add(list, later_detumble(), {{"released", "pending"}});
+    add(list, later_detumble(), {{v1::CommandStage::released, v1::CommandStage::pending}});
     add(list, change("detumble", -519.40625, 0.0),
-        {{"released", "ok"}});  // as it was, and sent before the one that waits
+        {{v1::CommandStage::released, v1::CommandStage::ok}});  // as it was, and sent before the one that waits
     CHECK(check.check(list, std::vector{later_separation()}, false, never));  // what waits goes after what has left
-    list.mutable_commands(0)->mutable_stages(0)->mutable_command_stage()->set_status("ok");
+    list.mutable_commands(0)->mutable_stages(0)->mutable_command_stage()->set_status(v1::CommandStage::ok);
     list.mutable_commands(0)->mutable_stages(0)->set_seq(5);  // it left first
     CHECK_FALSE(check.check(list, std::vector{later_separation()}, false, never));
 }
@@ -116,14 +119,15 @@ TEST_CASE("of two changes of one offset the one that leaves last stands, not the
 TEST_CASE("what still waits is looked at again with what remains", "[gateway][R19]") {
     TimelineCheck check{one_constraint()};
     v1::CommandList list;
-    add(list, later_detumble(), {{"released", "pending"}});
-    add(list, later_separation(), {{"released", "pending"}});
+    add(list, later_detumble(), {{v1::CommandStage::released, v1::CommandStage::pending}});
+    add(list, later_separation(), {{v1::CommandStage::released, v1::CommandStage::pending}});
     auto look = check.look_again(list, never);
     REQUIRE(look.known.size() == 2);
     CHECK_FALSE((look.known[0].refuted || look.known[1].refuted));
     CHECK_THAT(look.known[1].words, Catch::Contains("bounds of constraints.csv hold"));
 
-    list.mutable_commands(0)->mutable_stages(0)->mutable_command_stage()->set_status("failed");  // cancelled
+    list.mutable_commands(0)->mutable_stages(0)->mutable_command_stage()->set_status(
+        v1::CommandStage::failed);  // cancelled
     look = check.look_again(list, never);
     REQUIRE(look.known.size() == 1);
     CHECK(look.known[0].number == 2);
@@ -141,7 +145,7 @@ TEST_CASE("an analysis that does not end in its time is no answer, and nothing i
     CHECK(answer.error().internal);
     CHECK_THAT(answer.error().message, Catch::Contains("did not end in its time"));
     v1::CommandList list;
-    add(list, later_detumble(), {{"released", "pending"}});
+    add(list, later_detumble(), {{v1::CommandStage::released, v1::CommandStage::pending}});
     const auto look = check.look_again(list, at_once);
     CHECK(look.known.empty());
     CHECK_THAT(look.not_known, Catch::Contains("did not end"));

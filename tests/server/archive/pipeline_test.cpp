@@ -294,7 +294,7 @@ TEST_CASE("alarms are raised and cleared by real-time samples only", "[pipeline]
     REQUIRE(ground.pipeline.commit().ok());
     std::vector<std::string> severities;
     for (const auto& item : ground.items())
-        if (item.has_alarm()) severities.push_back(item.alarm().severity());
+        if (item.has_alarm()) severities.push_back(v1::Alarm::Severity_Name(item.alarm().severity()));
     CHECK(severities == std::vector<std::string>{"warning", "none"});
 }
 
@@ -425,7 +425,7 @@ TEST_CASE("a tone's evidence is kept and read back: lock, the best five, the spe
     const auto list = ground.reader().tones(ground.run(), {});
     REQUIRE(list.ok());
     const v1::Tone& tone = list->tones(0).tone();
-    CHECK(tone.lock() == "fluctuating");
+    CHECK(tone.lock() == v1::Carrier::fluctuating);
     CHECK_FALSE(tone.locked());
     REQUIRE(tone.best_size() == 5);
     CHECK(tone.best(0).tone() == 9);

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // @vitest-environment happy-dom
-import { create } from '@bufbuild/protobuf';
 import { render } from 'preact';
 import { act as settled } from 'preact/test-utils';
 import { beforeEach, describe, expect, it } from 'vitest';
 import { access } from '../access/model';
 import { Header } from '../clocks/view';
-import { AlarmSchema } from '../gen/aeolis/v1/items_pb';
 import { useForTest } from '../run/session';
 import { pastRange } from '../run/shown';
-import { aDictionary, aStore, item } from '../testing/fixtures';
+import { aDictionary, aStore, alarm } from '../testing/fixtures';
 import { aServer } from '../testing/server';
 import {
   act,
@@ -134,10 +132,7 @@ describe('alarms', () => {
       settled(() => render(<Header />, page));
       return page.querySelector('[data-testid=alarm-count]')?.textContent?.trim();
     };
-    useForTest(
-      aStore([item({ case: 'alarm', value: create(AlarmSchema, { channel: 3, severity: 'warning' }) })]),
-      aDictionary,
-    );
+    useForTest(aStore([alarm({ channel: 3, severity: 'warning' })]), aDictionary);
     expect(count()).toBe('▲ 1 alarm: warning');
     const standing = [
       an({ name: 'x_band', kind: 'link', severity: 'distress', worst: 'distress' }),

@@ -2,7 +2,6 @@
 // What waits to leave, with what can be done about it; and every command of the run, each stage with all that was said of it.
 import { signal } from '@preact/signals';
 import { STAGE_LOOKS } from '../design/status';
-import type { StageLook } from '../design/status';
 import type { CommandList } from '../gen/aeolis/v1/run_pb';
 import { ask } from '../run/connection';
 import { cutoff, dictionary, runNow, signalOfRun, store, takesCommands } from '../run/shown';
@@ -179,7 +178,7 @@ function Details({
                 </tr>,
               ];
             return words.map((word, i) => {
-              const look = word.status as StageLook;
+              const look = word.status;
               return (
                 <tr key={`${cell.stage} ${i}`} class={look === 'failed' ? 'status-alarm' : ''}>
                   <td>

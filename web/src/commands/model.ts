@@ -238,7 +238,8 @@ export function conditionWords(text: string): { words: string; value: string } {
   return at < 0 ? { words: text, value: '' } : { words: text.slice(0, at), value: text.slice(at + 2) };
 }
 
-const STAGES = [
+/** By their numbers in the schema, as STATUSES; so that the page need not load the schema. */
+export const STAGES = [
   'queued',
   'authorised',
   'released',
@@ -248,6 +249,7 @@ const STAGES = [
   'executed',
   'verified',
 ] as const;
+export const STATUSES = ['pending', 'ok', 'failed', 'unknown'] as const;
 
 export interface StageCell {
   stage: string;
@@ -258,13 +260,9 @@ export interface StageCell {
 
 /** Every stage says what is known of it, in a past view what was known then; one never heard of is not green. */
 export function stageCells(row: CommandRow, known: (ert_s: number) => boolean = () => true): StageCell[] {
-  const names = [
-    ...STAGES,
-    ...[...row.stages.keys()].filter((stage) => !(STAGES as readonly string[]).includes(stage)),
-  ];
-  return names.map((name) => {
+  return STAGES.map((name) => {
     const stage = row.stages.get(name)?.findLast((word) => known(word.ert_s));
-    const look = (['ok', 'failed', 'unknown', 'pending'] as const).find((each) => each === stage?.status);
+    const look = STATUSES.find((each) => each === stage?.status);
     const at = stage ? dayOfYear(stage.ert_s, 3) : '';
     return { stage: name, look: look ?? 'none', evidence: stage?.evidence ?? 'nothing is known', at };
   });

@@ -6,6 +6,7 @@ import { act } from 'preact/test-utils';
 import { afterEach, beforeEach, describe, expect, it } from 'vitest';
 import { backToLive, onMessage, useForTest } from '../run/session';
 import { dismissNotice, lookAtPast, notices } from '../run/shown';
+import { CommandStage_Stage, CommandStage_Status } from '../gen/aeolis/v1/items_pb';
 import { CommandReplySchema, DictionaryArgumentSchema } from '../gen/aeolis/v1/run_pb';
 import type { ToWorker } from '../stream/messages';
 import { aDictionary, aRun, aStore, samples, stage } from '../testing/fixtures';
@@ -26,6 +27,8 @@ import {
 } from './line';
 import {
   AT_ONCE,
+  STAGES,
+  STATUSES,
   argumentOffers,
   arrivalOf,
   candidates,
@@ -45,6 +48,11 @@ import { Commands } from './view';
 const set = aDictionary.command('EDL_SET_PARAMETERS');
 const doEdl = aDictionary.command('EDL_DO_EDL');
 if (!set || !doEdl) throw new Error('the fixture lacks its commands');
+
+it('the words of stages and their status are those of the schema, by its numbers', () => {
+  expect(STAGES.map((each) => CommandStage_Stage[each])).toEqual([...STAGES.keys()]);
+  expect(STATUSES.map((each) => CommandStage_Status[each])).toEqual([...STATUSES.keys()]);
+});
 
 describe('what is typed', () => {
   it('finds a command by its words', () => {

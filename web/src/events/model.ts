@@ -73,7 +73,7 @@ export function eventLines(
   let warnings = 0;
   for (const row of store.events) {
     if (!inRange(row.fact.sclk)) continue;
-    const level = LEVELS.indexOf(row.fact.level as (typeof LEVELS)[number]);
+    const level = LEVELS.indexOf(row.fact.level);
     if (level >= 4) ++warnings;
     if (level >= 0 && level < least) continue;
     lines.push({

@@ -3,6 +3,7 @@
 import { describe, expect, it } from 'vitest';
 import type { RunState } from '../gen/aeolis/v1/run_pb';
 import { aDictionary, aPlan, aRun, aStore, firing, samples, stage } from '../testing/fixtures';
+import type { NamedStage } from '../stream/names';
 import { GUIDE_STEPS, guideShown, guideStep, toggleGuide } from './model';
 
 const done = (count: number) =>
@@ -97,11 +98,11 @@ describe('the guide', () => {
     });
   });
   it('says that a command which is held has not left, and asks for it again once it was cancelled or has failed', () => {
-    const said = (stageName: string, status: string, evidence: string) =>
+    const said = (reached: NamedStage['stage'], status: NamedStage['status'], evidence: string) =>
       stage({
         command: 1n,
         name: 'EDL_SET_PARAMETERS',
-        stage: stageName,
+        stage: reached,
         status,
         evidence,
         held: status === 'pending',

@@ -5,6 +5,7 @@ import { describe, expect, it } from 'vitest';
 import { NoteSchema } from '../gen/aeolis/v1/items_pb';
 import { AsFlownReportSchema } from '../gen/aeolis/v1/run_pb';
 import { secondsOfDayOfYear } from '../run/time';
+import type { NamedStage } from '../stream/names';
 import { ENTRY_SCLK, aRun, ertUs, item, stage } from '../testing/fixtures';
 import { commandOutcomes, miss_m, promptness, raisedAlarms, score, scoreText } from './score';
 import type { AlarmChange, Recorded } from './score';
@@ -22,7 +23,7 @@ const acknowledged = (e_s: number, alarm = 'speed_mps'): AlarmChange => ({
   ert_us: ert_us(e_s),
   alarm_action: { alarm, action: 'acknowledge', by: 'Ann' },
 });
-const said = (name: string, at_e_s: number, word: string, status: string, evidence = '') =>
+const said = (name: string, at_e_s: number, word: NamedStage['stage'], status: NamedStage['status'], evidence = '') =>
   stage({ command: 1n, name, stage: word, status, evidence, ert: ert(at_e_s) });
 const radar = (e_s: number) => ({
   e_s,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a rehearsal came to: facts with their times, all from what was recorded, and a score by a stated rule (docs/console.md). Pure.
 import type { AsFlownReport } from '../gen/aeolis/v1/run_pb';
+import { STAGES, STATUSES } from '../commands/model';
 import { inWords } from '../run/dictionary';
 import { duration, fromEntry, secondsOfErt } from '../run/time';
 import { faultWords } from './faults';
@@ -141,7 +142,11 @@ function senderOf(words: readonly { stage: string; evidence: string }[]): string
 /** Of each stage the last word counts; the last stage that has one says how it went. */
 export function commandOutcomes({ report, e_sOf }: Recorded): CommandOutcome[] {
   return report.commands.map((command) => {
-    const words = command.stages.flatMap(({ item }) => (item.case === 'commandStage' ? [item.value] : []));
+    const words = command.stages.flatMap(({ item: { case: kind, value } }) =>
+      kind === 'commandStage'
+        ? [{ evidence: value.evidence, stage: STAGES[value.stage] ?? '', status: STATUSES[value.status] }]
+        : [],
+    );
     const first = command.stages[0];
     const last = new Map(words.map((word) => [word.stage, word]));
     const failed = [...last.values()].find((stage) => stage.status === 'failed');

@@ -1,20 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // All that the page holds of one run. Filled by the stream; read by every panel. One store a run: another run, another
 // store, so that nothing of one can be seen in the other.
-import type {
-  Alarm,
-  Clocks,
-  CommandStage,
-  Event,
-  Explanation,
-  LinkChange,
-  TimepointFiring,
-  Tone,
-  Unit,
-} from '../gen/aeolis/v1/items_pb';
+import type { Clocks, Explanation, LinkChange, TimepointFiring, Unit } from '../gen/aeolis/v1/items_pb';
 import type { RunState } from '../gen/aeolis/v1/run_pb';
 import { SOURCE_RECORDED } from '../stream/columns';
 import type { BatchOfFacts, Column, Fact } from '../stream/messages';
+import type { NamedAlarm, NamedEvent, NamedStage, NamedTone } from '../stream/names';
 import { LIMIT_NOT_DRAWN, Series } from './series';
 import { isGoing } from './start';
 import { secondsOfDayOfYear, secondsOfErt } from './time';
@@ -35,7 +26,7 @@ export interface Known<T> {
   fact: T;
 }
 /** `known_s`: when it was known on Earth, seconds since 1970. */
-interface ToneRow extends Known<Tone> {
+interface ToneRow extends Known<NamedTone> {
   known_s: number;
 }
 /** What the recording brings again. `heard_s`: when it came live, seconds since 1970; NaN: it did not. */
@@ -44,7 +35,7 @@ interface Twin {
   recorded: boolean;
   heard_s: number;
 }
-interface EventRow extends Known<Event>, Twin {}
+interface EventRow extends Known<NamedEvent>, Twin {}
 interface ExplanationRow extends Known<Explanation>, Twin {}
 interface FiringPair {
   name: string;
@@ -52,7 +43,7 @@ interface FiringPair {
   recorded?: TimepointFiring;
   heard_s?: number; // as of a twin
 }
-export type StageWord = CommandStage & { ert_s: number };
+export type StageWord = NamedStage & { ert_s: number };
 export interface CommandRow {
   command: number;
   name: string;
@@ -76,7 +67,7 @@ export interface Sample {
 }
 
 /** `b` may be NaN. */
-const later = (a: number, b: number): number => (b > a ? b : a);
+const later = (a: number, b: number): number => (Number.isNaN(b) ? a : Math.max(a, b));
 
 /** Channels as they were heard: each is looked at only when it is asked for. */
 class HeardSeries extends Map<number, Series> {
@@ -104,8 +95,8 @@ export class RunStore {
   commands = new Map<number, CommandRow>();
   links = new Map<string, Known<LinkChange>[]>();
   /** Those that stand now, by channel. */
-  alarms = new Map<number, Alarm>();
-  private readonly alarmChanges = new Map<number, Alarm[]>();
+  alarms = new Map<number, NamedAlarm>();
+  private readonly alarmChanges = new Map<number, NamedAlarm[]>();
   units: Known<Unit>[] = [];
   /** By link and packet. */
   unitTotals = new Map<string, UnitTotals>();
@@ -257,7 +248,7 @@ export class RunStore {
   }
 
   /** The alarm of a channel that stood at `cutoff`, as the ground raised it. */
-  alarmAt(channel: number, cutoff: number): Alarm | undefined {
+  alarmAt(channel: number, cutoff: number): NamedAlarm | undefined {
     const last = this.alarmChanges.get(channel)?.findLast((change) => change.sclk <= cutoff);
     return last?.severity === 'none' ? undefined : last;
   }

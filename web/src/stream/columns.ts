@@ -3,6 +3,7 @@
 import type { Batch } from '../gen/aeolis/v1/stream_pb';
 import { secondsOfErt } from '../run/time';
 import type { BatchOfFacts, Column, Fact } from './messages';
+import { named } from './names';
 
 export const SOURCE_RECORDED = 2; // Source.RECORDED; so that the page need not load the schema
 
@@ -41,7 +42,7 @@ export class ColumnCollector {
         this.thinned ||= value.thinned;
         this.addSamples(value.sclk, value.ids, value.values, value.source === SOURCE_RECORDED);
       } else {
-        this.facts.push({ kind, seq, ert_s: secondsOfErt(item.ertUs), fact: value } as Fact);
+        this.facts.push({ kind, seq, ert_s: secondsOfErt(item.ertUs), fact: named(item.item) } as Fact);
       }
     }
   }

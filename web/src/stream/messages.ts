@@ -1,18 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the page and its worker tell each other. Everything here is plain data that can be posted.
 // Sequence and run numbers are JavaScript numbers: exact up to 2^53.
-import type {
-  Alarm,
-  Clocks,
-  CommandStage,
-  Event,
-  Explanation,
-  LinkChange,
-  TimepointFiring,
-  Tone,
-  Unit,
-} from '../gen/aeolis/v1/items_pb';
+import type { Clocks, Explanation, LinkChange, TimepointFiring, Unit } from '../gen/aeolis/v1/items_pb';
 import type { CommandReply, RunState } from '../gen/aeolis/v1/run_pb';
+import type { NamedAlarm, NamedEvent, NamedStage, NamedTone } from './names';
 
 /** Samples of one channel, side by side. A value that is undefined on board is NaN. */
 export interface Column {
@@ -24,13 +15,13 @@ export interface Column {
 
 /** A numbered item that is not a sample, flattened. `ert_s`: its ERT, seconds since 1970. */
 export type Fact = { seq: number; ert_s: number } & (
-  | { kind: 'event'; fact: Event }
-  | { kind: 'tone'; fact: Tone }
-  | { kind: 'commandStage'; fact: CommandStage }
+  | { kind: 'event'; fact: NamedEvent }
+  | { kind: 'tone'; fact: NamedTone }
+  | { kind: 'commandStage'; fact: NamedStage }
   | { kind: 'timepoint'; fact: TimepointFiring }
   | { kind: 'explanation'; fact: Explanation }
   | { kind: 'link'; fact: LinkChange }
-  | { kind: 'alarm'; fact: Alarm }
+  | { kind: 'alarm'; fact: NamedAlarm }
   | { kind: 'unit'; fact: Unit }
 );
 

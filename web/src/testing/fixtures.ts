@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // Messages of the schema for tests, built field by field. Nothing here looks like a landing.
 import { create } from '@bufbuild/protobuf';
-import type { MessageInitShape } from '@bufbuild/protobuf';
+import type { DescMessage, MessageInitShape } from '@bufbuild/protobuf';
 import {
   AlarmSchema,
+  Alarm_Severity,
+  Carrier_Lock,
   ClocksSchema,
   CommandStageSchema,
+  CommandStage_Stage,
+  CommandStage_Status,
   EventSchema,
+  Event_Level,
   ExplanationSchema,
   ItemSchema,
   LinkChangeSchema,
@@ -148,12 +153,28 @@ let seq = 0;
 export function item(value: Item['item'], ert = ''): Item {
   return create(ItemSchema, { seq: BigInt(++seq), ertUs: ertUs(ert), item: value });
 }
-/** Fields of a message, with the ERT of its item as a text. */
-type Dated<Fields> = Fields & { ert?: string };
-export const event = ({ ert, ...fields }: Dated<MessageInitShape<typeof EventSchema>>) =>
-  item({ case: 'event', value: create(EventSchema, { source: 1, level: 'ACTIVITY_HI', ...fields }) }, ert);
-export const tone = ({ ert, ertStart = '', ...fields }: Dated<MessageInitShape<typeof ToneSchema>>) =>
-  item({ case: 'tone', value: create(ToneSchema, { likelihood: 1, ertStartUs: ertUs(ertStart), ...fields }) }, ert);
+/** Fields of a message, with the ERT of its item as a text, and names of enumerations. */
+type Fields<Schema extends DescMessage, Names = object> = Omit<MessageInitShape<Schema>, keyof Names | '$typeName'> &
+  Names & { ert?: string };
+export const event = ({
+  ert,
+  level = 'ACTIVITY_HI',
+  ...fields
+}: Fields<typeof EventSchema, { level?: keyof typeof Event_Level }>) =>
+  item({ case: 'event', value: create(EventSchema, { source: 1, level: Event_Level[level], ...fields }) }, ert);
+export const tone = ({
+  ert,
+  ertStart = '',
+  lock = 'locked',
+  ...fields
+}: Fields<typeof ToneSchema, { lock?: keyof typeof Carrier_Lock; ertStart?: string }>) =>
+  item(
+    {
+      case: 'tone',
+      value: create(ToneSchema, { likelihood: 1, ertStartUs: ertUs(ertStart), lock: Carrier_Lock[lock], ...fields }),
+    },
+    ert,
+  );
 export const firing = (fields: MessageInitShape<typeof TimepointFiringSchema>) =>
   item({
     case: 'timepoint',
@@ -166,13 +187,34 @@ export const firing = (fields: MessageInitShape<typeof TimepointFiringSchema>) =
   });
 export const explanation = (fields: MessageInitShape<typeof ExplanationSchema>) =>
   item({ case: 'explanation', value: create(ExplanationSchema, { source: 1, ...fields }) });
-export const link = ({ ert, ...fields }: Dated<MessageInitShape<typeof LinkChangeSchema>>) =>
+export const link = ({ ert, ...fields }: Fields<typeof LinkChangeSchema>) =>
   item({ case: 'link', value: create(LinkChangeSchema, fields) }, ert);
-export const alarm = (fields: MessageInitShape<typeof AlarmSchema>) =>
-  item({ case: 'alarm', value: create(AlarmSchema, fields) });
-export const stage = ({ ert, ...fields }: Dated<MessageInitShape<typeof CommandStageSchema>>) =>
-  item({ case: 'commandStage', value: create(CommandStageSchema, fields) }, ert);
-export const unit = ({ ert, ...fields }: Dated<MessageInitShape<typeof UnitSchema>>) =>
+export const alarm = ({
+  severity = 'none',
+  ...fields
+}: Fields<typeof AlarmSchema, { severity?: keyof typeof Alarm_Severity }>) =>
+  item({ case: 'alarm', value: create(AlarmSchema, { severity: Alarm_Severity[severity], ...fields }) });
+export const stage = ({
+  ert,
+  stage: reached = 'queued',
+  status = 'pending',
+  ...fields
+}: Fields<
+  typeof CommandStageSchema,
+  { stage?: keyof typeof CommandStage_Stage; status?: keyof typeof CommandStage_Status }
+>) =>
+  item(
+    {
+      case: 'commandStage',
+      value: create(CommandStageSchema, {
+        stage: CommandStage_Stage[reached],
+        status: CommandStage_Status[status],
+        ...fields,
+      }),
+    },
+    ert,
+  );
+export const unit = ({ ert, ...fields }: Fields<typeof UnitSchema>) =>
   item({ case: 'unit', value: create(UnitSchema, { source: 1, link: 'uhf_live', ...fields }) }, ert);
 export const samples = (sclk: number, values: Record<number, number>, source = 1) =>
   item({

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-import type { Tone } from '../gen/aeolis/v1/items_pb';
 import type { RunStore } from '../run/store';
 import { fromEntry, secondsOfErt } from '../run/time';
+import type { NamedTone } from '../stream/names';
 
 interface ToneBar {
   from_e_s: number;
@@ -27,12 +27,12 @@ export function toneBars(store: RunStore, cutoff: number): ToneBar[] {
   return bars;
 }
 
-export function latestTone(store: RunStore, cutoff: number): Tone | undefined {
+export function latestTone(store: RunStore, cutoff: number): NamedTone | undefined {
   return store.tonesBy(cutoff).at(-1)?.fact;
 }
 
 /** The symbol at `sclk`, or the newest by `cutoff` where none is chosen or the chosen one came later than that. */
-export function shownTone(store: RunStore, cutoff: number, chosen_sclk: number | undefined): Tone | undefined {
+export function shownTone(store: RunStore, cutoff: number, chosen_sclk: number | undefined): NamedTone | undefined {
   const chosen =
     chosen_sclk === undefined || chosen_sclk > cutoff
       ? undefined
@@ -56,18 +56,18 @@ export function neighbour(
 const OLD_S = 40; // ours: four symbols; by then the next would have come, decoded or not
 
 /** Whether it is not what the vehicle says now, at `seen_sclk`, but the last that was heard of it. */
-export const isOld = (tone: Tone | undefined, seen_sclk: number): boolean =>
+export const isOld = (tone: NamedTone | undefined, seen_sclk: number): boolean =>
   tone !== undefined && seen_sclk - tone.sclk > OLD_S;
 
 /** The title in words: what the vehicle says now, or what was heard last and when. */
-export function toneTitle(tone: Tone | undefined, last_e_s?: number): string {
+export function toneTitle(tone: NamedTone | undefined, last_e_s?: number): string {
   if (!tone) return 'Tones';
   const meaning =
     tone.tone === undefined ? 'not decoded' : `${tone.tone} · ${tone.meaning || tone.name || 'without a meaning'}`;
   return last_e_s === undefined ? `Tone ${meaning}` : `Last tone, ${fromEntry(last_e_s)}: ${meaning}`;
 }
 
-function lockInWords(tone: Tone): string {
+function lockInWords(tone: NamedTone): string {
   if (tone.locked) return `■ lock, ${tone.cN0Dbhz.toFixed(1)} dB-Hz`;
   if (tone.lock === 'fluctuating' || tone.lock === 'coasting')
     return `▨ ${tone.lock}, ${tone.cN0Dbhz.toFixed(1)} dB-Hz`;
@@ -75,7 +75,7 @@ function lockInWords(tone: Tone): string {
 }
 
 /** The best tones with their likelihoods, all that came. */
-export function bestTones(tone: Tone | undefined): string {
+export function bestTones(tone: NamedTone | undefined): string {
   return (tone?.best ?? []).map((each) => `${each.tone}: ${each.likelihood.toFixed(4)}`).join(' · ');
 }
 
@@ -85,11 +85,11 @@ interface SpectrumLine {
 }
 
 /** The receiver's spectrum of tones; none when the decision does not come from a signal. */
-export function toneSpectrum(tone: Tone | undefined): SpectrumLine[] {
+export function toneSpectrum(tone: NamedTone | undefined): SpectrumLine[] {
   return Array.from(tone?.spectrum ?? [], (octet, index) => ({ tone: 2 * index, level_db: octet / 2 - 30 }));
 }
 
-export function toneEvidence(tone: Tone | undefined): string {
+export function toneEvidence(tone: NamedTone | undefined): string {
   if (!tone) return 'one of 256, each for 10 s';
   const parts: string[] = [];
   if (tone.tone !== undefined) parts.push(`likelihood ${tone.likelihood.toFixed(3)}`);

@@ -3,7 +3,8 @@
 import { describe, expect, it } from 'vitest';
 import { aStore, tone } from '../testing/fixtures';
 import type { Palette } from '../draw/palette';
-import type { Tone } from '../gen/aeolis/v1/items_pb';
+import { named } from '../stream/names';
+import type { NamedTone } from '../stream/names';
 import { drawSpectrum } from './view';
 import {
   bestTones,
@@ -44,8 +45,8 @@ describe('tones', () => {
     );
   });
   it('tell of a tone that is long past as the last one, with its time, not as what the vehicle says now', () => {
-    const last = tone({ sclk: 700, tone: 7, meaning: 'Entry interface' }).item.value as Tone;
-    const lost = tone({ sclk: 700 }).item.value as Tone;
+    const last = named(tone({ sclk: 700, tone: 7, meaning: 'Entry interface' }).item) as NamedTone;
+    const lost = named(tone({ sclk: 700 }).item) as NamedTone;
     expect([700, 740, 740.1].map((seen) => isOld(last, seen))).toEqual([false, false, true]);
     expect(isOld(undefined, 900)).toBe(false);
     expect([toneTitle(last, -300), toneTitle(lost, -300)]).toEqual([
@@ -87,7 +88,7 @@ describe('tones', () => {
     [spectrum[21], spectrum[61]] = [110, 100];
     drawSpectrum(
       { context: context as unknown as CanvasRenderingContext2D, width: 600, colours: {} as Palette },
-      tone({ sclk: 700, tone: 42, runnerUp: 123, spectrum }).item.value as Tone,
+      named(tone({ sclk: 700, tone: 42, runnerUp: 123, spectrum }).item) as NamedTone,
       200,
     );
     expect([bars.length, Math.min(...bars) > 20, Math.max(...bars) < 200]).toEqual([128, true, true]);

@@ -5,7 +5,7 @@ import { Canvas } from '../draw/canvas';
 import type { Surface } from '../draw/canvas';
 import { axisTime, ticks, timeStep } from '../draw/axis';
 import { Panel } from '../design/panel';
-import type { Tone } from '../gen/aeolis/v1/items_pb';
+import type { NamedTone } from '../stream/names';
 import { cursor } from '../run/cursor';
 import { cutoff, shownRun, tick } from '../run/shown';
 import { fromEntry } from '../run/time';
@@ -23,7 +23,7 @@ const HEIGHTS = [64, 128, 256]; // the strip is as high as the tones that came n
 /** The symbol that is looked at, of one run; undefined: the newest. */
 const choice = signal<{ run: number; sclk: number } | undefined>(undefined);
 const chosenSclk = () => (choice.value?.run === shownRun()?.id ? choice.value?.sclk : undefined);
-function toneNow(): Tone | undefined {
+function toneNow(): NamedTone | undefined {
   const run = shownRun();
   return run && shownTone(run, cutoff.value, chosenSclk());
 }
@@ -60,7 +60,7 @@ function choose(px: number): void {
 /** What the receiver saw of the symbol that is looked at, beside the strip: all 256 that were weighed, on a scale of their own; the decided one and the runner-up by number. */
 export function drawSpectrum(
   { context: c, width, colours }: Pick<Surface, 'context' | 'width' | 'colours'>,
-  tone: Tone | undefined,
+  tone: NamedTone | undefined,
   bottom: number,
 ): void {
   const y = (index: number) => bottom - (index / TONES) * (bottom - 22);

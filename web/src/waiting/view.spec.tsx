@@ -20,6 +20,7 @@ import {
   stage,
   tone,
 } from '../testing/fixtures';
+import type { NamedStage } from '../stream/names';
 import { stream } from '../run/connection';
 import { useForTest } from '../run/session';
 import { timepoints } from '../run/shown';
@@ -111,11 +112,11 @@ describe('waiting for', () => {
     expect(waitingFor(store, aDictionary, soonPlan, Infinity).lines[0]?.value).toContain('bad_argument');
   });
   it('has typed what is missing: the first command again where it was cancelled, nothing while one waits or is under way', () => {
-    const said = (stageName: string, status: string, evidence = '') =>
+    const said = (reached: NamedStage['stage'], status: NamedStage['status'], evidence = '') =>
       stage({
         command: 1n,
         name: 'EDL_SET_PARAMETERS',
-        stage: stageName,
+        stage: reached,
         status,
         evidence,
         held: status === 'pending',

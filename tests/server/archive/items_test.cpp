@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/archive/items.hpp"
+
+#include "server/archive/item_tables.hpp"
+#include "tests/support/catch.hpp"
+
+namespace server_archive_items_test {
+
+using namespace aeolis;
+
+namespace {
+
+/// The words of an enumeration, as the archive has them in its columns.
+template <typename Own>
+std::vector<std::string> kept() {
+    std::vector<std::string> words;
+    for (std::size_t i = 0; i < archive::Spelling<Own>::count; ++i)
+        words.emplace_back(archive::Spelling<Own>::of(static_cast<Own>(i)));
+    return words;
+}
+
+/// The same of an enumeration of the schema: the names are the words in JSON.
+std::vector<std::string> sent(const google::protobuf::EnumDescriptor* wire) {
+    std::vector<std::string> words;
+    for (int i = 0; i < wire->value_count(); ++i) {
+        CHECK(wire->value(i)->number() == i);
+        words.push_back(wire->value(i)->name());
+    }
+    return words;
+}
+
+}  // namespace
+
+TEST_CASE("an enumeration has the same words, in the same order, in the archive and on the stream", "[archive]") {
+    CHECK(kept<dictionary::EventLevel>() == sent(v1::Event::Level_descriptor()));
+    CHECK(kept<commands::Stage>() == sent(v1::CommandStage::Stage_descriptor()));
+    CHECK(kept<commands::Status>() == sent(v1::CommandStage::Status_descriptor()));
+    CHECK(kept<dictionary::Severity>() == sent(v1::Alarm::Severity_descriptor()));
+    CHECK(kept<telemetry::AlarmAct>() == sent(v1::AlarmAction::Action_descriptor()));
+    CHECK(kept<CarrierLock>() == sent(v1::Carrier::Lock_descriptor()));
+}
+
+}  // namespace server_archive_items_test

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// Enumerations of the stream by their names in the schema, as JSON has them: numbers stay in the worker, words are what the page compares and draws.
+import {
+  Alarm_Severity,
+  Carrier_Lock,
+  CommandStage_Stage,
+  CommandStage_Status,
+  Event_Level,
+} from '../gen/aeolis/v1/items_pb';
+import type { Alarm, CommandStage, Event, Item, Tone } from '../gen/aeolis/v1/items_pb';
+
+type Named<Message, Names> = Omit<Message, keyof Names> & Names;
+export type NamedEvent = Named<Event, { level: keyof typeof Event_Level }>;
+export type NamedTone = Named<Tone, { lock: keyof typeof Carrier_Lock }>;
+export type NamedAlarm = Named<Alarm, { severity: keyof typeof Alarm_Severity }>;
+export type NamedStage = Named<
+  CommandStage,
+  { stage: keyof typeof CommandStage_Stage; status: keyof typeof CommandStage_Status }
+>;
+
+/** Of a value that this console does not know: its number. */
+const nameOf = <Names extends object>(names: Names, value: number) =>
+  ((names as Record<number, string>)[value] ?? String(value)) as keyof Names;
+
+/** What an item is, with names. */
+export function named(item: Item['item']) {
+  switch (item.case) {
+    case 'event':
+      return { ...item.value, level: nameOf(Event_Level, item.value.level) };
+    case 'tone':
+      return { ...item.value, lock: nameOf(Carrier_Lock, item.value.lock) };
+    case 'alarm':
+      return { ...item.value, severity: nameOf(Alarm_Severity, item.value.severity) };
+    case 'commandStage':
+      return {
+        ...item.value,
+        stage: nameOf(CommandStage_Stage, item.value.stage),
+        status: nameOf(CommandStage_Status, item.value.status),
+      };
+    default:
+      return item.value;
+  }
+}
