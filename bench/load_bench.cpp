@@ -246,7 +246,7 @@ void under_load(Channels channels) {
                 auto page = reader.items(run, after, limit, kinds);
                 web->post([done, page = std::move(page)]() mutable { done(std::move(page)); });
             },
-            {}, server::Haste::soon);
+            {}, server::JobPriority::soon);
         if (!taken) web->post([done] { done(Error{server::QueryThreads::busy}); });
     };
     server::StreamHub hub{dictionary.id, services};

@@ -55,7 +55,7 @@ std::string outcome_of(bool done, const std::string& why) {
 
 }  // namespace
 
-void Api::session(const Asked& asked) {
+void Api::session(const ApiRequest& asked) {
     auto response = json_response(session_of(asked.who));
     // Here, where only the console's own page asks: with a page it would be given anew to who follows a link from
     // elsewhere, for such a visit brings no cookie that is SameSite=Strict.
@@ -64,7 +64,7 @@ void Api::session(const Asked& asked) {
     asked.respond(std::move(response));
 }
 
-void Api::log_in(const Asked& asked) {
+void Api::log_in(const ApiRequest& asked) {
     v1::LogIn wanted;
     if (const auto parsed = from_json(asked.request.body, wanted); !parsed)
         return asked.respond(error_response(400, parsed.error()));
@@ -81,10 +81,10 @@ void Api::log_in(const Asked& asked) {
             response.set_cookie = cookie(session_cookie, done->secret, Access::session_length, parts_.secure);
             return response;
         },
-        Haste::soon);
+        JobPriority::soon);
 }
 
-void Api::log_out(const Asked& asked) {
+void Api::log_out(const ApiRequest& asked) {
     parts_.access.log_out(asked.who);
     if (!asked.who.session.empty()) note(asked.who, "log-out", "", "done");
     HttpResponse response{204, "application/json", "no-store", ""};
@@ -92,11 +92,11 @@ void Api::log_out(const Asked& asked) {
     asked.respond(std::move(response));
 }
 
-void Api::list_users(const Asked& asked) {
+void Api::list_users(const ApiRequest& asked) {
     asked.respond(json_response(parts_.access.users()));
 }
 
-void Api::add_user(const Asked& asked) {
+void Api::add_user(const ApiRequest& asked) {
     v1::NewUser wanted;
     if (const auto parsed = from_json(asked.request.body, wanted); !parsed)
         return asked.respond(error_response(400, parsed.error()));
@@ -110,10 +110,10 @@ void Api::add_user(const Asked& asked) {
                  outcome_of(done.ok(), done ? "" : done.error().message));
             return response_of(done, 201);
         },
-        Haste::soon);
+        JobPriority::soon);
 }
 
-void Api::change_user(const Asked& asked) {
+void Api::change_user(const ApiRequest& asked) {
     if (!asked.who.role) return asked.respond(refusal_of(asked.who, Right::watch));
     if (!asked.who.accounts) return asked.respond(refusal_of(asked.who, Right::administer));
     const auto& user = asked.parts[0];
@@ -142,21 +142,21 @@ void Api::change_user(const Asked& asked) {
                  outcome_of(done.ok(), done ? "" : done.error().message));
             return response_of(done, 200);
         },
-        Haste::soon);
+        JobPriority::soon);
 }
 
-void Api::remove_user(const Asked& asked) {
+void Api::remove_user(const ApiRequest& asked) {
     aside(
         asked.respond,
         [this, user = asked.parts[0]](archive::Reader&) { return response_of(parts_.access.remove_user(user)); },
-        Haste::soon);
+        JobPriority::soon);
 }
 
-void Api::list_tokens(const Asked& asked) {
+void Api::list_tokens(const ApiRequest& asked) {
     asked.respond(json_response(parts_.access.tokens()));
 }
 
-void Api::add_token(const Asked& asked) {
+void Api::add_token(const ApiRequest& asked) {
     v1::NewToken wanted;
     if (const auto parsed = from_json(asked.request.body, wanted); !parsed)
         return asked.respond(error_response(400, parsed.error()));
@@ -164,17 +164,17 @@ void Api::add_token(const Asked& asked) {
         return asked.respond(error_response(422, known.error()));
     aside(
         asked.respond, [this, wanted](archive::Reader&) { return response_of(parts_.access.add_token(wanted), 201); },
-        Haste::soon);
+        JobPriority::soon);
 }
 
-void Api::remove_token(const Asked& asked) {
+void Api::remove_token(const ApiRequest& asked) {
     aside(
         asked.respond,
         [this, name = asked.parts[0]](archive::Reader&) { return response_of(parts_.access.remove_token(name)); },
-        Haste::soon);
+        JobPriority::soon);
 }
 
-void Api::audit(const Asked& asked) {
+void Api::audit(const ApiRequest& asked) {
     const auto query = QueryText::parse(asked.request.query, {"after", "limit"});
     if (!query) return asked.respond(error_response(400, query.error()));
     const auto after = query->count("after", UINT32_MAX), limit = query->amount("limit", audit_page_max);

@@ -22,7 +22,7 @@ std::function<void(Result<archive::Annotation>)> added(const Respond& respond) {
 
 /// What is asked for, by whom: with accounts nobody writes in another's name.
 template <typename Request>
-Result<Request> request_of(const Asked& asked) {
+Result<Request> request_of(const ApiRequest& asked) {
     Request wanted;
     if (const auto parsed = from_json(asked.request.body, wanted); !parsed) return parsed.error();
     if (asked.who.accounts) wanted.set_by(asked.who.user);
@@ -31,7 +31,7 @@ Result<Request> request_of(const Asked& asked) {
 
 }  // namespace
 
-void Api::annotate(const Asked& asked, Annotating annotating) {
+void Api::annotate(const ApiRequest& asked, Annotating annotating) {
     const auto question = [this, annotating = std::move(annotating), clock = clock(),
                            respond = asked.respond](archive::Reader& reader, archive::RunId id,
                                                     const QueryText&) -> std::optional<HttpResponse> {
@@ -42,10 +42,10 @@ void Api::annotate(const Asked& asked, Annotating annotating) {
         if (parts_.pipeline.annotate(id, std::get<archive::Annotation>(std::move(made)), added(respond))) return {};
         return error_response(503, "too much waits to be stored: try again");
     };
-    ask(asked, {}, question, Haste::at_once);
+    ask(asked, {}, question, JobPriority::at_once);
 }
 
-void Api::post_note(const Asked& asked) {
+void Api::post_note(const ApiRequest& asked) {
     const auto wanted = request_of<v1::NoteRequest>(asked);
     if (!wanted) return asked.respond(error_response(400, wanted.error()));
     annotate(asked, [wanted = *wanted](archive::Reader&, archive::RunId, Ert now) -> Annotated {
@@ -55,7 +55,7 @@ void Api::post_note(const Asked& asked) {
     });
 }
 
-void Api::post_alarm(const Asked& asked) {
+void Api::post_alarm(const ApiRequest& asked) {
     const auto wanted = request_of<v1::AlarmRequest>(asked);
     if (!wanted) return asked.respond(error_response(400, wanted.error()));
     annotate(asked, [this, wanted = *wanted](archive::Reader& reader, archive::RunId id, Ert now) -> Annotated {

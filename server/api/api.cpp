@@ -128,7 +128,7 @@ std::span<const Api::Route> Api::routes() {
         {"POST", "/api/v1/session", Right::open, &Api::log_in},
         {"DELETE", "/api/v1/session", Right::open, &Api::log_out},
         {"GET", "/api/v1/users", Right::administer, &Api::list_users},
-        {"POST", "/api/v1/users", Right::administer, &Api::add_user, Query::none, "user", Noted::refusals},
+        {"POST", "/api/v1/users", Right::administer, &Api::add_user, Query::none, "user", Audited::refusals},
         {"PATCH", "/api/v1/users/{user}", Right::open, &Api::change_user},  // one's own needs no right
         {"DELETE", "/api/v1/users/{user}", Right::administer, &Api::remove_user, Query::none, "user"},
         {"GET", "/api/v1/tokens", Right::administer, &Api::list_tokens},
@@ -137,9 +137,9 @@ std::span<const Api::Route> Api::routes() {
         {"GET", "/api/v1/audit", Right::administer, &Api::audit, Query::own},
         {"GET", "/api/v1/runs", Right::watch, &Api::list_runs, Query::own},
         {"POST", "/api/v1/runs/{run}/commands", Right::command, &Api::post_command, Query::none, "command",
-         Noted::refusals},
+         Audited::refusals},
         {"POST", "/api/v1/runs/{run}/sequences", Right::command, &Api::post_sequence, Query::none, "command",
-         Noted::refusals, Body::whole},
+         Audited::refusals, Body::whole},
         {"POST", "/api/v1/runs/{run}/alarms", Right::command, &Api::post_alarm, Query::none, "alarm"},
         {"POST", "/api/v1/runs/{run}/notes", Right::command, &Api::post_note, Query::none, "note"},
         {"GET", "/api/v1/runs/{run}", Right::watch, &Api::run_question, Query::own},
@@ -149,15 +149,15 @@ std::span<const Api::Route> Api::routes() {
         {"GET", "/api/v1/dictionary", Right::watch, &Api::dictionary},
         {"GET", "/api/v1/openapi.yaml", Right::open, &Api::openapi},
         {"GET", "/api/v1/rehearsals", Right::watch, &Api::list_rehearsals},
-        {"POST", "/api/v1/rehearsals", Right::rehearse, &Api::start_rehearsal, Query::none, "rehearsal", Noted::all,
+        {"POST", "/api/v1/rehearsals", Right::rehearse, &Api::start_rehearsal, Query::none, "rehearsal", Audited::all,
          Body::whole},
         {"GET", "/api/v1/rehearsals/current", Right::watch, &Api::current_rehearsal},
         {"POST", "/api/v1/rehearsals/current", Right::rehearse, &Api::control_rehearsal, Query::none, "rehearsal",
-         Noted::all, Body::whole},
+         Audited::all, Body::whole},
         {"PATCH", "/api/v1/rehearsals/current", Right::rehearse, &Api::control_rehearsal, Query::none, "rehearsal",
-         Noted::all, Body::whole},
+         Audited::all, Body::whole},
         {"GET", "/api/v1/campaigns", Right::watch, &Api::list_campaigns},
-        {"POST", "/api/v1/campaigns", Right::rehearse, &Api::start_campaign, Query::none, "campaign", Noted::all,
+        {"POST", "/api/v1/campaigns", Right::rehearse, &Api::start_campaign, Query::none, "campaign", Audited::all,
          Body::whole},
         {"GET", "/api/v1/campaigns/{campaign}", Right::watch, &Api::campaign_report},
         {"GET", "/api/v1/campaigns/{campaign}/touchdowns", Right::watch, &Api::campaign_touchdowns, Query::own},
@@ -192,7 +192,7 @@ void Api::handle(HttpRequest request, const Respond& respond) {
         return respond(
             error_response(404, fmt::format("{}: there is no such route; /api/v1/openapi.yaml lists them", path)));
     if (method != "GET") return respond(error_response(405, fmt::format("{} {}: only GET here", request.method, path)));
-    aside(respond, [this, path](archive::Reader&) { return parts_.console.file(path); }, Haste::at_once);
+    aside(respond, [this, path](archive::Reader&) { return parts_.console.file(path); }, JobPriority::at_once);
 }
 
 std::size_t Api::body_octets(const Credentials& credentials, std::string_view method, std::string_view path) const {
@@ -203,7 +203,7 @@ std::size_t Api::body_octets(const Credentials& credentials, std::string_view me
     return route->body == Body::whole ? HttpRequest::body_octets_max : brief_body_octets_max;
 }
 
-void Api::answer(const Route& route, Asked asked) {
+void Api::answer(const Route& route, ApiRequest asked) {
     const bool changes = route.method != "GET";
     auto refused = refusal_of(asked.who, route.right);
     if (refused.status == 200 && !changes && route.query == Query::none && route.path.starts_with(api_prefix))
@@ -218,12 +218,12 @@ void Api::answer(const Route& route, Asked asked) {
             error_response(503, "nothing is done that the audit cannot take: " + parts_.pipeline.fault()));
     const bool refuses = refused.status != 200;
     if (of_run && asked.parts[0] == "latest") name_latest(asked);
-    if (!route.audit.empty() && (refuses || route.noted == Noted::all)) asked.respond = noted(asked, route.audit);
+    if (!route.audit.empty() && (refuses || route.audited == Audited::all)) asked.respond = audited(asked, route.audit);
     if (refuses) return asked.respond(std::move(refused));
     (this->*route.answer)(asked);
 }
 
-void Api::name_latest(Asked& asked) const {
+void Api::name_latest(ApiRequest& asked) const {
     const auto run = parts_.desk.current().run();
     if (run == 0) return;
     asked.parts[0] = std::to_string(run);
@@ -232,7 +232,7 @@ void Api::name_latest(Asked& asked) const {
                                asked.parts[0]);  // the audit says it too
 }
 
-Respond Api::noted(const Asked& asked, std::string_view action) {
+Respond Api::audited(const ApiRequest& asked, std::string_view action) {
     if (!asked.who.role) return asked.respond;  // nobody: else anyone could fill the audit
     const bool has_password = asked.request.path.starts_with("/api/v1/users");
     return [this, who = asked.who, action,
@@ -250,14 +250,14 @@ void Api::note(const Operator& who, std::string_view action, std::string detail,
     parts_.pipeline.audit(audit_record(who, action, std::move(detail), outcome));
 }
 
-void Api::aside(const Respond& respond, std::function<HttpResponse(archive::Reader&)> answer, Haste haste) {
+void Api::aside(const Respond& respond, std::function<HttpResponse(archive::Reader&)> answer, JobPriority priority) {
     const auto job = [answer = std::move(answer), respond](archive::Reader& reader) {
         respond(answered([&] { return answer(reader); }));
     };
-    if (!parts_.queries.ask(job, {}, haste)) respond(error_response(503, QueryThreads::busy));
+    if (!parts_.queries.ask(job, {}, priority)) respond(error_response(503, QueryThreads::busy));
 }
 
-void Api::run_question(const Asked& asked) {
+void Api::run_question(const ApiRequest& asked) {
     const auto& run = asked.parts[0];
     const std::string what = asked.parts.size() == 2 ? asked.parts[1] : "";
     const auto& respond = asked.respond;
@@ -281,7 +281,7 @@ void Api::run_question(const Asked& asked) {
          answer = question->answer](archive::Reader& reader, archive::RunId id, const QueryText& asked_of) {
             return answer({dictionary, clock(id), instructor}, reader, id, asked_of);
         },
-        what.empty() ? Haste::soon : Haste::in_turn);
+        what.empty() ? JobPriority::soon : JobPriority::in_turn);
 }
 
 std::function<std::optional<Ert>(archive::RunId)> Api::clock() const {
@@ -289,7 +289,7 @@ std::function<std::optional<Ert>(archive::RunId)> Api::clock() const {
                archive::RunId run) { return run.value == current ? now : std::nullopt; };
 }
 
-void Api::ask(const Asked& asked, QueryText query, RunQuestion question, Haste haste) {
+void Api::ask(const ApiRequest& asked, QueryText query, RunQuestion question, JobPriority priority) {
     const auto job = [run = asked.parts[0], query = std::move(query), question = std::move(question),
                       respond = asked.respond](archive::Reader& reader) {
         auto id = run_id(run);
@@ -311,10 +311,10 @@ void Api::ask(const Asked& asked, QueryText query, RunQuestion question, Haste h
         if (reader.stopped()) response = stopped_response("ask for less, by from and to, points or limit");
         respond(std::move(*response));
     };
-    if (!parts_.queries.ask(job, asked.request.gone, haste)) asked.respond(error_response(503, QueryThreads::busy));
+    if (!parts_.queries.ask(job, asked.request.gone, priority)) asked.respond(error_response(503, QueryThreads::busy));
 }
 
-void Api::list_runs(const Asked& asked) {
+void Api::list_runs(const ApiRequest& asked) {
     const auto query = QueryText::parse(asked.request.query, {"format"});
     if (!query) return asked.respond(error_response(400, query.error()));
     auto format = query->one_of("format", list_formats);
@@ -328,27 +328,28 @@ void Api::list_runs(const Asked& asked) {
                 if (run.run() == current.run()) run = current;
             return list_response(format, *runs, {"runs"});
         },
-        Haste::soon);
+        JobPriority::soon);
 }
 
-void Api::list_scenarios(const Asked& asked) {
-    aside(asked.respond, [this](archive::Reader&) { return json_response(parts_.scenarios.list()); }, Haste::soon);
+void Api::list_scenarios(const ApiRequest& asked) {
+    aside(
+        asked.respond, [this](archive::Reader&) { return json_response(parts_.scenarios.list()); }, JobPriority::soon);
 }
 
-void Api::dictionary(const Asked& asked) {
+void Api::dictionary(const ApiRequest& asked) {
     asked.respond({200, "application/json", "no-store", dictionary_json_});
 }
 
-void Api::openapi(const Asked& asked) {
+void Api::openapi(const ApiRequest& asked) {
     asked.respond({200, "application/yaml", "no-cache", std::string{openapi_text}});
 }
 
-void Api::stream(const Asked& asked) {
+void Api::stream(const ApiRequest& asked) {
     asked.respond(error_response(426, "the stream is a WebSocket: ask for an upgrade, with one of the "
                                       "subprotocols aeolis.v1.protobuf, aeolis.v1.json"));
 }
 
-void Api::health(const Asked& asked) {
+void Api::health(const ApiRequest& asked) {
     const std::string fault = parts_.pipeline.fault();
     // Whoever may not watch is not told the names of files.
     const std::string text = fault.empty()                  ? "ok"

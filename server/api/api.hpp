@@ -25,7 +25,7 @@ namespace aeolis::server {
 class QueryText;
 
 /// A request with who asks, what stood in the braces of its route's path, and where its answer goes.
-struct Asked {
+struct ApiRequest {
     HttpRequest request;
     Operator who;
     std::vector<std::string> parts;
@@ -61,80 +61,81 @@ class Api {
     /// None: it will be given later. `respond` is called on whatever thread has the answer.
     using RunQuestion = std::function<std::optional<HttpResponse>(archive::Reader&, archive::RunId, const QueryText&)>;
 
-    enum class Query { none, own };      ///< behind '?': nothing; or what its answer reads
-    enum class Body { brief, whole };    ///< whole: a scenario, a command file
-    enum class Noted { all, refusals };  ///< refusals: the rest its answer notes, a dry run is no action
+    enum class Query { none, own };        ///< behind '?': nothing; or what its answer reads
+    enum class Body { brief, whole };      ///< whole: a scenario, a command file
+    enum class Audited { all, refusals };  ///< refusals: the rest its answer notes, a dry run is no action
     struct Route {
         std::string_view method;  ///< GET answers HEAD, too
         std::string_view path;    ///< "{…}" takes one part
         Right right;
-        void (Api::*answer)(const Asked&);
+        void (Api::*answer)(const ApiRequest&);
         Query query = Query::none;
         std::string_view audit{};  ///< the action's word; empty: it changes nothing, or its answer writes it
-        Noted noted = Noted::all;
+        Audited audited = Audited::all;
         Body body = Body::brief;
     };
     static std::span<const Route> routes();
 
   private:
-    void run_question(const Asked& asked);
-    void list_runs(const Asked& asked);
-    void list_scenarios(const Asked& asked);
-    void dictionary(const Asked& asked);
-    void openapi(const Asked& asked);
-    void stream(const Asked& asked);
-    void health(const Asked& asked);
+    void run_question(const ApiRequest& asked);
+    void list_runs(const ApiRequest& asked);
+    void list_scenarios(const ApiRequest& asked);
+    void dictionary(const ApiRequest& asked);
+    void openapi(const ApiRequest& asked);
+    void stream(const ApiRequest& asked);
+    void health(const ApiRequest& asked);
     // sample_export.cpp
-    void export_samples(const Asked& asked);
+    void export_samples(const ApiRequest& asked);
     // metrics.cpp
-    void metrics(const Asked& asked);
+    void metrics(const ApiRequest& asked);
     // rehearsal_routes.cpp
-    void list_rehearsals(const Asked& asked);
-    void current_rehearsal(const Asked& asked);
-    void start_rehearsal(const Asked& asked);
-    void control_rehearsal(const Asked& asked);
+    void list_rehearsals(const ApiRequest& asked);
+    void current_rehearsal(const ApiRequest& asked);
+    void start_rehearsal(const ApiRequest& asked);
+    void control_rehearsal(const ApiRequest& asked);
     // command_routes.cpp
-    void post_command(const Asked& asked);
-    void post_sequence(const Asked& asked);
+    void post_command(const ApiRequest& asked);
+    void post_sequence(const ApiRequest& asked);
     // annotation_routes.cpp
-    void post_alarm(const Asked& asked);
-    void post_note(const Asked& asked);
+    void post_alarm(const ApiRequest& asked);
+    void post_note(const ApiRequest& asked);
     using Annotated = std::variant<archive::Annotation, HttpResponse>;  ///< the latter says why not
     using Annotating = std::function<Annotated(archive::Reader&, archive::RunId, Ert now)>;
-    void annotate(const Asked& asked, Annotating annotating);
+    void annotate(const ApiRequest& asked, Annotating annotating);
     // campaign_routes.cpp
-    void list_campaigns(const Asked& asked);
-    void start_campaign(const Asked& asked);
-    void campaign_report(const Asked& asked);
-    void campaign_touchdowns(const Asked& asked);
-    void cancel_campaign(const Asked& asked);
+    void list_campaigns(const ApiRequest& asked);
+    void start_campaign(const ApiRequest& asked);
+    void campaign_report(const ApiRequest& asked);
+    void campaign_touchdowns(const ApiRequest& asked);
+    void cancel_campaign(const ApiRequest& asked);
     using CampaignQuestion =
         std::function<HttpResponse(const std::filesystem::path& file, const std::function<bool()>& stop)>;
-    void ask_campaign(const Asked& asked, CampaignQuestion question);
+    void ask_campaign(const ApiRequest& asked, CampaignQuestion question);
     // access_routes.cpp
-    void session(const Asked& asked);
-    void log_in(const Asked& asked);
-    void log_out(const Asked& asked);
-    void list_users(const Asked& asked);
-    void add_user(const Asked& asked);
-    void change_user(const Asked& asked);
-    void remove_user(const Asked& asked);
-    void list_tokens(const Asked& asked);
-    void add_token(const Asked& asked);
-    void remove_token(const Asked& asked);
-    void audit(const Asked& asked);
+    void session(const ApiRequest& asked);
+    void log_in(const ApiRequest& asked);
+    void log_out(const ApiRequest& asked);
+    void list_users(const ApiRequest& asked);
+    void add_user(const ApiRequest& asked);
+    void change_user(const ApiRequest& asked);
+    void remove_user(const ApiRequest& asked);
+    void list_tokens(const ApiRequest& asked);
+    void add_token(const ApiRequest& asked);
+    void remove_token(const ApiRequest& asked);
+    void audit(const ApiRequest& asked);
 
-    void answer(const Route& route, Asked asked);
+    void answer(const Route& route, ApiRequest asked);
     /// Answers, and notes what became of it.
-    Respond noted(const Asked& asked, std::string_view action);
+    Respond audited(const ApiRequest& asked, std::string_view action);
     /// `latest` is the run that goes on, or went on last, in this server; else the newest of the archive: for every
     /// route the same.
-    void name_latest(Asked& asked) const;
+    void name_latest(ApiRequest& asked) const;
     void note(const Operator& who, std::string_view action, std::string detail, const std::string& outcome);
     /// Answered on a query thread; 503 when too much waits.
     void aside(const Respond& respond, std::function<HttpResponse(archive::Reader&)> answer,
-               Haste haste = Haste::in_turn);
-    void ask(const Asked& asked, QueryText query, RunQuestion question, Haste haste = Haste::in_turn);
+               JobPriority priority = JobPriority::in_turn);
+    void ask(const ApiRequest& asked, QueryText query, RunQuestion question,
+             JobPriority priority = JobPriority::in_turn);
     /// The time on Earth in a run that goes on; none in others.
     std::function<std::optional<Ert>(archive::RunId)> clock() const;
     v1::RunState current_run() const;  ///< with what only the stream knows; run 0: none since the server started

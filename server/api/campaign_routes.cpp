@@ -18,7 +18,7 @@ HttpResponse response_or_conflict(const Result<Message>& done, unsigned status =
 
 }  // namespace
 
-void Api::ask_campaign(const Asked& asked, CampaignQuestion question) {
+void Api::ask_campaign(const ApiRequest& asked, CampaignQuestion question) {
     aside(asked.respond, [this, name = asked.parts[0], gone = asked.request.gone,
                           question = std::move(question)](archive::Reader&) {
         const auto file = parts_.campaigns.file_of(name);
@@ -32,11 +32,11 @@ void Api::ask_campaign(const Asked& asked, CampaignQuestion question) {
     });
 }
 
-void Api::list_campaigns(const Asked& asked) {
+void Api::list_campaigns(const ApiRequest& asked) {
     aside(asked.respond, [this](archive::Reader&) { return json_response(parts_.campaigns.list()); });
 }
 
-void Api::start_campaign(const Asked& asked) {
+void Api::start_campaign(const ApiRequest& asked) {
     v1::StartCampaign wanted;
     if (const auto parsed = from_json(asked.request.body, wanted); !parsed)
         return asked.respond(error_response(400, parsed.error()));
@@ -47,13 +47,13 @@ void Api::start_campaign(const Asked& asked) {
     });
 }
 
-void Api::campaign_report(const Asked& asked) {
+void Api::campaign_report(const ApiRequest& asked) {
     ask_campaign(asked, [this](const std::filesystem::path& file, const std::function<bool()>& stop) {
         return response_or_conflict(parts_.campaigns.report(file, stop));
     });
 }
 
-void Api::campaign_touchdowns(const Asked& asked) {
+void Api::campaign_touchdowns(const ApiRequest& asked) {
     const auto query = QueryText::parse(asked.request.query, {"after", "limit"});
     if (!query) return asked.respond(error_response(400, query.error()));
     constexpr auto most = campaign::CampaignDesk::touchdowns_max;
@@ -66,7 +66,7 @@ void Api::campaign_touchdowns(const Asked& asked) {
     });
 }
 
-void Api::cancel_campaign(const Asked& asked) {
+void Api::cancel_campaign(const ApiRequest& asked) {
     ask_campaign(asked, [this, name = asked.parts[0]](const std::filesystem::path&, const std::function<bool()>&) {
         return response_or_conflict(parts_.campaigns.cancel(name), 202);
     });

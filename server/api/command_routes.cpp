@@ -53,7 +53,7 @@ Result<void> may_act(const Operator& who, const dictionary::Dictionary& dictiona
 }
 
 /// What the path says of the run goes into the request, and who asks: both may not be said otherwise.
-Result<void> complete(const Asked& asked, v1::CommandRequest& command) {
+Result<void> complete(const ApiRequest& asked, v1::CommandRequest& command) {
     const auto& run = asked.parts[0];
     const auto id = run_id(run);
     if (id && command.run() != 0 && command.run() != id->value)
@@ -96,11 +96,11 @@ Result<void> may_start(const Operator& who, const dictionary::Dictionary& dictio
     return {};
 }
 
-void Api::post_command(const Asked& asked) {
+void Api::post_command(const ApiRequest& asked) {
     v1::CommandRequest command;
     if (const auto parsed = from_json(asked.request.body, command); !parsed)
         return asked.respond(error_response(400, parsed.error()));
-    const auto respond = command.dry_run() ? asked.respond : noted(asked, "command");
+    const auto respond = command.dry_run() ? asked.respond : audited(asked, "command");
     if (const auto right = complete(asked, command); !right) return respond(error_response(400, right.error()));
     if (const auto allowed = may_send(asked.who, parts_.dictionary, parts_.desk, command); !allowed)
         return respond(error_response(403, allowed.error()));
@@ -111,11 +111,11 @@ void Api::post_command(const Asked& asked) {
     });
 }
 
-void Api::post_sequence(const Asked& asked) {
+void Api::post_sequence(const ApiRequest& asked) {
     v1::CommandSequence sequence;
     if (const auto parsed = from_json(asked.request.body, sequence); !parsed)
         return asked.respond(error_response(400, parsed.error()));
-    const auto respond = sequence.dry_run() ? asked.respond : noted(asked, "command");
+    const auto respond = sequence.dry_run() ? asked.respond : audited(asked, "command");
     if (sequence.commands().empty() || sequence.commands_size() > sequence_max)
         return respond(error_response(
             400, fmt::format("commands: 1 to {} are wanted, here are {}", sequence_max, sequence.commands_size())));

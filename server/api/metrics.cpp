@@ -87,7 +87,7 @@ void write(MetricsText& text, const StreamHub& hub) {
 
 }  // namespace
 
-void Api::metrics(const Asked& asked) {
+void Api::metrics(const ApiRequest& asked) {
     MetricsText text;
     text.begin("build_info", "gauge", "1, labelled with the version of the program");
     text.line("build_info", fmt::format("{{version=\"{}\"}}", version), 1);

@@ -7,8 +7,8 @@
 namespace aeolis::server {
 namespace {
 
-constexpr std::array what_is_short{Haste::at_once, Haste::soon};
-constexpr std::array questions_first{Haste::in_turn, Haste::soon};
+constexpr std::array what_is_short{JobPriority::at_once, JobPriority::soon};
+constexpr std::array questions_first{JobPriority::in_turn, JobPriority::soon};
 
 std::function<bool()> gone_or_late(std::function<bool()> gone, std::chrono::milliseconds question_max) {
     const auto deadline = std::chrono::steady_clock::now() + question_max;
@@ -36,14 +36,14 @@ QueryThreads::QueryThreads(std::vector<archive::Reader> readers, const Open& ope
                            std::chrono::milliseconds question_max)
     : readers_(std::move(readers)) {
     for (std::size_t i = 0; i < threads; ++i) {
-        const auto kinds =
-            i < question_threads ? std::span<const Haste>{questions_first} : std::span<const Haste>{what_is_short};
+        const auto kinds = i < question_threads ? std::span<const JobPriority>{questions_first}
+                                                : std::span<const JobPriority>{what_is_short};
         threads_.emplace_back(
             [this, &reader = readers_[i], kinds, open, question_max] { serve(reader, kinds, open, question_max); });
     }
 }
 
-void QueryThreads::serve(archive::Reader& reader, std::span<const Haste> kinds, const Open& open,
+void QueryThreads::serve(archive::Reader& reader, std::span<const JobPriority> kinds, const Open& open,
                          std::chrono::milliseconds question_max) {
     while (const auto asked = next(kinds)) {
         if (reader.outdated())
@@ -58,9 +58,9 @@ std::function<bool()> QueryThreads::stop_of_question(std::function<bool()> gone,
     return [this, stop = gone_or_late(std::move(gone), question_max)] { return over_ || stop(); };
 }
 
-void QueryThreads::answer(const Asked& asked, archive::Reader& reader, std::chrono::milliseconds question_max) {
-    reader.stop_when(asked.haste == Haste::in_turn ? stop_of_question(asked.gone, question_max)
-                                                   : gone_or_late(asked.gone, question_max));
+void QueryThreads::answer(const WaitingJob& asked, archive::Reader& reader, std::chrono::milliseconds question_max) {
+    reader.stop_when(asked.priority == JobPriority::in_turn ? stop_of_question(asked.gone, question_max)
+                                                            : gone_or_late(asked.gone, question_max));
     try {
         asked.job(reader);
     } catch (const std::exception&
@@ -80,27 +80,27 @@ void QueryThreads::end() {
     threads_.clear();
 }
 
-std::optional<QueryThreads::Asked> QueryThreads::next(std::span<const Haste> kinds) {
+std::optional<QueryThreads::WaitingJob> QueryThreads::next(std::span<const JobPriority> kinds) {
     const auto first = [&] {
-        return std::ranges::find_if(kinds,
-                                    [&](Haste kind) { return !waiting_[static_cast<std::size_t>(kind)].empty(); });
+        return std::ranges::find_if(
+            kinds, [&](JobPriority kind) { return !waiting_[static_cast<std::size_t>(kind)].empty(); });
     };
     std::unique_lock lock{mutex_};
     changed_.wait(lock, [&] { return over_ || first() != kinds.end(); });
     const auto kind = first();
     if (kind == kinds.end()) return std::nullopt;
     auto& waiting = waiting_[static_cast<std::size_t>(*kind)];
-    std::optional<Asked> asked{std::move(waiting.front())};
+    std::optional<WaitingJob> asked{std::move(waiting.front())};
     waiting.pop_front();
     return asked;
 }
 
-bool QueryThreads::ask(Job job, std::function<bool()> gone, Haste haste) {
-    const auto kind = static_cast<std::size_t>(haste);
+bool QueryThreads::ask(Job job, std::function<bool()> gone, JobPriority priority) {
+    const auto kind = static_cast<std::size_t>(priority);
     {
         const std::scoped_lock lock{mutex_};
         if (over_ || waiting_[kind].size() >= waiting_max[kind]) return false;
-        waiting_[kind].push_back({std::move(job), std::move(gone), haste});
+        waiting_[kind].push_back({std::move(job), std::move(gone), priority});
     }
     changed_.notify_all();  // whoever takes this kind is among them
     ++asked_;

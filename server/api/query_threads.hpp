@@ -22,7 +22,7 @@
 namespace aeolis::server {
 
 /// How long a job may take says what it waits behind.
-enum class Haste : std::uint8_t {
+enum class JobPriority : std::uint8_t {
     at_once,  ///< milliseconds, and somebody cannot go on without it: an acknowledgement, a file of the console
     soon,     ///< a second at most, or many at once: a page of what a client of the stream missed, a log-in, a list, a
               ///< check of the timeline
@@ -38,8 +38,8 @@ class QueryThreads {
   public:
     static constexpr std::size_t question_threads = 2;
     static constexpr std::size_t threads = question_threads + 1;
-    /// Ours, by Haste: more is refused, "busy". Each connection of the stream asks for one page at a time, and there
-    /// are at most 1 000 of them: that no page is refused, there is room for two each.
+    /// Chosen, by JobPriority: more is refused, "busy". Each connection of the stream asks for one page at a time, and
+    /// there are at most 1 000 of them: that no page is refused, there is room for two each.
     static constexpr std::array<std::size_t, 3> waiting_max{256, 2'000, 256};
     static constexpr const char* busy = "too many questions wait: try again";
 
@@ -58,7 +58,7 @@ class QueryThreads {
     void end();
 
     /// False, and nothing done, when too much waits.
-    bool ask(Job job, std::function<bool()> gone = {}, Haste haste = Haste::in_turn);
+    bool ask(Job job, std::function<bool()> gone = {}, JobPriority priority = JobPriority::in_turn);
     /// For a question that reads another file than the archive: whether it is to be stopped, as its reader would be. It
     /// begins now, on one of these threads.
     std::function<bool()> stop_of_question(std::function<bool()> gone,
@@ -69,21 +69,21 @@ class QueryThreads {
   private:
     using Open = std::function<Result<archive::Reader>()>;
     QueryThreads(std::vector<archive::Reader> readers, const Open& open, std::chrono::milliseconds question_max);
-    struct Asked {
+    struct WaitingJob {
         Job job;
         std::function<bool()> gone;  ///< null: never told
-        Haste haste{};
+        JobPriority priority{};
     };
     /// The first of the first of `kinds` of which one waits; none when it is over and nothing of them waits.
-    std::optional<Asked> next(std::span<const Haste> kinds);
-    void serve(archive::Reader& reader, std::span<const Haste> kinds, const Open& open,
+    std::optional<WaitingJob> next(std::span<const JobPriority> kinds);
+    void serve(archive::Reader& reader, std::span<const JobPriority> kinds, const Open& open,
                std::chrono::milliseconds question_max);
-    void answer(const Asked& asked, archive::Reader& reader, std::chrono::milliseconds question_max);
+    void answer(const WaitingJob& asked, archive::Reader& reader, std::chrono::milliseconds question_max);
 
     mutable std::mutex mutex_;
     std::condition_variable changed_;
-    std::array<std::deque<Asked>, waiting_max.size()> waiting_;  ///< by Haste, each first in, first out
-    std::atomic<bool> over_{false};                              ///< set under mutex_
+    std::array<std::deque<WaitingJob>, waiting_max.size()> waiting_;  ///< by JobPriority, each first in, first out
+    std::atomic<bool> over_{false};                                   ///< set under mutex_
     std::vector<archive::Reader> readers_;
     std::atomic<std::uint64_t> asked_{0};
     std::vector<std::thread> threads_;

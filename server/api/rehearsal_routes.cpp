@@ -19,19 +19,19 @@ void sign(const Operator& who, v1::RehearsalControl& control) {
     if (who.accounts && control.has_note()) control.mutable_note()->set_by(who.user);
 }
 
-void Api::list_rehearsals(const Asked& asked) {
+void Api::list_rehearsals(const ApiRequest& asked) {
     v1::RunList list;
     if (const auto state = current_run(); state.run() != 0) *list.add_runs() = state;
     asked.respond(json_response(list));
 }
 
-void Api::current_rehearsal(const Asked& asked) {
+void Api::current_rehearsal(const ApiRequest& asked) {
     const auto state = current_run();
     asked.respond(state.run() == 0 ? error_response(404, "no rehearsal was started since the server came up")
                                    : json_response(state));
 }
 
-void Api::start_rehearsal(const Asked& asked) {
+void Api::start_rehearsal(const ApiRequest& asked) {
     v1::StartRehearsal start;
     if (const auto parsed = from_json(asked.request.body, start); !parsed)
         return asked.respond(error_response(400, parsed.error()));
@@ -40,7 +40,7 @@ void Api::start_rehearsal(const Asked& asked) {
     parts_.desk.start(start, tell_begun(asked.respond, parts_.desk.going_on()));
 }
 
-void Api::control_rehearsal(const Asked& asked) {
+void Api::control_rehearsal(const ApiRequest& asked) {
     v1::RehearsalControl control;
     if (const auto parsed = from_json(asked.request.body, control); !parsed)
         return asked.respond(error_response(400, parsed.error()));

@@ -46,13 +46,13 @@ struct SampleExport : std::enable_shared_from_this<SampleExport> {
         };
         // A page takes milliseconds, and what has begun is not to break off because many ask: it waits with the pages
         // of the stream.
-        if (!queries.ask(job, gone, Haste::soon)) tell(Error{"too many questions wait"});
+        if (!queries.ask(job, gone, JobPriority::soon)) tell(Error{"too many questions wait"});
     }
 };
 
 }  // namespace
 
-void Api::export_samples(const Asked& asked) {
+void Api::export_samples(const ApiRequest& asked) {
     auto query = QueryText::parse(asked.request.query, {"names", "from", "to", "format", "align"});
     if (!query) return asked.respond(error_response(400, query.error()));
     auto channels = query->list("names");

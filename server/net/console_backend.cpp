@@ -209,7 +209,7 @@ RehearsalDesk::TimelineQuestions ConsoleBackend::timeline_questions() {
                 done(before ? timeline_check_.check(*before, requests, only_check, queries_->stop_of_question({}))
                             : Result<std::string>{before.error()});
             },
-            {}, Haste::soon);
+            {}, JobPriority::soon);
         if (!taken) done(Error{.message = QueryThreads::busy, .internal = true});
     };
     questions.look_again = [this](archive::RunId run, const auto& done) {
@@ -220,7 +220,7 @@ RehearsalDesk::TimelineQuestions ConsoleBackend::timeline_questions() {
                 done(before ? Result<Look>{timeline_check_.look_again(*before, queries_->stop_of_question({}))}
                             : Result<Look>{before.error()});
             },
-            {}, Haste::soon);
+            {}, JobPriority::soon);
         if (!taken) done(Error{.message = QueryThreads::busy, .internal = true});
     };
     return questions;
@@ -235,7 +235,7 @@ StreamHub::Services ConsoleBackend::stream_services() {
                 auto page = reader.items(run, after, limit, kinds);
                 server_->post([done, page = std::move(page)]() mutable { done(std::move(page)); });
             },
-            {}, Haste::soon);
+            {}, JobPriority::soon);
         if (!taken) server_->post([done] { done(Error{.message = QueryThreads::busy, .internal = true}); });
     };
     services.read_run = [this](std::uint64_t run, const auto& done) {
@@ -244,7 +244,7 @@ StreamHub::Services ConsoleBackend::stream_services() {
                 auto state = reader.run(archive::RunId{static_cast<std::uint32_t>(run)});
                 server_->post([done, state = std::move(state)]() mutable { done(std::move(state)); });
             },
-            {}, Haste::soon);
+            {}, JobPriority::soon);
         if (!taken) server_->post([done] { done(Error{.message = QueryThreads::busy, .internal = true}); });
     };
     services.want_items = [this](bool wanted) {

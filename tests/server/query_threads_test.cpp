@@ -74,14 +74,14 @@ TEST_CASE("what is short does not wait behind questions, however many", "[http][
     for (std::size_t i = 0; i < QueryThreads::question_threads; ++i) REQUIRE(threads.ask(question));
     while (threads.waiting() > 0)  // both are busy
         std::this_thread::yield();
-    const auto room = QueryThreads::waiting_max[static_cast<std::size_t>(server::Haste::in_turn)];
+    const auto room = QueryThreads::waiting_max[static_cast<std::size_t>(server::JobPriority::in_turn)];
     for (std::size_t i = 0; i < room; ++i) REQUIRE(threads.ask(question));
     CHECK_FALSE(threads.ask(question));
-    for (const auto haste : {server::Haste::soon, server::Haste::at_once}) {
+    for (const auto priority : {server::JobPriority::soon, server::JobPriority::at_once}) {
         std::promise<std::size_t> told;
         REQUIRE(threads.ask(
             [&](archive::Reader& reader) { told.set_value(reader.items(archive::RunId{1}, 0, 10)->items.size()); }, {},
-            haste));
+            priority));
         auto items = told.get_future();
         REQUIRE(items.wait_for(std::chrono::seconds{10}) == std::future_status::ready);
         CHECK(items.get() == 10);
@@ -99,8 +99,8 @@ TEST_CASE("questions that wait or go on when the server ends are stopped, and wh
     for (int i = 0; i < 20; ++i) REQUIRE(threads.ask(question));
     std::atomic<int> noted{0};
     for (int i = 0; i < 20; ++i)
-        REQUIRE(
-            threads.ask([&](archive::Reader& reader) { noted += reader.runs() ? 1 : 0; }, {}, server::Haste::at_once));
+        REQUIRE(threads.ask([&](archive::Reader& reader) { noted += reader.runs() ? 1 : 0; }, {},
+                            server::JobPriority::at_once));
     const auto begun = std::chrono::steady_clock::now();
     recorded.threads.reset();
     CHECK(std::chrono::steady_clock::now() - begun < std::chrono::seconds{5});

@@ -804,7 +804,7 @@ struct ArchivedStream {
                 [=, this](archive::Reader& reader) {
                     post([done, page = reader.items(run, after, limit, kinds)] { done(page); });
                 },
-                {}, Haste::soon);
+                {}, JobPriority::soon);
             if (!taken) post([done] { done(Error{QueryThreads::busy, true}); });
         };
         services.want_items = [](bool) {};
