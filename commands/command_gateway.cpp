@@ -253,15 +253,15 @@ std::string CommandGateway::failing_now(const dictionary::Command& command, Ert 
     return failing;
 }
 
+std::string CommandGateway::does_not_wait(std::uint64_t number, Ert now) const {
+    return fmt::format("command {} does not wait: it has left, was cancelled, could not leave, or there is none{}",
+                       number, stations_.over(now) ? "; " + stations_.refusal(now) : "");
+}
+
 std::string CommandGateway::perform(const Request& asked, const Underway* command, Ert now) {
     const std::string& action = asked.action;
     const auto number = asked.number;
-    const auto waits = [&](bool done) {
-        if (done) return std::string{};
-        const std::string stations = stations_.over(now) ? "; " + stations_.refusal(now) : "";
-        return fmt::format("command {} does not wait: it has left, was cancelled, could not leave, or there is none{}",
-                           number, stations);
-    };
+    const auto waits = [&](bool done) { return done ? std::string{} : does_not_wait(number, now); };
     if (action == "hold") return waits(queue_.hold(number));
     const auto* entry = waiting(number);
     if (entry != nullptr && (action == "release" || action == "approve") && stations_.over(now))
@@ -272,10 +272,6 @@ std::string CommandGateway::perform(const Request& asked, const Underway* comman
     }
     if (action == "release") return waits(queue_.release(number));
     if (action == "cancel") return waits(queue_.cancel(number));
-    if ((action == timeline_holds_action || action == timeline_refuted_action) && asked.request != undone_.size())
-        return fmt::format("command {} was analysed on a timeline that now is another", number);
-    if (action == timeline_holds_action) return waits(queue_.judged(number));
-    if (action == timeline_refuted_action) return waits(queue_.cancel(number));
     if (action != "approve") return fmt::format("unknown action '{}': release, hold, cancel or approve", action);
     if (command == nullptr || (entry == nullptr && stations_.over(now))) return waits(false);
     if (const auto refusal = not_another_person(asked, *command); !refusal.empty()) return refusal;
@@ -313,22 +309,37 @@ Reply CommandGateway::act(const Request& request, Ert now, std::vector<StageRepo
         changes_.clear();
         if (action == "cancel")
             command->lifecycle.ground_stage(Stage::released, Status::failed, "cancelled by " + by, now, changes_);
-        else if (action == timeline_refuted_action)
-            command->lifecycle.ground_stage(Stage::released, Status::failed,
-                                            "what it was analysed with has changed: " + request.analysis, now,
-                                            changes_);
-        else if (action == timeline_holds_action)
-            command->timeline = request.analysis;
         else if (action == "approve")
             command->lifecycle.approved(fmt::format("approved by {}, as the second person", request.controller), now,
                                         changes_);
-        append(*command, changes_, stages);
-        // What is due while no station sees the vehicle is told below, with the pass for which it waits.
-        if (stations_.sees(now) || !queue_.due(command->number, now)) tell_wait(*command, now, stages);
-        release_due(now, stages);
+        go_on(*command, now, stages);
         tell_leaving(*command, now, reply);
     }
     return reply;
+}
+
+void CommandGateway::go_on(Underway& underway, Ert now, std::vector<StageReport>& stages) {
+    append(underway, changes_, stages);
+    // What is due while no station sees the vehicle is told below, with the pass for which it waits.
+    if (stations_.sees(now) || !queue_.due(underway.number, now)) tell_wait(underway, now, stages);
+    release_due(now, stages);
+}
+
+Result<void> CommandGateway::judge(const TimelineVerdict& verdict, Ert now, std::vector<StageReport>& stages) {
+    const auto number = verdict.command;
+    if (verdict.undone != undone_.size())
+        return Error{fmt::format("command {} was analysed on a timeline that now is another", number)};
+    if (!(verdict.refuted ? queue_.cancel(number) : queue_.judged(number))) return Error{does_not_wait(number, now)};
+    auto* command = underway(number);
+    AEOLIS_CHECK(command != nullptr);  // what waits is under way
+    changes_.clear();
+    if (verdict.refuted)
+        command->lifecycle.ground_stage(Stage::released, Status::failed,
+                                        "what it was analysed with has changed: " + verdict.analysis, now, changes_);
+    else
+        command->timeline = verdict.analysis;
+    go_on(*command, now, stages);
+    return {};
 }
 
 CommandGateway::Underway* CommandGateway::underway(std::optional<std::uint64_t> number) {

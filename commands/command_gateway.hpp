@@ -26,13 +26,6 @@
 
 namespace aeolis::commands {
 
-/// What the server itself does about a command that waits, by what Request::analysis says of the timeline it was
-/// analysed on and that now is another: it may leave again, and its history says why; or it never does.
-/// Request::request says how many changes had come to nothing when it was analysed: when there are more by now,
-/// that was another timeline, and another analysis is on its way.
-inline constexpr const char* timeline_holds_action = "timeline holds";
-inline constexpr const char* timeline_refuted_action = "timeline refuted";
-
 /// The command path of one run: the only one. WebSocket, POST and the scenario's own script all come through here.
 ///
 /// In       requests; packets as they reach Earth; Earth's clock     Out   CLTUs to radiate, replies, stages
@@ -63,6 +56,10 @@ class CommandGateway {
     /// leaves all as it is.
     enum class Asker : std::uint8_t { person, script };
     Reply submit(const Request& request, Ert now, std::vector<StageReport>& stages, Asker asker = Asker::person);
+
+    /// Refused when the command does not wait for a verdict, or more changes have come to nothing since the analysis:
+    /// that was another timeline, and another analysis is on its way.
+    Result<void> judge(const TimelineVerdict& verdict, Ert now, std::vector<StageReport>& stages);
 
     /// Of a file: what would become of each if all before it were taken. Leaves all as it is.
     std::vector<Reply> look(std::span<const Request> file, Ert now);
@@ -148,6 +145,10 @@ class CommandGateway {
     Result<bool> needs_approval(const Request& request) const;
     /// Hold, release, cancel or approval of one that waits.
     Reply act(const Request& request, Ert now, std::vector<StageReport>& stages);
+    /// After an action or a verdict: its wait is told anew, and what may leave does.
+    void go_on(Underway& underway, Ert now, std::vector<StageReport>& stages);
+    /// Why what is asked about a waiting command cannot be: it does not wait.
+    std::string does_not_wait(std::uint64_t number, Ert now) const;
     /// Does what is asked; why not, or nothing.
     std::string perform(const Request& asked, const Underway* command, Ert now);
     /// Its line in the queue; null: it does not wait.

@@ -32,7 +32,15 @@ struct Request {
     std::uint64_t number = 0;
     std::string controller{};  ///< who asks
     std::string browser{};     ///< from where, where there are no accounts
-    std::string analysis{};    ///< of an order of the server itself: what is said of the timeline now
+};
+
+/// What the server's analysis of the timeline says of a command that waits and changes it: after an earlier change came
+/// to nothing it leaves only once its timeline is known to hold, or never.
+struct TimelineVerdict {
+    std::uint64_t command = 0;  ///< its number in the run
+    std::uint64_t undone = 0;   ///< changes that had come to nothing when it was analysed
+    bool refuted = false;       ///< its timeline breaks a bound, and it never leaves
+    std::string analysis{};     ///< in words, for its history
 };
 
 /// What became of a request.

@@ -165,7 +165,7 @@ Result<void> may_send(const Operator& who, const dictionary::Dictionary& diction
 RehearsalDesk::AuthorityCheck may_still_send(Access& access, const Credentials& credentials,
                                              const dictionary::Dictionary& dictionary, const RehearsalDesk& desk);
 
-/// Writes into the request what only the server knows of who asks.
+/// With accounts, the request is its sender's, whatever name it carries.
 void name_asker(const Operator& who, v1::CommandRequest& request);
 
 /// Whether the operator may start this: of an inline scenario each command of its script must be one that they may

@@ -67,8 +67,6 @@ Result<void> complete(const ApiRequest& asked, v1::CommandRequest& command) {
 
 void name_asker(const Operator& who, v1::CommandRequest& request) {
     if (who.accounts) request.set_controller(who.user);
-    request.set_browser(who.browser);
-    request.clear_analysis();
 }
 
 Result<void> may_send(const Operator& who, const dictionary::Dictionary& dictionary, const RehearsalDesk& desk,
@@ -106,9 +104,10 @@ void Api::post_command(const ApiRequest& asked) {
         return respond(error_response(403, allowed.error()));
     const unsigned refused = parts_.dictionary.command(command.command()) == nullptr ? 422 : 409;
     const auto still = may_still_send(parts_.access, asked.request.credentials, parts_.dictionary, parts_.desk);
-    parts_.desk.command(std::move(command), still, [respond, refused](const v1::CommandReply& reply) {
-        respond(json_response(reply, reply.accepted() ? 202 : refused));
-    });
+    parts_.desk.command(std::move(command), {still, asked.who.browser},
+                        [respond, refused](const v1::CommandReply& reply) {
+                            respond(json_response(reply, reply.accepted() ? 202 : refused));
+                        });
 }
 
 void Api::post_sequence(const ApiRequest& asked) {
@@ -132,7 +131,7 @@ void Api::post_sequence(const ApiRequest& asked) {
     }
     const auto still = may_still_send(parts_.access, asked.request.credentials, parts_.dictionary, parts_.desk);
     parts_.desk.sequence(
-        {sequence.commands().begin(), sequence.commands().end()}, sequence.dry_run(), still,
+        {sequence.commands().begin(), sequence.commands().end()}, sequence.dry_run(), {still, asked.who.browser},
         [respond](std::vector<v1::CommandReply> replies) {
             v1::SequenceReply reply;
             reply.set_accepted(true);

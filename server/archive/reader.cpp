@@ -153,11 +153,11 @@ Result<v1::InterventionList> Reader::interventions(RunId run) {
     v1::InterventionList list;
     for (const auto& request : *requests) {
         auto kept = kept_request(request.request);
-        auto* intervention = std::get_if<v1::Intervention>(&kept);
-        if (intervention == nullptr) continue;
-        intervention->set_e_s(state->start_sclk() - state->entry_sclk() +
-                              static_cast<double>(request.cycle) * seconds_per_tick);
-        *list.add_interventions() = std::move(*intervention);
+        if (!kept.has_intervention()) continue;
+        auto& intervention = *list.add_interventions();
+        intervention = std::move(*kept.mutable_intervention());
+        intervention.set_e_s(state->start_sclk() - state->entry_sclk() +
+                             static_cast<double>(request.cycle) * seconds_per_tick);
     }
     return list;
 }

@@ -86,35 +86,93 @@ void allow_open_files() {
                      wanted);
 }
 
+/// A mission of which packets are followed, in place of rehearsals.
+struct FollowedMission {
+    int exit_code = 0;  ///< not 0: it cannot be followed, and has been said why
+    std::unique_ptr<telemetry::OtherMission> model;
+    DownlinkFollower::Settings link;
+};
+
+FollowedMission followed_mission(const ServeOptions& options) {
+    const auto refused = [](int exit_code) { return FollowedMission{.exit_code = exit_code, .model = {}, .link = {}}; };
+    auto address = DownlinkAddress::parse(*options.downlink);
+    if (!address) return refused(failed("--downlink " + address.error().message, 2));
+    if (!telemetry::downlink_format(options.format.name))
+        return refused(failed(packet_source(options.format, {}).error().message, 2));
+    auto xtce = read_xtce_file(options.xtce);
+    if (!xtce) return refused(xtce.exit_code);
+    FollowedMission mission;
+    mission.model = std::make_unique<telemetry::OtherMission>(std::move(*xtce.model), xtce.id);
+    if (mission.model->left_out() > 0)
+        spdlog::warn("{}: more numbers than can be channels: the rest is in the packets only", options.xtce.string());
+    mission.link = DownlinkFollower::Settings{.address = *address,
+                                              .format = options.format,
+                                              .xtce = options.xtce.filename().string(),
+                                              .retry_first = std::chrono::milliseconds{250},
+                                              .retry_max = std::chrono::milliseconds{30'000}};
+    return mission;
+}
+
+/// SIGINT and SIGTERM as something to wait for. Made before any thread: all of them inherit that they are blocked.
+class EndingSignals {
+  public:
+    EndingSignals() {
+        sigemptyset(&signals_);
+        sigaddset(&signals_, SIGINT);
+        sigaddset(&signals_, SIGTERM);
+        pthread_sigmask(SIG_BLOCK, &signals_, nullptr);
+    }
+    int wait() const {
+        int signal = 0;
+        sigwait(&signals_, &signal);
+        return signal;
+    }
+
+  private:
+    sigset_t signals_{};
+};
+
+/// At once: whatever fails later, this is the only time that the password can be read.
+void print_first_password(const ConsoleBackend& backend, const std::filesystem::path& accounts) {
+    const auto& password = backend.first_password();
+    if (password.empty()) return;
+    fmt::print("No accounts yet: {} was made.\n  Log in as administrator with {}\n  It is shown this once, and "
+               "only lets you choose a password of your own.\n",
+               accounts.string(), password);
+    std::fflush(stdout);
+}
+
+void print_address(const ConsoleBackend& backend, const Listen& listen, const std::string& next_step,
+                   const ServeOptions& options) {
+    fmt::print("Aeolis is at {}://{}:{}/\n  {}\n  archive {}; {}; end with Ctrl-C\n",
+               backend.secure() ? "https" : "http",
+               listen.address.find(':') == std::string::npos ? listen.address : '[' + listen.address + ']',
+               backend.port(), next_step, std::filesystem::absolute(options.archive).lexically_normal().string(),
+               options.accounts.empty() ? "no accounts: whoever uses this machine may command"
+                                        : "accounts in " + options.accounts.string());
+    std::fflush(stdout);
+}
+
+void run_until_signal(ConsoleBackend& backend, const EndingSignals& ending) {
+    std::thread waiter{[&] {
+        spdlog::info("{}: ending", ending.wait() == SIGINT ? "interrupted" : "asked to end");
+        backend.stop();
+    }};
+    backend.run();
+    waiter.join();
+}
+
 int serve(const ServeOptions& options) {
     set_log(options);
     allow_open_files();
     const auto listen = listen_of(options.listen);
     if (!listen)
         return failed(fmt::format("--listen {}: expected ADDRESS:PORT, such as 127.0.0.1:8080", options.listen), 2);
-    std::optional<DownlinkFollower::Settings> downlink;
-    std::unique_ptr<telemetry::OtherMission> other;
-    Result<dictionary::Dictionary> dictionary = dictionary::Dictionary{};
-    if (options.downlink) {
-        auto address = DownlinkAddress::parse(*options.downlink);
-        if (!address) return failed("--downlink " + address.error().message, 2);
-        if (!telemetry::downlink_format(options.format.name))
-            return failed(packet_source(options.format, {}).error().message, 2);
-        auto xtce = read_xtce_file(options.xtce);
-        if (!xtce) return xtce.exit_code;
-        other = std::make_unique<telemetry::OtherMission>(std::move(*xtce.model), xtce.id);
-        if (other->left_out() > 0)
-            spdlog::warn("{}: more numbers than can be channels: the rest is in the packets only",
-                         options.xtce.string());
-        dictionary = other->dictionary();
-        downlink = DownlinkFollower::Settings{.address = *address,
-                                              .format = options.format,
-                                              .xtce = options.xtce.filename().string(),
-                                              .retry_first = std::chrono::milliseconds{250},
-                                              .retry_max = std::chrono::milliseconds{30'000}};
-    } else {
-        dictionary = dictionary_of_flight(options.shared.dictionary);
-    }
+    FollowedMission followed;
+    if (options.downlink) followed = followed_mission(options);
+    if (followed.exit_code != 0) return followed.exit_code;
+    const auto dictionary = followed.model ? Result<dictionary::Dictionary>{followed.model->dictionary()}
+                                           : dictionary_of_flight(options.shared.dictionary);
     if (!dictionary) return failed(dictionary.error().message);
     std::optional<simulation::Scenario> scenario;
     if (!options.scenario.empty()) {
@@ -123,56 +181,30 @@ int serve(const ServeOptions& options) {
         scenario = std::move(*given);
     }
 
-    // Before any thread is made: all of them inherit it, and only the one below takes the signals.
-    sigset_t ending;
-    sigemptyset(&ending);
-    sigaddset(&ending, SIGINT);
-    sigaddset(&ending, SIGTERM);
-    pthread_sigmask(SIG_BLOCK, &ending, nullptr);
-
-    auto backend = ConsoleBackend::open({.web_server = {.address = listen->address,
-                                                        .port = listen->port,
-                                                        .names = options.names,
-                                                        .certificate = options.certificate,
-                                                        .key = options.key},
-                                         .accounts = options.accounts,
-                                         .archive = options.archive,
-                                         .scenarios = options.shared.scenarios,
-                                         .web = options.web,
-                                         .other = other.get()},
-                                        *dictionary);
-    if (!backend) return failed(backend.error().message);
-    // At once: whatever fails from here on, this is the only time that it can be read.
-    if (const auto& password = (*backend)->first_password(); !password.empty()) {
-        fmt::print("No accounts yet: {} was made.\n  Log in as administrator with {}\n  It is shown this once, and "
-                   "only lets you choose a "
-                   "password of your own.\n",
-                   options.accounts.string(), password);
-        std::fflush(stdout);
-    }
-    if (downlink)
-        if (auto following = (*backend)->follow(*downlink); !following)
+    const EndingSignals ending;
+    auto opened = ConsoleBackend::open({.web_server = {.address = listen->address,
+                                                       .port = listen->port,
+                                                       .names = options.names,
+                                                       .certificate = options.certificate,
+                                                       .key = options.key},
+                                        .accounts = options.accounts,
+                                        .archive = options.archive,
+                                        .scenarios = options.shared.scenarios,
+                                        .web = options.web,
+                                        .other = followed.model.get()},
+                                       *dictionary);
+    if (!opened) return failed(opened.error().message);
+    auto& backend = **opened;
+    print_first_password(backend, options.accounts);
+    if (options.downlink)
+        if (auto following = backend.follow(followed.link); !following)
             return failed("--downlink " + following.error().message);
-    if (scenario) (*backend)->start({*scenario, options.seed, options.pace});
-
-    fmt::print("Aeolis is at {}://{}:{}/\n  {}\n  archive {}; {}; end with Ctrl-C\n",
-               (*backend)->secure() ? "https" : "http",
-               listen->address.find(':') == std::string::npos ? listen->address : '[' + listen->address + ']',
-               (*backend)->port(),
-               downlink ? "Open it in a browser: it follows " + downlink->address.text() + "." : what_to_do(scenario),
-               std::filesystem::absolute(options.archive).lexically_normal().string(),
-               options.accounts.empty() ? "no accounts: whoever uses this machine may command"
-                                        : "accounts in " + options.accounts.string());
-    std::fflush(stdout);
-
-    std::thread waiter{[&] {
-        int signal = 0;
-        sigwait(&ending, &signal);
-        spdlog::info("{}: ending", signal == SIGINT ? "interrupted" : "asked to end");
-        (*backend)->stop();
-    }};
-    (*backend)->run();
-    waiter.join();
+    if (scenario) backend.start({*scenario, options.seed, options.pace});
+    print_address(backend, *listen,
+                  options.downlink ? "Open it in a browser: it follows " + followed.link.address.text() + "."
+                                   : what_to_do(scenario),
+                  options);
+    run_until_signal(backend, ending);
     return 0;
 }
 

@@ -7,7 +7,7 @@
 
 namespace aeolis::server {
 
-commands::Request request_of(const v1::CommandRequest& message) {
+commands::Request request_of(const v1::CommandRequest& message, const std::string& browser) {
     commands::Request request;
     request.request = message.request();
     request.command = message.command();
@@ -23,9 +23,21 @@ commands::Request request_of(const v1::CommandRequest& message) {
     request.action = message.action();
     request.number = message.number();
     request.controller = message.controller();
-    request.browser = message.browser();
-    request.analysis = message.analysis();
+    request.browser = browser;
     return request;
+}
+
+commands::TimelineVerdict verdict_of(const v1::TimelineVerdict& message) {
+    return {message.command(), message.undone(), message.refuted(), message.analysis()};
+}
+
+v1::TimelineVerdict message_of(const commands::TimelineVerdict& verdict) {
+    v1::TimelineVerdict message;
+    message.set_command(verdict.command);
+    message.set_undone(verdict.undone);
+    message.set_refuted(verdict.refuted);
+    message.set_analysis(verdict.analysis);
+    return message;
 }
 
 v1::CommandReply message_of(const commands::Reply& reply) {

@@ -1,15 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "aeolis/v1/kept.pb.h"
 #include "aeolis/v1/run.pb.h"
 #include "commands/request.hpp"
 #include "server/archive/records.hpp"
 
+#include <string>
+
 // What the command path takes and gives, as messages of the stream and rows of the archive.
 namespace aeolis::server {
 
-commands::Request request_of(const v1::CommandRequest& message);
+/// `browser`: without accounts, the one that sends it, for the second person.
+commands::Request request_of(const v1::CommandRequest& message, const std::string& browser = {});
 v1::CommandReply message_of(const commands::Reply& reply);
+commands::TimelineVerdict verdict_of(const v1::TimelineVerdict& message);
+v1::TimelineVerdict message_of(const commands::TimelineVerdict& verdict);
 /// `seq` is not given yet.
 archive::StageRecord record_of(commands::StageReport stage);
 

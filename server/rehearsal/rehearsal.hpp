@@ -38,9 +38,11 @@ class Rehearsal {
     /// One cycle of 1/64 s, after the script's commands that are due. What was received stands until the next step.
     const telemetry::Received& step();
 
-    v1::CommandReply submit(const v1::CommandRequest& request);
+    v1::CommandReply submit(const v1::CommandRequest& request, const std::string& browser = {});
     /// See commands::CommandGateway::look.
     std::vector<v1::CommandReply> look(std::span<const v1::CommandRequest> file);
+    /// See commands::CommandGateway::judge.
+    Result<void> judge(const commands::TimelineVerdict& verdict) { return flight_.judge(verdict); }
 
     /// It begins with the next cycle. An Error names what of it cannot be.
     Result<void> inject(const v1::FaultInjection& injection);

@@ -188,17 +188,17 @@ Result<void> RehearsalDesk::order_of_run(const v1::RehearsalControl& control) {
     }
 }
 
-void RehearsalDesk::command(v1::CommandRequest request, const AuthorityCheck& authority, const Reply& reply) {
+void RehearsalDesk::command(v1::CommandRequest request, const Sender& sender, const Reply& reply) {
     const bool only_check = request.dry_run();
     std::vector<v1::CommandRequest> one;
     one.push_back(std::move(request));
-    sequence(std::move(one), only_check, authority,
+    sequence(std::move(one), only_check, sender,
              [reply](std::vector<v1::CommandReply> replies) { reply(std::move(replies.front())); });
 }
 
-void RehearsalDesk::sequence(std::vector<v1::CommandRequest> requests, bool only_check, const AuthorityCheck& authority,
+void RehearsalDesk::sequence(std::vector<v1::CommandRequest> requests, bool only_check, const Sender& sender,
                              Replies replies) {
-    receive({std::move(requests), only_check, std::move(replies)}, authority);
+    receive({std::move(requests), only_check, std::move(replies), sender.browser}, sender.authority);
 }
 
 void RehearsalDesk::receive(SendCommands order, const AuthorityCheck& authority) {
@@ -211,10 +211,6 @@ std::string RehearsalDesk::refusal_of(const SendCommands& order) const {
     if (phase() != Phase::under_way) return nobody_listens;
     if (!order.only_check && pipeline_.blocked())
         return "the run waits until its archive can be written again: " + pipeline_.fault();
-    for (const auto& request : order.requests)
-        if (request.action() == commands::timeline_holds_action ||
-            request.action() == commands::timeline_refuted_action)
-            return fmt::format("unknown action '{}': that is for the server itself", request.action());
     for (const auto& request : order.requests)
         if (request.run() != 0 && request.run() != state_.run()) return not_going_on(request.run());
     return {};
@@ -304,17 +300,9 @@ void RehearsalDesk::looked(std::uint64_t run, const Result<TimelineCheck::Look>&
 }
 
 void RehearsalDesk::tell(const TimelineCheck::Look& look) {
-    for (const auto& each : look.known) {
-        v1::CommandRequest told;
-        told.set_action(each.refuted ? commands::timeline_refuted_action : commands::timeline_holds_action);
-        told.set_number(each.number);
-        told.set_request(look.undone);
-        told.set_analysis(each.words);
-        SendCommands order;
-        order.requests.push_back(std::move(told));
-        order.replies = [](const auto&) {};  // refused where nobody doubts it: there is nothing to tell then
-        static_cast<void>(runner_->order(std::move(order)));
-    }
+    for (const auto& each : look.known)
+        static_cast<void>(
+            runner_->order(commands::TimelineVerdict{each.number, look.undone, each.refuted, each.words}));
 }
 
 }  // namespace aeolis::server

@@ -55,6 +55,10 @@ class RehearsalDesk {
     /// Whether the sender may still send a command that has waited, when its turn comes: rights change meanwhile, and
     /// so do the commands that have its number.
     using AuthorityCheck = std::function<Result<void>(const v1::CommandRequest&)>;
+    struct Sender {
+        AuthorityCheck authority;
+        std::string browser{};  ///< without accounts: the one that sends, for the second person
+    };
 
     RehearsalDesk(const ScenarioLibrary& scenarios, const dictionary::Dictionary& dictionary, PipelineThread& pipeline,
                   Post post, ReadCutOff read_cut_off, TimelineQuestions timeline, Callbacks callbacks);
@@ -70,10 +74,9 @@ class RehearsalDesk {
     };
     void start(Flight flight, Began began);
     Result<void> control(const v1::RehearsalControl& control, Began began);
-    void command(v1::CommandRequest request, const AuthorityCheck& authority, const Reply& reply);
+    void command(v1::CommandRequest request, const Sender& sender, const Reply& reply);
     /// A command file: all or none.
-    void sequence(std::vector<v1::CommandRequest> requests, bool only_check, const AuthorityCheck& authority,
-                  Replies replies);
+    void sequence(std::vector<v1::CommandRequest> requests, bool only_check, const Sender& sender, Replies replies);
 
     /// From now on none can be started, because of `reason`.
     void close(std::string reason) { closed_ = std::move(reason); }

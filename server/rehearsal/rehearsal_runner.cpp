@@ -31,6 +31,12 @@ constexpr std::uint64_t cycles_between_looks =
 constexpr const char* not_stored_yet = "taken, but not in the archive yet, which is lost if the server ends now: ";
 constexpr const char* over_reason = "the run is over: nothing listens on board";
 
+/// Of orders that set one thing, the last of a kind counts.
+bool last_counts(const RunOrder& order) {
+    return std::holds_alternative<PauseRun>(order) || std::holds_alternative<PaceRun>(order) ||
+           std::holds_alternative<StopRun>(order);
+}
+
 }  // namespace
 
 void SendCommands::refuse(const std::string& reason) const {
@@ -73,7 +79,7 @@ Result<void> RehearsalRunner::order(RunOrder order) {
         if (auto refused = refusal_of(order); !refused.empty()) return refused;
         if (const auto* intervene = std::get_if<Intervene>(&order))
             ++(intervene->intervention.has_fault() ? faults_taken_ : notes_taken_);
-        else if (!std::holds_alternative<SendCommands>(order))  // the last of a kind counts
+        else if (last_counts(order))
             std::erase_if(orders_, [&](const RunOrder& before) { return before.index() == order.index(); });
         stop_ = stop_ || std::holds_alternative<StopRun>(order);
         orders_.push_back(std::move(order));
@@ -285,7 +291,9 @@ void RehearsalRunner::carry_out(Rehearsal& rehearsal, const Intervene& order) {
         }
         spdlog::info("run {}: fault injected: {}", run_id_.value, intervention.fault().ShortDebugString());
     }
-    delivery_.entries.emplace_back(archive::RequestRecord{rehearsal.cycles(), archive::kept_text(intervention)});
+    v1::KeptRequest kept;
+    *kept.mutable_intervention() = intervention;
+    keep(rehearsal, kept);
 }
 
 void RehearsalRunner::carry_out(Rehearsal& rehearsal, const SendCommands& order) {
@@ -293,7 +301,7 @@ void RehearsalRunner::carry_out(Rehearsal& rehearsal, const SendCommands& order)
     if (!replies.empty()) return order.replies(std::move(replies));
     bool any = false;
     for (const auto& request : order.requests) {
-        auto answer = rehearsal.submit(request);
+        auto answer = rehearsal.submit(request, order.browser);
         const auto what =
             request.action().empty() ? request.command() : fmt::format("{} of {}", request.action(), request.number());
         spdlog::info("run {}: command {} {}", run_id_.value, what,
@@ -301,7 +309,10 @@ void RehearsalRunner::carry_out(Rehearsal& rehearsal, const SendCommands& order)
                                        : "refused: " + answer.reason());
         if (answer.accepted()) {
             any = true;
-            delivery_.entries.emplace_back(archive::RequestRecord{rehearsal.cycles(), archive::kept_text(request)});
+            v1::KeptRequest kept;
+            *kept.mutable_command() = request;
+            kept.set_browser(order.browser);
+            keep(rehearsal, kept);
             take_stages(rehearsal);
         }
         replies.push_back(std::move(answer));
@@ -314,11 +325,32 @@ void RehearsalRunner::carry_out(Rehearsal& rehearsal, const SendCommands& order)
     });
 }
 
+void RehearsalRunner::carry_out(Rehearsal& rehearsal, const commands::TimelineVerdict& verdict) {
+    // Refused when the command does not wait for it any more, or another analysis is on its way: nobody asked, so
+    // nobody is told.
+    if (!rehearsal.judge(verdict)) return;
+    spdlog::info("run {}: the timeline with command {} {}: {}", run_id_.value, verdict.command,
+                 verdict.refuted ? "is refuted" : "holds", verdict.analysis);
+    v1::KeptRequest kept;
+    *kept.mutable_verdict() = message_of(verdict);
+    keep(rehearsal, kept);
+    take_stages(rehearsal);
+}
+
+void RehearsalRunner::keep(const Rehearsal& rehearsal, const v1::KeptRequest& request) {
+    delivery_.entries.emplace_back(archive::RequestRecord{rehearsal.cycles(), archive::kept_text(request)});
+}
+
 bool RehearsalRunner::repeat(Rehearsal& rehearsal, const std::string& request) {
     const auto kept = archive::kept_request(request);
-    if (const auto* command = std::get_if<v1::CommandRequest>(&kept)) return rehearsal.submit(*command).accepted();
-    const auto* intervention = std::get_if<v1::Intervention>(&kept);
-    return intervention != nullptr && (!intervention->has_fault() || rehearsal.inject(intervention->fault()).ok());
+    switch (kept.kept_case()) {
+    case v1::KeptRequest::kCommand: return rehearsal.submit(kept.command(), kept.browser()).accepted();
+    case v1::KeptRequest::kVerdict: return rehearsal.judge(verdict_of(kept.verdict())).ok();
+    case v1::KeptRequest::kIntervention:
+        return !kept.intervention().has_fault() || rehearsal.inject(kept.intervention().fault()).ok();
+    case v1::KeptRequest::KEPT_NOT_SET: break;
+    }
+    return false;
 }
 
 void RehearsalRunner::collect(Rehearsal& rehearsal, const telemetry::Received& received) {

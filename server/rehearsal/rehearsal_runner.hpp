@@ -101,6 +101,9 @@ class RehearsalRunner {
     void carry_out(Rehearsal& rehearsal, const StopRun& order);
     void carry_out(Rehearsal& rehearsal, const Intervene& order);
     void carry_out(Rehearsal& rehearsal, const SendCommands& order);
+    void carry_out(Rehearsal& rehearsal, const commands::TimelineVerdict& verdict);
+    /// Into the archive, with the cycle before which it was carried out.
+    void keep(const Rehearsal& rehearsal, const v1::KeptRequest& request);
     /// Why the order is not taken; empty: it is. Under mutex_.
     std::string refusal_of(const RunOrder& order) const;
     std::size_t commands_waiting() const;  ///< under mutex_

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "aeolis/v1/run.pb.h"
+#include "commands/request.hpp"
 
 #include <functional>
 #include <string>
@@ -34,11 +35,12 @@ struct SendCommands {
     std::vector<v1::CommandRequest> requests;
     bool only_check = false;  ///< a dry run
     Replies replies;
+    std::string browser{};  ///< without accounts: from which they are sent
 
     /// Gives each the same refusal.
     void refuse(const std::string& reason) const;
 };
 
-using RunOrder = std::variant<PauseRun, PaceRun, StopRun, Intervene, SendCommands>;
+using RunOrder = std::variant<PauseRun, PaceRun, StopRun, Intervene, SendCommands, commands::TimelineVerdict>;
 
 }  // namespace aeolis::server

@@ -154,6 +154,12 @@ commands::Reply ScriptedLanding::submit(const commands::Request& request) {
     return reply;
 }
 
+Result<void> ScriptedLanding::judge(const commands::TimelineVerdict& verdict) {
+    auto judged = gateway_.judge(verdict, landing_.ert_now(), stages_);
+    radiate();
+    return judged;
+}
+
 void ScriptedLanding::radiate() {
     for (const auto& cltu : gateway_.take_uplinks()) landing_.uplink(cltu);
 }

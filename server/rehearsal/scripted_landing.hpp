@@ -49,6 +49,9 @@ class ScriptedLanding {
         return gateway_.look(file, landing_.ert_now());
     }
 
+    /// See CommandGateway::judge.
+    Result<void> judge(const commands::TimelineVerdict& verdict);
+
     void inject(const simulation::Fault& fault) { landing_.inject(fault); }
 
     bool script_sent() const { return script_.empty(); }

@@ -521,35 +521,35 @@ TEST_CASE("a change of the timeline leaves after those that it was analysed with
     REQUIRE(station.send(held).command == 2);
     REQUIRE(station.send(held).command == 3);
     std::uint64_t undone = 0;  // when it was analysed
-    const auto act = [&](const char* action, std::uint64_t number, const std::string& words = {}) {
+    const auto act = [&](const char* action, std::uint64_t number) {
         Request said;
         said.action = action;
         said.number = number;
-        said.analysis = words;
-        said.request = undone;
         return station.send(said).accepted;
+    };
+    const auto judge = [&](std::uint64_t number, bool refuted, const std::string& words) {
+        return station.gateway.judge({number, undone, refuted, words}, now, station.stages).ok();
     };
     CHECK(act("release", 2));  // it stays behind the first, which is held
     CHECK(station.gateway.take_uplinks().empty());
     CHECK_THAT(station.latest("released")->evidence,
                Catch::Contains("after command 1, with which its timeline was analysed"));
-    CHECK_FALSE(act(timeline_holds_action, 2, "all bounds hold"));  // nobody doubts it
+    CHECK_FALSE(judge(2, false, "all bounds hold"));  // nobody doubts it
     CHECK(act("cancel", 1));
     CHECK(station.gateway.take_uplinks().empty());
     CHECK_THAT(station.latest("released")->evidence,
                Catch::Contains("does not leave before its timeline is looked at again"));
-    CHECK_FALSE(act(timeline_holds_action, 2,
-                    "all bounds hold"));  // with the first: that analysis began before it was cancelled
+    CHECK_FALSE(judge(2, false, "all bounds hold"));  // with the first: that analysis began before it was cancelled
     undone = 1;
-    CHECK(act(timeline_holds_action, 2, "all bounds hold"));
+    CHECK(judge(2, false, "all bounds hold"));
     CHECK(station.gateway.take_uplinks().size() == 1);
     CHECK(act("release", 3));
     CHECK(station.gateway.take_uplinks().empty());  // of it nothing has been said yet
-    CHECK(act(timeline_refuted_action, 3, "it breaks one"));
+    CHECK(judge(3, true, "it breaks one"));
     CHECK(station.latest("released")->status == Status::failed);
     CHECK_THAT(station.latest("released")->evidence, Catch::Contains("has changed: it breaks one"));
     undone = 2;
-    CHECK_FALSE(act(timeline_holds_action, 3, "all bounds hold"));  // it waits no more
+    CHECK_FALSE(judge(3, false, "all bounds hold"));  // it waits no more
     CHECK(station.gateway.take_uplinks().empty());
 }
 
@@ -797,12 +797,7 @@ TEST_CASE("when a change of the timeline is refused on board, what was analysed 
     CHECK_THAT(told(3, "released"), Catch::Contains("does not leave before its timeline is looked at again"));
     CHECK_THAT(told(4, "released"), Catch::StartsWith("ok"));
     CHECK(station.gateway.take_uplinks().size() == 1);  // the fourth: nobody doubts it
-    Request holds;
-    holds.action = timeline_holds_action;
-    holds.number = 3;
-    holds.request = 1;
-    holds.analysis = "all bounds hold";
-    CHECK(station.send(holds).accepted);
+    CHECK(station.gateway.judge({3, 1, false, "all bounds hold"}, now, station.stages));
     CHECK(station.gateway.take_uplinks().size() == 1);
 }
 

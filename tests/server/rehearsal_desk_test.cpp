@@ -92,10 +92,10 @@ TEST_CASE(
         return has_rights ? Result<void>{} : Result<void>{Error{"not any more"}};
     };
     const auto always = [](const v1::CommandRequest&) { return Result<void>{}; };
-    desk.command(request_of("EDL_SET_TIMEPOINT_OFFSET"), always, answer("change"));
+    desk.command(request_of("EDL_SET_TIMEPOINT_OFFSET"), {always}, answer("change"));
     REQUIRE(analysed);
-    desk.command(request_of("NO_OP"), may, answer("loses rights"));
-    desk.command(request_of("NO_OP"), always, answer("keeps them"));
+    desk.command(request_of("NO_OP"), {may}, answer("loses rights"));
+    desk.command(request_of("NO_OP"), {always}, answer("keeps them"));
     CHECK(desk.commands_put_off() == 2);
     CHECK(answers.empty());
     has_rights = false;

@@ -165,11 +165,12 @@ std::vector<std::string> items_flown(const archive::CutOffRun& cut, archive::Seq
             Delivery delivery;
             for (; request != cut.requests.end() && request->cycle == rehearsal.cycles(); ++request) {
                 const auto again = archive::kept_request(request->request);
-                if (const auto* done = std::get_if<v1::Intervention>(&again)) {
-                    if (done->has_fault()) REQUIRE(rehearsal.inject(done->fault()).ok());
+                if (again.has_intervention()) {
+                    const auto& done = again.intervention();
+                    if (done.has_fault()) REQUIRE(rehearsal.inject(done.fault()).ok());
                     continue;
                 }
-                REQUIRE(rehearsal.submit(std::get<v1::CommandRequest>(again)).accepted());
+                REQUIRE(rehearsal.submit(again.command()).accepted());
                 for (auto& stage : rehearsal.take_stages()) delivery.entries.emplace_back(std::move(stage));
             }
             delivery.add(rehearsal.step());
@@ -290,12 +291,13 @@ TEST_CASE("a run that kill -9 ended goes on in the same run as if nothing had be
         kill_and_continue(published, 3'000);
 }
 
-TEST_CASE("what is kept of requests is a command, an intervention or neither", "[rehearsal][archive]") {
-    const auto kept = archive::kept_request(
-        "fault { device_fault { device: DEVICE_IMU unit: REDUNDANT_UNIT_A kind: DEVICE_FAULT_KIND_DROPOUT } }");
-    CHECK(std::holds_alternative<v1::Intervention>(kept));
-    CHECK(std::holds_alternative<v1::CommandRequest>(archive::kept_request("command: \"NO_OP\"")));
-    CHECK(std::holds_alternative<std::monostate>(archive::kept_request("neither of them")));
+TEST_CASE("a kept request comes back from its text, and another text is none", "[rehearsal][archive]") {
+    v1::KeptRequest kept;
+    kept.mutable_verdict()->set_command(3);
+    kept.mutable_verdict()->set_analysis("all bounds hold, \"detumble\" too");
+    CHECK(archive::kept_request(archive::kept_text(kept)).SerializeAsString() == kept.SerializeAsString());
+    CHECK(archive::kept_request("command { command: \"NO_OP\" } browser: \"b1\"").browser() == "b1");
+    CHECK(archive::kept_request("command: \"NO_OP\"").kept_case() == v1::KeptRequest::KEPT_NOT_SET);
 }
 
 TEST_CASE("fifty runs that kill -9 ended at random go on as if nothing had been", "[.long][rehearsal][archive]") {
