@@ -13,13 +13,13 @@
 namespace aeolis::server {
 namespace {
 
-constexpr unsigned token_days_max = 3'650;  // ours
+constexpr unsigned token_days_max = 3'650;  // chosen
 
 std::string iso_text(Access::Clock::time_point time) {
     return fmt::format("{:%Y-%m-%dT%H:%M:%S}Z", fmt::gmtime(std::chrono::floor<std::chrono::seconds>(time)));
 }
 
-/// The value of the cookie `name` in a Cookie field; empty: it is not there.
+/// The value of the cookie `name` in a Cookie header field; empty when absent.
 std::string cookie_value(std::string_view field, std::string_view name) {
     while (!field.empty()) {
         const auto end = field.find(';');
@@ -194,7 +194,7 @@ void Access::count_failure(const std::string& key, unsigned allowed) {
     if (failures_.size() >= failures_max && !failures_.contains(key))
         failures_.erase(std::ranges::min_element(failures_, {}, [](const auto& each) { return each.second.last; }));
     auto& failures = failures_[key];
-    if (now - failures.last > longest_lock_out) failures.count = 0;  // long ago
+    if (now - failures.last > longest_lock_out) failures.count = 0;  // the last failure is long ago
     failures.last = now;
     if (++failures.count < allowed) return;
     const auto doublings = std::min(failures.count - allowed, 5U);
@@ -230,7 +230,8 @@ Result<Access::LoggedIn> Access::log_in(const v1::LogIn& asked, const std::strin
     const auto now = settings_.now();
     const std::scoped_lock lock{mutex_};
     const auto* account = find_account(file_, asked.user());
-    if (account == nullptr || account->password_hash() != *matched) return Error{wrong_log_in};  // changed meanwhile
+    // // The account may have changed during the check.
+    if (account == nullptr || account->password_hash() != *matched) return Error{wrong_log_in};
     std::erase_if(sessions_, [&](const auto& each) { return each.second.expires < now; });
     const auto own = [&](const auto& each) { return each.second.user == asked.user(); };
     const auto older = [](const auto& one, const auto& other) { return one.second.expires < other.second.expires; };

@@ -15,61 +15,60 @@
 
 namespace aeolis::server {
 
-/// What a request says of who asks.
+/// The credentials that a request carries.
 struct Credentials {
-    std::string cookie, authorization;  ///< the header fields as they came
+    std::string cookie, authorization;  ///< header fields, as received
     std::string from;                   ///< address of the peer
 };
 
-/// Who may use the server: users and tokens of the file of accounts, and who has logged in.
+/// Users, tokens and log-in sessions: decides who may use the server.
 ///
-/// In       credentials, log-ins, changes by an administrator; the file again when another program changed it
+/// In       credentials, log-ins, changes by an administrator; the accounts file again when another program changed it
 /// Out      identities
-/// Threads  any. What takes a password is slow by intention (argon2id): not on the network thread
-/// Memory   sessions_max sessions, failures_max networks that guessed; sessions end with the process
+/// Threads  any. Password calls are slow by design (argon2id): never call them on the network thread
+/// Memory   sessions_max sessions; failed log-ins of failures_max keys. Sessions end with the process
 class Access {
   public:
     using Clock = std::chrono::system_clock;
-    static constexpr std::chrono::hours session_length{12};  ///< ours: a shift, with its hand-overs
-    static constexpr std::size_t sessions_max = 1'000;       ///< ours: the oldest ends
-    static constexpr std::size_t sessions_of_user_max = 16;  ///< ours: the oldest of that user ends
+    static constexpr std::chrono::hours session_length{12};  ///< chosen: a shift with its hand-overs
+    static constexpr std::size_t sessions_max = 1'000;       ///< chosen; the oldest session ends
+    static constexpr std::size_t sessions_of_user_max = 16;  ///< chosen; the user's oldest session ends
     static constexpr const char* wrong_log_in = "user or password is wrong";
-    static constexpr std::size_t failures_max = 4'096;  ///< ours: the oldest is forgotten
-    static constexpr unsigned tries_of_user =
-        5;  ///< ours: then this user waits, from this address; of version 6, from its /64
-    static constexpr unsigned tries_of_address = 20;           ///< ours: then this address waits, whatever the user
-    static constexpr std::chrono::seconds first_lock_out{30};  ///< ours: doubled by each further failure
+    static constexpr std::size_t failures_max = 4'096;  ///< chosen; the oldest is forgotten
+    static constexpr unsigned tries_of_user = 5;        ///< chosen: per user and network; then that pair is locked out
+    static constexpr unsigned tries_of_address = 20;  ///< chosen: per network, whatever the user; then it is locked out
+    static constexpr std::chrono::seconds first_lock_out{30};  ///< chosen; each further failure doubles it
     static constexpr std::chrono::seconds longest_lock_out{900};
 
     struct Settings {
-        std::filesystem::path file;  ///< empty: no accounts, everybody may do all but administer
+        std::filesystem::path file;  ///< empty: no accounts; everybody may do all but administer
         std::function<Clock::time_point()> now = Clock::now;
     };
-    /// Makes the file when there is none, with an administrator whose first_password() is to be printed. Fails with a
-    /// line that names the file.
+    /// Reads the accounts file. A missing file is created with one administrator, whose password is first_password().
+    /// Fails with a line that names the file.
     static Result<std::unique_ptr<Access>> open(Settings settings);
 
     bool accounts() const { return !settings_.file.empty(); }
-    /// Of user "administrator", when open() made the file; else empty.
+    /// The password of user "administrator" when open() created the file; else empty.
     const std::string& first_password() const { return first_password_; }
 
-    /// What `aeolis accounts reset` has done that no audit has yet; each is given once.
+    /// Password resets by `aeolis accounts reset` that are not yet in an audit. Returns each once.
     std::vector<v1::PasswordReset> take_resets();
 
     Operator identify(const Credentials& credentials);
 
     struct LoggedIn {
         Operator who;
-        std::string secret;  ///< of the cookie
+        std::string secret;  ///< goes into the cookie
     };
-    /// Slow. Refused: wrong, or locked out, and then for how long.
+    /// Logs a user in. Slow. Fails when user or password is wrong, and while locked out (the error says for how long).
     Result<LoggedIn> log_in(const v1::LogIn& asked, const std::string& from);
     void log_out(const Operator& who);
 
     v1::UserList users();
-    /// Slow, as is change_user().
+    /// Adds a user. Slow, as is change_user().
     Result<v1::User> add_user(const v1::NewUser& user);
-    /// One's own password, or as an administrator anything of another's; ends that user's other sessions.
+    /// Changes one's own password or, as an administrator, any field of another user. Ends that user's other sessions.
     Result<v1::User> change_user(const Operator& who, const std::string& user, const v1::UserChange& change);
     Result<void> remove_user(const std::string& user);
     v1::TokenList tokens();
@@ -86,31 +85,31 @@ class Access {
         unsigned count = 0;
         Clock::time_point last, locked_until;
     };
-    /// Makes the change, writes the file, and counts from then on; the disk holds up nobody who only identifies.
-    /// Without mutex_.
+    /// Applies the change and writes the file; the change counts from then on. Identification does not wait for the
+    /// disk. Call without mutex_.
     Result<void> change_file(const std::function<Result<void>(v1::AccountFile&)>& change);
-    void end_sessions(const std::string& user, const std::string& but);  ///< without mutex_, too
-    // With mutex_ held:
+    void end_sessions(const std::string& user, const std::string& but);  ///< call without mutex_
+    // Call with mutex_ held:
     void refresh();
     Result<void> refuse_locked_out(const std::string& user, const std::string& from);
     void count_failure(const std::string& key, unsigned allowed);
     Operator operator_of(const v1::Account& account, const std::string& session, const LiveSession& live) const;
-    /// Without it: takes the mutex, and compares while it is free.
-    /// @return the hash that it matched
+    /// Checks the password and its lock-out. Call without mutex_: the comparison runs while the mutex is free.
+    /// @return  the hash that matched
     Result<std::string> check_log_in(const std::string& user, const std::string& password, const std::string& address);
 
     Settings settings_;
     std::string first_password_;
-    std::mutex changing_;  ///< taken before mutex_
+    std::mutex changing_;  ///< lock before mutex_
     std::mutex mutex_;
     v1::AccountFile file_;
     std::filesystem::file_time_type file_time_;
-    std::map<std::string, LiveSession> sessions_;  ///< by the hash of their secret
-    std::map<std::string, Failures> failures_;     ///< by network_of() the address, and by that and user
+    std::map<std::string, LiveSession> sessions_;  ///< by hash of the secret
+    std::map<std::string, Failures> failures_;     ///< by network_of(address), and by that and user
 };
 
-/// The cookies' names: of a log-in; and, without accounts, of a browser, by which a second person is told from the
-/// first.
+/// Names of the cookies: of a log-in session and, without accounts, of a browser. Without accounts the browser's cookie
+/// tells a second person from the first.
 inline constexpr std::string_view session_cookie = "aeolis_session", browser_cookie = "aeolis_browser";
 
 }  // namespace aeolis::server

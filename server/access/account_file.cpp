@@ -76,7 +76,7 @@ std::string reset_account(v1::AccountFile& accounts, const std::string& user) {
 
 AccountsLock::AccountsLock(const std::filesystem::path& file)
     : folder_(::open(folder_of(file).c_str(), O_RDONLY | O_CLOEXEC)) {
-    if (folder_ >= 0) ::flock(folder_, LOCK_EX);  // where there are no locks it is as without
+    if (folder_ >= 0) ::flock(folder_, LOCK_EX);  // a file system without locks: no exclusion
 }
 
 AccountsLock::~AccountsLock() {
@@ -102,7 +102,7 @@ Result<void> write_accounts(const std::filesystem::path& file, const v1::Account
     ::unlink(partial.c_str());
     const int out = ::open(partial.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
     if (out < 0) return failed();
-    // Whose it was it remains: a server under a user of its own must be able to read what root has changed.
+    // Keeps the owner: a server running as its own user must be able to read what root changed.
     struct stat owner{};
     const auto folder = folder_of(file);
     const bool owned = (::stat(file.c_str(), &owner) == 0 || ::stat(folder.c_str(), &owner) == 0) &&

@@ -8,14 +8,15 @@
 
 namespace aeolis::server {
 
-/// The file of accounts: proto3 JSON of AccountFile. Apart from the archive, which is copied and handed on.
+/// Reads the accounts file: proto3 JSON of AccountFile. It is kept apart from the archive, which is copied and handed
+/// on.
 ///
-/// Fails with the file's name and what is wrong: JSON, a role that there is none of, a name given twice.
+/// Fails with the file's name and the fault: JSON, an unknown role, a duplicate name.
 Result<v1::AccountFile> read_accounts(const std::filesystem::path& file);
-/// In one piece or not at all, durable, and readable for its owner only.
+/// Writes the whole file or nothing; durable, and readable by its owner only.
 Result<void> write_accounts(const std::filesystem::path& file, const v1::AccountFile& accounts);
 
-/// Held from reading the file until it is written: another process that wants to change it waits.
+/// A lock on the accounts file across processes, held from reading it until it is written. Others wait.
 class AccountsLock {
   public:
     explicit AccountsLock(const std::filesystem::path& file);
@@ -24,17 +25,17 @@ class AccountsLock {
     AccountsLock& operator=(const AccountsLock&) = delete;
 
   private:
-    int folder_;  ///< locked itself, for the file is another one after each change
+    int folder_;  ///< the folder is locked: each change replaces the file
 };
 
-/// A user's or token's name: 1 to 32 of a-z, 0-9, '-', '_', '.', beginning with a letter.
+/// Checks the name of a user or token: 1 to 32 of a-z, 0-9, '-', '_', '.', beginning with a letter.
 Result<void> check_name(const std::string& name);
 
-/// Null when there is none.
+/// Finds an account. Null when there is none.
 v1::Account* find_account(v1::AccountFile& accounts, const std::string& user);
 
-/// Gives the user a new password, which only lets its owner choose one; makes an administrator of that name when the
-/// user is not there. @return the password
+/// Gives the user a new one-time password, which only permits choosing another. Creates an administrator of that name
+/// when the user does not exist. @return the password
 std::string reset_account(v1::AccountFile& accounts, const std::string& user);
 
 }  // namespace aeolis::server

@@ -5,8 +5,9 @@
 
 namespace aeolis::server {
 
-/// What one subscriber is given, of an address: of version 4 itself, of version 6 its /64, in which everybody has as
-/// many addresses as they like. Of what is no address, itself. By this connections and guesses are counted.
+/// The network by which connections and password guesses are counted: an IPv4 address itself, the /64 of an IPv6
+/// address. A subscriber is given a whole /64 and can use any address in it. Text that is not an address is returned
+/// unchanged.
 std::string network_of(const std::string& address);
 
 }  // namespace aeolis::server

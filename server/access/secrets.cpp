@@ -59,7 +59,8 @@ std::string secret_hash(const std::string& secret) {
 
 std::string new_password() {
     make_ready();
-    constexpr std::string_view letters = "abcdefghjkmnpqrstuvwxyz023456789";  // 32, none that is mistaken for another
+    // // 32 characters that are not mistaken for one another.
+    constexpr std::string_view letters = "abcdefghjkmnpqrstuvwxyz023456789";
     std::string password;
     for (int i = 0; i < 20; ++i) {
         if (i > 0 && i % 5 == 0) password += '-';

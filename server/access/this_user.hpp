@@ -5,10 +5,10 @@
 
 namespace aeolis::server {
 
-/// In an audit, the place of who starts a program instead of asking a server.
+/// The audit's address (`from`) of a program that was started on the command line and sent no request.
 inline constexpr const char* command_line = "command line";
 
-/// The system's name of the user that this program runs as; its number when it has none.
+/// The system user name that this program runs as; the user id when it has no name.
 std::string this_user();
 
 }  // namespace aeolis::server

@@ -8,11 +8,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-// The routes of log-in, users, tokens and audit. Passwords are hashed on the query threads, and stand in no audit.
+// The routes of log-in, users, tokens and audit. Passwords are hashed on the query threads and are in no audit entry.
 namespace aeolis::server {
 namespace {
 
-constexpr std::uint64_t audit_page_max = 1'000;  // ours: some 300 kB
+constexpr std::uint64_t audit_page_max = 1'000;  // chosen: about 300 kB
 
 v1::Session session_of(const Operator& who) {
     v1::Session session;
@@ -26,7 +26,7 @@ v1::Session session_of(const Operator& who) {
     return session;
 }
 
-constexpr std::chrono::hours browser_length{24 * 365};  // ours: longer than a rehearsal is prepared
+constexpr std::chrono::hours browser_length{24 * 365};  // chosen: longer than the preparation of a rehearsal
 
 std::string cookie(std::string_view name, const std::string& value, std::chrono::seconds length, bool secure) {
     return fmt::format("{}={}; Path=/; Max-Age={}; HttpOnly; SameSite=Strict{}", name, value, length.count(),
@@ -57,8 +57,8 @@ std::string outcome_of(bool done, const std::string& why) {
 
 void Api::session(const ApiRequest& asked) {
     auto response = json_response(session_of(asked.who));
-    // Here, where only the console's own page asks: with a page it would be given anew to who follows a link from
-    // elsewhere, for such a visit brings no cookie that is SameSite=Strict.
+    // Set here, since only the console's page requests this. Set with the page, it would be replaced for every visitor
+    // who follows a link from elsewhere: such a request carries no SameSite=Strict cookie.
     if (asked.who.browser == no_browser)
         response.set_cookie = cookie(browser_cookie, new_secret(), browser_length, parts_.secure);
     asked.respond(std::move(response));
@@ -72,7 +72,8 @@ void Api::log_in(const ApiRequest& asked) {
         asked.respond,
         [this, wanted, who = asked.who](archive::Reader&) {
             const auto done = parts_.access.log_in(wanted, who.from);
-            // Who waits, or asks for what can be no name, is not noted: nobody else may fill the audit.
+            // Lock-outs and impossible user names are not audited: somebody not logged in must not be able to fill the
+            // audit.
             if (done || (who.accounts && done.error().message == Access::wrong_log_in && check_name(wanted.user())))
                 note(done ? done->who : who, "log-in", wanted.user(),
                      outcome_of(done.ok(), done ? "" : done.error().message));

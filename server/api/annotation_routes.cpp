@@ -6,11 +6,11 @@
 #include "server/base/json.hpp"
 #include "server/pipeline/annotations.hpp"
 
-// What people add to a run, however old: notes, and what they do about alarms. Answered once it is durable.
+// The routes that add notes and alarm actions to a run of any age. Answered once durable.
 namespace aeolis::server {
 namespace {
 
-/// Answers with the item that something became, once it is durable.
+/// The callback that answers with the stored item, once it is durable.
 std::function<void(Result<archive::Annotation>)> added(const Respond& respond) {
     return [respond](const Result<archive::Annotation>& annotation) {
         if (!annotation) return respond(error_response(503, annotation.error()));
@@ -20,7 +20,7 @@ std::function<void(Result<archive::Annotation>)> added(const Respond& respond) {
     };
 }
 
-/// What is asked for, by whom: with accounts nobody writes in another's name.
+/// The message in the request's body, signed: with accounts, nobody can write in another's name.
 template <typename Request>
 Result<Request> request_of(const ApiRequest& asked) {
     Request wanted;

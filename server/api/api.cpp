@@ -18,11 +18,11 @@ namespace aeolis::server {
 namespace {
 
 constexpr std::string_view api_prefix = "/api/v1/";
-constexpr std::size_t body_of_nobody_octets_max = 4'096;  ///< ours: a log-in is shorter
+constexpr std::size_t body_of_nobody_octets_max = 4'096;  ///< chosen: a log-in is shorter
 constexpr std::size_t brief_body_octets_max =
-    32'768;  ///< ours: a note of its greatest length, every letter escaped; a user's list of a thousand commands
-constexpr std::size_t audit_detail_max = 2'000;  ///< ours: of a request's body
-constexpr std::size_t audit_outcome_max = 500;   ///< ours: of an answer's
+    32'768;                                      ///< chosen: an escaped note of full length; a list of 1000 commands
+constexpr std::size_t audit_detail_max = 2'000;  ///< chosen: of a request's body
+constexpr std::size_t audit_outcome_max = 500;   ///< chosen: of an answer's body
 
 std::vector<std::string> split(std::string_view path) {
     std::vector<std::string> parts;
@@ -34,7 +34,7 @@ std::vector<std::string> split(std::string_view path) {
     return parts;
 }
 
-/// What stands in the braces of the pattern; none: the path is another one.
+/// The parts of the path that match the pattern's braces; none when the path does not match.
 std::optional<std::vector<std::string>> parts_of(std::string_view pattern, std::string_view path) {
     const auto wanted = split(pattern.substr(1)), given = split(path.substr(1));
     if (wanted.size() != given.size() || path.ends_with('/') != pattern.ends_with('/')) return std::nullopt;
@@ -94,7 +94,7 @@ HttpResponse refusal_of(const Operator& who, Right right) {
 
 namespace {
 
-/// A bug in one answer costs that answer only.
+/// Contains a bug: an exception fails only this answer.
 template <typename Answer>
 HttpResponse answered(Answer answer) {
     try {
@@ -122,14 +122,14 @@ archive::AuditRecord audit_record(const Operator& who, std::string_view action, 
 }
 
 std::span<const Api::Route> Api::routes() {
-    // The first that fits answers. What stands for one run comes before the questions to it.
+    // The first match answers. Routes of one run come before the questions about it.
     static constexpr Route all[] = {
         {"GET", "/api/v1/session", Right::open, &Api::session},
         {"POST", "/api/v1/session", Right::open, &Api::log_in},
         {"DELETE", "/api/v1/session", Right::open, &Api::log_out},
         {"GET", "/api/v1/users", Right::administer, &Api::list_users},
         {"POST", "/api/v1/users", Right::administer, &Api::add_user, Query::none, "user", Audited::refusals},
-        {"PATCH", "/api/v1/users/{user}", Right::open, &Api::change_user},  // one's own needs no right
+        {"PATCH", "/api/v1/users/{user}", Right::open, &Api::change_user},  // one's own account needs no right
         {"DELETE", "/api/v1/users/{user}", Right::administer, &Api::remove_user, Query::none, "user"},
         {"GET", "/api/v1/tokens", Right::administer, &Api::list_tokens},
         {"POST", "/api/v1/tokens", Right::administer, &Api::add_token, Query::none, "token"},
@@ -229,11 +229,11 @@ void Api::name_latest(ApiRequest& asked) const {
     asked.parts[0] = std::to_string(run);
     const std::string_view latest = "latest";
     asked.request.path.replace(asked.request.path.find(latest), latest.size(),
-                               asked.parts[0]);  // the audit says it too
+                               asked.parts[0]);  // the audit records it too
 }
 
 Respond Api::audited(const ApiRequest& asked, std::string_view action) {
-    if (!asked.who.role) return asked.respond;  // nobody: else anyone could fill the audit
+    if (!asked.who.role) return asked.respond;  // not logged in: anybody could fill the audit
     const bool has_password = asked.request.path.starts_with("/api/v1/users");
     return [this, who = asked.who, action,
             detail = fmt::format("{} {} {}", asked.request.method, asked.request.path,
@@ -267,11 +267,11 @@ void Api::run_question(const ApiRequest& asked) {
             404, fmt::format("'{}' cannot be asked of a run; these can: {}", what, run_question_names())));
     auto query = QueryText::parse(asked.request.query, question->parameters);
     if (!query) return respond(error_response(400, query.error()));
-    if (!question->formats.empty())  // before the archive is asked for what nobody could take
+    if (!question->formats.empty())  // before the archive is queried for nothing
         if (const auto format = query->one_of("format", question->formats); !format)
             return respond(error_response(400, format.error()));
     const auto& dictionary = parts_.dictionary;
-    // What the archive cannot know of the run that goes on: its pace and its clocks.
+    // Pace and clocks of the current run are not in the archive.
     const auto current = current_run();
     if (const auto id = run_id(run); what.empty() && id && id->value == current.run())
         return respond(json_response(current));
@@ -293,7 +293,7 @@ void Api::ask(const ApiRequest& asked, QueryText query, RunQuestion question, Jo
     const auto job = [run = asked.parts[0], query = std::move(query), question = std::move(question),
                       respond = asked.respond](archive::Reader& reader) {
         auto id = run_id(run);
-        if (!id) {  // this server has flown none yet
+        if (!id) {  // no run since the server started
             const auto runs = reader.runs();
             if (!runs) return respond(error_response(500, runs.error()));
             if (runs->runs().empty()) return respond(error_response(404, "run 'latest': no run has been recorded yet"));
@@ -351,7 +351,7 @@ void Api::stream(const ApiRequest& asked) {
 
 void Api::health(const ApiRequest& asked) {
     const std::string fault = parts_.pipeline.fault();
-    // Whoever may not watch is not told the names of files.
+    // File names are shown only to those with the right to watch.
     const std::string text = fault.empty()                  ? "ok"
                              : may(asked.who, Right::watch) ? fault
                                                             : "the archive cannot be written";

@@ -24,7 +24,7 @@ namespace aeolis::server {
 
 class QueryText;
 
-/// A request with who asks, what stood in the braces of its route's path, and where its answer goes.
+/// A request with its operator, the path's parts in the route's braces, and the response callback.
 struct ApiRequest {
     HttpRequest request;
     Operator who;
@@ -32,11 +32,11 @@ struct ApiRequest {
     Respond respond;
 };
 
-/// Every HTTP route (server/api/openapi.yaml describes them): requests to questions, answers to JSON.
+/// Every HTTP route (server/api/openapi.yaml describes them): turns requests into queries and answers into JSON.
 ///
-/// Thread   handle() on the network thread; questions to the archive run on the query threads
-/// Access   a route says which right it needs; without it, 401 or 403. What changes something is written into the audit
-/// Faults   an answer other than 2xx carries ErrorReply: one sentence that names what is wrong
+/// Thread   handle() on the network thread; archive queries run on the query threads
+/// Access   each route names the right it requires; without it: 401 or 403. Every change is written to the audit
+/// Faults   an answer other than 2xx carries ErrorReply: one sentence that names the fault
 class Api {
   public:
     struct Parts {
@@ -49,28 +49,28 @@ class Api {
         PipelineThread& pipeline;
         const StaticFiles& console;
         Access& access;
-        bool secure;  ///< over TLS: cookies say so
+        bool secure;  ///< over TLS: cookies are marked Secure
         std::function<std::size_t()> connections;
     };
     explicit Api(Parts parts);
 
     void handle(HttpRequest request, const Respond& respond);
-    /// How long a body this one may send: what is refused anyhow need not be read, and what is read takes the network
-    /// thread's time.
+    /// The largest body accepted from this peer for this path. The body of a request that will be refused is not read,
+    /// since reading takes the network thread's time.
     std::size_t body_octets(const Credentials& credentials, std::string_view method, std::string_view path) const;
-    /// None: it will be given later. `respond` is called on whatever thread has the answer.
+    /// A question about one run. None: the answer comes later. `respond` is called on the thread that has the answer.
     using RunQuestion = std::function<std::optional<HttpResponse>(archive::Reader&, archive::RunId, const QueryText&)>;
 
-    enum class Query { none, own };        ///< behind '?': nothing; or what its answer reads
-    enum class Body { brief, whole };      ///< whole: a scenario, a command file
-    enum class Audited { all, refusals };  ///< refusals: the rest its answer notes, a dry run is no action
+    enum class Query { none, own };        ///< the query string: not allowed, or parsed by the handler
+    enum class Body { brief, whole };      ///< whole: large enough for a scenario or a command file
+    enum class Audited { all, refusals };  ///< refusals: the handler audits the rest (not dry runs)
     struct Route {
-        std::string_view method;  ///< GET answers HEAD, too
-        std::string_view path;    ///< "{…}" takes one part
+        std::string_view method;  ///< GET also answers HEAD
+        std::string_view path;    ///< "{…}" matches one part
         Right right;
         void (Api::*answer)(const ApiRequest&);
         Query query = Query::none;
-        std::string_view audit{};  ///< the action's word; empty: it changes nothing, or its answer writes it
+        std::string_view audit{};  ///< action in the audit; empty: no change, or the handler writes it
         Audited audited = Audited::all;
         Body body = Body::brief;
     };
@@ -125,57 +125,57 @@ class Api {
     void audit(const ApiRequest& asked);
 
     void answer(const Route& route, ApiRequest asked);
-    /// Answers, and notes what became of it.
+    /// Wraps the response callback so that the outcome is written to the audit.
     Respond audited(const ApiRequest& asked, std::string_view action);
-    /// `latest` is the run that goes on, or went on last, in this server; else the newest of the archive: for every
-    /// route the same.
+    /// Replaces `latest` by a run number: the server's current or last run, else the newest of the archive. The same
+    /// for every route.
     void name_latest(ApiRequest& asked) const;
     void note(const Operator& who, std::string_view action, std::string detail, const std::string& outcome);
-    /// Answered on a query thread; 503 when too much waits.
+    /// Answers on a query thread; 503 when too many jobs wait.
     void aside(const Respond& respond, std::function<HttpResponse(archive::Reader&)> answer,
                JobPriority priority = JobPriority::in_turn);
     void ask(const ApiRequest& asked, QueryText query, RunQuestion question,
              JobPriority priority = JobPriority::in_turn);
-    /// The time on Earth in a run that goes on; none in others.
+    /// A function that gives the time on Earth in the current run; none for other runs.
     std::function<std::optional<Ert>(archive::RunId)> clock() const;
-    v1::RunState current_run() const;  ///< with what only the stream knows; run 0: none since the server started
+    v1::RunState current_run() const;  ///< including what only the stream knows; run 0: no run since the server started
 
     Parts parts_;
     std::string dictionary_json_;
 };
 
 HttpResponse error_response(unsigned status, const std::string& error);
-/// `status`, unless the fault is ours: then 500.
+/// An error response with `status`; with 500 when the fault is the server's.
 HttpResponse error_response(unsigned status, const Error& error);
 HttpResponse json_response(const google::protobuf::Message& message, unsigned status = 200);
 
-/// To a question that was asked too long, with what to ask `instead`.
+/// The response to a question that was stopped because it took too long; `instead` says what to ask.
 HttpResponse stopped_response(std::string_view instead);
-/// Of a path's {run}; none: it is no number.
+/// The run number from a path's {run}; none when it is not a number.
 std::optional<archive::RunId> run_id(std::string_view text);
 
-/// Why this one may not; empty: nothing is against it.
+/// The refusal when the operator lacks the right; empty when the operator has it.
 HttpResponse refusal_of(const Operator& who, Right right);
-/// Whether they may send this command, by its significance and their own list; of one that waits in the run of `desk`:
-/// whether they may do something about it, which needs the right to send it.
+/// Whether the operator may send this command, by its significance and the operator's list. An act on a queued command
+/// of the run of `desk` needs the right to send that command.
 Result<void> may_send(const Operator& who, const dictionary::Dictionary& dictionary, const RehearsalDesk& desk,
                       const v1::CommandRequest& request);
 
-/// The same, asked again later of who may have lost what they had.
+/// The check of may_send(), made again later: the operator may have lost the right meanwhile.
 RehearsalDesk::AuthorityCheck may_still_send(Access& access, const Credentials& credentials,
                                              const dictionary::Dictionary& dictionary, const RehearsalDesk& desk);
 
-/// With accounts, the request is its sender's, whatever name it carries.
+/// With accounts, gives the request the name of its sender, whatever name it carries.
 void name_asker(const Operator& who, v1::CommandRequest& request);
 
-/// Whether the operator may start this: of an inline scenario each command of its script must be one that they may
-/// send.
+/// Whether the operator may start this rehearsal: every command in the script of an inline scenario must be one that
+/// the operator may send.
 Result<void> may_start(const Operator& who, const dictionary::Dictionary& dictionary, const v1::StartRehearsal& start);
 
-/// With accounts nobody writes in another's name.
+/// Signs the control message. With accounts, nobody can write in another's name.
 void sign(const Operator& who, v1::RehearsalControl& control);
 
-/// An entry of the audit, now.
+/// An audit entry with the present time.
 archive::AuditRecord audit_record(const Operator& who, std::string_view action, std::string detail,
                                   const std::string& outcome);
 

@@ -5,15 +5,13 @@
 
 #include <fmt/format.h>
 
-// The routes of campaigns: every one reads or makes files, and answers from a query thread.
+// The routes of campaigns. All read or create files, so they answer from a query thread.
 namespace aeolis::server {
 namespace {
 
 template <typename Message>
 HttpResponse response_or_conflict(const Result<Message>& done, unsigned status = 200) {
-    return done ? json_response(*done, status)
-                : error_response(
-                      409, done.error().message);  // a file that cannot be read, too: it is another's, or an old one
+    return done ? json_response(*done, status) : error_response(409, done.error().message);  // also an unreadable file
 }
 
 }  // namespace

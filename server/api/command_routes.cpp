@@ -7,12 +7,12 @@
 #include <algorithm>
 #include <fmt/format.h>
 
-// The routes of commands, and who may send which: here, by the stream (console_backend.cpp) and by a scenario's script
-// alike.
+// The routes of commands, and the check of who may send which command: used here, by the stream (console_backend.cpp)
+// and for the script of a scenario.
 namespace aeolis::server {
 namespace {
 
-constexpr int sequence_max = 100;  // ours: commands in one command file
+constexpr int sequence_max = 100;  // chosen: commands in one command file
 
 Result<void> may_send_named(const Operator& who, const dictionary::Dictionary& dictionary, const std::string& name,
                             bool dry_run) {
@@ -26,7 +26,7 @@ Result<void> may_send_named(const Operator& who, const dictionary::Dictionary& d
                              name_of(*least_role(Right::hazardous)), who.user, name_of(*who.role))};
 }
 
-/// When it is acted upon, a number that no command has yet may be any command's, a hazardous one's too.
+/// The right to act on a number that no command has yet: by then it may be any command's, even a hazardous one's.
 Result<void> may_act_on_any(const Operator& who, const std::string& action) {
     if (!who.commands.empty())
         return Error{
@@ -37,7 +37,8 @@ Result<void> may_act_on_any(const Operator& who, const std::string& action) {
     return {};
 }
 
-/// Who may send what waits may let it go, or stop it: to stop what must be in time is as grave as to send it.
+/// The right to release or stop a waiting command equals the right to send it: stopping one that must be in time is as
+/// grave.
 Result<void> may_act(const Operator& who, const dictionary::Dictionary& dictionary, const RehearsalDesk& desk,
                      const v1::CommandRequest& request) {
     if (!who.accounts) return {};
@@ -52,7 +53,7 @@ Result<void> may_act(const Operator& who, const dictionary::Dictionary& dictiona
     return {};
 }
 
-/// What the path says of the run goes into the request, and who asks: both may not be said otherwise.
+/// Sets the run from the path and the operator's identity. Fails when the body names another run.
 Result<void> complete(const ApiRequest& asked, v1::CommandRequest& command) {
     const auto& run = asked.parts[0];
     const auto id = run_id(run);

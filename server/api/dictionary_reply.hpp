@@ -6,7 +6,7 @@
 
 namespace aeolis::server {
 
-/// What the console is told of the mission's words.
+/// The dictionary as the console receives it.
 v1::DictionaryReply dictionary_reply(const dictionary::Dictionary& dictionary);
 
 }  // namespace aeolis::server

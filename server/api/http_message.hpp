@@ -12,19 +12,19 @@
 namespace aeolis::server {
 
 struct HttpRequest {
-    /// Ours: a scenario with every field is under 2 KiB; read as JSON in 25 ms.
+    /// Chosen: a scenario with every field is under 2 KiB; 256 KiB are parsed as JSON in 25 ms.
     static constexpr std::size_t body_octets_max = 256 << 10;
 
     std::string method;
-    std::string path;   ///< decoded, without the query
-    std::string query;  ///< as it stands after '?', still percent-encoded
+    std::string path;   ///< percent-decoded, without the query
+    std::string query;  ///< the text after '?', still percent-encoded
     std::string body;
     Credentials credentials{};
     std::function<bool()>
-        gone{};  ///< whether who asked has left: what still works on it may stop; from any thread; null: never told
+        gone{};  ///< whether the client has disconnected, so that work may stop; from any thread; null: unknown
 };
 
-/// The next part of a body, which may be empty; none: that was all.
+/// The next part of a body, which may be empty; none at the end of the body.
 using BodyPart = Result<std::optional<std::string>>;
 
 struct HttpResponse {
@@ -34,13 +34,13 @@ struct HttpResponse {
     std::string body;
     std::string set_cookie{};  ///< empty: none
     std::string next_after{};  ///< of a page: the header Aeolis-Next-After; empty: none
-    /// Null: the body is all. Else it is the first part, and this is called for each further one, when the one before
-    /// it has been taken by the client; the answer may come from any thread. An Error breaks the connection off: the
-    /// client sees that it has not all.
+    /// Null: `body` is the whole body. Else `body` is its first part, and this is called for each further part once the
+    /// client has taken the one before; the answer may come from any thread. An Error closes the connection, so that
+    /// the client sees that the body is incomplete.
     std::function<void(std::function<void(BodyPart)>)> more{};
 };
 
-/// To be called once, from any thread.
+/// The response callback. Call it once, from any thread.
 using Respond = std::function<void(HttpResponse)>;
 
 }  // namespace aeolis::server

@@ -20,20 +20,19 @@ using google::protobuf::Descriptor;
 using google::protobuf::FieldDescriptor;
 using google::protobuf::Message;
 
-constexpr double dated_s_max =
-    1.0e9;  // ours: an SCLK that is further from where the clocks meet, thirty years, is none
+constexpr double dated_s_max = 1.0e9;  // chosen: an SCLK over thirty years from the correlation is not converted
 
 struct Column {
     std::string name;
-    std::vector<const FieldDescriptor*> path;  ///< messages, then what has the value
-    bool scet = false;                         ///< that SCLK as SCET
+    std::vector<const FieldDescriptor*> path;  ///< messages, then the field with the value
+    bool scet = false;                         ///< its SCLK converted to SCET
 };
 
 bool is_message(const FieldDescriptor& field) {
     return field.cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE;
 }
 
-/// "sclk", "fired_sclk".
+/// Whether the field is an SCLK: "sclk", "fired_sclk".
 bool is_sclk(const FieldDescriptor& field) {
     return field.cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE && field.name().ends_with("sclk") &&
            !field.is_repeated();
@@ -45,7 +44,7 @@ void add_columns(const Descriptor& row, const std::vector<std::string_view>& kin
         const auto* field = row.field(i);
         if (field->real_containing_oneof() != nullptr && std::ranges::find(kinds, field->name()) == kinds.end())
             continue;
-        if (field->name().ends_with("_us")) continue;  // people read its text
+        if (field->name().ends_with("_us")) continue;  // its text is read instead
         Column column{above.name + (above.path.empty() ? "" : ".") + field->name(), above.path};
         column.path.push_back(field);
         if (is_message(*field) && !field->is_repeated())
@@ -59,11 +58,10 @@ void add_columns(const Descriptor& row, const std::vector<std::string_view>& kin
     }
 }
 
-/// As parameters of questions and the samples as CSV have it: SOURCE_REALTIME is "realtime", and what is not said
-/// nothing. An enumeration whose first value is not called UNSPECIFIED has its words as names.
+/// An enumeration as in parameters and in CSV samples: SOURCE_REALTIME is "realtime", UNSPECIFIED is empty. An
+/// enumeration whose first value is not called UNSPECIFIED has its words as names.
 std::string enum_text(const google::protobuf::EnumDescriptor& kind, int number) {
-    constexpr std::string_view unsaid =
-        "UNSPECIFIED";  // how the name of the first of each ends, behind what all of them begin with
+    constexpr std::string_view unsaid = "UNSPECIFIED";  // follows the prefix of all values
     const auto* value = kind.FindValueByNumber(number);
     if (value == nullptr) return std::to_string(number);
     if (!kind.value(0)->name().ends_with(unsaid)) return value->name();
@@ -74,7 +72,7 @@ std::string enum_text(const google::protobuf::EnumDescriptor& kind, int number) 
     return text;
 }
 
-/// @param index  of a repeated field, else -1
+/// @param index  of an element of a repeated field; else -1
 std::string value_text(const Message& message, const FieldDescriptor& field, int index) {
     const auto& reflection = *message.GetReflection();
     if (field.cpp_type() == FieldDescriptor::CPPTYPE_ENUM)
@@ -119,7 +117,7 @@ std::string cell_text(const Message& row, const Column& column, const std::optio
     return value_text(*message, field, -1);
 }
 
-/// A line of the texts that `text_of` gives of each column.
+/// Appends a CSV line with the texts that `text_of` gives for the columns.
 template <typename TextOf>
 void append_line(std::string& csv, const std::vector<Column>& columns, TextOf text_of) {
     for (std::size_t i = 0; i < columns.size(); ++i) csv += (i == 0 ? "" : ",") + csv_text(text_of(columns[i]));

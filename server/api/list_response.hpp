@@ -12,24 +12,24 @@
 
 namespace aeolis::server {
 
-/// Which field of a list has its rows, and of rows that are one of several (an Item) which of those come in it.
+/// Names a list's field with the rows and, for rows that are a oneof (Item), the cases in it.
 struct Rows {
     std::string_view field;                 ///< "events"
     std::vector<std::string_view> kinds{};  ///< "event"
 };
 
-/// The formats of a list, the first where none is asked for.
+/// The formats of a list. The first is the default.
 ///
 /// json   the list
-/// csv    a header, then a line a row by RFC 4180, with a column a field in the schema's order, by its path:
-///        "event.name". What a row does not have is empty. Octets are hexadecimal; of a repeated field one cell has
-///        all, with blanks between, messages as JSON. Beside each SCLK stands SCET, where it is known by which clock
-/// jsonl  a line a row, each as in the list
+/// csv    a header, then one line per row (RFC 4180). One column per field, in the schema's order, named by path:
+///        "event.name". An absent field is empty. Octets are hexadecimal. A repeated field takes one cell, its elements
+///        separated by blanks, messages as JSON. Beside each SCLK stands SCET when the clock correlation is known
+/// jsonl  one line per row, each as in the list
 inline constexpr std::array<std::string_view, 3> list_formats{"json", "csv", "jsonl"};
 
-/// Where the next page begins is in the header Aeolis-Next-After, too.
+/// Builds the response in a format. The header Aeolis-Next-After also tells where the next page begins.
 /// @param format  one of list_formats
-/// @param clock   of the run whose rows they are
+/// @param clock   clock correlation of the run that the rows belong to
 HttpResponse list_response(std::string_view format, const google::protobuf::Message& list, const Rows& rows,
                            const std::optional<ClockCorrelation>& clock = {});
 

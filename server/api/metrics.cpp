@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// GET /metrics: figures of each queue, link, commit and client, in Prometheus' text format.
+// GET /metrics: figures of queues, links, commits and clients, in Prometheus text format.
 
 #include "server/api/api.hpp"
 #include "server/base/version.hpp"

@@ -13,7 +13,7 @@ namespace aeolis::server {
 
 Result<QueryText> QueryText::parse(std::string_view encoded, const std::vector<std::string_view>& known) {
     QueryText query;
-    const std::string text{encoded};  // Boost.URL 1.81 reads one octet behind an empty view
+    const std::string text{encoded};  // Boost.URL 1.81 reads one octet beyond an empty view
     const auto parsed = boost::urls::parse_query(text);
     if (!parsed) return Error{fmt::format("the query '{}' is not well formed", encoded)};
     const boost::urls::encoding_opts plus_is_space{true};

@@ -54,7 +54,7 @@ void QueryThreads::serve(archive::Reader& reader, std::span<const JobPriority> k
 
 std::function<bool()> QueryThreads::stop_of_question(std::function<bool()> gone,
                                                      std::chrono::milliseconds question_max) const {
-    // Nobody is there to be answered once it is over.
+    // After the end nobody receives the answer.
     return [this, stop = gone_or_late(std::move(gone), question_max)] { return over_ || stop(); };
 }
 
@@ -63,8 +63,7 @@ void QueryThreads::answer(const WaitingJob& asked, archive::Reader& reader, std:
                                                             : gone_or_late(asked.gone, question_max));
     try {
         asked.job(reader);
-    } catch (const std::exception&
-                 bug) {  // costs that question only; who asked has had its answer, or sees the connection end
+    } catch (const std::exception& bug) {  // fails only this query
         spdlog::error("a question could not be answered: {}", bug.what());
     }
     reader.stop_when({});
@@ -102,7 +101,7 @@ bool QueryThreads::ask(Job job, std::function<bool()> gone, JobPriority priority
         if (over_ || waiting_[kind].size() >= waiting_max[kind]) return false;
         waiting_[kind].push_back({std::move(job), std::move(gone), priority});
     }
-    changed_.notify_all();  // whoever takes this kind is among them
+    changed_.notify_all();  // all threads: one of them takes this kind
     ++asked_;
     return true;
 }

@@ -21,60 +21,60 @@
 
 namespace aeolis::server {
 
-/// How long a job may take says what it waits behind.
+/// The priority of a job, by how long it may take.
 enum class JobPriority : std::uint8_t {
-    at_once,  ///< milliseconds, and somebody cannot go on without it: an acknowledgement, a file of the console
-    soon,     ///< a second at most, or many at once: a page of what a client of the stream missed, a log-in, a list, a
-              ///< check of the timeline
-    in_turn,  ///< a question, of up to question_seconds_max
+    at_once,  ///< milliseconds, and somebody is blocked until then: an acknowledgement, a file of the console
+    soon,     ///< a second at most, or many at once: a page of the stream's past, a log-in, a list, a timeline check
+    in_turn,  ///< a query of up to question_seconds_max
 };
 
-/// Threads that read: each has its own read-only connection to the archive, and takes a new one when the file was put
-/// back under its name. So a long query never holds up the network, the writer, or the other query.
+/// Threads that query the archive, each with its own read-only connection. A thread reconnects when the file was
+/// replaced under its name. A long query never delays the network, the writer, or the other query.
 ///
-/// One thread never takes questions: however many there are and however long, what is short goes on. The others take
-/// questions before what may come soon, so that a thousand clients which catch up keep nobody from an answer.
+/// One thread takes no queries (in_turn), so that short jobs always proceed. The others take queries before jobs of
+/// priority `soon`, so that a thousand clients catching up delay nobody's query.
 class QueryThreads {
   public:
     static constexpr std::size_t question_threads = 2;
     static constexpr std::size_t threads = question_threads + 1;
-    /// Chosen, by JobPriority: more is refused, "busy". Each connection of the stream asks for one page at a time, and
-    /// there are at most 1 000 of them: that no page is refused, there is room for two each.
+    /// Chosen, by JobPriority; beyond it a job is refused ("busy"). Each stream connection asks for one page at a time,
+    /// and there are at most 1 000 of them: room for two pages each means that none is refused.
     static constexpr std::array<std::size_t, 3> waiting_max{256, 2'000, 256};
     static constexpr const char* busy = "too many questions wait: try again";
 
-    /// A question that takes longer, or whose asker has gone, is stopped: its reader then says stopped().
-    static constexpr std::chrono::seconds question_seconds_max{20};  ///< ours: proof() of a whole landing takes one
+    /// A query that takes longer, or whose client has disconnected, is stopped: its reader then reports stopped().
+    static constexpr std::chrono::seconds question_seconds_max{20};  ///< chosen: proof() takes 1 s
 
     using Job = std::function<void(archive::Reader&)>;
 
-    /// The archive has been made. The dictionary must outlive this.
+    /// Starts the threads. The archive file must exist; the dictionary must outlive this.
     static Result<std::unique_ptr<QueryThreads>> open(const std::filesystem::path& archive,
                                                       const dictionary::Dictionary& dictionary,
                                                       const telemetry::OtherMission* other = nullptr,
                                                       std::chrono::milliseconds question_max = question_seconds_max);
     ~QueryThreads() { end(); }
-    /// Does what waits that is short, stops every question, and takes nothing more. Once; of the thread that made this.
+    /// Finishes the short jobs that wait, stops every query, and takes nothing more. Call once, on the thread that made
+    /// this.
     void end();
 
-    /// False, and nothing done, when too much waits.
+    /// Queues a job. False, and not queued, when too many wait.
     bool ask(Job job, std::function<bool()> gone = {}, JobPriority priority = JobPriority::in_turn);
-    /// For a question that reads another file than the archive: whether it is to be stopped, as its reader would be. It
-    /// begins now, on one of these threads.
+    /// The stop condition for a query that reads a file other than the archive, the same as a reader's. Its time starts
+    /// now. Call on one of these threads.
     std::function<bool()> stop_of_question(std::function<bool()> gone,
                                            std::chrono::milliseconds question_max = question_seconds_max) const;
     std::uint64_t asked() const { return asked_; }
-    std::size_t waiting() const;  ///< of all kinds
+    std::size_t waiting() const;  ///< of all priorities
 
   private:
     using Open = std::function<Result<archive::Reader>()>;
     QueryThreads(std::vector<archive::Reader> readers, const Open& open, std::chrono::milliseconds question_max);
     struct WaitingJob {
         Job job;
-        std::function<bool()> gone;  ///< null: never told
+        std::function<bool()> gone;  ///< null: unknown
         JobPriority priority{};
     };
-    /// The first of the first of `kinds` of which one waits; none when it is over and nothing of them waits.
+    /// Takes the oldest job of the first of `kinds` that has one; none once ended and none of these kinds waits.
     std::optional<WaitingJob> next(std::span<const JobPriority> kinds);
     void serve(archive::Reader& reader, std::span<const JobPriority> kinds, const Open& open,
                std::chrono::milliseconds question_max);

@@ -2,11 +2,11 @@
 #include "server/api/api.hpp"
 #include "server/base/json.hpp"
 
-// The routes of rehearsals: starting one, its pace and its faults. The desk carries out and answers.
+// The routes of rehearsals: start, control and faults. RehearsalDesk carries out and answers.
 namespace aeolis::server {
 namespace {
 
-// What cannot be done now may be asked again later; what makes no sense may not.
+// 409: may be requested again later. 422: the request itself is wrong.
 RehearsalDesk::Began tell_begun(const Respond& respond, bool going_on) {
     return [respond, refused = going_on ? 409U : 422U](const Result<v1::RunState>& state) {
         respond(state ? json_response(*state, 201) : error_response(refused, state.error()));

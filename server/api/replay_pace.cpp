@@ -6,8 +6,7 @@
 namespace aeolis::server {
 namespace {
 
-constexpr double wait_max_s =
-    1.0e9;  // ours: thirty years; a steady clock's time still holds it, however small the pace
+constexpr double wait_max_s = 1.0e9;  // chosen: thirty years; fits a steady clock's time at any pace
 
 }  // namespace
 

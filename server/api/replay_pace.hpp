@@ -9,19 +9,19 @@
 
 namespace aeolis::server {
 
-/// When the items of a run that is over go out again: so many times as fast as they reached Earth.
+/// Computes when a finished run's items are sent again, at a multiple of their pace to Earth.
 ///
-/// In       items in the order of their numbers, and what time it is     Out   when each is due
-/// Rule     the first is due when it is asked for. One that bears no time on Earth has that of the one before it; one
-///          that reached Earth before the one before it waits no longer than that
+/// In       items in the order of their numbers, and the present time     Out   when each is due
+/// Rule     the first is due at once. An item without a time on Earth takes that of its predecessor; one that reached
+///          Earth before its predecessor is due with it
 class ReplayPace {
   public:
     using Clock = std::chrono::steady_clock;
-    static constexpr double pace_max = 10'000.0;  ///< ours: six hours of cruise in two seconds
+    static constexpr double pace_max = 10'000.0;  ///< chosen: six hours of cruise in two seconds
 
     explicit ReplayPace(double pace) : pace_(pace) {}
 
-    /// Asked again of the same item it says the same.
+    /// When `item` is due. Repeated calls for one item give the same result.
     Clock::time_point due(const v1::Item& item, Clock::time_point now);
 
   private:

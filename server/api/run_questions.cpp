@@ -27,8 +27,7 @@ namespace {
 constexpr std::uint64_t seq_max = UINT64_MAX >> 1;  // SQLite's integers are signed
 constexpr std::array<std::string_view, 3> series_formats{"json", "csv", "protobuf"};
 constexpr std::array<std::string_view, 2> report_formats{"json", "csv"};
-constexpr double scet_text_s =
-    1.0e-3;  // day-of-year texts are cut to it: the tick within it is the one that was read off
+constexpr double scet_text_s = 1.0e-3;  // day-of-year texts are truncated to it: converts to the tick within it
 
 template <typename Message>
 HttpResponse answer(Result<Message> result) {
@@ -39,14 +38,14 @@ HttpResponse answer(Result<Message> result) {
     return response;
 }
 
-/// By which clock SCLK becomes SCET; none: nobody knows it.
+/// The clock correlation between SCLK and SCET; none when unknown.
 std::optional<ClockCorrelation> clock_of(archive::Reader& reader, archive::RunId run) {
     const auto state = reader.run(run);
     const auto clock = state ? archive::correlation_of(*state) : ClockCorrelation{};
     return clock.scet == Scet{} ? std::nullopt : std::optional{clock};
 }
 
-/// Of the formats of this question the one that is asked for.
+/// The requested format of a question.
 std::string format_of(const QueryText& query, std::span<const std::string_view> formats) {
     return query.text("format").value_or(std::string{formats.front()});
 }
@@ -187,7 +186,7 @@ HttpResponse events(const Ground&, archive::Reader& reader, archive::RunId run, 
     return answer_rows({reader, run, query}, reader.events(run, events), {"events", {"event"}});
 }
 
-/// The decisions that flight can explain, as the dictionary words them.
+/// Whether flight can explain a decision of this name, according to the dictionary.
 bool is_decision(const dictionary::Dictionary& dictionary, std::string_view name) {
     const auto* packet = dictionary.packet("Explanation");
     const auto field = packet == nullptr ? std::nullopt : telemetry::field_index(*packet, "decision");
@@ -231,7 +230,7 @@ HttpResponse commands(const Ground&, archive::Reader& reader, archive::RunId run
                        {"commands"});
 }
 
-/// What happened to alarms; or how they stand now.
+/// Changes of alarms, or their present states.
 HttpResponse alarms(const Ground& ground, archive::Reader& reader, archive::RunId run, const QueryText& query) {
     const auto page = page_of(query, 1'000, archive::rows_page_max);
     if (!page) return error_response(400, page.error());
@@ -273,7 +272,7 @@ std::optional<double> number_in(std::string_view text) {
     return value;
 }
 
-/// What the command that a question names would change, with its arguments as name=value.
+/// The change of offsets by the command in the query, whose arguments are name=value.
 Result<std::optional<dictionary::OffsetChange>> change_of(const dictionary::Dictionary& dictionary,
                                                           const QueryText& query) {
     const auto name = query.text("command");
@@ -307,7 +306,7 @@ HttpResponse timepoints(const Ground& ground, archive::Reader& reader, archive::
         {"timepoints"});
 }
 
-/// Of a command, against the newest values that were known.
+/// The preconditions of a command, evaluated with the newest known values.
 HttpResponse preconditions(const Ground& ground, archive::Reader& reader, archive::RunId run, const QueryText& query) {
     const auto name = query.text("command").value_or("");
     const auto* command = ground.dictionary.command(name);
@@ -318,7 +317,7 @@ HttpResponse preconditions(const Ground& ground, archive::Reader& reader, archiv
     if (!state) return error_response(400, state.error());
     const auto values = reader.latest(run, *at);
     if (!values) return error_response(400, values.error());
-    double now_s = 0.0;  // where nobody knows it, nothing is old
+    double now_s = 0.0;  // when unknown, no value counts as old
     if (*at)
         now_s = (*at)->seconds;
     else if (ground.now)
@@ -353,7 +352,7 @@ std::string csv_of(const v1::ProofReport& report) {
     return csv;
 }
 
-/// As JSON, or where format=csv asks for it as a table.
+/// Answers with JSON, or with a CSV table for format=csv.
 template <typename Report>
 HttpResponse answer_in_format(const QueryText& query, const std::function<Result<Report>()>& make,
                               std::string (*as_csv)(const Report&)) {
@@ -366,7 +365,7 @@ HttpResponse proof(const Ground&, archive::Reader& reader, archive::RunId run, c
     return answer_in_format<v1::ProofReport>(query, [&] { return reader.proof(run); }, csv_of);
 }
 
-/// As CSV its timepoints and events.
+/// The as-flown report; as CSV, its timepoints and events.
 HttpResponse report(const Ground&, archive::Reader& reader, archive::RunId run, const QueryText& query) {
     return answer_in_format<v1::AsFlownReport>(query, [&] { return reader.as_flown(run); }, as_flown_csv);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// GET /api/v1/runs/{run}/samples: as many samples as there are, in the memory of a page.
+// GET /api/v1/runs/{run}/samples: any number of samples, in the memory of one page.
 
 #include "server/api/api.hpp"
 #include "server/api/query_text.hpp"
@@ -11,7 +11,7 @@
 namespace aeolis::server {
 namespace {
 
-/// What is asked for, and how far it has come.
+/// An export request and its progress.
 struct SampleExport : std::enable_shared_from_this<SampleExport> {
     SampleExport(QueryThreads& threads, SampleText lines) : queries(threads), text(std::move(lines)) {}
     QueryThreads& queries;
@@ -23,7 +23,7 @@ struct SampleExport : std::enable_shared_from_this<SampleExport> {
     bool done = false;
     std::function<bool()> gone;
 
-    /// The next page as text, which may be empty; none: there is no further one.
+    /// The next page as text, which may be empty; none at the end.
     BodyPart page(archive::Reader& reader) {
         if (done) return std::optional<std::string>{};
         const auto samples = reader.sample_page(run, channels, range, after);
@@ -44,8 +44,8 @@ struct SampleExport : std::enable_shared_from_this<SampleExport> {
                 tell(Error{fmt::format("this is a fault of the server: {}", bug.what())});
             }
         };
-        // A page takes milliseconds, and what has begun is not to break off because many ask: it waits with the pages
-        // of the stream.
+        // A page takes milliseconds, and a started answer must not be cut off because many queries wait: so it queues
+        // with the stream's pages.
         if (!queries.ask(job, gone, JobPriority::soon)) tell(Error{"too many questions wait"});
     }
 };

@@ -17,7 +17,7 @@ const char* word_for(archive::Source source) {
     return source == archive::Source::realtime ? "realtime" : "recorded";
 }
 
-/// JSON has no infinities: they are texts.
+/// A number as JSON; infinities, which JSON lacks, as texts.
 std::string number_or_text(double value) {
     return std::isfinite(value) ? json_number(value) : value > 0 ? "\"Infinity\"" : "\"-Infinity\"";
 }
@@ -30,8 +30,8 @@ std::optional<double> seconds_of(const std::string& text) {
     return seconds;
 }
 
-/// The first whole multiple of `step_s` that is not before: of a tenth the nearest number to the tenth, so that two
-/// files have the same times.
+/// The first whole multiple of `step_s` at or after `sclk_s`. For steps such as 0.1, the double nearest to the decimal
+/// value, so that two files have equal times.
 double next_step(double sclk_s, double step_s) {
     const double count = std::ceil(sclk_s / step_s), per_s = std::round(1.0 / step_s);
     return std::abs(per_s * step_s - 1.0) < 1e-12 ? count / per_s : count * step_s;
@@ -105,7 +105,7 @@ void SampleText::append_aligned(std::string& text, const archive::ChannelValue& 
     const auto column = std::ranges::find(columns_, sample.channel, &dictionary::Channel::id);
     if (column == columns_.end()) return;
     const double sclk_s = sample.sclk.seconds;
-    if (line_s_ && sclk_s > *line_s_) finish(text);  // all of that instant have come
+    if (line_s_ && sclk_s > *line_s_) finish(text);  // all samples of that instant were appended
     values_[static_cast<std::size_t>(column - columns_.begin())] = sample.value;
     if (leader_ == nullptr)
         line_s_ = next_step(sclk_s, step_s_);

@@ -13,27 +13,27 @@
 
 namespace aeolis::server {
 
-/// Samples as lines of text for other programs: how `aeolis export` and GET /api/v1/runs/{run}/samples write them.
-/// Either a line a sample, or, aligned, a line an instant with a column a channel.
+/// Writes samples as text, as `aeolis export` and GET /api/v1/runs/{run}/samples do: one line per sample or, aligned,
+/// one line per instant with one column per channel.
 ///
-/// In       samples in order of SCLK, those of one instant in one piece     Out   text: head(), append()…, finish()
-/// Aligned  to a channel: its times; to a step: multiples of it by SCLK, each with news since the one before, so that a
-///          silence makes no lines. Of each channel the newest value up to the line's time; none yet: nothing (CSV),
-///          null (JSON)
-/// Memory   a value a channel
+/// In       samples in order of SCLK, those of one instant in one call     Out   text: head(), append()…, finish()
+/// Aligned  to a channel: lines at its times. To a step: lines at multiples of the step in SCLK, each only when there
+///          was a new sample since the line before, so that a silence makes no lines. Each column holds the newest
+///          value up to the line's time; before the first value it is empty (CSV) or null (JSON)
+/// Memory   one value per channel
 class SampleText {
   public:
-    static constexpr double align_s_min = 0.001, align_s_max = 86'400.0;  ///< ours
+    static constexpr double align_s_min = 0.001, align_s_max = 86'400.0;  ///< chosen
 
     struct Options {
         std::string format = "csv";  ///< or "jsonl"
-        std::string align;           ///< one of the channels, or seconds; empty: a line a sample
+        std::string align;           ///< a channel among those written, or seconds; empty: a line per sample
     };
-    /// @param channels  by name; empty: all, which cannot be aligned. Fails with the parameter's name.
+    /// @param channels  names; empty: all, which cannot be aligned. The Error names the parameter at fault.
     static Result<SampleText> make(const dictionary::Dictionary& dictionary, const std::vector<std::string>& channels,
                                    const Options& options);
 
-    /// Lines say the seconds after it.
+    /// Adds to each line the seconds since entry.
     void set_entry(Sclk entry) { entry_ = entry; }
     bool is_csv() const { return csv_; }
     std::string head() const;
@@ -50,13 +50,13 @@ class SampleText {
         std::string name, unit;
     };
     bool csv_;
-    std::vector<Words> words_;  ///< a channel each, as the format writes a text: names are whatever a dictionary says
+    std::vector<Words> words_;  ///< per channel, escaped for the format: a dictionary's names may hold any character
     Sclk entry_{};
-    std::vector<const dictionary::Channel*> columns_;  ///< of aligned lines; empty: a line a sample
-    const dictionary::Channel* leader_ = nullptr;      ///< null: by step_s_
+    std::vector<const dictionary::Channel*> columns_;  ///< of aligned lines; empty: a line per sample
+    const dictionary::Channel* leader_ = nullptr;      ///< the channel aligned to; null: step_s_
     double step_s_ = 0.0;
-    std::vector<std::optional<double>> values_;  ///< a column each
-    std::optional<double> line_s_;               ///< SCLK of a line that is not written yet
+    std::vector<std::optional<double>> values_;  ///< per column
+    std::optional<double> line_s_;               ///< SCLK of the line not yet written
 };
 
 }  // namespace aeolis::server

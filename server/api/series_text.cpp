@@ -60,7 +60,7 @@ std::string series_json(const v1::ChannelSeriesList& list) {
 std::string series_csv(const v1::ChannelSeriesList& list) {
     std::string csv = "channel,unit,sclk_s,value,source\n";
     for (const auto& series : list.channels()) {
-        const auto name = csv_text(series.name()), unit = csv_text(series.unit());  // a formula may have commas
+        const auto name = csv_text(series.name()), unit = csv_text(series.unit());  // a formula may contain commas
         for (int i = 0; i < series.sclk_size(); ++i)
             fmt::format_to(std::back_inserter(csv), "{},{},{},{},{}\n", name, unit, series.sclk(i), series.value(i),
                            series.source(i) == v1::SOURCE_RECORDED ? "recorded" : "realtime");

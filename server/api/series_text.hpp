@@ -5,13 +5,13 @@
 
 #include <string>
 
-// Series as text. An exact answer has a million numbers: it is written straight from the columns, in the memory of the
-// text itself.
+// Series as text. An exact answer has a million numbers, so it is written straight from the columns; memory is that of
+// the text itself.
 namespace aeolis::server {
 
-/// As to_json() has it.
+/// JSON, the same as to_json() writes.
 std::string series_json(const v1::ChannelSeriesList& list);
-/// A row a sample; the reader of a spreadsheet or of a script wants no JSON.
+/// CSV, one row per sample, for spreadsheets and scripts.
 std::string series_csv(const v1::ChannelSeriesList& list);
 
 }  // namespace aeolis::server

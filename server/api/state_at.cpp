@@ -9,7 +9,7 @@
 namespace aeolis::server {
 namespace {
 
-/// The newest of each.
+/// The newest item by name.
 template <typename Name>
 using Newest = std::map<Name, v1::Item>;
 
@@ -41,7 +41,7 @@ struct Stand {
         case v1::Item::kStaleness:
             if (!cut.leaves_out(item)) alarms.insert_or_assign("packet " + item.staleness().packet(), item);
             return;
-        case v1::Item::kTimepoint:  // each fires once; the live report of it comes first
+        case v1::Item::kTimepoint:  // each fires once; the live report comes first
             if (!cut.leaves_out(item.timepoint().fired_sclk())) timepoints.try_emplace(item.timepoint().name(), item);
             return;
         case v1::Item::kTone:
@@ -86,7 +86,7 @@ Result<v1::StateAt> state_at(archive::Reader& reader, archive::RunId run, const 
         series.add_source(static_cast<v1::Source>(value.source));
     }
     for (auto& [name, item] : stand.links) {
-        if (item.link().lost()) *answer.add_alarms() = item;  // under the link's name, as in the list of alarms
+        if (item.link().lost()) *answer.add_alarms() = item;  // by the link's name, as in the list of alarms
         *answer.add_links() = std::move(item);
     }
     for (auto& [name, item] : stand.timepoints) *answer.add_timepoints() = std::move(item);

@@ -8,12 +8,13 @@
 
 namespace aeolis::server {
 
-/// A run as it stood at an instant: of every channel the newest value, of every link, command and alarm the newest
-/// change, what had fired, the newest tone. None: now.
+/// The state of a run at an instant: the newest value of every channel, the newest change of every link, command and
+/// alarm, the timepoints that had fired, and the newest tone. `at` none: now.
 ///
-/// Cut      what has a time on board by that, up to `at`; what has one on Earth by what is seen of `at` there. Items of
-///          the recording count at their own time: what was known then is the live items' part (source, duplicate)
-/// Memory   an item a name
+/// Cut      items with a time on board: up to `at`. Items with a time on Earth: up to when `at` is seen there. Items of
+///          the recording count at their own time; the live items among them (source, duplicate) are what was known
+///          then
+/// Memory   one item per name
 Result<v1::StateAt> state_at(archive::Reader& reader, archive::RunId run, const dictionary::Dictionary& dictionary,
                              std::optional<Sclk> at);
 

@@ -32,7 +32,7 @@ const char* content_type_of(const std::filesystem::path& file) {
     return "application/octet-stream";
 }
 
-/// The build puts a hash into the names below assets/: such a file never changes.
+/// Whether the file is below assets/, where names contain a hash of the contents: such a file never changes.
 bool is_hashed(std::string_view path) {
     return path.starts_with("/assets/");
 }

@@ -8,11 +8,11 @@
 
 namespace aeolis::server {
 
-/// The built console: files of one directory and nothing outside it. "/" and the console's own views (paths without a
-/// dot) are index.html. Without a built console a page says how to build it.
+/// Serves the built console: the files of one directory and nothing outside it. "/" and the console's own views (paths
+/// without a dot) give index.html. Without a built console, a page says how to build it.
 class StaticFiles {
   public:
-    static constexpr std::uintmax_t file_octets_max = 16 << 20;  ///< ours: the console is below 1 MB
+    static constexpr std::uintmax_t file_octets_max = 16 << 20;  ///< chosen: the console is below 1 MB
 
     explicit StaticFiles(std::filesystem::path directory) : directory_(std::move(directory)) {}
     HttpResponse file(std::string_view path) const;

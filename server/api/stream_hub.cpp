@@ -12,23 +12,23 @@
 namespace aeolis::server {
 namespace {
 
-// Above this pace a client's rate counts against the wall clock too: at 100 × it would else get 100 times as much.
-// Ours.
+// Chosen: above this pace a client's rate also counts against the wall clock; at 100 × it would else receive 100 times
+// as much.
 constexpr double pace_without_further_thinning = 8.0;
 
-constexpr std::size_t sessions_ahead = 4;  // ours
+constexpr std::size_t sessions_ahead = 4;  // chosen
 
 double thinning_interval_s(const StreamShape& shape, const v1::RunState& state) {
     if (shape.max_rate_hz <= 0.0) return 0.0;
     return std::max(1.0, state.attained_pace() / pace_without_further_thinning) / shape.max_rate_hz;
 }
 
-/// Whether a sample at `sclk` begins a new interval since the one before.
+/// Whether a sample at `sclk` begins a new interval after the previous sample.
 bool begins_interval(double sclk, std::optional<double> previous, double interval_s) {
     return !previous || std::floor(sclk / interval_s) != std::floor(*previous / interval_s);
 }
 
-/// The samples of some channels, which ascend.
+/// The samples of the given channels, which ascend.
 v1::Samples some_of(const v1::Samples& samples, const std::vector<std::uint32_t>& channels, bool ascend) {
     v1::Samples chosen;
     const auto& ids = samples.ids();
@@ -113,10 +113,10 @@ StreamHub::StreamHub(std::uint16_t dictionary_id, Services services)
     : dictionary_id_(dictionary_id), services_(std::move(services)) {}
 
 void StreamHub::published(std::shared_ptr<const pipeline::PublishedBatch> batch) {
-    if (batch->run.value != state_.run()) return;  // a run's state comes before its first batch
+    if (batch->run.value != state_.run()) return;  // a run's state is published before its first batch
     figures.items += batch->last_seq - batch->first_seq + 1;
     last_seq_ = batch->last_seq;
-    range_.reset();  // what it points to may go
+    range_.reset();  // it points to items that may be removed
     if (!batch->built) {
         forget_items();
     } else {
@@ -145,7 +145,7 @@ void StreamHub::run_state(v1::RunState state) {
         before_ = std::move(state_);
         before_.set_last_seq(last_seq_);
         before_version_ = state_version_;
-        last_seq_ = state.last_seq();  // of a run that is over, as the archive has it; of a new one 0
+        last_seq_ = state.last_seq();  // of a finished run, from the archive; of a new one 0
         forget_items();
         cache_.clear();
     }
@@ -191,7 +191,7 @@ std::size_t StreamHub::sessions_behind() const {
 void StreamHub::wake_all() {
     for (std::size_t i = 0; i < sessions_.size(); ++i) {
         if (i + sessions_ahead < sessions_.size())
-            __builtin_prefetch(sessions_[i + sessions_ahead]);  // sends leave nothing of theirs in the nearest memory
+            __builtin_prefetch(sessions_[i + sessions_ahead]);  // sends evict the sessions from the cache
         sessions_[i]->wake();
     }
 }
@@ -217,7 +217,7 @@ const StreamHub::Range& StreamHub::range_after(archive::Sequence after, double i
 }
 
 StreamHub::Fresh StreamHub::fresh(const StreamShape& shape, archive::Sequence after, archive::Sequence sent_through) {
-    for (const auto& cached : cache_ | std::views::reverse) {  // the newest is what most ask for
+    for (const auto& cached : cache_ | std::views::reverse) {  // the newest is requested most
         if (cached.after == after && cached.sent_through == sent_through && cached.last_seq == last_seq_ &&
             cached.clocks_version == clocks_version_ && cached.shape == shape) {
             ++figures.shared;

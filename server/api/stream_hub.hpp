@@ -22,11 +22,11 @@ class StreamSession;
 
 enum class StreamFormat : std::uint8_t { protobuf, json };
 
-/// A message as it goes over the wire, shared by all clients that get the same.
+/// An encoded message, shared by all clients that receive the same.
 using Encoded = std::shared_ptr<const std::string>;
 Encoded encode(const v1::ServerMessage& message, StreamFormat format);
 
-/// What a subscription wants of the items. Two clients with the same shape get the same octets.
+/// What a subscription selects and how it is encoded. Clients with equal shapes receive the same octets.
 struct StreamShape {
     StreamFormat format{};
     bool all_channels = false;
@@ -36,30 +36,29 @@ struct StreamShape {
     bool operator==(const StreamShape&) const = default;
 };
 
-/// What is known of an item's samples before anyone asks for some of them.
+/// Facts about an item's samples, computed once for all clients.
 struct SamplesBefore {
-    std::optional<double>
-        previous_sclk;    ///< when the same packet's came before: so thinning needs no memory of what one client got
-    bool ascend = false;  ///< their channels do: some are found without looking at all
+    std::optional<double> previous_sclk;  ///< of the same packet; makes thinning stateless per client
+    bool ascend = false;                  ///< their channel ids ascend: allows binary search
 };
-/// A published item.
+/// A published item with the facts about its samples.
 struct ItemBefore {
     const v1::Item* item = nullptr;
     SamplesBefore samples;
 };
 
-/// One that goes to clients of some rate; of its samples those that a client has subscribed to.
+/// An item due at some client rate; each client receives those of its samples that it subscribed to.
 struct DueItem {
     const v1::Item* item = nullptr;
     bool thinned = false, ascend = false;
 };
 
-/// What goes into a Batch for this shape. Commands, events, alarms, tones, firings, explanations and links: all.
-/// Samples: the subscribed channels; `interval_s` (vehicle time) at least apart when > 0, and then marked thinned.
-/// Units: those received live, where the shape has any; the recording's are at /packets.
+/// Selects what goes into a Batch for this shape. Commands, events, alarms, tones, firings, explanations, links: all.
+/// Samples: the subscribed channels; with `interval_s` > 0 at least that far apart (vehicle time) and marked thinned.
+/// Packets: those received live, if the shape includes packets; the recording's are at /packets.
 void select_items(const StreamShape& shape, double interval_s, std::span<const ItemBefore> items, v1::Batch& batch);
 
-/// Tells it for items in their order.
+/// Finds the sample before each item's samples. Call in item order.
 class SampleSpacing {
   public:
     SamplesBefore next(const v1::Item& item);
@@ -67,28 +66,28 @@ class SampleSpacing {
   private:
     std::optional<double> previous(const v1::Samples& samples);
 
-    std::vector<std::pair<std::uint64_t, double>> last_;  ///< by packet (its first channel) and source
+    std::vector<std::pair<std::uint64_t, double>> last_;  ///< last SCLK by packet (its first channel) and source
 };
 
-/// What the clients of the stream follow: the run that is going on, its newest items, its clocks.
+/// The live end of the stream: the current run, its newest items and its clocks.
 ///
 /// In       published batches, run states, clocks             Out   wakes its sessions; encodes for them
 /// Thread   the network thread only
-/// Memory   the newest `items_max` items; older ones a session reads from the archive: a slow client costs no memory
+/// Memory   the newest `items_max` items. A session reads older ones from the archive: a slow client costs no memory
 class StreamHub {
   public:
-    static constexpr std::size_t items_max = 16'384;         ///< ours: some 4 MB; a minute of live data at 1 ×
-    static constexpr std::size_t message_items_max = 2'048;  ///< in one Batch: some 300 KiB
+    static constexpr std::size_t items_max = 16'384;         ///< chosen: about 4 MB, a minute of live data at 1 ×
+    static constexpr std::size_t message_items_max = 2'048;  ///< in one Batch: about 300 KiB
     static constexpr std::size_t shared_encodings = 32;
 
-    /// What a session asks of the rest of the server. Answers come back on the network thread.
+    /// What sessions need from the rest of the server. Callbacks are called on the network thread.
     struct Services {
         std::function<void(archive::RunId, archive::Sequence after, std::size_t limit, archive::Reader::ItemKinds,
                            std::function<void(Result<archive::ItemPage>)>)>
             read_items;
         std::function<void(std::uint64_t run, std::function<void(Result<v1::RunState>)>)> read_run;
         std::function<void(bool wanted)> want_items;
-        /// By which a run that is over is sent again at a pace.
+        /// The clock for replays at a pace.
         std::function<std::chrono::steady_clock::time_point()> now = std::chrono::steady_clock::now;
     };
     StreamHub(std::uint16_t dictionary_id, Services services);
@@ -96,15 +95,15 @@ class StreamHub {
     void published(std::shared_ptr<const pipeline::PublishedBatch> batch);
     void run_state(v1::RunState state);
     void clocks(v1::Clocks clocks);
-    /// Why nothing can be stored now; empty when all is well. Said with the state of the run.
+    /// Sets why nothing can be stored now; empty when storing works. Sent with the run state.
     void archive_fault(std::string fault);
 
     void add(StreamSession& session);
     void remove(StreamSession& session);
-    /// Clients that may follow no longer are closed.
+    /// Closes clients that may no longer follow.
     void check_clients();
     std::size_t sessions() const { return sessions_.size(); }
-    std::size_t sessions_behind() const;  ///< that have not been given all there is for them
+    std::size_t sessions_behind() const;  ///< that have not yet received everything
 
     // ---- for sessions ------------------------------------------------------------------------------------------
     const Services& services() const { return services_; }
@@ -112,32 +111,32 @@ class StreamHub {
     std::uint64_t current_run() const { return state_.run(); }  ///< 0: none yet
     const v1::RunState& state() const { return state_; }
     std::uint64_t state_version() const { return state_version_; }
-    /// The run before the current one, as it stood last; run 0: none since the server started.
+    /// The run before the current one, in its last state; run 0: none since the server started.
     const v1::RunState& before() const { return before_; }
-    std::uint64_t before_version() const { return before_version_; }  ///< of state_version(), when that was told
+    std::uint64_t before_version() const { return before_version_; }  ///< the state_version() of before()
     const v1::Clocks& latest_clocks() const { return clocks_; }
     std::uint64_t clocks_version() const { return clocks_version_; }
-    archive::Sequence last_seq() const { return last_seq_; }  ///< published, of the current run
-    bool holds(archive::Sequence after) const;                ///< every item with a larger number is still here
+    archive::Sequence last_seq() const { return last_seq_; }  ///< last item published of the current run
+    bool holds(archive::Sequence after) const;                ///< whether every item after `after` is still in memory
 
     struct Fresh {
-        Encoded message;  ///< null: nothing of this range is for this shape
+        Encoded message;  ///< null: nothing in this range matches the shape
         archive::Sequence through = 0;
     };
-    /// The items after `after`, message_items_max at most. Needs holds(after).
+    /// The items after `after`, at most message_items_max, encoded for `shape`. Requires holds(after).
     Fresh fresh(const StreamShape& shape, archive::Sequence after, archive::Sequence sent_through);
     Encoded encoded_state(StreamFormat format);
 
     struct Figures {
         std::uint64_t items = 0, encodings = 0, shared = 0, archive_pages = 0, refusals = 0;
-        std::uint64_t messages = 0, octets = 0;  ///< given to clients
+        std::uint64_t messages = 0, octets = 0;  ///< handed to clients
     };
     Figures figures;
 
   private:
     struct Held {
         std::shared_ptr<const pipeline::PublishedBatch> batch;
-        std::vector<SamplesBefore> samples;  ///< an item each
+        std::vector<SamplesBefore> samples;  ///< per item
     };
     struct Cached {
         StreamShape shape;
@@ -145,8 +144,8 @@ class StreamHub {
         std::uint64_t clocks_version = 0;
         Fresh fresh;
     };
-    /// What goes out after `after` at one rate: most clients are as far as the one before them, whatever their
-    /// channels.
+    /// The items that go out after `after` at one rate. Most clients are equally far, whatever their channels, so that
+    /// this is shared.
     struct Range {
         archive::Sequence after = 0, last_seq = 0, through = 0;
         double interval_s = 0.0;
@@ -165,10 +164,10 @@ class StreamHub {
     v1::Clocks clocks_;
     std::uint64_t state_version_ = 0, clocks_version_ = 0;
     archive::Sequence last_seq_ = 0;
-    std::deque<Held> held_;  ///< without a gap, up to last_seq_
+    std::deque<Held> held_;  ///< without gaps, up to last_seq_
     std::size_t held_items_ = 0;
     SampleSpacing spacing_;
-    std::optional<Range> range_;  ///< of what is held; none: as yet
+    std::optional<Range> range_;  ///< of the held items; none: not yet computed
     std::deque<Cached> cache_;
     std::string archive_fault_;
     std::array<Encoded, 2> state_encoded_;

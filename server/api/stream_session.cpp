@@ -115,8 +115,7 @@ void StreamSession::subscribe(const v1::Subscribe& subscribe) {
     shape_.max_rate_hz = subscribe.max_rate_hz();
     shape_.units = !subscribe.without_units();
     pace_ = subscribe.pace();
-    newest_run_ =
-        subscribe.run() == 0 && pace_ == 0.0;  // what is sent again goes on to its end, also when another run begins
+    newest_run_ = subscribe.run() == 0 && pace_ == 0.0;  // a replay goes to its end, even if another run begins
     if (run == 0 || run == hub_.current_run()) {
         older_run_.Clear();
         if (pace_ > 0.0) {
@@ -193,7 +192,7 @@ void StreamSession::follow(std::uint64_t run, archive::Sequence after) {
     replay_ = pace_ > 0.0 ? std::optional{ReplayPace{pace_}} : std::nullopt;
     due_.reset();
     next_batch_ = {};
-    // Beyond the end lies nothing yet: a client that asks for more has another run in mind.
+    // A position beyond the end means another run: start at the end.
     const auto last = replay_ || run != hub_.current_run() ? older_run_.last_seq() : hub_.last_seq();
     cursor_ = sent_through_ = std::min(after, last);
     page_.reset();
@@ -248,7 +247,7 @@ Encoded StreamSession::next_due() {
         if (auto state = last_state_of_run()) return state;
         const bool from_archive = older_run_.run() == run_;  // it is read to its end
         if (!gave_all_of_run() && !from_archive) {
-            ++subscription_;  // whatever page is on its way, it is asked for again
+            ++subscription_;  // drops a page in flight; it is read again
             read_run(run_, cursor_);
             return nullptr;
         }
@@ -366,7 +365,7 @@ Encoded StreamSession::from_page() {
     cursor_ = std::max(cursor_, page.complete_through);
     exhausted_ = !page.more;
     const bool last = exhausted_ || (follows_current() && cursor_ >= hub_.last_seq());
-    // A page of which nothing is wanted is not worth a message, but the last one says that the past is complete.
+    // A page without selected items is not sent, except the last: it reports that the past is complete.
     if (batch.items_size() == 0 && !last) return nullptr;
     batch.set_run(run_);
     batch.set_history(true);
@@ -386,7 +385,7 @@ void StreamSession::read_page() {
     ++hub_.figures.archive_pages;
     archive::Reader::ItemKinds kinds;
     kinds.samples = shape_.all_channels || !shape_.channels.empty();
-    kinds.units = shape_.units || replay_;  // they say when what was in them reached Earth
+    kinds.units = shape_.units || replay_;  // a replay needs packets for their times on Earth
     hub_.services().read_items(archive::RunId{static_cast<std::uint32_t>(run_)}, cursor_, page_items, kinds,
                                [self = weak_from_this(), subscription = subscription_](Result<archive::ItemPage> page) {
                                    const auto session = self.lock();

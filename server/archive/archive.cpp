@@ -14,8 +14,8 @@ namespace aeolis::archive {
 
 namespace {
 
-// So much the log holds before it is folded into the file: fewer, longer writes than by SQLite's default; and it is cut
-// back to that after a long reader let it grow. Ours, by measurement (bench/archive_bench.cpp).
+// WAL size at which it is checkpointed into the file, and to which it is truncated after a long reader let it grow:
+// fewer, longer writes than SQLite's default. Chosen by measurement (bench/archive_bench.cpp).
 constexpr std::int64_t log_octets = 16'384'000;
 
 Result<void> set_up_writer(sqlite::Database& database) {
@@ -37,17 +37,17 @@ std::filesystem::path beside(std::filesystem::path file, const char* suffix) {
 struct Archive::State {
     State(std::filesystem::path file_in, WriterLock lock_in) : file(std::move(file_in)), lock(std::move(lock_in)) {}
 
-    /// What a name stands for: device and inode. A file that is open lives on without its name; SQLite then goes on
-    /// writing what nobody will find again.
+    /// Device and inode behind a name. An open file outlives its name; SQLite would then keep writing where nobody
+    /// finds it.
     using Identity = std::optional<std::pair<dev_t, ino_t>>;
-    using Identities = std::array<Identity, 3>;  ///< of the file, its WAL, its shared memory
+    using Identities = std::array<Identity, 3>;  ///< of the file, its WAL and its shared memory
     static Identity identity_of(const std::filesystem::path& file);
     Identities identities() const {
         return {identity_of(file), identity_of(beside(file, "-wal")), identity_of(beside(file, "-shm"))};
     }
 
     Result<void> connect();
-    /// Before anything is written: that all three still have their names.
+    /// Checks before every write that all three files still have their names.
     Result<void> in_place();
     Result<void> put_back();
     Result<void> mark_interrupted();
@@ -103,9 +103,9 @@ Result<void> Archive::State::connect() {
     if (!row_writer) return row_writer.error();
     auto key = fresh->prepare(last_key_sql());
     if (!key) return key.error();
-    // The first question makes the log and its shared memory.
+    // The first query creates the WAL and its shared memory.
     if (auto asked = fresh->integer_of("SELECT max(run) FROM runs"); !asked) return asked.error();
-    // Statements of an earlier connection go before it.
+    // Statements of an earlier connection must be destroyed before it.
     rows = std::move(*row_writer);
     last_key = std::move(*key);
     database = std::move(*fresh);
@@ -131,12 +131,12 @@ Result<void> Archive::State::in_place() {
 Result<void> Archive::State::put_back() {
     const auto copy = beside(file, "-restored");
     if (auto done = copy_whole(database, copy); !done) return done;
-    // A log that belongs to another file must not stand beside it.
+    // A WAL that belongs to another file must not be beside this one.
     std::error_code why;
     for (const char* suffix : {"-wal", "-shm"}) std::filesystem::remove(beside(file, suffix), why);
     std::filesystem::rename(copy, file, why);
     if (why) return Error{file.string() + ": " + why.message()};
-    opened = {identity_of(file), std::nullopt, std::nullopt};  // ours, also when what follows must be tried again
+    opened = {identity_of(file), std::nullopt, std::nullopt};  // ours, even if the following must be retried
     if (auto done = make_durable(file); !done) return done;
     return connect();
 }

@@ -10,12 +10,12 @@
 
 namespace aeolis::archive {
 
-/// Packs a column of doubles, the times or the values of a segment, exact to the bit: also NaN payloads, -0 and
-/// infinities. The bit patterns are taken as whole numbers of 64 bits; they, their differences or the differences of
-/// those are split into planes of octets, which zstd packs. docs/archive.md has the layout octet by octet.
+/// Packs a column of doubles, the times or values of a segment, exact to the bit. NaN payloads, -0 and infinities are
+/// kept. The bit patterns are taken as 64-bit integers; they, their differences or their second differences are split
+/// into planes of octets, which zstd packs. docs/archive.md has the layout octet by octet.
 ///
-/// Memory  a zstd context each way, some 200 KB, and 16 octets a sample of the longest column so far
-/// Threads one owner
+/// Memory   a zstd context each way, about 200 KB, and 16 octets per sample of the longest column so far
+/// Threads  one owner
 class ColumnCodec {
   public:
     ColumnCodec();
@@ -23,11 +23,10 @@ class ColumnCodec {
     ColumnCodec& operator=(ColumnCodec&&) noexcept;
     ~ColumnCodec();
 
-    /// Valid until the next call.
+    /// Packs a column. The result is valid until the next call.
     std::span<const std::uint8_t> pack(std::span<const double> column);
 
-    /// Fills `column`, whose size the caller knows. Fails with what is wrong with the octets: any octet that was
-    /// changed is found by the checksums.
+    /// Fills `column`, whose size the caller knows. Fails with the fault; checksums detect any changed octet.
     Result<void> unpack(std::span<const std::uint8_t> packed, std::span<double> column);
 
   private:

@@ -11,12 +11,12 @@ namespace aeolis::archive {
 
 struct Expression::State {
     mu::Parser parser;
-    std::string said;                 ///< as muParser reads it: words in place of what is in braces
-    std::vector<std::size_t> origin;  ///< of each character of `said` in the text; one more for the end
+    std::string said;                 ///< for muParser: words in place of braces
+    std::vector<std::size_t> origin;  ///< position in the text of each character of `said`, and of its end
     std::vector<std::string> channels;
     std::array<double, expression_channels_max> values{};
 
-    /// muParser's variable for a channel.
+    /// The muParser variable of a channel.
     double* variable(const std::string& channel) {
         const auto known = std::ranges::find(channels, channel);
         const auto index = static_cast<std::size_t>(known - channels.begin());
@@ -35,7 +35,7 @@ Error error_at(std::size_t place, const std::string& what) {
     return {"expression, character " + std::to_string(place + 1) + ": " + what};
 }
 
-/// Whether the '=' at `at` is part of a comparison.
+/// Whether the '=' at `at` is part of a comparison operator.
 bool compares(const std::string& text, std::size_t at) {
     const auto is = [&](std::size_t i, const char* signs) {
         return i < text.size() && std::string_view(signs).find(text[i]) != std::string_view::npos;
@@ -43,7 +43,7 @@ bool compares(const std::string& text, std::size_t at) {
     return is(at + 1, "=") || (at > 0 && is(at - 1, "=<>!"));
 }
 
-/// Words in place of what stands in braces, which muParser does not know.
+/// Replaces names in braces, which muParser does not know, by words.
 Result<void> read_braces(const std::string& text, std::string& said, std::vector<std::size_t>& origin,
                          std::vector<std::string>& quoted) {
     for (std::size_t at = 0; at < text.size(); ++at) {

@@ -13,21 +13,21 @@ namespace aeolis::archive {
 inline constexpr std::size_t expression_octets_max = 1'000;
 inline constexpr std::size_t expression_channels_max = 16;
 
-/// A formula of channels: "sqrt(nav_velocity_x_mps^2 + {GNC-0102}^2)". A word is a channel's name; braces hold a name
-/// or an alias of any letters. Operators, functions and the constants _pi and _e are those of muParser; assignment is
-/// not.
+/// A formula over channels: "sqrt(nav_velocity_x_mps^2 + {GNC-0102}^2)". A word is a channel's name; braces hold a name
+/// or alias with any characters. Operators, functions and the constants _pi and _e are muParser's; assignment is not
+/// allowed.
 class Expression {
   public:
-    /// An Error says at which character of `text`, from 1, and what is wrong there.
+    /// Parses a formula. The Error gives the position in `text`, counted from 1, and the fault there.
     static Result<Expression> parse(const std::string& text);
     Expression(Expression&&) noexcept;
     Expression& operator=(Expression&&) noexcept;
     ~Expression();
 
-    /// The channels in it, in the order of their first appearance; one at least.
+    /// The channels in the formula, at least one, in the order of first appearance.
     const std::vector<std::string>& channels() const;
-    /// @param values  one a channel, in that order
-    /// NaN and infinities where arithmetic gives them.
+    /// Evaluates the formula; NaN and infinities where arithmetic gives them.
+    /// @param values  one per channel, in the order of channels()
     double value(std::span<const double> values);
 
   private:

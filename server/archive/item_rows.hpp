@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-// Records to rows and back, by the description of their kind: SQL, binding, reading.
+// Converts records to rows and back from the description of their kind: SQL, binding, reading.
 namespace aeolis::archive {
 
-/// How a value stands in a column: SQL type, whether NULL is one of its values, binding and reading.
+/// How a value is stored in a column: SQL type, whether it may be NULL, binding and reading.
 template <typename Value>
 struct Stored;
 
@@ -42,7 +42,7 @@ struct Stored<Value> {
             ++value;
         return static_cast<Value>(value);
     }
-    /// Other words than these do not come into the file.
+    /// A constraint that admits only these words.
     static std::string check(const char* name) {
         std::string words;
         for (std::size_t value = 0; value < Spelling<Value>::count; ++value)
@@ -67,7 +67,7 @@ struct Stored<Ert> : Stored<std::int64_t> {
     static Ert read(const sqlite::Statement& row, int column) { return {row.integer(column)}; }
 };
 
-/// SQLite stores NaN as NULL.
+/// A double. SQLite stores NaN as NULL.
 template <>
 struct Stored<double> {
     static constexpr char type[] = "REAL";
@@ -137,12 +137,12 @@ struct Stored<std::optional<Value>> : Stored<Value> {
 
 struct ColumnText {
     std::string name;
-    std::string declared;  ///< as CREATE TABLE has it
-    std::string selected;  ///< as SELECT has it
+    std::string declared;  ///< in CREATE TABLE
+    std::string selected;  ///< in SELECT
     bool searched = false;
 };
 
-/// Columns as SQL has them, for visiting.
+/// Visitor that collects the columns as SQL.
 struct DescribeColumns {
     std::vector<ColumnText> columns;
 
@@ -164,13 +164,13 @@ struct DescribeColumns {
     }
 };
 
-/// A record's values to the parameters of a statement, for visiting.
+/// Visitor that binds a record's values to a statement's parameters.
 struct BindColumns {
     sqlite::Statement& row;
     int parameter = 1;
     RunId run{};
     std::span<const std::uint8_t> batch_octets{};
-    std::int64_t link = 0;  ///< its number
+    std::int64_t link = 0;  ///< the link's number
 
     template <typename Value>
     void operator()(const char*, const Value& value, Column column = Column::plain) {
@@ -191,8 +191,7 @@ struct BindColumns {
     }
 };
 
-/// A row's columns to the members of a record, for visiting. Octets of a unit stay in the row, only their number is
-/// told.
+/// Visitor that reads a row's columns into a record. A packet's octets stay in the row; only their count is read.
 struct ReadColumns {
     const sqlite::Statement& row;
     int column = 0;
@@ -220,29 +219,29 @@ bool is_searched() {
     return searched;
 }
 
-/// One text of all columns, with something between.
+/// The given text of all columns, separated by `between`.
 std::string joined(const std::vector<ColumnText>& columns, std::string ColumnText::* text, const char* between);
 
-/// "SELECT key, ert_us, … FROM `schema`TABLE WHERE `where` ORDER BY key LIMIT ?3", for read_row().
+/// SQL for read_row(): "SELECT key, ert_us, … FROM `schema`TABLE WHERE `where` ORDER BY key LIMIT ?3".
 template <typename Record>
 std::string select_sql(const std::string& where, const std::string& schema = {}) {
     return "SELECT key, ert_us, " + joined(columns_of<ItemTable, Record>(), &ColumnText::selected, ", ") + " FROM " +
            schema + ItemTable<Record>::name + " WHERE " + where + " ORDER BY key LIMIT ?3";
 }
-/// Rows with keys ?1 to ?2, at most ?3, in order. Lives for ever, as all of these.
+/// SQL for the rows with keys ?1 to ?2, at most ?3, in order. Static storage, as for all these functions.
 template <typename Record>
 const char* rows_sql() {
     static const std::string sql = select_sql<Record>("key BETWEEN ?1 AND ?2");
     return sql.c_str();
 }
-/// The same, of those rows alone in which words are found: ?4.
+/// SQL for those of these rows that contain the words ?4.
 template <typename Record>
 const char* found_rows_sql() {
     static const std::string sql =
         select_sql<Record>("key IN (SELECT rowid FROM search WHERE search MATCH ?4 AND rowid BETWEEN ?1 AND ?2)");
     return sql.c_str();
 }
-/// The list of the item with key ?1, in order.
+/// SQL for the parts of the item with key ?1, in order.
 template <typename Part>
 const char* parts_sql() {
     static const std::string sql = "SELECT " + joined(columns_of<PartTable, Part>(), &ColumnText::selected, ", ") +
@@ -250,7 +249,7 @@ const char* parts_sql() {
     return sql.c_str();
 }
 
-/// Without its parts, which have rows of their own.
+/// Reads a record without its parts, which have rows of their own.
 template <typename Record>
 Record read_row(const sqlite::Statement& row) {
     Record record;
@@ -265,7 +264,7 @@ Part read_part(const sqlite::Statement& row) {
     PartTable<Part>::columns(part, ReadColumns{row});
     return part;
 }
-/// Octets of the unit whose row stands ready.
+/// The octets of the packet in the current row.
 std::span<const std::uint8_t> octets_of_unit(const sqlite::Statement& row);
 
 }  // namespace aeolis::archive

@@ -7,22 +7,22 @@
 
 #include <tuple>
 
-// Each kind of item, described once: its table, its columns, and what of a record stands in them. The SQL that makes,
-// fills and reads the table, the binding of records, the reading of rows and the text that is searched follow from it
+// Each kind of item, described once: its table, its columns, and the record's member for each column. The SQL that
+// creates, fills and reads the table, the binding of records, the reading of rows and the searched text follow from it
 // (item_rows.hpp). Each table begins with the item's key and its ERT in microseconds.
 namespace aeolis::archive {
 
-/// What is special about a column.
+/// The special properties of a column.
 enum class Column : std::uint8_t {
     plain,
-    searched,  ///< its words are in the table "search"
-    optional,  ///< NULL stands for an empty text, no octets, an undefined number (NaN)
+    searched,  ///< its words are indexed in the table "search"
+    optional,  ///< NULL stands for an empty text, no octets or an undefined number (NaN)
 };
 
-/// The run's number, which the key has too: for an index.
+/// The run's number, which is also in the key; needed for an index.
 struct OfRun {};
 
-/// A link's name, stored as its number among the words of the archive.
+/// A link's name, stored as its number among the archive's words.
 template <typename Text>
 struct LinkName {
     Text& name;
@@ -30,8 +30,8 @@ struct LinkName {
 template <typename Text>
 LinkName(Text&) -> LinkName<Text>;
 
-/// An enumeration that stands as its words, for people who open the file with other tools: how many values it has, from
-/// 0 on, and the word of each.
+/// The words of an enumeration stored as text, for people who open the file with other tools: the number of its values,
+/// from 0, and the word of each.
 template <typename Enum>
 struct Spelling;
 template <>
@@ -65,9 +65,9 @@ struct Spelling<CarrierLock> {
     static const char* of(CarrierLock lock) { return to_text(lock); }
 };
 
-/// Of each kind: `name` of the table; `derived`, whether its rows follow from those of units; `of_batch`, where a batch
-/// has its records; `columns`, which calls visit(name, member, Column) for each column but key and ert_us. Of a kind
-/// with a list: `parts`, the list, whose own columns PartTable describes.
+/// Describes a kind of item. `name`: its table. `derived`: whether its rows follow from those of packets. `of_batch`:
+/// the records in a batch. `columns`: calls visit(name, member, Column) for each column but key and ert_us. `parts`,
+/// for a kind with a list: that list, whose own columns PartTable describes.
 template <typename Record>
 struct ItemTable;
 template <typename Part>
@@ -280,13 +280,13 @@ concept HasParts = requires(Record& record) { ItemTable<Record>::parts(record); 
 template <HasParts Record>
 using PartOf = typename std::remove_cvref_t<decltype(ItemTable<Record>::parts(std::declval<Record&>()))>::value_type;
 
-/// Names a kind of item where its record is not at hand.
+/// A tag for a kind of item where no record is at hand.
 template <typename Record_>
 struct ItemKind {
     using Record = Record_;
 };
 
-/// All kinds that have a table: samples have none, they are made again from their units.
+/// All kinds that have a table. Samples have none: they are decommutated again from their packets.
 template <template <typename> typename Of>
 using OfItemKinds = std::tuple<Of<UnitRecord>, Of<EventRecord>, Of<ToneRecord>, Of<StageRecord>, Of<FiringRecord>,
                                Of<ExplanationRecord>, Of<LinkRecord>, Of<AlarmRecord>, Of<StalenessRecord>,
@@ -296,7 +296,7 @@ using OfItemKinds = std::tuple<Of<UnitRecord>, Of<EventRecord>, Of<ToneRecord>, 
 void for_item_kinds(auto act) {
     std::apply([&](auto... kind) { (act(kind), ...); }, OfItemKinds<ItemKind>{});
 }
-/// The same until an Error, which is then the result.
+/// Calls act(ItemKind<Record>) for each kind until one fails; returns that Error.
 Result<void> try_item_kinds(auto act) {
     Result<void> done;
     std::apply([&](auto... kind) { ((done = act(kind)).ok() && ...); }, OfItemKinds<ItemKind>{});

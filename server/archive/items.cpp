@@ -14,7 +14,7 @@ static_assert(static_cast<int>(Source::realtime) == v1::SOURCE_REALTIME);
 static_assert(static_cast<int>(Source::recorded) == v1::SOURCE_RECORDED);
 static_assert(static_cast<int>(Source::ground) == v1::SOURCE_GROUND);
 
-/// Enumerations of the schema have the values of ours; tests/server/archive/items_test.cpp compares their words.
+/// Converts an enumeration to the schema's, with equal values; tests/server/archive/items_test.cpp compares the words.
 template <typename Wire, typename Own>
 Wire wire(Own value) {
     return static_cast<Wire>(static_cast<int>(value));
@@ -27,7 +27,7 @@ v1::Item item_with(const ItemRecord& record) {
     return item;
 }
 
-constexpr double heard_span_s = 8.0e12;  ///< ours: 250 000 years; as microseconds, with any day of year, still an int64
+constexpr double heard_span_s = 8.0e12;  ///< chosen: 250 000 years; in microseconds still an int64
 }  // namespace
 
 v1::Item to_item(const UnitRecord& record, const dictionary::Dictionary* dictionary) {

@@ -11,13 +11,14 @@
 #include <string_view>
 #include <vector>
 
-// Records as the schema's items: the same function when an item is published and when it is read back, so that a
-// client cannot tell the two apart.
+// Converts records to the schema's items. Publishing and reading back use the same functions, so that a client cannot
+// tell the two apart.
 namespace aeolis::archive {
 
-/// The name of an undecoded unit is why not. Without a dictionary (the run was recorded with another) it has none.
+/// The name of an undecoded packet is the reason. Without a dictionary (another was used to record the run) it is
+/// empty.
 v1::Item to_item(const UnitRecord& record, const dictionary::Dictionary* dictionary);
-/// `values` one a channel; NaN is left out.
+/// @param values  one per channel; NaN is left out
 v1::Item to_item(const SampleRecord& record, std::span<const ChannelId> channels, std::span<const double> values);
 v1::Item to_item(const EventRecord& record);
 v1::Item to_item(const ToneRecord& record);
@@ -30,7 +31,7 @@ v1::Item to_item(const AlarmRecord& record);
 v1::Item to_item(const StalenessRecord& record, const dictionary::Dictionary* dictionary);
 v1::Item to_item(const AlarmActionRecord& record);
 v1::Item to_item(const NoteRecord& record);
-/// The same for any kind that has a table.
+/// Converts a record of any kind that has a table.
 template <typename Record>
 v1::Item item_of(const Record& record, const dictionary::Dictionary* dictionary) {
     if constexpr (requires { to_item(record, dictionary); })
@@ -39,15 +40,15 @@ v1::Item item_of(const Record& record, const dictionary::Dictionary* dictionary)
         return to_item(record);
 }
 
-/// Of the octets of a command as its history spells them: pairs of lower-case hexadecimal digits.
+/// Reads a command's octets from pairs of lower-case hexadecimal digits.
 std::vector<std::uint8_t> octets_of_hex(std::string_view hex);
 
 v1::ClockReply to_reply(const ClockCorrelation& clock);
 ClockCorrelation correlation_of(const v1::RunState& run);
-/// When what happens on board then is heard on Earth, by the run's own clock and light time. A time too far away for a
-/// date is before or after everything.
+/// When on Earth the event on board at `at` is received, by the run's clock correlation and light time. A time too far
+/// away for a date compares as before or after everything.
 Ert heard_at(const v1::RunState& run, Sclk at);
-/// Back from there: what of the vehicle is heard at `ert`. Not cut to a tick.
+/// The inverse of heard_at(): the time on board that is received at `ert`. Not rounded to a tick.
 Sclk seen_at(const v1::RunState& run, Ert ert);
 
 inline v1::Item to_item(const Annotation& annotation) {

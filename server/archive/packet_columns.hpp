@@ -9,7 +9,7 @@
 
 namespace aeolis::archive {
 
-/// Which fields of each packet are channels, and so columns of its segments; and in which packets a channel comes.
+/// Maps packets to columns: the fields that are channels, and the packets in which each channel occurs.
 class PacketColumns {
   public:
     explicit PacketColumns(const dictionary::Dictionary& dictionary);
@@ -19,12 +19,12 @@ class PacketColumns {
         std::size_t column = 0;
     };
 
-    /// The channels of a packet, in the order of its fields. Empty: its units have no samples.
+    /// The channels of a packet, in the order of its fields. Empty: the packet has no samples.
     const std::vector<ChannelId>& channels(std::size_t packet) const { return packets_[packet].channels; }
     const std::vector<Place>& places(ChannelId channel) const { return places_[channel.value]; }
     std::size_t packets() const { return packets_.size(); }
 
-    /// Appends one value a column; NaN where undefined.
+    /// Appends one value per column; NaN where undefined.
     void append_values(const telemetry::Decoded& decoded, std::vector<double>& values) const;
     double value(const telemetry::Decoded& decoded, std::size_t column) const;
 

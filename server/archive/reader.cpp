@@ -123,7 +123,8 @@ Result<std::vector<AuditEntry>> Reader::audit(std::uint64_t after, std::size_t l
 
 namespace {
 
-/// From correlation_sclk, correlation_scet_us, clock_rate, leap_seconds, clock_version in these columns.
+/// The clock correlation in a row. Columns: correlation_sclk, correlation_scet_us, clock_rate, leap_seconds,
+/// clock_version.
 ClockCorrelation clock_of(const sqlite::Statement& row, int column) {
     return {Sclk{row.real(column)}, Scet{row.integer(column + 1)}, row.real(column + 2),
             static_cast<std::int32_t>(row.integer(column + 3)), static_cast<std::uint32_t>(row.integer(column + 4))};

@@ -22,41 +22,42 @@
 
 namespace aeolis::archive {
 
-inline constexpr std::size_t items_page_max = 10'000;      ///< items in one answer: some 2 MB encoded
+inline constexpr std::size_t items_page_max = 10'000;      ///< items in one answer: about 2 MB encoded
 inline constexpr std::size_t packets_page_max = 1'000;     ///< packets with their fields in one answer: about 1 MB
 inline constexpr std::size_t rows_page_max = 10'000;       ///< events, explanations in one answer
 inline constexpr std::size_t channels_max = 64;            ///< channels in one series query
-inline constexpr std::size_t exact_samples_max = 200'000;  ///< samples of one channel in one exact answer; more: thin
-inline constexpr std::size_t thinned_points_max = 20'000;  ///< points asked for when thinning
-inline constexpr std::size_t rows_scanned_max = 200'000;   ///< rows looked at for one page of a filtered list
+inline constexpr std::size_t exact_samples_max = 200'000;  ///< samples of one channel in one exact answer; beyond: thin
+inline constexpr std::size_t thinned_points_max = 20'000;  ///< points in one thinned answer
+inline constexpr std::size_t rows_scanned_max = 200'000;   ///< rows read for one page of a filtered list
 
-/// From and to, both included; none: open. Upside down is an Error.
+/// A range of SCLK, both ends included; none: open. A reversed range is an Error.
 struct SclkRange {
     std::optional<double> from_s, to_s;
 };
 
 struct ItemPage {
     std::vector<v1::Item> items;    ///< in order of seq
-    Sequence complete_through = 0;  ///< every item up to here has been given, or lies before `after`
+    Sequence complete_through = 0;  ///< every item up to here is in `items`, or not after `after`
     bool more = false;
 };
 
 struct SeriesQuery {
     std::vector<std::string> channels;  ///< names or aliases
     SclkRange range;
-    std::optional<std::size_t> points;  ///< thin to at most so many; none: exact
-    std::optional<Source> source{};     ///< only what came so; none: both, each sample once
-    bool provenance = false;            ///< with the origin of every sample, and the gaps
+    std::optional<std::size_t> points;  ///< thin to at most this many; none: exact
+    std::optional<Source> source{};     ///< only samples of this source; none: both, each sample once
+    bool provenance = false;            ///< add the origin of every sample, and the gaps
 };
 
-/// Verdicts on a unit against the other path. Before the whole recording is down, nothing is missing in it: pending.
+/// Verdicts of comparing a packet with the other path. Nothing counts as missing in the recording until all of it is
+/// down: "pending".
 inline constexpr std::array<const char*, 6> verdicts{"identical",       "differs",     "missing_in_recording",
                                                      "never_seen_live", "not_decoded", "pending"};
 
 struct PacketQuery {
     std::optional<std::string> name;  ///< of the packet: "GncNavigation"
     SclkRange range;
-    std::string verdict;  ///< only units of this one, by name; empty: all
+    std::string verdict;  ///< only packets with this verdict; empty: all
     Sequence after = 0;
     std::size_t limit = 100;
     bool fields = true;
@@ -65,8 +66,8 @@ struct PacketQuery {
 struct EventQuery {
     SclkRange range;
     std::vector<std::string> levels;  ///< empty: all
-    std::string text;                 ///< words of name or text, or their beginnings, in any order and case; empty: all
-    bool duplicates = false;          ///< also those of the recording that were seen in real time
+    std::string text;         ///< words of name or text, or prefixes of words, in any order and case; empty: all
+    bool duplicates = false;  ///< include recorded ones that were also seen in real time
     Sequence after = 0;
     std::size_t limit = 1'000;
 };
@@ -79,15 +80,15 @@ struct ToneQuery {
 };
 
 struct CommandQuery {
-    SclkRange range;   ///< with a stage that is dated between when Earth heard of its beginning and when of its end
+    SclkRange range;   ///< commands with a stage between the range's ends as seen on Earth
     std::string text;  ///< words of a stage, as in EventQuery
 };
 
 struct TimepointQuery {
-    std::optional<Sclk> at{};  ///< as it was known when the vehicle was heard at this time; none: as it is known
-    std::optional<Ert> now{};  ///< of a run that goes on: what is overdue comes now at the earliest
-    bool recorded = true;      ///< with what only the recording tells
-    std::optional<dictionary::OffsetChange> change{};  ///< what a command would change
+    std::optional<Sclk> at{};  ///< as known when this time was received from the vehicle; none: as known now
+    std::optional<Ert> now{};  ///< of the current run: an overdue timepoint is predicted no earlier than now
+    bool recorded = true;      ///< include what only the recording tells
+    std::optional<dictionary::OffsetChange> change{};  ///< a change to be previewed
 };
 
 struct ExplanationQuery {
@@ -112,25 +113,26 @@ struct ChannelValue {
     Source source{};
 };
 
-/// How far a walk through samples has come, and how wide its windows of time are.
+/// The position of a walk through samples, and the width of its time windows.
 struct SampleCursor {
     double from_s = 0.0, to_s = 0.0, width_s = 0.0;
 };
 struct SamplePage {
     std::vector<ChannelValue> samples;
-    std::optional<SampleCursor> next;  ///< to ask on; none: that was all
+    std::optional<SampleCursor> next;  ///< for the next page; none: this was the last
 };
 
-/// Questions to an archive, while its writer goes on or after.
+/// Answers queries to an archive, during and after its writer's work.
 ///
 /// In       run, names, ranges: anything a client may send        Out   the schema's messages, or an Error in words
-/// Sees     what was committed before the question was asked. Samples are read from segments and, for what is not yet
-///          in a segment, made again from the raw units, so that nothing durable is missing.
-/// Limits   those above; an answer that would be longer is refused or comes in pages
-/// Threads  one owner a Reader; many Readers may be open. The dictionary must outlive it.
+/// Sees     what was committed before the query. Samples are read from segments; those not yet in a segment are
+///          decommutated again from the packets, so that nothing durable is missing
+/// Limits   those above; a longer answer is refused or comes in pages
+/// Threads  one owner per Reader; many Readers may be open. The dictionary must outlive it
 class Reader {
   public:
-    /// @param other  the mission whose dictionary that is, where it is not ours; it must outlive this as well
+    /// Opens the archive for reading.
+    /// @param other  the mission that the dictionary belongs to, when it is another mission; it must outlive this too
     static Result<Reader> open(const std::filesystem::path& file, const dictionary::Dictionary& dictionary,
                                const telemetry::OtherMission* other = nullptr);
 
@@ -138,46 +140,46 @@ class Reader {
     Reader& operator=(Reader&&) noexcept;
     ~Reader();
 
-    /// A question that is being answered ends with an Error soon after `stop` says so. Null: never.
+    /// Sets the stop condition: a query in progress ends with an Error soon after `stop` returns true. Null: never.
     void stop_when(std::function<bool()> stop);
-    /// Whether that has happened since.
+    /// Whether a query has been stopped since.
     bool stopped() const;
-    /// The file no longer has its name: answers are from what it was, a new Reader sees what it is.
+    /// Whether the file was removed or replaced under its name: answers are from the old file; open a new Reader.
     bool outdated() const;
 
-    /// All runs, newest first. A run that goes on is `running`; pace and clocks are the rehearsal's to fill in.
+    /// All runs, newest first. A run in progress is `running`; the rehearsal fills in its pace and clocks.
     Result<v1::RunList> runs();
     Result<v1::RunState> run(RunId run);
 
-    /// Items with a larger sequence number, of all kinds, as they were published. Units and samples can be left out:
-    /// complete_through counts them as given.
+    /// The kinds of items to include. complete_through counts excluded ones as given.
     struct ItemKinds {
         bool samples = true;
         bool units = true;
     };
+    /// The items after `after`, in order, of all kinds, as they were published.
     Result<ItemPage> items(RunId run, Sequence after, std::size_t limit);
     Result<ItemPage> items(RunId run, Sequence after, std::size_t limit, ItemKinds kinds);
     Result<Sequence> last_seq(RunId run);
-    /// Fails when that run was not interrupted.
+    /// What is needed to continue an interrupted run. Fails when the run was not interrupted.
     Result<CutOffRun> cut_off(RunId run);
 
-    /// Live and recorded as one series in order of SCLK, each sample once. Undefined values are left out: gaps.
+    /// Live and recorded samples as one series in order of SCLK, each sample once. Undefined values are left out: gaps.
     Result<v1::ChannelSeriesList> series(RunId run, const SeriesQuery& query);
-    /// A formula of channels as one series, at the times of the first channel in it; of each other channel the newest
-    /// value up to then counts. Exact, or thinned to the least and the largest of equal intervals; takes the same
-    /// memory however many samples there are. What is undefined (NaN) is left out.
+    /// A formula of channels as one series, at the times of its first channel. Each other channel counts with its
+    /// newest value up to then. Exact, or thinned to the minimum and maximum of equal intervals. Memory does not grow
+    /// with the number of samples. Undefined values (NaN) are left out.
     Result<v1::ChannelSeries> derived(RunId run, const std::string& expression, const SclkRange& range,
                                       std::optional<std::size_t> points);
-    /// All samples of the channels in a range, in order of SCLK, some thousands at a time; takes the same memory for a
-    /// minute as for a year. No channel named: all. Ends with the error that `take` gives.
+    /// Passes all samples of the channels in a range to `take`, in order of SCLK, some thousands at a time. Memory does
+    /// not grow with the range. No channels: all. Ends with the Error that `take` returns.
     using TakeSamples = std::function<Result<void>(std::span<const ChannelValue> samples)>;
     Result<void> each_sample(RunId run, const std::vector<std::string>& channels, const SclkRange& range,
                              const TakeSamples& take);
-    /// The first of them, in order of SCLK, some ten thousand, and where the rest begins; or what follows a page. What
-    /// came after the first page was asked for belongs to none.
+    /// One page of these samples, in order of SCLK: about ten thousand, and where the next page begins. Samples
+    /// received after the first page was read are in no page.
     Result<SamplePage> sample_page(RunId run, const std::vector<std::string>& channels, const SclkRange& range,
                                    const std::optional<SampleCursor>& after = {});
-    /// The newest value of every channel up to `at` (none: of all), undefined ones left out.
+    /// The newest value of every channel up to `at` (none: of the whole run), without undefined ones.
     Result<std::vector<ChannelValue>> latest(RunId run, std::optional<Sclk> at);
 
     Result<v1::PacketList> packets(RunId run, const PacketQuery& query);
@@ -185,29 +187,29 @@ class Reader {
     Result<v1::ToneList> tones(RunId run, const ToneQuery& query);
     Result<v1::ExplanationList> explanations(RunId run, const ExplanationQuery& query);
     Result<v1::CommandList> commands(RunId run, const CommandQuery& query = {});
-    /// What changed about alarms, and what was done about them, a page at a time.
+    /// Changes of alarms and actions on them, a page at a time.
     Result<v1::AlarmList> alarms(RunId run, Sequence after, std::size_t limit);
     /// All alarms that are not normal, the most severe first. Refused for a run of another dictionary.
-    /// @param now  on Earth; none: when the run's newest unit came
+    /// @param now  time on Earth; none: when the run's newest packet was received
     Result<v1::AlarmList> alarm_states(RunId run, std::optional<Ert> now);
-    /// Names of all links that any run had.
+    /// The names of all links of all runs.
     Result<std::vector<std::string>> links();
-    /// An Error says why `act` may not be done about the alarm of that name.
+    /// Whether `act` is permitted on the alarm of that name. The Error says why not.
     Result<void> may(RunId run, const std::string& alarm, telemetry::AlarmAct act, Ert now);
-    /// When the run's newest unit came.
+    /// When the run's newest packet was received.
     Result<Ert> newest_ert(RunId run);
     Result<v1::NoteList> notes(RunId run, const NoteQuery& query);
-    /// What instructors did to the run, in order: for those who are rehearsed only once it is over.
+    /// The interventions of instructors in the run, in order. Those being rehearsed see them only once the run is over.
     Result<v1::InterventionList> interventions(RunId run);
-    /// The timeline: planned, fired as far as it is known, and predicted from what was known.
+    /// The timeline: planned times, firings as far as known, and predictions from what was known.
     Result<v1::TimepointList> timepoints(RunId run, const TimepointQuery& query = {});
     Result<v1::RecordingSummary> recording(RunId run);
-    /// Each unit and tone that was seen live against the recording, in totals; takes as long as reading all units.
+    /// Compares each live packet and tone with the recording, in totals. Takes as long as reading all packets.
     Result<v1::ProofReport> proof(RunId run);
-    /// All that a review of the landing begins with; as long as proof().
+    /// The as-flown report that a review of the landing starts from. Takes as long as proof().
     Result<v1::AsFlownReport> as_flown(RunId run);
 
-    /// In order, of those after `after`.
+    /// The entries after `after`, in order.
     Result<std::vector<AuditEntry>> audit(std::uint64_t after, std::size_t limit);
 
     struct State;  ///< reader_state.hpp: shared by the reader's parts

@@ -8,7 +8,7 @@
 
 #include <algorithm>
 
-// How alarms stand: told from what changed and what was done, each time it is asked.
+// The states of alarms, derived anew for each query from the changes and actions.
 namespace aeolis::archive {
 
 namespace {
@@ -35,7 +35,7 @@ void apply(const v1::Item& item, const dictionary::Dictionary& dictionary, telem
     }
 }
 
-/// What the last item of each kind says about one alarm.
+/// Sets the parts of an alarm's state that the last item of each kind gives.
 void describe(const v1::Item& item, v1::AlarmState& state) {
     state.set_seq(item.seq());
     if (item.has_alarm()) {
@@ -58,7 +58,7 @@ void describe(const v1::Item& item, v1::AlarmState& state) {
 
 }  // namespace
 
-/// All that happened to the run's alarms, and what it came to.
+/// All changes and actions of the run's alarms, and the states that result.
 Result<telemetry::AlarmDesk> Reader::alarm_desk(RunId run, std::vector<v1::Item>& changes) {
     {
         const auto info = state_->info(run);

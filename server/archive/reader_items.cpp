@@ -7,12 +7,12 @@
 
 #include <algorithm>
 
-// Items of all kinds, as one sequence, by reading each table from the same place on.
+// Items of all kinds as one sequence: each table is read from the same position.
 namespace aeolis::archive {
 
 namespace {
 
-/// One page being collected. `through` comes down when a table has more rows than fit.
+/// A page being collected. `through` is lowered when a table has more rows than fit.
 struct Page {
     RunId run;
     Sequence after = 0;
@@ -42,7 +42,7 @@ Result<void> collect(Reader::State& reader, const char* sql, Page& page, Read re
     return {};
 }
 
-/// In order, and no more than is complete.
+/// Sorts the page and removes items beyond `through`.
 void finish(Page& page) {
     std::sort(page.items.begin(), page.items.end(), [](const auto& a, const auto& b) { return a.seq() < b.seq(); });
     while (!page.items.empty() && page.items.back().seq() > page.through) page.items.pop_back();
@@ -51,7 +51,7 @@ void finish(Page& page) {
     page.through = page.items.back().seq();
 }
 
-/// All of one kind.
+/// Collects the items of one kind.
 template <typename Record>
 Result<void> collect(Reader::State& reader, const RunInfo& info, Page& page, const char* sql = rows_sql<Record>()) {
     const auto* words = reader.words_of(info);
@@ -65,14 +65,14 @@ Result<void> collect_alarms(Reader::State& reader, const RunInfo& info, Page& pa
     return done;
 }
 
-/// A unit's row stands for one or two items: itself and, sampled, the next number. The page may begin between them.
+/// Collects packets and their samples. A row gives one item or, if sampled, two; the page may begin between them.
 Result<void> collect_units(Reader::State& reader, const RunInfo& info, Page& page, Reader::ItemKinds kinds) {
     auto rows = reader.query(rows_sql<UnitRecord>());
     if (!rows) return rows.error();
     (*rows)
         ->bind(1, item_key(page.run, page.after))
         .bind(2, item_key(page.run, page.through))
-        .bind(3, static_cast<std::int64_t>(page.limit + 1));  // the first may have nothing left to give
+        .bind(3, static_cast<std::int64_t>(page.limit + 1));  // the first row may have no item left
     const auto* words = reader.words_of(info);
     std::vector<double> values;
     std::size_t count = 0;
@@ -85,7 +85,7 @@ Result<void> collect_units(Reader::State& reader, const RunInfo& info, Page& pag
         last = unit.sampled ? unit.seq + 1 : unit.seq;
         if (kinds.units && unit.seq > page.after) page.items.push_back(to_item(unit, words));
         if (!kinds.samples || !unit.sampled) continue;
-        // With another dictionary the values cannot be told; the item still takes its place.
+        // With another dictionary the values are unknown; the item still keeps its number.
         const SampleRecord sample{{unit.seq + 1, unit.ert}, unit.packet.value_or(0), unit.sclk, unit.source, {}};
         values.clear();
         if (words != nullptr && reader.decode(octets_of_unit(**rows))) {

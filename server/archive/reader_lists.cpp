@@ -25,16 +25,16 @@ std::string hex(std::span<const std::uint8_t> octets) {
     return text;
 }
 
-/// What is asked for in words, as FTS5 wants it.
+/// The words of a query in FTS5's form.
 struct Wanted {
     explicit Wanted(const std::string& text) : asked(!text.empty()), words(search_words(text)) {}
     bool asked;
     std::string words;
-    bool nothing() const { return asked && words.empty(); }  ///< only signs: no row has them
+    bool nothing() const { return asked && words.empty(); }  ///< punctuation only: no row matches
 };
 
-/// Rows of one table after `after`, until `take` says that the page is full. Gives the number to go on after; 0: no
-/// more.
+/// Reads rows of one table after `after` until `take` says that the page is full. Returns the number to continue after;
+/// 0: no more rows.
 template <typename Take>
 Result<Sequence> scan(Reader::State& reader, const char* sql, RunId run, Sequence after, Take take,
                       const std::string& words = {}) {
@@ -56,7 +56,7 @@ Result<Sequence> scan(Reader::State& reader, const char* sql, RunId run, Sequenc
     }
 }
 
-/// A page of the items of one kind that `query` asks for by its words, and `wanted` by the record.
+/// A page of items of one kind, selected by `query`'s words and by `wanted` on the record.
 template <typename Record, typename List, typename Query>
 Result<List> page_of(Reader::State& reader, RunId run, const Query& query, auto wanted,
                      google::protobuf::RepeatedPtrField<v1::Item>* (List::*items)()) {
@@ -85,7 +85,7 @@ Result<List> page_of(Reader::State& reader, RunId run, const Query& query, auto 
 struct HeardRange {
     Ert from, to;
 };
-/// When Earth heard of the ends of a range.
+/// The range of time on Earth that corresponds to a range on board.
 Result<HeardRange> heard_range(Reader& reader, RunId run, const SclkRange& asked) {
     if (const auto range = closed(asked); !range) return range.error();
     HeardRange heard{Ert{INT64_MIN}, Ert{INT64_MAX}};
@@ -108,7 +108,7 @@ void add_fields(v1::PacketRow& row, const dictionary::Packet& packet, const tele
     }
 }
 
-/// Of another mission: everything in it, also text, octets and lists of any length.
+/// Adds all contents of another mission's packet, including text, octets and lists of any length.
 void add_contents(v1::PacketRow& row, const telemetry::DecodedContents& contents) {
     for (const auto& value : contents.values) {
         auto& written = *row.add_fields();
@@ -211,7 +211,7 @@ Result<v1::CommandList> Reader::commands(RunId run, const CommandQuery& query) {
             history.set_arguments(stage.arguments);
         }
         if (!stage.octets.empty()) history.set_octets(hex(stage.octets));
-        if (stage.stage == commands::Stage::released) {  // its last word
+        if (stage.stage == commands::Stage::released) {  // its final stage
             history.set_held(stage.held);
             history.set_needs_approval(stage.needs_approval);
         }

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <map>
 
-// What was seen live against the recording.
+// Compares live packets and tones with the recording.
 namespace aeolis::archive {
 
 const char* name_of(OnOtherPath found, Source source, bool recording_complete) {
@@ -43,7 +43,7 @@ constexpr char counters_sql[] =
     "SELECT link, octets, frames, bad_crc, bad_header, skipped_octets, gaps, missing_frames,"
     " repeated_frames, octets_per_s FROM link_totals WHERE run = ?1 ORDER BY link";
 
-constexpr double half_a_symbol_s = 5.0;  // a tone is sent for 10 s; no two begin in less than that
+constexpr double half_a_symbol_s = 5.0;  // a tone lasts 10 s; no two begin within less
 
 void add(v1::ProofRow& row, Source source, OnOtherPath found, bool recording_complete, std::uint64_t units) {
     if (found == OnOtherPath::not_decoded) {
@@ -64,10 +64,10 @@ void add(v1::ProofRow& row, Source source, OnOtherPath found, bool recording_com
 struct Selection {
     double started_s = 0.0;
     std::uint32_t tone = 0;
-    bool seen = false;  ///< a decision of the receiver is about it, be it an erasure
+    bool seen = false;  ///< the receiver decided on it, perhaps as an erasure
 };
 
-/// Every tone that was sent, as the recording has it.
+/// Every tone sent, from the recording.
 Result<std::vector<Selection>> selections(Reader::State& reader, RunId run) {
     std::vector<Selection> all;
     const auto* packet = reader.dictionary.packet("ToneSelected");

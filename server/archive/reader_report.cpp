@@ -15,9 +15,9 @@
 namespace aeolis::archive {
 namespace {
 
-constexpr double symbol_slack_s = 15.0;  // ours: a symbol of 10 s begins within it of what it tells
+constexpr double symbol_slack_s = 15.0;  // chosen: a symbol of 10 s begins within it after the event
 
-/// When the symbol began that told of a timepoint, in SCLK: the first with its tone, not long before it fired.
+/// SCLK of the first symbol with the timepoint's tone, at most symbol_slack_s before the firing.
 std::optional<double> told_by_tone(const v1::ToneList& tones, const std::string& tone,
                                    std::optional<double> fired_sclk) {
     if (tone.empty()) return std::nullopt;
@@ -44,11 +44,11 @@ bool executed_by(const v1::CommandHistory& command, Ert by) {
     });
 }
 
-/// The prediction of entry interface: firings that UHF had told of by then, and changes of offsets that were executed.
+/// Adds the predictions as of entry interface: from firings received by UHF and changes executed.
 void add_predictions(const dictionary::Dictionary& dictionary, const v1::TimepointList& timeline,
                      const v1::CommandList& commands, const v1::RunState& run, v1::AsFlownReport& report) {
     std::optional<dictionary::Dictionary> changed;
-    const Ert at_entry = heard_at(run, Sclk{run.entry_sclk()});  // when entry interface was due
+    const Ert at_entry = heard_at(run, Sclk{run.entry_sclk()});  // when entry interface was due on Earth
     for (const auto& command : commands.commands()) {
         const auto* known = dictionary.command(command.name());
         if (known == nullptr || !commands::changes_offsets(command.name()) || !executed_by(command, at_entry)) continue;
@@ -96,7 +96,7 @@ Result<std::vector<v1::Silence>> silences_of(Reader::State& reader, RunId run) {
     return reader.silences(run);
 }
 
-/// However many there are: all pages of `list`, one after another.
+/// All rows of a list, page by page.
 template <typename List, typename Query>
 Result<List> all_of(Reader& reader, RunId run, Result<List> (Reader::*list)(RunId, const Query&), Query query) {
     List all;
@@ -114,8 +114,8 @@ std::string in_small_letters(std::string name) {
     return name;
 }
 
-/// What the dictionary calls a high activity, and no timepoint of that name reports; whatever of it flight has
-/// reported, live or recorded. What comes several times is numbered.
+/// Adds reported events of level "activity high", live or recorded. Events that a timepoint of the same name reports
+/// are left out; repeated names are numbered.
 Result<void> add_events(Reader& reader, RunId run, const v1::TimepointList& timeline, double entry_sclk,
                         v1::AsFlownReport& report) {
     EventQuery query;
@@ -129,8 +129,7 @@ Result<void> add_events(Reader& reader, RunId run, const v1::TimepointList& time
             return row.event() == event.name() && row.name() == in_small_letters(event.name());
         });
     };
-    std::map<std::tuple<double, std::string, std::string>, v1::AsFlownEvent>
-        flown;  // an event that is told twice is one
+    std::map<std::tuple<double, std::string, std::string>, v1::AsFlownEvent> flown;  // merges both reports of an event
     std::map<std::string, int> times, number;
     for (const auto& item : told->events()) {
         const auto& event = item.event();
@@ -173,7 +172,7 @@ Result<v1::AsFlownReport> Reader::as_flown(RunId run) {
     v1::AsFlownReport report;
     add_timepoints(*timeline, *heard, state->entry_sclk(), report);
     add_predictions(state_->dictionary, *timeline, *sent, *state,
-                    report);  // timepoints() gave it for this dictionary only
+                    report);  // timepoints() succeeds for this dictionary only
     if (auto added = add_events(*this, run, *timeline, state->entry_sclk(), report); !added) return added.error();
     const auto decoded =
         std::ranges::count_if(heard->tones(), [](const v1::Item& item) { return item.tone().has_tone(); });
@@ -208,7 +207,7 @@ Result<std::vector<v1::Silence>> Reader::State::silences(RunId run) {
     if (!rows) return rows.error();
     (*rows)->bind(1, item_key(run, 0)).bind(2, item_key(run, sequence_max)).bind(3, std::int64_t{-1});
     std::vector<v1::Silence> all;
-    std::map<std::string, std::size_t> silent;  ///< a link, and its silence among them
+    std::map<std::string, std::size_t> silent;  ///< link, and the index of its silence
     for (;;) {
         auto next = (*rows)->step();
         if (!next) return next.error();

@@ -13,17 +13,16 @@ namespace aeolis::archive {
 
 namespace {
 
-constexpr std::size_t exact_samples_of_all_max =
-    1'000'000;                                   ///< ours: some 55 MB as JSON; each origin and gap counts as one
-constexpr std::size_t window_samples = 100'000;  ///< ours: that are in hand at once; at most four times as many
-constexpr std::size_t page_samples = 10'000;     ///< ours: the same for one page, a megabyte of text
+constexpr std::size_t exact_samples_of_all_max = 1'000'000;  ///< chosen: 55 MB as JSON; an origin or gap counts as one
+constexpr std::size_t window_samples = 100'000;              ///< chosen: read at once; at most four times as many
+constexpr std::size_t page_samples = 10'000;                 ///< chosen: likewise for one page, a megabyte of text
 
 constexpr char sealed_span_sql[] = "SELECT min(first_sclk), max(last_sclk), sum(samples) FROM segments WHERE run = ?1";
 constexpr char unit_span_sql[] =
     "SELECT min(sclk), max(sclk), count(*) FROM units WHERE key BETWEEN ?1 AND ?2 AND sampled = 1";
 constexpr char newest_sql[] = "SELECT octets FROM units WHERE run = ?1 AND apid = ?2 AND source = ?5 AND sclk <= ?3"
                               " AND packet = ?4 AND sampled = 1 ORDER BY sclk DESC LIMIT 1";
-// Of another mission's packets, whose container may come with any APID.
+// For another mission's packets, whose containers may have any APID.
 constexpr char newest_of_any_apid_sql[] =
     "SELECT octets, sclk FROM units WHERE run = ?1 AND ?2 IS NOT NULL AND sclk <= ?3 AND packet = ?4 AND source = ?5"
     " AND sampled = 1 ORDER BY sclk DESC LIMIT 1";
@@ -42,7 +41,7 @@ Result<std::vector<const dictionary::Channel*>> find_channels(const dictionary::
     return channels;
 }
 
-/// By name and by alias a channel is one.
+/// Removes repeats: a channel may be given by name and by alias.
 std::vector<const dictionary::Channel*> without_repeats(const std::vector<const dictionary::Channel*>& channels) {
     std::vector<const dictionary::Channel*> once;
     for (const auto* channel : channels)
@@ -100,7 +99,7 @@ Result<std::span<const Sample>> samples_of(Reader::State& reader, const RunInfo&
     return exact_samples(reader, *coverage);
 }
 
-/// From the first to the last sample of a run, and how many packets had samples. Upside down: none had.
+/// First to last sample of a run, and the number of packets with samples. A reversed range: none.
 struct SampleSpan {
     ClosedRange range{1.0, 0.0};
     std::uint64_t samples = 0;
@@ -128,7 +127,7 @@ Result<SampleSpan> sample_span(Reader::State& reader, const RunInfo& run) {
     return span;
 }
 
-/// What the newest unit of a packet and source says, where it is newer than what is known.
+/// Takes the values of the newest packet of a type and source where they are newer.
 Result<void> note_newest(Reader::State& reader, RunId run, std::size_t packet, Source source, double to_s,
                          std::vector<std::optional<ChannelValue>>& newest) {
     const auto& channels = reader.columns.channels(packet);
@@ -188,10 +187,10 @@ Result<v1::ChannelSeriesList> Reader::series(RunId run, const SeriesQuery& query
 
 namespace {
 
-/// Values at ascending times, as they are, or the least and the largest of each of equal intervals.
+/// Collects values at ascending times: all, or the minimum and maximum of each of equal intervals.
 class Thinning {
   public:
-    /// @param points  none: all values; an Error when there are more than an exact answer may have
+    /// @param points  none: all values; an Error when they exceed an exact answer's limit
     Thinning(ClosedRange range, std::optional<std::size_t> points)
         : range_(range), intervals_(points ? *points / 2 : 0) {}
 
@@ -213,7 +212,7 @@ class Thinning {
         if (!largest_ || sample.value > largest_->value) largest_ = sample;
         return {};
     }
-    /// After the last value.
+    /// The result. Call after the last value.
     std::span<const Sample> points() {
         flush();
         return all_;
@@ -232,7 +231,7 @@ class Thinning {
     ClosedRange range_;
     std::size_t intervals_, interval_ = 0;
     std::uint64_t count_ = 0;
-    std::optional<Sample> least_, largest_;  ///< of the interval
+    std::optional<Sample> least_, largest_;  ///< of the present interval
     std::vector<Sample> all_;
 };
 
@@ -257,7 +256,7 @@ Result<v1::ChannelSeries> Reader::derived(RunId run, const std::string& text, co
         if (!span) return span.error();
         within = {std::max(within.from_s, span->range.from_s), std::min(within.to_s, span->range.to_s)};
     }
-    // The first channel's sample comes last of those of one instant: by then all others are known.
+    // Within one instant the first channel's sample comes last: by then all others are known.
     const std::vector<std::string> in_order(names.rbegin(), names.rend());
     std::vector<double> values(names.size(), std::numeric_limits<double>::quiet_NaN());
     Thinning thinning(within, points);
@@ -286,7 +285,7 @@ Result<v1::ChannelSeries> Reader::derived(RunId run, const std::string& text, co
 
 namespace {
 
-/// The samples of a range of time, a window with about `wanted` of them at a time.
+/// Reads the samples of a range in windows of about `wanted` samples.
 class SampleWindows {
   public:
     static Result<SampleWindows> of(Reader::State& reader, RunId run, const std::vector<std::string>& channels,
@@ -295,7 +294,7 @@ class SampleWindows {
 
     bool at_end() const { return cursor_.from_s > cursor_.to_s; }
     const SampleCursor& cursor() const { return cursor_; }  ///< of the next window
-    /// Of the next window, in order of SCLK; there may be none in it.
+    /// Reads the next window, in order of SCLK; it may be empty.
     Result<void> next(std::vector<ChannelValue>& samples);
 
   private:
@@ -306,7 +305,7 @@ class SampleWindows {
     RunInfo run_;
     std::size_t wanted_;
     std::vector<const dictionary::Channel*> channels_;
-    SampleCursor cursor_;  ///< its width a first guess, then by what was found
+    SampleCursor cursor_;  ///< its width is first estimated, then adapted
 };
 
 Result<SampleWindows> SampleWindows::of(Reader::State& reader, RunId run, const std::vector<std::string>& channels,

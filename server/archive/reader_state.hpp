@@ -12,10 +12,10 @@
 #include <map>
 #include <vector>
 
-// What the parts of the reader share; not for others.
+// State shared by the parts of the reader; not for others.
 namespace aeolis::archive {
 
-/// A prepared statement in use; reset at the end of the scope, so that it never holds a snapshot open.
+/// A prepared statement in use. It is reset at the end of the scope, so that it never holds a snapshot open.
 class Query {
   public:
     explicit Query(sqlite::Statement& statement) : statement_(&statement) {}
@@ -33,22 +33,22 @@ class Query {
 
 struct RunInfo {
     RunId run;
-    bool finished = false;  ///< every sample is in a segment
+    bool finished = false;  ///< all samples are in segments
     std::uint16_t dictionary = 0;
     Sclk entry;
 };
 
-/// A range with both ends, for SQL.
+/// A range with both ends closed, for SQL.
 struct ClosedRange {
     double from_s = 0.0, to_s = 0.0;
     bool holds(double sclk_s) const { return from_s <= sclk_s && sclk_s <= to_s; }
 };
 Result<ClosedRange> closed(const SclkRange& range);
-/// 1 … `most`, or an Error that says so.
+/// Checks that a limit is 1 … `most`.
 Result<void> check_limit(std::size_t limit, std::size_t most);
 
-/// What FTS5 looks for when people type words: each as it begins, all of them, whatever signs stand between. Empty when
-/// there is no word in it.
+/// The FTS5 query for words typed by a person: all of them, each as a prefix, punctuation ignored. Empty when there is
+/// no word in the text.
 std::string search_words(std::string_view text);
 
 struct Sample {
@@ -64,40 +64,40 @@ struct Reader::State {
         if (other == nullptr) decommutator.emplace(dictionary_in);
     }
 
-    /// Into `decoded`.
+    /// Decodes a packet into `decoded`; false when it was not decoded.
     bool decode(std::span<const std::uint8_t> packet) {
         return other != nullptr ? !other->decode(packet, decoded) : !decommutator->decode(packet, decoded);
     }
 
-    /// Prepared once; `sql` is a constant.
+    /// A statement, prepared once. `sql` must be a constant.
     Result<Query> query(const char* sql);
     Result<RunInfo> info(RunId run);
-    /// A run as it is now: what is read while this lives belongs together.
+    /// A run with a read snapshot: all reads during its lifetime are consistent.
     struct Instant {
         sqlite::Transaction snapshot;
         RunInfo run;
     };
     Result<Instant> instant(RunId run);
     Result<Sequence> last_seq(RunId run);
-    Result<std::vector<RequestRecord>> requests(RunId run);  ///< as they were taken
+    Result<std::vector<RequestRecord>> requests(RunId run);  ///< in the order taken
     Result<v1::RunState> run_state(const sqlite::Statement& row);
-    /// When the design had each anchor when the run began.
+    /// Adds when each anchor was predicted at the start of the run.
     Result<void> add_predicted_anchors(RunId run, v1::TimepointList& list);
-    /// The item whose row stands ready, with its parts.
-    /// @param words  as to_item() takes them
+    /// Reads the item in the current row, with its parts.
+    /// @param words  the dictionary for to_item()
     template <typename Record>
     Result<v1::Item> item(const sqlite::Statement& row, const dictionary::Dictionary* words = nullptr);
-    /// When each link brought nothing, and why, as was told. Call within a read transaction.
+    /// The silences of each link and their reported reasons. Call within a read transaction.
     Result<std::vector<v1::Silence>> silences(RunId run);
     /// Whether the whole recording of a run is down.
     Result<bool> recording_complete(RunId run);
-    /// A unit against the other path; of one that differs, that one's octets.
+    /// A packet's verdict against the other path; with `differs`, the other packet's octets.
     struct Verdict {
         const char* name = "";
         std::vector<std::uint8_t> other_octets{};
     };
     Result<Verdict> verdict_on(RunId run, const UnitRecord& unit, bool recording_complete);
-    /// Null when the run was recorded with another dictionary.
+    /// The dictionary when the run was recorded with it; else null.
     const dictionary::Dictionary* words_of(const RunInfo& run) const {
         return run.dictionary == dictionary.id ? &dictionary : nullptr;
     }
@@ -106,12 +106,12 @@ struct Reader::State {
     sqlite::Database database;
     const dictionary::Dictionary& dictionary;
     PacketColumns columns;
-    const telemetry::OtherMission* other;  ///< none: our own
+    const telemetry::OtherMission* other;  ///< null: our own mission
     std::optional<telemetry::Decommutator> decommutator;
     telemetry::Decoded decoded;
     ColumnCodec codec;
-    std::vector<Sample> realtime, recorded, both;        ///< samples of the last exact question
-    std::vector<double> segment_sclk_s, segment_values;  ///< of the segment that is being read
+    std::vector<Sample> realtime, recorded, both;        ///< samples of the last exact query
+    std::vector<double> segment_sclk_s, segment_values;  ///< of the segment being read
     std::map<const char*, sqlite::Statement> statements;
 };
 

@@ -14,17 +14,19 @@
 namespace aeolis::archive {
 namespace {
 
-constexpr double believed_likelihood = 0.5;                     // ours: likelier than all other tones together
-constexpr std::string_view anchor_report_end = "_anchor_sclk";  // flight reports an anchor in a channel of this name
+constexpr double believed_likelihood = 0.5;  // chosen: likelier than all other tones together
+// // Suffix of the channels in which flight reports anchors.
+constexpr std::string_view anchor_report_end = "_anchor_sclk";
 
-constexpr std::string_view begin_margin = "do_edl_margin_s";  // how long before that flight begins to refuse it
+// Parameter: how long before the start of EDL flight begins to refuse "do edl" [s].
+constexpr std::string_view begin_margin = "do_edl_margin_s";
 
 constexpr char units_before_sql[] = "SELECT ert_us FROM units WHERE key BETWEEN ?1 AND ?2 ORDER BY key DESC LIMIT 1";
 constexpr char newest_report_sql[] =
     "SELECT octets FROM units WHERE run = ?1 AND apid = ?2 AND source = ?3 AND sclk <= ?4 AND packet = ?5"
     " AND sampled = 1 AND ert_us <= ?6 ORDER BY sclk DESC LIMIT 1";
 
-/// Up to when something is known.
+/// The limits of what is known at an instant.
 struct Cut {
     double on_board_s = std::numeric_limits<double>::infinity();  ///< SCLK
     Ert on_earth{std::numeric_limits<std::int64_t>::max()};
@@ -36,7 +38,7 @@ struct Cut {
     }
 };
 
-/// A firing as it was first known: UHF tells it before the recording, and both before a tone.
+/// A firing as first known: UHF reports it before the recording, and both before a tone.
 struct HeardFiring {
     const char* by = "";
     Sclk triggered, fired;
@@ -56,7 +58,7 @@ Result<void> each_row(Reader::State& reader, RunId run, auto take) {
     }
 }
 
-/// The plan, as the dictionary has it.
+/// The plan from the dictionary.
 v1::TimepointList plan_of(const dictionary::Dictionary& dictionary) {
     const auto planned = planned_from_entry_s(dictionary);
     v1::TimepointList list;
@@ -104,7 +106,7 @@ Result<void> hear_firings(Reader::State& reader, RunId run, const Cut& cut, v1::
     });
 }
 
-/// When a tone was decided: after its end, and not before what came before it.
+/// When a tone was decided: after its end, and not before the packets received earlier.
 Result<Ert> decided_at(Reader::State& reader, RunId run, std::int64_t key, Ert end) {
     auto rows = reader.query(units_before_sql);
     if (!rows) return rows.error();
@@ -114,7 +116,7 @@ Result<Ert> decided_at(Reader::State& reader, RunId run, std::int64_t key, Ert e
     return *found ? std::max(end, Ert{(*rows)->integer(0)}) : end;
 }
 
-/// Where packets are silent: the first tone that only one timepoint asks for.
+/// Adds firings without packets: by the first tone that only one timepoint requests.
 Result<void> hear_tones(Reader::State& reader, RunId run, const Cut& cut, HeardFirings& heard) {
     std::map<ToneId, std::vector<std::size_t>> askers;
     for (std::size_t i = 0; i < heard.size(); ++i)
@@ -131,7 +133,7 @@ Result<void> hear_tones(Reader::State& reader, RunId run, const Cut& cut, HeardF
     });
 }
 
-/// The last time of the anchor that flight said it holds.
+/// The last value of an anchor reported by flight.
 Result<std::optional<dictionary::TimelineKnowledge::Report>>
 report_of(Reader::State& reader, const RunInfo& run, const dictionary::AnchorRow& anchor, const Cut& cut) {
     std::optional<dictionary::TimelineKnowledge::Report> newest;
@@ -161,7 +163,7 @@ report_of(Reader::State& reader, const RunInfo& run, const dictionary::AnchorRow
     return newest;
 }
 
-/// What flight has made of commands, by when Earth heard of it.
+/// Offset changes executed by flight, as known on Earth at the cut.
 std::vector<dictionary::OffsetChange> changes_made(const dictionary::Dictionary& dictionary,
                                                    const v1::CommandList& commands, const v1::RunState& run,
                                                    const Cut& cut) {
@@ -244,7 +246,7 @@ void write(const dictionary::TimelinePrediction& prediction, const dictionary::D
         list.set_begin_by_e_s(*prediction.latest_begin_e_s - margin->default_value);
 }
 
-/// What comes at another time with the change.
+/// Writes the timepoints whose times differ with the change.
 void write_moved(const dictionary::TimelinePrediction& with_change, const HeardFirings& heard,
                  v1::TimepointList& list) {
     for (std::size_t i = 0; i < heard.size(); ++i) {
@@ -303,7 +305,7 @@ Result<v1::TimepointList> Reader::timepoints(RunId run, const TimepointQuery& qu
         row.set_triggered_sclk(heard[i]->triggered.seconds);
         fired = {heard[i]->triggered.seconds - entry_s, heard[i]->fired.seconds - entry_s};
     }
-    if (entry_s == 0.0) {  // of another mission that is followed
+    if (entry_s == 0.0) {  // another mission, which is followed
         for (auto& row : *list.mutable_timepoints()) row.set_not_predicted("nobody knows when it enters");
         return list;
     }

@@ -18,33 +18,33 @@
 #include <variant>
 #include <vector>
 
-// What the archive keeps, as plain values: one struct a table. A batch of them is committed whole or not at all.
+// The records of the archive as plain values: one struct per table. A batch is committed whole or not at all.
 namespace aeolis::archive {
 
 using RunId = Id<struct RunTag, std::uint32_t>;
 
-/// Number of an item within its run, from 1, given in the order of arrival. Published only when durable.
+/// Number of an item within its run, from 1, in the order of arrival. Published only once durable.
 using Sequence = std::uint64_t;
 
-/// Numbers are those of Source in schema/aeolis/v1/items.proto.
+/// Numbers equal those of Source in schema/aeolis/v1/items.proto.
 enum class Source : std::uint8_t { realtime = 1, recorded = 2, ground = 3 };
 
-/// Octets, or numbers, that stand in a buffer of the batch.
+/// A range of octets or numbers in a buffer of the batch.
 struct Slice {
     std::size_t first = 0;
     std::size_t count = 0;
 };
 
-/// What every item has.
+/// The members common to all items.
 struct ItemRecord {
     Sequence seq = 0;
-    Ert ert;  ///< when all of it had reached Earth, or when it was made there
+    Ert ert;  ///< when all of it had reached Earth; for items made on Earth, when made
 };
 
-/// A unit as received. Its samples, when it has any, are the item seq + 1: they are made again from the octets.
+/// A packet as received. Its samples, if any, are the item seq + 1: they are decommutated again from the octets.
 struct UnitRecord : ItemRecord {
     Apid apid;
-    std::optional<std::uint16_t> packet;  ///< index in the dictionary's packets; none: not decoded
+    std::optional<std::uint16_t> packet;  ///< index of its definition in the dictionary; none: not decoded
     std::string refusal;                  ///< why not decoded
     Sclk sclk;
     std::string link;  ///< "uhf_live", "uhf_<orbiter>", "relay", …
@@ -53,14 +53,14 @@ struct UnitRecord : ItemRecord {
     bool sampled = false;  ///< its values are in the series
     Slice octets;          ///< in Batch::octets
 
-    /// Seen before with the same octets.
+    /// Whether the packet was seen before with the same octets.
     bool duplicate() const {
         return standing == telemetry::Standing::again || standing == telemetry::Standing::duplicate;
     }
 };
 
-/// The values of one sampled unit, one column a channel of its packet; NaN where undefined. Only for publishing and
-/// for segments: it has no row of its own.
+/// The values of one sampled packet, one column per channel; NaN where undefined. Only for publishing and for segments:
+/// it has no row of its own.
 struct SampleRecord : ItemRecord {
     std::uint16_t packet = 0;
     Sclk sclk;
@@ -80,7 +80,7 @@ struct EventRecord : ItemRecord {
 };
 
 struct ToneRecord : ItemRecord {
-    Ert start;                   ///< of the symbol; its end is the ERT
+    Ert start;                   ///< start of the symbol; its end is the ERT
     std::optional<ToneId> tone;  ///< none: erasure
     std::string name, meaning;
     double likelihood = 0.0;
@@ -89,13 +89,13 @@ struct ToneRecord : ItemRecord {
     double c_n0_dbhz = 0.0;
     double doppler_hz = 0.0;
     std::string model;
-    Sclk sclk;                                  ///< of the vehicle when the symbol began, by light time
-    CarrierLock lock = CarrierLock::searching;  ///< the worst of the symbol
-    std::vector<ToneLikelihood> best;           ///< the likeliest first, five; or none
-    std::optional<ToneSpectrum> spectrum;       ///< of a decision from samples
+    Sclk sclk;                                  ///< SCLK when the symbol began, corrected for light time
+    CarrierLock lock = CarrierLock::searching;  ///< the worst within the symbol
+    std::vector<ToneLikelihood> best;           ///< the five likeliest, likeliest first; or empty
+    std::optional<ToneSpectrum> spectrum;       ///< only of a decision from samples
 };
 
-/// A stage of a command. The first record of a command carries its arguments and octets.
+/// A stage of a command. A command's first record carries its arguments and octets.
 struct StageRecord : ItemRecord {
     std::uint64_t command = 0;  ///< number of the command in its run, from 1
     std::string name;
@@ -105,8 +105,8 @@ struct StageRecord : ItemRecord {
     std::string arguments;
     std::uint32_t count = 0;
     std::vector<std::uint8_t> octets;
-    bool held = false, needs_approval = false;  ///< of `released` while pending: what it waits for
-    std::string asked_by;                       ///< of one that needs approval: who may not give it
+    bool held = false, needs_approval = false;  ///< of a pending `released`: what it waits for
+    std::string asked_by;                       ///< of a command that needs approval: who may not give it
 };
 
 struct FiringRecord : ItemRecord {
@@ -130,7 +130,7 @@ struct LinkRecord : ItemRecord {
     std::string link;
     bool up = false;
     std::string reason;
-    bool lost = false;  ///< down, and it should be there
+    bool lost = false;  ///< down although it should be up
 };
 
 struct AlarmRecord : ItemRecord {
@@ -142,7 +142,7 @@ struct AlarmRecord : ItemRecord {
     std::string limit;
 };
 
-/// A packet that should come in real time and does not, or comes again.
+/// A packet that became stale (expected in real time, not received), or is received again.
 struct StalenessRecord : ItemRecord {
     std::uint16_t packet = 0;  ///< index in the dictionary's packets
     bool stale = false;
@@ -150,7 +150,7 @@ struct StalenessRecord : ItemRecord {
     std::string reason;
 };
 
-/// What someone did about an alarm, by the alarm's name.
+/// An action on an alarm, identified by the alarm's name.
 struct AlarmActionRecord : ItemRecord {
     std::string alarm;
     telemetry::AlarmAct action{};
@@ -158,56 +158,56 @@ struct AlarmActionRecord : ItemRecord {
     Ert until;  ///< of shelve only
 };
 
-/// A line of the shift log, or a remark at an instant.
+/// A line of the shift log, or a remark on an instant.
 struct NoteRecord : ItemRecord {
     std::string text, by;
     std::string written;  ///< wall clock, ISO 8601
     std::optional<double> sclk_s;
 };
 
-inline constexpr std::size_t segment_samples = 1024;  ///< of a full segment; limits.md
+inline constexpr std::size_t segment_samples = 1024;  ///< samples in a full segment; limits.md
 
-/// Samples of one packet and source, column by column. Written once, when full or when the run ends: only the last of a
-/// series may hold less than segment_samples.
+/// Samples of one packet and source, column by column. Written once, when full or at the end of the run: only the last
+/// segment of a series may hold less than segment_samples.
 struct SegmentRecord {
     std::uint16_t packet = 0;
     Source source{};
-    std::uint64_t position = 0;              ///< in its series, from 0
-    Sequence first_unit = 0, last_unit = 0;  ///< the units between them, of this packet and source, that are sampled
+    std::uint64_t position = 0;              ///< number within its series, from 0
+    Sequence first_unit = 0, last_unit = 0;  ///< sequence numbers of its first and last sampled packet
     std::vector<double> sclk_s;              ///< in the order of receipt
     std::vector<ChannelId> channels;
     std::vector<double> values;  ///< channel by channel, sclk_s.size() each; NaN: undefined
 };
 
-/// What a stretch of samples of one channel comes to: all that a plot can show of it.
+/// Extremes of one channel over a stretch of samples: all of it that a plot can show.
 struct Extremes {
     double least = 0.0, least_sclk_s = 0.0, largest = 0.0, largest_sclk_s = 0.0;
-    std::uint32_t defined = 0;  ///< samples that are not NaN; with none the rest is 0
+    std::uint32_t defined = 0;  ///< samples that are not NaN; 0: the other members are 0
 
     void add(const Extremes& later);
-    /// Not NaN.
+    /// Adds one sample, not NaN.
     void add(double value, double sclk_s) { add({value, sclk_s, value, sclk_s, 1}); }
 };
 
-/// A block of nodes of one level of a series' pyramid (pyramid.hpp).
+/// A block of nodes of one level in a series' pyramid (pyramid.hpp).
 struct PyramidRecord {
     std::uint16_t packet = 0;
     Source source{};
     std::uint8_t level = 0;                         ///< from 1
-    std::uint64_t position = 0;                     ///< in its level, from 0
-    std::vector<double> first_sclk_s, last_sclk_s;  ///< least and largest time, a node
+    std::uint64_t position = 0;                     ///< number within its level, from 0
+    std::vector<double> first_sclk_s, last_sclk_s;  ///< smallest and largest time, per node
     std::vector<ChannelId> channels;
     std::vector<Extremes> nodes;  ///< channel by channel, first_sclk_s.size() each
 };
 
-/// Real time against the recording, and how much of the recording has come down.
+/// Totals of comparing real time with the recording, and the fraction of the recording that is down.
 struct RecordingTotals {
     std::uint64_t recorded = 0, recorded_octets = 0, realtime = 0, realtime_not_recorded = 0, realtime_differs = 0,
                   never_seen_live = 0, not_decoded = 0;
     double progress = 0.0;
 };
 
-/// What a UHF link has brought so far; see telemetry::LinkCounters.
+/// Totals of a UHF link since the start of the run; see telemetry::LinkCounters.
 struct LinkTotals {
     std::string link;
     telemetry::LinkCounters counters;
@@ -236,28 +236,28 @@ struct RunEnd {
     std::string ended;  ///< wall clock, ISO 8601
 };
 
-/// A controller's request to the gateway that it took, or what an instructor did: with the scenario and the seed, all
-/// that decides how a run goes, and what an instructor wrote about it.
+/// A controller's request that the gateway took, or an intervention or note of an instructor. With the scenario and the
+/// seed, these requests determine the run.
 struct RequestRecord {
-    std::uint64_t cycle = 0;  ///< cycles of 1/64 s that had been flown
-    std::string request;      ///< as kept_text() has it
+    std::uint64_t cycle = 0;  ///< cycles of 1/64 s flown before it
+    std::string request;      ///< as kept_text() writes it
 };
 
-/// A run that was cut off, and what it takes to fly it again up to there.
+/// A run that was cut off, with all that is needed to fly it again up to that point.
 struct CutOffRun {
     RunId run;
     std::string scenario_text, started;
     std::uint64_t seed = 0;
-    ClockCorrelation clock;               ///< by which it was flown, whatever the dictionary's sheet says by now
+    ClockCorrelation clock;               ///< used by the run, whatever the dictionary's file says now
     Sequence last_seq = 0;                ///< durable, and perhaps published
-    std::vector<RequestRecord> requests;  ///< as they were taken
-    std::vector<Sequence> annotations;    ///< items that people made: they do not come again by flying
+    std::vector<RequestRecord> requests;  ///< in the order taken
+    std::vector<Sequence> annotations;    ///< items made by people: flying does not produce them again
 };
 
-/// What a person adds to a run: to the one that goes on, or to one that is over.
+/// A person's addition to a run, in progress or over.
 using Annotation = std::variant<NoteRecord, AlarmActionRecord>;
 
-/// What becomes durable together.
+/// The items and rows that become durable together.
 struct Batch {
     Sequence first_seq = 0, last_seq = 0;  ///< of all items in it; both 0 when it has none
     std::vector<std::uint8_t> octets;
@@ -278,14 +278,14 @@ struct Batch {
     std::vector<RequestRecord> requests;
     std::vector<PyramidRecord> pyramid;
     std::optional<RecordingTotals> totals;
-    std::vector<LinkTotals> link_totals;  ///< those that changed
+    std::vector<LinkTotals> link_totals;  ///< only those that changed
     std::optional<RunEnd> end;
 
     bool empty() const {
         return last_seq == 0 && segments.empty() && requests.empty() && !totals && link_totals.empty() && !end;
     }
     void add(Annotation annotation);
-    void clear();  ///< keeps capacity
+    void clear();  ///< keeps the capacity
 };
 
 }  // namespace aeolis::archive

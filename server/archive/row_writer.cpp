@@ -98,7 +98,7 @@ Result<void> RowWriter::write(RunId run, const Batch& batch) {
 }
 
 Result<std::int64_t> RowWriter::number_of_link(const std::string& name) {
-    // Nearly every unit comes over one of these.
+    // Nearly every packet is received over one of these.
     if (name == "uhf_live") return std::int64_t{1};
     if (name == "relay") return std::int64_t{2};
     for (int attempt = 0;; ++attempt) {

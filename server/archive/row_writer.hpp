@@ -9,7 +9,7 @@
 
 namespace aeolis::archive {
 
-/// Adds rows inside the transaction that its owner has begun. One prepared statement a table.
+/// Adds rows within the transaction that its owner has begun. One prepared statement per table.
 class RowWriter {
   public:
     static Result<RowWriter> open(sqlite::Database& database);
@@ -17,11 +17,11 @@ class RowWriter {
     Result<void> write(RunId run, const Batch& batch);
 
   private:
-    /// As the words of the archive have it; a new name becomes one of them.
+    /// The link's number among the archive's words; a new name is added to them.
     Result<std::int64_t> number_of_link(const std::string& name);
     template <typename Record>
     Result<void> item(RunId run, const Record& record, const Batch& batch);
-    /// Of a run's next segment or block, by the question for the largest so far.
+    /// The number of a run's next segment or block; the statement `largest` queries the largest so far.
     static Result<std::int64_t> next_number(RunId run, sqlite::Statement& largest);
     Result<void> segment(RunId run, const SegmentRecord& record, std::int64_t number);
     Result<void> column(std::int64_t key, const SegmentRecord& record, std::size_t column);
@@ -30,7 +30,7 @@ class RowWriter {
     Result<void> totals(RunId run, const RecordingTotals& totals);
     Result<void> link_totals(RunId run, const LinkTotals& totals);
 
-    /// INSERT of one kind of item, and of its parts.
+    /// The INSERT statements for one kind of item and its parts.
     template <typename Record>
     struct ItemStatements {
         sqlite::Statement row, part;

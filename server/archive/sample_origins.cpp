@@ -13,7 +13,7 @@ namespace aeolis::archive {
 
 namespace {
 
-// By the index on time; another mission's container may come with any APID.
+// Uses the index on time; another mission's containers may have any APID.
 constexpr char of_packet_sql[] =
     " FROM units u WHERE u.run = ?1 AND u.apid = ?2 AND u.source = ?3 AND u.sclk BETWEEN ?4 AND ?5"
     " AND u.packet = ?6 AND u.sampled = 1 ORDER BY u.sclk";
@@ -24,7 +24,7 @@ const std::string told_columns = std::string("SELECT u.sclk, u.link, u.octets, "
 const std::string units_of_packet = told_columns + of_packet_sql;
 const std::string units_of_container = told_columns + of_container_sql;
 
-/// A packet of the channel, with or without a value in it.
+/// A packet with the channel, whether or not its value is defined.
 struct Told {
     double sclk_s = 0.0;
     std::int64_t link = 0;
@@ -75,7 +75,7 @@ Result<std::map<std::int64_t, std::string>> link_names(Reader::State& reader) {
     }
 }
 
-/// So long a channel may be silent between two of its packets.
+/// The longest expected time between two packets with the channel.
 double longest_interval_s(const dictionary::Dictionary& dictionary, const std::vector<PacketColumns::Place>& places) {
     double longest_s = 0.0;
     for (const auto place : places) {
@@ -89,7 +89,7 @@ double longest_interval_s(const dictionary::Dictionary& dictionary, const std::v
     return std::max(telemetry::stale_intervals * longest_s, telemetry::stale_least_s);
 }
 
-/// A link's silence by SCLK.
+/// A link's silence in SCLK.
 struct Outage {
     double from_s, to_s;
     std::string words;
@@ -107,7 +107,7 @@ Result<std::vector<Outage>> live_outages(Reader::State& reader, const RunInfo& r
     return outages;
 }
 
-/// Of the outage that fills most of it.
+/// The reason of the outage that covers most of the gap.
 std::string reason_of(const std::vector<Outage>& outages, double from_s, double to_s) {
     double most_s = 0.0;
     std::string words;
@@ -127,8 +127,7 @@ Result<void> add_origins(Reader::State& reader, const RunInfo& run, ChannelId ch
     const auto& places = reader.columns.places(channel);
     std::vector<Told> told;
     for (const auto place : places)
-        for (const Source source :
-             {Source::realtime, Source::recorded})  // of one instant in this order, as in the series
+        for (const Source source : {Source::realtime, Source::recorded})  // the series' order within one instant
             if (!only || *only == source)
                 if (auto done = read_told(reader, run, place, source, range, told); !done) return done;
     std::ranges::stable_sort(told, {}, &Told::sclk_s);
@@ -136,14 +135,14 @@ Result<void> add_origins(Reader::State& reader, const RunInfo& run, ChannelId ch
     if (!names) return names.error();
     const auto complete = reader.recording_complete(run.run);
     if (!complete) return complete.error();
-    // Why the live link was down says nothing of what only the recording brought.
+    // The outages of the live link do not explain gaps of the recording.
     const auto outages =
         only == Source::recorded ? Result<std::vector<Outage>>{std::vector<Outage>{}} : live_outages(reader, run);
     if (!outages) return outages.error();
 
     const double longest_s = longest_interval_s(reader.dictionary, places);
-    std::optional<double> last_s = asked.from_s;  ///< of what is there
-    bool undefined = false;                       ///< told of since
+    std::optional<double> last_s = asked.from_s;  ///< of the last defined sample
+    bool undefined = false;                       ///< a sample since then was undefined
     const auto come_to = [&](double sclk_s) {
         if (last_s && (undefined || sclk_s - *last_s > longest_s)) {
             auto& gap = *series.add_gaps();

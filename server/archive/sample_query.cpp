@@ -19,15 +19,15 @@ constexpr char nodes_sql[] =
     "SELECT p.position, c.nodes FROM pyramid p JOIN pyramid_columns c ON c.key = p.block * 65536 + ?5"
     " WHERE run = ?1 AND packet = ?2 AND source = ?3 AND level = ?4 AND position BETWEEN ?6 AND ?7"
     " ORDER BY position";
-// Two ways to the units after ?5, the last one in a segment: past all of this packet by the index (the plus keeps
-// SQLite on it), or past all that came since. The first suits slow packets, the second fast ones.
+// Two ways to the packets after ?5, the last in a segment: through this packet's rows by the time index (the plus keeps
+// SQLite on it), or through all later rows. The first suits slow packets, the second fast ones.
 constexpr char tail_by_time_sql[] = "SELECT octets, sclk FROM units WHERE run = ?1 AND apid = ?2 AND source = ?6 AND "
                                     "sclk BETWEEN ?3 AND ?4 AND +key > ?5"
                                     " AND +key <= ?8 AND packet = ?7 AND sampled = 1";
 constexpr char tail_by_key_sql[] =
     "SELECT octets, sclk FROM units WHERE key > ?5 AND key <= ?8 AND +run = ?1 AND +apid = ?2 AND +source = ?6"
     " AND sclk BETWEEN ?3 AND ?4 AND packet = ?7 AND sampled = 1";
-// Of another mission's packets, whose container may come with any APID.
+// For another mission's packets, whose containers may have any APID.
 constexpr char tail_of_any_apid_sql[] =
     "SELECT octets, sclk FROM units WHERE key > ?5 AND key <= ?8 AND +run = ?1 AND ?2 IS NOT NULL AND +source = ?6"
     " AND sclk BETWEEN ?3 AND ?4 AND packet = ?7 AND sampled = 1";
@@ -37,14 +37,14 @@ Error damaged(const Reader::State& reader, const std::string& what, const std::s
             " (aeolis archive verify names all that is)"};
 }
 
-/// A packed column of `samples` doubles.
+/// Unpacks a column of `samples` doubles.
 Result<void> read_column(Reader::State& reader, const sqlite::Statement& row, int column, std::vector<double>& into) {
     const auto octets = row.octets(column);
     into.resize(static_cast<std::size_t>(row.integer(2)));
     return reader.codec.unpack(octets, into);
 }
 
-/// Samples first … last - 1 of a series, those that are defined and in the range, to the end of `into`.
+/// Appends to `into` the defined samples within the range among first … last - 1 of a series.
 Result<void> read_samples(Reader::State& reader, const SealedSeries& series, const Coverage& coverage,
                           std::uint64_t first, std::uint64_t last, std::vector<Sample>& into) {
     auto rows = reader.query(columns_sql);
@@ -81,7 +81,7 @@ Result<void> read_samples(Reader::State& reader, const SealedSeries& series, con
     }
 }
 
-/// Nodes first … last - 1 of a level.
+/// Passes nodes first … last - 1 of a level to `take`.
 template <typename Take>
 Result<void> read_nodes(Reader::State& reader, const SealedSeries& series, ChannelId channel, unsigned level,
                         std::uint64_t first, std::uint64_t last, Take take) {
@@ -147,7 +147,7 @@ bool earlier(const Sample& a, const Sample& b) {
     return a.sclk_s < b.sclk_s;
 }
 
-/// Each source comes nearly in order; together they interleave.
+/// Both sources as one series: each is nearly in order, and together they interleave.
 std::span<const Sample> merged(Reader::State& reader) {
     for (auto* samples : {&reader.realtime, &reader.recorded})
         if (!std::is_sorted(samples->begin(), samples->end(), earlier))
@@ -160,7 +160,7 @@ std::span<const Sample> merged(Reader::State& reader) {
     return reader.both;
 }
 
-/// Equal intervals of a range, each with its least and its largest sample.
+/// Equal intervals of a range, each with its minimum and maximum sample.
 class Intervals {
   public:
     Intervals(const ClosedRange& range, std::size_t count)
@@ -200,7 +200,7 @@ class Intervals {
     std::vector<Interval> intervals_;
 };
 
-/// The coarsest level that has at least half as many nodes as there are intervals.
+/// The coarsest level with at least half as many nodes as there are intervals.
 unsigned level_for(std::size_t samples, std::size_t intervals) {
     unsigned level = pyramid::levels;
     while (level > 0 && samples / pyramid::samples_of_node(level) < (intervals + 1) / 2) --level;
@@ -241,7 +241,7 @@ Result<std::span<const Sample>> exact_samples(Reader::State& reader, const Cover
     };
     for (const auto& [series, parts] : coverage.parts) {
         for (std::size_t i = 0; i < parts.size();) {
-            // Neighbours of any level in one go, so that no segment is unpacked twice.
+            // Reads adjacent stretches of any level together, so that no segment is unpacked twice.
             const std::uint64_t first = parts[i].first * pyramid::samples_of_node(parts[i].level);
             std::uint64_t last = first;
             for (; i < parts.size() && parts[i].first * pyramid::samples_of_node(parts[i].level) == last; ++i)
@@ -284,7 +284,7 @@ Result<Thinned> thinned_samples(Reader::State& reader, const Coverage& coverage,
         }
     }
     if (found.empty()) return thinned;
-    // An open end of the range is where the samples end.
+    // An open end of the range is replaced by the end of the samples.
     const auto [first, last] = std::ranges::minmax_element(found, {}, &Sample::sclk_s);
     Intervals intervals({first->sclk_s, last->sclk_s}, count);
     for (const Sample& sample : found) intervals.add(sample);

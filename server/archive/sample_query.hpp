@@ -9,7 +9,7 @@
 
 namespace aeolis::archive {
 
-/// What a question about one channel and range of time has to read.
+/// The data to read for a question about one channel and range of time.
 struct Coverage {
     struct Part {
         SealedSeries series;
@@ -18,26 +18,27 @@ struct Coverage {
     ChannelId channel;
     ClosedRange range;
     std::vector<Part> parts;
-    std::vector<Sample> tail;         ///< of no segment yet: made again from the raw units
-    std::size_t samples_at_most = 0;  ///< nodes and segments that only touch the range count whole
+    std::vector<Sample> tail;         ///< in no segment yet: decommutated again from the packets
+    std::size_t samples_at_most = 0;  ///< upper bound: nodes and segments that touch the range count whole
 };
-/// Sealed segments hold most; what came after the last of them is made again from the raw units, so that the answer is
-/// everything durable without the writer's help. Call within a read transaction, and use it within the same.
-/// @param only  what came so; none: both sources
+/// Finds the data of a channel in a range: mostly in sealed segments; later samples are decommutated again from the
+/// packets, so that the answer holds everything durable without the writer's help. Call within a read transaction, and
+/// use the result within the same.
+/// @param only  only samples of this source; none: both
 Result<Coverage> cover(Reader::State& reader, const RunInfo& run, ChannelId channel, const ClosedRange& range,
                        std::optional<Source> only = std::nullopt);
 
-/// The samples of one channel in a range, defined ones only, in order of SCLK, live and recorded as one series. Valid
-/// until the next question: they stand in the reader's memory, which is not asked of the kernel anew for each.
+/// The defined samples of one channel in a range, in order of SCLK, live and recorded as one series. Valid until the
+/// next call: they stand in a buffer that the reader keeps, so that its memory is not allocated anew each time.
 Result<std::span<const Sample>> exact_samples(Reader::State& reader, const Coverage& coverage);
 
 struct Thinned {
     std::vector<Sample> points;
-    std::uint64_t samples = 0;  ///< that the points stand for
+    std::uint64_t samples = 0;  ///< number of samples that the points represent
 };
-/// The range in `points` / 2 equal intervals, each with the least and the largest of what falls into it, each at its
-/// own time: nodes of the pyramid, at least half as many as intervals, or, where there are too few of them, samples. An
-/// extreme of all is always among the points; at the border of two intervals one node may speak for both.
+/// Thins to the minimum and maximum, each at its own time, of each of `points` / 2 equal intervals. Reads nodes of the
+/// pyramid (at least half as many as intervals) or, where those are too few, samples. The extremes of the whole range
+/// are always among the points; one node may serve both intervals at whose border it lies.
 Result<Thinned> thinned_samples(Reader::State& reader, const Coverage& coverage, std::size_t points);
 
 }  // namespace aeolis::archive

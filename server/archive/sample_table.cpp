@@ -20,7 +20,7 @@ Result<SampleTable> SampleTable::create(const std::filesystem::path& file) {
         return Error{file.string() + " is there already: nothing is overwritten"};
     auto database = sqlite::Database::open(file.string(), sqlite::Mode::read_write_create);
     if (!database) return database.error();
-    // A file that can be made again: it is all there when finish() is done, or it is not there.
+    // No journal is needed: the file can be made again, and exists only when finish() is done.
     constexpr char begin[] =
         "PRAGMA journal_mode = OFF; PRAGMA synchronous = OFF;"
         "CREATE TABLE samples (run INTEGER NOT NULL, channel TEXT NOT NULL, sclk REAL NOT NULL,"

@@ -10,16 +10,16 @@
 
 namespace aeolis::archive {
 
-/// Samples as rows of a table `samples` in an SQLite file of their own, for questions in plain SQL: ATTACH it to the
-/// archive. A row is some 60 octets where the archive needs one or two.
+/// Samples as rows of a table `samples` in an SQLite file of their own, for queries in plain SQL: ATTACH it to the
+/// archive. A row takes about 60 octets; in the archive a sample takes one or two.
 class SampleTable {
   public:
-    /// Refuses a file that is there already.
+    /// Creates the file. Refuses an existing file.
     static Result<SampleTable> create(const std::filesystem::path& file);
 
     Result<void> add(RunId run, Sclk entry, const dictionary::Dictionary& dictionary,
                      std::span<const ChannelValue> samples);
-    /// Makes the index and keeps the file; without it the file is taken away again.
+    /// Creates the index and keeps the file. Without this call the destructor deletes the file.
     Result<void> finish();
 
     SampleTable(SampleTable&& other) noexcept;

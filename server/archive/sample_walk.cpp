@@ -24,14 +24,14 @@ class Walk {
     Walk(Reader::State& reader, const SealedSeries& series, const ClosedRange& range)
         : reader_(reader), series_(series), range_(range) {}
 
-    /// Nodes first … last - 1 of a level; level 0: samples.
+    /// Visits nodes first … last - 1 of a level; level 0: samples.
     Result<void> visit(unsigned level, std::uint64_t first, std::uint64_t last) {
         if (first >= last) return {};
         if (level == 0) {
             take(0, first, last);
             return {};
         }
-        std::vector<std::uint64_t> cut;  // nodes on an end of the range, for the level below
+        std::vector<std::uint64_t> cut;  // nodes across an end of the range, for the level below
         if (auto done = visit_blocks(level, first, last, cut); !done) return done;
         const std::uint64_t shares = level == 1 ? pyramid::node_samples : pyramid::fan_out;
         for (const std::uint64_t node : cut)
@@ -41,7 +41,7 @@ class Walk {
         return {};
     }
 
-    /// Segments that no block reaches yet.
+    /// Visits the segments that no block covers yet.
     Result<void> visit_segments(std::uint64_t from_sample) {
         auto rows = reader_.query(segments_sql);
         if (!rows) return rows.error();
@@ -155,7 +155,7 @@ Result<SealedSeries> sealed_series(Reader::State& reader, RunId run, std::uint16
 Result<std::vector<Stretch>> stretches(Reader::State& reader, const SealedSeries& series, const ClosedRange& range) {
     if (series.nodes[0] == 0) return std::vector<Stretch>{};
     Walk walk(reader, series, range);
-    std::uint64_t reached = 0;  // samples
+    std::uint64_t reached = 0;  // in samples
     for (unsigned level = pyramid::levels; level >= 1; --level) {
         const std::uint64_t size = pyramid::samples_of_node(level);
         if (auto done = walk.visit(level, (reached + size - 1) / size, series.nodes[level]); !done) return done.error();

@@ -10,8 +10,8 @@ namespace aeolis::archive {
 
 namespace {
 
-// All tables but those of items (item_tables.hpp). docs/archive.md explains each. Times: *_sclk in seconds of the
-// spacecraft clock; *_us in microseconds since 2000-01-01T12:00:00 UTC. key = run << 40 | seq.
+// All tables except those of items (item_tables.hpp), explained in docs/archive.md. *_sclk: seconds of the spacecraft
+// clock; *_us: microseconds since 2000-01-01T12:00:00 UTC. key = run << 40 | seq.
 const char* const tables_sql = R"sql(
 CREATE TABLE dictionaries (
     dictionary INTEGER PRIMARY KEY, mission TEXT NOT NULL, timeline_version INTEGER NOT NULL) STRICT;
@@ -84,7 +84,8 @@ INSERT INTO words VALUES
     ('standing', 4, 'unregistered');
 )sql";
 
-// For people who open the file with other tools: run, seq, words and UTC in place of keys, numbers and microseconds.
+// Views for people who open the file with other tools: run, seq, words and UTC instead of keys, numbers and
+// microseconds.
 const char* const views_sql = R"sql(
 CREATE VIEW packets AS
     SELECT u.run, u.key & 0xFFFFFFFFFF AS seq, p.name, u.apid, u.sclk,
@@ -170,8 +171,8 @@ CREATE VIEW commands AS
     SELECT key >> 40 AS run, command, name, arguments, count, octets FROM command_stages WHERE octets IS NOT NULL;
 )sql";
 
-// Of a new archive; SQLite's own is 4 kB. A block of the pyramid, or a packed column, lies in one page, and trees are a
-// level less deep: a plot that is looked at first reads a third of the pages. docs/decisions/0028
+// Page size of a new archive; SQLite's default is 4 kB. A pyramid block or a packed column fits one page, and trees are
+// a level less deep: a plot opened first reads a third of the pages. docs/decisions/0028
 constexpr char page_size_sql[] = "PRAGMA page_size = 16384";
 
 constexpr char by_key[] = "key BETWEEN ?1 << 40 AND ?1 << 40 | 0xFFFFFFFFFF";
@@ -211,8 +212,8 @@ std::string item_tables_sql() {
     return sql;
 }
 
-// The table "search" indexes the words of the view search_text and keeps no text itself: rows leave it before they
-// leave their table.
+// The table "search" indexes the words of the view search_text and stores no text: its rows must be removed before
+// those of the table.
 std::string search_sql() {
     std::string sql;
     for_item_kinds([&]<typename Record>(ItemKind<Record>) {
@@ -229,11 +230,11 @@ Error not_ours(const sqlite::Database& database) {
     return {database.file() + " is not an Aeolis archive"};
 }
 
-/// Whether the database is empty. One that is neither that nor of our schema is an Error.
+/// Whether the database is empty. An Error when it is neither empty nor of our schema.
 Result<bool> is_empty(sqlite::Database& database) {
     auto id = database.integer_of("PRAGMA application_id");
     if (!id) {
-        // SQLite says so of files with other contents; other failures it names well itself.
+        // SQLite's message for a file of another format; its other messages are clear.
         if (id.error().message.find("not a database") != std::string::npos) return not_ours(database);
         return id.error();
     }
@@ -273,7 +274,7 @@ Result<void> prepare_for_writing(sqlite::Database& database) {
     if (!empty) return empty.error();
     if (!*empty) return {};
     if (auto done = database.execute(page_size_sql); !done) return done;
-    // One transaction, before WAL is switched on: a crash leaves the file empty, or a whole archive, nothing between.
+    // One transaction, before WAL is switched on: after a crash the file is empty or a whole archive.
     auto transaction = sqlite::Transaction::begin_write(database);
     if (!transaction) return transaction.error();
     const std::string marks = "PRAGMA application_id = " + std::to_string(application_id) +

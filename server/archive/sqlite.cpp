@@ -10,9 +10,9 @@ namespace aeolis::archive::sqlite {
 
 namespace {
 
-/// A reader never waits; a writer only for a checkpoint of another connection.
+/// A reader never waits; a writer only for another connection's checkpoint.
 constexpr int busy_timeout_ms = 250;
-constexpr int operations_between_looks = 1000;  ///< of SQLite's machine: some 20 us
+constexpr int operations_between_looks = 1000;  ///< of SQLite's virtual machine: about 20 us
 
 }  // namespace
 
@@ -32,7 +32,7 @@ Statement& Statement::bind(int parameter, double value) {
     return *this;
 }
 Statement& Statement::bind(int parameter, std::string_view text) {
-    // An empty view may have no data, which SQLite would take for NULL.
+    // An empty view may have a null pointer, which SQLite would take for NULL.
     const char* data = text.data() == nullptr ? "" : text.data();
     AEOLIS_CHECK(sqlite3_bind_text64(statement_.get(), parameter, data, text.size(), SQLITE_STATIC, SQLITE_UTF8) ==
                  SQLITE_OK);
@@ -101,7 +101,7 @@ bool Statement::is_null(int column) const {
 Result<Database> Database::open(const std::string& file, Mode mode) {
     Database database;
     database.file_ = file;
-    // NOMUTEX: each connection has one owner. URI: for attach_read_only.
+    // NOMUTEX: each connection has one owner. URI: needed by attach_read_only().
     const int flags = SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_URI |
                       (mode == Mode::read_only ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
     sqlite3* handle = nullptr;
@@ -157,7 +157,7 @@ Result<void> Database::attach_read_only(const std::filesystem::path& file, const
 Result<void> Database::copy_to(Database& empty) const {
     sqlite3_backup* const backup = sqlite3_backup_init(empty.handle(), "main", database_.get(), "main");
     if (backup == nullptr) return empty.error("");
-    // In one step: one state of the file. A writer in WAL mode goes on; only its checkpoints wait.
+    // In one step, for one state of the file. In WAL mode a writer proceeds; only its checkpoints wait.
     const int stepped = sqlite3_backup_step(backup, -1);
     const int finished = sqlite3_backup_finish(backup);
     if (stepped == SQLITE_DONE && finished == SQLITE_OK) return {};
@@ -210,7 +210,7 @@ Result<Transaction> Transaction::begin_read(Database& database) {
 }
 
 Transaction::~Transaction() {
-    // Some errors have rolled back already.
+    // Some errors have already rolled back.
     if (database_ != nullptr && !database_->autocommit()) (void)database_->execute("ROLLBACK").ok();
 }
 

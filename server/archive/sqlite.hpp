@@ -15,10 +15,10 @@
 struct sqlite3;
 struct sqlite3_stmt;
 
-// SQLite's C interface with ownership, types and Result. Nothing of the archive's own rules is here.
+// SQLite's C interface with ownership, types and Result. It knows no rules of the archive.
 namespace aeolis::archive::sqlite {
 
-/// A count or number as SQLite keeps it.
+/// A count as SQLite's integer type.
 inline std::int64_t number(std::uint64_t value) {
     return static_cast<std::int64_t>(value);
 }
@@ -35,13 +35,13 @@ class Statement {
     Statement& bind_octets(int parameter, std::span<const std::uint8_t> octets);
     Statement& bind_null(int parameter);
 
-    /// True: a row stands ready. False: done, and reset. An Error also resets.
+    /// Steps. True: a row is ready. False: done, and reset. An Error also resets.
     Result<bool> step();
-    /// For statements without rows.
+    /// Runs a statement that returns no rows.
     Result<void> run();
     void reset();
 
-    /// Columns of the row, from 0. Text and octets are valid until the next step().
+    /// Columns of the current row, from 0. Text and octets are valid until the next step().
     std::int64_t integer(int column) const;
     double real(int column) const;
     std::string_view text(int column) const;
@@ -65,19 +65,19 @@ class Database {
 
     Result<void> execute(const char* sql);
     Result<Statement> prepare(const char* sql);
-    /// The first column of the first row; 0 when there is none.
+    /// The first column of the first row; 0 when there is no row.
     Result<std::int64_t> integer_of(const char* sql);
 
-    /// The file stands beside this one's tables under `name`, for reading.
+    /// Attaches a file, read-only, as schema `name`.
     Result<void> attach_read_only(const std::filesystem::path& file, const char* name);
-    /// All of this database, as it is now, into an empty one. Writers of this one go on meanwhile.
+    /// Copies this database, as it is now, into an empty one. Writers of this one proceed meanwhile.
     Result<void> copy_to(Database& empty) const;
 
-    /// From now on what runs here ends with an Error soon after `stop` says so. Null: never.
+    /// Sets the stop condition: a statement ends with an Error soon after `stop` returns true. Null: never.
     void stop_when(std::function<bool()> stop);
-    /// Whether that has happened since.
+    /// Whether a statement has been stopped since.
     bool stopped() const;
-    /// The file has been removed or replaced under its name: this connection still reads and writes what it opened.
+    /// Whether the file was removed or replaced under its name; this connection still uses the file that it opened.
     bool moved() const;
 
     /// False while a transaction is open.

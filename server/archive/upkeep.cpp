@@ -14,7 +14,7 @@ namespace aeolis::archive {
 
 namespace {
 
-/// Every number that an item of the run has.
+/// SQL for every sequence number used by an item of the run.
 std::string item_keys_sql(const std::string& schema) {
     std::string sql = "SELECT key + 1 AS key FROM " + schema + "units WHERE key BETWEEN ?1 AND ?2 AND sampled = 1";
     for_item_kinds([&]<typename Record>(ItemKind<Record>) {
@@ -40,7 +40,7 @@ Result<void> make_durable(const std::filesystem::path& file) {
 Result<Maintenance> Maintenance::open(const std::filesystem::path& file) {
     std::error_code ignored;
     if (!std::filesystem::exists(file, ignored)) return Error{file.string() + ": there is no such file"};
-    // The writer's own way in: it refuses what is not ours, and marks what was cut off.
+    // Opened as a writer first: that refuses other files and marks runs that were cut off.
     if (auto opened = Archive::open(file); !opened) return opened.error();
     auto lock = WriterLock::take(file);
     if (!lock) return lock.error();
@@ -124,7 +124,7 @@ Result<void> copy_whole(const sqlite::Database& source, const std::filesystem::p
         auto target = sqlite::Database::open(into.string(), sqlite::Mode::read_write_create);
         if (!target) return target.error();
         if (auto done = source.copy_to(*target); !done) return done;
-        // One file, without a log beside it: a copy is carried about.
+        // No WAL: the copy is a single file that can be moved.
         return target->execute("PRAGMA journal_mode = DELETE");
     }();
     auto done = copied ? make_durable(into) : copied;

@@ -12,11 +12,11 @@
 #include <string>
 #include <vector>
 
-// What is done to an archive now and then, by hand: `aeolis archive`. None of it needs a dictionary.
+// Maintenance of an archive by hand: `aeolis archive`. None of it needs a dictionary.
 namespace aeolis::archive {
 
-/// An archive that is there, for a change that is not a run's: brought up to date, runs that were cut off marked, and
-/// no other writer until it is closed.
+/// An existing archive, opened for a change that belongs to no run. Brings it up to date, marks runs that were cut off,
+/// and excludes other writers until it is closed.
 class Maintenance {
   public:
     static Result<Maintenance> open(const std::filesystem::path& file);
@@ -30,7 +30,7 @@ class Maintenance {
     sqlite::Database database_;
 };
 
-/// As `aeolis archive prune` prints it.
+/// A run as `aeolis archive prune` prints it.
 struct RunLine {
     RunId run;
     std::string scenario, state, outcome, started;
@@ -39,30 +39,30 @@ struct RunLine {
 /// All runs, oldest first.
 Result<std::vector<RunLine>> run_lines(sqlite::Database& database);
 
-/// Takes the runs away, all of them or none, and notes in `pruned_runs` that they were there. Their numbers are not
-/// given again. The file keeps its size until it is vacuumed.
-/// @param by  when, who and from where, of the entry in the audit; what was done is added here
+/// Deletes the runs, all or none, and notes them in `pruned_runs`. Their numbers are not used again. The file keeps its
+/// size until it is vacuumed.
+/// @param by  time, user and address for the audit entry; the action is filled in here
 Result<void> prune(Maintenance& archive, const std::vector<RunId>& runs, AuditRecord by);
 
-/// Gives the room that pruned runs left back to the disk; needs as much again while it works.
+/// Returns the space of pruned runs to the disk. Needs as much space again while it works.
 Result<void> vacuum(Maintenance& archive);
 
-/// A whole archive, as it is now, into a file that is not there yet; a writer goes on meanwhile. The copy has its name
-/// only when it is complete and durable.
+/// Copies a whole archive, as it is now, into a new file; a writer may proceed meanwhile. The copy gets its name only
+/// once complete and durable.
 Result<void> backup(const std::filesystem::path& file, const std::filesystem::path& copy);
 
-/// The same of a database that is open, whatever has become of its name; `into` is replaced if it is there. Leaves it
-/// durable, and nothing when it fails.
+/// Copies an open database, even one removed under its name; replaces `into`. Durable when it returns; leaves no file
+/// when it fails.
 Result<void> copy_whole(const sqlite::Database& source, const std::filesystem::path& into);
 
-/// Durable: the file's contents, and its name in its folder.
+/// Makes a file durable: its contents, and its name in its folder.
 Result<void> make_durable(const std::filesystem::path& file);
 
-/// SQLite's own check of the file, a line a fault; empty: none.
+/// The faults found by SQLite's own check of the file, one per line.
 Result<std::vector<std::string>> integrity_faults(sqlite::Database& database);
 
-/// Sequence numbers of a run that no item has, or more than one, in words; at most `most`. SQL names of tables are
-/// prefixed by `schema` ("main.").
+/// Sequence numbers of a run that no item has, or more than one: at most `most` sentences. `schema` ("main.") prefixes
+/// the names of tables in SQL.
 Result<std::vector<std::string>> sequence_faults(sqlite::Database& database, RunId run, const std::string& schema,
                                                  std::size_t most);
 

@@ -12,7 +12,7 @@ namespace aeolis::archive {
 
 namespace {
 
-/// The last holder removes the file: a lock on a file that no longer has its name locks out nobody.
+/// Whether the lock file still has its name: the last holder removes it, and a lock on a removed file excludes nobody.
 bool still_named(int descriptor, const std::filesystem::path& file) {
     struct stat held{};
     struct stat named{};
@@ -20,16 +20,16 @@ bool still_named(int descriptor, const std::filesystem::path& file) {
            held.st_dev == named.st_dev;
 }
 
-/// What root leaves behind must not lock out whose the archive is: the file of the lock is theirs.
+/// Gives the lock file to the archive's owner. A file left behind by root would lock the owner out.
 void give_to_owner(int descriptor, const std::filesystem::path& archive) {
     struct stat owner{};
     struct stat held{};
-    // Whoever may write the folder may also have put another file there: only an empty one that has no other name is
+    // Somebody who may write the folder may have put another file there: only an empty file without other names is
     // given away.
     if (::fstat(descriptor, &held) != 0 || !S_ISREG(held.st_mode) || held.st_size != 0 || held.st_nlink != 1) return;
     const auto folder = std::filesystem::absolute(archive).parent_path();
     if (::geteuid() != 0 || (::stat(archive.c_str(), &owner) != 0 && ::stat(folder.c_str(), &owner) != 0)) return;
-    if (::fchown(descriptor, owner.st_uid, owner.st_gid) != 0) return;  // a file system without owners
+    if (::fchown(descriptor, owner.st_uid, owner.st_gid) != 0) return;  // the file system has no owners
 }
 
 }  // namespace
@@ -40,7 +40,7 @@ Result<WriterLock> WriterLock::take(const std::filesystem::path& archive) {
     for (;;) {
         int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644);
         if (descriptor < 0 && errno == EACCES)
-            descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);  // another's: enough for a lock
+            descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);  // another user's: enough for a lock
         if (descriptor < 0)
             return Error{archive.string() + ": cannot be written: " + file.string() + ": " + std::strerror(errno)};
         give_to_owner(descriptor, archive);

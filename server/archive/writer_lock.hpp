@@ -8,11 +8,11 @@
 
 namespace aeolis::archive {
 
-/// The right to write an archive: one holder among all processes. SQLite itself lets writers alternate; two rehearsals
-/// in one file would then take each other's run numbers and slow each other without anyone being told.
+/// The exclusive right to write an archive, across processes. SQLite itself lets writers alternate; two rehearsals in
+/// one file would then take each other's run numbers and slow each other down unnoticed.
 ///
-/// A file beside the archive ("FILE-writer") carries the kernel's lock; it is released by the kernel at kill -9.
-/// It is not the archive itself: closing any descriptor of that would drop SQLite's own locks. [sqlite-howtocorrupt]
+/// The kernel's lock is on a file beside the archive ("FILE-writer"); kill -9 releases it. The archive itself is not
+/// locked: closing any descriptor of it would drop SQLite's own locks. [sqlite-howtocorrupt]
 class WriterLock {
   public:
     static Result<WriterLock> take(const std::filesystem::path& archive);

@@ -11,7 +11,7 @@
 
 namespace aeolis::server {
 
-/// Between two threads: first in, first out, at most `limit` values. Who is too fast waits, so nothing is lost.
+/// A first-in, first-out queue between threads, of at most `limit` values. A full queue blocks push(): nothing is lost.
 template <typename T>
 class BoundedQueue {
   public:
@@ -39,20 +39,20 @@ class BoundedQueue {
         return true;
     }
 
-    /// None at `deadline`, or when closed and empty.
+    /// Waits for a value. None at `deadline`, or when closed and empty.
     std::optional<T> pop_until(std::chrono::steady_clock::time_point deadline) {
         std::unique_lock lock{mutex_};
         filled_.wait_until(lock, deadline, [&] { return !values_.empty() || closed_; });
         return take(lock);
     }
-    /// None when closed and empty.
+    /// Waits for a value. None when closed and empty.
     std::optional<T> pop() {
         std::unique_lock lock{mutex_};
         filled_.wait(lock, [&] { return !values_.empty() || closed_; });
         return take(lock);
     }
 
-    /// No more may come; what is in it can still be taken.
+    /// Refuses further values; those in the queue can still be taken.
     void close() {
         {
             const std::scoped_lock lock{mutex_};
@@ -69,7 +69,7 @@ class BoundedQueue {
         const std::scoped_lock lock{mutex_};
         return values_.size();
     }
-    /// Of each value that waits, first in first, while nobody adds or takes one.
+    /// Calls `what` for each queued value, oldest first, while the queue is locked.
     template <typename Do>
     void each(Do what) {
         const std::scoped_lock lock{mutex_};

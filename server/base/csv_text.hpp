@@ -7,7 +7,7 @@
 
 namespace aeolis::server {
 
-/// Whether a spreadsheet would compute it rather than show it.
+/// Whether a spreadsheet would compute the text instead of showing it.
 inline bool is_formula(const std::string& text) {
     if (text.empty() || std::string_view{"=+-@\t\r"}.find(text.front()) == std::string_view::npos) return false;
     double number = 0.0;
@@ -15,8 +15,8 @@ inline bool is_formula(const std::string& text) {
     return error != std::errc{} || end != text.data() + text.size();
 }
 
-/// A field of a line, by RFC 4180. Words of people and of other missions may begin like a formula: these have an
-/// apostrophe in front, by which a spreadsheet takes them for the text that they are.
+/// A CSV field (RFC 4180). Text by people or other missions may begin like a formula: an apostrophe in front makes a
+/// spreadsheet show it as text.
 inline std::string csv_text(const std::string& text) {
     const std::string shown = is_formula(text) ? "'" + text : text;
     if (shown.find_first_of(",\"\r\n") == std::string::npos) return shown;

@@ -18,7 +18,7 @@ Result<void> from_json(std::string_view json, google::protobuf::Message& message
     const auto status = google::protobuf::util::JsonStringToMessage(
         google::protobuf::StringPiece{json.data(), json.size()}, &message, {});
     if (status.ok()) return {};
-    // The parser quotes the text with a caret line below: the first line says what is wrong.
+    // The parser adds lines that quote the text and mark the position; the first line is the fault.
     const auto said = status.message().ToString();
     return Error{"not a " + message.GetDescriptor()->name() + " in JSON: " + said.substr(0, said.find('\n'))};
 }

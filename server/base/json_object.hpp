@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-// JSON of what has no message in schema/: the reports that subcommands print.
+// JSON for reports of subcommands that have no message in schema/.
 namespace aeolis::server {
 
 inline std::string json_text(std::string_view text) {
@@ -28,7 +28,7 @@ inline std::string json_number(double value) {
     return std::isfinite(value) ? fmt::format("{}", value) : "null";
 }
 
-/// One object, its members in the order in which they are added.
+/// A JSON object; its members keep the order in which they were added.
 class JsonObject {
   public:
     JsonObject& raw(std::string_view name, std::string_view json) {

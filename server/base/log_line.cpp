@@ -24,7 +24,7 @@ class TextLine final : public spdlog::formatter {
     spdlog::pattern_formatter head_{"[%Y-%m-%d %H:%M:%S.%e] [%^%l%$] ", spdlog::pattern_time_type::local, ""};
 };
 
-// spdlog's patterns do not escape what they print.
+// spdlog's patterns do not escape their arguments.
 class JsonLine final : public spdlog::formatter {
   public:
     void format(const spdlog::details::log_msg& message, spdlog::memory_buf_t& line) override {
@@ -54,7 +54,7 @@ std::string printable(std::string_view text) {
             shown += "\\t";
         else if (octet < 0x20 || octet == 0x7F)
             fmt::format_to(std::back_inserter(shown), "\\x{:02x}", octet);
-        else if (octet == 0xC2 && next >= 0x80 && next < 0xA0)  // in UTF-8 those from 80 to 9f
+        else if (octet == 0xC2 && next >= 0x80 && next < 0xA0)  // control characters 80 to 9f in UTF-8
             fmt::format_to(std::back_inserter(shown), "\\x{:02x}", static_cast<unsigned char>(text[++i]));
         else
             shown += text[i];

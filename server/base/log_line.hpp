@@ -6,13 +6,13 @@
 #include <string>
 #include <string_view>
 
-// Lines of the log. What clients send is quoted in it: none of it may begin a line of its own, or speak to a terminal.
+// Log lines. They quote what clients send, which must not begin a line of its own or control a terminal.
 namespace aeolis::server {
 
-/// Control characters as \n, \t or \x1b; all else as it stands.
+/// Escapes control characters as \n, \t or \x1b; leaves all else unchanged.
 std::string printable(std::string_view text);
 
-/// As spdlog's own, with a message that is printable.
+/// spdlog's own format, with a printable message.
 std::unique_ptr<spdlog::formatter> text_lines();
 /// One JSON object a line.
 std::unique_ptr<spdlog::formatter> json_lines();

@@ -14,9 +14,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr auto keep_at_most = std::chrono::milliseconds{500};  // not yet durable
+constexpr auto keep_at_most = std::chrono::milliseconds{500};  // longest time until durable
 constexpr auto tell_every = std::chrono::milliseconds{100};
-constexpr std::size_t waiting_per_job = 2;  // so that no thread waits for the one that writes
+constexpr std::size_t waiting_per_job = 2;  // so that no thread waits for the one that stores
 
 using Fly = std::function<std::optional<CaseResult>(std::uint64_t)>;
 
@@ -34,7 +34,7 @@ std::optional<CaseResult> flown(const Fly& fly, std::uint64_t number) {
     return lost;
 }
 
-/// Threads that fly the numbers they are given. Whoever owns it closes `wanted` and takes what is `done` to its end.
+/// Threads that fly the numbers in `wanted`. The owner closes `wanted` and reads `done` to its end.
 class Pilots {
   public:
     Pilots(unsigned jobs, const Fly& fly, const std::atomic<bool>& stop)

@@ -11,23 +11,23 @@
 
 namespace aeolis::server::campaign {
 
-/// How far a campaign has come.
+/// Progress of a campaign.
 struct Progress {
-    std::uint64_t done = 0;  ///< cases that are kept or flown, earlier calls' too
+    std::uint64_t done = 0;  ///< cases stored or flown, including those of earlier calls
     std::uint64_t of = 0;
     std::uint64_t flown = 0;  ///< in this call
     double wall_s = 0.0;      ///< of this call
     double rate_per_s() const { return wall_s > 0.0 ? static_cast<double>(flown) / wall_s : 0.0; }
 };
 
-/// Flies the cases 1 … `cases` that the store does not have, on `jobs` threads, and keeps them as they come.
+/// Flies the cases among 1 … `cases` that the store lacks, on `jobs` threads, and stores their results.
 ///
-/// In       fly(case): from `jobs` threads at once, none when it was abandoned because of `stop`; tell(progress): from
-///          the calling one, ten times a second
-/// Commit   what is flown is durable at most a second later
-/// End      all cases kept; or `stop` was set: what has been flown is kept, no other case begins
-/// Memory   a few cases a thread, whatever their number
-/// Faults   what the store cannot take ends the campaign; what a case throws ends that case as lost
+/// In       fly(case): called from `jobs` threads; none when abandoned because of `stop`. tell(progress): called on the
+///          calling thread, ten times a second
+/// Commit   a flown case is durable at most a second later
+/// End      all cases stored, or `stop` was set: then flown cases are stored and no other case begins
+/// Memory   a few cases per thread, however many there are
+/// Faults   a failed write to the store ends the campaign; an exception in a case ends that case as lost
 Result<Progress> run_campaign(CampaignStore& store, std::uint64_t cases, unsigned jobs,
                               const std::function<std::optional<CaseResult>(std::uint64_t)>& fly,
                               const std::atomic<bool>& stop, const std::function<void(const Progress&)>& tell);

@@ -21,7 +21,7 @@ std::string name_of_file(const std::filesystem::path& file) {
     return name.substr(file_prefix.size(), name.size() - file_prefix.size() - file_extension.size());
 }
 
-/// The newest first. What cannot be read is left out: a folder may change while it is looked at.
+/// The campaign files, newest first. An unreadable one is left out: the folder may change meanwhile.
 std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder) {
     std::vector<std::pair<std::filesystem::file_time_type, std::filesystem::path>> found;
     std::error_code error;
@@ -38,7 +38,7 @@ std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder)
     return files;
 }
 
-/// What the file says of itself.
+/// The state of a campaign from its file.
 v1::CampaignState kept_in(const std::filesystem::path& file) {
     v1::CampaignState state;
     state.set_campaign(name_of_file(file));
@@ -113,14 +113,14 @@ void add(const Summary& summary, v1::CampaignReport& report) {
 
 }  // namespace
 
-/// What flies, and after that how it ended. Its thread writes, others read.
+/// The campaign in flight, and afterwards its end. Its thread writes; others read.
 struct CampaignDesk::Flight {
     std::string name;
     Order order;
-    std::optional<CampaignStore> store;  ///< none once it is over: the file is free for others
+    std::optional<CampaignStore> store;  ///< none once over: other programs may then open the file
     std::atomic<bool> stop{false}, begun{false}, over{false};
     std::atomic<double> rate_per_s{0.0};
-    std::string fault{};  ///< once it is over
+    std::string fault{};  ///< set when over
     std::thread thread{};
 
     Flight(std::string of, Order asked, CampaignStore into)
@@ -249,7 +249,7 @@ v1::CampaignList CampaignDesk::list() {
 }
 
 std::optional<std::filesystem::path> CampaignDesk::file_of(const std::string& campaign) const {
-    // The name is looked for among the files and never made a path: it comes from a client.
+    // The name comes from a client: it is looked up among the files and never made a path.
     for (auto& file : files_in(folder_))
         if (name_of_file(file) == campaign) return std::move(file);
     return std::nullopt;
@@ -264,7 +264,7 @@ Result<v1::CampaignReport> CampaignDesk::report(const std::filesystem::path& fil
     results->stop_when(std::move(stop));
     const auto summary = results->brief();
     if (!summary) return summary.error();
-    report.mutable_state()->set_kept(static_cast<std::uint32_t>(summary->kept));  // one instant in one answer
+    report.mutable_state()->set_kept(static_cast<std::uint32_t>(summary->kept));  // consistent with the summary
     add(*summary, report);
     return report;
 }

@@ -16,42 +16,42 @@
 
 namespace aeolis::server::campaign {
 
-/// The campaigns of one folder, campaign-NAME.db each, those of `aeolis campaign` too: one at a time flies, all can be
-/// looked at.
+/// Starts, cancels and reports the campaigns of one folder; one flies at a time. The folder holds campaign-NAME.db for
+/// each, including those of `aeolis campaign`.
 ///
-/// Thread   any but the network's: each call reads files. What flies has threads of its own that run only where nobody
-///          else wants the processor, and one beside them keeps
-/// Memory   a landing a thread; a look at a campaign keeps its touchdowns that were asked for, no more
-/// Faults   a disk that does not take the results ends the campaign, with that as its fault; what is kept stays
+/// Thread   any but the network's: each call reads files. Cases fly on threads of their own that run only while nothing
+///          else wants the processor; another thread stores the results
+/// Memory   one landing per thread; a query holds no more than the touchdowns requested
+/// Faults   a failed write ends the campaign, with the write's Error as its fault; stored cases stay
 class CampaignDesk {
   public:
-    static constexpr std::uint32_t cases_max =
-        10'000;  ///< ours: at a case a second three hours, and a summary in half a second
-    static constexpr std::uint64_t touchdowns_max = 10'000;  ///< ours: of one answer, 1 MB
+    static constexpr std::uint32_t cases_max = 10'000;  ///< chosen: three hours at a case a second; a summary in 0.5 s
+    static constexpr std::uint64_t touchdowns_max = 10'000;  ///< chosen: in one answer, 1 MB
 
-    /// What is given must outlive this.
+    /// The arguments must outlive this.
     CampaignDesk(std::filesystem::path folder, const ScenarioLibrary& scenarios,
                  const dictionary::Dictionary& dictionary);
-    ~CampaignDesk();  ///< what flies is abandoned within a cycle, what is flown is kept
+    ~CampaignDesk();  ///< abandons cases in flight within a cycle; flown cases are stored
 
-    /// An Error names what in the request makes no sense.
+    /// Checks a request. The Error names the field at fault.
     Result<Order> order_of(const v1::StartCampaign& request) const;
-    /// An Error names why it cannot be flown now: another flies, or the file belongs to another program.
+    /// Starts a campaign. The Error says why it cannot fly now: another flies, or the file belongs to another program.
     Result<v1::CampaignState> start(Order order);
-    /// It is over within a cycle of each case and one commit, and "cancelling" until then. The cases that are kept
-    /// stay, and the next start goes on with them. An Error: it does not fly.
+    /// Cancels a campaign; its state is "cancelling" until each case has ended its cycle and one commit is done. Stored
+    /// cases stay; the next start continues from them. An Error: it does not fly.
     Result<v1::CampaignState> cancel(const std::string& campaign);
 
     v1::CampaignList list();
-    /// None: there is no such campaign.
+    /// The file of a campaign; none when there is no such campaign.
     std::optional<std::filesystem::path> file_of(const std::string& campaign) const;
-    /// Both end with an Error soon after `stop` says so. Errors name a file that cannot be read.
+    /// report() and touchdowns() end with an Error soon after `stop` returns true. Errors name a file that cannot be
+    /// read.
     Result<v1::CampaignReport> report(const std::filesystem::path& file, std::function<bool()> stop);
-    /// Those that came after `place`, in that order.
+    /// Touchdowns whose place is after `place`, in order.
     Result<v1::CampaignTouchdowns> touchdowns(const std::filesystem::path& file, std::uint64_t place,
                                               std::uint64_t limit, std::function<bool()> stop);
 
-    /// From now on none can be started, because of `reason`.
+    /// Refuses all further starts, with `reason`.
     void close(std::string reason);
     static unsigned jobs_max();
 
@@ -63,9 +63,9 @@ class CampaignDesk {
     const std::filesystem::path folder_;
     const ScenarioLibrary& scenarios_;
     const dictionary::Dictionary& dictionary_;
-    std::mutex mutex_;  ///< of what follows
+    std::mutex mutex_;  ///< guards the members below
     std::string closed_;
-    std::unique_ptr<Flight> flight_;  ///< the last one that was started here
+    std::unique_ptr<Flight> flight_;  ///< the last one started here
 };
 
 }  // namespace aeolis::server::campaign

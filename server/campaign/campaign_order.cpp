@@ -14,7 +14,7 @@
 namespace aeolis::server::campaign {
 namespace {
 
-/// The calling thread, from now on.
+/// Gives the calling thread the lowest priority from now on.
 void give_way() {
     const sched_param none{};
     if (sched_setscheduler(0, SCHED_IDLE, &none) != 0) setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), 19);
@@ -44,8 +44,8 @@ Result<CampaignStore> open_store(const Order& order, const dictionary::Dictionar
 
 Result<Progress> fly(CampaignStore& store, const Order& order, const dictionary::Dictionary& dictionary,
                      const std::atomic<bool>& stop, const std::function<void(const Progress&)>& tell) {
-    // Not on this thread, which keeps: it shares locks of SQLite with whoever stores a landing, and must never hold one
-    // while it waits.
+    // Not on the storing thread: that shares SQLite's locks with the server's writer and must not be descheduled while
+    // it holds one.
     const auto flights = std::async(std::launch::async, [&] {
                              if (order.gives_way) give_way();
                              return std::make_unique<const CaseFlights>(order.scenario, order.seed, dictionary, stop);

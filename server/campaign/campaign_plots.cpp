@@ -31,7 +31,7 @@ struct Range {
     }
 };
 
-/// A picture on its way into its file.
+/// A picture being written to its file.
 class Picture {
   public:
     explicit Picture(std::filesystem::path file) : file_(std::move(file)), stream_(file_, std::ios::binary) {}
@@ -54,7 +54,7 @@ std::string whose(const Summary& summary, std::uint64_t count) {
 Result<void> plot_touchdown(CampaignResults& results, const Summary& summary, const std::filesystem::path& file) {
     const Ellipse& ellipse = summary.ellipse;
     const double half_km = 0.5 * ellipse.major_m * km;
-    Range east, north;  // the target is in it
+    Range east, north;  // includes the target
     for (const double sign : {-1.0, 1.0}) {
         east.take(ellipse.east_m * km + sign * half_km);
         north.take(ellipse.north_m * km + sign * half_km);
@@ -64,7 +64,7 @@ Result<void> plot_touchdown(CampaignResults& results, const Summary& summary, co
         north.take(at.y * km);
     });
     if (!ranged) return ranged;
-    // Equal scales: the wider of the two rules.
+    // Equal scales: that of the longer axis.
     const double span = 1.08 * std::max({east.to - east.from, north.to - north.from, 0.1});
     const double east_km = 0.5 * (east.from + east.to), north_km = 0.5 * (north.from + north.to);
     const Chart chart{"touchdown",
@@ -109,7 +109,7 @@ Result<void> plot_parachute(CampaignResults& results, const Summary& summary, co
     return picture.close();
 }
 
-/// Counts in bins of equal width; what lies outside goes to the outermost.
+/// Counts values in bins of equal width; values outside go to the outermost bins.
 class Histogram {
   public:
     Histogram(double from, double to) : from_(from), width_((to - from) / static_cast<double>(bins)) {}

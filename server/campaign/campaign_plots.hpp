@@ -8,8 +8,8 @@
 
 namespace aeolis::server::campaign {
 
-/// Writes touchdown.svg (places, 99 % ellipse, target), parachute.svg (the air that it opened into, and the box that
-/// it is meant for) and touchdown_speed.svg (histograms) into `directory`, which is made.
+/// Writes three plots into `directory`, which is created: touchdown.svg (places, 99 % ellipse, target), parachute.svg
+/// (Mach and dynamic pressure at deployment, and the design box) and touchdown_speed.svg (histograms).
 Result<void> write_plots(CampaignResults& results, const Summary& summary, const std::filesystem::path& directory);
 
 }  // namespace aeolis::server::campaign

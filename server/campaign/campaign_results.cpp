@@ -16,7 +16,7 @@ constexpr const char* all = "flown";
 constexpr const char* landed = "flown WHERE outcome = 'touchdown'";
 constexpr const char* moments = "moments WHERE name = ?";
 
-/// Hands over each row; ends at the first error.
+/// Passes each row to `take`; ends at the first Error.
 Result<void> each_row(Statement& statement, const std::function<void(const Statement&)>& take) {
     for (;;) {
         const auto row = statement.step();
@@ -56,7 +56,7 @@ double Summary::touchdown_fraction() const {
 }
 
 Result<CampaignResults> CampaignResults::open(const std::filesystem::path& file, std::uint64_t cases) {
-    // Not read only: the last to close a WAL folds it into the file, and that takes the right to write.
+    // Not read-only: the last connection to close checkpoints the WAL into the file, which needs write access.
     auto database = Database::open(file.string(), Mode::read_write_create);
     if (!database) return database.error();
     const auto views = fmt::format("CREATE TEMP VIEW flown AS SELECT * FROM cases WHERE number <= {0};"
@@ -109,7 +109,7 @@ Result<Summary> CampaignResults::brief() {
 }
 
 Result<Summary> CampaignResults::read(bool with_events) {
-    const auto instant = archive::sqlite::Transaction::begin_read(database_);  // one, however many cases come meanwhile
+    const auto instant = archive::sqlite::Transaction::begin_read(database_);  // one snapshot, while cases may be added
     if (!instant) return instant.error();
     Summary summary;
     summary.cases = cases_;

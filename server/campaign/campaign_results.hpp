@@ -15,7 +15,7 @@
 
 namespace aeolis::server::campaign {
 
-/// How a number is spread over the cases that have it.
+/// Statistics of a number over the cases that have it.
 struct Spread {
     std::uint64_t count = 0;
     double least = 0.0, p1 = 0.0, p50 = 0.0, p99 = 0.0, most = 0.0;
@@ -44,60 +44,60 @@ struct LeastMargin {
     std::uint64_t number = 0;  ///< the case
 };
 
-/// What the cases 1 … `cases` of a file come to. Touchdown's numbers are of the cases with that outcome.
+/// Statistics of the cases 1 … `cases` of a file. Touchdown figures are of the cases with that outcome.
 struct Summary {
     std::string scenario;
     std::uint64_t seed = 0;
-    std::uint64_t cases = 0;                                      ///< asked for
-    std::uint64_t kept = 0;                                       ///< that the file holds of them
+    std::uint64_t cases = 0;                                      ///< requested
+    std::uint64_t kept = 0;                                       ///< stored in the file
     std::vector<std::pair<std::string, std::uint64_t>> outcomes;  ///< most frequent first
     std::vector<EventSpread> events;                              ///< in the order of their mean time
     Spread vertical_mps, horizontal_mps, miss_m, latitude_deg, longitude_deg;
     Ellipse ellipse;
     Spread parachute_mach, parachute_pressure_Pa;
     Spread peak_deceleration_mps2, propellant_kg;
-    Spread heatshield_least_m, backshell_least_m;  ///< of the cases in which the vehicle came nearer to it again
+    Spread heatshield_least_m, backshell_least_m;  ///< of the cases in which the vehicle approached it again
     std::uint64_t recontacts = 0;
     std::vector<MarginSpread> margins;  ///< in the order of the timeline
     std::optional<LeastMargin> least_margin;
     std::vector<Failure> failures;  ///< the first `failures_max`
     std::uint64_t failed = 0;
 
-    static constexpr std::size_t failures_max = 20;  ///< ours: a screenful; the file has them all
+    static constexpr std::size_t failures_max = 20;  ///< chosen: a screenful; the file has them all
 
     double touchdown_fraction() const;
 };
 
-/// What a file of results says of itself, now.
+/// The present heading of a results file.
 struct Heading {
     std::string scenario;
     std::uint64_t seed = 0;
-    std::uint64_t cases = 0;  ///< that the last call asked for
-    std::uint64_t kept = 0;   ///< that the file holds of them
+    std::uint64_t cases = 0;  ///< requested by the last call
+    std::uint64_t kept = 0;   ///< stored in the file
 };
-/// An Error names the file, and what it is when it is no campaign's of this version.
+/// Reads the heading. The Error names the file and, if it is no campaign file of this version, says what it is.
 Result<Heading> heading_of(const std::filesystem::path& file);
 
-/// Where a case came to the ground.
+/// The touchdown of a case.
 struct Touchdown {
-    std::uint64_t place = 0;  ///< in the order in which the cases came
+    std::uint64_t place = 0;  ///< rank in the order in which cases were stored
     std::uint64_t number = 0;
     std::string outcome;
-    std::optional<double> east_m, north_m;  ///< of the target; none: it never touched down
+    std::optional<double> east_m, north_m;  ///< relative to the target; none: it never touched down
 };
 
-/// The results of a campaign, read from its file: rows pass one after another and are not kept.
+/// The results of a campaign, read from its file row by row; rows are not kept.
 class CampaignResults {
   public:
-    /// Of the cases 1 … `cases`.
+    /// Opens the results of the cases 1 … `cases`.
     static Result<CampaignResults> open(const std::filesystem::path& file, std::uint64_t cases);
-    /// From now on what is asked ends with an Error soon after `stop` says so.
+    /// Sets the stop condition: a query ends with an Error soon after `stop` returns true.
     void stop_when(std::function<bool()> stop) { database_.stop_when(std::move(stop)); }
 
     Result<Summary> summary();
-    /// Without events, whose spreads take most of the time.
+    /// The summary without events, whose statistics take most of the time.
     Result<Summary> brief();
-    /// Those that came after `place`, in that order, `limit` at most.
+    /// At most `limit` touchdowns whose place is after `place`, in order.
     Result<std::vector<Touchdown>> arrivals(std::uint64_t place, std::uint64_t limit);
 
     struct Point {
@@ -110,7 +110,7 @@ class CampaignResults {
   private:
     CampaignResults(archive::sqlite::Database database, std::uint64_t cases)
         : database_(std::move(database)), cases_(cases) {}
-    /// Of a column of `source`; `name` is bound when it has a parameter.
+    /// Statistics of a column of `source`; `name` is bound when `source` has a parameter.
     Result<Spread> spread(const char* column, const char* source, const std::string& name = {});
     Result<void> each(const char* sql, const std::function<void(Point)>& take);
     Result<Summary> read(bool with_events);

@@ -31,7 +31,7 @@ const char* const schema =
     " timepoint TEXT NOT NULL, margin_s REAL NOT NULL, PRIMARY KEY (case_number, place)) STRICT, WITHOUT ROWID;"
     "CREATE INDEX margins_by_timepoint ON margins (timepoint);";
 
-/// The first line in which two texts differ, both versions.
+/// The first line in which two texts differ, in both versions.
 std::string difference(const std::string& before, const std::string& now) {
     std::istringstream left{before}, right{now};
     for (std::string a, b;;) {
@@ -55,7 +55,7 @@ Result<CampaignStore> CampaignStore::open(const std::filesystem::path& file, con
     auto database = Database::open(file.string(), Mode::read_write_create);
     if (!database) return database.error();
     CampaignStore store{std::move(*lock), std::move(*database)};
-    // Before anything is written into a file that may be somebody else's.
+    // Checked before writing: the file may belong to another program.
     const auto id = store.database_.integer_of("PRAGMA application_id");
     if (!id) return id.error();
     const auto tables = store.database_.integer_of("SELECT count(*) FROM sqlite_schema");

@@ -14,35 +14,34 @@
 namespace aeolis::server::campaign {
 
 inline constexpr std::int64_t campaign_schema_version = 4;
-inline constexpr std::int64_t campaign_application_id = 0x4165436d;  ///< "AeCm", in the file's header
+inline constexpr std::int64_t campaign_application_id = 0x4165436d;  ///< "AeCm" in the file's header
 
-/// What the cases of one file have in common. Cases of two identities never share a file.
+/// The properties common to all cases of a file. Cases of two identities never share a file.
 struct Identity {
     std::string scenario;       ///< its name
     std::string scenario_text;  ///< complete
     std::uint64_t seed = 1;
-    std::string dictionary;  ///< id of the words on board
+    std::string dictionary;  ///< id of the dictionary on board
     std::string program;     ///< digest of the program that flies
 };
 
-/// The results of a campaign in a SQLite file: one row a case, one a case's event. Rows are only ever added, and a case
-/// once.
+/// The results of a campaign in an SQLite file. Rows are only ever added, and each case once.
 ///
-///   campaign   one row: schema version, scenario, seed, dictionary, program, cases asked for by the last call
-///   cases      number, outcome, reason, end_cycle, touchdown, parachute, …; NULL where there was none
-///   arrivals   place (from 1, in the order in which the cases came), case_number
-///   events     case_number, place (in the order of time), name, e_s, altitude_m, speed_mps
+///  campaign   one row: schema version, scenario, seed, dictionary, program, cases requested by the last call
+///  cases      number, outcome, reason, end_cycle, touchdown, parachute, …; NULL where there was none
+///  arrivals   place (from 1, in the order in which cases were stored), case_number
+///  events     case_number, place (in the order of time), name, e_s, altitude_m, speed_mps
 ///
 /// One thread owns it, and one process at a time writes.
 class CampaignStore {
   public:
-    /// Makes the file when there is none. An Error names the field in which the file belongs to another campaign.
+    /// Opens or creates the file. The Error names the field in which the file belongs to another campaign.
     static Result<CampaignStore> open(const std::filesystem::path& file, const Identity& identity);
 
-    /// From now on the file says that this many are wanted.
+    /// Writes the number of cases requested into the file.
     Result<void> want(std::uint64_t cases);
     Result<bool> has(std::uint64_t case_number);
-    /// All of `results` or none; durable when it returns.
+    /// Stores all of `results` or none; durable when it returns.
     Result<void> add(std::span<const CaseResult> results);
 
   private:

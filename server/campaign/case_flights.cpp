@@ -24,7 +24,7 @@ bool begins_after_another_anchor(const dictionary::Dictionary& dictionary, std::
     return true;
 }
 
-/// When the case begins to differ from the others.
+/// SCLK from which the case differs from the others.
 double dispersion_sclk(const simulation::Scenario& scenario) {
     return scenario.entry_sclk.seconds - scenario.disperse_before_entry_s.value_or(scenario.start_before_entry_s);
 }
@@ -71,7 +71,7 @@ std::unique_ptr<CaseFlights::Flight> CaseFlights::begun(std::uint64_t case_numbe
 }
 
 std::optional<CaseResult> CaseFlights::fly(std::uint64_t case_number) const {
-    if (abandon_) return std::nullopt;  // the common flight may not have come to its end
+    if (abandon_) return std::nullopt;  // the common flight may be incomplete
     CaseResult result;
     result.number = case_number;
     std::unique_ptr<Flight> flight;

@@ -14,27 +14,27 @@
 
 namespace aeolis::server::campaign {
 
-/// The landings of a campaign: what all cases have in common is flown once, and each case is a copy of it.
+/// Flies the cases of a campaign. The part common to all cases is flown once; each case starts from a copy of it.
 ///
-/// In       the number of a case                        Out   what is kept of it; none when it was abandoned
+/// In       the number of a case                        Out   its result; none when it was abandoned
 /// Rate     as fast as it is called; from several threads at once
-/// Memory   a landing with its recording a thread, some ten megabytes; nothing stays of a case
-/// Faults   a bug found in the simulation, or what else it throws, ends that case as lost
-/// Case K is, bit for bit, the landing that `aeolis rehearse --case K` flies; what nobody reads (relay, proof, data
-/// products, what channels say once the script is sent) is left out.
+/// Memory   one landing with its recording per thread, about ten megabytes; nothing remains of a finished case
+/// Faults   a failed check or an exception in the simulation ends that case as lost
+///
+/// Case K is bit for bit the landing that `aeolis rehearse --case K` flies. Parts without a reader are left out: relay,
+/// proof, data products, and channel values once the script is sent.
 class CaseFlights {
   public:
-    /// Flies up to the moment of dispersion; nothing when the scenario has none of its own. The dictionary must outlive
-    /// this.
+    /// Flies up to the moment of dispersion, if the scenario has one. The dictionary must outlive this.
     CaseFlights(const simulation::Scenario& scenario, std::uint64_t seed, const dictionary::Dictionary& dictionary);
-    /// Once `abandon` is set, whatever flies ends with its next cycle. It must outlive this, too.
+    /// Once `abandon` is set, each case ends with its next cycle. `abandon` must outlive this too.
     CaseFlights(const simulation::Scenario& scenario, std::uint64_t seed, const dictionary::Dictionary& dictionary,
                 const std::atomic<bool>& abandon);
 
     std::optional<CaseResult> fly(std::uint64_t case_number) const;
 
   private:
-    /// A landing on its way, and what it has told so far.
+    /// A landing in flight, and what was recorded of it so far.
     struct Flight {
         ScriptedLanding landing;
         RecordedFirings firings;
@@ -50,12 +50,12 @@ class CaseFlights {
     std::uint64_t seed_;
     const dictionary::Dictionary& dictionary_;
     const std::atomic<bool>& abandon_;
-    std::unique_ptr<const Flight> common_;  ///< none: each case is flown from the start
+    std::unique_ptr<const Flight> common_;  ///< null: each case is flown from its start
 };
 
-/// Of each timepoint at which the timeline passes from one anchor to the next, and that was fired after `after_sclk`,
-/// how long after its minimum offset permitted it was it triggered: nought is one that the timeline held up. Within an
-/// anchor's own sequence the margins are the timeline's design and say nothing of the case. Minimum offsets are the
+/// The margins of a case: for each timepoint that passes from one anchor to the next and fired after `after_sclk`, how
+/// long after its minimum offset permitted it was it triggered. Zero: the timeline held it up. Margins within an
+/// anchor's own sequence are the timeline's design and say nothing about the case. Minimum offsets are the
 /// dictionary's.
 std::vector<TimelineMargin> timeline_margins(const std::vector<RecordedFiring>& firings,
                                              const dictionary::Dictionary& dictionary, double after_sclk);

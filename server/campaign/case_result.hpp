@@ -15,19 +15,20 @@ struct CaseEvent {
     double e_s = 0.0, altitude_m = 0.0, speed_mps = 0.0;
 };
 
-/// How much later a timepoint was triggered than its minimum offset from the firing before it permits.
+/// How long a timepoint was triggered after its earliest permitted time. That time is its minimum offset after the
+/// previous firing.
 struct TimelineMargin {
     std::string timepoint;
     double margin_s = 0.0;
 };
 
-/// What a campaign keeps of one case.
+/// The stored result of one case.
 struct CaseResult {
     std::uint64_t number = 0;
-    std::string outcome, reason;  ///< as of a rehearsal: touchdown, impact, lost, not_commanded, timeout
+    std::string outcome, reason;  ///< the same words as of a rehearsal: touchdown, impact, lost, not_commanded, timeout
     std::uint64_t end_cycle = 0;  ///< 64 Hz cycles from the landing's start to its end
     std::optional<simulation::TouchdownReport> touchdown;
-    double east_m = 0.0, north_m = 0.0;  ///< of the target, when there was a touchdown
+    double east_m = 0.0, north_m = 0.0;  ///< relative to the target, when there was a touchdown
     std::optional<simulation::ParachuteReport> parachute;
     simulation::SeparationReport separation;
     double peak_deceleration_mps2 = 0.0;

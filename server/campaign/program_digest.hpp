@@ -7,7 +7,7 @@
 
 namespace aeolis::server::campaign {
 
-/// SHA-256 of the program that runs, as its file has it: two builds that may fly differently differ in it.
+/// SHA-256 of the running program's file. Two builds that may fly differently have different digests.
 Result<std::string> program_digest();
 
 }  // namespace aeolis::server::campaign

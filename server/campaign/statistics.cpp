@@ -54,7 +54,7 @@ Percentile::Percentile(double fraction, std::uint64_t count)
     : place_(count == 0 ? 0.0 : fraction * static_cast<double>(count - 1)) {}
 
 void Percentile::add(double value) {
-    // Two neighbours share the place between them; each has the part of it that the other lacks.
+    // Linear weights: only the two neighbours of place_ contribute.
     const double part = 1.0 - std::abs(static_cast<double>(at_) - place_);
     if (part > 0.0) value_ += part * value;
     ++at_;

@@ -6,9 +6,9 @@
 
 namespace aeolis::server::campaign {
 
-inline constexpr double km = 1.0e-3;  ///< metres times this are kilometres
+inline constexpr double km = 1.0e-3;  ///< multiplies metres to give kilometres
 
-/// Mean and deviation of numbers as they come, without keeping them. Source: [welford-1962].
+/// Running mean and standard deviation, without storing the numbers. Source: [welford-1962].
 class Moments {
   public:
     void add(double value);
@@ -28,13 +28,13 @@ struct Ellipse {
     double azimuth_deg = 0.0;             ///< of the major axis, from north to east, 0 … 180
 };
 
-/// Points in a plane as they come, and the ellipse that holds `0.99` of a Gaussian with their mean and covariance: its
-/// semi-axes are the square roots of the covariance's eigenvalues times χ²(0.99; 2) = −2 ln 0.01 = 9.210.
+/// Running moments of points in a plane, with an ellipse that holds 99 % of such a Gaussian. Its semi-axes are the
+/// square roots of the covariance's eigenvalues times χ²(0.99; 2) = −2 ln 0.01 = 9.210.
 class PlaneMoments {
   public:
     void add(double east_m, double north_m);
     std::uint64_t count() const { return count_; }
-    Ellipse ellipse_99() const;  ///< without extent for fewer than two points
+    Ellipse ellipse_99() const;  ///< of zero size for fewer than two points
 
   private:
     std::uint64_t count_ = 0;
@@ -42,12 +42,12 @@ class PlaneMoments {
     double east_east_ = 0.0, east_north_ = 0.0, north_north_ = 0.0;
 };
 
-/// The value below which a fraction of an ordered sample lies, interpolated between its neighbours, for numbers that
-/// come in ascending order and are not kept. The first is at fraction 0, the last at 1 [hyndman-1996, type 7].
+/// A percentile of numbers given in ascending order, which are not stored: the value below which `fraction` of them
+/// lie, interpolated between neighbours. The first is at fraction 0, the last at 1 [hyndman-1996, type 7].
 class Percentile {
   public:
     Percentile(double fraction, std::uint64_t count);
-    void add(double value);  ///< not below the one before
+    void add(double value);  ///< not less than the one before
     double value() const { return value_; }
 
   private:

@@ -17,7 +17,7 @@ struct AccountsOptions {
     std::string user;
 };
 
-/// Prints users and tokens of a file of accounts.
+/// Prints the users and tokens of an accounts file.
 int accounts_list(const AccountsOptions& options) {
     const auto accounts = read_accounts(options.file);
     if (!accounts) return failed("accounts list: " + accounts.error().message);
@@ -30,7 +30,7 @@ int accounts_list(const AccountsOptions& options) {
     return 0;
 }
 
-/// Gives a user a new password, or makes an administrator of that name; prints the password.
+/// Gives a user a new password, or creates an administrator of that name; prints the password.
 int accounts_reset(const AccountsOptions& options) {
     if (const auto named = check_name(options.user); !named)
         return failed("accounts reset: --user: " + named.error().message, 2);

@@ -19,8 +19,8 @@ namespace {
 struct PruneOptions {
     std::filesystem::path archive = default_archive;
     std::vector<std::uint32_t> runs;
-    std::optional<std::size_t> keep;  ///< the newest so many stay
-    bool yes = false;                 ///< else it only says what it would do
+    std::optional<std::size_t> keep;  ///< keep this many newest runs
+    bool yes = false;                 ///< false: only prints what it would do
 };
 
 struct BackupOptions {
@@ -35,7 +35,7 @@ std::optional<archive::RunId> asked(const ArchiveOptions& options) {
     return options.run ? std::optional(archive::RunId{*options.run}) : std::nullopt;
 }
 
-/// Says how far it is; ends at the first Ctrl-C.
+/// Prints the progress; ends at the first Ctrl-C.
 pipeline::GoesOn until_interrupted(ProgressLine& line) {
     stop_at_interrupt();
     return [&line](const pipeline::Work& work) {
@@ -44,7 +44,7 @@ pipeline::GoesOn until_interrupted(ProgressLine& line) {
     };
 }
 
-/// Of an entry in the audit.
+/// The time, user and address for an audit entry.
 archive::AuditRecord by_this_user() {
     archive::AuditRecord by;
     by.at = wall_clock_text();
@@ -53,7 +53,7 @@ archive::AuditRecord by_this_user() {
     return by;
 }
 
-/// Runs to take away, or what is wrong with the question.
+/// The runs to delete; an Error for wrong options.
 Result<std::vector<archive::RunLine>> chosen(const PruneOptions& options, const std::vector<archive::RunLine>& all) {
     std::vector<archive::RunLine> runs;
     if (options.keep) {
@@ -69,7 +69,7 @@ Result<std::vector<archive::RunLine>> chosen(const PruneOptions& options, const 
     return runs;
 }
 
-/// 0 when nothing is wrong.
+/// Returns 0 when there is no fault.
 int archive_verify(const ArchiveOptions& options) {
     int exit_code = 0;
     const auto words = recorded_words(options.shared.dictionary, options.xtce, exit_code);
@@ -88,7 +88,7 @@ int archive_verify(const ArchiveOptions& options) {
     return found->faults.empty() ? 0 : 1;
 }
 
-/// 0 when every run was made again.
+/// Returns 0 when every run was rebuilt.
 int archive_rebuild(const ArchiveOptions& options) {
     int exit_code = 0;
     const auto words = recorded_words(options.shared.dictionary, options.xtce, exit_code);

@@ -22,8 +22,8 @@ struct CampaignOptions {
     SharedOptions shared;
     std::string scenario;
     std::uint64_t cases = 0, seed = 1;
-    unsigned jobs = 0;                             ///< 0: one a processor
-    std::optional<std::filesystem::path> results;  ///< else run-data/campaign-SCENARIO-SEED.db
+    unsigned jobs = 0;                             ///< 0: one per processor
+    std::optional<std::filesystem::path> results;  ///< none: run-data/campaign-SCENARIO-SEED.db
     std::optional<std::filesystem::path> plots;    ///< a directory
     bool json = false;
 };
@@ -45,7 +45,7 @@ Result<campaign::Call> flown(const CampaignOptions& options, const campaign::Ord
     return campaign::Call{*progress, order.jobs, options.scenario, order.file.string()};
 }
 
-/// 0 when all cases are flown and each ended in touchdown.
+/// Returns 0 when all cases are flown and each ended in touchdown.
 int run_campaign(const CampaignOptions& options) {
     const auto ready = flyable(options.shared, options.scenario);
     if (!ready) return failed(ready.error().message);

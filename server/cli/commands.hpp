@@ -5,7 +5,7 @@ namespace CLI {
 class App;
 }
 
-// The subcommands of `aeolis`. Each function adds one to the program, with its options and what it runs, which sets
+// The subcommands of `aeolis`. Each function adds one to the program, with its options and its callback, which sets
 // `exit_code`: 0 done, 1 failed or found something, 2 wrong use, 3 unknown whether it was done.
 namespace aeolis::server {
 
@@ -24,7 +24,7 @@ void add_serve_command(CLI::App& program, int& exit_code);
 void add_timeline_command(CLI::App& program, int& exit_code);
 void add_tones_command(CLI::App& program, int& exit_code);
 
-/// `samples`, a subcommand of `archive` that shares its options with `export`.
+/// Adds `samples`, a subcommand of `archive` that shares its options with `export`.
 void add_archive_samples(CLI::App& archive, int& exit_code);
 
 }  // namespace aeolis::server

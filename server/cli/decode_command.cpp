@@ -25,7 +25,7 @@ struct DecodeOptions {
     std::filesystem::path xtce, packets;
     DownlinkForm format{};
     std::optional<std::filesystem::path> clock_kernel,
-        leap_seconds;                      ///< SPICE text kernels: both, or leap seconds alone
+        leap_seconds;                      ///< SPICE text kernels: both, or the leap seconds alone
     std::optional<std::size_t> partition;  ///< of the clock
     bool csv = false;
 };
@@ -61,7 +61,7 @@ Result<telemetry::TimeKernels> time_kernels(const DecodeOptions& options) {
     return kernels;
 }
 
-/// What is printed: a row a packet, or in the end a line a container.
+/// Prints packets, one row each, or at the end a summary with one line per container.
 class Printed {
   public:
     Printed(const telemetry::ContainerDecoder& decoder, const telemetry::TimeKernels& kernels, bool csv)
@@ -87,7 +87,7 @@ class Printed {
     const std::map<std::string, std::uint64_t>& problems() const { return problems_; }
 
   private:
-    /// Some say where in the packet, so that each may be a text of its own.
+    /// Counts a problem. Some texts name a place in the packet and so may all differ.
     void note(const std::string& problem) {
         const bool room = problems_.size() < problems_max || problems_.contains(problem);
         ++problems_[room ? problem : "other problems"];
@@ -107,11 +107,11 @@ class Printed {
     bool csv_;
     std::uint64_t index_ = 0;
     std::map<std::pair<std::uint64_t, std::string>, std::uint64_t> kinds_;
-    static constexpr std::size_t problems_max = 50;  ///< ours: more nobody reads
+    static constexpr std::size_t problems_max = 50;  ///< chosen: nobody reads more
     std::map<std::string, std::uint64_t> problems_;
 };
 
-/// What of the file was not decoded; true when there is nothing of that kind.
+/// Prints the losses in the file; true when there are none.
 bool print_losses(const telemetry::PacketSource& source, const Printed& printed) {
     const auto link = source.link();
     const auto packets = source.packets();
@@ -128,7 +128,7 @@ bool print_losses(const telemetry::PacketSource& source, const Printed& printed)
            printed.problems().empty();
 }
 
-/// Prints any mission's packets by its XTCE file; 0 when every octet was decoded.
+/// Prints any mission's packets by its XTCE file; returns 0 when every octet was decoded.
 int decode(const DecodeOptions& options) {
     if (!telemetry::downlink_format(options.format.name))
         return failed(packet_source(options.format, {}).error().message, 2);

@@ -15,7 +15,7 @@ namespace {
 
 struct DictionaryOptions {
     std::filesystem::path directory = SharedOptions{}.dictionary;
-    std::filesystem::path out;  ///< empty: the standard output
+    std::filesystem::path out;  ///< empty: standard output
 };
 
 int dictionary_check(const std::filesystem::path& directory) {
@@ -33,12 +33,12 @@ int dictionary_check(const std::filesystem::path& directory) {
     return 0;
 }
 
-/// Writes the whole dictionary as one XTCE file, to `out` or, where it is empty, to the standard output.
+/// Writes the whole dictionary as one XTCE file to `out`, or to standard output when it is empty.
 int dictionary_export(const std::filesystem::path& directory, const std::filesystem::path& out) {
     std::error_code error;
     if (!std::filesystem::exists(directory, error))
         return failed(fmt::format("dictionary export: {} is no directory and no file", directory.string()), 2);
-    // Only what breaks no rule leaves the house.
+    // A dictionary that breaks a rule is not exported.
     if (!loaded_dictionary(directory)) return 1;
     std::vector<dictionary::Finding> findings;
     const auto text = dictionary::one_file_of(dictionary::read_mission_files(directory, findings));
@@ -52,7 +52,7 @@ int dictionary_export(const std::filesystem::path& directory, const std::filesys
     return file ? 0 : failed("dictionary export: " + out.string() + " cannot be written");
 }
 
-/// Prints the state machines as diagrams.
+/// Prints the dictionary's state machines as diagrams.
 int dictionary_diagram(const std::filesystem::path& directory) {
     const auto dictionary = loaded_dictionary(directory);
     if (!dictionary) return 1;

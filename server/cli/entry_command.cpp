@@ -15,7 +15,7 @@ struct EntryReferenceOptions {
     std::string scenario;
 };
 
-/// Prints the tables that entry guidance follows in a scenario, as CSV.
+/// Prints the entry guidance tables of a scenario as CSV.
 int entry_reference(const EntryReferenceOptions& options) {
     const auto scenario = scenario_given(options.scenario, options.shared.scenarios);
     if (!scenario) return failed(scenario.error().message);

@@ -21,13 +21,14 @@ struct ExportOptions {
     std::vector<std::string> channels;   ///< empty: all
     std::optional<double> from_s, to_s;  ///< SCLK, both included
     std::string format = "csv";          ///< csv, jsonl
-    std::string align;                   ///< as SampleText::Options has it
-    std::filesystem::path out;           ///< empty: the standard output
+    std::string align;                   ///< as in SampleText::Options
+    std::filesystem::path out;           ///< empty: standard output
 };
 
 using Begin = std::function<Result<void>(const v1::RunState&, const dictionary::Dictionary&)>;
 
-/// Says of which run and in whose words, then hands on its samples, some thousands at a time. @return the exit code
+/// Calls `begin` with the run and its dictionary, then passes its samples on, some thousands at a time. @return the
+/// exit code
 int each_row(const ExportOptions& options, const char* command, const Begin& begin,
              const archive::Reader::TakeSamples& take) {
     const auto said = [&](const Error& error) { return failed(fmt::format("{}: {}", command, error.message)); };
@@ -48,7 +49,7 @@ struct CloseFile {
     void operator()(std::FILE* file) const { std::fclose(file); }
 };
 
-/// Writes a line a sample, or a line an instant.
+/// Writes one line per sample, or per instant.
 int export_samples(const ExportOptions& options) {
     std::unique_ptr<std::FILE, CloseFile> file;
     if (!options.out.empty()) {
@@ -61,7 +62,7 @@ int export_samples(const ExportOptions& options) {
         if (std::fwrite(text.data(), 1, text.size(), to) == text.size()) return {};
         return Error{(file != nullptr ? options.out.string() : std::string("the standard output")) + " takes no more"};
     };
-    std::optional<SampleText> lines;  // once it is known which words the run has
+    std::optional<SampleText> lines;  // made once the run's dictionary is known
     std::string text;
     const int ended = each_row(
         options, "export",
@@ -84,7 +85,7 @@ int export_samples(const ExportOptions& options) {
     return std::fflush(to) == 0 ? 0 : failed("export: what was written could not be kept");
 }
 
-/// The same rows as a table of an SQLite file `out`.
+/// Writes the same samples as a table of an SQLite file `out`.
 int archive_samples(const ExportOptions& options) {
     auto table = archive::SampleTable::create(options.out);
     if (!table) return failed("archive samples: " + table.error().message);
@@ -109,7 +110,7 @@ int archive_samples(const ExportOptions& options) {
     return 0;
 }
 
-/// Which samples of which run.
+/// Adds the options that select samples of a run.
 void add_selection(CLI::App& command, ExportOptions& options) {
     add_archive_and_words(command, options.of);
     command.add_option("--run", options.of.run, "number of the run")->required()->check(whole_number());

@@ -11,7 +11,7 @@ std::atomic<bool>& stop_asked() {
     static std::atomic<bool> asked{false};
     return asked;
 }
-static_assert(std::atomic<bool>::is_always_lock_free);  // a signal sets it
+static_assert(std::atomic<bool>::is_always_lock_free);  // a signal handler sets it
 
 void stop_at_interrupt() {
     std::signal(SIGINT, [](int) {

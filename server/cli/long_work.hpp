@@ -6,13 +6,13 @@
 
 namespace aeolis::server {
 
-/// Set by the first Ctrl-C, or by SIGTERM, once stop_at_interrupt() was called: work that takes long then ends with
-/// what is whole.
+/// Set by the first Ctrl-C or SIGTERM once stop_at_interrupt() was called. Long work then stops and keeps what is
+/// complete.
 std::atomic<bool>& stop_asked();
-/// The second Ctrl-C ends the program.
+/// Installs the handlers of Ctrl-C and SIGTERM. The second Ctrl-C ends the program.
 void stop_at_interrupt();
 
-/// One line that is drawn over on a terminal, and taken away at the end; elsewhere nothing.
+/// A progress line, redrawn in place on a terminal and erased at the end; draws nothing elsewhere.
 class ProgressLine {
   public:
     ProgressLine();

@@ -12,7 +12,7 @@
 
 namespace {
 
-/// What is wrong with the command line: a command that does not exist, else what the parser says.
+/// The fault of a command line: an unknown command, else the parser's message.
 std::string wrong_use(const CLI::App& program, const CLI::ParseError& error, int argc, char** argv) {
     const auto has = [](const CLI::App& command, const std::string& name) {
         return !command.get_subcommands([&](const CLI::App* each) { return each->get_name() == name; }).empty();

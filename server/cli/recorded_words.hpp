@@ -10,12 +10,12 @@
 
 namespace aeolis::server {
 
-/// What runs of an archive were recorded with.
+/// The dictionary that runs of an archive were recorded with.
 struct RecordedWords {
-    std::unique_ptr<telemetry::OtherMission> other;  ///< none: our own
+    std::unique_ptr<telemetry::OtherMission> other;  ///< null: our own mission
     dictionary::Dictionary dictionary;
 };
-/// With `xtce` another mission's. None: what is wrong was said, and `exit_code` is what to end with.
+/// Loads the dictionary; with `xtce`, another mission's. None: the fault was printed; end with `exit_code`.
 std::optional<RecordedWords> recorded_words(const std::filesystem::path& dictionary, const std::filesystem::path& xtce,
                                             int& exit_code);
 

@@ -23,11 +23,11 @@ struct RehearseOptions {
     std::string scenario;
     std::uint64_t seed = 1, case_number = 0;
     std::optional<std::filesystem::path> archive;
-    std::optional<std::filesystem::path> truth;  ///< 16 rows a second of what really happened, as CSV
+    std::optional<std::filesystem::path> truth;  ///< CSV of the truth, 16 rows a second
     bool json = false;
 };
 
-constexpr std::size_t delivery_entries = 512;  // ours: some 60 KB a hand-over
+constexpr std::size_t delivery_entries = 512;  // chosen: about 60 KB each
 
 Result<std::unique_ptr<PipelineThread>> opened_archive(const std::filesystem::path& file,
                                                        const dictionary::Dictionary& dictionary) {
@@ -41,7 +41,7 @@ Result<std::unique_ptr<PipelineThread>> opened_archive(const std::filesystem::pa
     return pipeline;
 }
 
-/// What really flies, a row each fourth cycle until it stands, for plots.
+/// The true state, one row per fourth cycle until standstill, for plots.
 class TruthFile {
   public:
     Result<void> open(const std::filesystem::path& file) {
@@ -83,7 +83,7 @@ class TruthFile {
     std::ofstream rows_;
 };
 
-/// To the end, everything that reaches Earth into the archive.
+/// Flies to the end; everything that reaches Earth goes to the archive.
 Result<void> fly_archived(Rehearsal& rehearsal, TruthFile& truth, PipelineThread& pipeline) {
     if (const auto run = pipeline.begin(rehearsal.run_start(0.0)); !run) return run.error();
     Delivery delivery;

@@ -78,7 +78,7 @@ void print_proof(const v1::ProofReport& proof) {
                all.never_seen_live(), proof.recording_complete() ? "" : " The recording is not complete.");
 }
 
-/// A note on one line: what a terminal would obey is shown as a space.
+/// A note on one line: control characters are replaced by spaces.
 std::string one_line(std::string text) {
     std::ranges::replace_if(text, [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; }, ' ');
     return text;
@@ -92,7 +92,7 @@ void print_notes(const v1::AsFlownReport& report) {
     }
 }
 
-/// Prints a run as it was flown.
+/// Prints the as-flown report of a run.
 int report(const ReportOptions& options) {
     int exit_code = 0;
     const auto words = recorded_words(options.of.shared.dictionary, {}, exit_code);

@@ -21,8 +21,8 @@ struct SendOptions {
     std::string server = "http://127.0.0.1:8080";
     std::string token;                  ///< of a server with accounts
     std::filesystem::path authorities;  ///< PEM; empty: the system's
-    std::string by;                     ///< who asks, where the file does not say it
-    std::optional<std::uint32_t> run;   ///< the one that goes on
+    std::string by;                     ///< the asker, unless the file names one
+    std::optional<std::uint32_t> run;   ///< none: the current run
     bool dry_run = false;
 };
 
@@ -54,7 +54,7 @@ std::string of_one(const v1::CommandReply& reply) {
 
 constexpr int exit_not_known = 3;
 
-/// The server may have taken all of the file or nothing.
+/// Reports that the server may have taken all of the file or nothing.
 int perhaps_taken(const v1::CommandSequence& sequence, const std::string& why, const SendOptions& options) {
     if (sequence.dry_run()) return failed("send: a dry run, nothing was sent: " + why);
     return failed(
@@ -65,7 +65,7 @@ int perhaps_taken(const v1::CommandSequence& sequence, const std::string& why, c
         exit_not_known);
 }
 
-/// Sends a command file to a server; 0 when all was taken, 3 when it is not known whether it was, else nothing was.
+/// Sends a command file to a server. Returns 0: all taken; 3: unknown; else nothing was taken.
 int send(const SendOptions& options) {
     const auto sequence = sequence_of(options);
     if (!sequence) return failed("send: " + sequence.error().message, 2);

@@ -22,18 +22,18 @@ namespace {
 
 struct ServeOptions {
     SharedOptions shared;
-    std::filesystem::path settings;  ///< has been read before: settings_file.hpp
+    std::filesystem::path settings;  ///< already read: settings_file.hpp
     std::string listen = "127.0.0.1:8080";
     std::filesystem::path archive = default_archive;
     std::filesystem::path web = shipped("web/dist");
     std::filesystem::path accounts;          ///< empty: none
     std::filesystem::path certificate, key;  ///< PEM; empty: no TLS
-    std::vector<std::string> names;          ///< by which browsers call the server
-    std::string scenario;                    ///< empty: none is started
+    std::vector<std::string> names;          ///< host names used by browsers
+    std::string scenario;                    ///< empty: start none
     std::uint64_t seed = 1;
     double pace = 1.0;
     std::optional<std::string> downlink;  ///< "tcp://HOST:PORT", "udp://HOST:PORT": follow another mission
-    std::filesystem::path xtce;           ///< of that mission
+    std::filesystem::path xtce;           ///< of the followed mission
     DownlinkForm format{};
     std::string log_level = "info", log_format = "text";
 };
@@ -43,7 +43,7 @@ struct Listen {
     std::uint16_t port = 0;
 };
 
-/// "127.0.0.1:8080", "[::1]:8080", "localhost:8080".
+/// Parses "127.0.0.1:8080", "[::1]:8080", "localhost:8080".
 std::optional<Listen> listen_of(const std::string& text) {
     const auto colon = text.rfind(':');
     if (colon == std::string::npos || colon == 0) return std::nullopt;
@@ -71,10 +71,9 @@ std::string what_to_do(const std::optional<simulation::Scenario>& scenario) {
                        scenario->name, name_of(scenario->test_venue), waits_for);
 }
 
-constexpr rlim_t files_besides_connections = 256;  // ours: the archive from each thread, campaigns, the console's files
+constexpr rlim_t files_besides_connections = 256;  // chosen: archive connections, campaigns, console files
 
-/// A process begins with 1024 open files mostly, and may take more by itself: all streams and who asks besides need
-/// them.
+/// Raises the limit of open files, by default mostly 1024: all streams and further connections need more.
 void allow_open_files() {
     constexpr rlim_t wanted = WebServer::streams_max + WebServer::connections_besides + files_besides_connections;
     rlimit files{};
@@ -244,7 +243,7 @@ CLI::Validator pace() {
             "PACE"};
 }
 
-/// The rehearsal to start, or the mission to follow.
+/// Adds the options for the rehearsal to start, or the mission to follow.
 void add_run_options(CLI::App& command, ServeOptions& options) {
     auto* scenario = command.add_option("--scenario", options.scenario,
                                         "rehearsal to start at once: a file, or the name of a shipped one");

@@ -30,7 +30,7 @@ Result<void> take_file(CLI::App& command, const std::filesystem::path& file) {
     CLI::ConfigINI reader;
     reader.arrayBounds(
         '\x01',
-        '\x01');  // else it splits values at commas and blanks, which options with several values do themselves
+        '\x01');  // otherwise it splits values at commas and blanks, as options with several values do themselves
     for (const auto& item : reader.from_config(in)) {
         auto* option = item.name == "config" ? nullptr : command.get_option_no_throw("--" + item.name);
         if (option == nullptr || item.inputs.size() != 1)

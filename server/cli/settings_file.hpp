@@ -9,11 +9,11 @@ class App;
 
 namespace aeolis::server {
 
-/// Gives each option of `serve` the environment variable of its name: AEOLIS_LOG_LEVEL for --log-level. Not --config.
+/// Binds each option of `serve` but --config to an environment variable: AEOLIS_LOG_LEVEL for --log-level.
 void name_environment(CLI::App& command);
 
-/// Makes the values in the file that `serve --config` names the defaults of its options, so that environment and
-/// command line take precedence. Before the command line is parsed; does nothing without such a file.
+/// Makes the values in the file of `serve --config` the defaults of its options. Environment and command line then take
+/// precedence. Call before parsing the command line. Does nothing without such a file.
 Result<void> take_settings(CLI::App& program, int argc, char** argv);
 
 }  // namespace aeolis::server

@@ -13,7 +13,7 @@ namespace aeolis::server {
 std::filesystem::path shipped(const std::string& folder) {
     std::error_code error;
     const auto program = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
-    // Beside the program, above build/release, where the package puts it, and where it was built from.
+    // Beside the program, above build/release, where the package installs it, and the source tree of the build.
     for (const auto& root :
          {program, program / "../..", program / "../share/aeolis", std::filesystem::path{AEOLIS_SOURCE_DIRECTORY}})
         if (std::filesystem::is_directory(root / folder, error)) return (root / folder).lexically_normal();

@@ -11,32 +11,32 @@
 
 namespace aeolis::server {
 
-/// A folder that ships ("dictionaries/msl"): beside the program, two folders above it (build/release/aeolis in a
-/// checkout), or where the program was built from; the first that exists.
+/// The path of a shipped folder ("dictionaries/msl"): the first that exists of: beside the program, two folders above
+/// it (build/release/aeolis in a checkout), the source tree of the build.
 std::filesystem::path shipped(const std::string& folder);
 
-/// The dictionary and the scenarios of a subcommand: those that ship, unless others are given.
+/// The dictionary and scenarios of a subcommand; by default those that ship.
 struct SharedOptions {
     std::filesystem::path dictionary = shipped("dictionaries/msl"), scenarios = shipped("simulation/scenarios");
 };
 
-/// Prints every broken rule, a line each, to stderr and gives none when there are any.
+/// Loads a dictionary. None when a rule is broken; every broken rule is printed to stderr, one per line.
 std::optional<dictionary::Dictionary> loaded_dictionary(const std::filesystem::path& directory);
 
-/// The same, and an Error when flight was built from other words: its packets could not be read.
+/// Loads a dictionary. An Error too when flight was built from another: its packets could not be read.
 Result<dictionary::Dictionary> dictionary_of_flight(const std::filesystem::path& directory);
 
-/// `given` is a file, or the name of a scenario that ships.
+/// Loads a scenario. `given` is a file, or the name of a shipped scenario.
 Result<simulation::Scenario> scenario_given(const std::string& given, const std::filesystem::path& scenarios);
 
-/// What it takes to fly: flight's own dictionary, and a scenario whose commands that dictionary knows.
+/// The inputs of a flight: flight's own dictionary, and a scenario whose commands are in it.
 struct Flyable {
     dictionary::Dictionary dictionary;
     simulation::Scenario scenario;
 };
 Result<Flyable> flyable(const SharedOptions& shared, const std::string& scenario);
 
-/// One line to stderr, "aeolis: …"; returns the exit code.
+/// Prints one line to stderr, "aeolis: …"; returns the exit code.
 int failed(const std::string& message, int exit_code = 1);
 
 }  // namespace aeolis::server

@@ -63,7 +63,7 @@ std::string slack_text(const MaybeOffset& slack_s) {
     return slack_s ? fmt::format("{:.6f}", *slack_s) : "unbounded";
 }
 
-/// radar_power:fired -> heatshield_separation:triggered >= 8 s
+/// A bound as text: radar_power:fired -> heatshield_separation:triggered >= 8 s
 std::string bound_text(const Dictionary& d, const BoundProof& bound) {
     const ConstraintRow& row = d.constraints[bound.constraint];
     return fmt::format("{} -> {} {} {}", moment_text(d, row.from), moment_text(d, row.to),
@@ -77,7 +77,7 @@ void print_chain(const Dictionary& d, const std::vector<ChainStep>& chain) {
                    place_text(step));
 }
 
-/// The moments of the schedule from one end of the constraint to the other, and the anchors that they hang on.
+/// Prints the schedule's moments from one end of the constraint to the other, and their anchors.
 void print_counter_example(const Dictionary& d, const BoundProof& bound) {
     const ConstraintRow& row = d.constraints[bound.constraint];
     const auto time_of = [&](const Moment& moment) {
@@ -149,7 +149,7 @@ void print_analysis(const Dictionary& d, const TimelineAnalysis& analysis) {
     const auto not_proven = [](const BoundProof& bound) { return bound.proof != Proof::proven; };
     const auto failures = std::ranges::count_if(analysis.bounds, not_proven);
     if (failures == 0) {
-        // Of equal slack the longest chain: it has the most that can shift.
+        // Of equal slacks the longest chain: it has the most that can shift.
         const auto least = std::ranges::min_element(analysis.bounds, {}, [](const BoundProof& bound) {
             return std::pair{bound.slack_s.value_or(0.0), -static_cast<std::ptrdiff_t>(bound.chain.size())};
         });
@@ -280,7 +280,7 @@ bool is_folder(const std::filesystem::path& path) {
     return std::filesystem::is_directory(path, error);
 }
 
-/// 0 when every required row of constraints.csv is proven.
+/// Returns 0 when every required row of constraints.csv is proven.
 int timeline_analyse(const TimelineAnalyseOptions& options) {
     if (!is_folder(options.directory))
         return failed(fmt::format("timeline analyse: {} is no directory", options.directory.string()), 2);
@@ -294,7 +294,7 @@ int timeline_analyse(const TimelineAnalyseOptions& options) {
     return analysis.all_proven() ? 0 : 1;
 }
 
-/// 0 when no row differs.
+/// Returns 0 when no row differs.
 int timeline_diff(const TimelineDiffOptions& options) {
     for (const auto& directory : {options.before, options.after})
         if (!is_folder(directory))

@@ -22,8 +22,8 @@ struct TonesDecodeOptions {
     std::filesystem::path samples;
     double rate_hz = 0.0;
     std::string format;
-    std::optional<std::filesystem::path> predict;  ///< what was removed before sampling
-    double start_s = 0.0;                          ///< of the first sample, in the predict's time
+    std::optional<std::filesystem::path> predict;  ///< Doppler removed before sampling
+    double start_s = 0.0;                          ///< of the first sample, on the predict's time axis
     bool json = false;
 };
 
@@ -34,7 +34,7 @@ struct TonesSimulateOptions {
     std::string format = "cf32";
     std::optional<std::string> scenario;  ///< the tones and Doppler of a landing, from entry interface
     std::optional<std::filesystem::path> tones, doppler, predict;
-    std::optional<std::filesystem::path> predict_out;  ///< made here instead: what ground expects
+    std::optional<std::filesystem::path> predict_out;  ///< ground's predict, written here instead
     std::optional<double> from_s, length_s;
     double c_n0_dbhz = 22.0;
     std::uint64_t seed = 1, case_number = 0;
@@ -51,7 +51,7 @@ Result<TimeTable> optional_doppler(const std::optional<std::filesystem::path>& f
     return file ? read_doppler(*file) : Result<TimeTable>{TimeTable{}};
 }
 
-/// A line a symbol: JSON, or words.
+/// Prints a symbol on one line, as JSON or in words.
 void print(const telemetry::ToneReception& heard, const dictionary::Dictionary& dictionary, bool json) {
     if (!json) {
         const std::string name = heard.tone ? dictionary.tones[*heard.tone].name : std::string{};
@@ -77,7 +77,7 @@ struct Sending {
     std::vector<simulation::SentTone> tones;
     simulation::XBandPath path;
     double length_s = 0.0;
-    TimeTable expected_hz;  ///< Doppler as ground would predict it
+    TimeTable expected_hz;  ///< ground's predict of the Doppler
 };
 
 Result<Sending> sending_of_flight(const TonesSimulateOptions& options, const dictionary::Dictionary& dictionary) {
@@ -114,7 +114,7 @@ Result<Sending> sending_of_files(const TonesSimulateOptions& options, const dict
     return sending;
 }
 
-/// Prints a line a symbol. 1 when there is silence, no carrier, or a long carrier without any symbol.
+/// Prints one line per symbol. Returns 1 for silence, no carrier, or a long carrier without symbols.
 int tones_decode(const TonesDecodeOptions& options) {
     const auto dictionary = loaded_dictionary(options.shared.dictionary);
     if (!dictionary) return 1;
@@ -160,7 +160,7 @@ int tones_decode(const TonesDecodeOptions& options) {
     return 0;
 }
 
-/// Writes a file of samples.
+/// Writes a file of simulated samples.
 int tones_simulate(const TonesSimulateOptions& options) {
     const auto dictionary = options.scenario ? dictionary_of_flight(options.shared.dictionary)
                                              : Result<dictionary::Dictionary>{dictionary::Dictionary{}};
@@ -210,7 +210,7 @@ int tones_simulate(const TonesSimulateOptions& options) {
     return 0;
 }
 
-/// Prints the receiver's figures beside their goals; 1 when one is missed.
+/// Prints the receiver's figures with their goals; returns 1 when one is missed.
 int tones_bench(const TonesBenchOptions& options) {
     const auto landing = flyable(options.shared, "od137");
     if (!landing) return failed(landing.error().message);

@@ -12,8 +12,8 @@
 namespace aeolis::server {
 namespace {
 
-constexpr std::uintmax_t text_octets_max = std::uintmax_t{256} << 20U;  // ours
-constexpr std::size_t findings_shown_max = 200;                         // ours: a person reads no more
+constexpr std::uintmax_t text_octets_max = std::uintmax_t{256} << 20U;  // chosen
+constexpr std::size_t findings_shown_max = 200;                         // chosen: a person reads no more
 
 void print_findings(const std::vector<dictionary::Finding>& findings) {
     for (std::size_t i = 0; i < findings.size() && i < findings_shown_max; ++i)

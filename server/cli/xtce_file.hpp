@@ -11,12 +11,12 @@
 
 namespace aeolis::server {
 
-/// The text of a file, or one line that names it.
+/// Reads the text of a file. The Error is one line that names the file.
 Result<std::string> text_of_file(const std::filesystem::path& path);
 
-/// Any mission's XTCE file. What in it is not supported, or wrong, has been printed to stderr with its line.
+/// Any mission's XTCE file. Faults and unsupported elements have been printed to stderr with their lines.
 struct XtceFile {
-    std::optional<dictionary::xtce::PacketModel> model;  ///< none: said why
+    std::optional<dictionary::xtce::PacketModel> model;  ///< none: the fault was printed
     int exit_code = 0;
     std::uint16_t id = 0;  ///< changes with every change of the file
     explicit operator bool() const { return model.has_value(); }

@@ -9,8 +9,8 @@
 
 namespace aeolis::server {
 
-/// Where another mission's octets come from: "tcp://HOST:PORT" to connect to, "udp://HOST:PORT" to listen at. HOST is a
-/// name or an address, [::1] in brackets; PORT 1 … 65535, for UDP also 0: a free one.
+/// The address of another mission's downlink: "tcp://HOST:PORT" to connect to, "udp://HOST:PORT" to listen at. HOST is
+/// a name or an address, [::1] in brackets; PORT is 1 … 65535, for UDP also 0: any free port.
 struct DownlinkAddress {
     bool udp = false;
     std::string host;

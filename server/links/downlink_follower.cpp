@@ -10,7 +10,7 @@
 namespace aeolis::server {
 namespace {
 
-constexpr std::chrono::milliseconds connect_limit{10'000};  // ours
+constexpr std::chrono::milliseconds connect_limit{10'000};  // chosen
 constexpr std::chrono::milliseconds receive_limit{1'000};
 constexpr std::int64_t pass_interval_us = 1'000'000;
 constexpr std::int64_t unix_to_2000_s = 946'728'000;  // 1970-01-01 to 2000-01-01T12:00:00
@@ -73,10 +73,10 @@ void DownlinkFollower::follow() {
     on_state_(state("finished"));
 }
 
-/// False when it is over.
+/// Connects, with retries. False when stopped.
 bool DownlinkFollower::connect_again() {
     while (!stop_) {
-        // After a stream that ended in confusion too: a sender that only confuses is not asked all the time.
+        // Waits also after a stream without packets, so that a faulty sender is not reconnected continuously.
         if (!said_.empty() && socket_.sleep(wait_)) break;
         wait_ = std::min(2 * wait_, settings_.retry_max);
         const auto opened = socket_.open(settings_.address, connect_limit);
@@ -124,10 +124,10 @@ void DownlinkFollower::take(std::span<const std::uint8_t> octets) {
     lost_ = source_->lost();
 }
 
-/// Makes the source, once it is known how frames are, and gives it all that has come.
+/// Makes the packet source once the frame length is known, and passes it all octets received.
 bool DownlinkFollower::recognise(std::span<const std::uint8_t> octets) {
     beginning_.insert(beginning_.end(), octets.begin(), octets.end());
-    // Looked through each time that it has doubled: what is received one octet at a time costs no more than twice.
+    // Retried each time the octets have doubled, so that octets received one by one cost at most twice the work.
     const bool full = beginning_.size() >= beginning_octets_max;
     const bool told = !needs_beginning(settings_.format);
     if (!told && !full && beginning_.size() < 2 * tried_octets_) return false;
@@ -167,7 +167,7 @@ void DownlinkFollower::deliver_packets() {
     if (!pipeline_.deliver(std::move(delivery))) stop_ = true;
 }
 
-/// Time goes on, also while nothing comes.
+/// Reports the time on Earth, also while nothing is received.
 void DownlinkFollower::pass() {
     const Ert now = now_on_earth();
     if (now.microseconds - passed_.microseconds < pass_interval_us) return;
@@ -185,7 +185,7 @@ void DownlinkFollower::say(bool up, const std::string& reason) {
     else
         spdlog::warn("downlink {}: {}", settings_.address.text(), reason);
     Delivery delivery;
-    // What is known of such a mission explains no silence: a way that does not work is ground's.
+    // No prediction explains a silence of another mission: a broken connection is a ground fault.
     delivery.entries.emplace_back(
         telemetry::LinkState{telemetry::downlink_link, now_on_earth(), up,
                              up ? reason : words_of(telemetry::SilenceClass::ground_fault, reason), !up});

@@ -17,35 +17,34 @@ namespace aeolis::server {
 
 /// Follows another mission in its own thread: receives octets, finds packets, hands them to the archive as one run.
 ///
-/// In       octets of a TCP connection or of datagrams            Out   deliveries to the pipeline; the run's state on
-///          change
-/// TCP      connects, and again after every end, first after `retry_first`, then twice as long each time up to
-///          `retry_max`
-/// UDP      bare packets: each datagram holds whole ones; frames: datagrams are pieces of one stream
-/// Faults   octets that are no packet are counted and skipped; where bare packets cannot be found any more, the
-///          connection is made anew. Each change is logged and is an item of the run.
-/// Memory   a piece of `piece_octets`, a frame, the beginning of a stream whose frames must be recognised; a slow disk
-///          holds the thread, and TCP then the sender. Datagrams that come meanwhile may be lost, as UDP loses them
+/// In       octets of a TCP connection or of datagrams       Out   deliveries to the pipeline; run states on change
+/// TCP      connects, and reconnects after every end: first after `retry_first`, then doubling up to `retry_max`
+/// UDP      bare packets: each datagram holds whole packets. Frames: datagrams are pieces of one stream
+/// Faults   octets that are no packet are counted and skipped. When bare packets cannot be found any more, it
+///          reconnects. Each change is logged and is an item of the run
+/// Memory   a piece of `piece_octets`, a frame, and the beginning of a stream whose frame length is not yet known. A
+///          slow disk blocks the thread and so the TCP sender; datagrams that arrive meanwhile may be lost, as UDP
+///          permits
 class DownlinkFollower {
   public:
-    static constexpr std::size_t piece_octets = 65536;                          ///< no datagram is longer
-    static constexpr std::size_t beginning_octets_max = std::size_t{1} << 20U;  ///< ours: two frames of any length
+    static constexpr std::size_t piece_octets = 65536;                          ///< the largest datagram
+    static constexpr std::size_t beginning_octets_max = std::size_t{1} << 20U;  ///< chosen: two frames of any length
 
     struct Settings {
         DownlinkAddress address;
         DownlinkForm format;
-        std::string xtce;  ///< what the file is called
+        std::string xtce;  ///< name of the XTCE file
         std::chrono::milliseconds retry_first{250}, retry_max{30'000};
     };
     using OnState = std::function<void(v1::RunState)>;  ///< called on the follower's thread
 
-    /// Begins the run. Fails when there is no such format, the datagrams' address cannot be had, or the archive
+    /// Begins the run. Fails on an unknown format, when the datagrams' address cannot be bound, or when the archive
     /// refuses. The pipeline, which reads that mission's packets, must outlive this.
     static Result<std::unique_ptr<DownlinkFollower>> start(Settings settings, PipelineThread& pipeline,
                                                            OnState on_state);
     ~DownlinkFollower();  ///< ends the run
 
-    std::uint16_t port() const { return port_; }  ///< where datagrams are awaited
+    std::uint16_t port() const { return port_; }  ///< of the bound UDP socket
 
   private:
     DownlinkFollower(Settings settings, PipelineThread& pipeline, OnState on_state);
@@ -68,12 +67,12 @@ class DownlinkFollower {
     archive::RunId run_;
     archive::RunStart start_;
     std::optional<telemetry::PacketSource> source_;
-    std::vector<std::uint8_t> beginning_;  ///< of a stream whose frames are not recognised yet
+    std::vector<std::uint8_t> beginning_;  ///< of a stream whose frames are not yet recognised
     std::size_t tried_octets_ = 0;
-    std::string said_;  ///< so that a fault that lasts is said once
+    std::string said_;  ///< the last message, so that a lasting fault is reported once
     std::uint64_t packets_ = 0;
-    Ert passed_;                      ///< until then time has been told
-    std::chrono::milliseconds wait_;  ///< before the next attempt to connect; short again when packets have come
+    Ert passed_;                      ///< the time on Earth delivered last
+    std::chrono::milliseconds wait_;  ///< before the next attempt to connect; reset once packets arrive
     bool stop_ = false, lost_ = false;
     std::thread thread_;
 };

@@ -16,7 +16,8 @@
 namespace aeolis::server {
 namespace {
 
-constexpr int udp_buffer_octets = 4 << 20;  // ours: what comes while the disk is slow; the kernel may give less
+// // Chosen: buffers datagrams while the disk is slow; the kernel may give less
+constexpr int udp_buffer_octets = 4 << 20;
 
 std::string words_of_error(int error) {
     return std::generic_category().message(error);
@@ -90,7 +91,7 @@ std::uint16_t DownlinkSocket::local_port() const {
     socklen_t size = sizeof local;
     // NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast): the sockets' own way
     if (::getsockname(socket_, reinterpret_cast<sockaddr*>(&local), &size) != 0) return 0;
-    in_port_t port = 0;  // both families have it at the same place
+    in_port_t port = 0;  // at the same offset in both families
     std::memcpy(&port, reinterpret_cast<const char*>(&local) + offsetof(sockaddr_in, sin_port),
                 sizeof port);  // NOLINT(cppcoreguidelines-pro-type-reinterpret-cast)
     return ntohs(port);

@@ -11,7 +11,7 @@
 
 namespace aeolis::server {
 
-/// A socket to receive by, and a way to wake who waits for it. One thread owns it; only wake() may come from others.
+/// A receiving socket, and a way to wake its waiting thread. One thread owns it; only wake() may be called by others.
 class DownlinkSocket {
   public:
     DownlinkSocket();
@@ -19,7 +19,7 @@ class DownlinkSocket {
     DownlinkSocket(const DownlinkSocket&) = delete;
     DownlinkSocket& operator=(const DownlinkSocket&) = delete;
 
-    /// TCP: connects, within `limit`. UDP: binds. What was open is closed first.
+    /// Opens the socket, closing an open one. TCP: connects within `limit`. UDP: binds.
     Result<void> open(const DownlinkAddress& address, std::chrono::milliseconds limit);
     void close();
     std::uint16_t local_port() const;
@@ -28,19 +28,19 @@ class DownlinkSocket {
     struct Received {
         Got got = Got::nothing;
         std::size_t octets = 0;  ///< of `into`
-        std::string reason;      ///< of the end
+        std::string reason;      ///< why the stream ended
     };
-    /// Waits until something comes, `limit` has passed, or wake() was called. Of a datagram what `into` has no room for
-    /// is lost.
+    /// Waits until octets arrive, `limit` has passed, or wake() was called. The part of a datagram beyond `into` is
+    /// lost.
     Received receive(std::span<std::uint8_t> into, std::chrono::milliseconds limit);
-    /// Waits; true when wake() was called.
+    /// Waits for `time`; true when wake() was called.
     bool sleep(std::chrono::milliseconds time) const;
-    /// From now on nothing waits any more.
+    /// Ends every present and future wait.
     void wake() const;
 
   private:
     int socket_ = -1;
-    int wake_ = -1;  ///< an event counter
+    int wake_ = -1;  ///< an eventfd
 };
 
 }  // namespace aeolis::server

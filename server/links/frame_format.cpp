@@ -6,7 +6,7 @@ namespace {
 
 using telemetry::DownlinkFormat;
 
-/// How the frames are, from what was said and from the first octets.
+/// The frame layout, from the user's options and the first octets.
 Result<telemetry::FrameStream> frame_stream(const DownlinkForm& format, DownlinkFormat kind,
                                             std::span<const std::uint8_t> beginning) {
     telemetry::FrameStream stream;

@@ -11,18 +11,18 @@
 
 namespace aeolis::server {
 
-/// How packets stand in a stream, as far as people say.
+/// The form of a packet stream, as far as the user gives it.
 struct DownlinkForm {
     std::string name = "packets";             ///< packets, tm, aos, cadu or pltu
     std::size_t skip = 0;                     ///< octets before each packet or bare frame
-    std::optional<std::size_t> frame_octets;  ///< left out: found by trying
+    std::optional<std::size_t> frame_octets;  ///< none: found by trying
 };
 
-/// What finds the packets of a stream, from what was said and from its first octets. Fails when there is no such
-/// format, or when nothing in `beginning` shows how long frames are.
+/// Makes the packet source for a stream, from its form and its first octets. Fails on an unknown format, or when
+/// `beginning` does not reveal the frame length.
 Result<telemetry::PacketSource> packet_source(const DownlinkForm& format, std::span<const std::uint8_t> beginning);
 
-/// Whether packet_source() looks at the beginning at all.
+/// Whether packet_source() uses the beginning at all.
 bool needs_beginning(const DownlinkForm& format);
 
 }  // namespace aeolis::server

@@ -5,9 +5,9 @@
 
 namespace aeolis::server::net {
 
-/// Memory for the bodies of answers that clients have not taken yet.
+/// Memory for response bodies that clients have not yet taken.
 ///
-/// Rule     short bodies always have room, however many long ones wait; so has a body that is alone
+/// Rule     a short body always has room, however many long ones wait; so has a body that is alone
 /// Thread   the network thread
 class BodyBudget {
   public:
@@ -15,7 +15,7 @@ class BodyBudget {
 
     explicit BodyBudget(std::size_t octets_max) : octets_max_(octets_max) {}
 
-    /// Counts one body for as long as this lives.
+    /// Counts one body during its lifetime.
     class Share {
       public:
         Share(BodyBudget& budget, std::size_t octets) : budget_(budget), octets_(octets) { budget_.octets_ += octets_; }

@@ -7,14 +7,13 @@
 
 namespace aeolis::server {
 
-/// Connections that are open, in all and from each address or network, so that one cannot take the places of all
-/// others. Loopback is this machine: whoever is on it can do worse, and a proxy in front of the server brings everybody
-/// from there.
+/// Limits the open connections, in all and per address or network: one peer cannot take all. Loopback has only the
+/// total limit: its users can do worse, and a proxy in front of the server brings everybody from there.
 class ConnectionCount {
   public:
     ConnectionCount(std::size_t all_max, std::size_t each_max) : all_max_(all_max), each_max_(each_max) {}
 
-    /// Why one more from there may not stay, and is not counted; empty: it may, until leave().
+    /// Counts one more connection. Returns why it must be refused (then not counted); empty: accepted, until leave().
     std::string enter(const std::string& from, bool loopback);
     void leave(const std::string& from);
     std::size_t all() const { return all_; }

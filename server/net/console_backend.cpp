@@ -12,9 +12,9 @@
 namespace aeolis::server {
 namespace {
 
-constexpr unsigned stream_check_ms = 1'000;  // ours: so long a client may follow after its log-in has ended
+constexpr unsigned stream_check_ms = 1'000;  // chosen: longest time that a client follows after its session ended
 
-/// Who started the program.
+/// The identity of the user who started the program.
 Operator by_command_line() {
     Operator who;
     who.user = this_user();
@@ -22,7 +22,7 @@ Operator by_command_line() {
     return who;
 }
 
-/// What other machines can reach must know who asks, and must not be listened to.
+/// Requires accounts and TLS for an address that other machines can reach.
 Result<void> check_reach(const ConsoleBackend::Settings& settings) {
     const auto& web = settings.web_server;
     if (WebServer::is_loopback(web.address)) return {};
@@ -44,14 +44,14 @@ ConsoleBackend::ConsoleBackend(Settings settings, const dictionary::Dictionary& 
 
 Result<std::unique_ptr<ConsoleBackend>> ConsoleBackend::open(Settings settings,
                                                              const dictionary::Dictionary& dictionary) {
-    // A message that is not one is refused to its client; else Protobuf also writes a line of its own for each.
+    // An invalid message is refused to its client; Protobuf would also print a line for each.
     google::protobuf::SetLogHandler(nullptr);
     std::unique_ptr<ConsoleBackend> backend{new ConsoleBackend{std::move(settings), dictionary}};
     const auto& chosen = backend->settings_;
     auto* const self = backend.get();
 
     if (auto safe = check_reach(chosen); !safe) return safe.error();
-    // The address first: a second server must not touch the archive before it fails.
+    // The address first: a second server must fail before it touches the archive.
     backend->hub_ = std::make_unique<StreamHub>(dictionary.id, self->stream_services());
     auto server = WebServer::open(chosen.web_server, self->web_handlers());
     if (!server) return server.error();
@@ -91,7 +91,7 @@ Result<std::unique_ptr<ConsoleBackend>> ConsoleBackend::open(Settings settings,
         self->timeline_questions(),
         RehearsalDesk::Callbacks{[self](v1::RunState state) { self->hub_->run_state(std::move(state)); },
                                  [self](v1::Clocks clocks) { self->hub_->clocks(std::move(clocks)); }});
-    // Last of what can fail: the first password is told once, and only by a server that comes up.
+    // The last step that can fail: the first password is shown once, and only by a server that starts.
     auto access = Access::open({.file = chosen.accounts});
     if (!access) return access.error();
     backend->access_ = std::move(*access);
@@ -123,7 +123,7 @@ WebServer::Handlers ConsoleBackend::web_handlers() {
     return handlers;
 }
 
-/// The same checks and the same audit as the routes of the same words.
+/// The actions of a stream client, with the checks and audit of the corresponding routes.
 StreamSession::Client ConsoleBackend::stream_client(const Credentials& credentials) {
     StreamSession::Client client;
     client.refusal = [this, credentials] {
@@ -146,7 +146,7 @@ StreamSession::Client ConsoleBackend::stream_client(const Credentials& credentia
         if (right) right = may_send(who, dictionary_, *desk_, request);
         const auto noted = [this, who, detail = to_json(request), dry_run = request.dry_run(), full,
                             reply](const v1::CommandReply& answer) {
-            // A dry run is no action: a console asks each second while it shows what would be sent.
+            // A dry run is not audited: a console repeats it every second.
             if (!dry_run && !full())
                 pipeline_->audit(
                     audit_record(who, "command", detail, answer.accepted() ? "done" : "refused: " + answer.reason()));
@@ -181,13 +181,12 @@ StreamSession::Client ConsoleBackend::stream_client(const Credentials& credentia
 }
 
 ConsoleBackend::~ConsoleBackend() {
-    // A run that goes on waits until its end is stored, and so for a disk that may never take it.
+    // The end of the current run must be stored, which could wait forever for a failing disk.
     if (pipeline_) pipeline_->closing();
-    // Said and not left to the members' order: until it is gone, each may call what comes after it here.
-    if (queries_)
-        queries_->end();  // what still waits may add a note, through api and pipeline; who asks from now on is refused
+    // An explicit order: each of these may call those below until it is destroyed.
+    if (queries_) queries_->end();  // waiting jobs may still add notes through api and pipeline; new ones are refused
     api_.reset();
-    campaigns_.reset();  // what flies is abandoned
+    campaigns_.reset();  // abandons cases in flight
     downlink_.reset();
     desk_.reset();
     queries_.reset();
@@ -196,7 +195,8 @@ ConsoleBackend::~ConsoleBackend() {
     hub_.reset();
 }
 
-/// A second of work each, asked each second by who looks at a dry run; the time of a question at most.
+/// The timeline checks on the query threads: a second of work each, limited as a query; consoles repeat dry runs each
+/// second.
 RehearsalDesk::TimelineQuestions ConsoleBackend::timeline_questions() {
     RehearsalDesk::TimelineQuestions questions;
     questions.check = [this](archive::RunId run, const std::vector<v1::CommandRequest>& requests, bool only_check,
@@ -205,7 +205,8 @@ RehearsalDesk::TimelineQuestions ConsoleBackend::timeline_questions() {
         const bool taken = queries_->ask(
             [this, run, requests, only_check, done](archive::Reader& reader) {
                 const auto before =
-                    run.value == 0 ? Result<v1::CommandList>{v1::CommandList{}} : reader.commands(run);  // 0: none yet
+                    // 0: no run yet
+                    run.value == 0 ? Result<v1::CommandList>{v1::CommandList{}} : reader.commands(run);
                 done(before ? timeline_check_.check(*before, requests, only_check, queries_->stop_of_question({}))
                             : Result<std::string>{before.error()});
             },
@@ -253,7 +254,7 @@ StreamHub::Services ConsoleBackend::stream_services() {
     return services;
 }
 
-/// Until a rehearsal starts, "the run" of a client is the last one that was flown.
+/// Until a rehearsal starts, a client's "current run" is the last one flown.
 void ConsoleBackend::adopt_newest_run() {
     auto reader = archive::Reader::open(settings_.archive, dictionary_, settings_.other);
     if (!reader) return;
@@ -261,8 +262,8 @@ void ConsoleBackend::adopt_newest_run() {
     if (runs && !runs->runs().empty()) hub_->run_state(runs->runs(0));
 }
 
-/// Who can write the file of accounts needs no server to become an administrator: the next one that runs says that it
-/// happened.
+/// Adds password resets to the audit. Whoever can write the accounts file can become an administrator without a server;
+/// the next server records it.
 void ConsoleBackend::note_resets() {
     for (const auto& reset : access_->take_resets()) {
         Operator who;

@@ -14,32 +14,33 @@
 
 namespace aeolis::server {
 
-/// All of `aeolis serve`: archive, pipeline, rehearsals, queries, stream and web server, put together.
+/// All of `aeolis serve`: archive, pipeline, rehearsals, queries, stream and web server.
 ///
-/// Threads  docs/decisions/0006-threads-and-stream.md: network (run()), pipeline, three queries, one a rehearsal; a
-///          campaign's own
+/// Threads  docs/decisions/0006-threads-and-stream.md: network (run()), pipeline, three query threads, one per
+///          rehearsal; a campaign has its own
 class ConsoleBackend {
   public:
     struct Settings {
         WebServer::Settings web_server{};
-        std::filesystem::path accounts{};  ///< empty: none, which is possible on loopback only
+        std::filesystem::path accounts{};  ///< empty: no accounts, possible on loopback only
         std::filesystem::path archive{}, scenarios{}, web{};
-        const telemetry::OtherMission* other = nullptr;  ///< whose dictionary it then is; it must outlive this
+        /// Null: our own mission; else that of the dictionary, and must outlive this.
+        const telemetry::OtherMission* other = nullptr;
     };
-    /// Fails with one line that names the archive or the address. The dictionary must outlive this.
+    /// Opens all parts. Fails with one line that names the archive or the address. The dictionary must outlive this.
     static Result<std::unique_ptr<ConsoleBackend>> open(Settings settings, const dictionary::Dictionary& dictionary);
-    ~ConsoleBackend();  ///< a run that goes on is stopped, and its end is in the archive
+    ~ConsoleBackend();  ///< stops a run in progress; its end is stored
 
-    /// Before run(): a rehearsal to start with.
+    /// Starts a first rehearsal. Call before run().
     void start(RehearsalDesk::Flight flight);
-    /// Before run(), with another mission: follows its packets in a run of its own. No rehearsal can be started then.
+    /// Follows another mission's packets in a run of its own; rehearsals cannot be started then. Call before run().
     Result<void> follow(DownlinkFollower::Settings settings);
     std::uint16_t downlink_port() const { return downlink_ ? downlink_->port() : std::uint16_t{0}; }
     void run();
     void stop();  ///< from any thread
     std::uint16_t port() const { return server_->port(); }
     bool secure() const { return server_->secure(); }
-    /// Of the administrator, when the file of accounts was made just now; else empty.
+    /// The administrator's password when the accounts file was just created; else empty.
     const std::string& first_password() const { return access_->first_password(); }
 
   private:

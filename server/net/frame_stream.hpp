@@ -21,7 +21,7 @@
 
 namespace aeolis::server::net {
 
-/// A message as one frame of data, of octets or of text: RFC 6455, 5.2, unmasked.
+/// Appends a message as one unmasked data frame, binary or text: RFC 6455, 5.2.
 inline void append_frame(std::string& frames, std::string_view message, bool binary) {
     const auto octets = message.size();
     const std::size_t wide = octets < 126 ? 0 : octets <= 0xFFFF ? 2 : 8;
@@ -32,18 +32,18 @@ inline void append_frame(std::string& frames, std::string_view message, bool bin
     frames.append(header.data(), 2 + wide).append(message);
 }
 
-/// Lies between a WebSocket and its socket: our frames of data go past the WebSocket in one system call for as long as
-/// the kernel takes them, and never into the midst of another frame, the WebSocket's own pings, pongs and closes among
-/// them.
+/// A layer between a WebSocket and its socket. Our data frames bypass the WebSocket: one system call writes as much as
+/// the kernel takes. They never interrupt another frame, including the WebSocket's own pings, pongs and closes.
 ///
-/// In       frames of data by send(); whole control frames by async_write_some()
-/// Rule     what the kernel does not take at once is kept and goes first; meanwhile busy() is true and send() is not
-///          for calling
-/// Order    frames leave in the order in which they were given
-/// Fault    a socket that fails is closed: who reads from it is told
-/// Copies are handles of the same stream.
+/// In       data frames by send(); whole control frames by async_write_some()
+/// Rule     octets that the kernel does not take at once are kept and sent first. Until then busy() is true and send()
+///          must not be called
+/// Order    frames leave in the order given
+/// Fault    a socket that fails is closed, so that its reader gets an error
 /// Thread   the network thread
-/// Memory   the rest of one send(), and the few control frames that a WebSocket has under way
+/// Memory   the rest of one send(), and the few control frames that a WebSocket has in flight
+///
+/// Copies are handles of the same stream.
 template <typename Next>
 class FrameStream {
   public:
@@ -56,15 +56,15 @@ class FrameStream {
     next_layer_type& next_layer() { return state_->next; }
     const next_layer_type& next_layer() const { return state_->next; }
 
-    /// Called each time when all that was kept is gone.
+    /// Sets the callback for each time when no octets are kept any more.
     void when_drained(std::function<void()> tell) { state_->tell = std::move(tell); }
-    /// Has the processor fetch what send() is about to read.
+    /// Prefetches into the cache the state that send() reads.
     void fetch() const {
         __builtin_prefetch(state_.get());
         __builtin_prefetch(&state_->next);
     }
     bool busy() const { return state_->flushing || state_->closing; }
-    /// Whole frames, one after the other: append_frame() makes them.
+    /// Sends whole frames, concatenated, as append_frame() makes them.
     void send(std::string_view frames);
 
     template <typename Buffers, typename Token>
@@ -75,7 +75,7 @@ class FrameStream {
     auto async_write_some(const Buffers& buffers, Token&& token);
 
   private:
-    /// Lives until its last write has ended.
+    /// The shared state; it lives until its last write has ended.
     struct State {
         explicit State(Next stream) : next(std::move(stream)), drained(next.get_executor()) {
             drained.expires_at(std::chrono::steady_clock::time_point::max());
@@ -83,11 +83,11 @@ class FrameStream {
         bool flushing = false, closing = false;
         std::string kept;
         Next next;
-        Timer drained;  ///< cancelled when it happens
+        Timer drained;  ///< cancelled when drained
         std::function<void()> tell;
         error_code failure;
     };
-    /// How much of them the kernel took.
+    /// Gives frames to the kernel. @return the number of octets it took
     static std::size_t give(State& state, std::string_view frames);
     static void flush(const std::shared_ptr<State>& state);
     static Task<> flush_all(std::shared_ptr<State> state);
@@ -98,12 +98,12 @@ class FrameStream {
 template <typename Next>
 std::size_t FrameStream<Next>::give(State& state, std::string_view frames) {
     if constexpr (std::is_same_v<Next, Stream>) {
-        // Asked for each time: a closed socket's number may be another client's by now.
+        // The handle is read each time: after a close its number may belong to another client.
         const auto given =
             ::send(state.next.socket().native_handle(), frames.data(), frames.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
-        return given > 0 ? static_cast<std::size_t>(given) : 0;  // what is wrong with the socket, flush() finds
+        return given > 0 ? static_cast<std::size_t>(given) : 0;  // flush() finds the socket's error
     } else {
-        return 0;  // TLS makes its own of what is written
+        return 0;  // TLS must encrypt all output itself
     }
 }
 
@@ -138,19 +138,21 @@ Task<> FrameStream<Next>::flush_all(std::shared_ptr<State> state) {
     }
 }
 
-/// Takes all of it. Ends when nothing is kept any more, so that a WebSocket has one control frame of a kind under way.
+/// Takes all octets. Completes once nothing is kept, so that a WebSocket has at most one control frame of a kind in
+/// flight.
 template <typename Next>
 template <typename Buffers, typename Token>
 auto FrameStream<Next>::async_write_some(const Buffers& buffers, Token&& token) {
     constexpr char close_frame = '\x88';
     const auto octets = beast::buffers_to_string(buffers);
-    state_->closing = state_->closing || octets.starts_with(close_frame);  // no data after it
+    state_->closing = state_->closing || octets.starts_with(close_frame);  // no data may follow it
     state_->kept += octets;
     flush(state_);
     return asio::async_compose<Token, void(error_code, std::size_t)>(
         [state = state_, size = octets.size(), first = true](auto& self, error_code = {}) mutable {
             if (std::exchange(first, false) && !state->flushing)
-                asio::post(state->drained.get_executor(), std::move(self));  // nothing completes within its beginning
+                // Must not complete within the initiating call.
+                asio::post(state->drained.get_executor(), std::move(self));
             else if (state->flushing)
                 state->drained.async_wait(std::move(self));
             else
@@ -159,7 +161,7 @@ auto FrameStream<Next>::async_write_some(const Buffers& buffers, Token&& token) 
         token, state_->drained);
 }
 
-// How a WebSocket ends the connection below it.
+// Beast's hooks for closing the connection below a WebSocket.
 template <typename Next>
 void teardown(beast::role_type role, FrameStream<Next>& stream, error_code& error) {
     using beast::websocket::teardown;

@@ -39,18 +39,18 @@ Result<Place> place_of(const std::string& server) {
     return place;
 }
 
-/// `what` failed, or nothing did.
+/// The step that failed; without an error, none.
 struct Outcome {
     const char* what = "";
     error_code error;
-    bool may_have_arrived = false;  ///< the request, whole
+    bool may_have_arrived = false;  ///< the whole request
 };
 
 struct Patience {
     std::chrono::seconds each, answer;
 };
 
-/// Sends the request and reads its answer; what fails first is the outcome.
+/// Sends the request and reads its answer; the first failure is the outcome.
 template <typename AnyStream>
 Task<Outcome> exchange(AnyStream& stream, http::request<http::string_body>& request,
                        http::response_parser<http::string_body>& parser, Patience patience) {
@@ -59,8 +59,7 @@ Task<Outcome> exchange(AnyStream& stream, http::request<http::string_body>& requ
     outcome.what = "the request could not be sent";
     lowest.expires_after(patience.each);
     co_await http::async_write(stream, request, asio::redirect_error(awaiting, outcome.error));
-    outcome.may_have_arrived =
-        !outcome.error || outcome.error == beast::error::timeout;  // the last octets and the timeout can come together
+    outcome.may_have_arrived = !outcome.error || outcome.error == beast::error::timeout;  // may coincide
     if (outcome.error) co_return outcome;
     outcome.what = "no answer";
     beast::flat_buffer buffer;

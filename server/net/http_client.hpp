@@ -9,39 +9,36 @@
 
 namespace aeolis::server {
 
-/// One request to a server of ours, and its answer: what the program itself asks of a server that runs.
+/// Sends one request to an Aeolis server and reads its answer; used by the program's own subcommands.
 ///
 /// In       http://HOST[:PORT] or https://HOST[:PORT]      Out   status and body
-/// TLS      the server's certificate must be of that name and signed by one of `authorities`, or of the system's where
-///          that is empty
-/// Token    over https, or to this machine itself: over http others on the way could read it
-/// Faults   whatever keeps the request away from the server, in words: it has not got it. What comes between the
-///          request and its answer is told in the answer, for the server may have done what was asked. An answer of any
-///          status is an answer
-/// Blocks the caller, `patience` at most for each of connecting, making it safe and sending, `answer_patience` for the
-/// answer; a
-///          name is looked up by the system, by whose limits it is.
+/// TLS      the server's certificate must have that name and be signed by one of `authorities` (empty: the system's)
+/// Token    sent over https or to loopback only: over http others on the way could read it
+/// Faults   an Error in words when the request did not reach the server. A failure between request and answer is
+///          reported in the answer, since the server may have carried out the request. An answer of any status is an
+///          answer
+/// Blocks   the caller: `patience` at most for each of connecting, TLS handshake and sending, `answer_patience` for the
+///          answer. Name look-up has the system's own limits
 class HttpClient {
   public:
-    static constexpr std::size_t answer_octets_max =
-        8 << 20;  ///< ours: a hundred commands with all that is told of them take a tenth
+    static constexpr std::size_t answer_octets_max = 8 << 20;  ///< chosen: ten times the answer to 100 commands
 
     struct Settings {
         std::string server;                   ///< the URL
         std::string token{};                  ///< empty: none
         std::filesystem::path authorities{};  ///< PEM
-        std::chrono::seconds patience{30};    ///< ours
+        std::chrono::seconds patience{30};    ///< chosen
         std::chrono::seconds answer_patience{
-            60};  ///< ours: a command may wait for a turn, 5 s, and for an analysis, 20 s, after others in a queue
+            60};  ///< chosen: a command may wait for its turn (5 s), an analysis (20 s) and a queue
     };
     struct Answer {
         unsigned status = 0;
         std::string body{};
-        std::string lost{};  ///< not empty: why no whole answer came to a request that the server may have got
+        std::string lost{};  ///< why the answer is incomplete though the server may have the request; else empty
     };
     explicit HttpClient(Settings settings) : settings_(std::move(settings)) {}
 
-    /// An Error: nothing was sent, or not all of it.
+    /// Posts a request. An Error means that the server did not receive all of it.
     Result<Answer> post(const std::string& path, const std::string& json) const;
 
   private:

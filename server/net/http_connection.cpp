@@ -30,9 +30,9 @@ using Parser = http::request_parser<http::string_body>;
 using More = decltype(HttpResponse::more);
 
 constexpr const char* stream_path = "/api/v1/stream";
-constexpr std::size_t slice_octets = 64 << 10;  // chosen: of a long body in parts, written at once
+constexpr std::size_t slice_octets = 64 << 10;  // chosen: of a long body sent in parts
 
-/// The console needs nothing from elsewhere, and nobody may show it in a frame.
+/// The console loads nothing from elsewhere and must not be shown in a frame.
 constexpr const char* security_policy =
     "default-src 'self'; connect-src 'self'; img-src 'self' data:; style-src 'self'; script-src 'self'; worker-src "
     "'self'; "
@@ -49,7 +49,7 @@ std::string_view plain(beast::string_view text) {
     return {text.data(), text.size()};
 }
 
-/// The first subprotocol that the client offers and the server speaks.
+/// The client's first subprotocol that the server supports.
 const Subprotocol* chosen_subprotocol(const Request& request) {
     for (const auto token : http::token_list{request[http::field::sec_websocket_protocol]})
         for (const auto& spoken : subprotocols)
@@ -72,7 +72,7 @@ Response error_reply(const Request& request, http::status status, const std::str
     return response;
 }
 
-/// What a request that is no HTTP, or is too long, is told. @param octets_max  allowed in its body
+/// The response to a request that is not HTTP or too long. @param octets_max  limit of its body
 Response broken_reply(const Request& request, const error_code& error, std::size_t octets_max) {
     if (error == http::error::body_limit)
         return error_reply(request, http::status::payload_too_large,
@@ -90,7 +90,7 @@ HttpResponse too_many_answers() {
     return response;
 }
 
-/// Takes the body out of `answer`.
+/// Builds the response, moving the body out of `answer`.
 Response response_of(HttpResponse& answer, unsigned version) {
     Response response{static_cast<http::status>(answer.status), version};
     response.set(http::field::content_type, answer.content_type);
@@ -101,7 +101,7 @@ Response response_of(HttpResponse& answer, unsigned version) {
     return response;
 }
 
-/// Awaits what `ask` is told, from whatever thread.
+/// Awaits the value that `ask` passes to its callback, on any thread.
 template <typename T, typename Ask>
 Task<T> told(asio::io_context& io, Ask ask) {
     return asio::async_initiate<const asio::use_awaitable_t<Executor>, void(T)>(
@@ -115,17 +115,17 @@ Task<T> told(asio::io_context& io, Ask ask) {
         awaiting, std::move(ask));
 }
 
-/// One request and its answer.
+/// A request and its response.
 struct Exchange {
     Credentials credentials;
     Request request;
     std::optional<WaitingPeers::Waiting> waiting;
     Response response;
-    std::optional<BodyBudget::Share> share;  ///< of the response's body
-    More more;                               ///< null: the response is whole
+    std::optional<BodyBudget::Share> share;  ///< for the response's body
+    More more;                               ///< null: the response is complete
 };
 
-/// A client's connection: one request after the other.
+/// A client's connection: one request after another.
 template <typename AnyStream>
 class HttpConnection {
   public:
@@ -135,7 +135,7 @@ class HttpConnection {
     Task<> serve();
 
   private:
-    // Each of these that gives false has ended the connection, or leaves it to be closed.
+    // Each returns false once it has closed the connection or it must be closed.
     Task<bool> read(Exchange& exchange);
     Task<bool> answer(Exchange& exchange);
     Task<bool> write(Exchange& exchange);
@@ -171,7 +171,7 @@ Task<> HttpConnection<AnyStream>::serve() {
     }
 }
 
-/// Reads the next request. What breaks HTTP or a limit is answered here.
+/// Reads the next request. Answers requests that break HTTP or a limit.
 template <typename AnyStream>
 Task<bool> HttpConnection<AnyStream>::read(Exchange& exchange) {
     error_code error;
@@ -203,7 +203,7 @@ Credentials HttpConnection<AnyStream>::credentials_of(const Request& request) co
             from_};
 }
 
-/// How long a body may be, asked before any of it is read: bodies of a thousand strangers are then no burden.
+/// The body limit, determined before reading: the bodies of a thousand strangers take no memory.
 template <typename AnyStream>
 std::size_t HttpConnection<AnyStream>::body_octets_max(const Request& request, const Credentials& credentials) const {
     if (!service_.handlers.body_octets) return HttpRequest::body_octets_max;
@@ -212,7 +212,7 @@ std::size_t HttpConnection<AnyStream>::body_octets_max(const Request& request, c
                                          target.substr(0, target.find('?')));
 }
 
-/// Only what the peer could have meant as HTTP gets an answer; a broken or silent connection gets none.
+/// Answers only errors within HTTP; a broken or silent connection gets no answer.
 template <typename AnyStream>
 Task<> HttpConnection<AnyStream>::answer_broken(const Request& request, error_code error, std::size_t octets_max) {
     const bool is_http = error.category() == http::make_error_code(http::error::bad_method).category();
@@ -241,7 +241,7 @@ Task<bool> HttpConnection<AnyStream>::answer(Exchange& exchange) {
     co_return true;
 }
 
-/// Why the request is answered with 403; empty: it is not.
+/// Why the request must be answered with 403; empty: accepted.
 template <typename AnyStream>
 std::string HttpConnection<AnyStream>::refusal_of(const Request& request) const {
     const auto origin = request.find(http::field::origin);
@@ -249,7 +249,7 @@ std::string HttpConnection<AnyStream>::refusal_of(const Request& request) const 
     return refusal_of_origin(plain(request[http::field::host]), given, service_.names, service_.secure);
 }
 
-/// The answer to a client that gets no stream; none: it gets one.
+/// The response that denies a stream; none: granted.
 template <typename AnyStream>
 std::optional<Response> HttpConnection<AnyStream>::refusal_of_stream(const Exchange& exchange) const {
     const auto& request = exchange.request;
@@ -280,13 +280,13 @@ Task<> HttpConnection<AnyStream>::become_stream(Exchange& exchange) {
                           std::move(stream_service));
 }
 
-/// Has the request answered by the rest of the server.
+/// Passes the request to the rest of the server and waits for its response.
 template <typename AnyStream>
 Task<> HttpConnection<AnyStream>::ask(Exchange& exchange, std::string path, std::string query) {
     auto& request = exchange.request;
     lowest_.expires_never();
     exchange.waiting.emplace(service_.waiting, lowest_.socket().native_handle());
-    // Named, not made in the call: g++ 12 destroys temporary aggregates of a co_await twice.
+    // A named variable: g++ 12 destroys temporary aggregates of a co_await twice.
     HttpRequest asked{std::string{plain(request.method_string())},
                       std::move(path),
                       std::move(query),
@@ -303,7 +303,7 @@ Task<> HttpConnection<AnyStream>::ask(Exchange& exchange, std::string path, std:
     exchange.more = std::move(answered.more);
 }
 
-/// The header fields that every answer has.
+/// Adds the header fields common to all responses.
 template <typename AnyStream>
 void HttpConnection<AnyStream>::add_fields(Exchange& exchange) const {
     auto& response = exchange.response;
@@ -329,20 +329,20 @@ Task<bool> HttpConnection<AnyStream>::write_whole(Exchange& exchange) {
     auto& response = exchange.response;
     response.prepare_payload();
     if (exchange.request.method() == http::verb::head) response.body().clear();
-    if (exchange.more) response.erase(http::field::content_length);  // nobody knows it
+    if (exchange.more) response.erase(http::field::content_length);  // the length is unknown
     http::response_serializer<http::string_body> serializer{response};
     error_code error;
     while (!error && !serializer.is_done()) {
-        lowest_.expires_after(service_.request_max);  // a slow client needs only to go on
+        lowest_.expires_after(service_.request_max);  // a slow client needs only to progress
         co_await http::async_write_some(stream_, serializer, asio::redirect_error(awaiting, error));
     }
     co_return !error && response.keep_alive();
 }
 
-/// A body that comes in parts, each asked for when the client has taken the one before it.
+/// Writes a body in parts; each is requested once the client has taken the one before.
 template <typename AnyStream>
 Task<bool> HttpConnection<AnyStream>::write_parts(Response first, More more) {
-    const bool chunked = first.version() >= 11;  // before that a body ended with its connection
+    const bool chunked = first.version() >= 11;  // in HTTP/1.0 the end of the connection ends the body
     if (!chunked) first.keep_alive(false);
     const bool keep = first.keep_alive();
     BodyPart part{std::optional{std::move(first.body())}};
@@ -370,7 +370,7 @@ Task<bool> HttpConnection<AnyStream>::write_parts(Response first, More more) {
 template <typename AnyStream>
 Task<error_code> HttpConnection<AnyStream>::write_slice(asio::const_buffer octets, bool chunked) {
     error_code error;
-    lowest_.expires_after(service_.request_max);  // a slow client needs only to go on
+    lowest_.expires_after(service_.request_max);  // a slow client needs only to progress
     if (chunked) {
         const auto chunk = http::make_chunk(octets);
         co_await asio::async_write(stream_, chunk, asio::redirect_error(awaiting, error));
@@ -380,7 +380,7 @@ Task<error_code> HttpConnection<AnyStream>::write_slice(asio::const_buffer octet
     co_return error;
 }
 
-/// Breaks the connection off: without chunks an orderly end would look like the end of the body.
+/// Resets the connection: without chunks, an orderly close would look like the end of the body.
 template <typename AnyStream>
 bool HttpConnection<AnyStream>::tear() {
     error_code ignored;

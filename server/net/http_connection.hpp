@@ -14,15 +14,15 @@
 
 namespace aeolis::server::net {
 
-/// What the connections of one server share; lives as long as its io_context.
+/// State shared by the connections of a server; lives as long as its io_context.
 struct HttpService {
     explicit HttpService(const WebServer::Settings& settings)
         : names(settings.names), request_max(settings.request_max), silence_max(settings.silence_max),
           answers(settings.answers_octets_max), streams(settings.streams) {}
 
     WebServer::Handlers handlers;
-    std::vector<std::string> names;  ///< by which browsers call the server, besides those of loopback
-    bool secure = false;             ///< it is reached over TLS
+    std::vector<std::string> names;  ///< host names used by browsers, besides loopback's
+    bool secure = false;             ///< reached over TLS
     std::chrono::milliseconds request_max, silence_max;
     WaitingPeers waiting;
     BodyBudget answers;
@@ -31,12 +31,12 @@ struct HttpService {
     WriteTurn turn{io.get_executor()};
 };
 
-/// Reads requests and answers each, until either side ends the connection or it has become a stream.
+/// Reads requests and answers each, until either side closes the connection or it becomes a stream.
 /// @param from  the peer's address
 Task<> serve_http(Stream& stream, HttpService& service, std::string from);
 Task<> serve_http(TlsStream& stream, HttpService& service, std::string from);
 
-/// Answers a connection that has no place, whatever it asks: 503 with the reason.
+/// Answers a connection beyond the limit, whatever its request: 503 with the reason.
 Task<> refuse_connection(Stream& stream, const std::string& reason);
 
 }  // namespace aeolis::server::net

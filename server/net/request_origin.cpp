@@ -30,7 +30,7 @@ std::string refusal_of_origin(std::string_view host, std::optional<std::string_v
     if (!is_loopback_host(host) && std::ranges::none_of(names, is_this))
         return fmt::format("Host '{}' is not a name of this server: it answers to loopback names{}", host,
                            names.empty() ? " only" : " and to those of --host");
-    // Another program's page on this machine is another origin, too: only the server's own may command.
+    // Another server's page on this machine is another origin too: only this server's own pages may send commands.
     if (origin && !iequals(*origin, fmt::format("{}://{}", secure ? "https" : "http", host)))
         return fmt::format("Origin '{}' is not a page of this server", *origin);
     return {};

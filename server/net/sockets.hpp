@@ -17,7 +17,7 @@ namespace beast = boost::beast;
 using tcp = asio::ip::tcp;
 using error_code = boost::system::error_code;
 
-// One kind of executor by type: the sources stay small and no call goes through a type-erased one.
+// One concrete executor type: sources stay small, and no call goes through a type-erased executor.
 using Executor = asio::io_context::executor_type;
 using Socket = asio::basic_stream_socket<tcp, Executor>;
 using Stream = beast::basic_stream<tcp, Executor>;

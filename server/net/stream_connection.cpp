@@ -20,27 +20,25 @@ namespace {
 namespace websocket = beast::websocket;
 
 constexpr const char* server_ends = "the server ends";
-constexpr std::size_t turn_octets_max =
-    64 << 10;  // ours: a client that has much to catch up with lets the others have their turn
-/// Ours: that the kernel may hold for a client and has not sent. What waits beyond it waits in the session, where it is
-/// thinned; and a ping is not so far behind other octets that a slow client seems dead.
+constexpr std::size_t turn_octets_max = 64 << 10;  // chosen: a client that catches up lets others write in between
+/// Chosen: octets unsent in the kernel per client. Further items wait in the session, where they are thinned; and pings
+/// stay close enough to the front that a slow client does not seem dead.
 using UnsentMax = asio::detail::socket_option::integer<IPPROTO_TCP, TCP_NOTSENT_LOWAT>;
 constexpr int unsent_octets_max = 64 << 10;
 constexpr std::chrono::milliseconds turn_max{
-    20};  // ours: of all writers together (live, a thousand take 8), until whoever asks something else is heard
+    20};  // chosen: for all writers before other work (live, 1000 clients take 8 ms)
 
-constexpr std::size_t writers_between_looks =
-    8;  // ours, at the clock: what each writes takes microseconds, or a part of a millisecond where it catches up
-constexpr std::size_t writers_ahead = 2;  // what theirs is is fetched so far ahead, and they themselves twice as far
+constexpr std::size_t writers_between_looks = 8;  // chosen: a write takes microseconds, when catching up up to 1 ms
+constexpr std::size_t writers_ahead = 2;  // prefetches a session this many entries ahead, its writer twice as far
 constexpr std::size_t cache_line_octets = 64;
 
-/// Has the processor fetch the first octets of an object.
+/// Prefetches the first octets of an object into the cache.
 void fetch_octets(const void* object, std::size_t octets) {
     for (std::size_t at = 0; at < octets; at += cache_line_octets)
         __builtin_prefetch(static_cast<const char*>(object) + at);
 }
 
-/// A client's connection. It takes from its session what the kernel takes from it; whatever else is due waits in the
+/// A client's connection. It takes messages from its session as fast as the kernel accepts them; all else waits in the
 /// session.
 template <typename AnyStream>
 class Connection final : public WriteTurn::Writer,
@@ -64,26 +62,26 @@ class Connection final : public WriteTurn::Writer,
     void wait_for_due();
     bool gather(std::string& frames);
 
-    bool open_ = true;  ///< for messages of ours
+    bool open_ = true;  ///< false: no further messages are sent
     FrameStream<AnyStream> frames_;
     std::shared_ptr<StreamSession> session_;
-    websocket::stream<FrameStream<AnyStream>> socket_;  ///< over frames_
+    websocket::stream<FrameStream<AnyStream>> socket_;  ///< layered over frames_
     StreamService service_;
     OpenStreams::Place place_;
-    Timer replay_;  ///< runs out when the session has something by itself
+    Timer replay_;  ///< expires when the session has something due
 };
 
 template <typename AnyStream>
 Task<> Connection<AnyStream>::serve(UpgradeRequest request, StreamFormat format, std::string_view subprotocol) {
     const auto self = this->shared_from_this();
     if (!co_await accept(std::move(request), subprotocol)) co_return;
-    // The session is its own and calls it no longer than it lives; the frames may outlive it.
+    // The session never outlives this object, so it may hold `this`; the frames may outlive it.
     session_ = service_.open(format, [this] { due(); });
     frames_.when_drained([weak = this->weak_from_this()] {
         if (const auto alive = weak.lock()) alive->due();
     });
     due();
-    if (service_.streams.ending()) end();  // since it was let in
+    if (service_.streams.ending()) end();  // the server began to end since admission
     co_await read();
     open_ = false;
     error_code ignored;
@@ -92,7 +90,7 @@ Task<> Connection<AnyStream>::serve(UpgradeRequest request, StreamFormat format,
 
 template <typename AnyStream>
 Task<bool> Connection<AnyStream>::accept(UpgradeRequest request, std::string_view subprotocol) {
-    beast::get_lowest_layer(socket_).expires_never();  // the WebSocket has time-outs of its own
+    beast::get_lowest_layer(socket_).expires_never();  // the WebSocket has its own time-outs
     auto timeout = websocket::stream_base::timeout::suggested(beast::role_type::server);
     timeout.idle_timeout = service_.silence_max;
     timeout.keep_alive_pings = true;
@@ -101,10 +99,10 @@ Task<bool> Connection<AnyStream>::accept(UpgradeRequest request, std::string_vie
         response.set(beast::http::field::sec_websocket_protocol,
                      beast::string_view{subprotocol.data(), subprotocol.size()});
     }));
-    socket_.read_message_max(0);  // the limit is kept below: Beast's own closes without a word
+    socket_.read_message_max(0);  // the limit is checked below: Beast would close without a reason
     error_code error;
     beast::get_lowest_layer(socket_).socket().set_option(UnsentMax{unsent_octets_max},
-                                                         error);  // without it the stream works, too
+                                                         error);  // optional
     co_await socket_.async_accept(request, asio::redirect_error(awaiting, error));
     co_return !error;
 }
@@ -120,7 +118,7 @@ Task<> Connection<AnyStream>::read() {
         if (buffer.size() > service_.message_octets_max) {
             spdlog::warn("stream: a client sent more than {} octets in one message and is closed",
                          service_.message_octets_max);
-            // Named, not made in the call: g++ 12 destroys temporary aggregates of a co_await twice.
+            // A named variable: g++ 12 destroys temporary aggregates of a co_await twice.
             const websocket::close_reason reason{
                 websocket::close_code::too_big,
                 fmt::format("a message has at most {} octets", service_.message_octets_max)};
@@ -128,7 +126,7 @@ Task<> Connection<AnyStream>::read() {
             co_return;
         }
         if (!socket_.is_message_done()) continue;
-        if (open_)  // else it is told to go, and what it still says would wait for answers that nobody takes
+        if (open_)  // else the close was sent, and replies would never be taken
             session_->on_message({static_cast<const char*>(buffer.data().data()), buffer.size()});
         buffer.consume(buffer.size());
     }
@@ -139,7 +137,7 @@ Task<> Connection<AnyStream>::close(websocket::close_reason reason) {
     const auto self = this->shared_from_this();
     open_ = false;
     error_code ignored;
-    co_await socket_.async_close(reason, asio::redirect_error(awaiting, ignored));  // then read() ends, too
+    co_await socket_.async_close(reason, asio::redirect_error(awaiting, ignored));  // read() then ends too
 }
 
 template <typename AnyStream>
@@ -157,14 +155,14 @@ template <typename AnyStream>
 void Connection<AnyStream>::wait_for_due() {
     const auto at = session_->due();
     if (!at) return;
-    replay_.expires_at(*at);  // whatever it waited for before
+    replay_.expires_at(*at);  // replaces an earlier time
     replay_.async_wait([weak = this->weak_from_this()](error_code error) {
         const auto alive = weak.lock();
         if (alive && !error) alive->due();
     });
 }
 
-/// Whether there may be more than what fits into one turn.
+/// Appends frames for this turn. True when the session may have more than fits.
 template <typename AnyStream>
 bool Connection<AnyStream>::gather(std::string& frames) {
     const bool binary = session_->format() == StreamFormat::protobuf;

@@ -17,16 +17,15 @@
 
 namespace aeolis::server::net {
 
-/// Connections that have something to write. All that comes due while the network thread does one thing is written
-/// after it, once a connection: a client gets eight batches in one message and one system call, not in eight.
+/// The connections with something to write. Each writes once after the network thread's present work: a client gets all
+/// batches of that work in one message and one system call, not one each.
 class WriteTurn {
   public:
     class Writer {
       public:
         virtual ~Writer() = default;
         virtual void write() = 0;
-        /// Has the processor fetch what write() is about to read: a send leaves nothing of theirs in the nearest
-        /// memory.
+        /// Prefetches into the cache the state that write() reads: a send evicts other connections' state from it.
         virtual void fetch() const = 0;
 
       private:
@@ -35,7 +34,7 @@ class WriteTurn {
     };
     explicit WriteTurn(Executor executor) : executor_(std::move(executor)) {}
     void add(std::shared_ptr<Writer> writer);
-    /// Empty, and for who writes now: one for all, so that it stays in the processor's nearest memory.
+    /// The shared buffer for the current writer, emptied. One for all, so that it stays in the cache.
     std::string& frames() {
         frames_.clear();
         return frames_;
@@ -43,7 +42,7 @@ class WriteTurn {
 
   private:
     void post();
-    void write_all();  ///< or those that come to it in a turn; the rest after what else the thread has to do
+    void write_all();  ///< writes for about turn_max; the rest after the thread's other work
 
     Executor executor_;
     std::string frames_;
@@ -51,19 +50,19 @@ class WriteTurn {
     bool posted_ = false;
 };
 
-/// The streams that are open, each with a place.
+/// The open streams, each with a place.
 ///
-/// Rule     there are so many places at most: who has no stream finds the server, too
+/// Rule     the number of places is limited, so that clients without a stream can still reach the server
 /// Thread   the network thread
 class OpenStreams {
   public:
     class Member {
       public:
         virtual ~Member() = default;
-        /// Takes leave of its client; its place is free when that has answered, or has gone.
+        /// Closes the stream; its place is free once the client has answered or has gone.
         virtual void end() = 0;
     };
-    /// One of them, for as long as this lives.
+    /// The place of one stream during its lifetime.
     class Place {
       public:
         Place(OpenStreams& all, Member& member) : all_(all), place_(all.members_.insert(all.members_.end(), &member)) {}
@@ -77,10 +76,11 @@ class OpenStreams {
     };
     explicit OpenStreams(std::size_t max) : max_(max) {}
 
-    /// Why there is no place for one more; empty: there is.
+    /// Why there is no free place; empty: there is one.
     std::string refusal() const;
     bool ending() const { return ending_; }
-    /// Ends all of them. `gone` is called when none is left, at once when there is none, unless forget() came first.
+    /// Closes all streams. Calls `gone` once none is left (at once when there is none), unless forget() was called
+    /// before.
     void end(std::function<void()> gone);
     void forget() { gone_ = nullptr; }
 
@@ -91,19 +91,18 @@ class OpenStreams {
     std::function<void()> gone_;
 };
 
-/// What a connection of the stream needs of the server around it.
+/// What a stream connection needs from the server.
 struct StreamService {
     WriteTurn& turn;
     OpenStreams& streams;
-    std::size_t message_octets_max = 0;       ///< of one that a client sends
-    std::chrono::milliseconds silence_max{};  ///< a peer that answers no ping for so long is dead
+    std::size_t message_octets_max = 0;       ///< of one client message
+    std::chrono::milliseconds silence_max{};  ///< a peer that answers no ping for this long is dead
     std::function<std::shared_ptr<StreamSession>(StreamFormat, std::function<void()> wake)> open;
 };
 
 using UpgradeRequest = boost::beast::http::request<boost::beast::http::string_body>;
 
-/// Accepts the upgrade and serves the session until either side ends. Takes its place of service.streams before
-/// anything else.
+/// Accepts the upgrade and serves the session until either side closes it. First takes its place in service.streams.
 Task<> serve_stream(Stream stream, UpgradeRequest request, StreamFormat format, std::string_view subprotocol,
                     StreamService service);
 Task<> serve_stream(TlsStream stream, UpgradeRequest request, StreamFormat format, std::string_view subprotocol,

@@ -9,12 +9,12 @@
 
 namespace aeolis::server::net {
 
-/// Connections whose request is being answered, so that the work can stop when the client leaves.
+/// The connections whose request is being answered, so that work can stop when the client disconnects.
 ///
-/// Rule     look() asks each socket whether the peer has closed its side: what it sent before that, even TLS's own
-///          farewell, may lie unread
-/// Faults   a network that falls silent shows nothing; a question's own time-out bounds that
-/// Thread   the network thread, but for what gone() returns
+/// Rule     look() asks each socket whether the peer has closed its side; the peer's last octets, even TLS's close, may
+///          be unread
+/// Faults   a silent network goes unnoticed; a query's own time-out bounds that
+/// Thread   the network thread, except for the function that gone() returns
 class WaitingPeers {
     struct Peer {
         int descriptor = -1;
@@ -22,7 +22,7 @@ class WaitingPeers {
     };
 
   public:
-    /// Places one connection among them for as long as this lives.
+    /// Registers one connection during its lifetime.
     class Waiting {
       public:
         Waiting(WaitingPeers& all, int descriptor)
@@ -31,7 +31,7 @@ class WaitingPeers {
         ~Waiting() { all_.peers_.erase(place_); }
         Waiting(const Waiting&) = delete;
         Waiting& operator=(const Waiting&) = delete;
-        /// Tells from any thread whether the client has left, also when this lives no longer.
+        /// A function that tells, on any thread, whether the client has disconnected; it may outlive this.
         std::function<bool()> gone() const {
             return [gone = place_->gone] { return gone->load(std::memory_order_relaxed); };
         }
@@ -44,7 +44,7 @@ class WaitingPeers {
     void look() {
         for (const auto& peer : peers_) {
             pollfd polled{peer.descriptor, POLLRDHUP, 0};
-            // POLLERR and POLLHUP are told without being asked for.
+            // POLLERR and POLLHUP are reported without being requested.
             if (::poll(&polled, 1, 0) > 0) peer.gone->store(true, std::memory_order_relaxed);
         }
     }

@@ -20,15 +20,15 @@ namespace {
 
 using namespace net;
 
-constexpr unsigned peers_looked_at_ms = 250;  // chosen: an answer is worked on for so long after its client has left
+constexpr unsigned peers_looked_at_ms = 250;  // chosen: longest work on an answer after its client left
 
-/// An address of version 4 as such, also when the socket is one of version 6.
+/// Maps an IPv4 address on an IPv6 socket to plain IPv4.
 asio::ip::address plain_address(const asio::ip::address& address) {
     if (!address.is_v6() || !address.to_v6().is_v4_mapped()) return address;
     return asio::ip::make_address_v4(asio::ip::v4_mapped, address.to_v6());
 }
 
-/// Of certificate and key, or what is wrong with them; none: no TLS.
+/// The TLS context from certificate and key, or an Error; none: no TLS.
 Result<std::optional<asio::ssl::context>> tls_of(const WebServer::Settings& settings) {
     if (settings.certificate.empty() && settings.key.empty()) return std::optional<asio::ssl::context>{};
     if (settings.certificate.empty() || settings.key.empty())
@@ -36,7 +36,7 @@ Result<std::optional<asio::ssl::context>> tls_of(const WebServer::Settings& sett
     asio::ssl::context context{asio::ssl::context::tls_server};
     SSL_CTX_set_min_proto_version(context.native_handle(), TLS1_2_VERSION);
     context.set_password_callback(
-        [](std::size_t, asio::ssl::context::password_purpose) { return std::string{}; });  // never asks
+        [](std::size_t, asio::ssl::context::password_purpose) { return std::string{}; });  // never prompts
     error_code error;
     context.use_certificate_chain_file(settings.certificate.string(), error);
     if (error) return Error{fmt::format("--tls-certificate {}: {}", settings.certificate.string(), error.message())};
@@ -56,7 +56,7 @@ struct WebServer::State {
     asio::io_context& io = service.io;
     Acceptor acceptor{io.get_executor()};
     std::optional<asio::ssl::context> tls;
-    std::deque<Timer> timers;  ///< of every()
+    std::deque<Timer> timers;  ///< for every()
     Timer farewell{io.get_executor()};
 
     void end();
@@ -98,7 +98,7 @@ Task<> WebServer::State::serve_tls(Stream stream, std::string from) {
     lowest.expires_after(service.request_max);
     error_code error;
     co_await secure.async_handshake(asio::ssl::stream_base::server, asio::redirect_error(awaiting, error));
-    if (error) co_return;  // it speaks no TLS, or does not trust the certificate
+    if (error) co_return;  // the client speaks no TLS, or rejects the certificate
     co_await serve_http(secure, service, std::move(from));
     if (!lowest.socket().is_open()) co_return;
     lowest.expires_after(std::chrono::seconds{1});
@@ -111,7 +111,7 @@ void WebServer::State::end() {
     farewell.expires_after(farewell_max);
     farewell.async_wait([this](error_code asked_again) {
         if (asked_again) return;
-        service.streams.forget();  // who does not answer goes with io
+        service.streams.forget();  // io stops without the remaining clients
         io.stop();
     });
     service.streams.end([this] { io.stop(); });
@@ -123,7 +123,7 @@ Task<> WebServer::State::accept() {
         auto socket = co_await acceptor.async_accept(asio::redirect_error(awaiting, error));
         if (!error) {
             asio::co_spawn(io, serve(std::move(socket)), [](const std::exception_ptr& broken) {
-                // A bug in one request: that connection ends, the server goes on.
+                // A bug in one request closes that connection only.
                 try {
                     if (broken) std::rethrow_exception(broken);
                 } catch (const std::exception& bug) {
@@ -134,7 +134,7 @@ Task<> WebServer::State::accept() {
         }
         if (error == asio::error::operation_aborted) co_return;
         spdlog::warn("a connection could not be accepted: {}", error.message());
-        Timer pause{io, std::chrono::milliseconds{100}};  // out of file numbers: do not spin
+        Timer pause{io, std::chrono::milliseconds{100}};  // out of file descriptors: do not spin
         co_await pause.async_wait(asio::redirect_error(awaiting, error));
     }
 }

@@ -20,18 +20,18 @@ namespace sqlite = archive::sqlite;
 
 namespace {
 
-constexpr std::size_t batch_units = 4096;   ///< ours: some MB in hand
-constexpr std::size_t faults_a_table = 20;  ///< ours: more nobody reads
+constexpr std::size_t batch_units = 4096;   ///< chosen: some MB of memory
+constexpr std::size_t faults_a_table = 20;  ///< chosen: nobody reads more
 
 struct RunToDerive {
     RunId run;
     bool finished = false;
     std::uint16_t dictionary = 0;
-    double progress = 0.0;  ///< of the recording: the only one of its totals that no unit tells
+    double progress = 0.0;  ///< of the recording: the only total that does not follow from packets
 };
 
-/// An archive of derived rows only, beside which the one they are derived from is attached as "archive": one
-/// transaction sees both at one moment. The file goes with it.
+/// A database of derived rows only, with the archive attached as "archive": one transaction sees a consistent state of
+/// both. The file is deleted with the object.
 class Scratch {
   public:
     static Result<Scratch> open(const std::filesystem::path& file, const std::filesystem::path& archive) {
@@ -39,7 +39,7 @@ class Scratch {
         auto database = sqlite::Database::open(file.string(), sqlite::Mode::read_write_create);
         if (!database) return database.error();
         Scratch scratch(file, std::move(*database));
-        // Nothing here has to survive anything.
+        // Nothing in this file needs to survive a crash.
         for (const char* sql : {"PRAGMA journal_mode = OFF", "PRAGMA synchronous = OFF"})
             if (auto done = scratch.database_.execute(sql); !done) return done.error();
         if (auto done = archive::prepare_for_writing(scratch.database_); !done) return done.error();
@@ -96,7 +96,7 @@ std::string other_words(const RunToDerive& run, const dictionary::Dictionary& di
            ", this program has " + std::to_string(dictionary.id);
 }
 
-/// Derived rows of a run, from "archive" into "main". @return its units; none: it was stopped
+/// Derives the rows of a run from "archive" into "main". @return the number of packets; none: stopped
 Result<std::optional<std::size_t>> derive(sqlite::Database& database, const RunToDerive& run,
                                           const dictionary::Dictionary& dictionary,
                                           const telemetry::OtherMission* other, const GoesOn& goes_on) {
@@ -143,14 +143,14 @@ Result<std::optional<std::size_t>> derive(sqlite::Database& database, const RunT
     return std::optional{count};
 }
 
-/// What is wrong with one of a run's tables, found by comparing "archive" with "main".
+/// Finds the faults of one run's tables by comparing "archive" with "main".
 class Comparison {
   public:
     Comparison(sqlite::Database& database, const RunToDerive& run, const dictionary::Dictionary& dictionary,
                std::vector<std::string>& faults)
         : database_(database), run_(run), dictionary_(dictionary), faults_(faults) {}
 
-    /// All of its columns but `packed`, whose octets may differ where what is packed does not.
+    /// Compares all columns but `packed`, whose octets may differ though the unpacked contents are equal.
     Result<void> rows(const archive::RunTable& table, const std::string& key, const std::string& packed) {
         auto columns = columns_of(table.name, packed);
         if (!columns) return columns.error();
@@ -179,7 +179,7 @@ class Comparison {
         }
     }
 
-    /// Packed columns of a table whose octets differ.
+    /// Compares the unpacked contents of packed columns whose octets differ.
     Result<void> packed(const char* table, const char* sql) {
         auto rows = database_.prepare(sql);
         if (!rows) return rows.error();
@@ -285,7 +285,7 @@ Result<Verification> verify(const std::filesystem::path& file, std::optional<Run
         auto faults = archive::integrity_faults(*database);
         if (!faults) return faults.error();
         for (auto& fault : *faults) found.faults.push_back("the file: " + std::move(fault));
-        if (!found.faults.empty()) return found;  // what the rest would find is no news
+        if (!found.faults.empty()) return found;  // with a damaged file the other checks tell nothing new
         auto audit = archive::check_audit(*database);
         if (!audit) return audit.error();
         found.faults = std::move(audit->faults);
@@ -394,7 +394,7 @@ Result<Rebuilt> rebuild(const std::filesystem::path& file, std::optional<RunId> 
                                    ": its units now say something else, and its items would get other numbers (" +
                                    replaced->front() + ")");
     }
-    // The whole index: what it should forget of rows that were damaged nobody knows.
+    // The whole index: the words of damaged rows that it should forget are unknown.
     if (!rebuilt.runs.empty())
         if (auto done = database.execute("INSERT INTO search (search) VALUES ('rebuild')"); !done) return done.error();
     return rebuilt;

@@ -21,7 +21,7 @@ PacketIntake::PacketIntake(const dictionary::Dictionary& dictionary, const archi
     : dictionary_(dictionary), columns_(columns), firing_(find_firing_fields(dictionary)), other_(other),
       alarms_(dictionary), segments_(columns), latest_(dictionary.channels.size()) {
     if (other_ == nullptr) decommutator_.emplace(dictionary);
-    const auto* phase = dictionary.channel("edl_phase");  // none: not of this mission
+    const auto* phase = dictionary.channel("edl_phase");  // null: not in this mission
     const auto tells_phase = [&](const dictionary::Field& field) {
         return phase != nullptr &&
                (field.channel == phase->id || (!phase->type.name.empty() && field.type.name == phase->type.name));

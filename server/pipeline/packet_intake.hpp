@@ -16,10 +16,10 @@
 
 namespace aeolis::pipeline {
 
-/// Hands out sequence numbers, and notes them in the batch that will make them durable.
+/// Assigns sequence numbers and notes them in the batch that will make them durable.
 class Numbering {
   public:
-    /// @param taken  numbers, ascending, of items that are stored already and do not come again
+    /// @param taken  numbers, ascending, of stored items that are not produced again
     explicit Numbering(Sequence first = 1, std::vector<Sequence> taken = {}) : next_(first), taken_(std::move(taken)) {
         pass_taken();
     }
@@ -41,14 +41,15 @@ class Numbering {
     std::size_t passed_ = 0;
 };
 
-/// One run's packets as they come, on either path: what each is, whether it was seen before, and all that it says.
+/// Takes one run's packets, on either path: identifies each, whether it was seen before, and derives everything from
+/// it.
 ///
 /// In       packets in the order of receipt               Out   records, appended to a batch
-/// Rules    a unit that came before on the other path is kept (it is the proof) and marked, but its samples are not
-///          added again; one that came before on the same path says nothing new at all. Alarms are judged in real
-///          time only: the recording tells what was, not what is. Another mission's packets come in real time, each
-///          for itself: nothing in them names a unit of ours.
-/// Memory   the register of units (telemetry/unit_identity.hpp) and the open segments
+/// Rules    a packet seen before on the other path is stored (it is the proof) and marked, but its samples are not
+///          added again. A packet seen before on the same path yields nothing new. Alarms are judged in real time only:
+///          the recording tells the past. Another mission's packets count as real time and are never compared: nothing
+///          in them identifies a packet of ours
+/// Memory   the register of packets (telemetry/unit_identity.hpp) and the open segments
 class PacketIntake {
   public:
     PacketIntake(const dictionary::Dictionary& dictionary, const archive::PacketColumns& columns,
@@ -60,19 +61,19 @@ class PacketIntake {
 
     archive::RecordingTotals totals() const;
     const std::vector<std::optional<LatestValue>>& latest() const { return latest_; }
-    /// The label of the vehicle's phase, as it was last told in real time by the channel of the phase or by the event
-    /// of its change, whichever is the newer on board: the channel comes every two seconds, when none is lost. Empty:
-    /// not told.
+    /// The label of the vehicle's phase as last reported in real time; empty: not reported. Reported by the phase
+    /// channel or by the event of its change, whichever is newer on board: the channel is sent every two seconds and
+    /// may be lost.
     const std::string& phase() const { return phase_; }
 
   private:
-    /// Of the packet "TimepointFired", by which ground knows that a timepoint fired.
+    /// Fields of the packet "TimepointFired", which reports to ground that a timepoint fired.
     struct FiringFields {
         std::size_t packet = 0, timepoint = 0, triggered = 0, fired = 0, verdict = 0;
     };
     static std::optional<FiringFields> find_firing_fields(const dictionary::Dictionary& dictionary);
 
-    /// Into decoded_; why not, or nothing.
+    /// Decodes into decoded_. Returns the reason if it was not decoded.
     std::optional<std::string> decode(std::span<const std::uint8_t> packet);
     void sample(const archive::UnitRecord& unit, Numbering& numbering, archive::Batch& batch);
     void interpret(const archive::UnitRecord& unit, Numbering& numbering, archive::Batch& batch) const;
@@ -87,7 +88,7 @@ class PacketIntake {
     std::vector<std::optional<std::size_t>> phase_field_;  ///< by packet
     std::string phase_;
     Sclk phase_sclk_{};
-    const telemetry::OtherMission* other_;  ///< none: our own
+    const telemetry::OtherMission* other_;  ///< null: our own mission
     std::optional<telemetry::Decommutator> decommutator_;
     telemetry::Decoded decoded_;
     telemetry::UnitRegister register_;

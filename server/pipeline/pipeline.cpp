@@ -16,7 +16,7 @@ struct Pipeline::State {
           const telemetry::OtherMission* other_in)
         : archive(archive_in), dictionary(dictionary_in), other(other_in), columns(dictionary_in) {}
 
-    /// All that belongs to the run that goes on.
+    /// All state of the current run.
     struct Run {
         Run(RunId id_in, archive::RunStart start_in, const State& state, std::vector<Sequence> taken)
             : id(id_in), start(std::move(start_in)), numbering(1, std::move(taken)),
@@ -29,8 +29,8 @@ struct Pipeline::State {
         archive::Batch pending;
         double progress = 0.0, durable_progress = 0.0;  ///< of the recording
         Sequence last_durable = 0;
-        Sequence repeat_until = 0;  ///< up to here items are durable already
-        Compare compare;            ///< while items are repeated
+        Sequence repeat_until = 0;  ///< items up to here are already durable
+        Compare compare;            ///< not null while items are repeated
         std::optional<Error> differs;
 
         bool repeats() const { return compare != nullptr; }
@@ -44,7 +44,7 @@ struct Pipeline::State {
     Result<void> room();
     std::size_t pending_octets() const;
     void take(const telemetry::ReceivedPacket& packet);
-    /// The newest unit of the batch was heard.
+    /// Notes that the newest packet of the batch was received.
     void heard();
     void add(std::span<const telemetry::StalenessChange> changes, Ert ert);
     void take(const telemetry::ReceivedTone& tone);
@@ -113,7 +113,7 @@ Result<void> Pipeline::resume(RunId run, const archive::RunStart& start, Sequenc
     return {};
 }
 
-/// What waits is durable already: compared and dropped.
+/// Compares the waiting items, which are already durable, with the archive, and drops them.
 void Pipeline::State::hold_against_archive() {
     if (!run->differs && run->pending.last_seq > run->repeat_until)
         run->differs =
@@ -124,7 +124,7 @@ void Pipeline::State::hold_against_archive() {
     run->pending.clear();
 }
 
-/// From the last durable item on; nothing to do before it, and after.
+/// Continues the run once its last durable item was repeated; does nothing before that or when not repeating.
 Result<void> Pipeline::State::go_on_where_it_was_cut_off() {
     if (!run->repeats() || run->numbering.last() < run->repeat_until) return {};
     hold_against_archive();
@@ -166,7 +166,7 @@ Result<void> Pipeline::State::room() {
 
 Result<void> Pipeline::accept(const telemetry::Received& received) {
     if (received.packets.empty() && received.tones.empty() && received.links.empty()) return {};
-    // All of it or nothing: otherwise what is given again would be doubled.
+    // All or nothing: otherwise a retry would store items twice.
     if (auto room = state_->room(); !room) return room;
     for (const auto& link : received.links) state_->take(link);
     for (const auto& packet : received.packets) state_->take(packet);
@@ -294,7 +294,7 @@ void Pipeline::State::take(const telemetry::ReceivedTone& tone) {
     record.doppler_hz = tone.doppler_hz;
     record.lock = tone.lock;
     record.model = run->start.tone_model;
-    // Ground knows when the symbol began on board by light time alone; that is all it knows.
+    // Ground knows the symbol's start on board only by light time.
     const double sent_s =
         static_cast<double>(tone.start.microseconds - run->start.correlation.scet.microseconds) * 1e-6 -
         run->start.light_time_s;

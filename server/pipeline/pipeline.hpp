@@ -23,44 +23,46 @@ namespace aeolis::pipeline {
 using archive::RunId;
 using archive::Sequence;
 
-/// What became durable together. Immutable and shared by all who follow the run.
+/// The items that became durable together. Immutable; shared by all who follow the run.
 struct PublishedBatch {
     RunId run;
     Sequence first_seq = 0, last_seq = 0;
-    bool built = true;            ///< false: nobody wanted items; who does now reads them from the archive
-    std::vector<v1::Item> items;  ///< in order of seq, first_seq … last_seq without a gap when built
+    bool built = true;            ///< false: nobody wanted items; read them from the archive
+    std::vector<v1::Item> items;  ///< in order of seq; when built, first_seq … last_seq without gaps
 };
 
-/// Sees each packet when it was decoded, before it is durable: for the command path, which must match answers.
+/// Sees each decoded packet before it is durable: for the command path, which must match replies.
 using Observer = std::function<void(const telemetry::Decoded& decoded, std::span<const std::uint8_t> octets,
                                     archive::Source source, Ert ert)>;
 using Publish = std::function<void(std::shared_ptr<const PublishedBatch>)>;
-/// Whether what is flown again is what the archive has of it; an Error names the first item that is not.
+/// Compares items flown again with the archive's. The Error names the first that differs.
 using Compare = std::function<Result<void>(const PublishedBatch& again)>;
 
 inline constexpr std::chrono::milliseconds commit_interval{10};  ///< design.md: group commits at most every 10 ms
-inline constexpr std::size_t commit_items = 8192;                ///< or when so many wait: some 4096 units
-inline constexpr std::size_t pending_octets_max = 32U << 20;     ///< held while the disk fails; then the run must wait
+inline constexpr std::size_t commit_items = 8192;                ///< or when this many wait: about 4096 packets
+/// Kept while the disk fails; beyond it the run must wait.
+inline constexpr std::size_t pending_octets_max = 32U << 20;
 
-/// What has come of a channel.
+/// The latest value received of a channel.
 struct LatestValue {
     std::optional<double> value;  ///< none: undefined on board
     Sclk sclk;
     Ert ert;
 };
 
-/// Turns what one run's links and gateway deliver into numbered items: commits them to the archive, then publishes.
+/// Turns the deliveries of one run's links and gateway into numbered items: commits them to the archive, then
+/// publishes.
 ///
 /// In       received packets, tones, link changes, command stages; the caller's steady clock
 /// Out      rows of the archive; then, in the same order, PublishedBatch to `publish`
-/// Rate     whatever comes; a commit at most every commit_interval, or when commit_items wait
-/// Faults   a failed commit is returned; all that waits is kept, with its sequence numbers, and goes with the next
-///          commit. When pending_octets_max wait, accept() refuses until a commit succeeds: the caller holds the run.
-/// Threads  none, no locks and no clock: one owner calls everything, callbacks come from within its calls
+/// Rate     any; a commit at most every commit_interval, or when commit_items wait
+/// Faults   a failed commit is returned; its items keep their sequence numbers and go with the next commit. When
+///          pending_octets_max wait, accept() refuses until a commit succeeds: the caller holds the run
+/// Threads  none, no locks and no clock: one owner calls everything; callbacks are called within its calls
 class Pipeline {
   public:
-    /// Archive and dictionary must outlive this. With `other`, whose dictionary it then is, only packets of that
-    /// mission may come.
+    /// Archive and dictionary must outlive this. With `other`, the mission of the dictionary, only its packets are
+    /// allowed.
     Pipeline(archive::Archive& archive, const dictionary::Dictionary& dictionary,
              const telemetry::OtherMission* other = nullptr);
     Pipeline(Pipeline&&) noexcept;
@@ -69,58 +71,59 @@ class Pipeline {
 
     void on_publish(Publish publish);
     void on_decoded(Observer observer);
-    /// Whether PublishedBatch::items are built: only needed while someone follows. On at the start.
+    /// Whether PublishedBatch::items are built: needed only while someone follows. Initially true.
     void want_items(bool wanted);
 
-    /// A new run, durable when it returns. One at a time: the last one must have been finished or abandoned.
+    /// Begins a run; durable when it returns. One at a time: the last one must have been finished or abandoned.
     Result<RunId> begin(const archive::RunStart& start);
 
-    /// A run that was cut off is flown again from its beginning: items up to `durable` are neither stored nor published
-    /// again but held against the archive by `compare`. After the last of them it goes on as any run. One at a time, as
-    /// begin().
-    /// @param annotations  numbers of what people added: it does not come again, and keeps its numbers
+    /// Resumes a run that was cut off, flown again from its beginning. Items up to `durable` are neither stored nor
+    /// published again but compared with the archive by `compare`; after them the run continues as any. One at a time,
+    /// as begin().
+    /// @param annotations  numbers of items added by people: not produced again, they keep their numbers
     Result<void> resume(RunId run, const archive::RunStart& start, Sequence durable, Compare compare,
                         std::vector<Sequence> annotations = {});
-    /// Compares what waits. True once all that was durable has come again; an Error for good when something else came,
-    /// or the run cannot be marked as running again.
+    /// Compares the waiting items. True once all durable items were produced again. A permanent Error when one differs,
+    /// or when the run cannot be marked as running again.
     Result<bool> caught_up();
-    /// A controller's request that was taken: stored with the next commit.
+    /// Takes a controller's accepted request; stored with the next commit.
     Result<void> accept(archive::RequestRecord request);
 
-    /// All of it or, with an Error, nothing.
+    /// Takes all of it or, with an Error, nothing.
     Result<void> accept(const telemetry::Received& received);
     Result<void> accept(const telemetry::ReceivedPacket& packet);
     Result<void> accept(const telemetry::ReceivedTone& tone);
     Result<void> accept(const telemetry::LinkState& link);
-    /// `stage.seq` is given here.
+    /// Takes a stage and assigns its `seq`.
     Result<void> accept(archive::StageRecord stage);
-    /// Once a second of the run or so: tells what has become stale.
+    /// Reports packets that became stale. Call about once a second of the run.
     Result<void> accept(const telemetry::EarthTime& time);
-    /// What a person adds to any run: to the one that goes on, durable with the next commit; to another, durable and
-    /// published when it returns. @return with its number
+    /// Adds a person's annotation: to the run in progress, durable with the next commit; to another run, durable and
+    /// published when it returns. @return the annotation with its number
     Result<archive::Annotation> annotate(RunId run, archive::Annotation annotation);
-    /// 0 … 1 of the recording that has come down; durable with the next commit.
+    /// Sets the fraction of the recording that is down, 0 … 1; durable with the next commit.
     void relay_progress(double progress);
-    /// Counters of links, stored with the next commit.
+    /// Sets the counters of links; stored with the next commit.
     void link_totals(std::vector<archive::LinkTotals> links);
 
-    /// Commits when due; `now` starts the interval of the next. Call it at least every commit_interval in real time.
+    /// Commits when due; `now` starts the next interval. Call at least every commit_interval in real time.
     Result<void> commit_if_due(std::chrono::steady_clock::time_point now);
-    /// Commits only when commit_items wait: for a run that nobody watches, as fast as it goes.
+    /// Commits only when commit_items wait: for a run that nobody watches and that flies as fast as possible.
     Result<void> commit_if_full();
-    /// Commits what waits, at once, and publishes it.
+    /// Commits the waiting items at once and publishes them.
     Result<void> commit();
     /// Seals open segments, commits and marks the run finished. May be called again after an error.
     Result<void> finish(const archive::RunEnd& end);
-    /// Gives up the run and what waits of it: in the archive it stays `running`, and is `interrupted` at the next open.
+    /// Gives up the run and its waiting items. In the archive it stays `running`; the next open() marks it
+    /// `interrupted`.
     void abandon();
 
     std::optional<RunId> run() const;
     Sequence last_durable() const;
-    std::size_t pending_items() const;   ///< and requests, which may come while nothing else does
-    std::size_t pending_octets() const;  ///< of packets and samples that wait for a commit
+    std::size_t pending_items() const;   ///< including requests, which may arrive alone
+    std::size_t pending_octets() const;  ///< of packets and samples waiting for a commit
     archive::RecordingTotals totals() const;
-    /// In real time only, by ChannelId; none: never received.
+    /// Real-time values only, by ChannelId; none: never received.
     const std::vector<std::optional<LatestValue>>& latest() const;
 
   private:

@@ -12,12 +12,12 @@
 namespace aeolis::server {
 namespace {
 
-constexpr std::chrono::milliseconds retry_interval{500};  // ours: a full disk does not empty faster
-constexpr std::size_t words_of_difference = 200;          // of an item: enough to see which it is
+constexpr std::chrono::milliseconds retry_interval{500};  // chosen: a full disk is not emptied faster
+constexpr std::size_t words_of_difference = 200;          // characters of an item in an error: enough to identify it
 constexpr std::uint64_t cycles_a_second = 64;
-constexpr int retries_when_closing = 4;  // then what waits is given up, and said so
+constexpr int retries_when_closing = 4;  // then the waiting items are given up, with an Error
 
-/// Whether a run's items that came again are those that the archive has; an Error names the first that is not.
+/// Compares a run's repeated items with the archive. The Error names the first that differs.
 Result<void> same_items(archive::Reader& stored, const pipeline::PublishedBatch& again) {
     archive::Sequence after = again.first_seq - 1;
     auto item = again.items.begin();
@@ -27,8 +27,7 @@ Result<void> same_items(archive::Reader& stored, const pipeline::PublishedBatch&
         if (!page) return page.error();
         for (const auto& before : page->items) {
             if (item == again.items.end()) break;
-            if (item->item_case() ==
-                v1::Item::ITEM_NOT_SET) {  // someone added what is stored here: it does not come again
+            if (item->item_case() == v1::Item::ITEM_NOT_SET) {  // an annotation stored here: it is not repeated
                 ++item;
                 continue;
             }
@@ -97,7 +96,7 @@ Result<void> PipelineThread::resume(archive::CutOffRun& cut, const archive::RunS
     const auto compare = [stored](const pipeline::PublishedBatch& again) { return same_items(*stored, again); };
     Result<void> result = Error{"the archive is closing"};
     perform([&] {
-        // What people wrote down since it was read has numbers of its own. From here on this thread gives them out.
+        // Annotations may have been added since `cut` was read. From here on this thread assigns the numbers.
         auto now = stored->cut_off(cut.run);
         if (!now) return void(result = now.error());
         cut.last_seq = now->last_seq;
@@ -122,7 +121,7 @@ void PipelineThread::audit(archive::AuditRecord record, std::function<void()> ke
     {
         const std::scoped_lock lock{audit_mutex_};
         if (within_budget(record)) {
-            // What was let in while there was room still has some.
+            // Records of actions begun while there was room still have room.
             if (audit_.size() < 2 * audit_waiting_max) {
                 audit_.push_back(std::move(record));
                 audit_kept_.push_back(refuses ? nullptr : std::exchange(kept, nullptr));
@@ -131,7 +130,7 @@ void PipelineThread::audit(archive::AuditRecord record, std::function<void()> ke
             }
         }
     }
-    jobs_.try_push(Action{[] {}});  // wakes it; a full queue keeps it awake
+    jobs_.try_push(Action{[] {}});  // wakes the thread; a full queue keeps it awake anyway
     if (kept) kept();
 }
 
@@ -229,7 +228,7 @@ bool PipelineThread::annotate(archive::RunId run, archive::Annotation annotation
     return !blocked() && jobs_.try_push(Action{[this, run, annotation = std::move(annotation), done = std::move(done)] {
         auto added = pipeline_.annotate(run, annotation);
         if (!added) return done(std::move(added));
-        // Told as a command is, after the commit: a disk that refuses must not hold up what arrives meanwhile.
+        // Answered after the commit, as a command is: a failing disk must not delay what arrives meanwhile.
         answers_.push_back([done, added = std::move(added)](const std::string& fault) {
             if (fault.empty()) return done(added);
             done(Error{fmt::format(
@@ -265,7 +264,7 @@ PipelineThread::Figures PipelineThread::figures() const {
 
 void PipelineThread::run() {
     for (;;) {
-        // Nothing waits for a commit: neither does this thread need to wake for one.
+        // Nothing waits for a commit: no need to wake for one.
         auto job =
             waits() ? jobs_.pop_until(std::chrono::steady_clock::now() + pipeline::commit_interval) : jobs_.pop();
         if (!job && jobs_.closed() && jobs_.size() == 0) {
@@ -298,11 +297,11 @@ void PipelineThread::finish(Finish& finish) {
 void PipelineThread::take(Delivery& delivery) {
     ++deliveries_;
     note_received(delivery);
-    // First, for what is not taken now is not durable either: they wait no longer than this thread does.
+    // Answers first: what is not taken now is not durable, and an answer must not wait longer than this thread does.
     take_answers(delivery);
     for (auto& entry : delivery.entries) {
         const auto accept = [&] { return std::visit([&](auto& each) { return pipeline_.accept(each); }, entry); };
-        // Refused only while too much waits for a failing disk: then that must be committed first.
+        // accept() refuses only while too much waits for a failing disk: commit that first.
         if (!accept() && !insist(accept)) return;
     }
     pipeline_.relay_progress(delivery.relay_progress);
@@ -354,20 +353,20 @@ bool PipelineThread::insist(const std::function<Result<void>()>& attempt) {
     for (int tries_when_closing = 0; !given_up_;) {
         const auto result = attempt();
         if (result) return noted(result);
-        if (fault().empty()) noted(result);  // else the disk's own words are known
+        if (fault().empty()) noted(result);  // else the disk's own message is already set
         if (faults_ == Faults::give_up || (closing_ && ++tries_when_closing > retries_when_closing)) {
             given_up_ = true;
             break;
         }
         blocked_ = true;
         tell_audit_kept({});
-        jobs_.each([this](Job& job) {  // those behind this one wait for the disk no more than it does
+        jobs_.each([this](Job& job) {  // answers of later deliveries must not wait for the disk either
             if (auto* delivery = std::get_if<Delivery>(&job)) take_answers(*delivery);
         });
         tell_answers(fault());
         pending_octets_ = pipeline_.pending_octets();
         std::this_thread::sleep_for(retry_interval);
-        const auto committed = pipeline_.commit();  // what waits goes first: accept() can then succeed
+        const auto committed = pipeline_.commit();  // commits the waiting items, so that accept() can succeed
         (void)committed;
     }
     return false;

@@ -10,13 +10,13 @@
 
 namespace aeolis::server {
 
-/// How many refusals of one person the audit takes: enough to see what they try, too few to fill it by trying.
+/// Limits a person's refusals in the audit: enough to show what they try, too few to fill it.
 class RefusalBudget {
   public:
     using Clock = std::chrono::steady_clock;
-    static constexpr unsigned each_minute = 60;  ///< ours
+    static constexpr unsigned each_minute = 60;  ///< chosen
 
-    /// One more refusal of `who`. @return how many before it are not noted; none: neither is this one
+    /// Counts a refusal of `who`. @return the number left out before it; none: this one is left out too
     std::optional<std::uint64_t> take(const std::string& who, Clock::time_point now) {
         auto& minute = minutes_[who];
         if (!minute.begun || now - *minute.begun >= std::chrono::minutes{1}) {
@@ -33,12 +33,11 @@ class RefusalBudget {
 
   private:
     struct Minute {
-        std::optional<Clock::time_point> begun{};  ///< none: it is their first
+        std::optional<Clock::time_point> begun{};  ///< none: before the first refusal
         unsigned noted = 0;
         std::uint64_t left_out = 0;
     };
-    std::map<std::string, Minute>
-        minutes_;  ///< by who: users and tokens there are, so no more than the file of accounts has had
+    std::map<std::string, Minute> minutes_;  ///< by user or token; bounded by those of the accounts file
 };
 
 }  // namespace aeolis::server

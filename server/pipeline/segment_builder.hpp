@@ -11,21 +11,21 @@
 
 namespace aeolis::pipeline {
 
-/// Collects the samples of one run, packet by packet and source by source, into segments of archive::segment_samples,
-/// and the pyramid over them.
+/// Collects a run's samples into segments, by packet and source, and builds the pyramid. A full segment has
+/// archive::segment_samples.
 ///
-/// In       sampled units in the order of their sequence numbers
-/// Out      a segment whenever one is full, with the blocks of the pyramid that it fills; the rest at seal()
-/// Memory   8 octets a value, at most segment_samples a packet and source: some 2 MB for the mission's dictionary; and
-///          the pyramid's open blocks
+/// In       sampled packets in the order of their sequence numbers
+/// Out      each segment when full, with the pyramid blocks that it fills; the rest at seal()
+/// Memory   8 octets a value, at most segment_samples per packet and source: about 2 MB for the mission's dictionary;
+///          and the pyramid's open blocks
 class SegmentBuilder {
   public:
     explicit SegmentBuilder(const archive::PacketColumns& columns);
 
-    /// Into the batch's `segments` and `pyramid`.
+    /// Adds a packet's samples; full segments and blocks go to the batch.
     void add(std::uint16_t packet, archive::Source source, archive::Sequence unit, Sclk sclk,
              std::span<const double> values, archive::Batch& batch);
-    /// Everything that is not yet in a segment.
+    /// Adds to the batch all samples not yet in a segment.
     void seal(archive::Batch& batch);
 
   private:
@@ -33,7 +33,7 @@ class SegmentBuilder {
         archive::Sequence first_unit = 0, last_unit = 0;
         std::uint64_t position = 0;
         std::vector<double> sclk_s;
-        std::vector<double> values;  ///< segment_samples to a channel
+        std::vector<double> values;  ///< segment_samples per channel
     };
     void close(std::size_t packet, archive::Source source, Open& open, archive::Batch& batch);
 

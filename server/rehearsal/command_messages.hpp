@@ -8,7 +8,7 @@
 
 #include <string>
 
-// What the command path takes and gives, as messages of the stream and rows of the archive.
+// Converts the command path's inputs and outputs to and from stream messages and archive rows.
 namespace aeolis::server {
 
 /// `browser`: without accounts, the one that sends it, for the second person.
@@ -16,7 +16,7 @@ commands::Request request_of(const v1::CommandRequest& message, const std::strin
 v1::CommandReply message_of(const commands::Reply& reply);
 commands::TimelineVerdict verdict_of(const v1::TimelineVerdict& message);
 v1::TimelineVerdict message_of(const commands::TimelineVerdict& verdict);
-/// `seq` is not given yet.
+/// A stage as an archive record, without `seq`.
 archive::StageRecord record_of(commands::StageReport stage);
 
 }  // namespace aeolis::server

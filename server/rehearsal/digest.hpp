@@ -8,7 +8,7 @@
 
 namespace aeolis::server {
 
-/// SHA-256 (libcrypto) of octets given piece by piece: the fingerprint of everything that a run recorded.
+/// SHA-256 (libcrypto) of octets given piece by piece; identifies everything that a run recorded.
 class Digest {
   public:
     Digest();
@@ -17,7 +17,7 @@ class Digest {
     Digest& operator=(const Digest&) = delete;
 
     void add(std::span<const std::uint8_t> octets);
-    /// Hexadecimal, of everything added so far; more may be added after.
+    /// The hexadecimal digest of everything added so far; more may be added after.
     std::string text() const;
 
   private:

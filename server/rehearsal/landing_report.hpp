@@ -7,9 +7,9 @@
 
 namespace aeolis::server {
 
-/// One landing as `aeolis rehearse` prints it.
+/// A landing as `aeolis rehearse` prints it.
 ///
-/// json   the object of docs/architecture.md, one line; a number that is not finite is null
+/// json   the object of docs/architecture.md, on one line; a non-finite number is null
 /// table  the same for people
 std::string landing_json(const Rehearsal& rehearsal, double wall_s);
 std::string landing_table(const Rehearsal& rehearsal, double wall_s);

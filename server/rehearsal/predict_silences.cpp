@@ -14,12 +14,11 @@ namespace {
 
 using telemetry::PredictedSilences;
 
-constexpr double flown_step_s = 0.25, longest_entry_s = 900.0;  // ours
-constexpr double held_bank_rad =
-    50.0 * simulation::degree_rad;  // ours: near the nominal reference's; the blackout ends soon after it begins
-constexpr double earth_step_s = 1.0, earth_looked_for_s = 900.0;  // ours
+constexpr double flown_step_s = 0.25, longest_entry_s = 900.0;    // chosen
+constexpr double held_bank_rad = 50.0 * simulation::degree_rad;   // chosen near the reference; blackout ends soon after
+constexpr double earth_step_s = 1.0, earth_looked_for_s = 900.0;  // chosen
 
-/// The nominal entry down to the speed at which the parachute opens.
+/// The nominal entry down to the speed of parachute deployment.
 struct NominalEntry {
     std::optional<PredictedSilences::Window> blackout;
     double parachute_s = 0.0, parachute_altitude_m = 0.0;
@@ -40,7 +39,7 @@ NominalEntry fly_entry(const simulation::Scenario& scenario) {
             entry.parachute_altitude_m < radio.blackout_start_altitude_m || speed_mps < radio.blackout_start_speed_mps;
         if (!entry.blackout && begun && speed_mps >= radio.blackout_end_speed_mps) entry.blackout = {t, t};
         if (entry.blackout && speed_mps >= radio.blackout_end_speed_mps) entry.blackout->to_s = t + flown_step_s;
-        // Only the upright part of lift is flown: reversals turn the rest from side to side.
+        // Only the vertical part of lift counts: reversals alternate the lateral part.
         const double upright = std::cos(simulation::reference_bank_rad(speed_mps, held_bank_rad));
         at = simulation::runge_kutta_step(
             at, flown_step_s,
@@ -52,9 +51,9 @@ NominalEntry fly_entry(const simulation::Scenario& scenario) {
     return entry;
 }
 
-/// Over the target, from where the parachute opens evenly down to where the backshell goes, and to the ground as
-/// evenly.
-/// @param backshell_s  0: nobody predicts it
+/// When Earth sets over the target, for a descent at a constant rate. The rate is that between parachute deployment and
+/// backshell separation, down to the ground.
+/// @param backshell_s  0: not predicted
 std::optional<double> earth_set_s(const simulation::Scenario& scenario, const NominalEntry& entry, double backshell_s) {
     if (scenario.radio.earth_set_after_entry_s) return scenario.radio.earth_set_after_entry_s;
     if (backshell_s <= entry.parachute_s) return {};

@@ -7,12 +7,12 @@
 
 namespace aeolis::server {
 
-/// Predicts when ground hears nothing of a landing, from the plan and the delivery, without the landing's errors.
+/// Predicts the silences of a landing from the plan and the delivery, without the landing's errors.
 ///
-/// Blackout  the scenario's nominal entry flies under the reference's bank; plasma is within the radio's own bounds
-/// Earth     sets over the target, for a vehicle that descends evenly under its parachute
-/// Times     of timepoints by the timeline's rule over predicted_anchors.csv
-/// Left out  reversals, wind, and what the vehicle does after the backshell
+/// Blackout  the scenario's nominal entry under the reference's bank, while plasma is within the radio's bounds
+/// Earth     when it sets over the target, for a vehicle that descends at a constant rate under its parachute
+/// Times     timepoints by the timeline's rule over predicted_anchors.csv
+/// Left out  reversals, wind, and the vehicle's motion after backshell separation
 /// Cost      some milliseconds
 telemetry::PredictedSilences predict_silences(const simulation::Scenario& scenario,
                                               const dictionary::Dictionary& dictionary);

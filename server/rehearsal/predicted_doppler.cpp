@@ -14,7 +14,7 @@ namespace aeolis::server {
 namespace {
 
 constexpr double light_mps = 299792458.0;                                // [bipm-si]
-constexpr double flown_from_before_entry_s = 700.0, coast_row_s = 10.0;  // ours
+constexpr double flown_from_before_entry_s = 700.0, coast_row_s = 10.0;  // chosen
 constexpr std::int64_t flight_row_ticks = 4;
 
 struct DopplerRows {
@@ -45,7 +45,7 @@ TimeTable predicted_doppler_hz(const simulation::Scenario& scenario, const MfskW
         rows.add(e_s, at.p_MoB_M, at.v_MB_M);
         at = simulation::coast(at, coast_row_s);
     }
-    // The last coasting row may lie less than its step before the first that is flown: TimeTable takes any distance.
+    // The last coasting row may be closer than its step to the first flown row: TimeTable accepts any distance.
     simulation::Landing landing{expected, 0, 0};
     while (landing.outcome() == simulation::Outcome::running) {
         const simulation::TruthState truth = landing.truth();

@@ -7,10 +7,10 @@
 
 namespace aeolis::server {
 
-/// The Doppler that ground expects of a landing, by seconds from the scenario's entry: one way at the carrier [Hz],
-/// from the scenario's start until Earth sets. Ground knows the delivery and the plan, none of the errors, and takes it
-/// that the vehicle was commanded: before E−700 s a point mass coasts, then GNC flies alone (a test venue) without any
-/// dispersion. A quarter of a second of processor.
+/// Ground's predict of a landing's Doppler, against seconds from the scenario's entry: one way at the carrier [Hz],
+/// from the scenario's start until Earth sets. Ground knows the delivery and the plan but none of the errors, and
+/// assumes that the vehicle was commanded: a point mass coasts until E−700 s, then GNC flies alone (a test venue)
+/// without dispersions. Takes a quarter of a second of processor time.
 TimeTable predicted_doppler_hz(const simulation::Scenario& scenario, const MfskWaveform& waveform);
 
 }  // namespace aeolis::server

@@ -11,19 +11,19 @@
 
 namespace aeolis::server {
 
-/// A timepoint as the recording tells it.
+/// A timepoint's firing as recorded.
 struct RecordedFiring {
     std::string name;
     double fired_sclk = 0.0;
     std::string verdict;
-    std::size_t row = 0;  ///< of the timeline
+    std::size_t row = 0;  ///< in the timeline
     double triggered_sclk = 0.0;
 };
 
-/// The timepoints that a recording tells of; no other packet of it is read further than its header.
+/// Collects the firings in a recording. Of other packets it reads only the header.
 ///
-/// In       what was recorded in a cycle, whole packets      Out   firings, oldest first
-/// Memory   one of about 100 octets a timepoint
+/// In       whole packets recorded in a cycle      Out   firings, oldest first
+/// Memory   one of about 100 octets per timepoint
 class RecordedFirings {
   public:
     /// The dictionary must outlive this and its copies.

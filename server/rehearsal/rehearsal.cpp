@@ -116,7 +116,7 @@ void Rehearsal::note_product(std::span<const std::uint8_t> packet) {
     if (!header || product_packet_ == nullptr || header->apid != product_packet_->apid) return;
     if (decommutator_.decode(packet, decoded_)) return;
     if (const auto part = telemetry::part_of(dictionary_, decoded_, packet))
-        static_cast<void>(products_.add(*part));  // real time and recording bring most parts twice
+        static_cast<void>(products_.add(*part));  // most parts arrive twice, in real time and recorded
 }
 
 std::string Rehearsal::outcome() const {
@@ -135,7 +135,7 @@ std::vector<archive::LinkTotals> Rehearsal::link_totals() const {
 }
 
 telemetry::Proof Rehearsal::proof() const {
-    if (landing().relaying()) return telemetry::prove(units_);  // by what came down, be it all or not
+    if (landing().relaying()) return telemetry::prove(units_);  // by the received part, complete or not
     auto units = units_;
     telemetry::PacketStream recording{landing().recording()};
     while (const auto packet = recording.next()) units.add(*packet, telemetry::Path::recorded);

@@ -22,20 +22,21 @@
 
 namespace aeolis::server {
 
-/// One run: the landing, its command path, its script, and what is summed up over it. No thread, no clock, no disk.
+/// One run: the landing, its command path, its script and its score. No thread, no clock, no disk.
 ///
 /// In       cycles to step; commands                    Out   what ground received; stages of commands; the score
-/// Rate     as fast as it is called                     Memory   the recording and its register: some tens of megabytes
-/// Faults   a bug found in the simulation ends the run as lost, with the broken condition as reason
+/// Rate     as fast as it is called                     Memory   the recording and its register: tens of megabytes
+/// Faults   a failed check in the simulation ends the run as lost; the reason is the broken condition
 class Rehearsal {
   public:
-    /// The dictionary must outlive this. A `runner` takes the place of the prime computer's executive; a `clock` is
-    /// that of a run which was begun before.
+    /// The dictionary must outlive this. A `runner` replaces the prime computer's executive; a `clock` is that of a run
+    /// begun earlier.
     Rehearsal(const simulation::Scenario& scenario, std::uint64_t seed, std::uint64_t case_number,
               const dictionary::Dictionary& dictionary, std::shared_ptr<flight::CycleRunner> runner = {},
               const std::optional<ClockCorrelation>& clock = {});
 
-    /// One cycle of 1/64 s, after the script's commands that are due. What was received stands until the next step.
+    /// Sends the script's commands that are due, then flies one cycle of 1/64 s. The result is valid until the next
+    /// step.
     const telemetry::Received& step();
 
     v1::CommandReply submit(const v1::CommandRequest& request, const std::string& browser = {});
@@ -44,12 +45,12 @@ class Rehearsal {
     /// See commands::CommandGateway::judge.
     Result<void> judge(const commands::TimelineVerdict& verdict) { return flight_.judge(verdict); }
 
-    /// It begins with the next cycle. An Error names what of it cannot be.
+    /// Injects a fault from the next cycle on. The Error names the field at fault.
     Result<void> inject(const v1::FaultInjection& injection);
 
-    /// Stages since the last call; their `seq` is not given yet.
+    /// The stages since the last call, without `seq`.
     std::vector<archive::StageRecord> take_stages();
-    /// Reasons for which commands of the scenario's own script were refused.
+    /// Why commands of the scenario's own script were refused.
     const std::vector<std::string>& script_refusals() const { return flight_.script_refusals(); }
 
     bool finished() const { return !broken_.empty() || landing().finished(); }
@@ -64,9 +65,9 @@ class Rehearsal {
     const simulation::Landing& landing() const { return flight_.landing(); }
     const commands::CommandGateway& gateway() const { return flight_.gateway(); }
     const telemetry::GroundStation& station() const { return flight_.station(); }
-    /// What each UHF link has brought so far.
+    /// Totals of each UHF link so far.
     std::vector<archive::LinkTotals> link_totals() const;
-    double recording_progress() const { return flight_.recording_progress(); }  ///< 0 … 1 that has come down
+    double recording_progress() const { return flight_.recording_progress(); }  ///< fraction that is down, 0 … 1
     std::uint64_t seed() const { return seed_; }
     std::uint64_t cycles() const { return cycles_; }
 
@@ -74,11 +75,11 @@ class Rehearsal {
     const std::vector<simulation::TruthEvent>& events() const { return events_; }
     const std::vector<RecordedFiring>& firings() const { return firings_.all(); }
     ToneScore::Figures tones() const { return tones_.figures(); }
-    /// Real time against the recording: as it came down; when none comes (no touchdown), as it lies in NVM.
+    /// Compares real time with the recording as received or, without touchdown, as stored in NVM.
     telemetry::Proof proof() const;
-    /// Data products as ground put them together from what came, real time or recording.
+    /// The data products that ground assembled from both paths.
     const telemetry::ProductAssembler& products() const { return products_; }
-    /// In the test venue "performance": what the tasks of the prime computer took. Else none.
+    /// The task times of the prime computer in the test venue "performance"; else none.
     std::optional<MeasuredTimes> task_times() const {
         return executive_ ? std::optional{executive_->times()} : std::nullopt;
     }
@@ -86,10 +87,10 @@ class Rehearsal {
   private:
     bool takes_commands() const {
         return scenario_.test_venue != simulation::TestVenue::gnc_alone;
-    }  ///< it has a computer
+    }  ///< whether it has a flight computer
     void take(const telemetry::Received& received);
     void score(const simulation::CycleReport& truth, const telemetry::Received& received);
-    /// What the run recorded, but for measured times, which are never alike; where nothing is recorded the path flown.
+    /// Adds the cycle's recording, without measured times, which always vary; without a recording, the path flown.
     void add_to_digest(std::span<const std::uint8_t> recorded);
     void note_product(std::span<const std::uint8_t> packet);
 
@@ -97,10 +98,10 @@ class Rehearsal {
     const dictionary::Dictionary& dictionary_;
     std::uint64_t seed_ = 0, case_number_ = 0;
     ScriptedLanding flight_;
-    std::shared_ptr<ThreadedExecutive> executive_;  ///< of the venue "performance"
+    std::shared_ptr<ThreadedExecutive> executive_;  ///< in the venue "performance"
     Digest digest_;
     std::uint64_t cycles_ = 0;
-    std::string broken_;  ///< the condition that failed in the simulation
+    std::string broken_;  ///< the failed check in the simulation
 
     const dictionary::Packet* product_packet_ = nullptr;
     telemetry::Decommutator decommutator_;

@@ -23,7 +23,7 @@ Result<double> checked_pace(double pace) {
         fmt::format("pace: {} is neither 0 (as fast as it goes) nor within 1 … {}", pace, RehearsalRunner::pace_max)};
 }
 
-/// The script's commands that change the timeline, in the order in which they are sent.
+/// The script's commands that change the timeline, in the order sent.
 std::vector<v1::CommandRequest> timeline_changes(const simulation::Scenario& scenario) {
     auto script = scenario.commands;
     std::ranges::stable_sort(script, std::ranges::greater{}, &simulation::ScriptedCommand::send_before_entry_s);
@@ -142,11 +142,11 @@ RehearsalRunner::Callbacks RehearsalDesk::callbacks_for(Began began) {
 }
 
 void RehearsalDesk::begun(const Result<v1::RunState>& state, const Began& began) {
-    if (state) {  // else its runner is over
+    if (state) {  // otherwise its runner is over
         phase_ = Phase::under_way;
         state_ = *state;
         callbacks_.on_state(state_);
-        look_again();  // a crash may have come in between
+        look_again();  // a crash may have preceded the analysis
     }
     began(state);
 }
@@ -226,7 +226,7 @@ void RehearsalDesk::wait(SendCommands order, const AuthorityCheck& authority) {
     if (waiting_.size() >= RehearsalRunner::requests_max)
         return order.refuse(
             fmt::format("{} commands wait already, until a change of the timeline is decided", waiting_.size()));
-    // Their numbers and rights are of this run, not of one that begins meanwhile.
+    // Numbers and rights refer to this run, not to one that begins meanwhile.
     for (auto& request : order.requests) request.set_run(state_.run());
     waiting_.push_back({std::move(order), authority});
 }
@@ -261,7 +261,7 @@ void RehearsalDesk::hand_over(SendCommands order, std::uint64_t run, std::uint64
         for (auto& answer : answers) answer.set_timeline(says);
         post_([replies, answers = std::move(answers)] { replies(answers); });
     };
-    static_cast<void>(runner_->order(std::move(order)));  // what refuses it is in the replies
+    static_cast<void>(runner_->order(std::move(order)));  // a refusal is in the replies
 }
 
 void RehearsalDesk::change_decided() {

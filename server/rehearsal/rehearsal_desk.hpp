@@ -17,19 +17,19 @@
 
 namespace aeolis::server {
 
-/// Decides what is ordered of rehearsals: one run at a time, commands in the order in which they came.
+/// Takes the orders for rehearsals: one run at a time, commands in the order received.
 ///
 /// Run       none ──start──► beginning ──begun──► under_way ──its end──► over ──start──► beginning
 ///                               └────────── could not begin ────────────►┘
 /// Commands  received ─────────────────► analysing ──► with the runner ──► answered
 ///               │  ▲                        └──── refused ──────────────────►┘
 ///               ▼  │ decided, and still allowed
-///            waiting, while an earlier order that changes the timeline is analysing or with the runner; never a
-///            hold, which lets nothing leave, nor a dry run
+///            waiting, while an earlier order that changes the timeline is analysing or with the runner; never a hold,
+///            which lets nothing leave, nor a dry run
 /// Outlook   settled ──timeline moved, run begun──► looking ──known──► settled
 ///           looking ──moved again──► outdated ──answer──► looking
 ///           looking ──not known──► unknown ──next state of the run──► looking
-/// Thread    the network thread only; Callbacks come through `post`, which brings a function there
+/// Thread    the network thread only; `post` brings functions there, such as the Callbacks
 class RehearsalDesk {
   public:
     struct Callbacks {
@@ -37,14 +37,14 @@ class RehearsalDesk {
         std::function<void(v1::Clocks)> on_clocks;
     };
     using Post = std::function<void(std::function<void()>)>;
-    /// Brings a run that was cut off, on any thread; an Error when it was not.
+    /// Reads a run that was cut off, on any thread; an Error when it was not.
     using ReadCutOff = std::function<void(archive::RunId, std::function<void(Result<archive::CutOffRun>)>)>;
     using Began = std::function<void(Result<v1::RunState>)>;
-    /// Says, on any thread, what becomes of the timeline when these commands are taken; empty: none changes it. An
-    /// Error refuses them. Run 0: one that has not begun, and these are its script. `only_check`: of a dry run.
+    /// Analyses, on any thread, the timeline as these commands would change it; empty: none changes it. An Error
+    /// refuses them. Run 0: no run yet; the commands are its script. `only_check`: a dry run.
     using CheckTimeline = std::function<void(archive::RunId, const std::vector<v1::CommandRequest>&, bool only_check,
                                              std::function<void(Result<std::string>)>)>;
-    /// Says, on any thread, what becomes of it now by each of the run's commands that change it and still wait.
+    /// Analyses, on any thread, the timeline again for each of the run's waiting commands that change it.
     using LookAgain = std::function<void(archive::RunId, std::function<void(Result<TimelineCheck::Look>)>)>;
     struct TimelineQuestions {
         CheckTimeline check;
@@ -52,8 +52,8 @@ class RehearsalDesk {
     };
     using Reply = std::function<void(v1::CommandReply)>;
     using Replies = SendCommands::Replies;
-    /// Whether the sender may still send a command that has waited, when its turn comes: rights change meanwhile, and
-    /// so do the commands that have its number.
+    /// Whether the sender may still send a waiting command when its turn comes: rights change meanwhile, and so do the
+    /// commands that have its number.
     using AuthorityCheck = std::function<Result<void>(const v1::CommandRequest&)>;
     struct Sender {
         AuthorityCheck authority;
@@ -64,8 +64,8 @@ class RehearsalDesk {
                   Post post, ReadCutOff read_cut_off, TimelineQuestions timeline, Callbacks callbacks);
     ~RehearsalDesk();
 
-    /// Fails at once when one goes on, the scenario is unknown or impossible; else `began` comes when the run is in the
-    /// archive, or when the analysis refuses what its script does to the timeline.
+    /// Starts a rehearsal. Fails at once when one is in progress or the scenario is unknown or impossible. Calls
+    /// `began` once the run is in the archive, or when the analysis refuses the script's changes of the timeline.
     void start(const v1::StartRehearsal& request, Began began);
     struct Flight {
         simulation::Scenario scenario;
@@ -75,26 +75,27 @@ class RehearsalDesk {
     void start(Flight flight, Began began);
     Result<void> control(const v1::RehearsalControl& control, Began began);
     void command(v1::CommandRequest request, const Sender& sender, const Reply& reply);
-    /// A command file: all or none.
+    /// Sends a command file: all commands or none.
     void sequence(std::vector<v1::CommandRequest> requests, bool only_check, const Sender& sender, Replies replies);
 
-    /// From now on none can be started, because of `reason`.
+    /// Refuses all further starts, with `reason`.
     void close(std::string reason) { closed_ = std::move(reason); }
     const v1::RunState& current() const { return state_; }  ///< run 0: none since the server started
     bool going_on() const { return phase() == Phase::beginning || phase() == Phase::under_way; }
-    /// Commands, and command files, that the run has not carried out; those that wait for a change of the timeline.
+    /// Commands and command files that the runner has not yet carried out; commands_put_off(): those waiting for a
+    /// change of the timeline.
     std::size_t commands_waiting() const { return runner_ ? runner_->waiting() : 0; }
     std::size_t commands_put_off() const { return waiting_.size(); }
     std::size_t commands_queued() const { return runner_ ? runner_->queued() : 0; }
     std::size_t commands_at_uplink() const { return runner_ ? runner_->at_uplink() : 0; }
-    /// Of a command of the run that goes on, by its number; none: it has none of this number yet.
+    /// The name of a command of the current run, by its number; none: no such number yet.
     std::optional<std::string> name_of_command(std::uint64_t number) const {
         return going_on() ? runner_->name_of_command(number) : std::nullopt;
     }
 
   private:
     enum class Phase : std::uint8_t { none, beginning, under_way, over };
-    /// Whether it is known to what the timeline comes by the commands that still wait in the run.
+    /// Whether the timeline's analysis is known for the commands that still wait in the run.
     enum class Outlook : std::uint8_t { settled, looking, outdated, unknown };
     struct Waiting {
         SendCommands order;
@@ -108,10 +109,10 @@ class RehearsalDesk {
     RehearsalRunner::Callbacks callbacks_for(Began began);
     void begun(const Result<v1::RunState>& state, const Began& began);
     Result<void> order_of_run(const v1::RehearsalControl& control);
-    /// Why what is asked of this run is not done: another goes on.
+    /// The refusal of an order for a run that is not in progress.
     std::string not_going_on(std::uint64_t run) const;
 
-    // The way of a command, in its order.
+    // The path of a command, in order.
     void receive(SendCommands order, const AuthorityCheck& authority);
     std::string refusal_of(const SendCommands& order) const;
     bool waits(const SendCommands& order) const;
@@ -120,8 +121,8 @@ class RehearsalDesk {
     void hand_over(SendCommands order, std::uint64_t run, std::uint64_t moves, const Result<std::string>& timeline);
     void change_decided();
 
-    /// A command that changes the timeline was analysed with those before it. When one of these comes to nothing, it
-    /// leaves only once its history says what becomes of the timeline now, or never.
+    /// A command that changes the timeline was analysed together with those before it. When one of those has no effect,
+    /// the command is released only once its history shows the new analysis, or never.
     void look_again();
     void looked(std::uint64_t run, const Result<TimelineCheck::Look>& look);
     void tell(const TimelineCheck::Look& look);
@@ -135,11 +136,11 @@ class RehearsalDesk {
     Callbacks callbacks_;
     v1::RunState state_;
     std::string closed_;
-    Phase phase_ = Phase::none;    ///< but for `over`; under_way: the run is in the archive, and state_ is its own
+    Phase phase_ = Phase::none;    ///< except `over`; under_way: the run is in the archive, and state_ is its state
     bool change_pending_ = false;  ///< an order that changes the timeline is analysing or with the runner
     std::deque<Waiting> waiting_;
     Outlook outlook_ = Outlook::settled;
-    std::uint64_t moves_ = 0;  ///< of the timeline, by commands that came to nothing
+    std::uint64_t moves_ = 0;  ///< of the timeline, by commands that had no effect
     std::unique_ptr<RehearsalRunner> runner_;
 };
 

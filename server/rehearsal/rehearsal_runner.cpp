@@ -18,15 +18,14 @@ namespace {
 using std::chrono::duration;
 using std::chrono::milliseconds;
 
-constexpr milliseconds delivery_interval{5};   // half a commit's: a commit then holds what is 15 ms old at most
-constexpr std::size_t delivery_entries = 256;  // or so many, when it goes fast
-constexpr milliseconds clocks_interval{100};   // ten times a second: brief of the stream
+constexpr milliseconds delivery_interval{5};   // half of a commit interval: a committed item is at most 15 ms old
+constexpr std::size_t delivery_entries = 256;  // or this many, when it flies fast
+constexpr milliseconds clocks_interval{100};   // ten times a second
 constexpr milliseconds state_interval{1000};
 constexpr milliseconds links_interval{1000};
-constexpr milliseconds shortest_wait{1};  // shorter ones cost more than they pace
-constexpr double behind_s_max = 0.25;     // later than that the pace is not attained; do not rush to catch up
-constexpr std::uint64_t cycles_between_looks =
-    64;  // while flying again: as far as a run may go on before its pace counts
+constexpr milliseconds shortest_wait{1};            // shorter waits cost more than they pace
+constexpr double behind_s_max = 0.25;               // behind by more, the pace is not attained: do not rush to catch up
+constexpr std::uint64_t cycles_between_looks = 64;  // cycles flown again before its pace counts
 
 constexpr const char* not_stored_yet = "taken, but not in the archive yet, which is lost if the server ends now: ";
 constexpr const char* over_reason = "the run is over: nothing listens on board";
@@ -257,7 +256,7 @@ void RehearsalRunner::finish(Rehearsal& rehearsal) {
 }
 
 std::vector<v1::CommandReply> RehearsalRunner::look_at(Rehearsal& rehearsal, const SendCommands& order) {
-    if (!order.only_check && order.requests.size() == 1) return {};  // the one look at it comes when it is taken
+    if (!order.only_check && order.requests.size() == 1) return {};  // it is checked once, when taken
     auto replies = rehearsal.look(order.requests);
     if (!order.only_check && std::ranges::all_of(replies, &v1::CommandReply::accepted)) replies.clear();
     return replies;
@@ -285,7 +284,7 @@ void RehearsalRunner::carry_out(Rehearsal& /*rehearsal*/, const StopRun& /*order
 void RehearsalRunner::carry_out(Rehearsal& rehearsal, const Intervene& order) {
     const auto& intervention = order.intervention;
     if (intervention.has_fault()) {
-        if (const auto injected = rehearsal.inject(intervention.fault()); !injected) {  // has been checked already
+        if (const auto injected = rehearsal.inject(intervention.fault()); !injected) {  // already checked
             spdlog::error("run {}: fault not injected: {}", run_id_.value, injected.error().message);
             return;
         }
@@ -414,7 +413,7 @@ std::string RehearsalRunner::state_word() const {
 v1::RunState RehearsalRunner::state(const Rehearsal& rehearsal) const {
     v1::RunState state;
     state.set_run(run_id_.value);
-    if (cut_) state.set_last_seq(cut_->last_seq);  // until the stream says what has come since
+    if (cut_) state.set_last_seq(cut_->last_seq);  // until the stream gives newer numbers
     state.set_scenario(start_.scenario);
     state.set_title(start_.title);
     state.set_venue(start_.venue);

@@ -9,35 +9,35 @@
 #include <variant>
 #include <vector>
 
-// What can be ordered of a run. RehearsalDesk decides on the network thread whether and when; RehearsalRunner carries
-// the orders out between two cycles.
+// Orders to a run. RehearsalDesk decides on the network thread whether and when; RehearsalRunner carries them out
+// between two cycles.
 namespace aeolis::server {
 
 struct PauseRun {
     bool paused = true;
 };
 struct PaceRun {
-    double pace = 1.0;  ///< times real time; 0: as fast as it goes
+    double pace = 1.0;  ///< times real time; 0: as fast as possible
 };
 struct StopRun {};
 
-/// A fault to inject, or an instructor's note, of which nothing on board or on the ground hears. Kept with the cycle at
-/// which it came.
+/// A fault to inject, or an instructor's note, which neither vehicle nor ground receives. Stored with the cycle at
+/// which it was received.
 struct Intervene {
     v1::Intervention intervention;
 };
 
-/// A command file, or one command: all are checked before the first is taken, and when one is refused none is.
+/// A command or command file. All commands are checked before the first is taken; one refusal refuses all.
 struct SendCommands {
-    /// A reply each, in their order. From any thread.
+    /// One reply per command, in order. From any thread.
     using Replies = std::function<void(std::vector<v1::CommandReply>)>;
 
     std::vector<v1::CommandRequest> requests;
-    bool only_check = false;  ///< a dry run
+    bool only_check = false;  ///< true: a dry run
     Replies replies;
     std::string browser{};  ///< without accounts: from which they are sent
 
-    /// Gives each the same refusal.
+    /// Replies to each command with the same refusal.
     void refuse(const std::string& reason) const;
 };
 

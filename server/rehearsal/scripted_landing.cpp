@@ -13,7 +13,7 @@
 namespace aeolis::server {
 namespace {
 
-/// Where the recording tells of decisions that the truth cannot see: the event of the same name in capitals.
+/// Events in the recording that report decisions unseen by the truth: those of the same name in capitals.
 std::vector<simulation::EventReportName> event_reports(const dictionary::Dictionary& dictionary) {
     std::vector<simulation::EventReportName> reports;
     for (const std::string name : simulation::decided_on_board) {
@@ -26,10 +26,9 @@ std::vector<simulation::EventReportName> event_reports(const dictionary::Diction
     return reports;
 }
 
-/// The clock on board as ground knows it by the dictionary, where that is the scenario's clock; else as the scenario
-/// has it.
+/// The clock correlation from the dictionary if it is the scenario's clock; else the scenario's.
 ClockCorrelation clock_of(const simulation::Scenario& scenario, const dictionary::Dictionary& dictionary) {
-    constexpr std::int64_t same_us = 1000;  // ours: what a day-of-year text can tell
+    constexpr std::int64_t same_us = 1000;  // chosen: resolution of a day-of-year text
     const auto* known = dictionary.clock_at(scenario.entry_sclk);
     if (known != nullptr &&
         std::abs(known->scet_of(scenario.entry_sclk).microseconds - scenario.entry_scet.microseconds) < same_us)
@@ -51,7 +50,7 @@ commands::TrackingSchedule stations_of(const simulation::Scenario& scenario) {
     return commands::TrackingSchedule{std::move(passes)};
 }
 
-constexpr std::uint64_t cycles_between_silences = 64;  // a second: who watches a silence waits no longer
+constexpr std::uint64_t cycles_between_silences = 64;  // one second: soon enough to report silences
 
 }  // namespace
 
@@ -86,7 +85,7 @@ ScriptedLanding::ScriptedLanding(const simulation::Scenario& scenario, std::uint
 
 void ScriptedLanding::equip_station(const simulation::Scenario& scenario, std::uint64_t seed, std::uint64_t case_number,
                                     const dictionary::Dictionary& dictionary) {
-    // When what leaves the vehicle at the entry that ground predicts is heard on Earth.
+    // When a signal sent at the predicted entry is received on Earth.
     const Ert entry{landing_.correlation().scet_of(scenario.entry_sclk).microseconds +
                     static_cast<std::int64_t>(landing_.light_time_s() * 1e6)};
     station_.explain_by({predict_silences(scenario, dictionary), landing_.ert_now(), entry});
@@ -110,7 +109,7 @@ const telemetry::Received& ScriptedLanding::step() {
 
 void ScriptedLanding::hear(const telemetry::Received& received) {
     for (const auto& packet : received.packets) receive(packet);
-    // Once a second is enough for windows of many seconds.
+    // Once a second suffices for windows of many seconds.
     if (cycles_ % 64 == 0) gateway_.pass(landing_.ert_now(), stages_);
     radiate();
 }
@@ -127,7 +126,7 @@ void ScriptedLanding::receive(const telemetry::ReceivedPacket& packet) {
 
 void ScriptedLanding::send_script() {
     while (!script_.empty()) {
-        // The first one of those that are due first: an order within one instant is the scenario's.
+        // The earliest command due; at equal times the first in the scenario.
         const auto next = std::ranges::max_element(script_, {}, &simulation::ScriptedCommand::send_before_entry_s);
         if (landing_.sclk() < entry_ - next->send_before_entry_s) return;
         const auto command = std::move(*next);
@@ -136,7 +135,7 @@ void ScriptedLanding::send_script() {
         request.command = command.command;
         request.from_solution = command.from_solution;
         for (const auto& [name, value] : command.arguments) request.arguments.push_back({name, value});
-        // Who wrote the command into the scenario has armed and named it.
+        // The scenario's author has armed and confirmed the command.
         request.armed = true;
         request.confirmation = command.command;
         const auto reply =
@@ -169,7 +168,7 @@ double ScriptedLanding::recording_progress() const {
     if (recorded == 0 || !landing_.relaying()) return 0.0;
     const double part = static_cast<double>(station_.recording().received_octets()) / static_cast<double>(recorded);
     const bool whole = landing_.recording_closed() && station_.recording().files_under_way() == 0;
-    // While the computer still records, or a file is not whole, what has come down cannot be all.
+    // Until the computer stops recording and every file is complete, the recording is not all down.
     return whole ? part : std::min(part, 0.999);
 }
 

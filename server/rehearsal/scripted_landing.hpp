@@ -17,15 +17,16 @@
 
 namespace aeolis::server {
 
-/// A landing with its command path, and the scenario's own script, which goes through it.
+/// A landing with its command path and the scenario's own script, which is sent through that path.
 ///
 /// In       cycles to step; commands                    Out   what the station received; stages of commands
 /// Rate     as fast as it is called                     Memory   the recording: some megabytes
-/// A value: copy it and the landing is forked, with what ground knows of it.
+///
+/// A value: a copy forks the landing, including ground's knowledge of it.
 class ScriptedLanding {
   public:
-    /// The dictionary must outlive this and its copies. `clock`: of a run that was begun before; else that of the
-    /// dictionary, where it is the scenario's.
+    /// The dictionary must outlive this and its copies. `clock`: that of a run begun earlier; none: the dictionary's,
+    /// if it is the scenario's.
     ScriptedLanding(const simulation::Scenario& scenario, std::uint64_t seed, std::uint64_t case_number,
                     const dictionary::Dictionary& dictionary, const std::optional<ClockCorrelation>& clock = {});
 
@@ -33,14 +34,15 @@ class ScriptedLanding {
     /// See Landing::take_case.
     void take_case(std::uint64_t case_number) { landing_.take_case(case_number); }
 
-    /// The station decodes tones from samples, where the scenario has them so, and explains silences. Before the first
-    /// step.
+    /// Equips the station to decode tones from samples, if the scenario says so, and to explain silences. Call before
+    /// the first step.
     void equip_station(const simulation::Scenario& scenario, std::uint64_t seed, std::uint64_t case_number,
                        const dictionary::Dictionary& dictionary);
 
-    /// One cycle of 1/64 s, after the script's commands that are due. What was received stands until the next step.
+    /// Sends the script's commands that are due, then flies one cycle of 1/64 s. The result is valid until the next
+    /// step.
     const telemetry::Received& step();
-    /// What was received is taken in by the command path: for answers, and for the preconditions of what is sent later.
+    /// Gives received packets to the command path: for replies, and for the preconditions of later commands.
     void hear(const telemetry::Received& received);
 
     commands::Reply submit(const commands::Request& request);
@@ -55,15 +57,15 @@ class ScriptedLanding {
     void inject(const simulation::Fault& fault) { landing_.inject(fault); }
 
     bool script_sent() const { return script_.empty(); }
-    /// Stages since the last call.
+    /// The stages since the last call.
     std::vector<commands::StageReport> take_stages();
-    /// Reasons for which commands of the script were refused.
+    /// Why commands of the script were refused.
     const std::vector<std::string>& script_refusals() const { return script_refusals_; }
 
     const simulation::Landing& landing() const { return landing_; }
     const commands::CommandGateway& gateway() const { return gateway_; }
     const telemetry::GroundStation& station() const { return station_; }
-    double recording_progress() const;  ///< 0 … 1 of the recording that has come down
+    double recording_progress() const;  ///< fraction of the recording that is down, 0 … 1
 
   private:
     void receive(const telemetry::ReceivedPacket& packet);
@@ -75,7 +77,7 @@ class ScriptedLanding {
     simulation::Landing landing_;
     telemetry::GroundStation station_;
     commands::CommandGateway gateway_;
-    std::vector<simulation::ScriptedCommand> script_;  ///< not sent yet
+    std::vector<simulation::ScriptedCommand> script_;  ///< not yet sent
     std::vector<commands::StageReport> stages_;
     std::vector<std::string> script_refusals_;
     bool dispersed_;
@@ -87,7 +89,7 @@ class ScriptedLanding {
 /// Ground's navigation solution as arguments of "set edl parameters", by argument name.
 std::vector<commands::NamedValue> solution_arguments(const simulation::NavigationSolution& solution);
 
-/// What is told of a landing that a bug has ended.
+/// The outcome text of a landing ended by a failed check.
 std::string text_of_bug(const CheckFailed& bug);
 
 }  // namespace aeolis::server

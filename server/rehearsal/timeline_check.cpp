@@ -19,7 +19,7 @@ commands::TimelineChanges changes_of(const v1::CommandList& list) {
         command.packet = archive::octets_of_hex(history.octets());
         for (const auto& item : history.stages()) {
             const auto& stage = item.command_stage();
-            // That it could not be verified does not undo it.
+            // A failed verification does not undo the change.
             command.failed = command.failed || (stage.status() == v1::CommandStage::failed &&
                                                 stage.stage() != v1::CommandStage::verified);
             if (stage.stage() == v1::CommandStage::released)
@@ -47,8 +47,8 @@ Result<std::string> TimelineCheck::check(const v1::CommandList& before, std::spa
         std::vector<commands::NamedValue> given;
         for (const auto& argument : request.arguments()) given.push_back({argument.name(), argument.value()});
         const auto packet = commands::encode(*known, given, 0);
-        if (!packet) continue;                                     // the gateway refuses it, and says why
-        const auto arguments = commands::decode(*known, *packet);  // with defaults
+        if (!packet) continue;                                     // the gateway refuses it, with the reason
+        const auto arguments = commands::decode(*known, *packet);  // including defaults
         if (!arguments) return arguments.error();
         timeline.change(request.command(), *arguments);
     }

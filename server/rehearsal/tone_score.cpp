@@ -7,7 +7,7 @@
 namespace aeolis::server {
 namespace {
 
-constexpr std::int64_t same_symbol_us = 5'000'000;  // chosen: a decision and a symbol that begin nearer belong together
+constexpr std::int64_t same_symbol_us = 5'000'000;  // chosen: largest distance of a decision from its symbol
 
 }  // namespace
 

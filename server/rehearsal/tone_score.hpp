@@ -9,9 +9,9 @@
 
 namespace aeolis::server {
 
-/// The tones that were received against those that were sent.
+/// Compares received tones with those sent.
 ///
-/// In       symbols once they have ended, decisions in their order        Memory   symbols without a decision
+/// In       symbols once they have ended; decisions in order        Memory   symbols without a decision
 class ToneScore {
   public:
     struct Figures {
@@ -20,13 +20,13 @@ class ToneScore {
 
     void sent(const simulation::SentSymbol& symbol);
     void heard(const telemetry::ReceivedTone& tone);
-    /// A symbol without a decision counts as missed.
+    /// The score so far. A symbol without a decision counts as missed.
     Figures figures() const;
 
   private:
     std::vector<simulation::SentSymbol> undecided_;
     std::uint64_t sent_ = 0, decoded_ = 0, wrong_ = 0;
-    std::uint64_t mistaken_ = 0;  ///< of the wrong ones: another tone was sent
+    std::uint64_t mistaken_ = 0;  ///< those of wrong_ for which another tone was sent
 };
 
 }  // namespace aeolis::server

@@ -39,7 +39,7 @@ v1::ScenarioList ScenarioLibrary::list() const {
 }
 
 Result<simulation::Scenario> ScenarioLibrary::scenario(const std::string& name) const {
-    // The name is looked for in the list and never made a path: it may come from a client.
+    // The name may come from a client: it is looked up in the list and never made a path.
     const auto names = names_in(directory_);
     if (std::ranges::binary_search(names, name)) return scenario_from_file(directory_ / (name + extension));
     std::string known;

@@ -10,14 +10,14 @@
 
 namespace aeolis::server {
 
-/// The scenarios that ship: the *.textproto files of one directory, read anew each time, named by their file.
+/// The shipped scenarios: the *.textproto files of one directory, named by file, read anew for each call.
 class ScenarioLibrary {
   public:
     explicit ScenarioLibrary(std::filesystem::path directory) : directory_(std::move(directory)) {}
 
-    /// Those that can be read, by name; one that cannot is left out and logged.
+    /// All readable scenarios, by name; an unreadable one is left out and logged.
     v1::ScenarioList list() const;
-    /// Names the ones that exist when there is none of this name.
+    /// The scenario of that name. The Error of an unknown name lists the existing ones.
     Result<simulation::Scenario> scenario(const std::string& name) const;
 
   private:

@@ -17,10 +17,10 @@ namespace {
 using google::protobuf::Message;
 using simulation::Scenario;
 
-constexpr std::size_t scenario_octets_max = 1 << 20;  // ours: ours are under 2 KiB
-constexpr int like_chain_max = 8;                     // ours
+constexpr std::size_t scenario_octets_max = 1 << 20;  // chosen: shipped scenarios are under 2 KiB
+constexpr int like_chain_max = 8;                     // chosen
 
-/// A field of the message and the member of the struct that carry the same number under the same name.
+/// Binds a field of the message to the member of the struct with the same name and number.
 template <typename Struct>
 struct Bound {
     const char* field;
@@ -175,7 +175,7 @@ void write(const Struct& from, const Bindings<Struct>& bindings, Message& messag
         message.GetReflection()->SetDouble(&message, &field_of(message, bound.field), from.*bound.member);
 }
 
-/// Numbers of every field, repeated and nested ones too, that are not finite: text format accepts "nan" and "inf".
+/// Collects every non-finite number, also in repeated and nested fields: text format accepts "nan" and "inf".
 void collect_not_finite(const Message& message, const std::string& prefix, std::vector<std::string>& lines) {
     const auto& reflection = *message.GetReflection();
     std::vector<const google::protobuf::FieldDescriptor*> fields;
@@ -228,7 +228,7 @@ std::string utc_text(Scet scet) {
                        clock.minutes().count(), clock.seconds().count(), clock.subseconds().count());
 }
 
-/// The schema counts from one behind its zero, "unspecified"; the structs from zero.
+/// Converts an enumeration: the schema's values start at one after "unspecified", the structs' at zero.
 template <typename Enumeration>
 Result<Enumeration> named(int number, bool known, const std::string& field) {
     if (number == 0) return Error{field + ": missing"};
@@ -480,7 +480,7 @@ Result<v1::Scenario> parsed(std::string_view text, const std::string& file) {
     return message;
 }
 
-/// With each line of an error behind the name of the file.
+/// Converts and checks; each line of an Error begins with the file name.
 Result<Scenario> checked(const v1::Scenario& message, const std::string& file) {
     auto scenario = scenario_from_message(message);
     if (scenario) return scenario;
@@ -503,7 +503,7 @@ Result<std::string> text_of(const std::filesystem::path& file) {
     return text;
 }
 
-/// A list that a file has stands for the whole list of the one that it is like.
+/// Clears the base's lists that the file has too: a file's list replaces that of its base.
 void clear_lists_of(const v1::Scenario& message, v1::Scenario& base) {
     std::vector<const google::protobuf::FieldDescriptor*> fields;
     message.GetReflection()->ListFields(message, &fields);
@@ -511,7 +511,7 @@ void clear_lists_of(const v1::Scenario& message, v1::Scenario& base) {
         if (field->is_repeated()) base.GetReflection()->ClearField(&base, field);
 }
 
-/// What it is like merged in, and what that is like.
+/// The message with its base merged in, recursively; `further` bases are allowed.
 Result<v1::Scenario> whole(const std::filesystem::path& file, int further) {
     const auto text = text_of(file);
     if (!text) return text.error();
@@ -524,7 +524,7 @@ Result<v1::Scenario> whole(const std::filesystem::path& file, int further) {
     if (further == 0) return refused("too many are like one another: is it a circle?");
     auto base = whole(file.parent_path() / (like + file.extension().string()), further - 1);
     if (!base) return refused(base.error().message);
-    base->clear_name();  // a name is nobody else's
+    base->clear_name();  // the name is not inherited
     clear_lists_of(*message, *base);
     base->MergeFrom(*message);
     return base;

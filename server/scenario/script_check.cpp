@@ -24,8 +24,7 @@ Result<void> check_script(const simulation::Scenario& scenario, const dictionary
         for (const auto& [name, value] : scripted.arguments)
             if (std::ranges::none_of(command->arguments, [&](const auto& known) { return known.name == name; }))
                 return Error{fmt::format("commands[{}].arguments: {} has no argument '{}'", i, scripted.command, name)};
-        if (scripted.from_solution)
-            continue;  // what is not given here comes from a solution that flight's start decides
+        if (scripted.from_solution) continue;  // absent arguments come from a solution that is known only at the start
         std::vector<commands::NamedValue> arguments;
         arguments.reserve(scripted.arguments.size());
         for (const auto& [name, value] : scripted.arguments) arguments.push_back({name, value});

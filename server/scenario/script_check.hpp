@@ -7,9 +7,9 @@
 
 namespace aeolis::server {
 
-/// Whether the dictionary knows every command and argument that the scenario itself will send, and can encode them.
-/// Else the first that it cannot, as "commands[1].command: 'EDL_FROB' is no command of the dictionary": before the
-/// start, not an hour in.
+/// Checks that the dictionary can encode every command that the scenario itself will send: before the start, not an
+/// hour into the run. The Error names the first fault: "commands[1].command: 'EDL_FROB' is no command of the
+/// dictionary".
 Result<void> check_script(const simulation::Scenario& scenario, const dictionary::Dictionary& dictionary);
 
 }  // namespace aeolis::server

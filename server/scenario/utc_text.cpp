@@ -8,7 +8,7 @@
 namespace aeolis::server {
 namespace {
 
-/// Takes exactly `digits` decimal digits off the front.
+/// Takes exactly `digits` decimal digits from the front.
 bool take_number(std::string_view& rest, std::size_t digits, int& value) {
     if (rest.size() < digits) return false;
     const auto [end, error] = std::from_chars(rest.data(), rest.data() + digits, value);
@@ -23,7 +23,7 @@ bool take(std::string_view& rest, char expected) {
     return true;
 }
 
-/// Everything but the words of the error.
+/// Parses; the caller words the Error.
 bool parse(std::string_view rest, Scet& scet) {
     using namespace std::chrono;
     int year_number = 0;

@@ -16,15 +16,15 @@ namespace {
 using telemetry::ToneSums;
 
 constexpr int baseband_hops = 80;
-constexpr double baseband_rate_hz = 1200.0;         // ours: just above twice the highest tone
-constexpr int frequency_steps = 2, rate_steps = 4;  // to either side of the middle; ours
+constexpr double baseband_rate_hz = 1200.0;         // chosen: just above twice the highest tone
+constexpr int frequency_steps = 2, rate_steps = 4;  // chosen; to either side of the middle
 constexpr double full_turn_rad = 2.0 * std::numbers::pi;
 
 double power_ratio(double db) {
     return std::pow(10.0, 0.1 * db);
 }
 
-/// The tone whose sum over the hops is greatest, whichever offset of the grid that takes.
+/// The tone with the greatest sum over the hops at any offset of the grid.
 int likeliest(const std::vector<ToneSums>& hops, double hop_s, const BasebandTrial& trial) {
     const int aside_f = trial.frequency_offset_hz > 0.0 ? frequency_steps : 0;
     const int aside_r = trial.rate_offset_hzps > 0.0 ? rate_steps : 0;
@@ -77,7 +77,7 @@ ErrorCount baseband_errors(const MfskWaveform& waveform, const BasebandTrial& tr
     const telemetry::ToneCorrelator correlator{waveform, baseband_rate_hz, samples};
     simulation::Random random{seed, 0, simulation::Stream::x_band};
     simulation::FastNormal noise{seed, 0, simulation::Stream::x_band_noise};
-    // Noise of deviation 1 a sample is a density of 2/rate.
+    // Noise of deviation 1 per sample has density 2/rate.
     const double amplitude = std::sqrt(2.0 * power_ratio(trial.tone_c_n0_dbhz) * 2.0 / baseband_rate_hz);
     std::vector<ToneSums> hops(baseband_hops);
     std::vector<float> hop(static_cast<std::size_t>(samples));
@@ -90,7 +90,7 @@ ErrorCount baseband_errors(const MfskWaveform& waveform, const BasebandTrial& tr
         for (int h = 0; h < baseband_hops; ++h) {
             const double begin_s = h * hop_s;
             const double from_middle_s = begin_s - 0.5 * waveform.symbol_s;
-            // Within a hop the drift is a step of frequency: 0.02 Hz/s bends the phase by 1e-3 rad.
+            // Within a hop the drift is a frequency step: 0.02 Hz/s changes the phase by 1e-3 rad.
             const double frequency_hz = waveform.tone_hz(sent) + offset_hz + rate_hzps * (from_middle_s + 0.5 * hop_s);
             const double begin_rad =
                 phase_rad + full_turn_rad * (waveform.tone_hz(sent) * begin_s + offset_hz * from_middle_s +
@@ -112,7 +112,7 @@ ErrorCount baseband_errors(const MfskWaveform& waveform, const BasebandTrial& tr
 
 ErrorCount carrier_aided_errors(const MfskWaveform& waveform, double carrier_c_n0_dbhz, double tone_c_n0_dbhz,
                                 std::uint64_t symbols, std::uint64_t seed) {
-    // The index at which both powers are as asked for.
+    // The modulation index that gives both powers as requested.
     MfskWaveform split = waveform;
     constexpr double first_sidebands = 8.0 / (std::numbers::pi * std::numbers::pi);
     split.modulation_index_rad =
@@ -127,7 +127,7 @@ ErrorCount carrier_aided_errors(const MfskWaveform& waveform, double carrier_c_n
     simulation::XBandPath path;
     path.rate_hz = layout.rate_hz;
     path.total_c_n0_dbhz = carrier_c_n0_dbhz - 10.0 * std::log10(split.carrier_fraction());
-    // A slow swing of a few hertz: the frequency is not known, and not constant.
+    // A slow swing of a few hertz: the frequency is unknown and varies.
     std::vector<double> time_s, doppler_hz;
     for (double t = 0.0; t <= static_cast<double>(symbols) * waveform.symbol_s + 10.0; t += 0.5) {
         time_s.push_back(t);

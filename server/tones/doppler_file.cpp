@@ -13,8 +13,8 @@
 namespace aeolis::server {
 namespace {
 
-constexpr double written_row_s = 0.25;        // ours: between them a cubic holds the entry's Doppler to some hertz
-constexpr std::size_t rows_max = 10'000'000;  // ours: days at 64 a second
+constexpr double written_row_s = 0.25;        // chosen: a cubic between rows holds the entry's Doppler to some hertz
+constexpr std::size_t rows_max = 10'000'000;  // chosen: days at 64 a second
 
 std::vector<std::string> cells_of(std::string line) {
     if (!line.empty() && line.back() == '\r') line.pop_back();
@@ -34,7 +34,7 @@ std::optional<double> number_in(const std::string& cell) {
     return value;
 }
 
-/// Two columns of numbers; `second` says which the second is, by name.
+/// Two columns of numbers: the first, and one selected by name.
 struct Columns {
     std::vector<double> first, second;
 };

@@ -22,7 +22,7 @@ void add_outages(const simulation::Radio& radio, std::string_view event, double 
 FlownSignal fly_signal(simulation::Scenario scenario, std::uint64_t seed, std::uint64_t case_number,
                        const dictionary::Dictionary& dictionary, double from_before_entry_s) {
     FlownSignal flown;
-    scenario.radio.tones_from_samples = true;  // what reaches Earth, as it is
+    scenario.radio.tones_from_samples = true;  // the signal that reaches Earth, as transmitted
     ScriptedLanding landing{scenario, seed, case_number, dictionary};
     std::vector<double> time_s, doppler_hz, gain_db;
     bool set = false;

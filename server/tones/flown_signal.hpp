@@ -12,13 +12,13 @@
 
 namespace aeolis::server {
 
-/// What a landing sends on X-band, and how it moves while it does. Times are seconds from entry interface.
+/// The X-band signal that a landing sends, with its Doppler and gain. Times are seconds from entry interface.
 struct FlownSignal {
     std::vector<simulation::SentTone> tones;
-    TimeTable doppler_hz;      ///< one way at the carrier, 16 rows a second
-    TimeTable gain_db;         ///< of the antenna towards Earth, with the attitude; likewise
-    double earth_set_s = 0.0;  ///< nothing is heard after that
-    /// The scenario's, of events that came: tones that are sent then may be lost.
+    TimeTable doppler_hz;      ///< one way at the carrier; 16 rows a second
+    TimeTable gain_db;         ///< of the antenna toward Earth, with the attitude; 16 rows a second
+    double earth_set_s = 0.0;  ///< nothing is received after it
+    /// An outage of the scenario whose event happened: tones sent during it may be lost.
     struct Outage {
         std::string name;
         double from_s = 0.0, to_s = 0.0;
@@ -26,7 +26,7 @@ struct FlownSignal {
     std::vector<Outage> outages;
 };
 
-/// Flies the scenario's case by the whole flight software, to its end. Doppler is kept from `from_before_entry_s` on.
+/// Flies the scenario's case with the whole flight software to its end. Doppler starts at `from_before_entry_s`.
 FlownSignal fly_signal(simulation::Scenario scenario, std::uint64_t seed, std::uint64_t case_number,
                        const dictionary::Dictionary& dictionary, double from_before_entry_s = 900.0);
 

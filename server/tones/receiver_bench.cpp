@@ -28,7 +28,7 @@ struct Heard {
     double cpu_s = 0.0;  ///< of the receiver alone
 };
 
-/// `length_s` of a channel through a receiver, a second at a time.
+/// Passes `length_s` of a channel through a receiver, one second at a time.
 Heard hear(const MfskWaveform& waveform, const simulation::XBandPath& path,
            const std::vector<simulation::SentTone>& tones, double length_s, std::uint64_t seed) {
     simulation::XBandChannel channel{waveform, path, tones, seed, 2};
@@ -48,7 +48,7 @@ Heard hear(const MfskWaveform& waveform, const simulation::XBandPath& path,
     return heard;
 }
 
-/// What was received in the place of a sent tone: the nearest, begun within half a symbol of it.
+/// The decision for a sent tone: the nearest that began within half a symbol of it.
 const telemetry::ToneReception* in_place_of(const simulation::SentTone& sent,
                                             const std::vector<telemetry::ToneReception>& all) {
     const auto apart_s = [&](const telemetry::ToneReception& each) { return std::abs(each.start_s - sent.start_s); };
@@ -67,7 +67,7 @@ struct SignalLanding {
     ToneScore::Figures tones;
 };
 
-/// A landing as `aeolis rehearse` flies it, with its tones from samples, by the wall clock.
+/// Flies a landing as `aeolis rehearse` does, with tones from samples. Measures the wall time.
 SignalLanding signal_landing(simulation::Scenario scenario, const dictionary::Dictionary& dictionary) {
     using Clock = std::chrono::steady_clock;
     scenario.radio.tones_from_samples = true;
@@ -195,7 +195,7 @@ LandingTones landing_tones(const FlownSignal& nominal, const simulation::Scenari
             right ? ++result.decoded : ++result.missed;
         }
     }
-    // A tone where none was sent is wrong too.
+    // A tone decoded where none was sent is also wrong.
     for (const telemetry::ToneReception& each : heard.receptions)
         if (each.tone && std::ranges::none_of(flown.tones, [&](const simulation::SentTone& sent) {
                 return std::abs(each.start_s - sent.start_s) <= 5.0;

@@ -13,7 +13,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "sample files are little-endian");
 
-constexpr double noise_in_ci16 = 2000.0 * std::numbers::sqrt2;  // ours: 16 deviations before it clips
+constexpr double noise_in_ci16 = 2000.0 * std::numbers::sqrt2;  // chosen: clips at 16 deviations
 
 }  // namespace
 

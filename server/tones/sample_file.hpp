@@ -13,7 +13,7 @@
 
 namespace aeolis::server {
 
-/// How complex samples lie in a file: in-phase then quadrature, little-endian, nothing else.
+/// The layout of complex samples in a file: in-phase then quadrature, little-endian, nothing else.
 enum class SampleFormat {
     cf32,  ///< two 32-bit floats
     ci16,  ///< two 16-bit integers
@@ -24,13 +24,13 @@ std::size_t octets_a_sample(SampleFormat format);
 /// Reads samples block by block.
 class SampleReader {
   public:
-    /// Fails when there is no such file, or its length is no whole number of samples, or nothing.
+    /// Opens a file. Fails when it does not exist, cannot be read, or is empty.
     static Result<SampleReader> open(const std::filesystem::path& file, SampleFormat format);
 
-    /// The next samples, at most as many as `room`; none at the end.
+    /// Reads the next samples, at most room.size(); empty at the end.
     Result<std::span<const std::complex<float>>> next(std::span<std::complex<float>> room);
     std::uint64_t samples() const { return samples_; }
-    /// Behind the last whole sample: the file is truncated, or of another format.
+    /// The octets after the last whole sample: the file is truncated or of another format.
     std::uint64_t left_over_octets() const { return left_over_octets_; }
 
   private:
@@ -43,7 +43,7 @@ class SampleReader {
     std::vector<char> octets_;
 };
 
-/// Writes samples; ci16 scaled so that noise of power 1 a sample has a deviation of 2000 in each part.
+/// Writes samples. ci16 is scaled so that noise of power 1 per sample has a deviation of 2000 in each part.
 class SampleWriter {
   public:
     static Result<SampleWriter> open(const std::filesystem::path& file, SampleFormat format);

@@ -8,16 +8,16 @@
 #include <utility>
 #include <variant>
 
-// What modules and messages are called in reports: their names in the source, as the compiler knows them. R40
+// The names of modules and messages in reports: those of the source code, as given by the compiler. R40
 namespace aeolis::server {
 
 namespace name_detail {
 
-/// The last word of what the compiler calls its template argument.
+/// The last word of the template argument in a compiler's function signature.
 constexpr std::string_view argument_in(std::string_view signature) {
     signature = signature.substr(signature.find(" = ") + 3);
     signature = signature.substr(0, signature.find_first_of(";]"));
-    return signature.substr(signature.rfind(':') + 1);  // all of it where there is none
+    return signature.substr(signature.rfind(':') + 1);  // npos + 1 is 0: the whole text
 }
 template <typename Message>
 constexpr std::string_view type_name() {
@@ -40,7 +40,7 @@ constexpr std::array<std::string_view, sizeof...(I)> module_names(std::index_seq
 
 inline constexpr std::size_t message_type_count = std::variant_size_v<flight::Message>;
 
-/// By flight::Message's index.
+/// By index in flight::Message.
 inline constexpr auto message_names = name_detail::message_names(std::make_index_sequence<message_type_count>{});
 /// By flight::ModuleId.
 inline constexpr auto module_names = name_detail::module_names(std::make_index_sequence<flight::module_count>{});

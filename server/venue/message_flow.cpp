@@ -32,7 +32,7 @@ void MessageFlow::cycle(flight::ComputerState& state, const flight::DeviceInputs
     flight::Executive{state, this}.cycle(in, out);
 }
 
-// Only a module's type is looked at.
+// Reads only the types of the modules.
 void MessageFlow::look_at(flight::ComputerState& state) {
     for (std::size_t i = 0; i < flight::module_count; ++i)
         handled_[i] = flight::with_module(state, module_at(i), []<typename Module>(Module&) {

@@ -11,27 +11,27 @@
 
 namespace aeolis::server {
 
-/// Who sends what to whom how often, counted while the deterministic executive runs a landing; and the document of the
-/// flight software that is made of it. R9, R40
+/// Counts the messages between modules while the deterministic executive flies a landing. Writes the document of the
+/// flight software from these counts. R9, R40
 ///
-/// Memory   some 200 kB, made with it
+/// Memory   about 200 kB, in the object
 class MessageFlow final : public flight::CycleRunner, private flight::MessageTap {
   public:
     void cycle(flight::ComputerState& state, const flight::DeviceInputs& in, flight::DeviceOutputs& out) override;
 
     std::uint64_t cycles() const { return cycles_; }
-    /// From a module.
+    /// The number sent by a module.
     std::uint64_t sent(flight::ModuleId from, flight::ModuleId to, std::size_t message_type) const {
         return counts_[place(static_cast<std::size_t>(from), to, message_type)].messages;
     }
-    /// With the tick: from the clock and the devices.
+    /// The number delivered with the tick: by the clock and the devices.
     std::uint64_t interrupts(flight::ModuleId to, std::size_t message_type) const {
         return counts_[place(outside, to, message_type)].messages;
     }
 
-    /// Markdown, once a cycle was run: modules with priority, deadline, budget and what they handle, as the compiler
-    /// knows it; a diagram of who talks to whom; each message with its number and its rate. `landing` says which
-    /// landing that was.
+    /// The document in Markdown, after at least one cycle: modules with priority, deadline, budget and handled messages
+    /// (from the compiler); a diagram of who sends to whom; each message with its number and rate.
+    /// @param landing  names the landing flown
     std::string document(const std::string& landing) const;
 
   private:
@@ -41,8 +41,8 @@ class MessageFlow final : public flight::CycleRunner, private flight::MessageTap
     }
     struct Counted {
         std::uint64_t messages = 0;
-        std::uint32_t seconds = 0;      ///< in which there was at least one
-        std::uint32_t last_second = 0;  ///< of those, counted from 1
+        std::uint32_t seconds = 0;      ///< seconds with at least one message
+        std::uint32_t last_second = 0;  ///< the latest of these seconds, counted from 1
 
         double rate_hz() const { return static_cast<double>(messages) / seconds; }
     };

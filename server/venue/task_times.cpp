@@ -37,7 +37,7 @@ double Durations::p999_us() const {
     for (std::size_t bin = bins; bin-- > 0;) {
         seen += counts_[bin];
         if (seen <= beyond) continue;
-        // The bin's upper end, but never more than what was really the worst.
+        // The bin's upper end, but at most the exact maximum.
         const auto doubling = static_cast<int>(bin / 8) + first_doubling;
         const double upper_ns = std::ldexp(1.0 + (static_cast<double>(bin % 8) + 1.0) / 8.0, doubling);
         return std::min(upper_ns, static_cast<double>(worst_ns_)) * 1.0e-3;

@@ -10,7 +10,7 @@
 
 namespace aeolis::server {
 
-/// How long something took, over many times: exact least, mean and worst; the 99.9 % within a tenth of itself.
+/// Statistics of a duration: exact minimum, mean and maximum; the 99.9 % percentile to within a tenth of its value.
 class Durations {
   public:
     void add(std::uint64_t ns);
@@ -19,11 +19,11 @@ class Durations {
     double least_us() const { return count_ == 0 ? 0.0 : static_cast<double>(least_ns_) * 1.0e-3; }
     double mean_us() const;
     double worst_us() const { return static_cast<double>(worst_ns_) * 1.0e-3; }
-    /// At most so long in 999 of 1000 cases.
+    /// The duration not exceeded in 999 of 1000 cases.
     double p999_us() const;
 
   private:
-    // Eight bins to each doubling, from 2^6 ns on: the width of a bin is 9 % of its value.
+    // Eight bins per doubling, from 2^6 ns on: a bin's width is 9 % of its value.
     static constexpr std::size_t bins = 8 * 30;
     static std::size_t bin_of(std::uint64_t ns);
 
@@ -31,22 +31,22 @@ class Durations {
     std::uint64_t count_ = 0, sum_ns_ = 0, least_ns_ = UINT64_MAX, worst_ns_ = 0;
 };
 
-/// Processor time of one task: of all that it did in a cycle, over the cycles in which it ran, however often it was
-/// woken in one; and of each message by its type. R8
+/// Processor time of one task: per cycle in which it ran, however often it was woken in it; and per message, by type.
+/// R8
 struct TaskTimes {
     flight::ModuleId module{};
     Durations cycle;
     std::array<Durations, message_type_count> by_message;
-    std::size_t stack_used_octets = 0;  ///< deepest, from a painted stack
+    std::size_t stack_used_octets = 0;  ///< deepest use, from a painted stack
 };
 
-/// What a threaded executive has measured.
+/// The measurements of a threaded executive.
 struct MeasuredTimes {
     std::vector<TaskTimes> tasks;  ///< in order of priority
-    Durations all_tasks;           ///< of all of them together, in each cycle
+    Durations all_tasks;           ///< all tasks together, per cycle
 };
 
-/// R8: messages of one task should cost about the same. The largest mean over message types against their mean.
+/// The largest mean over message types divided by their mean. R8: messages of one task should cost about the same.
 double unevenness(const TaskTimes& times);
 
 }  // namespace aeolis::server

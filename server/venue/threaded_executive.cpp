@@ -19,7 +19,7 @@ namespace aeolis::server {
 namespace {
 
 constexpr std::uint8_t paint = 0xA5;
-constexpr int lowest_priority = 10;  // ours: above everything ordinary, below the kernel's own
+constexpr int lowest_priority = 10;  // chosen: above all ordinary threads, below the kernel's
 
 std::uint64_t thread_cpu_ns() {
     timespec time{};
@@ -27,8 +27,8 @@ std::uint64_t thread_cpu_ns() {
     return static_cast<std::uint64_t>(time.tv_sec) * 1'000'000'000U + static_cast<std::uint64_t>(time.tv_nsec);
 }
 
-/// How much of a painted stack is painted still. Its thread is idle, but not ended: the thread sanitizer would call
-/// that a race on what the thread's own start has written there.
+/// The octets of a painted stack that are still painted. Its thread is idle but not ended; the thread sanitizer would
+/// report a race with the thread's start, which wrote there.
 __attribute__((no_sanitize("thread"))) std::size_t untouched_octets(const std::uint8_t* stack, std::size_t octets) {
     std::size_t untouched = 0;
     while (untouched < octets && stack[untouched] == paint) ++untouched;
@@ -37,12 +37,12 @@ __attribute__((no_sanitize("thread"))) std::size_t untouched_octets(const std::u
 
 }  // namespace
 
-/// One module's thread. It waits at one place, for its mailbox; a module of the rate group is woken by its turn alone.
+/// One module's thread. It waits only for its mailbox; a module of the rate group is woken only for its turn.
 class ThreadedExecutive::Task {
   public:
     Task(ThreadedExecutive& house, flight::ModuleId id) : house_(house), id_(id) {
         times_.module = id;
-        // Below the stack a page that nobody may touch: an overflow ends the program instead of writing elsewhere.
+        // A guard page below the stack: an overflow ends the program instead of writing elsewhere.
         guard_octets_ = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
         void* room =
             mmap(nullptr, guard_octets_ + stack_octets, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
@@ -79,7 +79,7 @@ class ThreadedExecutive::Task {
         wake_.notify_one();
     }
     FixedVector<flight::Envelope, 128>& later() { return later_; }
-    /// What it took in the cycle that is over; none when it did not run in it.
+    /// The time used in the last cycle; none when the task did not run.
     std::optional<std::uint64_t> take_cycle_ns() {
         const auto spent_ns = std::exchange(cycle_ns_, std::nullopt);
         if (spent_ns) times_.cycle.add(*spent_ns);
@@ -92,7 +92,7 @@ class ThreadedExecutive::Task {
     }
 
   private:
-    /// Mail lies in the computer, so that what a cycle leaves goes with it: a restart or a copy takes none along.
+    /// Mailboxes are part of the computer's state: a restart or a copy takes no stale mail along.
     FixedQueue<flight::Message, flight::mailbox_messages_max>& mailbox() {
         return house_.state_->mailboxes[static_cast<std::size_t>(id_)];
     }
@@ -183,7 +183,7 @@ class ThreadedExecutive::Task {
     std::mutex mutex_;
     std::condition_variable wake_;
     bool ready_ = false, stop_ = false;
-    // Of the task's own thread; read by others only while it is idle.
+    // Used by the task's own thread; read by others only while it is idle.
     flight::Outbox outbox_;
     FixedVector<flight::Envelope, 128> later_;
     std::optional<std::uint64_t> cycle_ns_;  // so far in this cycle
@@ -213,7 +213,7 @@ void ThreadedExecutive::cycle(flight::ComputerState& state, const flight::Device
     state.now = in.now;
     state.sync.set_executive_counts(state.mailbox_overflows, state.unexpected_messages);
 
-    // All that came with the tick lies in the mailboxes before the first task runs.
+    // All messages of the tick are in mailboxes before the first task runs.
     std::uint32_t awake = 0;
     const auto deliver = [&](flight::ModuleId to, const flight::Message& message) {
         if (post(to, message)) awake |= flight::bit_of(to);
@@ -240,7 +240,7 @@ void ThreadedExecutive::wait_until_idle() {
         if (options_.clock == Clock::virtual_time) {
             idle_.wait(lock, is_idle);
         } else if (!idle_.wait_until(lock, deadline, is_idle)) {
-            // The clock does not wait: its interrupt is a message to sync at once, which finds its group still running.
+            // The clock does not wait: its interrupt is a message to sync, which finds its group still running.
             ++ticks_skipped_;
             deadline += tick;
             lock.unlock();
@@ -260,12 +260,12 @@ void ThreadedExecutive::collect(flight::ComputerState& state) {
         all_tasks_.add(together_ns);
     }
     if (failed_) {
-        for (auto& one : tasks_) one->later().clear();  // mailboxes go with the computer's state
+        for (auto& one : tasks_) one->later().clear();  // mailboxes are discarded with the state
         const CheckFailed bug = *failed_;
         failed_.reset();
         throw CheckFailed{bug};
     }
-    // In order of priority, as the deterministic executive would have run them one after another.
+    // In order of priority, as the deterministic executive would have run them.
     for (auto& one : tasks_) {
         for (const flight::Envelope& envelope : one->later())
             if (!state.next_cycle.try_push_back(envelope)) ++state.mailbox_overflows;

@@ -17,23 +17,23 @@
 
 namespace aeolis::server {
 
-/// The threaded executive: each module a task with a thread of its own and one blocking wait, its mailbox; priorities
-/// by deadline (flight/kernel/deadlines.hpp), SCHED_FIFO where the system permits. R4, R8
+/// The threaded executive: each module is a task with its own thread and one blocking wait, on its mailbox. Priorities
+/// by deadline (flight/kernel/deadlines.hpp); SCHED_FIFO where the system permits. R4, R8
 ///
-/// In       one tick's inputs, by cycle()                 Out   the same bits as the deterministic executive gives
-/// Clock    virtual: cycle() returns when every task is idle, however long that took. Real: a cycle that is not done
-///          within 1/64 s gets the next tick all the same, as from the clock's interrupt: sync finds its group still
-///          running, reports the overrun and skips that cycle; take_ticks_skipped() says how many, SCLK goes on
-/// Memory   made with it: an outbox and a painted stack of 256 KiB a task; mailboxes are the computer's
-/// Faults   a task whose check fails: cycle() throws it once all tasks are idle; what lies in mailboxes goes with the
-///          state that failed
+/// In       one tick's inputs, by cycle()                 Out   bit for bit what the deterministic executive gives
+/// Clock    virtual: cycle() returns when every task is idle, however long that takes. Real: a cycle not done within
+///          1/64 s gets the next tick all the same, as from the clock's interrupt: sync finds its group still running,
+///          reports the overrun and skips that cycle. take_ticks_skipped() gives their number; SCLK proceeds
+/// Memory   allocated with it: an outbox and a painted stack of 256 KiB per task; mailboxes are the computer's
+/// Faults   a failed check in a task: cycle() throws it once all tasks are idle; queued mail is lost with the failed
+///          state
 class ThreadedExecutive final : public flight::CycleRunner {
   public:
     enum class Clock { virtual_time, real_time };
     struct Options {
         Clock clock = Clock::virtual_time;
-        bool measure = false;  ///< processor time of every message; costs about a microsecond each
-        /// A fault put in by a test: called by the task's own thread before it takes its mail.
+        bool measure = false;  ///< processor time of each message; costs about 1 us each
+        /// A fault injected by a test: called on the task's thread before it takes its mail.
         std::function<void(flight::ModuleId, Sclk)> before_mail;
     };
 
@@ -45,9 +45,9 @@ class ThreadedExecutive final : public flight::CycleRunner {
 
     void cycle(flight::ComputerState& state, const flight::DeviceInputs& in, flight::DeviceOutputs& out) override;
 
-    /// Nil on a virtual clock.
+    /// Zero on a virtual clock.
     int take_ticks_skipped() override { return std::exchange(ticks_not_taken_, 0); }
-    /// Empty when tasks run at real-time priorities, else why not, for people.
+    /// Why tasks do not run at real-time priorities, in words; empty when they do.
     const std::string& notice() const { return notice_; }
     MeasuredTimes times() const;
 #if defined(__SANITIZE_THREAD__)
@@ -59,7 +59,8 @@ class ThreadedExecutive final : public flight::CycleRunner {
   private:
     class Task;
 
-    /// True when the message makes its module run: whoever posts it wakes the task. False, too, in a load without it.
+    /// Posts a message. True when its module must run, so that the poster wakes it; false also in a load without that
+    /// module.
     bool post(flight::ModuleId to, const flight::Message& message);
     void wait_until_idle();
     void collect(flight::ComputerState& state);
@@ -69,18 +70,18 @@ class ThreadedExecutive final : public flight::CycleRunner {
     Options options_;
     std::string notice_;
     std::vector<std::unique_ptr<Task>> tasks_;
-    flight::ComputerState* state_ = nullptr;  ///< of the cycle that runs
+    flight::ComputerState* state_ = nullptr;  ///< of the running cycle
     flight::DeviceOutputs* out_ = nullptr;
     Sclk now_;
     std::atomic<std::uint32_t> overflows_{0}, unexpected_{0};
 
     std::mutex mutex_;
     std::condition_variable idle_;
-    int running_ = 0;  ///< tasks that have something to run for; under mutex_
+    int running_ = 0;  ///< under mutex_: tasks with something to do
     std::optional<CheckFailed> failed_;
-    int ticks_skipped_ = 0;    ///< in the cycle that runs
-    int ticks_not_taken_ = 0;  ///< in cycles before, not told yet
-    Durations all_tasks_;      ///< of each cycle
+    int ticks_skipped_ = 0;    ///< in the running cycle
+    int ticks_not_taken_ = 0;  ///< in earlier cycles, not yet reported
+    Durations all_tasks_;      ///< per cycle
     std::size_t next_reported_ = 0;
 };
 
