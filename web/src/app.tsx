@@ -116,7 +116,7 @@ const ALONE = {
   commands: Commands,
   data: Data,
   waiting: WaitingFor,
-  phases: () => null, // the strip stands above every panel that is alone
+  phases: () => null, // a panel shown alone always has the strip above it
   ...Object.fromEntries(TABS.map(({ id, title }) => [id, inPanel(id, title)])),
 };
 

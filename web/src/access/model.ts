@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who looks at the page, and what they may do. A server without accounts lets everyone on its own machine do everything.
+// The user of the page and their rights. A server without accounts grants all rights to everyone on its own machine.
 import { effect, signal } from '@preact/signals';
 import { Refused, call, turnedAway, wordsFor } from '../run/api';
 
@@ -8,13 +8,15 @@ interface Session {
   user: string;
   role: string;
   rights: string[];
-  /** The password was given by another: until its owner has chosen one, nothing else is answered. */
+  /**
+   * The password was set by another person. Until its owner has chosen a new one, the server refuses everything else.
+   */
   choose_password?: boolean;
 }
 
 /**
- * "asking": not known yet; "open": no accounts; "in": logged in; "out": a log-in is needed, "expired" when there was one before.
- * "choose": a password of their own is to be chosen first. "none": a server that knows of no sessions.
+ * "asking": not known yet. "open": no accounts. "in": logged in. "out": a log-in is needed; `expired` after an earlier
+ * one. "choose": the user must first choose a password. "none": the server has no sessions.
  */
 type Access =
   | { state: 'asking' | 'none' | 'open' }
@@ -26,7 +28,7 @@ export const access = signal<Access>({ state: 'asking' });
 export const problem = signal('');
 export const busy = signal(false);
 
-/** Asks who we are; throws where no server answers. */
+/** Asks the server for the session. Throws if no server answers. */
 export async function learnAccess(): Promise<void> {
   try {
     const session = await call<Session>('GET', '/session');
@@ -51,7 +53,7 @@ function turnAway(): void {
 export const logIn = (user: string, password: string): Promise<void> =>
   enter(() => call('POST', '/session', { user, password }));
 
-/** In place of the one that another gave. */
+/** Replaces the password that another person set. */
 export async function choosePassword(given: string, chosen: string, again: string): Promise<void> {
   const now = access.value;
   if (now.state !== 'choose') return;
@@ -79,13 +81,13 @@ async function enter(ask: () => Promise<unknown>): Promise<void> {
 export async function logOut(): Promise<void> {
   try {
     await call('DELETE', '/session');
-    location.reload(); // nothing of what was shown stays in the page
+    location.reload(); // the page keeps nothing that it showed
   } catch (error) {
     problem.value = wordsFor(error);
   }
 }
 
-/** Resolves once what is shown may be shown. */
+/** Resolves once the user may see the console. */
 export function admitted(): Promise<void> {
   return new Promise((resolve) => {
     const stop = effect(() => {
@@ -96,17 +98,20 @@ export function admitted(): Promise<void> {
   });
 }
 
-/** Observers send nothing; for everyone else the server decides, command by command. After the end of a session what is typed stays, and is refused. */
+/**
+ * Whether the user may send at all: observers may not. For the others the server decides on each command. After the end
+ * of a session typed text stays, and the server refuses it.
+ */
 export function mayAct(now: Access = access.value): boolean {
   return now.state !== 'in' || now.role !== 'observer';
 }
 
-/** Rehearsals and campaigns. Whose session lacks the right is told so; the server decides. */
+/** Whether the user may start rehearsals and campaigns. The page explains a missing right; the server decides. */
 export function mayRehearse(now: Access = access.value): boolean {
   return now.state !== 'in' || now.rights.includes('rehearse');
 }
 
-/** For who may not: `what` needs a right that this session lacks. '' where there is nothing to say. */
+/** Why the session may not do `what`, for lack of the right to rehearse. Empty if nothing is known. */
 export function whyNotRehearse(what: string, now: Access = access.value): string {
   return now.state === 'in' ? `${what} need the right to rehearse; you are ${now.user}, ${now.role}` : '';
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The log-in, in place: alone before anything may be shown, as a bar over the display when a session ended in the middle.
+// The log-in: alone before the console may be shown, or as a bar over the display when a session ends during work.
 import { signal } from '@preact/signals';
 import { useEffect, useRef } from 'preact/hooks';
 import { access, busy, choosePassword, logIn, logOut, mayAct, problem } from './model';
@@ -109,7 +109,7 @@ function ChooseForm({ who }: { who: string }) {
   );
 }
 
-/** Before anything may be shown. */
+/** The log-in before the console is shown. */
 export function LogIn() {
   const now = access.value;
   if (now.state === 'choose')
@@ -132,7 +132,7 @@ export function LogIn() {
   );
 }
 
-/** In the middle of something: what stands on the screen stays, and is old. */
+/** The log-in after the end of a session. The display stays and is marked as old. */
 export function ExpiredBar() {
   const now = access.value;
   if (now.state === 'choose')
@@ -153,7 +153,7 @@ export function ExpiredBar() {
   );
 }
 
-/** In the header: who, as what. */
+/** User and role, in the header. */
 export function Who() {
   const now = access.value;
   if (now.state === 'open')

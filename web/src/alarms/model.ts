@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Alarms that want attention, as the ground keeps them: each with who did what about it. The stream tells that something changed.
+// Alarms that need attention, as the ground keeps them, each with its last action. The stream reports that something
+// changed.
 import { computed, signal } from '@preact/signals';
 import { uplink } from '../commands/line';
 import type { Status } from '../design/status';
@@ -13,7 +14,7 @@ export interface AlarmState {
   name: string;
   kind: string; // limit, staleness, link
   state: string; // unacknowledged, acknowledged, returned, latched, shelved, normal
-  severity: string; // now; "none": within its limits again
+  severity: string; // present severity; "none": within its limits again
   worst: string;
   acknowledged?: boolean;
   latches?: boolean;
@@ -23,13 +24,13 @@ export interface AlarmState {
   sclk?: number;
   by?: string;
   note?: string;
-  reason?: string; // of staleness and links
+  reason?: string; // for staleness and links
 }
 type Action = 'acknowledge' | 'shelve' | 'unshelve' | 'reset';
 
 const ORDER = ['unacknowledged', 'latched', 'returned', 'acknowledged', 'shelved', 'normal'];
 
-/** undefined: no answer has come yet. */
+/** The ground's list of alarms; undefined until the first answer. */
 export const alarms = signal<{ run: number; all: AlarmState[] } | undefined>(undefined);
 export const problem = signal('');
 export const note = signal('');
@@ -41,7 +42,10 @@ export const listed = computed(() =>
 );
 export const toAcknowledge = computed(() => listed.value.filter(wantsLook));
 
-/** Of what stands now, acknowledged or not, whatever it is of; until the ground's list of this run is here, of what the stream told of limits. */
+/**
+ * Severities of all present alarms, acknowledged or not. Until the ground's list of this run has arrived, those of
+ * limits from the stream.
+ */
 export function severitiesNow(run: RunStore): string[] {
   if (alarms.value?.run !== run.id) return [...run.alarms.values()].map((alarm) => alarm.severity);
   return listed.value
@@ -59,7 +63,7 @@ export function lookOf(alarm: AlarmState): Status {
 const wantsLook = (alarm: AlarmState) =>
   !alarm.acknowledged && ['unacknowledged', 'returned', 'latched'].includes(alarm.state);
 
-/** What no one has looked at first, the worst of it on top. */
+/** The alarms that no one has acknowledged first, the worst of them on top. */
 export function sorted(all: readonly AlarmState[]): AlarmState[] {
   const rank = (alarm: AlarmState) => [
     ORDER.indexOf(alarm.state) < 0 ? ORDER.length : ORDER.indexOf(alarm.state),
@@ -80,7 +84,7 @@ export function actionsOn(alarm: AlarmState): Action[] {
   ];
 }
 
-/** What is new and wants a look, by its worst: for whoever does not look at the screen. */
+/** Sounds for new alarms that need attention, by the worst of them, for a controller who does not watch the screen. */
 export function calls(before: readonly AlarmState[], after: readonly AlarmState[]): 'alarm' | 'caution' | undefined {
   const known = new Map(before.filter(wantsLook).map((alarm) => [alarm.name, alarm.worst]));
   const fresh = after.filter((alarm) => wantsLook(alarm) && known.get(alarm.name) !== alarm.worst);
@@ -89,7 +93,7 @@ export function calls(before: readonly AlarmState[], after: readonly AlarmState[
 
 let asking = false;
 
-/** Asks for the current states. */
+/** Asks for the present states of alarms. */
 export async function refreshAlarms(): Promise<void> {
   const run = store.value;
   if (!run || asking) return;
@@ -102,7 +106,7 @@ export async function refreshAlarms(): Promise<void> {
     const call_ = calls(before, all);
     if (call_ && sound.value) beep(call_);
   } catch {
-    // The header says that there is no connection, or the bar that there is no session; the next round asks again.
+    // The header reports a lost connection, a bar a lost session; the next round asks again.
   } finally {
     asking = false;
   }
@@ -133,7 +137,10 @@ export async function act(name: string, action: Action): Promise<void> {
 export const sound = signal(false);
 let audio: AudioContext | undefined;
 
-/** Off until someone wants it, and silent again after a reload: a browser lets no page sound by itself. */
+/**
+ * Turns the sound on or off. It is off at first and after each reload, since a browser lets no page make sound by
+ * itself.
+ */
 export function toggleSound(): void {
   sound.value = !sound.value;
   if (sound.value) {

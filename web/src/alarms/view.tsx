@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Alarms: what no one has looked at first; acknowledged, shelved for a time or reset in place, with a note.
+// Alarms: unacknowledged ones first; acknowledged, shelved for a time or reset in place, with a note.
 import { mayAct } from '../access/model';
 import { Signature } from '../commands/signature';
 import { STATUS } from '../design/status';

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Campaigns: dispersed landings that the server flies beside everything else, and what their cases come to. Statistics of rehearsals;
-// nothing here is of the vehicle.
+// Campaigns: dispersed landings that the server flies in the background, and their results. They are statistics of
+// rehearsals; nothing here is telemetry of the vehicle.
 import { signal } from '@preact/signals';
 import { call, wordsFor } from '../run/api';
 
@@ -50,24 +50,24 @@ export interface CampaignReport {
   failures: { case: number; outcome: string; reason: string }[];
 }
 export interface Touchdown {
-  place: number; // in the order in which the cases came
+  place: number; // position in the order of completion
   case: number;
   outcome: string;
-  east_m?: number; // of the target; none: it never touched down
+  east_m?: number; // east of the target; undefined: it did not touch down
   north_m?: number;
 }
 
 export const campaigns = signal<CampaignState[]>([]);
 export const limits = signal({ cases_max: 10_000, jobs_max: 1 });
-/** The one that is looked at. */
+/** The selected campaign. */
 export const chosen = signal<string | undefined>(undefined);
 export const report = signal<CampaignReport | undefined>(undefined);
-/** Of the one that is looked at, as they came. */
+/** Touchdowns of the selected campaign, in the order of arrival. */
 export const touchdowns = signal<readonly Touchdown[]>([]);
 export const message = signal<{ good: boolean; text: string } | undefined>(undefined);
 export const busy = signal(false);
 
-/** Also one that is being cancelled: until its cases have ended no other can start. */
+/** Whether a campaign flies or is being cancelled. No other can start until its cases have ended. */
 export const flies = (state: CampaignState | undefined): boolean =>
   state !== undefined && ['preparing', 'flying', 'cancelling'].includes(state.state);
 export const flyingNow = (): CampaignState | undefined => campaigns.value.find(flies);
@@ -82,7 +82,7 @@ export function choose(campaign: string | undefined): void {
 
 let under: Promise<void> | undefined;
 
-/** Asks for the list, and for what is new of the one that is looked at; one look at a time. */
+/** Asks for the list and for news of the selected campaign; one request at a time. */
 export function look(): Promise<void> {
   under ??= lookNow().finally(() => (under = undefined));
   return under;
@@ -104,7 +104,7 @@ async function lookNow(): Promise<void> {
 }
 const NO_LOOK = 'campaigns cannot be read now: ';
 
-let cancelledHere: string | undefined; // whoever cancels is told what came of it, once its cases have ended
+let cancelledHere: string | undefined; // the campaign cancelled on this page, whose end is reported here
 
 function sayHowItEnded(): void {
   const state = campaigns.value.find((each) => each.campaign === cancelledHere);
@@ -121,7 +121,7 @@ async function lookAtChosen(): Promise<void> {
   const news = !shown || shown.kept !== state.kept || shown.cases !== state.cases || shown.state !== state.state;
   if (!news && !flies(state)) return;
   const found = await call<CampaignReport>('GET', at(campaign));
-  // Fewer than were shown: another file has taken its name, or fewer cases are asked for.
+  // Fewer than shown: another file has taken its name, or fewer cases were requested.
   const before = touchdowns.value.length > found.state.kept ? [] : touchdowns.value;
   const page = await call<{ touchdowns?: Touchdown[] }>(
     'GET',
@@ -164,7 +164,7 @@ export const cancel = (campaign: string): Promise<void> =>
     return `${campaign} is being cancelled`;
   });
 
-/** What is wrong with what was typed; undefined: nothing. */
+/** What is wrong with the typed form; undefined: nothing. */
 export function orderProblem(cases: string, seed: string, cases_max: number): string | undefined {
   if (!/^\d{1,9}$/.test(cases) || Number(cases) < 1 || Number(cases) > cases_max)
     return `cases: a whole number from 1 to ${cases_max}`;
@@ -200,7 +200,7 @@ export function stateWords(state: CampaignState): string {
   }
 }
 
-/** Of one that was cancelled, once it is over. */
+/** Result of a cancelled campaign, in words. */
 export function endWords({ campaign, kept, cases, state, fault }: CampaignState): string {
   if (fault !== '') return `${campaign} ended: ${fault}; ${kept} of its cases are kept`;
   if (state === 'complete') return `too late to cancel: all ${cases} cases of ${campaign} had been flown, and are kept`;
@@ -241,7 +241,7 @@ export function ellipseWords({ major_m, minor_m, azimuth_deg, east_m, north_m }:
   return `${km(major_m)} × ${km(minor_m)} km, major axis at azimuth ${azimuth_deg.toFixed(0)}°, its centre ${km(east_m)} km ${east_m < 0 ? 'west' : 'east'} and ${km(north_m)} km ${north_m < 0 ? 'south' : 'north'} of the target`;
 }
 
-/** How far from the target the picture reaches, km east and north: everything fits, and it grows in steps. */
+/** Half-width of the picture about the target, km east and north. It grows in steps until all touchdowns fit. */
 export function reach_km(points: readonly Touchdown[], ellipse: Ellipse | undefined): { east: number; north: number } {
   let [east, north] = [0, 0];
   for (const { east_m, north_m } of points) {

@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the cases came down about the target, and the ellipse that holds 99 % of them; one scale for east and north.
+// Touchdown points about the target and the ellipse that holds 99 % of them, with one scale for east and north.
 import { ticks, valueStep } from '../draw/axis';
 import type { Surface } from '../draw/canvas';
 import { reach_km, report, touchdowns } from './model';
 
 const EDGE = 10;
-const LOW_PX = 170; // lower than this the axes go without words
+const LOW_PX = 170; // chosen: below this height the axes have no words
 
 export function drawTouchdowns({ context: c, width, height, colours }: Surface): void {
   const points = touchdowns.value;
   const ellipse = report.value?.ellipse;
   const reach = reach_km(points, ellipse);
   const low = height < LOW_PX;
-  const type_px = Math.round(Math.min(17, Math.max(11, height / 32))); // read from farther away where there is room
+  // larger where the picture is, for reading from a distance
+  const type_px = Math.round(Math.min(17, Math.max(11, height / 32)));
   c.font = `${type_px}px ${colours.sans}`;
   const [left_px, bottom_px] = [type_px * 4, type_px * (low ? 1.7 : 3.1)];
   const [wide, high] = [width - left_px - EDGE, height - bottom_px - EDGE];
@@ -23,7 +24,7 @@ export function drawTouchdowns({ context: c, width, height, colours }: Surface):
   const y = (north_km: number) => y0 - north_km * km_px;
   const [bottom, right] = [EDGE + high, left_px + wide];
 
-  // The grid: the same step both ways, so that its squares are squares.
+  // The grid: the same step in both directions, so that its cells are square.
   const [half_east, half_north] = [wide / 2 / km_px, high / 2 / km_px];
   const step = valueStep((low ? 28 : type_px * 3.6) / km_px, 1);
   c.strokeStyle = colours.line;
@@ -54,7 +55,7 @@ export function drawTouchdowns({ context: c, width, height, colours }: Surface):
     c.restore();
   }
 
-  // Cases: a dot each; what was no landing is a cross of another colour.
+  // Cases: a dot for each touchdown, a cross of another colour for each failure.
   c.fillStyle = colours.rehearsal;
   c.globalAlpha = points.length > 2000 ? 0.45 : 0.75;
   const radius = points.length > 2000 ? 1.5 : type_px * 0.23;
@@ -99,7 +100,7 @@ export function drawTouchdowns({ context: c, width, height, colours }: Surface):
   c.textBaseline = 'bottom';
   label(c, 'target', x0 + 8, y0 - 4, colours.panel);
 
-  // A bar of a round length, for those who do not count squares.
+  // A scale bar of a round length.
   const bar_km = valueStep((wide / km_px) * 0.25, 1.01);
   const [bx, by] = [left_px + 12, bottom - 12];
   c.strokeStyle = colours.text;
@@ -110,7 +111,7 @@ export function drawTouchdowns({ context: c, width, height, colours }: Surface):
   label(c, `${words(bar_km)} km`, bx, by - 5, colours.panel);
 }
 
-/** Words that dots do not run through. */
+/** Draws words with a background, so that dots do not run through them. */
 function label(c: CanvasRenderingContext2D, words: string, px: number, py: number, back: string): void {
   c.save();
   c.strokeStyle = back;

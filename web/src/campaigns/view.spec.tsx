@@ -132,7 +132,7 @@ describe('a campaign', () => {
     });
     message.value = undefined;
     await look();
-    expect(message.value).toBeUndefined(); // said once
+    expect(message.value).toBeUndefined(); // reported once
   });
   it('that ended otherwise than it was cancelled says how', () => {
     expect(endWords(state({ state: 'complete', kept: 10 }))).toBe(

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Campaigns: start one, watch the landing ellipse fill, cancel it, go on; and what former ones came to.
+// Campaigns: start one, watch its landing ellipse fill, cancel it, continue it; and the results of earlier ones.
 import { signal } from '@preact/signals';
 import { useEffect } from 'preact/hooks';
 import { mayRehearse, whyNotRehearse } from '../access/model';
@@ -29,7 +29,7 @@ import { drawTouchdowns } from './picture';
 import './style.css';
 
 const LOOK_EVERY_MS = 1000;
-const LOOKS_IDLE = 5; // while none flies only each fifth: another may have started one
+const LOOKS_IDLE = 5; // chosen: with none flying, every fifth look only, in case another user has started one
 
 const scenario = signal('campaign');
 const cases = signal('200');

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which rows of the table are shown anew when. What is in sight follows each tick. Laying out hundreds of rows takes several times as long as
-// everything else that a tick changes, so what is out of sight takes turns, and is as new as the rest once nothing changes any more.
+// Decides which rows of the table are updated at which tick. Rows in sight follow every tick. Laying out hundreds of
+// rows takes several times as long as everything else in a tick, so rows out of sight take turns; they catch up once
+// changes stop.
 import { computed, effect, signal } from '@preact/signals';
 import type { ReadonlySignal } from '@preact/signals';
 import { rowsTick } from '../run/shown';
 
-const BLOCK = 8; // ours: rows that are in sight or out of it together
-const TURNS = 8; // ours: ticks for all that is out of sight
-const REST_MS = 1000; // ours: after so long without a tick nothing changes any more
+const BLOCK = 8; // chosen: rows that are updated together
+const TURNS = 8; // chosen: ticks in which all rows out of sight are updated once
+const REST_MS = 1000; // chosen: after this long without a tick, changes have stopped
 
-/** The rows in sight, by their places; before it is known, all. */
+/** The range of rows in sight; all rows until it is known. */
 export const sight = signal({ from: 0, to: Infinity });
 
 const rest = signal(0);
@@ -21,7 +22,7 @@ effect((): (() => void) => {
 
 const blocks: ReadonlySignal<number>[] = [];
 
-/** Read by the row at this place: it is then shown anew whenever it is due. */
+/** Subscribes the row at `place` to the ticks at which it is due. */
 export function whenDue(place: number): void {
   const block = Math.floor(place / BLOCK);
   blocks[block] ??= computed(() => {
@@ -33,7 +34,7 @@ export function whenDue(place: number): void {
   void rest.value;
 }
 
-/** Of a table that scrolls in `box`. Gives how to stop. */
+/** Tracks the rows in sight of a table that scrolls in `box`. Returns a function that stops the tracking. */
 export function watchSight(box: HTMLElement, rows: HTMLTableSectionElement): () => void {
   const measure = () => {
     const row_px = rows.offsetHeight / rows.rows.length;

@@ -18,23 +18,25 @@ interface ChannelRow {
   name: string;
   alias: string;
   text: string;
-  /** Of which part of the vehicle, once it is two. */
+  /** The part of the vehicle that the value belongs to, after the vehicle has become two. */
   whose: string | undefined;
   value: string;
   unit: string;
   age: string;
   look: ChannelLook;
-  /** Those that hold now; `allLimits`: in every context. */
+  /** Limits in force now; `allLimits`: those of every context. */
   limits: string;
   allLimits: string;
   recorded: boolean;
 }
 
-const STALE_PERIODS = 3; // ours: three missed samples
+const STALE_PERIODS = 3; // chosen: three missed samples
 const STALE_LEAST_S = 3;
 const ROWS_SHOWN = 300;
 
-/** Those that match every word of `filter`, the picks of the layout first, as many as are shown. `total` counts all that match. */
+/**
+ * Channels that match every word of `filter`, up to ROWS_SHOWN, the layout's picks first. `total` counts all matches.
+ */
 export function channelsShown(
   dictionary: Dictionary,
   filter: string,
@@ -52,7 +54,10 @@ export function channelsShown(
   return { channels: matching.slice(0, ROWS_SHOWN), total: matching.length };
 }
 
-/** `context`: the state of EDL at `cutoff`. `lost`: nothing comes, whatever age the clocks say that stand still with it. */
+/**
+ * The row of one channel. `context`: the state of EDL at `cutoff`. `lost`: there is no connection, so the clocks and
+ * ages stand still.
+ */
 export function channelRow(
   store: RunStore | undefined,
   channel: DictionaryChannel,
@@ -105,12 +110,12 @@ function isStale(
 ): boolean {
   if (lost && cutoff === Infinity) return true;
   const period = channel.expectedRateHz > 0 ? 1 / channel.expectedRateHz : 1;
-  // What is held of the past is thinned: between two samples of it nothing can be said.
+  // The history held is thinned: nothing is known between two of its samples.
   const held_s = cutoff === Infinity ? 0 : (store?.spacing(channel.id) ?? 0);
   return age > Math.max(STALE_LEAST_S, STALE_PERIODS * Math.max(period, held_s));
 }
 
-/** "◌ 41 s": how old what a channel said last is, where it does not say what is now. For every figure, by the rule of the table. */
+/** "◌ 41 s": the age of a channel's last sample if it is stale. All figures use this rule of the table. */
 export function staleWords(
   store: RunStore | undefined,
   channel: DictionaryChannel | undefined,

@@ -13,7 +13,7 @@ interface Clock {
   id: string;
 }
 
-/** What is seen on Earth now, and when it happened at Mars: one instant on every clock. */
+/** The instant whose signal reaches Earth now, on every clock: Mars, Earth and spacecraft. */
 export function clocksOf(store: RunStore, past: number | undefined): { entry: string; others: Clock[] } {
   const clocks = store.clocks;
   const e_s = past ?? store.seenE;
@@ -32,12 +32,15 @@ export function clocksOf(store: RunStore, past: number | undefined): { entry: st
   return { entry: fromEntry(store.entryKnown ? e_s : NaN, { hours: true }), others };
 }
 
-/** Until when a command must leave Earth, by the clock on top, to come before the next timepoint of the plan that one can still reach; undefined `next`: none can. */
+/**
+ * The latest time at which a command can leave Earth and still precede a planned timepoint, by the clock from entry.
+ * `next` is undefined if no such timepoint is left.
+ */
 interface LatestSend {
   next: { name: string; at: string; left_s: number } | undefined;
 }
 
-/** As the ground has it; undefined where it has no clocks. */
+/** The ground's value; undefined if the run has no clocks. */
 export function latestSend(store: RunStore): LatestSend | undefined {
   const { clocks } = store;
   if (!clocks?.ert) return undefined;
@@ -60,7 +63,7 @@ export interface LinkLine {
   detail: string;
 }
 
-/** Without a connection nothing is known of what a link does now: only of a past view it still is. */
+/** Without a connection the present state of a link is unknown; a past view still knows it. */
 export function linksOf(store: RunStore, cutoff: number, lost = false): LinkLine[] {
   return [...store.links].map(([link, changes]) => {
     if (lost && cutoff === Infinity && store.going)
@@ -77,7 +80,10 @@ export function linksOf(store: RunStore, cutoff: number, lost = false): LinkLine
 
 const FEW = 3;
 
-/** For the header: what does not arrive, or does not stay. Beyond a few, the orbiters' links are one entry that says how many are up. */
+/**
+ * The links for the header: those that do not arrive or are not stable. Beyond a few, the orbiters' links become one
+ * entry with the number that are up.
+ */
 export function headerLinks(store: RunStore, cutoff: number, lost = false): LinkLine[] {
   const fault = store.run.archiveFault;
   return [
@@ -125,7 +131,7 @@ interface Badge {
   detail: string;
 }
 
-/** What cannot be mistaken: which run this is, where it happens, and whether it is happening. */
+/** Which run this is, where it happens, and whether it is live. */
 export function badgeOf(
   store: RunStore | undefined,
   past: { from: number; to: number } | undefined,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The header: which run, what time it is, what is connected.
+// The header: run, clocks and connections.
 import { LINK_STATUS, STATUS } from '../design/status';
 import { inWords } from '../run/dictionary';
 import { isWorst } from '../run/limits';
@@ -25,7 +25,7 @@ function Link({ line, testId }: { line: LinkLine; testId: string }) {
   );
 }
 
-/** Whether all that is shown is now, and all that there is: never cut off. */
+/** Connection and completeness of the data shown; never cut off. */
 function Stream({ line, through }: { line: LinkLine; through: number | undefined }) {
   return (
     <div class={`link link-stream link-${line.look}`} data-testid="stream-state">
@@ -44,7 +44,10 @@ function Stream({ line, through }: { line: LinkLine; through: number | undefined
   );
 }
 
-/** How many stand, the worst of it, and how many no one has looked at. Red only where one of them is of the worst kind, as anywhere else. */
+/**
+ * The number of alarms, the worst of them, and the number unacknowledged. Red only for an alarm of the worst kind, as
+ * everywhere.
+ */
 function AlarmCount({ severities, waiting, worst }: { severities: string[]; waiting: number; worst: boolean }) {
   if (severities.length === 0 && waiting === 0) return null;
   return (

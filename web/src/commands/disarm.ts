@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Another run, or the past, is looked at: what was armed is taken back, for a name typed to one vehicle must never send to another.
+// Disarms commands and files when another run or the past is shown: a name typed for one vehicle must not send to
+// another.
 import { effect, untracked } from '@preact/signals';
 import { pastRange, store } from '../run/shown';
 import { disarmFile } from './file';

@@ -98,7 +98,7 @@ describe('sending a command file', () => {
   it('goes by a dry run, arming and typed names, and sends once', async () => {
     server.routes[route] = { json: { accepted: true, reason: '', commands: [reply(), reply()] } };
     await forwardFile();
-    expect(stage.value).toBe('review'); // the ground has said nothing yet
+    expect(stage.value).toBe('review'); // the ground has not answered yet
     await tryFile();
     await forwardFile();
     expect([stage.value, sent().length]).toEqual(['armed', 0]);

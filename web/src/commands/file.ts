@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The state of a command file: read, tried out while it is looked at, armed where it must be, sent once.
+// The state of a command file: read, tried out while shown, armed where needed, sent once.
 import { computed, signal } from '@preact/signals';
 import { learnAccess } from '../access/model';
 import { Refused, isOpen, wordsFor } from '../run/api';
@@ -19,13 +19,13 @@ export const file = computed(() => (text.value.trim() === '' ? undefined : readF
 export const commands = computed(() => (file.value && 'commands' in file.value ? file.value.commands : []));
 export const hazardous = computed(() => (dictionary.value ? hazardousIn(commands.value, dictionary.value) : []));
 
-/** The ground's answer to exactly what is shown; `problem`: why there is none. */
+/** The ground's answer to the commands as shown; `problem`: why there is none. */
 export const tried = signal<{ of: string; answer?: SequenceAnswer; problem?: string } | undefined>(undefined);
-const looks = signal(0); // counts beginnings to look at it: an answer is to one of them
+const looks = signal(0); // counts openings of the form; an answer belongs to one of them
 const key = () => JSON.stringify([looks.value, store.value?.id, uplink.value.controller, commands.value]);
 export const triedNow = computed(() => (tried.value?.of === key() ? tried.value : undefined));
 
-/** Nothing is read while one is sent: the answer is to what stands there. */
+/** Reads a file. Ignored while a file is sent, because the answer belongs to the displayed one. */
 export function read(typed: string): void {
   if (stage.value === 'sending') return;
   text.value = typed;
@@ -34,12 +34,13 @@ export function read(typed: string): void {
   outcome.value = undefined;
 }
 
-const ANSWER_WITHIN_MS = 60_000; // ours: up to a hundred commands are encoded and checked one by one, after whatever else the gateway has to do
+// chosen: a hundred commands are encoded and checked one by one, behind the gateway's other work
+const ANSWER_WITHIN_MS = 60_000;
 
 const isAnswer = (answer: unknown): answer is SequenceAnswer =>
   Array.isArray((answer as SequenceAnswer | null | undefined)?.commands);
 
-/** An answer that says no is an answer, too. */
+/** Asks the ground. A refusal is an answer too. */
 async function ask(run: RunStore, dryRun: boolean): Promise<SequenceAnswer> {
   try {
     const answer = await change<unknown>(
@@ -57,7 +58,7 @@ async function ask(run: RunStore, dryRun: boolean): Promise<SequenceAnswer> {
 
 let trying = false;
 
-/** One question at a time: while one is under way the next round asks. */
+/** Asks for a dry run of the file. One request at a time; otherwise the next round asks. */
 export async function tryFile(): Promise<void> {
   const run = store.value;
   if (trying || !run || commands.value.length === 0 || stage.value === 'sending') return;
@@ -77,7 +78,9 @@ export async function tryFile(): Promise<void> {
   if (of === key()) tried.value = { of, ...found };
 }
 
-/** One step on: armed where something hazardous is in it, then sent. Only what the ground has said yes to. */
+/**
+ * Takes one step: arms the file if it has a hazardous command, then sends it. Only a file that the ground has accepted.
+ */
 export async function forwardFile(): Promise<void> {
   const run = store.value;
   if (stage.value === 'sending' || !run || !triedNow.value?.answer?.accepted) return;
@@ -102,8 +105,9 @@ export async function forwardFile(): Promise<void> {
           good: false,
           text: `refused: ${answer.reason}; ${numbers.length > 0 ? `taken was ${numbers.map((number) => `#${number}`).join(', ')}` : 'nothing was sent'}`,
         };
-    if (numbers.length > 0) text.value = ''; // the next Enter must not send them a second time
-    if (!answer.accepted) void learnAccess().catch(() => undefined); // as of one command: rights may have been taken away in the middle
+    if (numbers.length > 0) text.value = ''; // so that another Enter does not send them again
+    // the user's rights may have been withdrawn meanwhile
+    if (!answer.accepted) void learnAccess().catch(() => undefined);
   } catch (error) {
     const said = wordsFor(error);
     const open = isOpen(error);
@@ -116,7 +120,7 @@ export async function forwardFile(): Promise<void> {
         : `${said}${error instanceof Refused && error.status === 0 ? '' : ': whether it was taken is not known'}; the history below will say`,
     };
     if (open)
-      text.value = ''; // the next Enter must not be a second one
+      text.value = ''; // so that another Enter does not send them again
     else void learnAccess().catch(() => undefined);
   }
   stage.value = 'review';
@@ -128,9 +132,9 @@ export function backFile(): void {
   typedNames.value = '';
 }
 
-/** As of one command: what the ground said was of one run as it stood then. */
+/** Disarms the file and drops the ground's answer, which belonged to one run at one time. */
 export function disarmFile(another = false): void {
   looks.value += 1;
-  if (another) outcome.value = undefined; // its numbers are of the other run
+  if (another) outcome.value = undefined; // its numbers belong to the other run
   backFile();
 }

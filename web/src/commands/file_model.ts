@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// A command file: what it says, and what is sent of it. Pure; the same JSON as `aeolis send` and POST /runs/{run}/sequences take.
+// A command file: its contents and the request made from it. Pure; the JSON of `aeolis send` and POST
+// /runs/{run}/sequences.
 import type { Dictionary } from '../run/dictionary';
 import { isHazardous } from './model';
 
-/** As the file has it: its own words for arguments, hold, release_at and the rest go to the server as they are. */
+/** A command as the file has it. Its arguments, hold, release_at and the rest go to the server unchanged. */
 interface FileCommand {
   command: string;
   [field: string]: unknown;
 }
 
-/** A reply as the server's JSON has it. */
+/** A reply in the server's JSON. */
 export interface FileReply {
   accepted: boolean;
   reason: string;
-  command: string; // its number
+  command: string; // its number in the run
   octets: string;
   arguments: string;
   leaves: string;
@@ -28,9 +29,9 @@ export interface SequenceAnswer {
   commands: FileReply[];
 }
 
-const COMMANDS_MAX = 100; // the server takes no more
-export const FILE_OCTETS_MAX = 200_000; // ours: a hundred commands are far shorter
-/** Chosen or pasted. */
+const COMMANDS_MAX = 100; // the server's limit
+export const FILE_OCTETS_MAX = 200_000; // chosen: a hundred commands are far shorter
+/** Reads the text of a file, chosen or pasted. */
 export const TOO_LONG = `a command file has at most ${COMMANDS_MAX} commands and ${FILE_OCTETS_MAX / 1e6} MB`;
 
 export function readFile(text: string): { commands: FileCommand[] } | { problem: string } {
@@ -61,7 +62,7 @@ export function readFile(text: string): { commands: FileCommand[] } | { problem:
   return { commands: commands as FileCommand[] };
 }
 
-/** The hazardous ones, in their order: each must be typed. */
+/** Names of the hazardous commands, in order; each must be typed. */
 export function hazardousIn(commands: readonly FileCommand[], dictionary: Dictionary): string[] {
   return commands.flatMap(({ command }) => {
     const known = dictionary.command(command);
@@ -69,15 +70,15 @@ export function hazardousIn(commands: readonly FileCommand[], dictionary: Dictio
   });
 }
 
-/** Whether what was typed is their names, in their order. */
+/** Whether the typed text is these names, in order. */
 export function confirms(typed: string, hazardous: readonly string[]): boolean {
   const words = typed.trim().toUpperCase().split(/\s+/);
   return words.length === hazardous.length && words.every((word, i) => word === hazardous[i]);
 }
 
 /**
- * What is asked for. Arming and typed names are the controller's here and now, never the file's own; who asks is filled in where the
- * file does not say it. `confirmed`: those that were armed and typed, or for a dry run would be.
+ * The request to the server. Arming and typed names are the controller's, never the file's own. The controller's name
+ * is filled in where the file lacks one. `confirmed`: the commands that were armed and typed, or would be in a dry run.
  */
 export function sequenceOf(
   commands: readonly FileCommand[],

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A command file in the panel of commands: chosen or pasted, each of its commands with the ground's word on it, then one arming and one sending.
+// A command file in the command panel: chosen or pasted, each command with the ground's answer, then one arming and one
+// sending.
 import { signal } from '@preact/signals';
 import { useEffect, useLayoutEffect, useRef } from 'preact/hooks';
 import { STATUS } from '../design/status';
@@ -23,10 +24,10 @@ import {
 import { FILE_OCTETS_MAX, TOO_LONG } from './file_model';
 import type { FileReply } from './file_model';
 
-const TYPED_MS = 150; // ours: after the last key
-const AGAIN_MS = 1000; // ours: as the review of one command
+const TYPED_MS = 150; // chosen: delay after the last key
+const AGAIN_MS = 1000; // chosen: as for the review of one command
 
-const open = signal(false); // nothing is asked of the ground for what nobody looks at
+const open = signal(false); // the ground is asked only while the form is open
 
 async function take(chosen: File | undefined): Promise<void> {
   if (!chosen) return;
@@ -34,7 +35,7 @@ async function take(chosen: File | undefined): Promise<void> {
   else read(await chosen.text());
 }
 
-/** What the ground says of one; nothing when it did not come so far. */
+/** The ground's answer to one command; empty if the check did not reach it. */
 function word(reply: FileReply | undefined) {
   if (!reply) return <td class="unknown">{STATUS.unknown.shape} not looked at</td>;
   if (!reply.accepted) return <td class="missing">✖ {reply.reason}</td>;
@@ -161,7 +162,7 @@ function Opened() {
   const box = useRef<HTMLTextAreaElement>(null);
   const was = useRef(stage.value);
   useLayoutEffect(() => {
-    // what had the focus is gone: the keyboard goes on where the work does
+    // The focused element is gone: move the focus to where the work continues.
     if (was.current !== 'review' && stage.value === 'review' && document.activeElement === document.body) {
       (text.value === '' ? box.current : document.querySelector<HTMLElement>('[data-testid="file-forward"]'))?.focus();
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What waits to leave, with what can be done about it; and every command of the run, each stage with all that was said of it.
+// Waiting commands with the actions on them, and all commands of the run, each stage with its evidence.
 import { signal } from '@preact/signals';
 import { STAGE_LOOKS } from '../design/status';
 import type { CommandList } from '../gen/aeolis/v1/run_pb';
@@ -11,8 +11,8 @@ import { act, uplink } from './line';
 import { newestEvidence, readBackOf, stageCells, waitingCommands } from './model';
 import type { StageCell } from './model';
 
-const HISTORY_SHOWN = 12; // ours: each has eight stages; older ones come by as many
-/** How many of which run. */
+const HISTORY_SHOWN = 12; // chosen: each has eight stages; as many more are shown at each request
+/** The number of commands shown, and of which run. */
 const shown = signal({ run: 0, commands: HISTORY_SHOWN });
 
 export function Queue() {
@@ -69,7 +69,7 @@ export function Queue() {
 }
 
 const opened = signalOfRun<number | undefined>(undefined);
-/** Octets are not on the stream. */
+/** Asks for the octets of a command, which the stream does not carry. */
 const octets = signal<{ run: number; of: Map<number, string> } | undefined>(undefined);
 
 async function toggle(command: number): Promise<void> {
@@ -80,7 +80,7 @@ async function toggle(command: number): Promise<void> {
     const list = await ask<CommandList>('commands', `/runs/${run.id}/commands`);
     octets.value = { run: run.id, of: new Map(list.commands.map((each) => [Number(each.command), each.octets])) };
   } catch {
-    // The line of octets says that they are not known.
+    // The line of octets then says that they are not known.
   }
 }
 

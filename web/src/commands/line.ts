@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The state of the command line, and its three keys: Enter goes one step on, Esc one step back, arrows choose.
+// The state of the command line and its three keys: Enter one step forward, Esc one step back, arrows choose.
 import { computed, signal } from '@preact/signals';
 import { learnAccess } from '../access/model';
 import type { CommandReply } from '../gen/aeolis/v1/run_pb';
@@ -15,12 +15,12 @@ export const confirmation = signal('');
 export const choiceIndex = signal(0);
 export const message = signal<{ good: boolean | undefined; text: string } | undefined>(undefined);
 const chosenName = signal<string | undefined>(undefined);
-/** What is typed into the form; the line's own name=value come first. */
+/** Text typed into the form; name=value on the line takes precedence. */
 export const formText = signal<ReadonlyMap<string, string>>(new Map());
 export const uplink = signal<UplinkText>(AT_ONCE);
 
 export const typed = computed(() => readLine(line.value));
-/** Set once the line names a command and goes on with its arguments. */
+/** Set once the line names a command and continues with its arguments. */
 export const inArguments = computed(() =>
   dictionary.value ? argumentOffers(dictionary.value, line.value) : undefined,
 );
@@ -38,7 +38,7 @@ export const fields = computed(() => {
     : [];
 });
 
-/** What would be sent, or why nothing can be. */
+/** The command that would be sent, or why there is none. */
 const intent = computed<CommandIntent | { problem: string } | undefined>(() => {
   const command = chosen.value;
   if (!command) return undefined;
@@ -51,16 +51,19 @@ const intent = computed<CommandIntent | { problem: string } | undefined>(() => {
 export const problemNow = computed(() =>
   intent.value && 'problem' in intent.value ? intent.value.problem : undefined,
 );
-/** Changes when what would be sent does, or where to. */
+/** Changes when the command to be sent or its run changes. */
 export const intentKey = computed(() => JSON.stringify([store.value?.id, pastRange.value !== undefined, intent.value]));
 
-/** The server's answer to a dry run of what is shown: nothing is sent by it. */
+/** The server's answer to a dry run of the command as shown; nothing is sent. */
 const preview = signal<{ of: string; reply: CommandReply } | undefined>(undefined);
 export const previewNow = computed(() => (preview.value?.of === intentKey.value ? preview.value.reply : undefined));
 
 let asked: { of: string; answer: Promise<CommandReply | undefined> } | undefined;
 
-/** Asks what would happen if it were armed, confirmed and sent now; of the same once at a time, so that no questions stand before the command itself. Without connection, or with a problem of ours, nothing is asked. */
+/**
+ * Asks for a dry run of the command as if armed, confirmed and sent now. The same request is under way at most once, so
+ * that no queue forms ahead of the command itself. Without a connection, or with an invalid form, nothing is asked.
+ */
 export async function tryOut(): Promise<CommandReply | undefined> {
   const [wanted, of, command] = [intent.value, intentKey.value, chosen.value];
   if (!wanted || 'problem' in wanted || !command) return undefined;
@@ -74,7 +77,8 @@ export async function tryOut(): Promise<CommandReply | undefined> {
   asked = one;
   const reply = await one.answer;
   if (asked === one) asked = undefined;
-  if (of === intentKey.value) preview.value = reply && { of, reply }; // without one the header says that there is no connection; an old answer must not stand
+  // without a reply an old answer must not stay; the header reports the lost connection
+  if (of === intentKey.value) preview.value = reply && { of, reply };
   return reply;
 }
 
@@ -103,12 +107,12 @@ export function choose(name: string): void {
   confirmation.value = '';
   formText.value = new Map();
   uplink.value = { ...AT_ONCE, controller: uplink.value.controller };
-  preview.value = undefined; // one of before says nothing of now
+  preview.value = undefined; // an earlier answer does not apply
   step.value = 'review';
   message.value = undefined;
 }
 
-/** Puts what is offered into the line; false when that changes nothing. */
+/** Completes the line with the offered text. False if the line does not change. */
 export function complete(): boolean {
   const [before, within] = [line.value, inArguments.value];
   if (within) {
@@ -126,7 +130,7 @@ export function complete(): boolean {
   return line.value !== before;
 }
 
-/** One step on. Returns nothing; what happened stands in `step` and `message`. */
+/** Takes one step forward. `step` and `message` hold the result. */
 export async function forward(): Promise<void> {
   const command = chosen.value;
   if (step.value === 'type') {
@@ -154,7 +158,7 @@ export async function forward(): Promise<void> {
   const wasArmed = step.value === 'armed';
   const sent = line.value;
   const done = () => {
-    if (line.value === sent) line.value = ''; // what was typed meanwhile is the next
+    if (line.value === sent) line.value = ''; // text typed meanwhile is the next command
   };
   step.value = 'sending';
   message.value = { good: undefined, text: `${command.name}: sending` };
@@ -167,24 +171,24 @@ export async function forward(): Promise<void> {
         }
       : { good: false, text: `${command.name} refused: ${reply.reason}; nothing was sent` };
     if (reply.accepted) done();
-    else void learnAccess().catch(() => undefined); // rights may have been taken away in the middle
+    else void learnAccess().catch(() => undefined); // the user's rights may have been withdrawn meanwhile
   } catch (error) {
     message.value = { good: false, text: `${command.name}: ${error instanceof Error ? error.message : String(error)}` };
-    if (error instanceof OutcomeUnknown) done(); // the next Enter must not be a second one
+    if (error instanceof OutcomeUnknown) done(); // so that another Enter does not send it again
   }
   step.value = 'type';
   chosenName.value = undefined;
   confirmation.value = '';
   if (document.activeElement === document.body || document.activeElement?.closest('[data-testid="panel-commands"]'))
-    openCommandLine(); // who went on elsewhere is left there
+    openCommandLine(); // a user who works elsewhere keeps the focus there
 }
 
-/** What leaves has been shown as it leaves: only on the ground's answer to exactly this is Enter a yes. */
+/** Why Enter does not send: a command leaves only after the ground has answered exactly what is shown. */
 const notReviewed = () =>
   whyNotSent() ??
   'the ground has not answered yet what would become of it: nothing was sent; read it, then press Enter';
 
-/** Not while it is known that it would be refused, nor while nothing is known: an armed command is one that can be sent. */
+/** Arms the command, unless the ground refuses it or has not answered. */
 async function arm(): Promise<void> {
   const of = intentKey.value;
   const reply = await tryOut();
@@ -201,7 +205,7 @@ async function arm(): Promise<void> {
   message.value = undefined;
 }
 
-/** On a command that waits. */
+/** Acts on a waiting command. */
 export async function act(number: number, action: QueueAction): Promise<void> {
   const done = { release: 'released', hold: 'held', cancel: 'cancelled', approve: 'approved' }[action];
   try {
@@ -232,12 +236,15 @@ export function back(all = false): void {
   }
 }
 
-/** What the ground said was of one run as it stood then: when another or the past is looked at nothing stays armed, and for another run nothing reviewed. */
+/**
+ * Disarms the command when another run or the past is shown, because the ground's answer belonged to one run at one
+ * time. For another run the review ends too.
+ */
 export function disarm(another: boolean): void {
   const armed = step.value === 'armed' ? chosen.value?.name : undefined;
   preview.value = undefined;
   if (step.value === 'armed' || (step.value === 'review' && another)) back(another);
-  else if (another) message.value = undefined; // its number is of the other run
+  else if (another) message.value = undefined; // its number belongs to the other run
   if (armed !== undefined)
     message.value = { good: undefined, text: `${armed} is not armed any more: nothing was sent` };
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From what is typed to what is sent, step by step, all of it pure: what is sent is decided here and tested.
+// From typed text to the request sent, step by step. Pure: what is sent is decided and tested here.
 import type { CommandArgument } from '../gen/aeolis/v1/scenario_pb';
 import type { CommandReply, DictionaryArgument, DictionaryCommand } from '../gen/aeolis/v1/run_pb';
 import type { StageLook } from '../design/status';
@@ -9,7 +9,7 @@ import type { CommandRow, RunStore } from '../run/store';
 import { dayOfYear, readFromEntry, secondsOfDayOfYear } from '../run/time';
 import type { CommandIntent } from '../stream/messages';
 
-/** "type": choosing; "review": all is shown, nothing is sent; "armed": a hazardous one waits for its name. */
+/** "type": choosing; "review": all is shown, nothing is sent; "armed": a hazardous command waits for its name. */
 export type Step = 'type' | 'review' | 'armed' | 'sending';
 
 interface Typed {
@@ -28,7 +28,7 @@ export function readLine(text: string): Typed {
   return { words, given };
 }
 
-/** Commands that have every typed word, the best first: "do edl" finds EDL_DO_EDL. */
+/** Commands that match every typed word, best match first: "do edl" finds EDL_DO_EDL. */
 export function candidates(dictionary: Dictionary, words: readonly string[]): DictionaryCommand[] {
   const wanted = words.flatMap((word) => word.toUpperCase().split('_')).filter((word) => word !== '');
   const scored: [number, DictionaryCommand][] = [];
@@ -48,8 +48,8 @@ export function candidates(dictionary: Dictionary, words: readonly string[]): Di
 }
 
 /**
- * What Tab can complete once the line begins with a whole command: names of arguments that are not given yet, or the values of
- * the one that is being given. `stem` is the part of the last token that stays.
+ * Completions for Tab once the line begins with a whole command: names of missing arguments, or values of the current
+ * one. `stem` is the part of the last token that stays.
  */
 export function argumentOffers(
   dictionary: Dictionary,
@@ -85,7 +85,7 @@ export function isHazardous(command: DictionaryCommand): boolean {
 
 interface Field {
   argument: DictionaryArgument;
-  text: string; // what is typed, '' when nothing is
+  text: string; // typed text; '' if none
   value: number | undefined;
   from: 'typed' | 'solution' | 'default' | 'missing';
   problem: string | undefined;
@@ -97,7 +97,7 @@ export function fieldsOf(
   solution: readonly CommandArgument[],
 ): Field[] {
   const known = new Map(solution.map((entry) => [entry.name, entry.value]));
-  // The solution belongs to a command that it can fill, not to any that shares a name with it.
+  // The solution applies only to a command that it can fill, not to every command with an argument of that name.
   const fits =
     command.arguments.length > 0 &&
     command.arguments.filter((argument) => known.has(argument.name)).length * 2 > command.arguments.length;
@@ -134,7 +134,7 @@ export function unknownNames(command: DictionaryCommand, given: ReadonlyMap<stri
   return [...given.keys()].filter((name) => !command.arguments.some((argument) => argument.name === name));
 }
 
-/** The unit of a number without one is 1 in the dictionary: beside a range it would be read as a number. */
+/** The dictionary's unit of a dimensionless number is 1; next to a range it would read as a number. */
 export const unitText = (argument: DictionaryArgument): string => (argument.unit === '1' ? '' : argument.unit);
 
 export function rangeText(argument: DictionaryArgument): string {
@@ -161,17 +161,17 @@ export function compare(value: number, relation: string, bound: number): boolean
   }
 }
 
-/** How it is to leave, as typed. */
+/** Uplink options as typed. */
 export interface UplinkText {
-  service: '' | 'AD' | 'BD'; // '': what suits
+  service: '' | 'AD' | 'BD'; // '': automatic
   releaseAt: string;
   hold: boolean;
   priority: string;
-  controller: string; // who asks
+  controller: string; // name of the person asking
 }
 export const AT_ONCE: UplinkText = { service: '', releaseAt: '', hold: false, priority: '', controller: '' };
 
-/** What is asked of the uplink: exactly this, dry run or not. */
+/** The request to the uplink, the same for a dry run. */
 export function intentOf(
   command: DictionaryCommand,
   fields: readonly Field[],
@@ -199,7 +199,10 @@ export function intentOf(
   };
 }
 
-/** Day of year, or seconds from entry as the clock on top shows them. '' is at once; undefined: it is no time. */
+/**
+ * Reads a time of departure: day of year, or seconds from entry as on the main clock. '' is at once; undefined: not a
+ * time.
+ */
 export function readReleaseAt(text: string, store: RunStore | undefined): string | undefined {
   const typed = text.trim();
   if (typed === '' || Number.isFinite(secondsOfDayOfYear(typed))) return typed.replace(/Z$/, '');
@@ -211,13 +214,13 @@ export function readReleaseAt(text: string, store: RunStore | undefined): string
 
 interface Arrival {
   arrives_e_s: number;
-  /** What it is to come before, when it must leave at the latest for that, and how long before that it does: negative, it comes too late. */
+  /** The timepoint it should precede, the latest ERT of departure for that, and the margin; negative: too late. */
   before: { name: string; leave_ert: string; slack_s: number } | undefined;
-  /** Timepoints that will be past when it is there. */
+  /** Timepoints that will have passed at its arrival. */
   tooLateFor: string[];
 }
 
-/** What the ground says of the times of a command, by the clock from entry. */
+/** The ground's times of a command, by the clock from entry. */
 export function arrivalOf(
   reply: Pick<CommandReply, 'arrives' | 'leaves' | 'latestUseful' | 'usefulBefore' | 'tooLateFor'>,
   store: RunStore,
@@ -232,13 +235,13 @@ export function arrivalOf(
   };
 }
 
-/** The server's words of a precondition, split at its value: "parameters_received == 1: is 0". */
+/** Splits the server's words of a precondition at its value: "parameters_received == 1: is 0". */
 export function conditionWords(text: string): { words: string; value: string } {
   const at = text.indexOf(': ');
   return at < 0 ? { words: text, value: '' } : { words: text.slice(0, at), value: text.slice(at + 2) };
 }
 
-/** By their numbers in the schema, as STATUSES; so that the page need not load the schema. */
+/** By their numbers in the schema, like STATUSES, so that the page need not load the schema. */
 export const STAGES = [
   'queued',
   'authorised',
@@ -258,7 +261,7 @@ export interface StageCell {
   at: string;
 }
 
-/** Every stage says what is known of it, in a past view what was known then; one never heard of is not green. */
+/** All stages with their evidence, in a past view the evidence known then. A stage without evidence is not green. */
 export function stageCells(row: CommandRow, known: (ert_s: number) => boolean = () => true): StageCell[] {
   return STAGES.map((name) => {
     const stage = row.stages.get(name)?.findLast((word) => known(word.ert_s));
@@ -268,7 +271,7 @@ export function stageCells(row: CommandRow, known: (ert_s: number) => boolean = 
   });
 }
 
-/** The last stage with something to say, in words. */
+/** The most informative stage, in words: a failure, the wait for release, else the newest. */
 export function newestEvidence(cells: readonly StageCell[]): string {
   const failed = cells.find((cell) => cell.look === 'failed');
   const waits = cells.find((cell) => cell.stage === 'released' && cell.look === 'pending');
@@ -277,7 +280,9 @@ export function newestEvidence(cells: readonly StageCell[]): string {
   return newest ? `${newest.stage}${newest.look === 'ok' ? '' : ` ${newest.look}`}: ${newest.evidence}` : '';
 }
 
-/** Those that may be sent and have not left, in the order of their numbers; `asker`: another than this one must approve it. */
+/**
+ * Commands that have not left and may still be sent, by number. `asker`: the person whose command another must approve.
+ */
 export function waitingCommands(
   store: RunStore,
 ): { row: CommandRow; evidence: string; held: boolean; asker: string | undefined }[] {
@@ -305,8 +310,9 @@ interface ReadBackLine {
 }
 
 /**
- * What was sent beside what the vehicle reports that it holds, argument by argument, where channels of one packet bear all of the
- * arguments' names; undefined where none does. `sclk`: of the report; one from before the command came on board says nothing of it.
+ * Compares the sent arguments with the vehicle's report of them, one by one. Needs one packet whose channels have the
+ * names of all arguments; otherwise undefined. `sclk`: time of the report, which counts only after the command's
+ * arrival.
  */
 export function readBackOf(
   row: CommandRow,
@@ -322,7 +328,8 @@ export function readBackOf(
   const packet = channels[0]?.packet;
   if (!packet || channels.some((channel) => channel?.packet !== packet)) return undefined;
   const radiated = row.stages.get('radiated')?.at(-1)?.ert_s;
-  const since = radiated === undefined ? Infinity : store.sclkSeenAt(radiated) + 2 * store.run.lightTimeS; // when it came on board
+  // its arrival on board
+  const since = radiated === undefined ? Infinity : store.sclkSeenAt(radiated) + 2 * store.run.lightTimeS;
   const samples = channels.map((channel) => channel && store.latest(channel.id, cutoff));
   const sclk = samples[0]?.sclk;
   const known = sclk !== undefined && sclk > since;

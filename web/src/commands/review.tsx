@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What would be sent, before it is: a form from the dictionary, the server's dry run of it, and the arming of a hazardous one, in place.
+// The review of a command before it is sent: a form from the dictionary, the server's dry run, and the arming in place.
 import { useEffect, useLayoutEffect, useRef } from 'preact/hooks';
 import type { CommandReply, DictionaryCommand } from '../gen/aeolis/v1/run_pb';
 import { STATUS } from '../design/status';
@@ -23,8 +23,8 @@ import {
 import { arrivalOf, conditionWords, isHazardous, rangeText, unitText } from './model';
 import type { UplinkText } from './model';
 
-const TYPED_MS = 150; // ours: after the last key
-const AGAIN_MS = 1000; // ours: as often as the vehicle reports its status
+const TYPED_MS = 150; // chosen: delay after the last key
+const AGAIN_MS = 1000; // chosen: the rate of the vehicle's status reports
 
 interface Properties {
   command: DictionaryCommand;
@@ -243,7 +243,7 @@ function Told({ reply }: { reply: CommandReply }) {
   );
 }
 
-/** The ground's word on what stands in the form, and what it comes too late for: the first to be seen, before and while it is armed. */
+/** The ground's verdict on the form, and the timepoints it would miss; shown first, before and during arming. */
 function Verdict({ command }: { command: DictionaryCommand }) {
   const run = runNow();
   const reply = previewNow.value;
@@ -281,7 +281,7 @@ function Verdict({ command }: { command: DictionaryCommand }) {
   );
 }
 
-/** Asks again while it is looked at, for conditions change. */
+/** Repeats the dry run while the form is shown, because conditions change. */
 function DryRun({ command, onKey }: Properties) {
   const key = intentKey.value;
   useEffect(() => {
@@ -319,7 +319,7 @@ function DryRun({ command, onKey }: Properties) {
 
 const MOVED_SHOWN = 12;
 
-/** What it would move: one line, that opens; the lane of predictions has the same drawn. */
+/** The timepoints that the command would move: one line that opens. The lane of predictions draws the same. */
 function Effect({ onKey }: Pick<Properties, 'onKey'>) {
   const all = moved.value;
   if (!all) return null;

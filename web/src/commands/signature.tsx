@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who asks, where the server has no accounts to know it by; one name for commands, alarms and notes.
+// The controller's name, needed on a server without accounts. Commands, alarms and notes share it.
 import { access } from '../access/model';
 import { uplink } from './line';
 

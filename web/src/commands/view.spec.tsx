@@ -148,13 +148,14 @@ describe('what is asked of the uplink', () => {
   it('takes a time to leave as ERT or by the clock on top', () => {
     expect(readReleaseAt('', aStore())).toBe('');
     expect(readReleaseAt('2012-219T05:10:00Z', aStore())).toBe('2012-219T05:10:00');
-    expect(readReleaseAt('E-1:30', aStore())).toBe('2012-219T05:00:10.0'); // it is 05:00:00 at E-1:40
+    expect(readReleaseAt('E-1:30', aStore())).toBe('2012-219T05:00:10.0'); // E-1:40 is 05:00:00
     expect([readReleaseAt('90', aStore()), readReleaseAt('E-1:30', undefined)]).toEqual([undefined, undefined]);
   });
   it('says when it comes, by when it must leave, and what it is too late for', () => {
     const run = aRun({ lightTimeS: 60 });
     if (run.clocks) run.clocks = { ...run.clocks, sclk: 160, eS: -840, seenSclk: 100 };
-    // Received now, at 05:00:00: SCLK 100, which was SCET 04:59:00. What leaves now comes at SCLK 220, which is E-780.
+    // Now is 05:00:00: SCLK 100 is received, sent at SCET 04:59:00. A command that leaves now arrives at SCLK 220,
+    // which is E-780.
     const told = {
       leaves: '2012-219T05:00:00.000',
       arrives: '2012-219T05:01:00.000',
@@ -167,7 +168,7 @@ describe('what is asked of the uplink', () => {
       tooLateFor: ['coolant_vent'],
       before: { name: 'entry_interface', leave_ert: '2012-219T05:13:00.000', slack_s: 780 },
     });
-    // A change of an offset that comes after what it moves.
+    // A change of an offset that arrives after the timepoint that it moves.
     const late = arrivalOf(
       { ...told, latestUseful: '2012-219T04:50:00.000', usefulBefore: 'uhf_start' },
       aStore([], run),
@@ -261,7 +262,7 @@ describe('Tab', () => {
 });
 
 let heard: Extract<ToWorker, { type: 'command' }>[] = [];
-/** A worker that says nothing by itself. */
+/** A worker that sends nothing by itself. */
 function connected(): void {
   heard = [];
   useForTest(aStore(), aDictionary, (message) => {
@@ -274,7 +275,7 @@ const reply = (fields: object = {}, to = heard.at(-1)) =>
     type: 'reply',
     reply: create(CommandReplySchema, { request: BigInt(to?.request ?? 0), accepted: true, command: 7n, ...fields }),
   });
-/** The ground says yes to what was asked last. */
+/** The ground accepts the newest dry run. */
 async function answered(step: Promise<unknown>): Promise<void> {
   await Promise.resolve();
   reply();
@@ -282,7 +283,7 @@ async function answered(step: Promise<unknown>): Promise<void> {
 }
 
 describe('an answer', () => {
-  aServer(); // after a lost connection it is asked who we are
+  aServer(); // after a lost connection the page asks for the session
   beforeEach(() => connected());
   afterEach(() => {
     onMessage({ type: 'stream', state: 'connecting', attempt: 0, gaps: 0, serverVersion: '' });
@@ -384,7 +385,7 @@ describe('the command line', () => {
     root = document.createElement('div');
     document.body.append(root);
     useForTest(aStore(), aDictionary);
-    onMessage({ type: 'stream', state: 'connecting', attempt: 0, gaps: 0, serverVersion: '' }); // nobody answers
+    onMessage({ type: 'stream', state: 'connecting', attempt: 0, gaps: 0, serverVersion: '' }); // no server answers
     act(() => render(<Commands />, root));
   });
   afterEach(() => {
@@ -418,7 +419,7 @@ describe('the command line', () => {
     connected();
     await act(() => answered(forward()));
     expect(step.value).toBe('armed');
-    // What matters at that moment stands with it: why to beware, and the ground's word.
+    // Warning and the ground's answer stay in sight during arming.
     expect(root.querySelector('[data-testid="command-armed"]')?.textContent).toMatch(
       /ARMED: EDL_DO_EDL.*Starts the timeline.*It is sent once its name is typed.*Type EDL_DO_EDL/,
     );
@@ -462,7 +463,8 @@ describe('the command line', () => {
       ['type', '', undefined, null],
     );
     await act(() => forward());
-    expect([step.value, previewNow.value, heard.length]).toEqual(['review', undefined, 1]); // and needs the ground's word of that run
+    // and it needs the ground's answer for that run
+    expect([step.value, previewNow.value, heard.length]).toEqual(['review', undefined, 1]);
   });
   it('is not armed by an answer that comes when the past is looked at', async () => {
     connected();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Commands: one line with completion; below it what would be sent, what waits, and what became of all that was.
+// Commands: one line with completion; below it the review, the queue and the history.
 import type { ComponentChildren } from 'preact';
 import { mayAct } from '../access/model';
 import { Panel } from '../design/panel';
@@ -30,18 +30,18 @@ function onKey(event: KeyboardEvent): void {
   if (event.key === 'Enter') void forward();
   else if (event.key === 'Escape') back();
   else if (event.key === 'Tab' && step.value === 'type' && line.value.trim() !== '' && !event.shiftKey) {
-    if (!complete()) return; // it goes on to the next field
+    if (!complete()) return; // Tab then moves to the next field
   } else if (event.key === 'ArrowDown' && step.value === 'type')
     choiceIndex.value = Math.min((inArguments.value?.offers ?? offered.value).length - 1, choiceIndex.value + 1);
   else if (event.key === 'ArrowUp' && step.value === 'type') choiceIndex.value = Math.max(0, choiceIndex.value - 1);
-  else if (event.key !== '/' || line.value !== '') return; // the key that opens the line, pressed in it, is no text
+  else if (event.key !== '/' || line.value !== '') return; // '/' in the empty line opens it and is not text
   event.preventDefault();
   event.stopPropagation();
 }
 
 const SHOWN = 8;
 
-/** One that can be picked. The command line keeps the focus and has the keys; here is only the pointer's way. */
+/** An option to pick by pointer. The command line keeps the focus and handles the keys. */
 function Offer({ index, onPick, children }: { index: number; onPick: () => void; children: ComponentChildren }) {
   const pick = () => {
     onPick();

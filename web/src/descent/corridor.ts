@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The predicted corridor, by web/scripts/corridor.mjs: the published prediction [od137], and how far from it 12 landings
-// of the scenario "nominal_auto" came, in decades of altitude and speed.
+// The predicted corridor, written by web/scripts/corridor.mjs: the published prediction [od137], and how far 12
+// landings of the scenario "nominal_auto" strayed from it, in decades of altitude and speed.
 export interface CorridorPoint {
   e_s: number; // from entry
   altitude_m: number; // above the landing radius

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Altitude against speed, by pairs that came in one packet, and where they lie to the predicted corridor.
+// Altitude against speed, from pairs of the same packet, and their position relative to the predicted corridor.
 import type { Series } from '../run/series';
 import type { CorridorPoint } from './corridor';
 
@@ -16,11 +16,11 @@ export function pairs(altitude: Series | undefined, speed: Series | undefined, c
   const stride = Math.max(1, Math.floor(end / most));
   let j = 0;
   for (let step = 0; step * stride < end + stride - 1; ++step) {
-    const i = Math.min(step * stride, end - 1); // the newest is always among them
+    const i = Math.min(step * stride, end - 1); // the newest pair is always included
     const sclk = altitude.sclk[i] as number;
     while (j < speed.length && (speed.sclk[j] as number) < sclk) ++j;
     if (j >= speed.length) break;
-    // History is thinned a channel at a time: the partner may be a little apart.
+    // History is thinned channel by channel, so the partner may be slightly apart.
     if (Math.abs((speed.sclk[j] as number) - sclk) > 3) continue;
     const a = altitude.value[i] as number;
     const v = speed.value[j] as number;
@@ -29,16 +29,19 @@ export function pairs(altitude: Series | undefined, speed: Series | undefined, c
   return points;
 }
 
-export const LEAST_M = 5; // the descent stage stands 8 m high on its bridle at touchdown
+export const LEAST_M = 5; // chosen: at touchdown the descent stage is 8 m up, on its bridle
 export const LEAST_MPS = 0.5;
 
-/** 0 at the bottom or left, 1 at the top or right, logarithmic: the last metres get as much room as the first kilometres. */
+/**
+ * Position on an axis, 0 at the bottom or left, 1 at the top or right. Logarithmic, so that the last metres get as much
+ * room as the first kilometres.
+ */
 export function fraction(value: number, least: number, largest: number): number {
   return Math.log10(Math.max(least, value) / least) / Math.log10(largest / least);
 }
 
-const MARGIN = 1.2; // ours: twelve landings do not reach as far as all would
-const NARROWEST_DECADES = 0.03; // ours: thinner could not be seen
+const MARGIN = 1.2; // chosen: twelve landings do not reach as far as all would
+const NARROWEST_DECADES = 0.03; // chosen: a narrower corridor could not be seen
 
 export function halfWidth(point: CorridorPoint): number {
   return Math.max(NARROWEST_DECADES, point.half_decades * MARGIN);
@@ -47,8 +50,8 @@ export function halfWidth(point: CorridorPoint): number {
 export type Place = 'inside' | 'above' | 'below';
 
 /**
- * Where a point is to the corridor, by the nearest place of its middle; undefined: outside what was predicted.
- * "above" is to the side of more height or less speed.
+ * Position of a point relative to the corridor, by the nearest point of its centre line; undefined: outside the
+ * prediction. "above" is the side of more height or less speed.
  */
 export function placeIn(corridor: readonly CorridorPoint[], altitude_m: number, speed_mps: number): Place | undefined {
   const [first, last] = [corridor[0], corridor[corridor.length - 1]];
@@ -69,9 +72,9 @@ export function placeIn(corridor: readonly CorridorPoint[], altitude_m: number, 
 
 export type Box = readonly [left: number, top: number, right: number, bottom: number];
 type Pixel = readonly [x: number, y: number];
-const STEP_PX = 4; // ours: words that keep clear of a point each so many pixels keep clear of the line
+const STEP_PX = 4; // chosen: words that avoid a point every so many pixels avoid the line
 
-/** Of the way that is drawn a point each few pixels. */
+/** Points of the drawn path, one every few pixels. */
 export function wayOf(points: readonly Pixel[]): Pixel[] {
   const way: Pixel[] = [];
   for (const point of points) {
@@ -81,6 +84,6 @@ export function wayOf(points: readonly Pixel[]): Pixel[] {
   return way;
 }
 
-/** Whether the way goes by these words, and not through them. */
+/** Whether the path avoids the box of these words. */
 export const isClear = ([left, top, right, bottom]: Box, way: readonly Pixel[]): boolean =>
   !way.some(([x, y]) => x > left - STEP_PX && x < right + STEP_PX && y > top && y < bottom);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The descent in one picture that anyone understands: how high, how fast.
+// The descent in one picture: altitude against speed.
 import { Canvas } from '../draw/canvas';
 import type { Surface } from '../draw/canvas';
 import { LAYOUT } from '../layout';
@@ -24,7 +24,7 @@ const BOTTOM = 40;
 const TOP_M = 200000;
 const FASTEST_MPS = 8000;
 
-/** The picture ends at touchdown: what the descent stage does after it is not the landing. */
+/** The picture ends at touchdown; the later flight of the descent stage is not part of the landing. */
 const lastInstant = (run: RunStore | undefined, end: number) => Math.min(end, landedSclk(run));
 
 const corridorNow = () => (dictionary.value?.reply.mission === LAYOUT.predictedFor ? CORRIDOR : []);
@@ -35,7 +35,7 @@ const isFree = (box: Box, taken: readonly Box[]) =>
 interface Scales {
   x: (mps: number) => number;
   y: (m: number) => number;
-  decade_px: [number, number]; // of speed, of altitude
+  decade_px: [number, number]; // pixels per decade of speed and of altitude
 }
 
 function scalesOf(width: number, height: number): Scales {
@@ -71,7 +71,7 @@ function drawAxes({ context: c, width, height, colours }: Surface, { x, y }: Sca
   c.fillText('← slower', LEFT, bottom + 31);
 }
 
-/** The corridor is the first thing drawn and the widest: whoever sees it knows where the dot should go. */
+/** Draws the corridor first and widest, so that the expected place of the dot is obvious. */
 function drawCorridor({ context: c, width, height, colours }: Surface, { x, y, decade_px }: Scales): void {
   const corridor = corridorNow();
   const middle = corridor.map((point) => [x(point.speed_mps), y(point.altitude_m)] as const);
@@ -81,7 +81,7 @@ function drawCorridor({ context: c, width, height, colours }: Surface, { x, y, d
   middle.forEach(([px, py], i) => {
     const [ax, ay] = middle[Math.max(0, i - 1)] ?? [px, py];
     const [bx, by] = middle[Math.min(middle.length - 1, i + 1)] ?? [px, py];
-    // Across the way, in decades: what is as wide in both is not as wide in pixels.
+    // The normal to the path in decades: equal widths in decades are not equal in pixels.
     const [dx, dy] = [(bx - ax) / decade_px[0], (by - ay) / decade_px[1]];
     const half = halfWidth(corridor[i] as (typeof corridor)[number]) / (Math.hypot(dx, dy) || 1);
     sides[0]?.push([px - dy * half * decade_px[0], py + dx * half * decade_px[1]]);
@@ -104,7 +104,7 @@ function drawCorridor({ context: c, width, height, colours }: Surface, { x, y, d
   c.fill();
   c.stroke();
   c.restore();
-  // Where it should end.
+  // The expected end.
   c.lineWidth = 2;
   c.strokeStyle = colours.dim;
   for (const radius of [9, 16]) {
@@ -115,18 +115,18 @@ function drawCorridor({ context: c, width, height, colours }: Surface, { x, y, d
   c.lineWidth = 1;
 }
 
-/** Whose the figures are, once it is not the vehicle's. */
+/** The owner of the figures, once they are no longer the whole vehicle's. */
 const whoseWords = (run: RunStore | undefined) =>
   lastInstant(run, cutoff.value) < cutoff.value ? `${LAYOUT.afterLanding.whose}, the rover hangs below it` : undefined;
 
-/** How old the figures are, where they are not of now; at touchdown they are of then. */
+/** The age of stale figures. At touchdown they keep the values of that instant. */
 function staleNow(run: RunStore | undefined): string | undefined {
   if (whoseWords(run) !== undefined) return undefined;
   const of = (names: readonly string[]) => staleWords(run, dictionary.value?.pick(names), cutoff.value, isLost.value);
   return of(LAYOUT.altitude) ?? of(LAYOUT.speed);
 }
 
-/** Where the figures stand, in the corner below, and under them whose they are, or how old: as style.css has them. */
+/** The boxes of the figures in the lower corner and of the line below them (owner or age), as in style.css. */
 function figures({ context: c, width, height, colours }: Surface): Box[] {
   const figure_px = Math.min(110, Math.max(24, Math.min(height * 0.13, width * 0.09))) * 1.1;
   const whose = whoseWords(shownRun());
@@ -139,7 +139,10 @@ function figures({ context: c, width, height, colours }: Surface): Box[] {
     : [...all, [width - 36 - c.measureText(whose).width, height - bottom_px - line_px, width, height - bottom_px]];
 }
 
-/** Each phase by its name beside the corridor, where there is room: below it, else at its left, and never under the figures. Where all of these stand. */
+/**
+ * Names each phase beside the corridor where there is room: below it, else to its left, never under the figures.
+ * Returns the boxes of all words.
+ */
 function drawPhases(surface: Surface, { x, y }: Scales): Box[] {
   const { context: c, width, height, colours } = surface;
   const taken = figures(surface);
@@ -236,7 +239,7 @@ function draw(surface: Surface): void {
     c.fillText('The vehicle is above this picture, or has not told its height yet.', LEFT + 14, 30);
     return;
   }
-  const stale = staleNow(run) !== undefined; // where it was, hollow
+  const stale = staleNow(run) !== undefined; // hollow, at the last known place
   c.fillStyle = stale ? colours.panel : colours.text;
   c.strokeStyle = stale ? colours.dim : colours.page;
   c.lineWidth = 3;
@@ -251,7 +254,7 @@ function draw(surface: Surface): void {
   c.stroke();
 }
 
-/** Nothing was heard between the two: dashed, and not a trace. */
+/** Draws a gap without reception: dashed, not a trace. */
 function gap(
   c: CanvasRenderingContext2D,
   from: [number, number],
@@ -277,7 +280,7 @@ function line(c: CanvasRenderingContext2D, x1: number, y1: number, x2: number, y
   c.stroke();
 }
 
-/** Where the words of a moment may stand beside it, the best first. */
+/** Positions for the words of a moment beside it, best first. */
 const WORDS_AT = [
   [-14, -14, 'right'],
   [-18, -30, 'right'],
@@ -294,7 +297,7 @@ const WORDS_AT = [
   [16, 54, 'left'],
 ] as const;
 
-/** What begins a phase has its name before others have theirs, the newest of these first. */
+/** Order of naming: timepoints that begin a phase first, the newest of these first. */
 function rank(firing: { name: string } | undefined): number {
   const phase = LAYOUT.phases.findIndex(({ from }) => from !== undefined && from === firing?.name);
   return phase < 0 ? 0 : -phase;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Colours as eyes see them: contrast, and how far two are apart for each kind of colour vision.
+// Colour as seen: contrast, and the difference of two colours for each kind of colour vision.
 
 type Rgb = readonly [number, number, number]; // linear, 0 … 1
 
-/** Linear light of "#rrggbb" [wcag-2.2]. */
+/** Linear light of "#rrggbb", 0 … 1 [wcag-2.2]. */
 export function linear(hex: string): Rgb {
   const channel = (at: number) => {
     const part = parseInt(hex.slice(at, at + 2), 16) / 255;
@@ -16,7 +16,7 @@ function luminance([r, g, b]: Rgb): number {
   return 0.2126 * r + 0.7152 * g + 0.0722 * b;
 }
 
-/** 1 … 21 [wcag-2.2]. */
+/** Contrast ratio, 1 … 21 [wcag-2.2]. */
 export function contrast(one: string, other: string): number {
   const [a, b] = [luminance(linear(one)), luminance(linear(other))];
   return (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05);
@@ -47,7 +47,7 @@ export function seenWith(rows: readonly Rgb[], colour: Rgb): Rgb {
   ) as unknown as Rgb;
 }
 
-/** CIE 1976 colour difference; 2.3 is just noticed. */
+/** CIE 1976 colour difference; 2.3 is just noticeable. */
 export function difference(one: Rgb, other: Rgb): number {
   const [a, b] = [lab(one), lab(other)];
   return Math.hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The frame of every panel: its title, its mode, which no panel can leave out, and what stands at its right.
+// The frame of every panel: its title, its mode, which no panel can omit, and the content at its right.
 import type { ComponentChildren } from 'preact';
 import { ModeMark } from '../mode/view';
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The states a thing on the screen can be in: one shape, one colour and one word each, the same in every panel.
+// The states of things on the screen: one shape, one colour and one word each, the same in every panel.
 
 export const STATUS = {
   good: { shape: '●', token: 'good', word: 'good' },
@@ -16,24 +16,24 @@ export const STATUS = {
 } as const;
 export type Status = keyof typeof STATUS;
 
-/** Of a condition, or of anything that holds, does not, or is not known. */
+/** Look of a condition: holds, does not hold, or not known. */
 export const held = (holds: boolean | undefined): Status =>
   holds === undefined ? 'unknown' : holds ? 'holds' : 'missing';
 
-/** Of a link or of the connection. down: silent for a reason that is named; lost: it should be there. */
+/** Look of a link or of the connection. down: silent for a named reason; lost: it should be there. */
 export const LINK_STATUS = { up: 'good', down: 'quiet', lost: 'failed', unknown: 'unknown' } as const satisfies Record<
   string,
   Status
 >;
 export type LinkLook = keyof typeof LINK_STATUS;
-/** Ground's class of a silence stands first in its reason: of these two nothing that was predicted is the cause. */
+/** The ground's class of a silence begins its reason. These two classes have no predicted cause. */
 export const linkLook = (up: boolean, reason: string): LinkLook =>
   up ? 'up' : /^(unexplained|ground fault)\b/.test(reason) ? 'lost' : 'down';
 
-/** Of a silence, by its reason: as its link looked then. */
+/** Look of a silence by its reason: that of its link at the time. */
 export const silenceStatus = (reason: string) => STATUS[LINK_STATUS[linkLook(false, reason)]];
 
-/** A stage of a command: what was never heard of has no shape, and nothing is green by default. */
+/** Look of a stage of a command. A stage without evidence has no shape, and none is green by default. */
 export const STAGE_LOOKS = {
   ok: { shape: '✓', word: 'seen' },
   failed: { shape: '✖', word: 'failed' },
@@ -43,7 +43,7 @@ export const STAGE_LOOKS = {
 } as const;
 export type StageLook = keyof typeof STAGE_LOOKS;
 
-/** Of a packet or a tone that came live, against the recording. */
+/** Verdict on a live packet or tone against the recording. */
 export const VERDICTS = {
   differs: { status: 'failed', words: 'differs', means: 'live and recording have other octets for the same packet' },
   missing_in_recording: {

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Axes: steps that people count in, and the way from seconds to pixels.
+// Axes: round steps, and the conversion from seconds to pixels.
 
 const TIME_STEPS_S = [
   0.1, 0.2, 0.5, 1, 2, 5, 10, 15, 30, 60, 120, 180, 300, 600, 1800, 3600, 7200, 21600, 43200, 86400,
 ];
 
-/** The least step in seconds that gives no more than `most` ticks over `span_s`. */
+/** The smallest step in seconds that gives at most `most` ticks over `span_s`. */
 export function timeStep(span_s: number, most: number): number {
   return TIME_STEPS_S.find((step) => span_s / step <= most) ?? 86400;
 }
 
-/** 1, 2, 5 × a power of ten. */
+/** The smallest 1, 2 or 5 × a power of ten. */
 export function valueStep(span: number, most: number): number {
   const raw = span / Math.max(1, most);
   const power = 10 ** Math.floor(Math.log10(raw));
@@ -24,7 +24,7 @@ export function ticks(from: number, to: number, step: number): number[] {
   return all;
 }
 
-/** "E+3:30", "E−10:00", "E+0:01.5": short, for axes. */
+/** "E+3:30", "E−10:00", "E+0:01.5": short labels for axes. */
 export function axisTime(e_s: number, step_s: number): string {
   const sign = e_s < 0 ? '−' : '+';
   const tenths = Math.round(Math.abs(e_s) * 10);
@@ -36,15 +36,15 @@ export function axisTime(e_s: number, step_s: number): string {
     : `E${sign}${minutes}:${seconds}`;
 }
 
-/** "+3:30", "−0:10", "E" at entry: for a plot, where every letter costs a tick. */
+/** "+3:30", "−0:10", "E" at entry: labels for a plot, where every letter costs a tick. */
 export function shortTime(e_s: number, step_s: number): string {
   return Math.abs(e_s) < step_s / 2 ? 'E' : axisTime(e_s, step_s).slice(1);
 }
 
-const CHARACTER_PX = 6.7; // of the 11 px mono of axes
+const CHARACTER_PX = 6.7; // of the axes' 11 px mono
 const BETWEEN_PX = 14;
 
-/** The least step whose short labels stand beside each other in `wide_px`. */
+/** The smallest step whose short labels fit side by side in `wide_px`. */
 export function shortStep(from_e_s: number, to_e_s: number, wide_px: number): number {
   return (
     TIME_STEPS_S.find((step) => {
@@ -54,7 +54,7 @@ export function shortStep(from_e_s: number, to_e_s: number, wide_px: number): nu
   );
 }
 
-/** "6 000", "−0.25": as long as it must be, in no one's language. */
+/** "6 000", "−0.25": the shortest exact text, independent of locale. */
 export function axisNumber(value: number): string {
   const [whole = '', part] = String(Number(Math.abs(value).toPrecision(12))).split('.');
   return `${value < 0 ? '−' : ''}${/^\d+$/.test(whole) ? whole.replace(/\B(?=(\d{3})+$)/g, '\u2009') : whole}${part === undefined ? '' : `.${part}`}`;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A canvas that fills its box, sharp on every screen, drawn by the loop when its key has changed.
+// A canvas that fills its box, sharp on every screen. The loop redraws it when its key has changed.
 import { useLayoutEffect, useRef } from 'preact/hooks';
 import { onDraw } from './loop';
 import { palette } from './palette';
@@ -12,21 +12,21 @@ export interface Surface {
   colours: Palette;
 }
 
-/** By how much the page is larger on a wall: what the mouse says is in the screen's pixels, what is laid out in the page's. */
+/** The magnification of the page on a wall. Mouse events are in screen pixels, the layout in page pixels. */
 export const grownBy = (element: Element): number =>
   (element as Element & { currentCSSZoom?: number }).currentCSSZoom ?? 1;
-/** The screen's pixels for one of the page's. */
+/** Screen pixels per page pixel. */
 const sharpness = (element: Element): number => (window.devicePixelRatio || 1) * grownBy(element);
 
 interface Properties {
-  /** Changes whenever the drawing would. */
+  /** Changes whenever the drawing would change. */
   keyOf: () => string;
   draw: (surface: Surface) => void;
-  /** What the picture shows, for those who do not see it. */
+  /** Description of the picture for people who cannot see it. */
   label: string;
   testId?: string;
   onPoint?: (x: number, y: number, width: number, height: number) => void;
-  /** While the mouse is over it; undefined once it has left. */
+  /** Position of the mouse over it; undefined after it has left. */
   onHover?: (x: number | undefined, width: number) => void;
   onWheel?: (x: number, width: number, delta: number) => void;
 }

@@ -1,30 +1,34 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one animation loop of the page: some 20 draws a second, numbers at 5 a second, and nothing at all while
-// nothing has changed. The browser's frame time only spaces the draws; no clock on the screen comes from it.
+// The page's only animation loop: about 20 draws a second, numbers 5 times a second, and nothing while nothing has
+// changed. The browser's frame time only spaces the draws; no clock on the screen comes from it.
 import { step } from '../replay/model';
 import { Pace } from '../run/pace';
 import { rowsTick, store, tick } from '../run/shown';
 
 const DRAW_EVERY_MS = 50;
-const FRAME_EARLY_MS = 4; // frames do not come to the millisecond
+const FRAME_EARLY_MS = 4; // frames are not exact to the millisecond
 const NUMBERS_EVERY_MS = 200;
-const FRAME_BUDGET_MS = 10; // ours: what is not drawn by then is at the next frame, and a key is answered in between
+const FRAME_BUDGET_MS = 10; // chosen: remaining drawings wait for the next frame, so that a key is answered in between
 
-/** Looks at what there is to draw and how large, and gives how to draw it; nothing where what is shown is current. */
+/**
+ * Compares the wanted drawing with the drawn one. Returns a function that draws, or undefined if the drawing is
+ * current.
+ */
 type Look = () => (() => void) | undefined;
 
 const drawings = new Set<Look>();
-const draws = new Pace(45, 25); // samples come 20 times a second: a pace no faster than theirs never makes up for one that was late
+// samples arrive 20 times a second; a pace no faster than that would never catch up after a late one
+const draws = new Pace(45, 25);
 let lastLook = -Infinity;
-let drawnSamples = 0; // a run of which no sample has come is nothing to make the first one wait for
+let drawnSamples = 0; // 0 for a run without samples, so that the first one is drawn at once
 let lastNumbers = 0;
 let lastStep = 0;
 let shownVersion = -1;
 let shownStore: unknown;
 let rowsDue = false;
-let undrawn: { look: Look; draw: () => void }[] = []; // of the draw that is under way
+let undrawn: { look: Look; draw: () => void }[] = []; // remaining drawings of the current draw
 
-/** Called at the next frame and then at each draw. Returns how to stop. */
+/** Registers a drawing for the next frame and each later draw. Returns a function that removes it. */
 export function onDraw(look: Look): () => void {
   drawings.add(look);
   lastLook = -Infinity;
@@ -41,7 +45,8 @@ function frame(now: number): void {
   if (undrawn.length === 0) lookForNew(now);
   const drew = undrawn.length > 0;
   drawSome();
-  // Numbers take as long as drawings, and the rows of a long table as long again: each has a frame of its own, unless there is none.
+  // Numbers take as long as drawings, and rows of a long table as long again, so each has a frame of its own if there
+  // is one.
   const since_ms = now - lastNumbers;
   if (rowsDue && (!drew || since_ms > DRAW_EVERY_MS)) {
     rowsDue = false;
@@ -51,7 +56,10 @@ function frame(now: number): void {
   }
 }
 
-/** A sample that has just come is drawn at the next frame, unless one was drawn a moment ago; whatever else may have changed is looked at as often. */
+/**
+ * Collects drawings that are due. A new sample is drawn at the next frame unless one was drawn a moment ago; other
+ * changes are checked at the same rate.
+ */
 function lookForNew(now: number): void {
   const samples = store.peek()?.samplesDrawn ?? 0;
   const fresh = samples !== drawnSamples;
@@ -59,7 +67,7 @@ function lookForNew(now: number): void {
   drawnSamples = samples;
   lastLook = now;
   if (fresh) draws.took(now);
-  // All look before the first draws: the page is laid out once, and not again for each that put something into it.
+  // All drawings measure before the first one draws, so that the page is laid out once.
   undrawn = [...drawings].flatMap((look) => {
     const draw = look();
     return draw ? [{ look, draw }] : [];
@@ -70,7 +78,7 @@ function drawSome(): void {
   const until = performance.now() + FRAME_BUDGET_MS;
   do {
     const next = undrawn.shift();
-    if (next && drawings.has(next.look)) next.draw(); // what is no longer shown is not drawn
+    if (next && drawings.has(next.look)) next.draw(); // a drawing that is no longer shown is skipped
   } while (undrawn.length > 0 && performance.now() < until);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The colours of the style sheet, for canvases. Read once a theme.
+// The colours of the style sheet for canvases, read once per theme.
 
 const TOKENS = {
   text: 'text',
