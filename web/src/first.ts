@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The first line of the page: short, so that what is drawn is asked for while the rest of its script is still on its way.
+// The first script of the page. It is short, so that the plotted data are requested while the rest of the page's script
+// loads.
 import { askFirst } from './run/first_look';
 
 askFirst();

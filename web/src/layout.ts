@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The default layout: the one place that knows names of a mission. Each pick is a list of names in order of preference;
-// where the dictionary has none of them, the panel does without or takes the first channels there are.
+// The default layout, the only file that knows names of a mission. Each pick lists names in order of preference. If the
+// dictionary has none of them, the panel does without or takes the first channels.
 
 export const LAYOUT = {
   phase: ['edl_phase'],
@@ -11,7 +11,7 @@ export const LAYOUT = {
   currentTimepoint: ['timepoint_index'],
   timepointState: ['timepoint_state'],
 
-  /** Plots, from the top. `per` scales the dictionary's unit to the one shown. */
+  /** Plots from top to bottom. `per` converts the dictionary's unit to the displayed one. */
   plots: [
     { title: 'Altitude', channel: ['altitude_m'], unit: 'km', per: 1000, digits: 2 },
     { title: 'Speed', channel: ['speed_mps'], unit: 'm/s', per: 1, digits: 1 },
@@ -20,9 +20,9 @@ export const LAYOUT = {
   ],
 
   /**
-   * The strip of phases, which values of the phase channel belong to each, and when it is predicted to begin: entry by
-   * definition, the others published [od137]. `untilEntry`: belongs to it only before entry, then to the next. `from`: the
-   * timepoint with which it begins, for when only tones tell.
+   * The strip of phases: the values of the phase channel that belong to each, and its predicted beginning (entry by
+   * definition, the others published [od137]). `untilEntry`: a value that belongs to this phase before entry and to the
+   * next one after it. `from`: the timepoint that begins the phase, for when only tones are heard.
    */
   phases: [
     {
@@ -70,13 +70,17 @@ export const LAYOUT = {
         'The rover is on the ground, the descent stage has flown away. Now the recording comes down: all that could not be heard live.',
     },
   ],
-  /** The mission whose landing the predicted corridor and phases are of. */
+  /** The mission of the predicted corridor and phases. */
   predictedFor: 'MSL',
-  /** Left out of a timepoint's note where it is read as a sentence: marks of whose a number is, (H), (M) and (L), and the prediction, which has a lane. */
+  /**
+   * Parts of a timepoint's note that are left out of sentences: marks of a number's quality, (H), (M) and (L), and the
+   * prediction, which has its own lane.
+   */
   noteMarks: [/\s*\([^()]*\b[HML]\b[^()]*\)/g, /;\s*OD137 .*$/],
   /**
-   * What the vehicle compares for a timepoint or moment: shown until flight itself explains what holds it. `bound` is a channel of its
-   * own report, or a parameter that it does not report (dictionaries/msl/parameters.csv). `since`: how long the timepoint is ago.
+   * The comparison that the vehicle makes for a timepoint or moment, shown until flight itself explains what holds it.
+   * `bound` is a channel of its report, or a parameter that it does not report (dictionaries/msl/parameters.csv).
+   * `since`: the time since that timepoint.
    */
   watches: [
     { timepoint: 'heading_alignment', channel: 'speed_mps', comparison: '<=', bound: 1100 },
@@ -84,7 +88,7 @@ export const LAYOUT = {
     { timepoint: 'heatshield_separation', channel: 'speed_mps', comparison: '<=', bound: 'heatshield_speed_mps' },
     { timepoint: 'heatshield_separation', since: 'parachute_deploy', bound: 20 },
   ],
-  /** Shown first in the table of channels. */
+  /** The first rows of the table of channels. */
   channels: [
     'edl_phase',
     'altitude_m',
@@ -106,7 +110,7 @@ export const LAYOUT = {
     'nvm_used_octets',
   ],
 
-  /** What begins a landing, in words for someone who opened the page five minutes ago. `tone` says that it was taken. */
+  /** The commands that begin a landing, in words for a newcomer. `tone` reports that the command was accepted. */
   firstSteps: [
     {
       command: 'EDL_SET_PARAMETERS',
@@ -122,7 +126,7 @@ export const LAYOUT = {
     },
   ],
 
-  /** What the review of a rehearsal says of its landing: flight's own words, and where the vehicle believed to be. */
+  /** Sources for the landing in the review: flight's event, and the position by navigation on board. */
   landing: {
     event: 'TOUCHDOWN',
     position: ['nav_position_x_m', 'nav_position_y_m', 'nav_position_z_m'],
@@ -130,7 +134,7 @@ export const LAYOUT = {
   },
   /** The timepoint at which the descent picture ends. */
   landed: 'touchdown',
-  /** From then on the vehicle is two: these are of the one that flies away. */
+  /** After touchdown the vehicle is two parts; these channels belong to the one that flies away. */
   afterLanding: {
     whose: 'descent stage',
     channels: [
@@ -148,11 +152,11 @@ export const LAYOUT = {
     ],
   },
 
-  /** What people call a thing, where its name is jargon; a picture has only the short form in brackets. */
+  /** Common words for jargon. A picture shows only the short form in brackets. */
   words: { sufr: 'straighten up and fly right (SUFR)', sufr_start: 'straighten up and fly right' },
   /**
-   * What people wait for between timepoints, told by an event and a tone of that name. `before`: the timepoint that comes after it.
-   * `predicted_e_s` is published [od137].
+   * Moments between timepoints that people wait for, each announced by an event and a tone of that name. `before`: the
+   * next timepoint. `predicted_e_s` is published [od137].
    */
   moments: [
     {
@@ -169,9 +173,9 @@ export const LAYOUT = {
     },
   ],
 
-  /** Seconds from entry that the timeline shows when nothing else is chosen. */
+  /** Seconds from entry that the timeline shows by default. */
   window: { from: -60, to: 470 },
-  /** Named moments that get a label in the timeline; the others are marks only. */
+  /** Timepoints with a label in the timeline; the others have marks only. */
   labelled: [
     'coolant_vent',
     'cruise_stage_separation',

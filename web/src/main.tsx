@@ -10,16 +10,16 @@ import { dictionary } from './run/shown';
 import { onKey } from './shortcuts/model';
 import './style.css';
 
-const EMPTY_MS = 150; // chosen: without an answer by then, the page is shown empty and says so
+const EMPTY_MS = 150; // chosen: without an answer by then, the page shows itself empty and says so
 
-void begin(); // before all else: while the server answers there is time for it
+void begin(); // first of all, to use the time in which the server answers
 document.documentElement.dataset.theme = localStorage.getItem('aeolis-theme') === 'light' ? 'light' : 'dark';
 const panel = new URL(location.href).searchParams.get('panel') ?? undefined;
 window.addEventListener('keydown', onKey);
 startLoop();
 refineWhatIsLookedAt();
 
-/** Once it is known what is shown, or that somebody must log in first. */
+/** Resolves once the content is known or a log-in is needed. */
 const known = new Promise<void>(
   (resolve) =>
     void effect(() => {
@@ -27,7 +27,8 @@ const known = new Promise<void>(
     }),
 );
 
-// Built once, with what it shows, while the first look is on its way: built before, it would be built twice, and the picture would come later.
+// The page is built once, with its content, while the first look is under way. Built earlier, it would be built twice,
+// and the picture would appear later.
 const root = document.getElementById('console');
 await Promise.race([known, new Promise((resolve) => setTimeout(resolve, EMPTY_MS))]);
 if (root) render(<App panel={panel} />, root);

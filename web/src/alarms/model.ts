@@ -84,7 +84,7 @@ export function actionsOn(alarm: AlarmState): Action[] {
   ];
 }
 
-/** Sounds for new alarms that need attention, by the worst of them, for a controller who does not watch the screen. */
+/** The sound for new alarms that need attention, by the worst of them; undefined: none. */
 export function calls(before: readonly AlarmState[], after: readonly AlarmState[]): 'alarm' | 'caution' | undefined {
   const known = new Map(before.filter(wantsLook).map((alarm) => [alarm.name, alarm.worst]));
   const fresh = after.filter((alarm) => wantsLook(alarm) && known.get(alarm.name) !== alarm.worst);

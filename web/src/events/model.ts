@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Events and the explanations that belong to them, newest first.
+// Events and their explanations, newest first.
 import { SOURCES, STATUS } from '../design/status';
 import type { RunStore } from '../run/store';
 
@@ -25,7 +25,7 @@ export const LEVELS = [
   'WARNING_HI',
   'FATAL',
 ] as const;
-/** None of them says how something is known, nor that it is good: those shapes are others'. */
+/** Shapes of the levels. They are distinct from the shapes for how something is known and for "good". */
 const SHAPES: Record<string, string> = {
   FATAL: '✖',
   WARNING_HI: '▲',
@@ -45,12 +45,15 @@ interface EventFilter {
   range: { from: number; to: number } | undefined;
 }
 
-/** Verdicts that come again and again while nothing happens: the waiting panel shows the newest of them. */
+/** Verdicts that repeat while nothing happens; the waiting panel shows the newest of them. */
 const MINOR = new Set(['held', 'chosen', 'dropped']);
 
-const SAME_MOMENT_S = 1 / 16; // ours: an explanation and its event leave within a few cycles
+const SAME_MOMENT_S = 1 / 16; // chosen: an explanation and its event leave within a few cycles
 
-/** At most `most` lines, the newest of the `found`. An explanation stands with the event of its moment that it speaks of, else by itself. */
+/**
+ * The newest `most` of the matching lines. An explanation is shown with its event of the same moment, else on a line of
+ * its own.
+ */
 export function eventLines(
   store: RunStore,
   filter: EventFilter,

@@ -10,7 +10,7 @@ const from = signal<(typeof LEVELS)[number]>('ACTIVITY_LO');
 const search = signal('');
 const SHOWN = 250;
 
-/** From the search into what was found, and back out. */
+/** Moves the focus from the search into the results and back. */
 function onSearchKey(event: KeyboardEvent): void {
   if (event.key !== 'Enter' && event.key !== 'ArrowDown') return;
   event.preventDefault();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The as-flown report in words: each timepoint and event by every source that told of it, and what was silent.
+// The as-flown report in words: each timepoint and event by every source that reported it, and the silences.
 import type { AsFlownEvent, AsFlownReport, AsFlownTimepoint } from '../gen/aeolis/v1/run_pb';
 import { fromEntry } from '../run/time';
 
@@ -29,7 +29,7 @@ export function flownRow(row: AsFlownTimepoint): FlownRow {
   };
 }
 
-/** An event that flight reported, by what brought it. */
+/** Row of an event, with the sources that reported it. */
 export function flownEvent(row: AsFlownEvent) {
   return {
     name: row.name,
@@ -40,7 +40,7 @@ export function flownEvent(row: AsFlownEvent) {
   };
 }
 
-/** What the landing came to, in one sentence for people. */
+/** The outcome of the landing in one sentence. */
 export function summaryOf(report: AsFlownReport): string {
   const all = report.timepoints.length;
   const count = (known: (row: AsFlownTimepoint) => boolean) => report.timepoints.filter(known).length;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// A run as it was flown: when each timepoint came by plan, prediction, tone, UHF and recording, what flight reported between them, and what was
-// silent meanwhile.
+// A run as flown: the time of each timepoint by plan, prediction, tone, UHF and recording, the events between them, and
+// the silences.
 import type { AsFlownReport } from '../gen/aeolis/v1/run_pb';
 import { linkTitle } from '../links/model';
 import { reportOfRun } from '../run/report';
 import { pastRange, runNow } from '../run/shown';
 import { flownEvent, flownRow, silenceWords, summaryOf } from './model';
 
-const AGAIN_MS = 5000; // ours: while a run goes on; counting it is work for the archive
+const AGAIN_MS = 5000; // chosen: during a run, since the report is work for the archive
 const flown = reportOfRun<AsFlownReport>('report', 'report', AGAIN_MS);
 
 export function Flown() {

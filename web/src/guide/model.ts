@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The first five minutes: what to press now, why, and what is happening, in plain words. From opening the page to landing.
+// The guide through a first landing, from opening the page to touchdown: what to press, why, and what is happening.
 import { signal } from '@preact/signals';
 import { step as commandStep } from '../commands/line';
 import type { Step } from '../commands/model';
@@ -24,7 +24,7 @@ export function toggleGuide(): void {
   localStorage.setItem(KEY, guideShown.value ? 'shown' : 'hidden');
 }
 
-/** `key` is shown as a key, `type` as what is typed. */
+/** A step. `key` is shown as a key, `type` as text to type. */
 export interface Press {
   key?: string;
   type?: string;
@@ -35,13 +35,13 @@ interface GuideStep {
   title: string;
   why: string;
   press: Press[];
-  /** Which part of the screen is meant; it is outlined. */
+  /** The part of the screen that the step is about; it is outlined. */
   wants: 'command' | 'pace' | 'nothing';
 }
 
 export const GUIDE_STEPS = 6;
-const NEAR_ENTRY_S = -90; // ours: from here on it is worth watching
-const FAST = 20; // ours: paces above run through the landing in seconds
+const NEAR_ENTRY_S = -90; // chosen: from here on the landing is worth watching
+const FAST = 20; // chosen: a faster pace flies the landing in seconds
 
 type FirstStep = (typeof LAYOUT.firstSteps)[number];
 
@@ -100,7 +100,7 @@ export function guideStep(
       press: [{ key: 's', words: 'goes to the runs; choose one and press Enter' }],
       wants: 'nothing',
     };
-  if (mode === 'live') return undefined; // the real thing is not where one learns
+  if (mode === 'live') return undefined; // a real landing is not for learning
   if (mode === 'ended') return afterwards(run);
 
   const missing = heardOf(run, plan, until).size === 0 ? missingStep(run, words, Infinity, told.against) : undefined;
@@ -171,7 +171,7 @@ export function guideStep(
           : [{ words: `At ${pace === Infinity ? 'this pace' : `${pace}×`} it is soon there.` }],
     };
   }
-  const down = now === phases.length - 1; // nothing is left to be watched
+  const down = now === phases.length - 1; // nothing is left to watch
   const press: Press[] = paused
     ? [{ key: 'p', words: 'goes on' }]
     : down
@@ -221,7 +221,7 @@ export function guideNow(): GuideStep | undefined {
     withRecording.value,
     toldNow.value,
   );
-  // Who only looks on finds nothing to press that would be refused.
+  // An observer is not told to press what would be refused.
   const allowed = step?.wants === 'command' ? mayAct() : modeNow() !== 'rehearsal' || mayRehearse();
   return step && !allowed ? { ...step, press: [], wants: 'nothing' } : step;
 }

@@ -17,7 +17,7 @@ const at = (eS: number, fields: Partial<RunState> = {}) => {
   return run;
 };
 
-const soonPlan = aPlan.slice(1); // of which the first timepoint on the clock is still to come
+const soonPlan = aPlan.slice(1); // the first timepoint on the clock is still ahead
 
 describe('the guide', () => {
   it('leads key by key through both commands', () => {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The guide for a first landing: beside the display, never over it, and gone for good once it is put away.
+// The guide for a first landing: beside the display, never over it. Once put away it stays away.
 import { GUIDE_STEPS, guideNow, toggleGuide } from './model';
 import './style.css';
 

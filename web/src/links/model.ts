@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Each link: its state and silences as it told them, what came over it, and how much of it was damaged.
+// Each link: its reported state and silences, its traffic, and the damaged part of it.
 import type { LinkCounters, ProofReport } from '../gen/aeolis/v1/run_pb';
 import { linkLook } from '../design/status';
 import type { LinkLook } from '../design/status';
@@ -29,7 +29,7 @@ export interface LinkView {
   judged: { live: number; identical: number; recorded: number; neverLive: number } | undefined;
 }
 
-/** `lost`: without a connection what a link does now is not known. */
+/** `lost`: there is no connection, so the present state of a link is not known. */
 export function linkViews(store: RunStore, proof: ProofReport | undefined, cutoff: number, lost = false): LinkView[] {
   const totals = new Map(linkTotals(store).map((each) => [each.link, each]));
   const names = new Set([
@@ -71,7 +71,7 @@ function byImportance(a: string, b: string): number {
   return rank(a) - rank(b) || a.localeCompare(b);
 }
 
-/** Of the frames that should have come, how many did, 0 … 1; undefined where none was due. */
+/** Fraction of the expected frames that arrived, 0 … 1; undefined if none was expected. */
 export function framesKept(counters: LinkCounters): number | undefined {
   const due = Number(counters.frames) + Number(counters.missingFrames);
   return due === 0 ? undefined : Number(counters.frames) / due;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The links side by side: which is up, which is silent and why, what each brought and lost.
+// The links side by side: which are up, which are silent and why, and the traffic and losses of each.
 import { LINK_STATUS, STATUS } from '../design/status';
 import { proofOfRun } from '../proof/report';
 import { stream } from '../run/connection';

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which of the modes the page is in, and what it says of it. Two things are told apart: how the run is looked at (now, a
-// replay, a fixed range, after its end), and where it happens (a rehearsal can never be taken for the real thing).
+// The mode of the page and its words. It combines how the run is viewed (live, replay, fixed range, after its end) with
+// where it happens, so that a rehearsal is never taken for a real landing.
 import type { RunState } from '../gen/aeolis/v1/run_pb';
 import { fromEntry } from '../run/time';
 
@@ -10,7 +10,7 @@ interface ModeWords {
   badge: string; // in the header
   mark: string; // in each panel
   shape: string;
-  words: string; // what it means, for who asks
+  words: string; // its meaning, for the tooltip
 }
 
 export const MODES: Record<Mode, ModeWords> = {
@@ -32,12 +32,12 @@ export const MODES: Record<Mode, ModeWords> = {
   },
 };
 
-/** Only what follows a real downlink is the real thing; whatever else a venue is called is a rehearsal. */
+/** Only a run that follows a real downlink is real; every other venue is a rehearsal. */
 export function isReal(run: RunState): boolean {
   return run.venue === 'downlink';
 }
 
-/** The server flies a rehearsal that was cut off again as far as it had come; a real landing goes on without us. */
+/** Whether the server can continue a cut-off run. A real landing goes on without it. */
 export function canContinue(run: RunState): boolean {
   return run.state === 'interrupted' && !isReal(run);
 }
@@ -50,14 +50,14 @@ export function modeOf(store: { run: RunState; going: boolean } | undefined, pas
   return isReal(store.run) ? 'live' : 'rehearsal';
 }
 
-/** What each panel carries: of a rehearsal's past both words, so that neither can be missed. */
+/** The mark in each panel. For the past of a rehearsal it has both words, so that neither can be missed. */
 export function panelMark(mode: Mode, run: RunState | undefined): string {
   const { mark } = MODES[mode];
   if (!run || mode === 'rehearsal' || mode === 'live' || mode === 'none') return mark;
   return isReal(run) ? `${mark}, real venue` : `${mark}, rehearsal`;
 }
 
-/** After a break: since when, what was filled in, and whether the run went on without us. */
+/** The notice after a break: its beginning, the items filled in, and whether the run went on meanwhile. */
 export function resumedWords(
   break_: { after: number; through: number; attempts: number },
   run: RunState,

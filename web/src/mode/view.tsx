@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The mode, where no one can miss it: tape along the top of a rehearsal, a bar over every past view, a mark in each panel.
+// The display of the mode: a tape along the top of a rehearsal, a bar over every past view, a mark in each panel.
 import { stream } from '../run/connection';
 import { backToLive } from '../run/session';
 import { modeNow, pastRange, replay, runNow } from '../run/shown';
@@ -8,7 +8,7 @@ import { Reading } from '../replay/view';
 import { MODES, isReal, panelMark } from './model';
 import './style.css';
 
-/** Striped for a rehearsal, whichever way it is looked at; absent from the real thing. */
+/** The striped tape of a rehearsal, in every kind of view; absent from a real landing. */
 export function Tape() {
   const run = runNow();
   if (!run || isReal(run.run)) return null;

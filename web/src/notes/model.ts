@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The shift log of a run, and remarks at its instants: what people wrote down, kept with the run.
+// The shift log of a run, with remarks at instants of the run.
 import { signal } from '@preact/signals';
 import { uplink } from '../commands/line';
 import { wordsFor } from '../run/api';
@@ -20,8 +20,8 @@ interface NoteList {
   next_after?: string | number;
 }
 
-const PAGES = 20; // ours: as many answers as are put together
-export const OCTETS = 4000; // the server takes no more
+const PAGES = 20; // chosen: number of answers that are put together
+export const OCTETS = 4000; // the server's limit
 
 export const notes = signal<{ run: number; all: NoteRow[] } | undefined>(undefined);
 export const problem = signal('');
@@ -54,13 +54,13 @@ export async function refreshNotes(): Promise<void> {
     }
     if (store.value === run) notes.value = { run: run.id, all };
   } catch {
-    // The header says that there is no connection; the next round asks again.
+    // The header reports the lost connection; the next round asks again.
   } finally {
     asking = false;
   }
 }
 
-/** Written once; true when it is. */
+/** Writes a note once; true if it was written. */
 export async function write(text: string, sclk: number | undefined): Promise<boolean> {
   const run = store.value;
   if (!run || writing.value) return false;
@@ -89,7 +89,9 @@ export async function write(text: string, sclk: number | undefined): Promise<boo
   }
 }
 
-/** Newest first; of the past only what had been written by then; every word must be in text or name. */
+/**
+ * The notes newest first, in a past view those written by then. Every search word must occur in the text or the name.
+ */
 export function found(
   all: readonly NoteRow[],
   search: string,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The shift log: what was written when and by whom, a line to write in, and a search.
+// The shift log: the notes with time and author, a line to write in, and a search.
 import { signal } from '@preact/signals';
 import { useEffect } from 'preact/hooks';
 import { mayAct } from '../access/model';
@@ -9,7 +9,7 @@ import { dayOfYear, fromEntry } from '../run/time';
 import { found, notes, problem, refreshNotes, write, writing } from './model';
 import './style.css';
 
-const AGAIN_MS = 3000; // ours: while the panel is looked at, for what others write
+const AGAIN_MS = 3000; // chosen: interval of requests for the notes of others, while the panel is shown
 
 const text = signal('');
 const search = signal('');
@@ -36,7 +36,7 @@ export function Notes() {
           event.preventDefault();
           const sent = text.value;
           void write(sent, atInstant.value ? instant : undefined).then((written) => {
-            if (written && text.value === sent) text.value = ''; // what was typed meanwhile is the next
+            if (written && text.value === sent) text.value = ''; // text typed meanwhile is the next note
           });
         }}
       >

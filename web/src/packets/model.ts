@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Units as they arrived: how fast each link and each packet comes, and which octets of one are which of its fields.
+// Packets as received: the rates of each link and packet, and the octets of each field.
 import type { Unit } from '../gen/aeolis/v1/items_pb';
 import type { PacketField, PacketRow } from '../gen/aeolis/v1/run_pb';
 import type { Known, RunStore, UnitTotals } from '../run/store';
@@ -25,9 +25,12 @@ interface PacketStream extends Totals {
   rate: Rate | undefined;
 }
 
-const WINDOW_S = 10; // ours: of stream time
+const WINDOW_S = 10; // chosen: of stream time
 
-/** The units of the last ten seconds, or as far back as they are held; undefined once the run is over: then nothing comes, at no rate. */
+/**
+ * The packets of the last ten seconds, or as far back as they are held. Undefined after the end of the run, when there
+ * are no rates.
+ */
 function recentOf(store: RunStore): { units: Unit[]; span_s: number } | undefined {
   const now = secondsOfDayOfYear(store.clocks?.ert ?? '');
   const oldest = store.units[0];
@@ -66,13 +69,13 @@ export function linkTotals(store: RunStore): (Totals & { link: string })[] {
   }));
 }
 
-/** `rated`: with the rates of now, which are none of a past view. */
+/** `rated`: with present rates, which a past view does not have. */
 export function linkRows(store: RunStore, rated = true): LinkRow[] {
   const recent = rated ? recentOf(store) : undefined;
   return linkTotals(store).map((totals) => ({ ...totals, rate: rateOf(recent, (unit) => unit.link === totals.link) }));
 }
 
-/** Each packet of the dictionary that has come, whichever way; several may share an APID. */
+/** Each packet of the dictionary that has arrived, over any link. Several may share an APID. */
 export function packetStreams(store: RunStore, rated = true): PacketStream[] {
   const recent = rated ? recentOf(store) : undefined;
   return [...grouped(store.unitTotals.values(), (each) => `${each.apid} ${each.name}`).values()]
@@ -85,7 +88,10 @@ export function packetStreams(store: RunStore, rated = true): PacketStream[] {
     .sort((a, b) => a.apid - b.apid || a.name.localeCompare(b.name));
 }
 
-/** Of what a range of the archive has, what had been heard by `cutoff`: neither what only the recording told, nor what an orbiter or a queue on board brought later. */
+/**
+ * The rows of an archive range that were heard by `cutoff`: without packets of the recording, and without packets that
+ * an orbiter or a queue on board delivered later.
+ */
 export function heardRows(store: RunStore, rows: readonly PacketRow[], cutoff: number): PacketRow[] {
   return rows.filter(
     ({ unit, ertUs }) => unit && unit.source !== SOURCE_RECORDED && store.knownBy(secondsOfErt(ertUs), cutoff),
@@ -99,7 +105,7 @@ export function newestUnits(store: RunStore, most: number, packet?: string): Kno
     .reverse();
 }
 
-/** Of what the archive has in a range, a page at a time. */
+/** The position of a page within a range of the archive, in words. */
 export function pageWords(page: number, size: number, listed: number, more: boolean): string {
   const first = page * size;
   if (listed === 0) return 'no unit in this range';
@@ -108,12 +114,12 @@ export function pageWords(page: number, size: number, listed: number, more: bool
 
 interface HexLine {
   at: string;
-  first: number; // octet
+  first: number; // index of its first octet
   octets: string[];
   text: string[];
 }
 
-/** Sixteen octets a line, with their text beside them. */
+/** Sixteen octets per line, with their text. */
 export function hexLines(hex: string): HexLine[] {
   const all = hex.match(/../g) ?? [];
   const lines: HexLine[] = [];
@@ -132,7 +138,7 @@ export function hexLines(hex: string): HexLine[] {
   return lines;
 }
 
-/** The octets that a field lies in, first and last. */
+/** The first and the last octet of a field. */
 export function octetsOf(field: Pick<PacketField, 'positionBits' | 'bits'>): { first: number; last: number } {
   return {
     first: Math.floor(field.positionBits / 8),
@@ -140,7 +146,7 @@ export function octetsOf(field: Pick<PacketField, 'positionBits' | 'bits'>): { f
   };
 }
 
-/** Indices of the fields that lie, if only in part, in an octet. */
+/** Indices of the fields that lie at least partly in an octet. */
 export function fieldsAt(fields: readonly Pick<PacketField, 'positionBits' | 'bits'>[], octet: number): number[] {
   return fields.flatMap((field, i) => {
     const { first, last } = octetsOf(field);

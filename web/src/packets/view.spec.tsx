@@ -16,7 +16,8 @@ import {
   placeWords,
 } from './model';
 
-const at = (seconds: number) => `2012-219T04:59:${String(seconds).padStart(2, '0')}.0`; // the run's clock is at 05:00:00
+// the run's clock is at 05:00:00
+const at = (seconds: number) => `2012-219T04:59:${String(seconds).padStart(2, '0')}.0`;
 const some = [
   unit({ unit: 1n, apid: 0x20, name: 'Status', octets: 999, ert: at(40) }),
   unit({ unit: 2n, apid: 0x20, name: 'Status', octets: 100, ert: at(51) }),

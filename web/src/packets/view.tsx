@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Units as they come: what each link and each packet brings, the newest of them, and one octet by octet beside its fields.
+// Packets as received: the traffic of each link and packet, the newest packets, and one packet octet by octet beside
+// its fields.
 import { signal } from '@preact/signals';
 import { useEffect } from 'preact/hooks';
 import type { Unit } from '../gen/aeolis/v1/items_pb';
@@ -26,7 +27,7 @@ import './style.css';
 
 const SHOWN = 100;
 
-/** A line of the list. Of what just came the archive is asked when it is opened. */
+/** A line of the list. The row of a live packet is fetched from the archive when it is opened. */
 interface Line {
   fact: Unit;
   seq: number;
@@ -35,18 +36,18 @@ interface Line {
 
 const wanted = signal<string | undefined>(undefined); // only this packet
 const opened = signalOfRun<PacketRow | undefined>(undefined);
-const current = signalOfRun<bigint | undefined>(undefined); // number of the unit that is chosen
-/** While one is open the list stands still, so that what is looked at does not run away. */
+const current = signalOfRun<bigint | undefined>(undefined); // number of the selected packet
+/** The frozen list while a packet is open, so that the opened line does not move away. */
 const held = signal<{ run: number; lines: Line[] } | undefined>(undefined);
-/** In a past view the units of that range come from the archive: the page itself holds only the newest. */
+/** The packets of a past view, from the archive; the page itself holds only the newest. */
 const pastRows = signal<{ packets: PacketRow[]; next: number }>({ packets: [], next: 0 });
-/** Which page of which range: where each begins, up to the one that is shown. */
+/** The pages of the range: the sequence number after which each begins, up to the current page. */
 const pages = signal<{ of: object | undefined; name: string | undefined; after: number[] }>({
   of: undefined,
   name: undefined,
   after: [0],
 });
-/** What the mouse or the keys are at: a field, or an octet with all fields in it. */
+/** The field or octet under the mouse or the keyboard focus; an octet lights all its fields. */
 const lit = signal<{ field: number } | { octet: number } | undefined>(undefined);
 
 async function askPackets(query: string): Promise<{ packets: PacketRow[]; next: number }> {
@@ -233,7 +234,7 @@ function Units({ run, lines }: { run: RunStore; lines: Line[] }) {
   );
 }
 
-/** Octets and fields side by side; what one is at lights the other. */
+/** Octets and fields side by side; pointing at one highlights the other. */
 function Contents({ packet }: { packet: PacketRow }) {
   const at = lit.value;
   const fields = at === undefined ? [] : 'field' in at ? [at.field] : fieldsAt(packet.fields, at.octet);
@@ -342,7 +343,7 @@ function Packet({ packet }: { packet: PacketRow }) {
   );
 }
 
-/** Where in the range the page lies; how many there are is known with the last page. */
+/** The position of the page in the range. The total is known with the last page. */
 function Pages({ after, listed }: { after: number[]; listed: number }) {
   const { packets, next } = pastRows.value;
   const turn = (to: number[]) => {

@@ -10,10 +10,10 @@ import type { Prediction } from '../timeline/model';
 interface PhaseStep {
   title: string;
   state: 'done' | 'now' | 'ahead';
-  detail: string; // the vehicle's own word for where it is in the phase
+  detail: string; // the vehicle's own word for its state within the phase
   since_e_s: number | undefined;
   predicted_e_s: number | undefined;
-  /** Of the phase of now: how much of it has gone by, by the prediction of the next, 0 … 1. */
+  /** For the present phase: the elapsed fraction, by the prediction of the next phase, 0 … 1. */
   part: number | undefined;
 }
 
@@ -25,7 +25,10 @@ interface Group {
   from?: string | undefined;
 }
 
-/** The strip of phases. What the vehicle said last decides, in packets or, where it is further, by tone; before it said anything, all are ahead. */
+/**
+ * The strip of phases. The newest report of the vehicle decides, by packet or, if that is further, by tone. Before the
+ * first report all phases are ahead.
+ */
 export function phaseSteps(
   store: RunStore | undefined,
   dictionary: Dictionary,
@@ -44,7 +47,7 @@ export function phaseSteps(
       (group) => label !== undefined && (group.of.includes(label) || (group.untilEntry === label && e_s < 0)),
     );
   const entryKnown = store?.entryKnown !== false;
-  // As timeline and "waiting for" have it; without a plan as it was published.
+  // As in the timeline and "waiting for"; without a plan, the published times.
   const published = entryKnown && dictionary.reply.mission === LAYOUT.predictedFor;
   const predicted = (group: Group | undefined) =>
     published ? (predictions.find((each) => each.name === group?.from)?.e_s ?? group?.predicted_e_s) : undefined;
@@ -92,7 +95,7 @@ export function phaseSteps(
   });
 }
 
-/** The last phase whose timepoint, or one after it, is known by a tone; and since when each is known to have begun. */
+/** The last phase that a tone proves to have begun, and the known beginnings of the phases up to it. */
 function byTone(
   store: RunStore,
   groups: readonly Group[],
@@ -117,7 +120,7 @@ function byTone(
   };
 }
 
-/** "parachute in ≈ 1 m 20 s", as far as it is predicted; what is overdue is predicted for now at the earliest. */
+/** "parachute in ≈ 1 m 20 s", as far as it is predicted. An overdue phase is predicted for now at the earliest. */
 export function nextWords(
   steps: readonly PhaseStep[],
   seen_e_s: number,

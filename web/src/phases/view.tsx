@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The strip that says where in the landing we are, to be read across a room.
+// The strip of phases, legible across a room.
 import { cutoff, dictionary, runNow, timepoints } from '../run/shown';
 import { duration, fromEntry } from '../run/time';
 import { predicted } from '../timeline/now';

@@ -34,7 +34,7 @@ vi.mock('uplot', () => ({
 
 it('a plot of the past is drawn again when only what it knows of it changes, with the recording or as it was heard', () => {
   const heard = (sclk: number, ert: string) => [unit({ name: 'Navigation', sclk, ert }), samples(sclk, { 3: sclk })];
-  // SCLK 900 is heard at 05:00:00; 912 came from an orbiter five minutes later.
+  // SCLK 900 is heard at 05:00:00; an orbiter delivered 912 five minutes later.
   useForTest(
     aStore([
       ...heard(911, '2012-219T05:00:11.0'),

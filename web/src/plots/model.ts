@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// From series to what a plot takes: one axis of time, the recording and real time beside each other.
+// Converts series to the data of a plot: one time axis, with recording and real time side by side.
 import type { Series } from '../run/series';
 import type { RunStore, Sample } from '../run/store';
 
 /**
- * [e_s, while UHF was silent, while it was live], cut to the range with a sample of margin. Both make one trace: what
- * is known from the recording only has another colour. null breaks a line.
+ * [e_s, values while UHF was silent, values while it was live], cut to the range with one sample of margin. Together
+ * they are one trace; samples known from the recording only have another colour. null breaks a line.
  */
 export type Aligned = [number[], (number | null)[], (number | null)[]];
 
@@ -14,9 +14,13 @@ export interface Silence {
   to: number;
 }
 
-export const GAP_S = 6; // ours: longer without a sample is drawn as a gap; what is plotted comes at 1 Hz or faster
+// chosen: a longer time without a sample is drawn as a gap; plotted channels arrive at 1 Hz or faster
+export const GAP_S = 6;
 
-/** `pixels` wide: of the samples that share one, the least and the largest are drawn, so that no peak is lost. */
+/**
+ * Aligns both series for a plot `pixels` wide. Of the samples that share a pixel the least and the largest are drawn,
+ * so that no peak is lost.
+ */
 export function align(
   recorded: Series | undefined,
   live: Series | undefined,
@@ -54,7 +58,7 @@ export function align(
       lit.push(null);
     }
     xs.push(e_s);
-    // Where the colour changes, the sample belongs to both, so that the trace has no hole.
+    // Where the colour changes, the sample belongs to both traces, so that there is no hole.
     silent.push(isSilent || wasSilent ? shown : null);
     lit.push(isSilent ? null : shown);
     if (isSilent && !wasSilent && lit.length > 1) silent[silent.length - 2] = lit[lit.length - 2] ?? null;
@@ -64,17 +68,22 @@ export function align(
   return aligned;
 }
 
-/** A power of two, so that a bucket stays as it is while the axis grows: a pixel to two. */
+/**
+ * Width of a bucket in seconds: one to two pixels, as a power of two, so that buckets stay in place while the axis
+ * grows.
+ */
 function bucketOf(second_per_pixel: number): number {
   return 2 ** Math.ceil(Math.log2(Math.max(second_per_pixel, 1e-6)));
 }
 
-/** The samples that are drawn, column by column. Two are kept for good: eight plots are thinned twenty times a second. */
+/**
+ * The drawn samples as columns. Two instances are kept for reuse, since eight plots are thinned twenty times a second.
+ */
 class Thinned {
   length = 0;
   sclk = new Float64Array(1 << 10);
   value = new Float64Array(1 << 10);
-  /** The first and the last sample of the bucket each stands for: between the last of one and the first of the next there may be a gap. */
+  /** Times of the first and the last sample of each one's bucket. There may be a gap between two buckets. */
   since = new Float64Array(1 << 10);
   until = new Float64Array(1 << 10);
 
@@ -97,7 +106,10 @@ class Thinned {
 }
 const [OF_RECORDED, OF_LIVE] = [new Thinned(), new Thinned()];
 
-/** Of each bucket the least, the largest and the first that is undefined, in order of time; and the newest sample. A bucket ends at an edge, too. */
+/**
+ * Copies the least, the largest and the first undefined sample of each bucket in order of time, and the newest sample.
+ * A bucket also ends at an edge.
+ */
 function thin(
   series: Series | undefined,
   from: number,
@@ -150,7 +162,7 @@ function thin(
   return into;
 }
 
-/** What was there at an instant: the newest sample by then; undefined in a gap, where none tells, and after what is shown. */
+/** The reading at an instant: the newest sample by then. Undefined in a gap and after the end of the shown data. */
 export function readingAt(run: RunStore, channel: number, e_s: number, cutoff: number): Sample | undefined {
   const sclk = run.entrySclk + e_s;
   const sample = run.latest(channel, Math.min(cutoff, sclk));

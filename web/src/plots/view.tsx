@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Four plots over one axis of time, with one cursor. History and live are one trace; a gap stays a gap.
+// Plots over one time axis with one cursor. History and live data are one trace; a gap stays a gap.
 import { useLayoutEffect, useRef } from 'preact/hooks';
 import uPlot from 'uplot';
 import 'uplot/dist/uPlot.min.css';
@@ -49,7 +49,7 @@ function options(width: number, height: number, channel: DictionaryChannel, per:
     legend: { show: false },
     pxAlign: 1,
     padding: [6, 20, 0, 0],
-    cursor: { show: false }, // ours is one for plots, tones and timeline
+    cursor: { show: false }, // our own cursor is shared by plots, tones and timeline
     scales: { x: { time: false } },
     axes: [
       {
@@ -76,7 +76,7 @@ function options(width: number, height: number, channel: DictionaryChannel, per:
   };
 }
 
-/** Where UHF was silent the plot says so by a shade, instead of a line that was never measured. */
+/** Shades the times in which UHF was silent, instead of drawing a line that was never measured. */
 function shadeSilence(plot: uPlot): void {
   const run = shownRun();
   if (!run) return;
@@ -102,7 +102,10 @@ function shadeSilence(plot: uPlot): void {
   plot.ctx.restore();
 }
 
-/** What lies outside a limit, shaded while the limit held, under its name. The worst is named first: where there is no room for all, it is the one. */
+/**
+ * Shades the area outside each limit while the limit was in force, with its name. The worst limit is named first, so
+ * that it has its name where room is short.
+ */
 function alarmBands(plot: uPlot, channel: DictionaryChannel, per: number): void {
   const [run, words] = [shownRun(), dictionary.value];
   const { min: from, max: to } = plot.scales.x ?? {};
@@ -133,7 +136,7 @@ function alarmBands(plot: uPlot, channel: DictionaryChannel, per: number): void 
         if (bound === undefined) continue;
         const y = plot.valToPos(bound / per, 'y', true);
         const above = side === top;
-        if (above ? y <= top : y >= bottom) continue; // it lies outside of what is drawn
+        if (above ? y <= top : y >= bottom) continue; // the bound is outside the plot
         const edge = Math.max(top, Math.min(bottom, y));
         ctx.fillStyle = colour;
         ctx.globalAlpha = 0.1;
@@ -160,7 +163,7 @@ function alarmBands(plot: uPlot, channel: DictionaryChannel, per: number): void 
   ctx.font = `${10 * ratio}px ${colours.sans}`;
   ctx.textAlign = 'left';
   ctx.textBaseline = 'alphabetic';
-  const taken: [number, number, number][] = []; // left, right, line
+  const taken: [number, number, number][] = []; // left, right, row
   for (const { words: whole, x, y, room, colour } of named.sort(
     (one, other) => Number(other.colour === colours.alarm) - Number(one.colour === colours.alarm),
   )) {
@@ -172,7 +175,7 @@ function alarmBands(plot: uPlot, channel: DictionaryChannel, per: number): void 
       continue;
     taken.push([at, at + wide, y]);
     ctx.fillStyle = colour;
-    ctx.strokeStyle = colours.panel; // the lines of other limits do not strike it out; the trace, drawn later, does
+    ctx.strokeStyle = colours.panel; // an outline against the lines of other limits; the trace is drawn later, over it
     ctx.lineWidth = 3 * ratio;
     ctx.lineJoin = 'round';
     ctx.strokeText(short, at, y);
@@ -199,7 +202,8 @@ function Plot({ title, channel, unit, per, digits }: Properties) {
       if (!line.hidden) line.style.left = `${plot.over.offsetLeft + plot.valToPos(at as number, 'x')}px`;
     };
     let shown = '';
-    let traces: (Series | undefined)[] = []; // as it was heard is a copy, which may have the version of the whole
+    // kept because a series as heard is a copy, which may have the same version as the whole
+    let traces: (Series | undefined)[] = [];
     let shape = '';
     const stop = onDraw(() => {
       const width = element.clientWidth;
@@ -210,7 +214,7 @@ function Plot({ title, channel, unit, per, digits }: Properties) {
       const live = run?.live.get(channel.id);
       const span = plotSpan(run);
       const newShape = `${palette().name} ${channel.id}`;
-      const silences = run?.links.get('uhf_live') ?? []; // one that goes on grows with the clock, though no sample comes
+      const silences = run?.links.get('uhf_live') ?? []; // a present silence grows with the clock, without new samples
       const silent = silences.at(-1)?.fact.up === false ? run?.seenSclk.toFixed(0) : '';
       const key = `${run?.id} ${silences.length} ${silent} ${recorded?.version} ${live?.version} ${span.from.toFixed(1)} ${span.to.toFixed(1)} ${cutoff.value} ${width} ${height} ${newShape}`;
       if (key === shown && traces[0] === recorded && traces[1] === live)
@@ -331,10 +335,10 @@ function Plot({ title, channel, unit, per, digits }: Properties) {
   );
 }
 
-/** Nothing is a little less than nothing. */
+/** Formats a value, without a minus sign on zero. */
 const reading = (value: number, digits: number): string => value.toFixed(digits).replace(/^-(?=0(\.0*)?$)/, '');
 
-/** Instants at which neither trace goes on: what looks on from outside cannot see a canvas. */
+/** The number of instants at which neither trace continues, for observers that cannot see a canvas. */
 function holesOf([x, silent, lit]: Aligned): number {
   let holes = 0;
   for (let i = 0; i < x.length; ++i) if (silent[i] === null && lit[i] === null) ++holes;
@@ -356,9 +360,9 @@ function bounds(data: readonly (readonly (number | null | undefined)[])[]): [num
   return [low - margin, high + margin];
 }
 
-/** Named at ?panel=plots&channels=one,two: any of the dictionary, as many as are named. */
+/** Channels named at ?panel=plots&channels=one,two. */
 const NAMED = namedChannels();
-const MOST_NAMED = 16; // ours: more cannot be read
+const MOST_NAMED = 16; // chosen: more are not legible
 
 export function Plots() {
   const words = dictionary.value;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The report of live against recorded, as the panels of verdicts and of links show it.
+// The report of live data against the recording, shared by the panels of verdicts and links.
 import type { ProofReport } from '../gen/aeolis/v1/run_pb';
 import { reportOfRun } from '../run/report';
 
-const AGAIN_MS = 3000; // ours: counting a whole run is work for the archive
+const AGAIN_MS = 3000; // chosen: counting a whole run is work for the archive
 
 export const proofOfRun = reportOfRun<ProofReport>('proof', 'proof', AGAIN_MS);

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// A file that the server makes while it is taken: how much has come is told, and it can be cancelled.
+// Downloads a file that the server makes while it is sent. Progress is reported, and it can be cancelled.
 import { Refused, turnedAway, wordsOf } from '../run/api';
 
-const LOOSE_MAX = 16e6; // ours
+const LOOSE_MAX = 16e6; // chosen: octets kept in memory before they go into a blob
 
-/** All of it. `told` gets octets that have come, and of how many where the server says. Rejects with the server's words, or as aborted. */
+/**
+ * Downloads the whole file. `told` gets the octets received and the total, if the server gives one. Rejects with the
+ * server's words, or as aborted.
+ */
 export async function download(
   path: string,
   stop: AbortSignal,
@@ -19,7 +22,7 @@ export async function download(
   const of = Number.isFinite(length) && !response.headers.has('content-encoding') ? length : undefined;
   let parts: BlobPart[] = [];
   let octets = 0;
-  let loose = 0; // octets of parts that the page itself holds; a blob may lie on the browser's disk
+  let loose = 0; // octets of parts held by the page itself; the browser may keep a blob on its disk
   const reader = response.body.getReader();
   for (;;) {
     const { done, value } = await reader.read();
@@ -33,14 +36,14 @@ export async function download(
   return new Blob(parts, { type: response.headers.get('content-type') ?? '' });
 }
 
-/** Hands it to whoever is at the browser, as a file of this name. */
+/** Saves it in the browser as a file of this name. */
 export function save(blob: Blob, name: string): void {
   const url = URL.createObjectURL(blob);
   const link = document.createElement('a');
   link.href = url;
   link.download = name;
   link.click();
-  setTimeout(() => URL.revokeObjectURL(url), 60_000); // ours: long enough for a disk to take it
+  setTimeout(() => URL.revokeObjectURL(url), 60_000); // chosen: long enough for a disk to store it
 }
 
 /** "0.42 MB", "12.4 of 71.0 MB". */

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A fixed range of a run, asked of the archive: what it holds, and which of it came how.
+// A fixed range of a run from the archive: its content, live and recorded.
 import type { SeriesAnswer } from '../stream/series_answer';
 
 export interface RangeRow {
@@ -8,8 +8,8 @@ export interface RangeRow {
   samples: number;
   given: number;
   thinned: boolean;
-  live: number; // came live; the recording has them too once it is complete
-  recorded: number; // known from the recording only
+  live: number; // samples received live; the complete recording has them too
+  recorded: number; // samples known from the recording only
   least: number;
   largest: number;
   first_sclk: number;
@@ -21,7 +21,7 @@ export function rangeRow({ name, unit, samples, thinned, columns }: SeriesAnswer
   let largest = -Infinity;
   for (const { value } of columns) {
     for (const each of value) {
-      if (each < least) least = each; // false for what is undefined
+      if (each < least) least = each; // false for an undefined value
       if (each > largest) largest = each;
     }
   }
@@ -42,7 +42,7 @@ export function rangeRow({ name, unit, samples, thinned, columns }: SeriesAnswer
   };
 }
 
-/** What is wrong with a range as typed; undefined: nothing. */
+/** What is wrong with a typed range; undefined: nothing. */
 export function rangeProblem(from: number | undefined, to: number | undefined): string | undefined {
   if (from === undefined) return 'the start is not a time: E+3:20, 200 or −60';
   if (to === undefined) return 'the end is not a time: E+3:20, 200 or −60';
@@ -56,7 +56,7 @@ const rangeQuery = (names: readonly string[], from_sclk: number, to_sclk: number
   to: String(to_sclk),
 });
 
-/** At most `size` points a channel; `live`: only of what came so. */
+/** Path of a query for at most `size` points per channel; `live`: live samples only. */
 export function seriesPath(
   run: number,
   names: readonly string[],
@@ -68,7 +68,7 @@ export function seriesPath(
   return `/runs/${run}/channels?${new URLSearchParams({ ...rangeQuery(names, from_sclk, to_sclk), points: String(size), format: 'protobuf', ...(live && { source: 'realtime' }) }).toString()}`;
 }
 
-/** Every sample of them, a line each. */
+/** Path of a query for every sample of the channels, one line each. */
 export function samplesPath(run: number, names: readonly string[], from_sclk: number, to_sclk: number): string {
   return `/runs/${run}/samples?${new URLSearchParams(rangeQuery(names, from_sclk, to_sclk)).toString()}`;
 }

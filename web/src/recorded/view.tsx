@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A recorded range: asked of the archive, shown as numbers here and as the past in every panel.
+// A recorded range from the archive, shown as numbers here and as the past in every panel.
 import { signal } from '@preact/signals';
 import type { RecordingSummary } from '../gen/aeolis/v1/run_pb';
 import { LAYOUT } from '../layout';
@@ -26,7 +26,7 @@ const message = signalOfRun<{ good: boolean; text: string; range?: { from: numbe
 );
 const csvPath = signalOfRun<string | undefined>(undefined);
 const underWay = signal(false);
-/** The file that is being taken. */
+/** The download in progress. */
 const taking = signal<{ stop: AbortController; octets: number; of: number | undefined } | undefined>(undefined);
 
 async function take(path: string): Promise<void> {

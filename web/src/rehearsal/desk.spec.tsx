@@ -130,7 +130,7 @@ describe('the instructor’s desk', () => {
     await refreshInterventions();
     expect([shown('instructor'), server.asked.length]).toEqual([null, 0]);
     for (const state of ['finished', 'interrupted']) {
-      // one that was cut off is over as well
+      // a cut-off run is over as well
       interventions.value = undefined;
       const over = aStore([], aRun({ state }));
       useForTest(over, aDictionary);

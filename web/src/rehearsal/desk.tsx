@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The instructor's desk in a rehearsal that goes on: what can be broken, a line to write in, and what was done so far. It is folded away:
-// whoever is rehearsed may look at the same screen.
+// The instructor's desk of a running rehearsal: faults to inject, a line for notes, and the list so far. It is folded
+// away, since the people rehearsed may look at the same screen.
 import { signal } from '@preact/signals';
 import { useEffect } from 'preact/hooks';
 import { access, mayRehearse } from '../access/model';
@@ -11,7 +11,7 @@ import { FaultForm, faultWords } from './faults';
 import { busy, message, ofRun, refreshInterventions, write } from './instructor';
 import type { Intervention } from './instructor';
 
-const AGAIN_MS = 3000; // ours: while it is open, for what another instructor does
+const AGAIN_MS = 3000; // chosen: interval of requests for the entries of another instructor, while it is open
 
 const open = signal(false);
 const text = signal('');
@@ -43,7 +43,7 @@ function NoteForm() {
         event.preventDefault();
         const sent = text.value;
         void write(sent).then((written) => {
-          if (written && text.value === sent) text.value = ''; // what was typed meanwhile is the next
+          if (written && text.value === sent) text.value = ''; // text typed meanwhile is the next note
         });
       }}
     >
@@ -88,7 +88,7 @@ function Desk() {
   );
 }
 
-/** For who may rehearse; nobody else is told that there is one. */
+/** The desk, for users with the right to rehearse; others do not see that it exists. */
 export function InstructorDesk() {
   if (!mayRehearse()) return null;
   return (

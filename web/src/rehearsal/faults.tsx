@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// What can be broken in the rehearsal that goes on, chosen and injected with the next cycle; and a fault in words.
+// The form for injecting a fault in the next cycle, and faults in words.
 import { signal } from '@preact/signals';
 import { Device, DeviceFaultKind } from '../gen/aeolis/v1/scenario_pb';
 import { busy, inject } from './instructor';
 import type { Fault } from './instructor';
 
 const words = (name: string): string => name.toLowerCase().replaceAll('_', ' ');
-// By the enumerations and not by their descriptors, which would bring all of the protobuf library into the page: only the worker needs it.
+// Uses the enumerations, not their descriptors: these would load the whole protobuf library, which only the worker
+// needs.
 const namesOf = (all: object, prefix: string): string[] =>
   Object.keys(all)
     .filter((name) => !/^\d+$/.test(name))
@@ -25,7 +26,7 @@ const unit = signal('A');
 const kind = signal(KINDS[0] ?? '');
 const seconds = signal('10');
 
-/** As the server takes it. */
+/** The fault as the server expects it. */
 export function injectionOf(device: string, of_unit: string, how: string, duration_s: number): Fault {
   if (device === COMPUTER) return { computer_reset: true };
   if (device === STATION) return { station_outage: { duration_s } };

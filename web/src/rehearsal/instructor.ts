@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an instructor did to a rehearsal: what was broken, and what was written about it. Those who fly it are told when it is over.
+// An instructor's faults and notes. The other participants may read them after the end of the rehearsal.
 import { signal } from '@preact/signals';
 import { mayRehearse } from '../access/model';
 import { uplink } from '../commands/line';
@@ -9,7 +9,7 @@ import { change, read } from '../run/connection';
 import { signalOfRun, store } from '../run/shown';
 import type { RunStore } from '../run/store';
 
-/** As the API words it. */
+/** A fault in the API's words. */
 export interface Fault {
   device_fault?: { device: string; unit: string; kind: string; duration_s: number };
   system_fault?: { duration_s: number };
@@ -28,10 +28,12 @@ export const busy = signal(false);
 
 export const ofRun = (run: Pick<RunStore, 'id'>): readonly Intervention[] =>
   interventions.value?.run === run.id ? interventions.value.all : [];
-/** While it goes on only who may rehearse; of one that is over, or was cut off, everybody. */
+/**
+ * Whether the user may read them: during the run with the right to rehearse, after its end or interruption everybody.
+ */
 const mayRead = (run: Pick<RunStore, 'going'>): boolean => !run.going || mayRehearse();
 
-/** Throws what the server says: without them there is no score. */
+/** Asks for the interventions. Throws the server's words, since there is no score without them. */
 export async function askInterventions(run: RunStore): Promise<readonly Intervention[]> {
   const list = await read<{ interventions?: Intervention[] }>(`/runs/${run.id}/interventions`);
   if (store.value === run) interventions.value = { run: run.id, all: list.interventions ?? [] };
@@ -44,11 +46,11 @@ export async function refreshInterventions(): Promise<void> {
   try {
     await askInterventions(run);
   } catch (error) {
-    if (!(error instanceof Refused)) throw error; // what was known stays; the next round asks again
+    if (!(error instanceof Refused)) throw error; // the known list stays; the next round asks again
   }
 }
 
-/** Asks for one thing once; true when it was taken. */
+/** Requests one intervention once; true if it was accepted. */
 async function intervene(what: object, done: string): Promise<boolean> {
   if (busy.value) return false;
   busy.value = true;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Paces that a key steps through. 0 is "as fast as it goes".
+// The paces that a key steps through. 0 is "as fast as possible".
 export const PACES = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 0] as const;
 
 export function nextPace(current: number, direction: 1 | -1): number {
@@ -12,7 +12,7 @@ export function paceText(pace: number): string {
   return pace === 0 ? 'max' : `${pace}×`;
 }
 
-/** "3.98×": what is reached, when it is not what was asked for. */
+/** "3.98×": the attained pace, if it differs from the requested one. */
 export function attainedText(asked: number, attained: number): string {
   if (attained <= 0) return '';
   const digits = attained < 10 ? 1 : 0;

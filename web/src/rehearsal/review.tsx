@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The review of a rehearsal that is over: facts first, then what the instructor did, then a score whose rule and terms stand beside it.
+// The review of a finished rehearsal: facts, the instructor's entries, then a score with its rule and terms.
 import { signal } from '@preact/signals';
 import { useEffect } from 'preact/hooks';
 import { outcomeWords } from '../clocks/model';
@@ -17,7 +17,7 @@ import { askInterventions, ofRun } from './instructor';
 import { RULE, miss_m, score, scoreText, termWords } from './score';
 import type { AlarmChange, Landed, Score } from './score';
 
-const ALARM_CHANGES = 200_000; // ours, some 40 MB: no landing comes near it, and of a part no score is made
+const ALARM_CHANGES = 200_000; // chosen, some 40 MB: no landing comes near it, and an incomplete list gets no score
 
 const open = signal(false);
 const judged = signal<{ run: number; through: number; score: Score } | undefined>(undefined);
@@ -173,8 +173,8 @@ function Judged({ run, of }: { run: RunStore; of: Score }) {
 }
 
 function Opened({ run }: { run: RunStore }) {
-  void tick.value; // a store changes without becoming another
-  const whole = run.completeThrough >= Number(run.run.lastSeq); // before, what the page itself knows of the run has holes
+  void tick.value; // a store changes without a new object
+  const whole = run.completeThrough >= Number(run.run.lastSeq); // until then the page's own data of the run have holes
   useEffect(() => {
     copied.value = undefined;
     problem.value = '';
@@ -202,10 +202,10 @@ function Opened({ run }: { run: RunStore }) {
   );
 }
 
-/** Of a rehearsal that is over. */
+/** The review of a finished rehearsal. */
 export function Review() {
   void tick.value;
-  const run = store.value; // all of it, also where a past is shown as it was heard
+  const run = store.value; // the whole run, even where a past is shown as heard
   if (run?.run.state !== 'finished' || isReal(run.run)) return null;
   return (
     <details

@@ -10,7 +10,7 @@ import { ENTRY_SCLK, aRun, ertUs, item, stage } from '../testing/fixtures';
 import { commandOutcomes, miss_m, promptness, raisedAlarms, score, scoreText } from './score';
 import type { AlarmChange, Recorded } from './score';
 
-// ERT 05:00:00 is E+0 as it is heard.
+// ERT 05:00:00 is E+0 as heard on Earth.
 const ert = (e_s: number) =>
   `2012-219T05:${String(Math.floor(e_s / 60)).padStart(2, '0')}:${(e_s % 60).toFixed(1).padStart(4, '0')}`;
 const e_sOf = (ert_s: number) => ert_s - secondsOfDayOfYear(ert(0));
@@ -165,7 +165,7 @@ describe('the score', () => {
         name: 'NO_OP',
         stages: [said('NO_OP', 3, 'queued', 'failed', "asked for by the scenario's script, refused: late")],
       },
-      carriedOut(5n, 3, 'accepted as command 5', 'no arming needed'), // nobody said who
+      carriedOut(5n, 3, 'accepted as command 5', 'no arming needed'), // without a signature
       {
         command: 4n,
         name: 'NO_OP',

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a rehearsal came to: facts with their times, all from what was recorded, and a score by a stated rule (docs/console.md). Pure.
+// The facts and the score of a rehearsal: facts with their times from recorded data, and a score by a stated rule
+// (docs/console.md). Pure.
 import type { AsFlownReport } from '../gen/aeolis/v1/run_pb';
 import { STAGES, STATUSES } from '../commands/model';
 import { inWords } from '../run/dictionary';
@@ -7,7 +8,7 @@ import { duration, fromEntry, secondsOfErt } from '../run/time';
 import { faultWords } from './faults';
 import type { Intervention } from './instructor';
 
-/** An item of /alarms, as the API words it. */
+/** An item of /alarms in the API's words. */
 export interface AlarmChange {
   ert_us: string;
   alarm?: { channel: number; severity: string; sclk: number; limit?: string };
@@ -26,7 +27,7 @@ export interface Recorded {
   report: AsFlownReport;
   alarms: readonly AlarmChange[];
   interventions: readonly Intervention[];
-  /** Seconds from entry of what reached Earth then, seconds since 1970. */
+  /** Seconds from entry of the signal that reached Earth at `ert_s`, seconds since 1970. */
   e_sOf: (ert_s: number) => number;
   channelName: (id: number) => string;
   isHazardous: (command: string) => boolean;
@@ -34,7 +35,7 @@ export interface Recorded {
 export interface Fact {
   of: string;
   text: string;
-  e_s?: number; // on Earth: of what was heard then
+  e_s?: number; // of the signal heard on Earth then
 }
 interface Term {
   name: string;
@@ -44,21 +45,21 @@ interface Term {
 }
 export interface Score {
   facts: Fact[];
-  terms: Term[]; // those that there was something to judge by
+  terms: Term[]; // only terms with something to judge
   sum: number; // of 100
 }
 
-// Ours, all of them: what a thing is worth, and how quick is quick.
+// All chosen: the worth of each term, and the bounds of promptness.
 const WORTH = { landing: 40, timepoints: 20, faults: 20, alarms: 10, commands: 10 };
-const QUICK_S = 30; // so soon is all of it
-const LATE_S = 300; // so late, or never, is none
+const QUICK_S = 30; // full worth up to here
+const LATE_S = 300; // no worth from here on
 
 export const promptness = (after_s: number | undefined): number =>
   after_s === undefined ? 0 : Math.min(1, Math.max(0, (LATE_S - after_s) / (LATE_S - QUICK_S)));
 const mean = (shares: readonly number[]): number => shares.reduce((sum, share) => sum + share, 0) / shares.length;
 const count = (many: number, one: string): string => `${many} ${one}${many === 1 ? '' : 's'}`;
 
-/** Over ground, between two directions from the centre of Mars. */
+/** Distance over ground between two directions from the centre of Mars. */
 export function miss_m(
   position_m: readonly number[],
   latitude_deg: number,
@@ -85,7 +86,7 @@ interface Raised {
   acknowledged: { after_s: number; by: string } | undefined;
 }
 
-/** Each alarm from when it came, or came again, to the first acknowledgement. */
+/** Each alarm from its raising, or raising again, to the first acknowledgement. */
 export function raisedAlarms({ alarms, report, e_sOf, channelName }: Recorded): Raised[] {
   const raised: Raised[] = [];
   const open = new Map<string, Raised>(); // outside its limits, or not acknowledged yet
@@ -124,12 +125,13 @@ interface CommandOutcome {
   e_s: number;
   how: 'done' | 'failed' | 'cancelled' | 'not known';
   why: string;
-  /** A person's: who signed it. undefined: the scenario's own script sent it. */
+  /** Name of the person who signed it; undefined: sent by the scenario's own script. */
   sender?: string;
 }
 
 const OF_SCRIPT = "asked for by the scenario's script"; // the gateway's words
-const SIGNED = /^(?:armed and confirmed by name|no arming needed), by (.+?)(?:; left to flight: .*)?$/s; // of stage authorised
+// evidence of the stage authorised
+const SIGNED = /^(?:armed and confirmed by name|no arming needed), by (.+?)(?:; left to flight: .*)?$/s;
 
 function senderOf(words: readonly { stage: string; evidence: string }[]): string | undefined {
   if (words.some(({ stage, evidence }) => stage === 'queued' && evidence.startsWith(OF_SCRIPT))) return undefined;
@@ -139,7 +141,7 @@ function senderOf(words: readonly { stage: string; evidence: string }[]): string
   );
 }
 
-/** Of each stage the last word counts; the last stage that has one says how it went. */
+/** The outcome of each command, by the last word on each of its stages. */
 export function commandOutcomes({ report, e_sOf }: Recorded): CommandOutcome[] {
   return report.commands.map((command) => {
     const words = command.stages.flatMap(({ item: { case: kind, value } }) =>
@@ -168,7 +170,7 @@ interface Reaction {
   words: string;
 }
 
-/** What people did, in the order of time: whether it was because of a fault nobody but they can say. */
+/** Actions of people in order of time. Whether one was a reaction to a fault only they can say. */
 function reactions(of: Recorded): Reaction[] {
   const acts: Reaction[] = [];
   for (const { ert_us, alarm_action: action } of of.alarms) {
@@ -190,13 +192,14 @@ function reactions(of: Recorded): Reaction[] {
   return acts.filter((act) => Number.isFinite(act.e_s)).sort((a, b) => a.e_s - b.e_s);
 }
 
-/** From when its effect can be heard on Earth to the first thing that people did. */
+/** From the time at which a fault's effect can be heard on Earth to the first action of a person. */
 function faultFacts(of: Recorded): { facts: Fact[]; shares: number[] } {
   const acts = reactions(of);
   const shares: number[] = [];
   const facts = of.interventions.flatMap(({ e_s, fault }) => {
     if (!fault) return [];
-    const felt_s = fault.station_outage ? e_s - (of.report.run?.lightTimeS ?? 0) : e_s; // on Earth, where the station is
+    // a station's outage is felt on Earth itself
+    const felt_s = fault.station_outage ? e_s - (of.report.run?.lightTimeS ?? 0) : e_s;
     const first = acts.find((act) => act.e_s >= felt_s);
     shares.push(promptness(first && first.e_s - felt_s));
     return [
@@ -346,7 +349,7 @@ export function score(of: Recorded): Score {
 export const termWords = (term: Term): string => `${(term.most * term.share).toFixed(1)} of ${term.most}`;
 export const RULE = `Our own rule, no verdict on people: each term that there was something to judge by, as a share of what all of those are worth. Commands of the scenario’s script do not count. Within ${QUICK_S} s a reaction counts in full, after ${LATE_S} s not at all. Times are the run’s: at 10× a second of yours is ten of them.`;
 
-/** To be pasted elsewhere. */
+/** The review as text, for copying. */
 export function scoreText(title: string, of: Score, interventions: readonly Intervention[]): string {
   const at = (e_s: number | undefined) => (e_s === undefined ? '' : `${fromEntry(e_s, { tenths: true })} `);
   return [

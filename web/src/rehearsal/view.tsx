@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rehearsals: pace and pause in one bar that is always there; which run is looked at, and new ones, in a panel.
+// Rehearsals: a bar with pace and pause that is always visible, and a panel with the runs and the start of new ones.
 import { signal } from '@preact/signals';
 import { mayRehearse, whyNotRehearse } from '../access/model';
 import { outcomeWords } from '../clocks/model';
@@ -71,7 +71,7 @@ export function PaceBar() {
 
 const scenario = signal('nominal');
 const seed = signal('1');
-/** What was asked for and is waited for. */
+/** The order for which an answer is awaited. */
 const starting = signal<Parameters<typeof startRehearsal>[0] | undefined>(undefined);
 const left = signal('');
 const refused = signal('');
@@ -90,10 +90,10 @@ async function begin(order: Parameters<typeof startRehearsal>[0]): Promise<void>
   }
 }
 
-/** The run that was cut off and is waited for. */
+/** The cut-off run that is being continued. */
 const continued = () => (starting.value && 'continue_run' in starting.value ? starting.value.continue_run : undefined);
 
-/** A run that was cut off is flown again before it goes on; how far it is only the server knows. */
+/** The progress of continuing a cut-off run, which is flown again first. Only the server knows how far it is. */
 function CatchingUp() {
   const run = continued();
   if (run === undefined) return left.value ? <p role="status">{left.value}</p> : null;
@@ -115,9 +115,9 @@ function CatchingUp() {
   );
 }
 
-const ending = signal(''); // the button that was pressed once, and of which run
+const ending = signal(''); // name and run of the button that was pressed once
 
-/** Everybody's landing ends by it: so it is pressed twice. */
+/** A button that ends the run. It ends the landing for everyone, so it takes two presses. */
 export function EndRun({ run, name, words }: { run: number; name: string; words: string }) {
   const mine = `${name} ${run}`;
   const sure = ending.value === mine;
@@ -148,7 +148,7 @@ export function Rehearsal() {
   const going = runs.value.find(isGoing);
   const names = scenarios.value.length > 0 ? scenarios.value : [{ name: 'nominal', title: '' }];
   const badSeed = !/^\d{1,15}$/.test(seed.value);
-  const past = pastRange.value; // nothing is sent from there, and nothing there is of now
+  const past = pastRange.value; // a past view sends nothing and shows nothing of the present
   const blocked = !allowed || past !== undefined || going !== undefined || starting.value !== undefined;
   return (
     <div class="table-box" data-testid="rehearsal">

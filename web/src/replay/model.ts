@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A replay: the run's past played again at a pace. Every panel shows what had been heard by then and nothing later, or, where that is
-// asked for, what had happened by then with all that the recording tells of it.
+// A replay: the run's past played again at a pace. Every panel shows only what had been heard by then or, on request,
+// what had happened by then by the recording.
 import { LAYOUT } from '../layout';
 import { backToLive } from '../run/session';
 import { pastRange, replay, store, withRecording } from '../run/shown';
@@ -13,12 +13,12 @@ interface Bounds {
   to: number;
 }
 
-/** From where a replay can go to where: the run's beginning, and what has been seen of it. Seconds from entry. */
+/** The limits of a replay in seconds from entry: the beginning of the run and the newest reception. */
 export function boundsOf(run: RunStore): Bounds {
   return { from: run.run.startSclk - run.entrySclk, to: run.seenE };
 }
 
-/** Where it is `seconds` later; it stops at the end. */
+/** The position `seconds` later; it stops at the end. */
 export function advanced(
   at_e_s: number,
   seconds: number,
@@ -36,7 +36,7 @@ export function seek(to_e_s: number): void {
   pastRange.value = { from, to: Math.min(to, Math.max(from, to_e_s)) };
 }
 
-/** Begins where the timeline of a landing begins, or at the beginning of the run. */
+/** Begins a replay at the start of the landing's timeline, or at the beginning of the run. */
 export function startReplay(): void {
   const run = store.value;
   if (!run) return;
@@ -46,7 +46,7 @@ export function startReplay(): void {
   seek(to > LAYOUT.window.from ? LAYOUT.window.from : from);
 }
 
-/** In any past view. */
+/** Switches the reading of any past view. */
 export function toggleRecording(): void {
   if (pastRange.value) withRecording.value = !withRecording.value;
 }
@@ -72,7 +72,7 @@ export function changeReplayPace(direction: 1 | -1): void {
   if (pace !== undefined) replay.value = { ...now, pace };
 }
 
-/** Called by the animation loop with the seconds since the last call. */
+/** Advances the replay; the animation loop calls it with the seconds since the last call. */
 export function step(seconds: number): void {
   const now = replay.value;
   const run = store.value;

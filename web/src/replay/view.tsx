@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The bar of a replay: where it is, how fast, and the way back.
+// The bar of a replay: position, pace, and the way back.
 import { backToLive } from '../run/session';
 import { cutoff, pastRange, replay, runNow, withRecording } from '../run/shown';
 import { fromEntry } from '../run/time';
 import { boundsOf, changeReplayPace, playOrHold, seek, toggleRecording } from './model';
 import './style.css';
 
-/** Two readings of the past, and which of them it is. */
+/** The choice between the two readings of the past. */
 export function Reading() {
   const notTold = withRecording.value ? [] : (runNow()?.notTold(cutoff.value) ?? []);
   return (

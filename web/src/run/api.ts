@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Asks what the worker does not: routes of plain JSON with small answers, and everything that changes something over HTTP.
-// Nothing is ever sent twice: what failed is said to whoever asked, and asking again is theirs.
+// HTTP requests that bypass the worker: routes of plain JSON with small answers, and all changes. Nothing is sent
+// twice: a failure is reported to the caller, who may ask again.
 import { signal } from '@preact/signals';
 
 /**
- * The server's own words for why not, with the status that it gave; 0: no answer came, or none that can be read, so whether it was taken is not known.
- * `answer`: all that it said, where that is JSON.
+ * A request without success, with the server's own words and its status. Status 0: no legible answer, so it is not
+ * known whether the request was accepted. `answer`: the whole answer, if it is JSON.
  */
 export class Refused extends Error {
   constructor(
@@ -17,24 +17,29 @@ export class Refused extends Error {
   }
 }
 
-/** Whether it may have been done all the same: without an answer, and where the server, or what stands before it, failed in the middle. */
+/**
+ * Whether the request may have been carried out all the same: without an answer, or when the server or a proxy failed.
+ */
 export const isOpen = (error: unknown): boolean =>
   !(error instanceof Refused) || error.status === 0 || error.status >= 500;
 
-/** Counts answers that say: log in. */
+/** Counts the answers that demand a log-in. */
 export const turnedAway = signal(0);
 
-const ANSWER_WITHIN_MS = 60_000; // ours: longer than any of these questions may take; whoever waits is told then
+const ANSWER_WITHIN_MS = 60_000; // chosen: longer than any of these requests may take; the caller is told then
 
 let reads = new AbortController();
 
-/** Once the connection is lost: over one that died without a word no answer comes, and whoever asks again each few seconds would wait for it. */
+/**
+ * Aborts reads when the connection is lost. A connection that died silently brings no answer, and a caller that asks
+ * every few seconds would wait for it.
+ */
 export function giveUpReads(): void {
   reads.abort();
   reads = new AbortController();
 }
 
-/** `within_ms`: Infinity for what takes as long as it takes. */
+/** Sends a request. `within_ms` of Infinity waits without a limit. */
 export async function call<T>(
   method: 'GET' | 'POST' | 'PATCH' | 'DELETE',
   path: string,
@@ -78,7 +83,8 @@ function readJson(text: string): unknown {
 }
 
 export function wordsOf(text: string): string {
-  return (readJson(text) as { error?: string } | null | undefined)?.error ?? text.slice(0, 300); // what is no answer of our API says what it says
+  // an answer that is not from our API is quoted as it is
+  return (readJson(text) as { error?: string } | null | undefined)?.error ?? text.slice(0, 300);
 }
 
 export const wordsFor = (error: unknown): string => (error instanceof Error ? error.message : String(error));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a replay "as it was heard" knows at an instant: ERT 05:00:00 is SCLK 900, light time none.
+// The knowledge of a replay "as it was heard" at an instant: ERT 05:00:00 is SCLK 900, without light time.
 import { describe, expect, it } from 'vitest';
 import { aStore, event, explanation, firing, samples, unit } from '../testing/fixtures';
 import { LATE_LIMIT } from './store';
@@ -18,7 +18,7 @@ describe('a past as it was heard', () => {
     ...navigation(911, 11.2),
     event({ id: 1, name: 'EARLY', text: 'a', sclk: 911, ert: ert(11.3) }),
     ...navigation(930, 30.2),
-    // An orbiter that recorded brings what was lost in between, five minutes later.
+    // Five minutes later an orbiter delivers the lost samples between them.
     ...navigation(920, 330, 'uhf_mro'),
     event({ id: 2, name: 'LATE', text: 'b', sclk: 920, ert: ert(330) }),
     explanation({ sclk: 920, text: 'why', decision: 'fire' }),

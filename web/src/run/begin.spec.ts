@@ -22,11 +22,11 @@ it('a page begins to listen though the server does not say who it is', async () 
   server.routes['GET /runs'] = { json: { runs: [] } };
   void begin();
   await vi.advanceTimersByTimeAsync(4000);
-  expect(listening).not.toHaveBeenCalled(); // the cookie that comes with the answer is waited for
+  expect(listening).not.toHaveBeenCalled(); // the worker waits for the cookie that comes with the answer
   await vi.advanceTimersByTimeAsync(1500);
   expect(listening).toHaveBeenCalledWith(expect.objectContaining({ type: 'open', run: 0 }));
 
-  // A past as it was heard asks for its live samples once, and once more where the connection broke before all had come.
+  // A past as heard asks for its live samples once, and again if the connection broke before all had arrived.
   const asked = () =>
     listening.mock.calls.filter(([message]) => message.type === 'refresh_history' && message.live).length;
   const connection = (state: 'live' | 'lost') =>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page's way to the server: what is connected, and what is asked and sent, each with its answer or the reason why there is none.
+// The page's connection to the server: its state, and requests and commands with their answers or the reason for having
+// none.
 import { computed, signal } from '@preact/signals';
 import type { CommandReply } from '../gen/aeolis/v1/run_pb';
 import { access, learnAccess } from '../access/model';
@@ -16,15 +17,15 @@ export const stream = signal<{ state: StreamState; attempt: number; gaps: number
 export const isLost = computed(() => stream.value.state === 'lost');
 
 const NOT_SENT = 'not connected: nothing was sent';
-const ANSWER_WITHIN_MS = 30_000; // ours: longer than any question of the server may take
+const ANSWER_WITHIN_MS = 30_000; // chosen: longer than any request may take the server
 
 let worker: Worker | undefined;
-const forWorker: ToWorker[] = []; // until there is one
+const forWorker: ToWorker[] = []; // until there is a worker
 let lastAsk = 0;
 let lastRequest = 0;
 const asked = new Map<number, { resolve: (value: unknown) => void; reject: (error: Error) => void }>();
 const requests = new Map<number, { resolve: (reply: CommandReply) => void; reject: (error: Error) => void }>();
-/** Sent and given up on: what an answer that comes late is about. */
+/** Sent commands whose answer is no longer awaited, for naming a late answer. */
 const unanswered = new Map<number, string>();
 
 export function post(message: ToWorker): void {
@@ -32,24 +33,24 @@ export function post(message: ToWorker): void {
   else forWorker.push(message);
 }
 
-/** What hears and answers for the server: from now on all goes there, also what was said before. */
+/** Sets the worker, which listens and answers for the server. Earlier messages are passed on to it. */
 export function sendBy(its: Worker | undefined): void {
   worker = its;
   if (its) for (const message of forWorker.splice(0)) its.postMessage(message);
 }
 
 /**
- * Since the connection broke, until the server that came back has said that it has the very run that is shown: what answers may have another archive,
- * with no such run, or another one of its number.
+ * True from the loss of the connection until the server confirms that it has the very run shown. Meanwhile the server
+ * that answers may have another archive, without this run or with another run of its number.
  */
 export const inDoubt = signal(false);
 
-/** Throws then: before anything of the run is asked. */
+/** Throws while in doubt, before anything about the run is asked. */
 export function refuseInDoubt(): void {
   if (inDoubt.peek()) throw new Refused(0, 'not connected: nothing was asked');
 }
 
-/** Asks an HTTP route by the worker; rejects with the server's own words. */
+/** Asks an HTTP route through the worker; rejects with the server's own words. */
 export async function ask<T>(question: Question, path: string): Promise<T> {
   if (path.startsWith('/runs/')) refuseInDoubt();
   const number = ++lastAsk;
@@ -59,37 +60,40 @@ export async function ask<T>(question: Question, path: string): Promise<T> {
   });
 }
 
-/** Why nothing can be sent now; undefined where the server has said that this very run is what it has, and all of it is here. */
+/** Why nothing can be sent now. Undefined once the server has confirmed the run shown and the page has all of it. */
 export function whyNotSent(): string | undefined {
   const { state } = stream.value;
   return state === 'live' ? undefined : state === 'catching_up' ? 'catching up: nothing was sent' : NOT_SENT;
 }
 
-/** Of the run that is shown, if no other is named: another that goes on meanwhile is not touched. */
+/** Controls the run shown unless another is named; another current run is not touched. */
 export function control(action: ControlAction, run = store.value?.id ?? 0): void {
   const why = whyNotSent();
   if (why === undefined) post({ type: 'control', run, control: action });
   else notify(why);
 }
 
-/** Asks of the run that is shown, over HTTP: what has a small answer. */
+/** Reads a small answer about the run shown over HTTP. */
 export async function read<T>(path: string): Promise<T> {
   refuseInDoubt();
   return call<T>('GET', path);
 }
 
-/** Changes something of it, so too. */
+/** Changes the run shown over HTTP. */
 export async function change<T>(path: string, body: object, within_ms?: number): Promise<T> {
   const why = whyNotSent();
   if (why === undefined) return call<T>('POST', path, body, within_ms);
-  await learnAccess().catch(() => undefined); // the end of a session ends the connection, too
+  await learnAccess().catch(() => undefined); // the end of a session also ends the connection
   throw new Refused(409, access.value.state === 'out' ? 'log in first' : why);
 }
 
-/** Sent, and no answer will come: it may have been taken or not. */
+/** A command was sent and no answer will arrive: it may have been accepted or not. */
 export class OutcomeUnknown extends Error {}
 
-/** Sends once. Rejects when nothing was sent, and with OutcomeUnknown when it was and no answer came. Only the reply that bears its number is its answer. */
+/**
+ * Sends a command once. Rejects if it was not sent, and with OutcomeUnknown if no answer arrived. Only the reply with
+ * its number is its answer.
+ */
 export function sendCommand(intent: CommandIntent): Promise<CommandReply> {
   const why = whyNotSent();
   if (why !== undefined) return Promise.reject(new Error(why));
@@ -109,7 +113,7 @@ export function sendCommand(intent: CommandIntent): Promise<CommandReply> {
   });
 }
 
-/** The connection is gone, and with it every answer that was to come. */
+/** Rejects the awaited commands, because the connection is lost and with it their answers. */
 export function giveUpCommands(): void {
   for (const request of requests.values()) {
     request.reject(
@@ -121,7 +125,7 @@ export function giveUpCommands(): void {
   requests.clear();
 }
 
-/** What the worker says to what was asked or sent. */
+/** Passes an answer of the worker to its request. */
 export function takeAnswer(message: Extract<FromWorker, { type: 'reply' | 'not_sent' | 'answer' }>): void {
   switch (message.type) {
     case 'reply': {

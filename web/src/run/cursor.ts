@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The instant that is pointed at, one for plots, tones and timeline. By mouse where it is drawn, by key anywhere.
+// The instant pointed at, shared by plots, tones and timeline; by mouse where it is drawn, by key anywhere.
 import { effect, signal } from '@preact/signals';
 import { cutoff, shownRun, store } from './shown';
 import { plotSpan } from './window';
@@ -7,15 +7,15 @@ import { plotSpan } from './window';
 /** Seconds from entry; undefined: none. */
 export const cursor = signal<number | undefined>(undefined);
 
-// Of another run it is another instant.
+// In another run it would be another instant.
 effect(() => {
   void store.value;
   cursor.value = undefined;
 });
 
-const STEPS = 100; // ours: a held key crosses what is shown in a few seconds
+const STEPS = 100; // chosen: a held key crosses the shown range in a few seconds
 
-/** From nothing it begins at the newest that is shown. */
+/** Without a cursor it starts at the newest instant shown. */
 export function stepCursor(direction: 1 | -1): void {
   const run = shownRun();
   if (!run) return;

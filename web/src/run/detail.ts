@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is held of a channel's past is thinned over the whole run. Once a shorter stretch of it is looked at, that stretch is asked for
-// again, as fine as it can be drawn: what is wanted last, and one question at a time.
+// Fetches detail for a zoomed stretch. The history held of a channel is thinned over the whole run; a shorter stretch
+// is requested again at the resolution of the plot. Only the newest wish counts, with one round of requests at a time.
 import { effect, untracked } from '@preact/signals';
 import { seriesPath } from '../recorded/model';
 import { columnsOf } from '../stream/series_answer';
@@ -9,8 +9,8 @@ import { ask } from './connection';
 import { asHeard, plottedChannels, store } from './shown';
 import { zoomedTo } from './window';
 
-const POINTS = 1000; // ours: of a channel, one a pixel of a usual plot; more takes longer to come than a step of zoom may
-const CHANNELS_A_QUESTION = 8; // several small questions are answered side by side
+const POINTS = 1000; // chosen: per channel, one a pixel of a usual plot; more would take longer than a zoom step may
+const CHANNELS_A_QUESTION = 8; // several small requests are answered side by side
 
 let wanted = '';
 let done = '';
@@ -34,12 +34,12 @@ async function refine(): Promise<void> {
           const list = await ask<SeriesAnswer[]>('series', seriesPath(run.id, some, from, to, POINTS, live));
           if (store.peek() !== run) return;
           performance.mark('aeolis-detail');
-          // Live samples that came while the answer was on its way are newer than it, and stay.
+          // Live samples newer than the answer stay.
           for (const column of columnsOf(list)) run.addRange([column], from, Math.min(to, column.sclk.at(-1) ?? to));
         }),
       );
     } catch {
-      // What is held stays; the header says when there is no connection.
+      // The held samples stay; the header reports a lost connection.
     }
   }
   underWay = false;
@@ -47,9 +47,9 @@ async function refine(): Promise<void> {
 
 export function refineWhatIsLookedAt(): void {
   effect(() => {
-    const span = zoomedTo(); // what follows the run is fine enough as it comes, a whole range as fine as it was asked for
+    const span = zoomedTo(); // live data and a whole range already have the right resolution
     wanted = span ? `${store.value?.id} ${span.from} ${span.to} ${asHeard.value}` : '';
     if (span) untracked(() => void refine());
-    else done = wanted; // the same stretch is asked for anew when it is looked at again
+    else done = wanted; // a later view of the same stretch asks again
   });
 }

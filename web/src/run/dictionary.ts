@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The mission's words, as the API tells them, with the look-ups that the panels need.
+// The mission's dictionary from the API, with the look-ups that the panels need.
 import { LAYOUT } from '../layout';
 import type { DictionaryChannel, DictionaryCommand, DictionaryReply, DictionaryTone } from '../gen/aeolis/v1/run_pb';
 
@@ -9,7 +9,7 @@ export class Dictionary {
   readonly tones = new Map<number, DictionaryTone>();
   private readonly byId = new Map<number, DictionaryChannel>();
   private readonly byName = new Map<string, DictionaryChannel>();
-  /** For each channel, all that come in the same packet. */
+  /** For each channel, all channels of the same packet. */
   readonly packets = new Map<number, number[]>();
 
   constructor(readonly reply: DictionaryReply) {
@@ -32,7 +32,7 @@ export class Dictionary {
     return this.byId.get(id);
   }
 
-  /** The first of `names` that the dictionary has. */
+  /** The first of `names` in the dictionary. */
   pick(names: readonly string[]): DictionaryChannel | undefined {
     for (const name of names) {
       const found = this.byName.get(name);
@@ -55,7 +55,7 @@ export function inWords(name: string): string {
   return (LAYOUT.words as Record<string, string>)[name] ?? name.replaceAll('_', ' ').toLowerCase();
 }
 
-/** A value as people read it: label, or five significant digits and no more than four decimals. */
+/** A value for display: its label, or five significant digits with at most four decimals. */
 export function valueText(channel: DictionaryChannel | undefined, value: number | undefined): string {
   if (value === undefined) return '—';
   if (Number.isNaN(value)) return 'undefined';

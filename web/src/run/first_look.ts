@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is drawn, coarse, asked for before anything else is known, while the rest of the script, the worker and its schema are still loading:
-// someone waits for a picture. The history that has no seam replaces it. Where it fails nothing is lost but that head start.
+// A coarse first look at the plotted channels, requested before anything else is known, while the rest of the script,
+// the worker and its schema still load. The seamless history replaces it. A failure costs only the head start.
 import type { RunState } from '../gen/aeolis/v1/run_pb';
 import { LAYOUT } from '../layout';
 import { columnsOf, readSeriesList } from '../stream/series_answer';
@@ -8,14 +8,17 @@ import type { Column } from '../stream/messages';
 import { namedChannels, wantedRun } from './address';
 import { askRuns, isGoing } from './start';
 
-const POINTS = 1000; // ours: of a channel
+const POINTS = 1000; // chosen: per channel
 
 export interface FirstLook {
   run: number;
   columns: Column[];
 }
 
-/** The run that will be shown, if `wanted` (0: whichever goes on, else the newest) is one; only what was asked for at its address, or the layout's plots. */
+/**
+ * Fetches the first look of the run that will be shown (`wanted` 0: the current run, else the newest): the channels
+ * named in the address, or the layout's plots.
+ */
 export async function firstLook(
   runs: readonly RunState[],
   wanted: number,
@@ -54,7 +57,7 @@ export function askFirst(): void {
   };
 }
 
-/** What was asked before; once that was taken, it is asked anew. */
+/** The answers requested so far; each further call requests them anew. */
 export function firstAnswers(): FirstAnswers {
   if (!asked) askFirst();
   const answers = asked as FirstAnswers;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Limits as the ground judges by them: those of the context that holds, else those without one. A context is a state of EDL.
+// Limits by the ground's rule: those of the context in force, else those without a context. A context is a state of
+// EDL.
 import { LAYOUT } from '../layout';
 import type { AlarmLimit, DictionaryChannel } from '../gen/aeolis/v1/run_pb';
 import type { Dictionary } from './dictionary';
@@ -7,10 +8,10 @@ import type { RunStore } from './store';
 
 const WORST: ReadonlySet<string> = new Set(['distress', 'critical', 'severe']);
 
-/** Of the colour of alarms; what is less is of that of caution. */
+/** Whether a severity has the colour of alarms; lower ones have that of caution. */
 export const isWorst = (severity: string): boolean => WORST.has(severity);
 
-/** The state of EDL at `sclk`, by its name; undefined while none is known. */
+/** The name of the state of EDL at `sclk`; undefined while unknown. */
 export function contextAt(run: RunStore | undefined, words: Dictionary | undefined, sclk: number): string | undefined {
   const phase = words?.pick(LAYOUT.phase);
   const value = phase && run?.latest(phase.id, sclk)?.value;
@@ -29,7 +30,7 @@ export interface Stretch {
   limits: AlarmLimit[];
 }
 
-/** Which limits held when, within [from, to]. */
+/** The limits in force over [from, to], as stretches. */
 export function limitsOver(
   run: RunStore,
   words: Dictionary,
@@ -52,7 +53,7 @@ export function limitsOver(
   return all.filter((stretch) => stretch.limits.length > 0);
 }
 
-/** `from`, and each SCLK after it at which the state of EDL became another. */
+/** `from`, and each later SCLK at which the state of EDL changed. */
 function changesOfContext(run: RunStore, words: Dictionary, from_sclk: number, to_sclk: number): number[] {
   const phase = words.pick(LAYOUT.phase);
   const changes = new Set([from_sclk]);
@@ -69,7 +70,7 @@ function changesOfContext(run: RunStore, words: Dictionary, from_sclk: number, t
   return [...changes].sort((one, other) => one - other);
 }
 
-/** "watch > 7; critical < −3 or > 2": in the order of the dictionary. */
+/** "watch > 7; critical < −3 or > 2", in the order of the dictionary. */
 export function limitsText(limits: readonly AlarmLimit[]): string {
   return limits.map((limit) => `${limit.severity} ${boundsText(limit)}`).join('; ');
 }
@@ -81,7 +82,7 @@ function boundsText(limit: AlarmLimit): string {
   return parts.join(' or ');
 }
 
-/** All of a channel, each context by its name. */
+/** All limits of a channel, each context with its name. */
 export function allLimitsText(channel: DictionaryChannel): string {
   const contexts = [...new Set(channel.limits.map((limit) => limit.context))];
   return contexts

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-/** Lets something through every `every_ms` on the average: what came late lets the next come sooner, by no less than `least_ms`. */
+/**
+ * Lets one action pass every `every_ms` on average. After a late one the next may follow sooner, after `least_ms` at
+ * least.
+ */
 export class Pace {
   private next = -Infinity;
 
@@ -8,7 +11,7 @@ export class Pace {
     private readonly least_ms: number,
   ) {}
 
-  /** How long it is still to wait; none: 0. */
+  /** The remaining wait; 0: none. */
   wait(now_ms: number): number {
     return Math.max(0, this.next - now_ms);
   }

@@ -31,7 +31,7 @@ it('a report of a run that is over is asked for until it has come, once, and of 
   const View = () => h('p', null, numbers.use() ?? numbers.problem.value ?? 'asking');
   await act(() => render(h(View, null), place));
   await passes(5000);
-  expect([asked.length, place.innerText]).toEqual([1, 'asking']); // no second question beside the first
+  expect([asked.length, place.innerText]).toEqual([1, 'asking']); // no second request beside the first
   await answer(asked[0]!, { ok: false, status: 503, error: 'the archive is busy' });
   expect(place.innerText).toBe('the archive is busy');
   await passes(1000);
@@ -40,7 +40,7 @@ it('a report of a run that is over is asked for until it has come, once, and of 
   await act(() => {
     store.value = aStore([], aRun({ run: 2n }));
   });
-  await answer(asked[1]!, { ok: true, value: 1 }); // of the run of before
+  await answer(asked[1]!, { ok: true, value: 1 }); // the answer about the earlier run
   expect([store.value === one, asked.map((each) => each.path), place.innerText]).toEqual([
     false,
     ['/runs/1/proof', '/runs/1/proof', '/runs/2/proof'],

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A report that the archive counts over a whole run: asked for while a panel shows it, anew once more of the run is there.
+// A report that the archive computes over a whole run, requested while a panel shows it and again when the run has
+// grown.
 import { signal } from '@preact/signals';
 import type { Signal } from '@preact/signals';
 import { useEffect } from 'preact/hooks';
@@ -8,12 +9,12 @@ import { ask } from './connection';
 import { store } from './shown';
 
 interface ReportOfRun<T> {
-  /** In a view: the newest of the run that is shown; undefined until it has come. */
+  /** For use in a view: the newest report of the run shown; undefined until it has arrived. */
   use(): T | undefined;
   problem: Signal<string | undefined>;
 }
 
-/** `path` is below /runs/N/. One question at a time, and one that failed is asked again after `again_ms`. */
+/** Creates a report from `path` below /runs/N/. One request at a time; a failed one is repeated after `again_ms`. */
 export function reportOfRun<T>(question: Question, path: string, again_ms: number): ReportOfRun<T> {
   const held = signal<{ run: number; through: number; report: T } | undefined>(undefined);
   const problem = signal<string | undefined>(undefined);
@@ -23,7 +24,7 @@ export function reportOfRun<T>(question: Question, path: string, again_ms: numbe
     if (!run || underWay || (held.value?.run === run.id && held.value.through === run.completeThrough)) return;
     underWay = true;
     try {
-      const through = run.completeThrough; // what comes while it is counted is for the next
+      const through = run.completeThrough; // later items are for the next report
       const report = await ask<T>(question, `/runs/${run.id}/${path}`);
       if (store.value === run) held.value = { run: run.id, through, report };
       problem.value = undefined;

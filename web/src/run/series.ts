@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// One channel's samples in order of SCLK, bounded. Live samples are appended; history read from the archive replaces
-// what it covers. When full, the older half is thinned to the least and the largest of each four.
+// One channel's samples in order of SCLK, bounded. Live samples are appended; history from the archive replaces the
+// samples in its range. When full, the older half is thinned to the least and the largest of every four.
 
-const LIMIT = 1 << 16; // of points: 1 MB a channel at most
-export const LIMIT_NOT_DRAWN = 1 << 11; // of a channel that is only shown as a number: a past view asks what it was
+const LIMIT = 1 << 16; // points: at most 1 MB a channel
+export const LIMIT_NOT_DRAWN = 1 << 11; // for a channel shown only as a number; a past view asks for its former value
 
 export class Series {
   sclk = new Float64Array(64);
@@ -24,7 +24,7 @@ export class Series {
     }
   }
 
-  /** Takes history in: keeps of what is held only what is newer than its last sample, or not newer than `through`. */
+  /** Inserts history. Of the held samples only those newer than its last sample, or not newer than `through`, stay. */
   replaceBefore(sclk: Float64Array, value: Float64Array, through = -Infinity): void {
     const first = sclk.findIndex((at) => at > through);
     if (first < 0) return;
@@ -32,7 +32,7 @@ export class Series {
     this.exchange(this.firstAfter(through), endsAt, sclk.subarray(first), value.subarray(first));
   }
 
-  /** All that lies within [from, to] gives way to these samples. */
+  /** Replaces all samples within [from, to] by these. */
   replace(from: number, to: number, sclk: Float64Array, value: Float64Array): void {
     this.exchange(this.firstNotBefore(from), this.firstAfter(to), sclk, value);
   }
@@ -74,7 +74,9 @@ export class Series {
     return index < 0 ? undefined : { sclk: this.sclk[index] as number, value: this.value[index] as number };
   }
 
-  /** A copy without the samples of these instants; of the same version, for it is drawn in its place. */
+  /**
+   * A copy without the samples of these instants. It has the same version, since it is drawn in place of the original.
+   */
   without(instants: ReadonlySet<number>): Series {
     const copy = new Series(this.limit);
     copy.version = this.version;
@@ -93,7 +95,7 @@ export class Series {
 
   private insert(sclk: number, value: number): void {
     const index = this.firstAfter(sclk);
-    if (index > 0 && this.sclk[index - 1] === sclk) return; // the same sample again
+    if (index > 0 && this.sclk[index - 1] === sclk) return; // a repeated sample
     if (this.length === this.sclk.length) this.grow();
     this.sclk.copyWithin(index + 1, index, this.length);
     this.value.copyWithin(index + 1, index, this.length);

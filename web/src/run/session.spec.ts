@@ -28,7 +28,7 @@ describe('a server that does not answer', () => {
     onMessage({ type: 'stream', state: 'live', attempt: 0, gaps: 0, serverVersion: '' });
   });
   afterEach(() => void vi.useRealTimers());
-  /** Reviewed, with the ground's yes, and sent. */
+  /** Reviewed, accepted by the ground, and sent. */
   const send = async () => {
     type('no_op');
     choose('NO_OP');
@@ -191,7 +191,7 @@ describe('a run', () => {
     const none = [[], [], 'rejected'];
     expect(await askAll()).toEqual(every);
     for (const now of ['lost', 'catching_up', 'live'] as const) {
-      state(now); // "live" alone may be of the run that goes on there
+      state(now); // "live" alone may refer to the server's current run
       expect(await askAll(), now).toEqual(none);
     }
     onMessage({ type: 'run', run: aRun({ ...one, seed: 2n }), fresh: false });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What leads from run to run: which one is followed, what of it is learnt from the server and when, and how the page begins.
+// The page's way from run to run: which run is followed, which data are requested when, and how the page begins.
 import { batch, effect } from '@preact/signals';
 import type { RunState, ScenarioList, TimepointList } from '../gen/aeolis/v1/run_pb';
 import type { FromWorker, ToWorker } from '../stream/messages';
@@ -38,7 +38,10 @@ export function backToLive(): void {
   if (begun) watch(0);
 }
 
-/** A run that began while the past of another was looked at: the stream is of it, and so will be what is shown, once who looks comes back. */
+/**
+ * The run that began while the past of another is shown. The stream already follows it; the page shows it once the past
+ * is left.
+ */
 let begun: bigint | undefined;
 
 function staysInThePast(of: RunStore, run: RunState): void {
@@ -47,21 +50,26 @@ function staysInThePast(of: RunStore, run: RunState): void {
   notify(`Run ${begun}, ${run.scenario}, has begun; Esc leaves the past of run ${of.id} for it.`);
 }
 
-let lostAt_e_s = NaN; // when the connection broke, as the header showed it
+let lostAt_e_s = NaN; // time from entry on the header when the connection broke
 
-const ALARMS_EVERY_S = 5; // ours: what is shelved comes back without an item
-const TIMELINE_LOOK_S = 0.25; // ours: whether there is anything to ask about it
-const FIRST_LOOK_MS = 500; // ours: what follows does not wait longer for it
-const SESSION_MS = 5000; // ours: a stream by which the server does not know this browser is worth more than none
+const ALARMS_EVERY_S = 5; // chosen: a shelved alarm returns without an item
+const TIMELINE_LOOK_S = 0.25; // chosen: interval of checks for news of the timeline
+const FIRST_LOOK_MS = 500; // chosen: longest delay of the start by the first look
+// chosen: longest wait for the session; a stream on which the server does not know this browser is better than none
+const SESSION_MS = 5000;
 
-const wholeHistory = new WeakSet<RunStore>(); // what of it has come needs no first look any more
+const wholeHistory = new WeakSet<RunStore>(); // runs whose history has arrived, which need no first look
 
-/** What is looked at stays until the new run is there, or the one that was cut off has caught up. Throws the server's words. */
+/**
+ * Starts or continues a rehearsal. The view stays until the new run exists, or the cut-off run has caught up. Throws
+ * the server's words.
+ */
 export async function startRehearsal(
   order: { scenario: string; seed: string; pace: number } | { continue_run: number; pace: number },
   isWaitedFor = () => true,
 ): Promise<void> {
-  await call('POST', '/rehearsals', order, Infinity); // one that was cut off is flown again as far as it had come before the answer is there
+  // for a cut-off run the answer arrives after it has been flown again
+  await call('POST', '/rehearsals', order, Infinity);
   if (isWaitedFor()) watch(0);
 }
 
@@ -78,9 +86,12 @@ export function watch(run: number): void {
   post({ type: 'watch', run });
 }
 
-/** Thinned together with the recording, few of what came live are among the points: a past as it was heard has its own. */
+/**
+ * Runs whose live samples were requested separately. A thinned mixture with the recording has few live points, so a
+ * past as heard has its own.
+ */
 const askedLive = new WeakSet<RunStore>();
-/** What came thinned is asked for again: while the run goes on only what is drawn, for the archive has work to do. */
+/** Requests thinned history again. During the run only plotted channels, since the archive is busy. */
 function refreshHistory(of: RunStore): void {
   if (!of.going) of.thinnedSinceHistory = false;
   post({ type: 'refresh_history', all: !of.going, live: false });
@@ -96,7 +107,7 @@ export function onMessage(message: FromWorker): void {
       if (message.state === 'lost') inDoubt.value = true;
       if (message.state === 'lost' && before !== 'lost') {
         giveUpReads();
-        void learnAccess().catch(() => undefined); // a session that ended closes the stream
+        void learnAccess().catch(() => undefined); // the end of a session closes the stream
         lostAt_e_s = store.value?.seenE ?? NaN;
         giveUpCommands();
       }
@@ -126,7 +137,7 @@ export function onMessage(message: FromWorker): void {
       takeAnswer(message);
       break;
     case 'refusal':
-      if (inDoubt.peek()) void refreshRuns(); // it may be the run that is shown of which the server knows nothing
+      if (inDoubt.peek()) void refreshRuns(); // the server may not know the run shown
       notify(message.reason);
       break;
     case 'trouble':
@@ -135,11 +146,11 @@ export function onMessage(message: FromWorker): void {
   }
 }
 
-const LEFT = 'aeolis-left'; // what is said once the page has begun anew
+const LEFT = 'aeolis-left'; // key of the notice that follows a reload
 
 /**
- * The server has an archive in which what is shown never was. Everything here is of the old one, down to the dictionary: the page begins
- * anew, and goes to the run that goes on.
+ * Handles a server with another archive, which never had the run shown. All data here belong to the old archive, down
+ * to the dictionary. So the page reloads and goes to the current run.
  */
 function takeOtherArchive(): void {
   const run = store.value;
@@ -195,7 +206,7 @@ async function refreshTimepoints(): Promise<void> {
         timelineAnswer.value = { asked, list, at_ms: performance.now() };
       });
   } catch {
-    failed = true; // The timeline says that it has no plan; the next round asks again.
+    failed = true; // the timeline says that it has no plan; the next round asks again
   } finally {
     timepointsUnderWay = false;
     timelinePace.asked(of, asked.text, version, performance.now(), failed);
@@ -210,13 +221,13 @@ export async function refreshRuns(): Promise<void> {
     const isOther = (run: RunState) => all.some((each) => each.run === run.run && !isSameRun(each, run));
     if (before.some(isOther) || (shown && shown === store.value && !all.some((each) => each.run === shown.run.run)))
       return takeOtherArchive();
-    if (doubted && shown) inDoubt.value = false; // it is among them
+    if (doubted && shown) inDoubt.value = false; // the run shown is among them
     const held = store.value;
-    // What is over stays over: an answer from before its end may come after it. One that was cut off may go on.
+    // A finished run stays finished: an answer from before its end may arrive after it. A cut-off run may continue.
     runs.value = all.map((run) => (held && run.run === held.run.run && held.run.state === 'finished' ? held.run : run));
     const mine = runs.value.find((run) => run.run === held?.run.run);
     if (mine && held && (!held.going || begun)) held.update(mine);
-    // A run that began while the one we follow was already over, or lost with its server: go there.
+    // A run began while the followed one was already over, or lost with its server: go there.
     const going = runs.value.find(isGoing);
     if (watched.value !== 0 || !going || !held || held.going || going.run === held.run.run) return;
     if (pastRange.value) staysInThePast(held, going);
@@ -233,7 +244,10 @@ async function everySeconds(seconds: number, what: () => Promise<void>): Promise
   }
 }
 
-/** Its schema takes as long to load as a picture to draw: it starts once the first look is on its way to the screen. */
+/**
+ * Starts the worker. Its schema takes as long to load as a picture to draw, so it starts once the first look is under
+ * way.
+ */
 function startWorker(): void {
   const worker = new Worker(new URL('../stream/worker.ts', import.meta.url), { type: 'module' });
   worker.onmessage = (event: MessageEvent<FromWorker>) => onMessage(event.data);
@@ -241,7 +255,7 @@ function startWorker(): void {
   sendBy(worker);
 }
 
-/** Learns the dictionary, chooses the run that is going on or the last one, takes a first look at it, and connects. */
+/** Loads the dictionary, chooses the current or the newest run, takes a first look at it, and connects. */
 export async function begin(): Promise<void> {
   const left = sessionStorage.getItem(LEFT);
   if (left !== null) notify(left);
@@ -257,10 +271,10 @@ export async function begin(): Promise<void> {
   for (let attempt = 0; ; ++attempt) {
     try {
       knowing = learnAccess();
-      knowing.catch(() => undefined); // looked at below
+      knowing.catch(() => undefined); // handled below
       const [all, reply] = await startFrom().catch(async (error: unknown) => {
         if (!(error instanceof Refused) || error.status !== 401) throw error;
-        await knowing.then(learnAccess); // what turned us away may not be all that it says
+        await knowing.then(learnAccess); // the session tells more than the status 401
         await admitted();
         return startFrom();
       });
@@ -295,7 +309,7 @@ export async function begin(): Promise<void> {
   const passed = (ms: number) => new Promise((resolve) => setTimeout(resolve, ms));
   const known = Promise.race([knowing.catch(() => undefined), passed(SESSION_MS)]);
   await Promise.race([looked, passed(FIRST_LOOK_MS)]);
-  await known; // with the answer comes the cookie by which the stream's server knows this browser
+  await known; // the answer carries the cookie by which the stream's server knows this browser
   startWorker();
   post({ type: 'open', run: chosen, packets: Object.fromEntries(words.packets), plotted, others });
   ask<ScenarioList>('scenarios', '/scenarios').then(
@@ -310,7 +324,7 @@ export async function begin(): Promise<void> {
   });
   effect(() => {
     const run = store.value;
-    if (run && stream.value.state === 'lost') askedLive.delete(run); // what was asked gets no answer any more
+    if (run && stream.value.state === 'lost') askedLive.delete(run); // pending requests get no answer any more
     if (!run || !asHeard.value || stream.value.state !== 'live' || askedLive.has(run)) return;
     askedLive.add(run);
     post({ type: 'refresh_history', all: true, live: true });
@@ -334,7 +348,10 @@ export async function begin(): Promise<void> {
   });
 }
 
-/** For tests of views: a page without a worker, or with one that only `hears`; what it would say is given to onMessage. */
+/**
+ * For tests of views: a page without a worker, or with one that only `hears`. The test passes the worker's messages to
+ * onMessage.
+ */
 export function useForTest(
   run: RunStore | undefined,
   words: Dictionary | undefined,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is shown: the run, the part of it that is looked at as the past, its mode, and what is said to who looks. The signals that the panels read.
+// The state of the display, as signals that the panels read: the run, the past view, the mode, and the notices.
 import { computed, effect, signal, untracked } from '@preact/signals';
 import type { Signal } from '@preact/signals';
 import type { RunState, TimepointRow } from '../gen/aeolis/v1/run_pb';
@@ -12,7 +12,7 @@ import type { Dictionary } from './dictionary';
 import type { RunStore } from './store';
 
 export const store = signal<RunStore | undefined>(undefined);
-/** What belongs to the run that is shown: once it is another one, as it was at first. */
+/** A signal that returns to `first` whenever another run is shown. */
 export function signalOfRun<T>(first: T): Signal<T> {
   const value = signal(first);
   const shown = computed(() => store.value?.id);
@@ -26,15 +26,15 @@ export const dictionary = signal<Dictionary | undefined>(undefined);
 export const timepoints = signal<TimepointRow[]>([]);
 export const runs = signal<RunState[]>([]);
 export const scenarios = signal<{ name: string; title: string }[]>([]);
-/** The run asked for: 0 is "the one that is going on". */
+/** The requested run; 0: the current one. */
 export const watched = signal(0);
-/** Five times a second, when something has changed. Numbers on the screen follow this and nothing faster. */
+/** Changes five times a second if the data have changed. Numbers on the screen follow it and nothing faster. */
 export const tick = signal(0);
-/** Follows it a frame later: for tables so long that they take a frame of their own. */
+/** Follows `tick` one frame later, for tables so long that they need a frame of their own. */
 export const rowsTick = signal(0);
-/** A part of the run looked at as the past, in seconds from entry; undefined: not a past view. */
+/** The part of the run shown as the past, in seconds from entry; undefined: no past view. */
 export const pastRange = signal<{ from: number; to: number } | undefined>(undefined);
-/** Of a past view: with what only the recording told, or as it was heard then. */
+/** The reading of a past view: with the recording, or as it was heard then. */
 export const withRecording = signal(false);
 
 /** The run as every panel shows it. */
@@ -43,7 +43,7 @@ export function shownRun(): RunStore | undefined {
   return pastRange.value && !withRecording.value ? run?.asHeardBy(cutoff.value, packetOf) : run;
 }
 const packetOf = (channel: number): string | undefined => dictionary.value?.channel(channel)?.packet;
-/** The same, read by a view: it is then shown again at each tick, for a store changes without becoming another. */
+/** The same for use in a view. It renders again at each tick, since a store changes without becoming a new object. */
 export function runNow(): RunStore | undefined {
   void tick.value;
   return shownRun();
@@ -64,21 +64,21 @@ export function dismissNotice(id?: number): void {
   notices.value = id === undefined ? [] : notices.value.filter((notice) => notice.id !== id);
 }
 
-/** SCLK up to which things are shown: the end of the past view, else all. */
+/** SCLK up to which data are shown: the end of the past view, else Infinity. */
 export const cutoff = computed(() =>
   pastRange.value && store.value ? store.value.entrySclk + pastRange.value.to : Infinity,
 );
 
-/** A replay: the past view whose end moves on. `pastRange` is then what has been replayed so far. */
+/** A replay: a past view whose end advances. `pastRange` is then the part replayed so far. */
 export const replay = signal<{ pace: number; playing: boolean } | undefined>(undefined);
 
-/** Read with `tick`: a run's own state changes without a new store. */
+/** The mode. Subscribes to `tick`, since a run's state changes without a new store. */
 export function modeNow(): Mode {
   void tick.value;
   return modeOf(store.value, pastRange.value !== undefined, replay.value !== undefined);
 }
 
-/** Of a mission that is only listened to. */
+/** Whether the mission can only be listened to. */
 export const hasNoCommands = (): boolean => dictionary.value?.commands.length === 0;
 
 export const asHeard = computed(() => pastRange.value !== undefined && !withRecording.value);
@@ -93,7 +93,7 @@ export function lookAtPast(range: { from: number; to: number }, recorded: boolea
   pastRange.value = range;
 }
 
-/** What is drawn over time: its history comes finer. */
+/** Channels that are plotted over time; their history has more points. */
 export function plottedChannels(): string[] {
   const picks = [
     ...namedChannels().map((name) => [name]),

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the page must know before it shows anything: the mission's words and the runs. Asked as the document asks for them (index.html preloads
-// both), and read here, for the worker and its schema still load then.
+// The data that the page needs before it shows anything: dictionary and runs. The document requests them (index.html
+// preloads both). They are parsed here, because the worker and its schema are still loading.
 import type { DictionaryReply, RunList, RunState } from '../gen/aeolis/v1/run_pb';
 import { call } from './api';
 
-/** JSON of the API as the schema's types have it: names in camelCase, and as bigint whole numbers of 64 bits, which JSON has as text under the names `whole`. */
+/**
+ * Converts the API's JSON to the schema's types: camelCase names, and bigint for 64-bit integers, which are texts in
+ * JSON under the names `whole`.
+ */
 export function typed(json: unknown, whole: ReadonlySet<string>): unknown {
   if (Array.isArray(json)) return json.map((each) => typed(each, whole));
   if (typeof json !== 'object' || json === null) return json;
@@ -15,7 +18,8 @@ export function typed(json: unknown, whole: ReadonlySet<string>): unknown {
   return made;
 }
 
-const typedNames = new Map<string, string>(); // a dictionary has few names, thousands of times; someone waits for a picture meanwhile
+// a dictionary repeats a few names thousands of times, and this runs before the first picture
+const typedNames = new Map<string, string>();
 
 function typedName(name: string): string {
   let found = typedNames.get(name);
@@ -31,7 +35,7 @@ export const askDictionary = async (): Promise<DictionaryReply> =>
 
 export const isGoing = (run: RunState) => ['waiting', 'running', 'paused'].includes(run.state);
 
-/** The newest first. */
+/** Asks for the runs, newest first. */
 export async function askRuns(): Promise<RunState[]> {
   const { runs } = typed(await call('GET', '/runs'), new Set(['run', 'seed', 'last_seq'])) as RunList;
   return runs.sort((a, b) => Number(b.run - a.run));

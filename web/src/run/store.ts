@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// All that the page holds of one run. Filled by the stream; read by every panel. One store a run: another run, another
-// store, so that nothing of one can be seen in the other.
+// All data that the page holds of one run, filled by the stream and read by every panel. Each run has its own store, so
+// that no data of one run appear in another.
 import type { Clocks, Explanation, LinkChange, TimepointFiring, Unit } from '../gen/aeolis/v1/items_pb';
 import type { RunState } from '../gen/aeolis/v1/run_pb';
 import { SOURCE_RECORDED } from '../stream/columns';
@@ -13,13 +13,14 @@ import { secondsOfDayOfYear, secondsOfErt } from './time';
 const EVENT_LIMIT = 20000;
 const UNIT_LIMIT = 400;
 const LINK_LIMIT = 5000;
-const ALARM_LIMIT = 1000; // of a channel
-const LATE_S = 2; // ours: what is heard so much later than light takes was kept by an orbiter, or in a queue on board
-export const LATE_LIMIT = 1 << 14; // of a packet: what is older is forgotten, and notTold says so
+const ALARM_LIMIT = 1000; // per channel
+// chosen: a packet heard this much later than light time was kept by an orbiter or by a queue on board
+const LATE_S = 2;
+export const LATE_LIMIT = 1 << 14; // per packet; older ones are forgotten, and notTold reports that
 const ABOUT_ALARMS: ReadonlySet<string> = new Set(['alarm', 'staleness', 'alarmAction']);
 const ABOUT_TIMELINE: ReadonlySet<string> = new Set(['timepoint', 'tone', 'commandStage']);
 
-/** `ert_s`: when it had come, seconds since 1970. */
+/** A fact with the time of its arrival, `ert_s`, seconds since 1970. */
 export interface Known<T> {
   seq: number;
   ert_s: number;
@@ -29,7 +30,7 @@ export interface Known<T> {
 interface ToneRow extends Known<NamedTone> {
   known_s: number;
 }
-/** What the recording brings again. `heard_s`: when it came live, seconds since 1970; NaN: it did not. */
+/** A fact that the recording repeats. `heard_s`: time of live reception, seconds since 1970; NaN: not received live. */
 interface Twin {
   live: boolean;
   recorded: boolean;
@@ -41,17 +42,17 @@ interface FiringPair {
   name: string;
   live?: TimepointFiring;
   recorded?: TimepointFiring;
-  heard_s?: number; // as of a twin
+  heard_s?: number; // as in Twin
 }
 export type StageWord = NamedStage & { ert_s: number };
 export interface CommandRow {
   command: number;
   name: string;
   arguments: string;
-  /** What was said of each stage, oldest first: the last word counts, in a past view the last of then. */
+  /** Reports on each stage, oldest first. The last one counts, in a past view the last one then known. */
   stages: Map<string, StageWord[]>;
 }
-/** Of one packet over one link. */
+/** Totals of one packet over one link. */
 export interface UnitTotals {
   link: string;
   apid: number;
@@ -66,10 +67,10 @@ export interface Sample {
   recorded: boolean;
 }
 
-/** `b` may be NaN. */
+/** The later of two times; `b` may be NaN. */
 const later = (a: number, b: number): number => (Number.isNaN(b) ? a : Math.max(a, b));
 
-/** Channels as they were heard: each is looked at only when it is asked for. */
+/** Channels as they were heard, each computed when it is requested. */
 class HeardSeries extends Map<number, Series> {
   constructor(
     private readonly all: ReadonlyMap<number, Series>,
@@ -94,37 +95,40 @@ export class RunStore {
   firings = new Map<number, FiringPair>();
   commands = new Map<number, CommandRow>();
   links = new Map<string, Known<LinkChange>[]>();
-  /** Those that stand now, by channel. */
+  /** Alarms in force, by channel. */
   alarms = new Map<number, NamedAlarm>();
   private readonly alarmChanges = new Map<number, NamedAlarm[]>();
   units: Known<Unit>[] = [];
-  /** By link and packet. */
+  /** Totals by link and packet. */
   unitTotals = new Map<string, UnitTotals>();
   clocks: Clocks | undefined;
   completeThrough = 0;
-  /** Channels of which the history has come: where nothing is held of another, it may only not have been asked for yet. */
+  /** Channels whose history has arrived. Other channels without samples may not have been requested yet. */
   askedFor = new Set<string>();
   thinnedSinceHistory = false;
-  /** Count what came about alarms, and about notes: whoever keeps their states asks again. */
+  /** Counts news of alarms; with notesVersion, tells other modules to ask again. */
   alarmsVersion = 0;
   notesVersion = 0;
-  /** Counts what came from which the timeline is predicted: firings, tones, stages of commands. */
+  /** Counts items on which the prediction of the timeline depends: firings, tones, stages of commands. */
   timelineVersion = 0;
-  /** Of all samples, events and tones. */
+  /** Newest SCLK of all samples, events and tones. */
   private newestSclk = -Infinity;
   private newestErt_s = NaN;
   private heard: { version: number; cutoff: number; run: RunStore } | undefined;
-  /** Of each packet, what came live, but late: SCLK of the unit, and of what else was heard then, which grows. */
+  /**
+   * Late live packets by name: the SCLK of each, and the SCLK of the signal that was heard at its arrival, which
+   * increases.
+   */
   private readonly late = new Map<string, { sclk: number[]; heard: number[] }>();
-  /** Of each packet, of how much that came late is not kept any more, from which SCLK on, and when the last of it was heard. */
+  /** By packet: the number of late ones forgotten, the first SCLK concerned, and when the last of them was heard. */
   private readonly lateForgotten = new Map<string, { units: number; from: number; heard: number }>();
-  /** Of each channel, the SCLK of the last sample that an answer of live samples alone brought. */
+  /** By channel: SCLK of the last sample from an answer of live samples alone. */
   private readonly liveAloneThrough = new Map<number, number>();
   private readonly heardSeries = new Map<number, { of: Series; version: number; key: string; series: Series }>();
   private lastUnit = { ert_s: NaN, sclk: NaN };
-  /** Counts what came with samples of what is drawn. */
+  /** Counts arrivals of samples of plotted channels. */
   samplesDrawn = 0;
-  /** Counts changes of anything. */
+  /** Counts all changes. */
   version = 0;
 
   constructor(
@@ -143,30 +147,33 @@ export class RunStore {
   get entrySclk(): number {
     return this.run.entrySclk;
   }
-  /** Of another mission that is followed nobody knows when it enters. */
+  /** False for a followed mission of others, whose time of entry is not known. */
   get entryKnown(): boolean {
     return this.run.entrySclk !== 0;
   }
-  /** Of what reaches Earth now. */
+  /** Vehicle time of the signal that reaches Earth now. */
   get seenSclk(): number {
     return this.clocks?.seenSclk || this.clocks?.sclk || Math.max(this.run.startSclk, this.newestSclk);
   }
   get seenE(): number {
     return this.seenSclk - this.entrySclk;
   }
-  /** SCLK of what was received at `ert_s`, seconds since 1970. The two run side by side, a light time apart, but for the drift of the clock on board. */
+  /**
+   * SCLK of the signal received at `ert_s`, seconds since 1970. Both advance alike, apart from the drift of the clock
+   * on board.
+   */
   sclkSeenAt(ert_s: number): number {
     const at = this.instant;
     return at.sclk + (ert_s - at.ert_s) / (this.run.clock?.rate || 1);
   }
-  /** When, on Earth, what left the vehicle at `sclk` could be received; in seconds since 1970, NaN while nothing tells. */
+  /** Earth time at which a signal sent at `sclk` can be received, seconds since 1970; NaN while unknown. */
   ertOf(sclk: number): number {
     const at = this.instant;
     return at.ert_s + (sclk - at.sclk) * (this.run.clock?.rate || 1);
   }
   /**
-   * One instant on both clocks. A run of the day before has no clocks any more; then a tone tells it, whose SCLK is that of
-   * its beginning by light time, or else the first event that came live, which was on its way a little longer.
+   * One instant on both clocks. An old run has no clocks any more. Then the first tone gives it, whose SCLK is that of
+   * its beginning by light time, or else the first live event, which was under way slightly longer.
    */
   private get instant(): { sclk: number; ert_s: number } {
     if (this.clocks?.ert) return { sclk: this.seenSclk, ert_s: secondsOfDayOfYear(this.clocks.ert) };
@@ -176,19 +183,19 @@ export class RunStore {
     return { sclk: event?.fact.sclk ?? NaN, ert_s: event?.ert_s ?? NaN };
   }
 
-  /** Whether what is dated `ert_s` was known on Earth when the vehicle was heard at `cutoff`. */
+  /** Whether an item dated `ert_s` was known on Earth when the vehicle was heard at `cutoff`. */
   knownBy(ert_s: number, cutoff: number): boolean {
     return cutoff === Infinity || !(this.sclkSeenAt(ert_s) > cutoff);
   }
-  /** Tones that had been decided by then. */
+  /** Tones decided by then. */
   tonesBy(cutoff: number): readonly ToneRow[] {
     return cutoff === Infinity
       ? this.tones
       : this.tones.filter(({ fact, known_s }) => fact.sclk <= cutoff && this.knownBy(known_s, cutoff));
   }
   /**
-   * The same run as it had been heard when the vehicle was heard at `cutoff`: without what only the recording told, and without what an
-   * orbiter or a queue on board brought later. It is read, and never added to.
+   * The same run as heard by the instant at which the vehicle was heard at `cutoff`: without data of the recording, and
+   * without data that an orbiter or a queue on board delivered later. Read-only.
    */
   asHeardBy(cutoff: number, packetOf: (channel: number) => string | undefined): RunStore {
     if (this.heard?.version === this.version && this.heard.cutoff === cutoff) return this.heard.run;
@@ -209,7 +216,10 @@ export class RunStore {
     return run;
   }
 
-  /** Without the samples of units that were under way at `cutoff`: made when they are asked for, and again when others are. */
+  /**
+   * The live series without samples of packets that were under way at `cutoff`. Copies are made on request and renewed
+   * when the set changes.
+   */
   private liveBy(cutoff: number, packetOf: (channel: number) => string | undefined): ReadonlyMap<number, Series> {
     const underWay = new Map<string, { key: string; instants: Set<number> }>();
     for (const [packet, { sclk, heard }] of this.late) {
@@ -239,7 +249,7 @@ export class RunStore {
     ++this.version;
   }
 
-  /** Of a channel, at `cutoff` or before: the newest, whichever way it came. */
+  /** The newest sample of a channel at or before `cutoff`, from either source. */
   latest(id: number, cutoff = Infinity): Sample | undefined {
     const live = this.live.get(id)?.at(cutoff);
     const recorded = this.recorded.get(id)?.at(cutoff);
@@ -247,13 +257,13 @@ export class RunStore {
     return live && { ...live, recorded: false };
   }
 
-  /** The alarm of a channel that stood at `cutoff`, as the ground raised it. */
+  /** The alarm of a channel in force at `cutoff`, as the ground raised it. */
   alarmAt(channel: number, cutoff: number): NamedAlarm | undefined {
     const last = this.alarmChanges.get(channel)?.findLast((change) => change.sclk <= cutoff);
     return last?.severity === 'none' ? undefined : last;
   }
 
-  /** Seconds between the samples that are held of a channel, on average; the series that has more of them counts. */
+  /** Mean interval in seconds between the held samples of a channel, in the denser of its two series. */
   spacing(id: number): number {
     const spacings = [this.live.get(id), this.recorded.get(id)].flatMap((series) =>
       series && series.length > 1 ? [(series.newestSclk - (series.sclk[0] as number)) / (series.length - 1)] : [],
@@ -276,9 +286,9 @@ export class RunStore {
   }
 
   /**
-   * An answer of the archive. `names`: the channels that were asked for; those without a column have no samples.
-   * `liveAlone`: the answer leaves out the recording. Answers come in any order. One that was thinned together with the
-   * recording holds few live samples, so it replaces none of those that an answer of live samples alone brought.
+   * Adds an answer of the archive. `names`: the requested channels; those without a column have no samples. `liveAlone`:
+   * the answer leaves out the recording. Answers arrive in any order. An answer thinned together with the recording
+   * holds few live samples, so it replaces none from an answer of live samples alone.
    */
   addHistory(columns: Column[], names: readonly string[] = [], liveAlone = false): void {
     ++this.version;
@@ -293,7 +303,7 @@ export class RunStore {
     }
   }
 
-  /** A range that was asked for: exact where what we held was thinned. */
+  /** Adds a requested range, which is exact where the held samples were thinned. */
   addRange(columns: Column[], from_sclk: number, to_sclk: number): void {
     ++this.version;
     ++this.samplesDrawn;
@@ -325,7 +335,7 @@ export class RunStore {
         this.addTwin(this.events, item, item.ert_s, (a, b) => a.id === b.id && a.text === b.text);
         break;
       case 'explanation':
-        // Its unit is the newest that came.
+        // Its packet is the newest one received.
         this.addTwin(
           this.explanations,
           item,
@@ -334,7 +344,7 @@ export class RunStore {
         );
         break;
       case 'tone':
-        // It is decided some time after its end: what came before it in the order of numbers was known by then.
+        // It is decided some time after its end; items with lower numbers were known by then.
         this.tones.push({ ...item, known_s: later(item.ert_s, this.newestErt_s) });
         break;
       case 'timepoint':
@@ -364,12 +374,12 @@ export class RunStore {
     }
   }
 
-  /** A lost link is an alarm: from when it is told so to when it is told anything else. */
+  /** A lost link is an alarm, from the change that reports it to the next change. */
   private isAboutLoss(item: Fact): boolean {
     return item.kind === 'link' && (item.fact.lost || this.links.get(item.fact.link)?.at(-1)?.fact.lost === true);
   }
 
-  /** Keeps `rows` in order of SCLK. What came live and again with the recording is one row that was seen twice. */
+  /** Keeps `rows` in order of SCLK. A fact received live and again with the recording is one row. */
   private addTwin<T extends { sclk: number; source: number; duplicate: boolean }>(
     rows: (Known<T> & Twin)[],
     item: Known<T>,
@@ -449,7 +459,10 @@ export class RunStore {
     });
   }
 
-  /** Packets of which it is not told any more what was still under way at `cutoff`: samples that were may be shown as heard then. */
+  /**
+   * Packets for which it is no longer known which samples were under way at `cutoff`; these samples may be shown as
+   * heard.
+   */
   notTold(cutoff: number): { packet: string; units: number }[] {
     return [...this.lateForgotten].flatMap(([packet, { units, from, heard }]) =>
       from <= cutoff && heard > cutoff ? [{ packet, units }] : [],

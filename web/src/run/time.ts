@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Times as controllers write them. All of them come from the stream; the browser's clock is never read.
+// Times in the notation of controllers. All of them come from the stream; the browser's clock is never read.
 
 const DAY_S = 86400;
-const EPOCH_S = Date.UTC(2000, 0, 1, 12) / 1000; // of the stream's times
+const EPOCH_S = Date.UTC(2000, 0, 1, 12) / 1000; // epoch of the stream's times
 
-/** Seconds since 1970 of a time as the stream has it: microseconds since 2000-01-01T12:00:00 UTC, in JSON a text of digits. */
+/**
+ * Converts a time of the stream to seconds since 1970: microseconds since 2000-01-01T12:00:00 UTC, in JSON a text of
+ * digits.
+ */
 export const secondsOfErt = (ert_us: bigint | string): number => EPOCH_S + Number(ert_us) / 1e6;
 
-/** Seconds since 1970 of "2012-219T05:10:47.400" (year, day of year), UTC; NaN when it is not such a text. */
+/** Converts "2012-219T05:10:47.400" (year, day of year; UTC) to seconds since 1970; NaN for other texts. */
 export function secondsOfDayOfYear(text: string): number {
   const parts = /^(\d{4})-(\d{3})T(\d{2}):(\d{2}):(\d{2}(?:\.\d+)?)Z?$/.exec(text);
   if (!parts) return NaN;
@@ -15,7 +18,7 @@ export function secondsOfDayOfYear(text: string): number {
   return Date.UTC(year, 0, 1) / 1000 + (day - 1) * DAY_S + hours * 3600 + minutes * 60 + seconds;
 }
 
-/** The other way round, to a tenth of a second or so many digits, cut off and not rounded, as a clock shows it. */
+/** The reverse, to a tenth of a second or the given digits; truncated, not rounded, like a clock. */
 export function dayOfYear(seconds: number, digits = 1): string {
   if (!Number.isFinite(seconds)) return '—';
   const unit = 10 ** digits;
@@ -26,7 +29,7 @@ export function dayOfYear(seconds: number, digits = 1): string {
   return `${year}-${pad(day, 3)}T${date.toISOString().slice(11, 19)}.${pad(count % unit, digits)}`;
 }
 
-/** "E+00:04:28", "E−19:02"; with tenths "E+04:28.3". Hours only where there are some, unless `hours`. */
+/** "E+00:04:28", "E−19:02"; with tenths "E+04:28.3". Hours only if needed, unless `hours`. */
 export function fromEntry(e_s: number, options: { tenths?: boolean; hours?: boolean } = {}): string {
   if (!Number.isFinite(e_s)) return 'E —';
   const unit = options.tenths ? 10 : 1;
@@ -50,7 +53,7 @@ export function duration(seconds: number): string {
   return `${sign}${Math.floor(all / 3600)} h ${pad(Math.floor(all / 60) % 60, 2)} m`;
 }
 
-/** Reads "E+3:20", "-120", "200.5", "4:28" as seconds from entry; undefined when it is none of these. */
+/** Reads "E+3:20", "-120", "200.5", "4:28" as seconds from entry; undefined for other texts. */
 export function readFromEntry(text: string): number | undefined {
   const parts = /^\s*e?\s*([+\-−]?)\s*(?:(?:(\d+):)?(\d+):)?(\d+(?:\.\d+)?)\s*s?\s*$/i.exec(text);
   if (!parts) return undefined;

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Once the rover stands on the ground, some channels are of the other half of the vehicle. The screen says so, or it would contradict itself.
+// The owner of a value: after touchdown some channels belong to the descent stage. The screen says so, or it would
+// contradict itself.
 import { LAYOUT } from '../layout';
 import type { RunStore } from './store';
 
-/** SCLK of touchdown, as the vehicle told it; Infinity before. */
+/** SCLK of touchdown as the vehicle reported it; Infinity before. */
 export function landedSclk(run: RunStore | undefined): number {
   for (const pair of run?.firings.values() ?? []) {
     if (pair.name === LAYOUT.landed) return (pair.live ?? pair.recorded)?.firedSclk ?? Infinity;
@@ -11,7 +12,7 @@ export function landedSclk(run: RunStore | undefined): number {
   return Infinity;
 }
 
-/** Whose value of `channel` that at `sclk` is; undefined: the vehicle's. */
+/** The owner of the value of `channel` at `sclk`; undefined: the whole vehicle. */
 export function whoseAt(run: RunStore | undefined, channel: string, sclk: number): string | undefined {
   return (LAYOUT.afterLanding.channels as readonly string[]).includes(channel) && sclk > landedSclk(run)
     ? LAYOUT.afterLanding.whose

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The stretch of time that timeline, tones and plots show together, in seconds from entry.
+// The stretch of time that timeline, tones and plots share, in seconds from entry.
 import { signal } from '@preact/signals';
 import { LAYOUT } from '../layout';
 import { pastRange, replay } from './shown';
@@ -13,18 +13,18 @@ interface Span {
   to: number;
 }
 
-/** The stretch of a fixed range that was zoomed to. */
+/** The zoomed stretch within a fixed range. */
 const inRange = signal<{ of: Span; span: Span } | undefined>(undefined);
 const fixedRange = (): Span | undefined => (replay.value ? undefined : pastRange.value);
 
-/** What someone has zoomed or panned to; undefined where what is shown follows the run, or is a whole range. */
+/** The zoomed or panned stretch; undefined if the display follows the run or shows a whole range. */
 export function zoomedTo(): Span | undefined {
   const range = fixedRange();
   if (range) return inRange.value?.of === range ? inRange.value.span : undefined;
   return typeof choice.value === 'object' ? choice.value : undefined;
 }
 
-/** A fixed range is never left by it. */
+/** Keeps a stretch within a fixed range. */
 function look(from: number, to: number): void {
   const range = fixedRange();
   if (!range) {
@@ -41,16 +41,16 @@ export function spanNow(store: RunStore | undefined): Span {
   if (fixed) return fixed;
   const wanted = choice.value;
   const seen = pastRange.value?.to ?? store?.seenE ?? 0;
-  // What is seen on Earth when a run begins is a light time old.
+  // The signal seen on Earth at the beginning of a run is one light time old.
   const begin = store ? store.run.startSclk - store.entrySclk - store.run.lightTimeS : LAYOUT.window.from;
   if (wanted === 'run') return { from: Math.min(begin, LAYOUT.window.from), to: Math.max(LAYOUT.window.to, seen + 5) };
   if (wanted === 'minute' || store?.entryKnown === false) return { from: seen - 60, to: seen + 15 };
-  // Before the vehicle comes near entry, what matters is the plan that begins with the approach.
+  // Far from entry, the plan from the approach on is what matters.
   if (seen < LAYOUT.window.from) return { from: Math.max(begin, seen - 240), to: LAYOUT.window.to };
   return { from: LAYOUT.window.from, to: Math.max(LAYOUT.window.to, Math.min(seen + 5, LAYOUT.window.to + 120)) };
 }
 
-/** Plots end a little after the newest sample, so that no half of them is empty. */
+/** The stretch of the plots ends shortly after the newest sample, so that they are not half empty. */
 export function plotSpan(store: RunStore | undefined): Span {
   const span = spanNow(store);
   if (zoomedTo() || fixedRange() || !store) return span;
