@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Commands by keyboard: tried out before they are sent, refused in place, held, timed, cancelled; and what the vehicle holds compared field by field.
+// Commands by keyboard: tried out before they are sent, refused in place, held, timed, cancelled; and the vehicle's
+// parameters compared field by field.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { focused, setPace, stageLook, waitFor, workplace } from './support.mjs';
@@ -8,7 +9,7 @@ const { open, serve } = workplace();
 
 const count = async (server) => ((await server.get('/runs/latest/commands')).commands ?? []).length;
 
-/** Into the field of this name with the Tab key alone. */
+/** Moves the focus to the field of this name with the Tab key alone. */
 async function tabTo(page, testId) {
   for (let presses = 0; presses < 60; ++presses) {
     if ((await focused(page)) === testId) return;
@@ -47,7 +48,7 @@ test('the ground says before it is sent what would become of a command, and refu
     `${told.arrives}, shown: ${await text('arrives')}`,
   );
   assert.match(await text('station'), /from DSS-14, whose pass ends 2012-219T04:10:47\.400 ERT/);
-  assert.match(await text('effect-seen'), /27 m 36 s after it leaves/); // twice 828 s
+  assert.match(await text('effect-seen'), /27 m 36 s after it leaves/); // 2 × 828 s
   assert.match(await text('send-by'), /leave by 2012-\d{3}T[\d:.]+ ERT to be there before .*to spare/);
   assert.ok((await text('dry-run')).replaceAll(/\s/g, '').includes(told.octets.slice(0, 8)), 'its octets are shown');
   assert.equal(await count(server), 0, 'a dry run takes no number');
@@ -152,7 +153,7 @@ test('a failure of something else is a notice, and the command’s own answer is
   await review(page, 'no op');
   await shows('dry-run', /✓ It would be sent as it stands here/);
   await page.evaluate(() => {
-    // a pace that nobody can have, and at once the command
+    // a pace that no user may have, followed at once by the command
     const select = document.querySelector('[data-testid="pace"]');
     select.add(new Option('-3', '-3'));
     select.value = '-3';
@@ -176,7 +177,7 @@ test('a command that needs a second person is asked for in one browser and appro
   await ann.page.keyboard.press('Enter');
   await ann.shows('command-message', /EDL_SET_PARAMETERS is #1/);
   await ann.shows('command-queue', /One command waits/);
-  await tabTo(ann.page, 'approve'); // her name is known to her own page
+  await tabTo(ann.page, 'approve'); // her own page knows her name
   await ann.page.keyboard.press('Enter');
   await ann.shows('command-message', /✖[^]*ann/);
   await ann.page.getByTestId('approver').fill('bob'); // nor under another name in her own browser
@@ -238,7 +239,7 @@ test('a command file is chosen, each of its commands looked at by the ground, an
   await shows('command-queue', /EDL_DO_EDL #2[^]*held until a controller releases it/);
   await waitFor(() => stageLook(page, 'EDL_SET_PARAMETERS', 'executed'), /ok/);
   assert.equal(await page.getByTestId('file-text').inputValue(), '', 'another Enter sends nothing');
-  // What the ground refuses has a status that a browser logs by itself.
+  // A refusal by the ground has a status that a browser logs by itself.
   assert.deepEqual(
     problems.filter((each) => !each.includes('409 (Conflict)')),
     [],

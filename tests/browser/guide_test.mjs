@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// A newcomer lands a spacecraft by what the guide says.
+// A newcomer lands a spacecraft by the guide alone.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { setPace as pace, waitFor, workplace } from './support.mjs';
 
 const { open, serve } = workplace();
 
-/** Does what the guide says, key by key, and nothing else. */
+/** Follows the guide key by key. */
 async function obey(page) {
   const presses = await page
     .getByTestId('guide')
@@ -17,7 +17,7 @@ async function obey(page) {
   for (const { type, key } of presses) {
     if (type) await page.keyboard.type(key);
     else if (key) await page.keyboard.press(key === '−' ? '-' : key === 'Esc' ? 'Escape' : key);
-    if (key === 'Enter') break; // what follows is another way
+    if (key === 'Enter') break; // the rest of the words is an alternative
   }
 }
 
@@ -27,7 +27,7 @@ test('whoever only does what the guide says lands it, and once put away the guid
   await shows('guide', /Tell the vehicle where it is/);
   for (const title of [/Tell the vehicle where it is/, /read it/, /Let it begin/, /read it/, /EDL_DO_EDL/]) {
     await shows('guide', title);
-    if (title.source === 'read it') await shows('dry-run', /✓ It would be sent/); // there is nothing to be read before
+    if (title.source === 'read it') await shows('dry-run', /✓ It would be sent/); // there is nothing to read before
     await obey(page);
   }
   await shows('guide', /Nothing to do until entry/);
@@ -44,7 +44,7 @@ test('whoever only does what the guide says lands it, and once put away the guid
   await shows('guide', /Entry[^]*see it happen/);
   await obey(page);
   await shows('guide', /You have landed it/);
-  await shows('badge', /touchdown/); // each panel takes its turn
+  await shows('badge', /touchdown/); // the panels take turns
 
   await page.keyboard.press('g');
   await waitFor(

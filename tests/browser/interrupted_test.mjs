@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// A server that is killed in mid-landing loses nothing that was shown, and neither does a page that is cut off from it.
+// After a server is killed in mid-landing, nothing shown is lost; nor does a page lose data when it is cut off.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { breakable, flyTo, setPace as pace, waitFor, workplace } from './support.mjs';
 
 const { open, serve } = workplace();
 
-/** What each plot draws: how many holes its trace has, and its newest sample. */
+/** For each plot, the number of holes in its trace and its newest sample. */
 const traces = (page) =>
   page
     .locator('.plot')
@@ -39,7 +39,7 @@ test('after kill -9 in mid-entry the run is there, interrupted, up to the last n
   assert.ok(Number.parseInt(await text('timepoints-fired'), 10) >= fired);
   const [run] = (await second.get('/runs')).runs;
   assert.equal(run.state, 'interrupted');
-  // The trace that lived through it is that of a page which asks for all of it now: no hole but the blackout, no seam.
+  // The surviving trace equals that of a page that requests everything now: no hole but the blackout, no seam.
   const other = await open(second.address);
   await other.shows('badge', /INTERRUPTED RUN/);
   await waitFor(
@@ -128,7 +128,7 @@ test('cut off in mid-entry the page says so, says what it missed once it is back
   await shows('stream-state', /connected/);
   await pace(page, 100);
   await shows('badge', /ENDED RUN.*touchdown/s);
-  // What came while it was away is there, once each: as many events as the archive has, and no hole in the trace.
+  // The items of the absence are there, once each: as many events as in the archive, and no hole in the trace.
   const { events } = await server.get('/runs/1/events?limit=10000');
   const names = (rows) => rows.reduce((count, name) => count.set(name, (count.get(name) ?? 0) + 1), new Map());
   const wanted = names(

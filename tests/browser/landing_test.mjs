@@ -20,7 +20,7 @@ test('two commands by keyboard land it; a reload has all of it; a range can be a
   await page.keyboard.press('Enter');
   await shows('command-message', /EDL_SET_PARAMETERS is #1/);
   await waitFor(() => stage(page, 'EDL_SET_PARAMETERS', 'executed'), /ok/);
-  await waitFor(() => stage(page, 'EDL_SET_PARAMETERS', 'verified'), /ok/); // flight reports what it holds every 8 s
+  await waitFor(() => stage(page, 'EDL_SET_PARAMETERS', 'verified'), /ok/); // flight reports its parameters every 8 s
   await shows('waiting', /type “do edl”/);
   await shows('command-history', /EDL_SET_PARAMETERS #1/);
 
@@ -59,8 +59,8 @@ test('two commands by keyboard land it; a reload has all of it; a range can be a
   );
   await shows('waiting', /Landed/);
   await shows('badge', /ENDED RUN.*touchdown/s);
-  // The end of the run may be told before its last items: the page has all once it has what the server has, and
-  // neither goes on.
+  // The end of the run may be reported before its last items: the page is complete once it has all items of the server
+  // and neither count grows.
   let before;
   await waitFor(
     async () => {

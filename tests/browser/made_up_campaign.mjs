@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A campaign that is a function of its case numbers, in place of the server's: a picture of it is always the same.
+// A campaign computed from its case numbers, in place of the server's, so that its picture is always the same.
 const CASES = 240;
 
 const touchdowns = Array.from({ length: CASES }, (_, i) => {
@@ -81,7 +81,7 @@ const unreadable = {
   fault: 'run-data/campaign-campaign-3.db: schema_version: 3 there, 4 here',
 };
 
-/** From now on the page sees this campaign. */
+/** Makes the page see this campaign from now on. */
 export async function madeUpCampaign(page) {
   await page.route(/\/api\/v1\/campaigns/, (route) => {
     const { pathname, searchParams } = new URL(route.request().url());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The panels of the console, by the names in their address.
+// The names of the console's panels, as in their address.
 export const PANELS = [
   'timeline',
   'descent',

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One pass over the panels of a run that has ended: each shows what it is for, five look as stored, and the script is as small as was promised.
+// One pass over the panels of an ended run: each shows its content, five match stored pictures, and the script is as
+// small as promised.
 import assert from 'node:assert/strict';
 import { readdir, readFile } from 'node:fs/promises';
 import path from 'node:path';
@@ -10,7 +11,7 @@ import { comesToLook } from './picture.mjs';
 import { findings, landed, root, waitFor, workplace } from './support.mjs';
 
 const SCRIPT_KB = 150;
-/** What a panel says of this landing that no other could say. */
+/** A text in each panel that only this landing could produce. */
 const SHOWN = {
   timeline: /71 of 71 timepoints fired/,
   descent: /at touchdown[^]*the rover hangs below/,

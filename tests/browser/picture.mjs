@@ -1,20 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures of panels against stored ones: both as means of tiles, so that the edge of a letter does not count and a panel that moved,
-// lost its colours does. A trace is a pixel thin and would be lost in a tile: of each canvas is counted besides in how many columns of
-// pixels something of a trace's colour stands. AEOLIS_RENEW_PICTURES=1 stores what is seen: look at it before you commit it.
+// Compares pictures of panels with stored ones, both as averages of tiles, so that the edge of a letter does not count
+// but a moved panel or lost colours do. A trace is one pixel thin and would vanish in a tile, so the columns of pixels
+// with a trace's colour are counted for each canvas. AEOLIS_RENEW_PICTURES=1 stores new pictures: look at them before
+// you commit.
 import { existsSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import path from 'node:path';
 import { root } from './support.mjs';
 
 const TILE_PX = 8;
 const DIFFERS = 28; // of 255, in any colour
-const GROUND_SHARE = 0.004; // a colour of so many tiles is ground: the page, a panel, their edges, the lines of a table
+// a colour of at least this share of tiles is background: the page, a panel, edges, table lines
+const GROUND_SHARE = 0.004;
 const GROUND_NEAR = 5; // of 255
-const TOLERANCE = 0.12; // of the tiles that have content in either picture, so that much ground hides nothing that is missing
+// of the tiles with content in either picture, so that a large background hides no missing content
+const TOLERANCE = 0.12;
 
 const TRACES = ['by-uhf', 'by-tone', 'by-recording', 'mode-rehearsal'];
-const COLUMNS = 0.1; // of what is stored, more or fewer
-const COLUMNS_LEAST = 8; // ours: where a letter ends
+const COLUMNS = 0.1; // relative deviation from the stored count
+const COLUMNS_LEAST = 8; // chosen: variation at the end of a letter
 
 const folder = path.join(root, 'tests/browser/pictures');
 
@@ -32,7 +35,7 @@ function differentTraces(name, now, stored) {
   );
 }
 
-/** Nothing, or a line that says how different the picture is. */
+/** Compares with the stored picture; undefined, or a line that states the difference. */
 export async function comparePicture(page, name, screenshot) {
   const file = path.join(folder, `${name}.png`);
   const traces = await page.evaluate(columnsOfTraces, TRACES);
@@ -70,10 +73,13 @@ export async function comparePicture(page, name, screenshot) {
       ];
 }
 
-const SETTLES_MS = 60_000; // only what differs waits so long
-const RENEWED_AFTER_MS = 1500; // nothing is there to compare with: longer than history and a draw after it take
+const SETTLES_MS = 60_000; // only a difference waits this long
+const RENEWED_AFTER_MS = 1500; // longer than history and a draw after it take, since there is nothing to compare with
 
-/** Nothing once `what` looks as stored; else how it differs still. What a page asks for one after the other has come when it has come: on a busy machine that takes seconds. */
+/**
+ * Waits until `what` matches the stored picture; undefined, or the remaining difference. On a busy machine the page's
+ * successive requests take seconds.
+ */
 export async function comesToLook(page, name, what) {
   if (process.env.AEOLIS_RENEW_PICTURES) await page.waitForTimeout(RENEWED_AFTER_MS);
   const end = Date.now() + SETTLES_MS;
@@ -84,7 +90,10 @@ export async function comesToLook(page, name, what) {
   }
 }
 
-/** Runs in the page: of each canvas, in how many columns each of these colours stands. A canvas has no ground of its own: what is thin is pale, not of another colour. */
+/**
+ * Runs in the page: for each canvas, the number of columns that contain each of these colours. A canvas has no
+ * background of its own, so a thin line is pale, not of another colour.
+ */
 function columnsOfTraces(tokens) {
   const style = getComputedStyle(document.documentElement);
   const colours = tokens
@@ -106,7 +115,7 @@ function columnsOfTraces(tokens) {
     });
 }
 
-/** Runs in the page: the screenshot as one pixel a tile, and how much of it is not as stored. */
+/** Runs in the page: the screenshot with one pixel per tile, and its difference from the stored one. */
 async function inPage({ png, stored, tile, limit, share, near }) {
   const pixels = async (base64) => {
     const image = new Image();

@@ -19,7 +19,7 @@ const { folder, remove } = await temporaryFolder();
 const chrome = await browser();
 const server = await serve({ archive: path.join(folder, 'pictures.db'), more: ['--scenario', 'nominal'] });
 
-/** Once it is whole: connected, with what there is, a phase by its name, and no question under way. */
+/** Waits until the page is complete: connected, with data, a named phase, and no request under way. */
 const settled = async (shown) => {
   const words = (id) => shown.getByTestId(id).innerText();
   await waitFor(() => words('stream-state'), /connected[^]*complete through [1-9]/, 60_000);
@@ -29,7 +29,7 @@ const settled = async (shown) => {
     (all) => !/asking…|has not answered|connecting/.test(all),
     60_000,
   );
-  await shown.waitForTimeout(500); // history, and a draw after it
+  await shown.waitForTimeout(500); // for the history and a draw after it
 };
 
 try {
@@ -45,14 +45,14 @@ try {
   await shows('phases', /▶\s*Cruise/);
   await take('tour_begin.png');
 
-  await page.setViewportSize({ width: 1600, height: 1440 }); // all of a review fits
+  await page.setViewportSize({ width: 1600, height: 1440 }); // a whole review fits
   await page.keyboard.press('/');
   await page.keyboard.type('set edl parameters');
   await page.keyboard.press('Enter');
   await shows('dry-run', /✓ It would be sent/);
   await take('tour_dry_run.png', panel('panel-commands'));
   await page.setViewportSize({ width: 1600, height: 1160 });
-  await page.getByTestId('controller').fill('Ada'); // what nobody signed is not judged in the review
+  await page.getByTestId('controller').fill('Ada'); // the review does not judge unsigned actions
   await shows('dry-run', /✓ It would be sent/);
   await page.getByTestId('controller').press('Enter');
   await waitFor(() => stageLook(page, 'EDL_SET_PARAMETERS', 'verified'), /ok/, 30_000);

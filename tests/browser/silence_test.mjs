@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is said while something is not heard: a replay of what had been heard, a connection that is gone.
+// The display of silences: a replay of the past as heard, and a lost connection.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { breakable, findings, landed, secondsFromEntry, waitFor, workplace } from './support.mjs';
@@ -26,11 +26,11 @@ test('a replay shows what had been heard then; with the recording it shows what 
       (at) => at === e_s,
     );
   };
-  // In the middle of the plasma blackout nothing came by UHF since E+0:43; the recording has all of it.
+  // In the plasma blackout UHF brought nothing after E+0:43; the recording has all of it.
   await seek(80);
   const altitude = () => page.getByTestId('channel-altitude_m').innerText();
   await waitFor(altitude, /stale, 3\d\.\d s/);
-  await waitFor(() => page.getByTestId('channel-descent_rate_mps').innerText(), /\b3\d\.\d s/); // of the same packet
+  await waitFor(() => page.getByTestId('channel-descent_rate_mps').innerText(), /\b3\d\.\d s/); // from the same packet
   const heard = Number.parseInt(await text('timepoints-fired'), 10);
   assert.equal(await page.locator('[data-event="PEAK_DECELERATION"]').count(), 0, 'only the recording told it');
   await page.keyboard.press('w');

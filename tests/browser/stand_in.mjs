@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A server before the server: answers some routes itself, sends everything else on, and gives each page the content security
-// policy that a server with accounts gives. What the routes answer can be changed while pages look at it.
+// A proxy in front of the server. It answers some routes itself, forwards the others, and gives each page the content
+// security policy of a server with accounts. Its answers can be changed while pages use it.
 import { once } from 'node:events';
 import { createServer, request } from 'node:http';
 import { connect } from 'node:net';
@@ -9,7 +9,10 @@ const POLICY =
   "default-src 'self'; connect-src 'self'; img-src 'self' data:; style-src 'self'; script-src 'self'; worker-src 'self'; " +
   "object-src 'none'; base-uri 'none'; frame-ancestors 'none'";
 
-/** `routes`: { 'GET /session': (body) => [status, answer] }; `gate(path)`: false turns a request of the API away with 401. */
+/**
+ * Starts the proxy. `routes`: { 'GET /session': (body) => [status, answer] }; `gate(path)`: false refuses an API request
+ * with 401.
+ */
 export async function standIn(address, routes, gate = () => true) {
   const { hostname, port, host } = new URL(address);
   const asked = [];

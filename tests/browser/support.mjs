@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Starts what the browser tests need: the program on a free port with an archive of its own, and Debian's Chromium.
+// Starts the program on a free port with an archive of its own, and Debian's Chromium, for the browser tests.
 import { spawn } from 'node:child_process';
 import { once } from 'node:events';
 import { readFileSync } from 'node:fs';
@@ -16,7 +16,8 @@ const { chromium } = createRequire(path.join(root, 'web/package.json'))('playwri
 
 export const program =
   process.env.AEOLIS_PROGRAM ?? process.env.AEOLIS_BINARY ?? path.join(root, 'build/release/aeolis');
-const DEADLINE_MS = 120_000; // ours: of anything that is waited for. Only what fails waits so long, and a busy machine fails nothing
+// chosen: limit of every wait. Only a failure waits this long, and a busy machine fails nothing
+const DEADLINE_MS = 120_000;
 
 export async function temporaryFolder() {
   const folder = await mkdtemp(path.join(tmpdir(), 'aeolis-browser-'));
@@ -84,7 +85,10 @@ export async function browser() {
   });
 }
 
-/** What the tests of one file share: a browser and a folder. A server of the test `t` ends with it, any other with the file. */
+/**
+ * The resources shared by the tests of one file: a browser and a folder. A server of the test `t` ends with it, any
+ * other with the file.
+ */
 export function workplace() {
   let made;
   const servers = [];
@@ -108,7 +112,10 @@ export function workplace() {
   };
 }
 
-/** A landing that has been flown as fast as it goes: for tests that only look at it. It ends with the test `t`, or with the file. */
+/**
+ * A server with a landing flown at the highest pace, for tests that only look at it. It ends with the test `t`, or with
+ * the file.
+ */
 export async function landed(serve, t) {
   const server = await serve(t, 'landed', ['--scenario', 'nominal_auto', '--pace', '0']);
   await waitFor(
@@ -118,7 +125,10 @@ export async function landed(serve, t) {
   return server;
 }
 
-/** Brings the rehearsal of `server` to `e_s` seconds from entry and holds it there: slower the nearer, so that a busy machine does not pass by. */
+/**
+ * Brings the rehearsal of `server` to `e_s` seconds from entry and holds it there. It slows down on approach, so that a
+ * busy machine does not overshoot.
+ */
 export async function flyTo(server, e_s) {
   const control = (body) =>
     fetch(`${server.address}/api/v1/rehearsals/current`, { method: 'POST', body: JSON.stringify(body) });
@@ -146,7 +156,7 @@ export async function open(chrome, address, size = { width: 1920, height: 1080 }
   const problems = [];
   page.on('pageerror', (error) => problems.push(String(error)));
   page.on('console', (message) => {
-    // A connection that is refused while the server is down is what one of the tests is about.
+    // One of the tests needs refused connections while the server is down.
     if (message.type() === 'error' && !/ERR_CONNECTION|WebSocket/.test(message.text()))
       problems.push(`${message.text()} ${message.location().url}`);
   });
@@ -158,9 +168,13 @@ export async function open(chrome, address, size = { width: 1920, height: 1080 }
 
 const axe = createRequire(path.join(root, 'web/package.json')).resolve('axe-core/axe.min.js');
 
-/** What axe finds, one line each: rule, number of places, the first of them. In the second theme only what depends on colours. */
+/**
+ * The findings of axe, one line each: rule, number of places, the first of them. In the second theme only rules about
+ * colours.
+ */
 export async function findings(page, theme) {
-  if (!(await page.evaluate(() => 'axe' in window))) await page.evaluate(readFileSync(axe, 'utf8')); // as a debugger does: a page's policy forbids scripts of others
+  // like a debugger: a page's policy forbids foreign scripts
+  if (!(await page.evaluate(() => 'axe' in window))) await page.evaluate(readFileSync(axe, 'utf8'));
   const rules =
     theme === 'dark'
       ? ['wcag2a', 'wcag2aa', 'wcag21aa', 'wcag22aa', 'best-practice']
@@ -171,7 +185,7 @@ export async function findings(page, theme) {
   );
 }
 
-/** Waits until what `read` gives matches; fails with what it was last. What could not be read does not match. */
+/** Waits until the result of `read` matches; fails with the last result. An error does not match. */
 export async function waitFor(read, wanted, timeout_ms = DEADLINE_MS) {
   const end = Date.now() + timeout_ms;
   const fits = (value) => (wanted instanceof RegExp ? wanted.test(value) : wanted(value));
@@ -190,7 +204,9 @@ export async function waitFor(read, wanted, timeout_ms = DEADLINE_MS) {
   }
 }
 
-/** Waits until neither header nor panels nor pictures have moved for ten frames: what is measured after a resize is what stays. */
+/**
+ * Waits until header, panels and pictures have not moved for ten frames, so that a measurement after a resize is final.
+ */
 export async function comesToRest(page) {
   let before;
   for (const end = Date.now() + DEADLINE_MS; Date.now() < end; ) {
@@ -207,7 +223,10 @@ export async function comesToRest(page) {
   }
 }
 
-/** A way to a server on `port` that can be cut and mended, or frozen without a word, while the server goes on. What was frozen stays so; what comes after a thaw goes through. */
+/**
+ * A proxy to a server on `port` that can be cut and restored, or frozen silently, while the server goes on. Frozen
+ * connections stay frozen; connections after a thaw pass.
+ */
 export async function breakable(port) {
   const open = new Set();
   let broken = false;
@@ -253,7 +272,7 @@ export async function breakable(port) {
   };
 }
 
-/** Until the pace is what is wanted, by its keys. */
+/** Presses the keys of the pace until it is the wanted one. */
 export async function setPace(page, wanted) {
   for (let presses = 0; presses < 12; ++presses) {
     const now = Number(await page.getByTestId('pace').inputValue());
@@ -267,14 +286,14 @@ export async function setPace(page, wanted) {
   throw new Error(`the pace never became ${wanted}`);
 }
 
-/** What a stage of the newest command of this name looks like in the history: ok, failed, unknown, pending, none. */
+/** The look of a stage of the newest command of this name in the history: ok, failed, unknown, pending, none. */
 export const stageLook = (page, command, name) =>
   page.locator(`[data-command="${command}"] [data-stage="${name}"]`).first().getAttribute('data-look');
 
-/** What has the focus, by its test name. */
+/** The test name of the focused element. */
 export const focused = (page) => page.evaluate(() => document.activeElement?.dataset.testid);
 
-/** "E+00:04:28" in seconds. */
+/** Converts "E+00:04:28" to seconds. */
 export function secondsFromEntry(text) {
   const [, sign, hours, minutes, seconds] = /E([+−])(\d+):(\d+):(\d+)/.exec(text) ?? [];
   const value = Number(hours) * 3600 + Number(minutes) * 60 + Number(seconds);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Under the content security policy of a server with accounts: log in, lose the session in the middle of something, log in again; acknowledge
-// and shelve an alarm, write a note, manage users. The second test's alarms are answered by a stand-in.
+// Under the content security policy of a server with accounts: log in, lose the session during work, log in again;
+// acknowledge and shelve an alarm, write a note, manage users. In the second test a stand-in answers for alarms.
 import assert from 'node:assert/strict';
 import path from 'node:path';
 import { test } from 'node:test';
@@ -9,7 +9,7 @@ import { findings, focused, temporaryFolder, waitFor, workplace } from '../suppo
 
 const { open, serve } = workplace();
 
-/** Asks a route as a program with a cookie does; gives the answer, with the cookie that it sets. */
+/** Sends a request as a program with a cookie. Returns the answer with the cookie that it sets. */
 async function ask(address, method, route, body, cookie) {
   const answer = await fetch(`${address}/api/v1${route}`, {
     method,
@@ -24,7 +24,10 @@ async function ask(address, method, route, body, cookie) {
   };
 }
 
-/** Presses all that can be pressed, in every panel and by key, and submits every form. Gives what it made the page ask for besides looking. */
+/**
+ * Presses every button in every panel, uses every key and submits every form. Returns the page's requests other than
+ * reads.
+ */
 async function whatObserverDoes(page) {
   const asked = [];
   page.on(
@@ -35,7 +38,7 @@ async function whatObserverDoes(page) {
   page.on('websocket', (socket) =>
     socket.on('framesent', ({ payload }) => {
       if (payload[0] === 0x0a)
-        ++subscribed; // the one message that only looks; that it is seen here shows that others would be
+        ++subscribed; // the only message that reads; seeing it here shows that others would be seen
       else asked.push(`message ${payload[0]} over the socket`);
     }),
   );
@@ -63,7 +66,7 @@ async function whatObserverDoes(page) {
     });
     for (const key of ['p', '+', '-', '/', 'Escape', 'Escape']) await page.keyboard.press(key);
   }
-  // What the worker asks now goes out after all that it was given before.
+  // The worker answers this request after all earlier messages.
   const last = page.waitForRequest(/\/packets\?verdict=/);
   for (const tab of ['tab-channels', 'tab-verdicts']) await page.getByTestId(tab).click();
   await last;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Axe finds nothing: on any panel, on the whole console in every mode and at every width, live and ended, in both themes.
+// Axe finds nothing: on every panel, on the whole console in every mode and at every width, live and ended, in both
+// themes.
 import assert from 'node:assert/strict';
 import { before, test } from 'node:test';
 import { madeUpCampaign } from '../made_up_campaign.mjs';

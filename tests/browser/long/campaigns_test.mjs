@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// A campaign from the console, by keyboard: started, seen to fill, cancelled, gone on with; and what a landing that goes on notices of it.
+// A campaign from the console by keyboard: started, watched, cancelled, continued; and its effect on a running landing.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { findings, focused, waitFor, workplace } from '../support.mjs';
 
 const { open, serve } = workplace();
 
-const BUSY_MS = 600_000; // cases are flown with what the machine has left
+const BUSY_MS = 600_000; // cases fly with the processor time that is left
 
 test('a campaign is started by keyboard, its dots come one after the other, it is cancelled and gone on with', async (t) => {
   const server = await serve(t, 'campaigns', ['--scenario', 'nominal']);
@@ -44,11 +44,11 @@ test('a campaign is started by keyboard, its dots come one after the other, it i
 
   await page.getByTestId('campaign-cancel').focus();
   await page.keyboard.press('Enter');
-  await page.keyboard.press('Enter'); // impatient: it is asked for once
+  await page.keyboard.press('Enter'); // a second press must not request it again
   await shows('campaign-message', /cancelled: \d+ cases of gnc_alone-1 are kept/);
   await shows('campaign-state', /not complete; starting it again goes on/);
   const left = await kept();
-  await waitFor(drawn, (count) => count === left); // each case that is kept is drawn once
+  await waitFor(drawn, (count) => count === left); // each kept case is drawn once
   const { state } = await server.get('/campaigns/gnc_alone-1');
   assert.equal(state.kept, left);
 

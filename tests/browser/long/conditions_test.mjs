@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a console meets outside the laboratory: a second browser, a slow way, a wrong clock, a huge dictionary with hostile names, a run that is gone.
+// A console under adverse conditions: a second browser, a slow connection, a wrong clock, a huge dictionary with
+// hostile names, a run that is gone.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { isDeepStrictEqual } from 'node:util';
@@ -9,7 +10,7 @@ import { waitFor, workplace } from '../support.mjs';
 const { open, serve } = workplace();
 
 const through = async (text) => Number((await text('complete-through')).replace(/\D/g, ''));
-/** What the table says of each channel, ages left out. */
+/** The table's cells for each channel, without ages. */
 const values = (page) =>
   page.locator('[data-testid="channel-table"] tbody tr').evaluateAll((rows) =>
     rows.map((row) =>
@@ -26,7 +27,7 @@ test('two browsers agree on every value at the same sequence number, and one who
   await waitFor(
     () => through(one.text),
     (items) => items > 2000,
-  ); // the other joins late
+  ); // the other console joins late
   const other = await open(server.address, { width: 1600, height: 900 }, () => {
     const Real = Date;
     globalThis.Date = class extends Real {
@@ -47,7 +48,7 @@ test('two browsers agree on every value at the same sequence number, and one who
   await one.shows('badge', /paused/);
   let before;
   let [seen, seenToo] = [[], []];
-  // Rows out of sight take turns: what does not agree now may at the next. What never does is told below, row by row.
+  // Rows out of sight take turns, so a row that differs now may agree later. Rows that never agree are reported below.
   await waitFor(
     async () => {
       const now = [
@@ -178,15 +179,16 @@ for (const [which, address] of [
     await page.keyboard.type('no op');
     await page.keyboard.press('Enter');
     await first.kill();
-    // What was under way as the first one died could reach the second, and no page can take that back: so that begins once the loss is known.
+    // A command under way when the first server died could reach the second, and no page can take it back; so this
+    // begins once the loss is known.
     await shows('stream-state', /NO CONNECTION/);
     const asked = [];
     const note = (request) => /\/runs\/1\//.test(request.url()) && asked.push(request.url());
     page.on('request', note);
-    page.once('framenavigated', () => page.off('request', note)); // begun anew, it asks of the run that is there now
+    page.once('framenavigated', () => page.off('request', note)); // after the reload the page asks about its new run
     const second = await serve(t, `after${address.length}`, ['--scenario', 'nominal'], { port: first.port });
     for (let i = 0; i < 20; ++i) {
-      // whoever goes on pressing while the page comes back
+      // a user who keeps pressing while the page reloads
       await page.keyboard.press('Enter').catch(() => undefined);
       await new Promise((done) => setTimeout(done, 50));
     }
@@ -202,7 +204,7 @@ for (const [which, address] of [
     assert.equal(await page.getByTestId('command-line').inputValue(), '', 'what was typed for one vehicle');
     assert.deepEqual((await second.get('/runs/1/commands')).commands ?? [], []);
     assert.equal((await second.get('/runs')).runs[0].pace, 1);
-    await page.keyboard.press('/'); // to this one it can be sent
+    await page.keyboard.press('/'); // it can be sent to this run
     await page.keyboard.type('no op');
     await page.keyboard.press('Enter');
     await waitFor(

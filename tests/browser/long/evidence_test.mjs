@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a value leads back to: live against recorded octet by octet, the fields of a packet, what there was at an instant.
+// The evidence behind a value: live against recorded octet by octet, the fields of a packet, the state at an instant.
 import assert from 'node:assert/strict';
 import { before, test } from 'node:test';
 import { standIn } from '../stand_in.mjs';
@@ -29,7 +29,7 @@ test('live is proven against the recording, by packet and by link, and a packet 
   assert.match(await text('tone-verdicts'), new RegExp(`\\b${identical} identical`));
   await shows('verdict-count', /^none$/);
 
-  // No landing of ours brings one that differs, so the answer of the server is altered on its way.
+  // No landing of ours has a packet that differs, so the server's answer is altered on its way.
   await page.route('**/packets?verdict=never_seen_live*', async (route) => {
     const answer = await (await route.fetch()).json();
     const [packet] = answer.packets;
@@ -175,7 +175,7 @@ test('the cursor goes by key through plots, tones and timeline, and says what th
 
 test('of a dictionary with more than 512 channels all that came is shown in an ended run, and before it was asked for each says so', async (t) => {
   const real = await server.get('/dictionary');
-  const last = real.channels.find(({ name }) => name === 'mach'); // it came, and is not drawn
+  const last = real.channels.find(({ name }) => name === 'mach'); // received, but not plotted
   const many = Array.from({ length: 700 }, (_, i) => ({
     ...last,
     id: 10_000 + i,

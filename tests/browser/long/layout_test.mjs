@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// From 320 px to 4K, in every mode: nothing is wider than the screen, cut off or over another, and nothing moves that should stay.
+// From 320 px to 4K, in every mode: nothing is wider than the screen, cut off or over another element, and nothing
+// moves that should stay.
 import assert from 'node:assert/strict';
 import { before, test } from 'node:test';
 import { standIn } from '../stand_in.mjs';
@@ -12,7 +13,7 @@ before(async () => {
   server = await landed(serve);
 });
 
-/** Pairs of texts of which one lies over the other: by more than a pixel across, and by more than `least_px` in height. */
+/** Pairs of texts that overlap: by more than a pixel across, and by more than `least_px` in height. */
 const overlapping = (texts, least_px) =>
   texts.flatMap((one, i) =>
     texts
@@ -44,7 +45,10 @@ test('from 320 px to 4K nothing is wider than the screen', async () => {
   await page.close();
 });
 
-/** Before the page: keeps what each canvas has written since it was last cleared, with its boxes, by the canvas's test name. */
+/**
+ * Runs before the page: records the words that each canvas has drawn since it was cleared, with their boxes, by the
+ * canvas's test name.
+ */
 function keepWhatIsWritten() {
   const { fillText, clearRect } = CanvasRenderingContext2D.prototype;
   window.written = {};
@@ -114,7 +118,7 @@ test('after landing height and speed say whose they are, and no word of the desc
   ]) {
     await page.setViewportSize({ width, height });
     await comesToRest(page);
-    // What is drawn, and the figures that stand over it.
+    // The words of the canvas and the figures over it.
     const written = await page.evaluate(() => {
       const element = document.querySelector('[data-testid="descent-canvas"]');
       const [canvas, grown] = [element.getBoundingClientRect(), element.currentCSSZoom ?? 1];
@@ -147,7 +151,7 @@ test('after landing height and speed say whose they are, and no word of the desc
   await page.close();
 });
 
-/** In the page: what can be read in the header, each text with its box, as far as nothing cuts it off. */
+/** In the page: the legible texts of the header with their boxes, without the parts that are cut off. */
 function textsOfHeader() {
   const all = [];
   const walk = document.createTreeWalker(document.querySelector('[data-testid="header"]'), NodeFilter.SHOW_TEXT);
@@ -241,7 +245,9 @@ test('the strip of phases is as high before a phase is known as after, so that n
   await page.close();
 });
 
-/** In the page: events in sight, what is waited for that cannot be read, and what is cut off or lies under a mark. */
+/**
+ * In the page: the visible events, the illegible conditions of the waiting panel, and elements cut off or under a mark.
+ */
 function whatIsInSight() {
   const box = (element) => element.getBoundingClientRect();
   const list = document.querySelector('[data-testid="event-list"]');
@@ -346,7 +352,7 @@ test('live, reviewing, ended, in a replay and in the past at least four events (
       await comesToRest(opened.page);
       const { events, unread, cut, letters_px } = await opened.page.evaluate(whatIsInSight);
       const at = `${state}, ${width} × ${height}`;
-      const roomForBoth = state !== 'reviewing' || height > 1000; // else the command that is reviewed comes first
+      const roomForBoth = state !== 'reviewing' || height > 1000; // otherwise the reviewed command has priority
       if (width >= 1280 && roomForBoth && events < 4) wrong.push(`${at}: ${events} events in sight`);
       if (width >= 1280) wrong.push(...unread.map((words) => `${at}: what is waited for cannot be read: ${words}`));
       if (width >= 3840 && letters_px < 18) wrong.push(`${at}: letters of ${letters_px} px`);
@@ -378,7 +384,7 @@ test('the columns of the channels keep their places whatever stands in them', as
   await page.close();
 });
 
-/** Two that no run of this file has: one of a limit, one of a link, with all that may be done and said. */
+/** Two alarms that no run of this file has, one of a limit and one of a link, with all possible actions and words. */
 const ALARMS = [
   {
     name: 'sky_crane_descent_rate_mps',

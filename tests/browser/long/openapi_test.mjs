@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The description that the server serves is a valid OpenAPI document, and what it says is so: each route is called on a run that was
-// flown, on one that flies, and as each role by cookie and by token; its answer is one that is described, of the shape that is described.
-// The examples in its text run as they stand.
+// The served description is a valid OpenAPI document, and it is true: each route is called on a finished run, on a
+// running one, and as each role by cookie and by token; every answer must be one that is described, in the described
+// shape. The examples in its text run unchanged.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { createRequire } from 'node:module';
@@ -18,7 +18,7 @@ const YAML = fromValidator('yaml');
 
 const { serve } = workplace();
 
-/** What a call needs beyond its path; a route that is not here is called bare. */
+/** What a call needs beyond its path; other routes are called without parameters. */
 const QUERY = { '/api/v1/runs/{run}/channels': '?names=altitude_m&points=10&provenance=true' };
 const BODY = {
   'post /api/v1/runs/{run}/commands': { command: 'NO_OP', dry_run: true },
@@ -34,7 +34,7 @@ const BODY = {
   'post /api/v1/tokens': { name: 'reader', role: 'observer' },
 };
 
-/** The server's own document, and a way to call every route of it and hold the answers against what it describes. */
+/** The server's own document, with a function that calls every route and compares the answers with the description. */
 async function documented(server) {
   const text = await (await fetch(`${server.address}/api/v1/openapi.yaml`)).text();
   const description = YAML.parse(text);
@@ -47,7 +47,7 @@ async function documented(server) {
           .split('/')
           .reduce((from, name) => from[name], description)
       : part;
-  /** @returns what is not as described, and the status by "method route" */
+  /** @returns deviations from the description, and the status by "method route" */
   const callAll = async (headers = {}, leftOut = []) => {
     const wrong = [],
       statuses = new Map();
@@ -140,7 +140,7 @@ test('with accounts every route answers each role, by cookie and by token, as it
   const first = /administrator with (\S+)/.exec(server.said())[1];
   const ask = (method, route, body, headers = {}) =>
     fetch(`${server.address}/api/v1${route}`, { method, headers, body: body && JSON.stringify(body) });
-  /** Logs in, with a password of one's own from then on. */
+  /** Logs in and sets a password of one's own. */
   const cookieOf = async (user, given) => {
     const password = `a password of ${user}`;
     const opened = await ask('POST', '/session', { user, password: given });
@@ -151,7 +151,7 @@ test('with accounts every route answers each role, by cookie and by token, as it
   };
   const { callAll } = await documented({ ...server, address: server.address });
   const administrator = { cookie: await cookieOf('administrator', first) };
-  // What would end the session that asks, make a user twice, or pause the run for those who come after.
+  // Calls left out: they would end the session, add a user twice, or pause the run for later calls.
   const once = [
     'delete /api/v1/session',
     'post /api/v1/session',

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The plugin in the real Open MCT: a run's channels in its tree, their history, and live values. Skipped where `npm ci` was not run in web/openmct.
-// And what serves it: read-only, for its own page alone.
+// The plugin in the real Open MCT: a run's channels in its tree, their history, and live values; skipped unless `npm
+// ci` was run in web/openmct. Also its server: read-only, for its own page alone.
 import assert from 'node:assert/strict';
 import { existsSync } from 'node:fs';
 import { request } from 'node:http';
@@ -25,7 +25,7 @@ test('Open MCT shows runs and channels of a server, with history and live values
     await waitFor(
       async () => (await server.get('/runs')).runs[0]?.clocks?.e_s,
       (e_s) => e_s > -1200,
-    ); // the landing is still to come, however slow this machine
+    ); // the landing is still ahead, however slow this machine is
     const { page } = await open(chrome, `http://127.0.0.1:${pages.address().port}/`);
     await page.waitForFunction(() => window.openmct !== undefined);
 
@@ -75,11 +75,12 @@ test('Open MCT shows runs and channels of a server, with history and live values
       assert.equal(all.value[at], value, `live ${value} at ${e} ms is not what is recorded`);
     }
 
-    // What a person sees: the run's channel as a plot.
+    // A user's view: the run's channel as a plot.
     await page.goto('about:blank');
     await page.goto(`http://127.0.0.1:${pages.address().port}/#/browse/aeolis:runs/aeolis:1/aeolis:1~altitude_m`);
     await page.waitForSelector('.gl-plot-chart-area canvas');
-    await waitFor(() => page.locator('.gl-plot').first().innerText(), /GNC-\d+[^]*\b[1-9]\d{4,}\b[^]*E\+\d/); // its axes are those of the values
+    // its axes fit the values
+    await waitFor(() => page.locator('.gl-plot').first().innerText(), /GNC-\d+[^]*\b[1-9]\d{4,}\b[^]*E\+\d/);
     await page.close();
   } finally {
     pages.closeAllConnections();
@@ -90,7 +91,10 @@ test('Open MCT shows runs and channels of a server, with history and live values
   }
 });
 
-/** What a page or a program would say to it, word for word: the status, and for an upgrade whether it was given a socket. */
+/**
+ * Sends a request as a page or a program would, word for word. Returns the status, and for an upgrade whether it got a
+ * socket.
+ */
 const ask = (port, path, { method = 'GET', headers = {} } = {}) =>
   new Promise((resolve, reject) => {
     const asked = request(
@@ -163,7 +167,8 @@ test('what serves Open MCT answers its own page alone, gives no socket for comma
       assert.ok(status >= 400 && status < 500, `${address}: ${status}`);
     }
 
-    // What its own page says there is not heard: the answer to a command and its place in the history are missing, what it subscribed to comes.
+    // Commands from its own page are ignored: there is no answer and no entry in the history, while its subscription
+    // works.
     const { page } = await open(chrome, `http://127.0.0.1:${port}/plugin.js`);
     const heard = await page.evaluate(async (address) => {
       const socket = new WebSocket(`${location.origin.replace('http', 'ws')}${address}`, 'aeolis.v1.json');

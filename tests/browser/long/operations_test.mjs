@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// docs/operations.md, run as it stands there: from accounts and TLS by a file of settings to a rehearsal, an export and a campaign.
+// Runs docs/operations.md as it stands: from accounts and TLS by a file of settings to a rehearsal, an export and a
+// campaign.
 import assert from 'node:assert/strict';
 import { execFileSync, spawn } from 'node:child_process';
 import { once } from 'node:events';
@@ -9,7 +10,7 @@ import test from 'node:test';
 import { program, root, temporaryFolder } from '../support.mjs';
 
 const page = readFileSync(path.join(root, 'docs/operations.md'), 'utf8');
-/** The lines of shell under a heading. */
+/** The shell lines under a heading. */
 const shell_of = (heading) => {
   const section = page.split(/^## /m).find((each) => each.startsWith(heading));
   assert.ok(section, `the page has no heading ${heading}`);
@@ -23,7 +24,7 @@ test('the page of operations leads from a secured server with two users to a reh
   const credentials = path.join(folder, 'credentials');
   for (const made of [state, credentials]) mkdirSync(made);
   let port = '8443';
-  // Its own folders and port, and nobody who is asked for a password. What stays is the page's.
+  // With folders and a port of the test, and without a password prompt. The rest is the page's.
   const here = (text) =>
     text
       .replaceAll('/var/lib/aeolis', state)
@@ -64,7 +65,7 @@ test('the page of operations leads from a secured server with two users to a reh
   });
   port = answer[0];
   const first = answer[1];
-  // Instead of a name service, and of --cacert.
+  // In place of a name service and of --cacert.
   writeFileSync(
     path.join(folder, '.curlrc'),
     `resolve = "station.example:${port}:127.0.0.1"\ncacert = "${path.join(folder, 'cert.pem')}"\n`,
@@ -88,7 +89,7 @@ test('the page of operations leads from a secured server with two users to a reh
     !/"sclk":\[\d/.test(run(`${known}$C $A'/runs/latest/channels?names=altitude_m&points=2'`));
     ++tries
   ) {
-    // people are slower
+    // as slow as people
     assert.ok(tries < 400, 'the run brings nothing');
     await new Promise((done) => setTimeout(done, 200));
   }

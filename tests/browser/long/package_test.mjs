@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The Debian package: made from what ./test has built, read, installed into an empty root, and started there.
+// The Debian package: made from the build of ./test, inspected, installed into an empty root, and started there.
 import assert from 'node:assert/strict';
 import { execFileSync, spawn, spawnSync } from 'node:child_process';
 import {
@@ -34,7 +34,7 @@ const once = (make) => {
 const package_file = once(() => {
   const made = join(folder, 'made');
   mkdirSync(made);
-  // By someone whose own files are nobody else's, which the package's must not be.
+  // Built by a user with a restrictive umask, which the package's files must not inherit.
   execFileSync(
     'sh',
     ['-c', 'umask 0077; exec cpack --config "$0" -B "$1"', join(dirname(program), 'CPackConfig.cmake'), made],
@@ -45,7 +45,7 @@ const package_file = once(() => {
   return join(made, file);
 });
 
-/** Its files as they will lie below /, and in DEBIAN what dpkg runs. */
+/** Its files as they lie below /, and in DEBIAN the scripts that dpkg runs. */
 const unpacked = once(() => {
   const there = join(folder, 'unpacked');
   execFileSync('dpkg-deb', ['-R', package_file(), there]);
@@ -54,7 +54,7 @@ const unpacked = once(() => {
 const unit_path = () => join(unpacked(), 'usr/lib/systemd/system/aeolis.service');
 const scripts = ['postinst', 'prerm', 'postrm'];
 
-/** The same files as the next version. */
+/** The same files as a later version. */
 const next_version = once(() => {
   const there = join(folder, 'next');
   execFileSync('cp', ['-a', unpacked(), there]);
@@ -64,7 +64,7 @@ const next_version = once(() => {
   return `${there}.deb`;
 });
 
-/** An empty root with dpkg in it. Its libraries are those of the machine, so it need not have them. */
+/** An empty root with dpkg in it. Libraries are taken from the machine. */
 const empty_root = (name) => {
   const root = join(folder, name);
   for (const part of ['info', 'updates', 'triggers']) mkdirSync(join(root, 'var/lib/dpkg', part), { recursive: true });
@@ -83,7 +83,7 @@ const empty_root = (name) => {
   };
 };
 
-/** Programs of these names, first in PATH, that only write down how they were called. */
+/** Stand-ins of these names, first in PATH, that only record their calls. */
 const recorders = (...names) => {
   const there = mkdtempSync(join(folder, 'recorders-'));
   const record = join(there, 'calls');
@@ -96,7 +96,7 @@ const recorders = (...names) => {
   };
 };
 
-/** What a started server says of its address. */
+/** The address that a started server prints. */
 const address_of = (server) =>
   new Promise((found, failed) => {
     let text = '';
@@ -173,7 +173,7 @@ test("the package's files are root's, nobody else may write them, and its script
 
 test('an upgrade restarts the server that runs, and only that; removing stops it before its files go', () => {
   const { PATH, calls } = recorders('systemctl', 'deb-systemd-invoke', 'deb-systemd-helper');
-  const booted = join(folder, 'booted'); // in place of the folder by which a machine is known to run systemd
+  const booted = join(folder, 'booted'); // replaces the folder that marks a machine running systemd
   mkdirSync(booted);
   const run = (name, ...args) => {
     const before = calls().length;
@@ -218,7 +218,7 @@ test('installed, upgraded, removed and purged in a root, no link leads nowhere, 
   symlinkSync('/lib/systemd/system/aeolis.service', link); // as systemctl enable does
   writeFileSync(join(root, 'etc/aeolis/aeolis.conf'), '# mine\n');
   mkdirSync(join(root, 'var/lib/private/aeolis'), { recursive: true });
-  symlinkSync('private/aeolis', join(root, 'var/lib/aeolis')); // as systemd does for a user of its own
+  symlinkSync('private/aeolis', join(root, 'var/lib/aeolis')); // as systemd does for a dynamic user
   writeFileSync(join(root, 'var/lib/aeolis/aeolis.db'), 'runs');
 
   dpkg(['-i', next_version()], { PATH });
@@ -263,7 +263,7 @@ test("systemd understands the unit with the page's credentials, and finds it clo
   const verified = spawnSync('systemd-analyze', ['verify', '--man=no', unit], { encoding: 'utf8' });
   assert.equal(verified.status, 0, verified.stderr);
   assert.doesNotMatch(verified.stderr, /aeolis/);
-  // Of ten, in tenths: what is left is mostly that it speaks to a network, which is what it is for.
+  // Tenths of ten. Most of the remaining exposure is the network access that a server needs.
   const exposure = spawnSync('systemd-analyze', ['security', '--offline=true', '--threshold=20', unit], {
     encoding: 'utf8',
   });

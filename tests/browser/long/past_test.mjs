@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The past of a run: in a replay and in a fixed range nothing is shown of what came later; a range is zoomed, exported and read unit by unit.
+// The past of a run: a replay and a fixed range show nothing later; a range is zoomed, exported and read packet by
+// packet.
 import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import { before, test } from 'node:test';

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every panel alone and the whole console, in both themes and in the states in which it matters most, against its stored picture.
+// Every panel alone and the whole console, in both themes and in the most important states, against stored pictures.
 import assert from 'node:assert/strict';
 import { before, test } from 'node:test';
 import { madeUpCampaign } from '../made_up_campaign.mjs';
@@ -27,7 +27,7 @@ function loseATrace() {
   context.putImageData(picture, 0, 0);
 }
 
-/** In the page: the panel without what it says. */
+/** In the page: the panel without its content. */
 function blank() {
   for (const body of document.querySelectorAll('main .panel-body, main .waiting'))
     for (const child of body.children) child.style.visibility = 'hidden';
@@ -56,16 +56,17 @@ test('each panel comes to look as its stored picture does, within a tolerance, a
       const what = page.locator(panel === 'phases' ? '.strip' : 'main');
       await compare(`${panel}_${theme}`, what);
       if (process.env.AEOLIS_RENEW_PICTURES) continue;
-      // What is taken away may be drawn again, once, by what comes late.
+      // A late update may draw the removed part again, once.
       const found = async (taken) => {
         await page.evaluate(taken);
         return comparePicture(page, `${panel}_${theme}`, await what.screenshot({ animations: 'disabled' }));
       };
       if (panel === 'plots') {
         const isLost = ([lost, ...more]) => /canvas 1 has by-uhf in 0 columns/.test(lost) && more.length === 0;
-        await waitFor(() => found(loseATrace), isLost); // a trace that is lost is seen
+        await waitFor(() => found(loseATrace), isLost); // a lost trace is noticed
       }
-      await waitFor(async () => (await found(blank)).join(), /tiles with content differ/); // a panel that says nothing does not pass
+      // an empty panel does not pass
+      await waitFor(async () => (await found(blank)).join(), /tiles with content differ/);
     }
   }
   await page.setViewportSize({ width: 1600, height: 900 });
@@ -77,7 +78,7 @@ test('each panel comes to look as its stored picture does, within a tolerance, a
     await compare(`console_${theme}`, page);
   }
 
-  // The states in which it matters most: mid-entry, as a replay has it, the past, no connection.
+  // The most important states: mid-entry, as a replay shows it, the past, no connection.
   await page.evaluate(() => localStorage.setItem('aeolis-theme', 'dark'));
   const way = await breakable(server.port);
   t.after(() => way.close());

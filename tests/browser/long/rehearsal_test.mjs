@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// An instructor breaks something in a rehearsal and writes about it; when it is over its review has both, with facts, and a score that is the sum of its terms.
+// An instructor injects a fault into a rehearsal and writes a note. Afterwards the review has both, with facts, and a
+// score that is the sum of its terms.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { findings, secondsFromEntry, waitFor, workplace } from '../support.mjs';
@@ -21,7 +22,7 @@ test('an instructor’s fault and note are folded away while a rehearsal goes on
     (clock) => secondsFromEntry(clock) > -1160,
   ); // the scenario has sent its own two commands
   await page.getByTestId('fault-what').selectOption('DEVICE_RADAR');
-  await page.getByTestId('fault-unit').selectOption('B'); // one that is not in use: the landing is not to fail by it
+  await page.getByTestId('fault-unit').selectOption('B'); // a unit not in use, so that the landing does not fail
   await page.getByTestId('fault-inject').click();
   await shows('instructor-message', /injected/);
   await page.getByTestId('signature').fill('Ida');

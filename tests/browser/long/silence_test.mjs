@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is said while something is not heard: a landing of which only tones come, a next timepoint that cannot be reached any more, a connection that dies.
+// The display of silences: a landing heard by tones only, a next timepoint that can no longer be reached, a connection
+// that dies.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { breakable, findings, flyTo, waitFor, workplace } from '../support.mjs';
@@ -65,14 +66,14 @@ test('a connection that dies without a word is lost within seconds, and comes ba
   assert.match(await text('stream-state'), /✖ NO CONNECTION/);
   way.thaw();
   await goesOn();
-  // What stood is dead, what is new goes through: only the socket can tell.
+  // The old connection is dead, new ones pass: only the socket can tell.
   way.freeze();
   way.thaw();
   await shows('stream-state', /NO CONNECTION/);
   await goesOn();
   await page.keyboard.press('p');
   await shows('badge', /paused/);
-  await page.waitForTimeout(12_000); // a run that is paused is silent, and its connection is not lost
+  await page.waitForTimeout(12_000); // a paused run is silent, and its connection is not lost
   assert.match(await text('stream-state'), /● connected/);
   assert.deepEqual(problems, []);
   await page.close();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What has to be in sight on screens of each size: all of a laptop's page, large figures on a wall, what is opened beside the timeline and not over it.
+// The content in sight on screens of each size: a laptop's whole page, large figures on a wall, details beside the
+// timeline and not over it.
 import assert from 'node:assert/strict';
 import { before, test } from 'node:test';
 import { comesToRest, waitFor, workplace } from '../support.mjs';
@@ -23,10 +24,10 @@ const held = async (t, scenario, e_s) => {
 let blackout;
 
 before(async () => {
-  blackout = await held(undefined, 'nominal_auto', 60); // UHF is silent, and names why
+  blackout = await held(undefined, 'nominal_auto', 60); // UHF is silent, with a reason
 });
 
-/** In the page: whether it scrolls, and how much of the command line is in sight. */
+/** In the page: whether it scrolls, and the visible part of the command line. */
 function sight() {
   const [line, column] = [document.querySelector('.command-line input'), document.querySelector('.right')].map((each) =>
     each.getBoundingClientRect(),

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Panels in states that an ended run without accounts does not have: users, tokens and audit; a command that is reviewed, armed, waits for a second
-// person; a command file that the ground has looked at. In each axe finds nothing in both themes, it comes to look as its stored picture does, and
-// nothing is wider than the screen or cut off from 320 px to 4K. AEOLIS_RENEW_PICTURES=1 stores what is seen.
+// Panels in states that an ended run without accounts does not have: users, tokens and audit; a command that is
+// reviewed, armed or waits for a second person; a command file checked by the ground. In each state axe finds nothing
+// in both themes, the stored picture is matched, and nothing is wider than the screen or cut off from 320 px to 4K.
+// AEOLIS_RENEW_PICTURES=1 stores new pictures.
 import assert from 'node:assert/strict';
 import path from 'node:path';
 import { test } from 'node:test';
@@ -19,7 +20,10 @@ const SIZES = [
   [3840, 2160],
 ];
 
-/** In the page: what of the panel cannot be read. What can be scrolled down to can; what lies beside the edge of what scrolls is not looked for. */
+/**
+ * In the page: the illegible parts of the panel. Parts reachable by scrolling down are legible; parts beside the edge
+ * of a scrolling box are not checked.
+ */
 function cutOff() {
   const main = document.querySelector('main');
   const found =
@@ -64,7 +68,7 @@ function cutOff() {
   return [...new Set(found)];
 }
 
-/** What is wrong with how this state looks. */
+/** The faults in the look of this state. */
 async function flawsOf(page, name) {
   const flaws = [];
   for (const theme of ['dark', 'light']) {
@@ -125,7 +129,7 @@ test('users, tokens and audit of a server with accounts look as stored, and noth
   const [name, value] = cookie.split('=');
   await page.context().addCookies([{ name, value, url: server.address }]);
   await page.route('**/api/v1/audit*', async (route) => {
-    // of another day each time
+    // whose date differs each time
     const answer = await (await route.fetch()).json();
     for (const entry of answer.entries) entry.at = '2012-08-06T05:10:47Z';
     await route.fulfill({ json: answer });
@@ -222,7 +226,7 @@ test('a command that is reviewed or armed and a file that the ground has looked 
   assert.deepEqual(
     problems.filter((problem) => !problem.includes('409 (Conflict)')),
     [],
-  ); // a refused file, as the browser logs it
+  ); // a refused file, which the browser logs
   await page.close();
 });
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Another mission is followed over a real downlink, by its XTCE file alone: nothing is made up, and nothing is offered that is not there.
+// Another mission is followed over a real downlink by its XTCE file alone. Nothing is invented, and nothing is offered
+// that does not exist.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { once } from 'node:events';

@@ -286,9 +286,9 @@ export class RunStore {
   }
 
   /**
-   * Adds an answer of the archive. `names`: the requested channels; those without a column have no samples. `liveAlone`:
-   * the answer leaves out the recording. Answers arrive in any order. An answer thinned together with the recording
-   * holds few live samples, so it replaces none from an answer of live samples alone.
+   * Adds an answer of the archive. `names`: the requested channels; those without a column have no samples.
+   * `liveAlone`: the answer leaves out the recording. Answers arrive in any order. An answer thinned together with the
+   * recording holds few live samples, so it replaces none from an answer of live samples alone.
    */
   addHistory(columns: Column[], names: readonly string[] = [], liveAlone = false): void {
     ++this.version;

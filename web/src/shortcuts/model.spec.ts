@@ -14,7 +14,7 @@ afterEach(() => {
   document.body.textContent = '';
 });
 
-/** Pressed with the focus on such an element; whether a shortcut took it. */
+/** Presses a key with the focus on the element; returns whether a shortcut took it. */
 function press(key: string, on: Partial<HTMLInputElement> = {}, tag = 'input'): boolean {
   const element = document.body.appendChild(Object.assign(document.createElement(tag), on));
   const event = new KeyboardEvent('keydown', { key, bubbles: true, cancelable: true });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The keys, in one table: what the help shows is what the page does.
+// The keys in one table, used by both the help and the page.
 import { signal } from '@preact/signals';
 import { backFile, stage } from '../commands/file';
 import { back, openCommandLine, step } from '../commands/line';
@@ -67,7 +67,7 @@ function toggleTheme(): void {
   localStorage.setItem('aeolis-theme', next);
 }
 
-/** Whether anything was. From wherever the focus is. */
+/** Disarms commands and files, wherever the focus is. Returns whether any was armed. */
 function takeBackArmed(): boolean {
   const [command, file] = [step.value === 'armed', stage.value === 'armed'];
   if (command) back();
@@ -142,7 +142,7 @@ export const SHORTCUTS: Shortcut[] = [
   },
 ];
 
-/** A key that is held down is pressed once: nothing is chosen, reviewed, sent or answered by its repeats. */
+/** Ignores repeats of a held key: they choose, review, send and answer nothing. */
 export function ignoreHeldEnter(event: KeyboardEvent): void {
   if (event.key !== 'Enter' || !event.repeat || (event.target as HTMLElement | null)?.matches('textarea')) return;
   event.preventDefault();
@@ -158,7 +158,7 @@ export function onKey(event: KeyboardEvent): void {
     takeBackArmed();
     return;
   }
-  if (target?.matches('[type=range]') && event.key.startsWith('Arrow')) return; // they move the slider
+  if (target?.matches('[type=range]') && event.key.startsWith('Arrow')) return; // arrows move the slider
   const key = event.shiftKey && event.key.startsWith('Arrow') ? `Shift+${event.key}` : event.key;
   const shortcut = SHORTCUTS.find((each) => each.keys.includes(key));
   if (!shortcut) return;

@@ -14,7 +14,7 @@ const PANELS = [
   ...TABS.map((tab) => tab.id),
 ];
 
-/** In a corner and not over what matters: the landing goes on. */
+/** The help, in a corner and not over important panels, since the landing goes on. */
 export function Help() {
   if (!helpShown.value) return null;
   return (

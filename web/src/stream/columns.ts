@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Turns the stream's batches into columns: one run of samples a channel, and facts in order of sequence number.
+// Converts the stream's batches to columns: one series of samples per channel, and facts in order of sequence number.
 import type { Batch } from '../gen/aeolis/v1/stream_pb';
 import { secondsOfErt } from '../run/time';
 import type { BatchOfFacts, Column, Fact } from './messages';
 import { named } from './names';
 
-export const SOURCE_RECORDED = 2; // Source.RECORDED; so that the page need not load the schema
+export const SOURCE_RECORDED = 2; // Source.RECORDED, so that the page need not load the schema
 
 class GrowingColumn {
   sclk: number[] = [];
@@ -22,7 +22,10 @@ export class ColumnCollector {
   private run = 0;
   private any = false;
 
-  /** `packetOf[id]`: the channels that come with this one, by which a missing value is known to be undefined. */
+  /**
+   * `packetOf[id]`: the channels of the same packet. A channel missing from a sample of its packet is undefined on
+   * board.
+   */
   constructor(private readonly packetOf: ReadonlyMap<number, readonly number[]> = new Map()) {}
 
   get empty(): boolean {

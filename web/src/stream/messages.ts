@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the page and its worker tell each other. Everything here is plain data that can be posted.
-// Sequence and run numbers are JavaScript numbers: exact up to 2^53.
+// Messages between the page and its worker, as plain data. Sequence and run numbers are JavaScript numbers, exact up to
+// 2^53.
 import type { Clocks, Explanation, LinkChange, TimepointFiring, Unit } from '../gen/aeolis/v1/items_pb';
 import type { CommandReply, RunState } from '../gen/aeolis/v1/run_pb';
 import type { NamedAlarm, NamedEvent, NamedStage, NamedTone } from './names';
 
-/** Samples of one channel, side by side. A value that is undefined on board is NaN. */
+/** Samples of one channel as two columns. A value that is undefined on board is NaN. */
 export interface Column {
   id: number;
   sclk: Float64Array;
@@ -34,22 +34,23 @@ export interface BatchOfFacts {
   clocks: Clocks | undefined;
 }
 
-/** "catching_up": connected, what was missed is on its way. "lost": no connection, trying again. */
+/** "catching_up": connected, and missed items are under way. "lost": no connection, trying again. */
 export type StreamState = 'connecting' | 'catching_up' | 'live' | 'lost';
 
 export type FromWorker =
   | { type: 'stream'; state: StreamState; attempt: number; gaps: number; serverVersion: string }
   | { type: 'run'; run: RunState | undefined; fresh: boolean }
-  | { type: 'other_archive' } // and there another run of the number that is shown
+  | { type: 'other_archive' } // which has another run of the shown run's number
   | { type: 'resumed'; run: number; after: number; through: number; attempts: number }
   | { type: 'batch'; batch: BatchOfFacts }
-  | { type: 'history'; run: number; names: readonly string[]; columns: Column[]; live: boolean } // names: all that were asked for; live: samples that came so, and no other
+  // names: all requested channels; live: the answer has live samples only
+  | { type: 'history'; run: number; names: readonly string[]; columns: Column[]; live: boolean }
   | { type: 'reply'; reply: CommandReply }
-  | { type: 'refusal'; reason: string } // by the server, of something that is no command: it is nobody's answer
+  | { type: 'refusal'; reason: string } // by the server, of a message that is not a command; it answers no request
   | { type: 'not_sent'; request: number } // a command that never left the page
-  | { type: 'trouble'; words: string } // the worker's own
+  | { type: 'trouble'; words: string } // of the worker itself
   | { type: 'answer'; ask: number; ok: true; value: unknown }
-  | { type: 'answer'; ask: number; ok: false; error: string; status: number }; // 0: no answer came
+  | { type: 'answer'; ask: number; ok: false; error: string; status: number }; // status 0: no answer arrived
 
 export type ControlAction = { action: 'pause'; pause: boolean } | { action: 'pace'; pace: number } | { action: 'stop' };
 
@@ -63,7 +64,7 @@ export type Question =
   | 'report'
   | 'commands';
 
-/** What a controller wants of the uplink, as CommandRequest has it: a command, or an action on one that waits. What is left out is not asked. */
+/** A command for the uplink, or an action on a waiting one, as in CommandRequest. Missing fields are not sent. */
 export interface CommandIntent {
   command?: string;
   arguments?: { name: string; value: number }[];
@@ -77,15 +78,16 @@ export interface CommandIntent {
   priority?: number;
   action?: QueueAction;
   number?: bigint;
-  controller?: string; // who asks
+  controller?: string; // name of the person asking
 }
 export type QueueAction = 'release' | 'hold' | 'cancel' | 'approve';
 
 export type ToWorker =
   | { type: 'open'; run: number; packets: Record<number, number[]>; plotted: string[]; others: string[] }
   | { type: 'watch'; run: number }
-  | { type: 'reconnect' } // at once: whoever was turned away has logged in
-  | { type: 'refresh_history'; all: boolean; live: boolean } // live: only what came so, as fine as if nothing else had come
+  | { type: 'reconnect' } // at once, after a log-in
+  // live: only live samples, as densely as if there were no others
+  | { type: 'refresh_history'; all: boolean; live: boolean }
   | { type: 'command'; request: number; run: number; intent: CommandIntent }
   | { type: 'control'; run: number; control: ControlAction }
   | { type: 'ask'; ask: number; question: Question; path: string };

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Enumerations of the stream by their names in the schema, as JSON has them: numbers stay in the worker, words are what the page compares and draws.
+// Enumerations of the stream by their names in the schema, as in JSON. Numbers stay in the worker; the page compares
+// and draws names.
 import {
   Alarm_Severity,
   Carrier_Lock,
@@ -18,11 +19,11 @@ export type NamedStage = Named<
   { stage: keyof typeof CommandStage_Stage; status: keyof typeof CommandStage_Status }
 >;
 
-/** Of a value that this console does not know: its number. */
+/** The number of a value that this console does not know. */
 const nameOf = <Names extends object>(names: Names, value: number) =>
   ((names as Record<number, string>)[value] ?? String(value)) as keyof Names;
 
-/** What an item is, with names. */
+/** The content of an item, with names for enumerations. */
 export function named(item: Item['item']) {
   switch (item.case) {
     case 'event':

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Proves that nothing is missing: each batch must continue what was complete before it.
+// Checks that nothing is missing: each batch must continue at the end of the complete part.
 
 export type Verdict = 'continues' | 'repeats' | 'gap';
 
@@ -8,8 +8,8 @@ export class SequenceCheck {
   constructor(public completeThrough = 0) {}
 
   /**
-   * `afterSeq` is what the server says the batch continues from; 0 when it does not say.
-   * 'repeats': all of it was here before. 'gap': something is missing; ask again from `completeThrough`.
+   * Judges a batch. `afterSeq` is the number from which it continues by the server's word; 0 if the server does not
+   * say. 'repeats': all of it is known already. 'gap': items are missing; subscribe again from `completeThrough`.
    */
   judge(afterSeq: number, completeThrough: number, firstSeq: number | undefined): Verdict {
     if (afterSeq > this.completeThrough) {

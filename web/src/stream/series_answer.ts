@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads the archive's answer of samples, v1.ChannelSeriesList in Protobuf. Its packed columns are copied into typed arrays whole, six times
-// as fast as the generated decoder, which reads number by number. It needs no schema, so that the page can read its first look alone.
+// Reads the archive's answer of samples, v1.ChannelSeriesList in Protobuf. It copies packed columns into typed arrays
+// as a whole, six times as fast as the generated decoder, which reads number by number. It needs no schema, so that the
+// page can read its first look alone.
 import { BinaryReader, WireType } from '@bufbuild/protobuf/wire';
 import { SOURCE_RECORDED } from './columns';
 import type { Column } from './messages';
@@ -9,20 +10,22 @@ export interface SeriesAnswer {
   id: number;
   name: string;
   unit: string;
-  /** That the range holds; fewer are given when thinned. */
+  /** Number in the range; a thinned series has fewer points. */
   samples: number;
   thinned: boolean;
-  /** Real time and recording are kept apart, so that each can be seen for itself. Each has samples. */
+  /**
+   * Columns of samples, real time and recording apart, so that each can be drawn by itself. Empty ones are left out.
+   */
   columns: Column[];
 }
 
-// Numbers of the fields in run.proto; a test holds them against the schema.
+// Numbers of the fields in run.proto; a test compares them with the schema.
 const CHANNELS = 1;
 const [ID, NAME, UNIT, SAMPLES, THINNED, SCLK, VALUE, SOURCE] = [1, 2, 3, 4, 5, 6, 7, 8];
 
 const NONE = new Uint8Array();
 
-/** Throws on octets that are no such list. */
+/** Reads the list. Throws if the octets are not one. */
 export function readSeriesList(octets: Uint8Array): SeriesAnswer[] {
   try {
     return fieldsOf(octets)
@@ -47,11 +50,11 @@ function readSeries(octets: Uint8Array): SeriesAnswer {
     unit: text(UNIT),
     samples: number(SAMPLES),
     thinned: number(THINNED) !== 0,
-    columns: bySource(id, doubles(part(SCLK)), doubles(part(VALUE)), part(SOURCE)), // a source takes an octet
+    columns: bySource(id, doubles(part(SCLK)), doubles(part(VALUE)), part(SOURCE)), // a source takes one octet
   };
 }
 
-/** A copy, for doubles in a message do not lie on multiples of eight. Both are little-endian. */
+/** A copy, because doubles in a message are not aligned to eight octets. Both sides are little-endian. */
 const doubles = (part: Uint8Array) => new Float64Array(part.slice().buffer);
 
 function bySource(id: number, sclk: Float64Array, value: Float64Array, source: Uint8Array): Column[] {
@@ -67,7 +70,7 @@ function bySource(id: number, sclk: Float64Array, value: Float64Array, source: U
   return [of(false), of(true)];
 }
 
-/** The fields of a message: the number of each, and its value or its octets. Other fields are of a later schema and passed over. */
+/** The fields of a message: the number of each with its value or its octets. Fields of a later schema are ignored. */
 function fieldsOf(octets: Uint8Array): { number: number; value: number; part: Uint8Array }[] {
   const reader = new BinaryReader(octets);
   const fields = [];

@@ -20,7 +20,7 @@ class FakeSocket {
   send() {
     ++this.sent;
   }
-  close() {} // as over a way that is dead: no goodbye comes
+  close() {} // as over a dead connection: no close event
   opens() {
     this.readyState = 1;
     this.onopen();
@@ -118,7 +118,7 @@ it('takes samples up where their subscription is welcomed: what comes before lac
   const history = () => vi.mocked(fetch).mock.calls.filter(([path]) => String(path).includes('/channels')).length;
   const through = () =>
     said.flatMap((message) => (message.type === 'batch' ? [message.batch.completeThrough] : [])).at(-1);
-  vi.resetModules(); // anew, with something plotted
+  vi.resetModules(); // a new worker, with a plotted channel
   await import('./worker');
   (self as unknown as { onmessage: (event: { data: ToWorker }) => void }).onmessage({
     data: { type: 'open', run: 0, packets: {}, plotted: ['altitude_m'], others: [] },
@@ -127,9 +127,9 @@ it('takes samples up where their subscription is welcomed: what comes before lac
   sockets[0] = socket as FakeSocket;
   socket?.opens();
   socket?.says({ case: 'welcome', value: { runState: aRun('running'), lastSeq: 2n } });
-  batch(0n, 2n); // all facts are here: samples are asked for
+  batch(0n, 2n); // all facts have arrived: samples are subscribed
   expect([socket?.sent, history()]).toEqual([2, 0]);
-  batch(2n, 5n); // still of the subscription without samples
+  batch(2n, 5n); // still from the subscription without samples
   await passes(1);
   expect([history(), through()]).toEqual([0, 2]);
   socket?.says({ case: 'welcome', value: { runState: aRun('running'), lastSeq: 5n } });

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Owns the socket: connects, subscribes, resumes after a break, checks the sequence, decodes, and posts columnar
-// batches every 25 ms at most, on the average, samples a little sooner. Also asks the HTTP routes, so that no large answer is parsed on the page's thread.
+// batches every 25 ms at most on average, those with samples somewhat sooner. It also sends HTTP requests, so that no
+// large answer is parsed on the page's thread.
 //
-// A run is taken up in two steps. First everything that is not a sample, from the beginning; the answer is small.
-// Once that is complete, samples are subscribed from there on, and after the first live frame their history up to
-// it is fetched, thinned by the server: no seam, and no million of samples through the socket.
+// A run is loaded in two steps. The first is everything except samples, from the beginning; that answer is small.
+// Then samples are subscribed from there on, and their history before that is fetched, thinned by the server. So there
+// is no seam, and no million samples pass through the socket.
 import { create, fromBinary, fromJson, toBinary } from '@bufbuild/protobuf';
 import type { DescMessage, MessageInitShape } from '@bufbuild/protobuf';
 import {
@@ -27,14 +28,14 @@ import { SequenceCheck, backoffSeconds } from './sequence';
 import { columnsOf, readSeriesList } from './series_answer';
 
 const POST_EVERY_MS = 25;
-const POST_SAMPLES_EVERY_MS = 45; // what is drawn does not wait behind what is not; samples come every 50 ms
-const PLOTTED_POINTS = 6000; // of a channel that is drawn: a few a pixel, so that one step of zoom still has detail
-const OTHER_POINTS = 400; // of the others: for the table and a first look
-const CHANNELS_A_QUESTION = 64; // the server takes no more
-const SILENT_MS = 5000; // chosen: a run that goes on sends its clocks ten times a second
-const LOOKS = 3; // chosen: during a silence of fifteen seconds
+const POST_SAMPLES_EVERY_MS = 45; // plotted samples do not wait for other items; samples arrive every 50 ms
+const PLOTTED_POINTS = 6000; // per plotted channel: a few a pixel, so that one step of zoom still has detail
+const OTHER_POINTS = 400; // per other channel: for the table and a first look
+const CHANNELS_A_QUESTION = 64; // the server's limit
+const SILENT_MS = 5000; // chosen: a running run sends its clocks ten times a second
+const LOOKS = 3; // chosen: over a silence of fifteen seconds
 const LOOK_EVERY_MS = 1000;
-const MAX_RATE_HZ = 20; // as fast as the page draws; history has the rest
+const MAX_RATE_HZ = 20; // the rate at which the page draws; history has the rest
 
 const post = (message: FromWorker, columns: Column[] = []) =>
   self.postMessage(message, {
@@ -49,7 +50,7 @@ let attempt = 0;
 let retry: ReturnType<typeof setTimeout> | undefined;
 let wantedRun = 0;
 let currentRun = 0;
-let known: RunState | undefined; // the current run as it was told last
+let known: RunState | undefined; // the newest reported state of the current run
 let serverVersion = '';
 let check = new SequenceCheck();
 let packetOf = new Map<number, readonly number[]>();
@@ -62,13 +63,17 @@ const samplePosts = new Pace(POST_SAMPLES_EVERY_MS, 5);
 let state: StreamState = 'connecting';
 let step: 'facts' | 'samples' = 'facts';
 let historyDue = false;
-let stopAt = 0; // what the run had when the subscription began: from there on it is live
-let lost: { after: number; attempts: number } | undefined; // while a break lasts: what was complete when it began
-let lookAt_ms = Infinity; // when it is to be asked whether the server is still there
-let looks = 0; // since the socket spoke
-let asks = new AbortController(); // of what was asked before the connection died: no answer comes over it
-let welcomed = false; // by the subscription that was asked for last: what comes before is of the one it replaces, and lacks what that left out
-let exact = false; // the run is named, for the server that came back no longer calls it the one that is going on
+let stopAt = 0; // the last number when the subscription began; later items are live
+// during a break: the number through which items were complete at its start
+let lost: { after: number; attempts: number } | undefined;
+let lookAt_ms = Infinity; // when to ask whether the server still answers
+let looks = 0; // since the last message on the socket
+let asks = new AbortController(); // aborts pending requests when the connection has died
+// Whether the newest subscription has been answered. Earlier batches belong to the one that it replaces, and lack what
+// that one left out.
+let welcomed = false;
+// Whether to subscribe by the run's number, because the server that came back no longer has it as the current one.
+let exact = false;
 
 function say(next: StreamState): void {
   state = next;
@@ -133,9 +138,10 @@ function heard(): void {
 }
 
 /**
- * A connection can die without a word. After a silence the server is asked something small: without an answer the connection is lost. Where it
- * answers, the socket is dead by itself when a rehearsal that goes on is silent for long. It is not asked: a second subscription beside one whose
- * answer is under way could have facts come twice, or samples left out.
+ * Detects a connection that died silently. After a silence the server gets a small request; without an answer the
+ * connection is lost. If the server answers but a running rehearsal stays silent for long, the socket alone is dead. No
+ * second subscription is used for this: beside one whose answer is under way it could duplicate facts or leave out
+ * samples.
  */
 async function watchSilence(): Promise<void> {
   const its = socket;
@@ -146,19 +152,19 @@ async function watchSilence(): Promise<void> {
     () => true,
     () => false,
   );
-  if (socket !== its || lookAt_ms !== Infinity) return; // it has spoken, or was lost, meanwhile
+  if (socket !== its || lookAt_ms !== Infinity) return; // meanwhile the socket brought a message or was lost
   lookAt_ms = performance.now() + SILENT_MS;
-  // A real venue is silent when nothing comes, and a rehearsal waits while its archive takes nothing.
-  // What has been asked of it, to open or to bring what is there, it owes in any case.
+  // A real venue may be silent, and a rehearsal waits while its archive cannot store. But an opening or a catching-up
+  // must always be answered.
   const speaks = known?.state === 'running' && known.venue !== 'downlink' && known.archiveFault === '';
   if (answers && !((speaks || state !== 'live') && looks >= LOOKS)) return;
   asks.abort();
   asks = new AbortController();
   lose(its);
-  its.close(); // nobody waits for its goodbye
+  its.close(); // nobody waits for its closing handshake
 }
 
-/** Forget the run and take up another from its beginning. */
+/** Forgets the run and begins another. */
 function restart(run: number): void {
   currentRun = run;
   known = undefined;
@@ -170,7 +176,10 @@ function restart(run: number): void {
   historyDue = false;
 }
 
-/** The server that came back has another run of this number: nothing of it is taken for the one that is shown, and nothing is sent to it. */
+/**
+ * Leaves a server that came back with another run of this number: its data must not mix with the run shown, and nothing
+ * is sent to it.
+ */
 function leave(): void {
   const its = socket;
   socket = undefined;
@@ -210,7 +219,7 @@ function receive(bytes: Uint8Array): void {
       if (run !== 0 && step === 'facts' && stopAt === 0) goOnWithSamples();
       if (run !== 0 && step === 'samples') {
         if (check.completeThrough >= stopAt) say('live'); // nothing was missed
-        fetchDueHistory(); // from here on what comes has its samples; what was there before is in the archive
+        fetchDueHistory(); // later batches have samples; earlier samples are in the archive
       }
       break;
     }
@@ -221,7 +230,7 @@ function receive(bytes: Uint8Array): void {
       post({ type: 'reply', reply: message.value });
       break;
     case 'refusal':
-      welcomed = true; // where it was of a subscription, the one before goes on
+      welcomed = true; // if it refused a subscription, the one before continues
       post({ type: 'refusal', reason: message.value.reason });
       break;
     case 'runState':
@@ -235,7 +244,7 @@ function receiveBatch(batch: Batch): void {
   if (!welcomed) return;
   const run = Number(batch.run);
   if (run !== currentRun) {
-    // The next run has begun on a subscription to "the one that is going on".
+    // The next run has begun on a subscription to the current run (0).
     restart(run);
     subscribe();
     return;
@@ -254,7 +263,7 @@ function receiveBatch(batch: Batch): void {
   postSoon(batch.items.some(({ item }) => item.case === 'samples'));
 }
 
-/** At once after a pause. */
+/** Posts the collected batches when their pace allows; after a pause at once. */
 function postSoon(samples: boolean): void {
   const now = performance.now();
   const wait_ms = Math.min(posts.wait(now), samples ? samplePosts.wait(now) : Infinity);
@@ -307,7 +316,7 @@ async function fetchHistory(all = true, live = false): Promise<void> {
     }
   } catch (error) {
     if ((error as Error).name === 'AbortError')
-      historyDue = true; // once there is a connection
+      historyDue = true; // once there is a connection again
     else post({ type: 'trouble', words: `history: ${error instanceof Error ? error.message : String(error)}` });
   }
 }
@@ -322,7 +331,7 @@ const ANSWERS: Record<Exclude<Question, 'series'>, DescMessage> = {
   commands: CommandListSchema,
 };
 
-/** The answer, once it has begun; throws the server's words with its status. */
+/** The successful response, before its body is read. Throws the server's words with its status. */
 async function get(path: string): Promise<Response> {
   const response = await fetch(apiUrl + path, { signal: asks.signal });
   if (response.ok) return response;
@@ -331,7 +340,7 @@ async function get(path: string): Promise<Response> {
   try {
     error = (JSON.parse(text) as { error?: string }).error ?? error;
   } catch {
-    // The answer was not of our API; its text says what it says.
+    // The answer was not from our API; its text is quoted.
   }
   throw Object.assign(new Error(error || `${response.status} ${response.statusText}`), { status: response.status });
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Messages of the schema for tests, built field by field. Nothing here looks like a landing.
+// Messages of the schema for tests, built field by field. No values resemble a landing.
 import { create } from '@bufbuild/protobuf';
 import type { DescMessage, MessageInitShape } from '@bufbuild/protobuf';
 import {
@@ -145,7 +145,7 @@ export const aPlan = [
   }),
 ];
 
-/** A day-of-year text as the stream has it. '': long before everything. */
+/** Converts a day-of-year text to the stream's microseconds. '': before everything else. */
 export const ertUs = (text: string): bigint =>
   text === '' ? 0n : BigInt(Math.round((secondsOfDayOfYear(text) - secondsOfErt(0n)) * 1e6));
 
@@ -153,7 +153,7 @@ let seq = 0;
 export function item(value: Item['item'], ert = ''): Item {
   return create(ItemSchema, { seq: BigInt(++seq), ertUs: ertUs(ert), item: value });
 }
-/** Fields of a message, with the ERT of its item as a text, and names of enumerations. */
+/** Adds to the fields of a message the ERT of its item as a text, and names of enumerations. */
 type Fields<Schema extends DescMessage, Names = object> = Omit<MessageInitShape<Schema>, keyof Names | '$typeName'> &
   Names & { ert?: string };
 export const event = ({

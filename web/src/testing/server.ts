@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A server of a few routes for tests: answers what is put in, keeps what was asked.
+// A server with a few routes for tests: it returns the given answers and keeps the requests.
 import { afterEach, beforeEach, vi } from 'vitest';
 
 interface Said {
@@ -10,7 +10,7 @@ interface Said {
 type Answer = Said | (() => Said | Promise<Said>);
 
 export interface FakeServer {
-  /** "GET /session" → what it answers. What is not there answers 404. */
+  /** The answers by route, "GET /session". Other routes return 404. */
   routes: Record<string, Answer>;
   asked: { method: string; path: string; body: unknown }[];
 }

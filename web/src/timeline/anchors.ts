@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The anchors that timepoints hang from, as a tree: each with its parent, its offset from it, when it is, and what says so.
+// The anchors of the timeline as a tree: parent, offset, time and evidence of each.
 import { SOURCES } from '../design/status';
 import type { AnchorRow, TimepointRow } from '../gen/aeolis/v1/run_pb';
 import { inWords } from '../run/dictionary';
@@ -10,9 +10,9 @@ export interface AnchorLine {
   /** 0: the root. */
   depth: number;
   parent: string;
-  /** From the parent: as a command has set it, else as the plan has it. */
+  /** From the parent: by a command, else by the plan. */
   offset_s: number | undefined;
-  /** From entry; undefined of the root, and where nothing is known. */
+  /** From entry; undefined for the root and for unknown anchors. */
   e_s: number | undefined;
   state: 'defined' | 'predicted' | 'undefined';
   by: string;

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is asked of the server about the timeline of the run that is shown: as it was known at the instant that is looked at, predicted from
-// that, and with what the command in the form would move. The server alone predicts; the page says of which instant an answer is.
+// The timeline query for the run shown: its state as known at the instant shown, the prediction from it, and the effect
+// of the command in the form. Only the server predicts; the page states the instant of each answer.
 import { computed } from '@preact/signals';
 import { chosen, fields } from '../commands/line';
 import type { TimepointList } from '../gen/aeolis/v1/run_pb';
 import { asHeard, cutoff, signalOfRun } from '../run/shown';
 import type { RunStore } from '../run/store';
 
-/** In words of the route, so that two of the same text ask the same. */
+/** A query of the route as a text, so that equal queries have equal texts. */
 export interface TimelineQuestion {
   text: string;
   /** SCLK; Infinity: now. */
   at: number;
   recorded: boolean;
-  /** Of the form; '' without one. */
+  /** The command of the form as query text; '' without one. */
   command: string;
 }
 
@@ -32,7 +32,7 @@ export const timelineQuestion = computed<TimelineQuestion>(() => {
   return { text: parts.length === 0 ? '' : `?${parts.join('&')}`, at, recorded, command: command.value };
 });
 
-/** `at_ms`: when it came, by the page's clock. */
+/** `at_ms`: its arrival by the page's clock. */
 export interface TimelineAnswer {
   asked: TimelineQuestion;
   list: TimepointList;
@@ -40,7 +40,7 @@ export interface TimelineAnswer {
 }
 export const timelineAnswer = signalOfRun<TimelineAnswer | undefined>(undefined);
 
-/** The newest answer, unless it is of another view of the run, or knows what came after the instant that is looked at. */
+/** The newest answer, unless it belongs to another view of the run or knows later data than the instant shown. */
 export const timelineKnown = computed(() => {
   const answer = timelineAnswer.value;
   const now = timelineQuestion.value;
@@ -54,10 +54,10 @@ export const timelineKnown = computed(() => {
       : undefined;
 });
 
-const EVERY_MS = 1000; // ours: while the run goes on, what is overdue moves
+const EVERY_MS = 1000; // chosen: during a run the times of overdue timepoints advance
 const AFTER_FAILURE_MS = 2000;
 
-/** When to ask again: another run, another question, news of the timeline, and now and then while the run goes on. */
+/** Decides when to ask again: for another run, another query, news of the timeline, and regularly during a run. */
 export class TimelinePace {
   private last: { of: RunStore; text: string; version: number; at_ms: number; failed: boolean } | undefined;
 
@@ -67,7 +67,7 @@ export class TimelinePace {
     if (last.failed) return now_ms - last.at_ms >= AFTER_FAILURE_MS;
     return last.version !== of.timelineVersion || (of.going && now_ms - last.at_ms >= EVERY_MS);
   }
-  /** `version`: of the run as the question was asked. */
+  /** `version`: that of the run when the query was sent. */
   asked(of: RunStore, text: string, version: number, at_ms: number, failed: boolean): void {
     this.last = { of, text, version, at_ms, failed };
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is known of each timepoint, whichever way it came. The one answer for prediction, waiting, phases, guide, counts and details: where
-// UHF is silent, tones tell.
+// The knowledge of each timepoint from all sources. Prediction, waiting, phases, guide, counts and details all use this
+// one function. Where UHF is silent, tones report.
 import type { Explanation } from '../gen/aeolis/v1/items_pb';
 import type { TimepointRow } from '../gen/aeolis/v1/run_pb';
 import type { RunStore } from '../run/store';
@@ -8,14 +8,14 @@ import type { RunStore } from '../run/store';
 /** Times in SCLK. */
 export interface Heard {
   by: 'uhf' | 'recording' | 'tone';
-  /** By tone: when the tone began, for it is asked for as the timepoint is triggered. */
+  /** For a tone: its beginning, since it is requested when the timepoint is triggered. */
   triggered_sclk: number;
   fired_sclk: number;
-  /** As flight told it; '' by tone, which says only that it was triggered. */
+  /** Flight's verdict; '' for a tone, which reports only the triggering. */
   verdict: string;
 }
 
-export const BELIEVED = 0.5; // ours: a tone that is likelier than all others together
+export const BELIEVED = 0.5; // chosen: a tone likelier than all others together
 
 let last:
   | {
@@ -27,7 +27,10 @@ let last:
     }
   | undefined;
 
-/** By number of the timepoint: UHF and recording say it, else a tone that only one timepoint asks for. Six views ask at each tick, and are answered once. */
+/**
+ * The known timepoints by number: from UHF and recording, else from a tone that only one timepoint requests. The result
+ * is kept, since six views ask at each tick.
+ */
 export function heardOf(store: RunStore, plan: readonly TimepointRow[], cutoff: number): ReadonlyMap<number, Heard> {
   const { version } = store;
   if (last?.store !== store || last.version !== version || last.plan !== plan || last.cutoff !== cutoff) {
@@ -65,14 +68,17 @@ function hear(store: RunStore, plan: readonly TimepointRow[], cutoff: number): M
   return heard;
 }
 
-/** Place in the plan of the last one that was heard of, -1 before the first. The timeline goes in order: all before it are past. */
+/**
+ * Index in the plan of the last known timepoint, -1 before the first. The timeline goes in order, so all before it have
+ * passed.
+ */
 export function lastHeard(plan: readonly TimepointRow[], heard: ReadonlyMap<number, Heard>): number {
   return plan.findLastIndex((row) => heard.has(row.id));
 }
 
 /**
- * Whether an explanation is of this timepoint and of no other: flight names a decision by the timepoint, by the anchor whose finding
- * triggers it, or as "timepoint" with its name in the text.
+ * Whether an explanation is about this timepoint alone. Flight names a decision by the timepoint, by the anchor whose
+ * finding triggers it, or as "timepoint" with its name in the text.
  */
 export function speaksOf({ decision, text }: Explanation, row: TimepointRow): boolean {
   if (decision === 'timepoint') return text.split(' ')[1] === row.name;

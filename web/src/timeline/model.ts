@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The lanes of the timeline: what was planned, and how each moment became known.
+// The lanes of the timeline: the plan, and each way in which a moment became known.
 import { LAYOUT } from '../layout';
 import { inWords } from '../run/dictionary';
 import type { RunStore } from '../run/store';
@@ -13,7 +13,7 @@ import type { Heard } from './heard';
 export interface Prediction {
   id: number;
   name: string;
-  /** Of what has fired: as it was predicted before its anchor was heard of. */
+  /** For a fired timepoint: as predicted before its anchor was heard of. */
   e_s: number;
   fired: boolean;
 }
@@ -30,7 +30,7 @@ export interface Mark {
   id: number;
   name: string;
   important: boolean;
-  /** timed out, failed: shown with another shape */
+  /** Whether it timed out or failed, which has another shape. */
   bad: boolean;
 }
 export interface Outage {
@@ -43,7 +43,7 @@ export interface Lanes {
   tones: Mark[];
   live: Mark[];
   recorded: Mark[];
-  /** Timepoints of which only a tone told: in the lane of tones. */
+  /** Timepoints known by a tone only, for the lane of tones. */
   heardByTone: Mark[];
   liveOutages: Outage[];
   toneOutages: Outage[];
@@ -104,7 +104,7 @@ function markOf(id: number, name: string, e_s: number, verdict: string): Mark {
   return { id, name, e_s, important: isImportant(name), bad: !GOOD.has(verdict) };
 }
 
-/** When a link was silent, and why, as the link itself said. Silence is never drawn as nothing. */
+/** The silences of a link with their reasons, as the link reported them. A silence is always drawn. */
 export function outages(store: RunStore, link: string, now_e_s: number, cutoff: number): Outage[] {
   const all: Outage[] = [];
   let open: Outage | undefined;
@@ -127,12 +127,12 @@ export function outages(store: RunStore, link: string, now_e_s: number, cutoff: 
   return all;
 }
 
-/** "plasma outage, as predicted" → "plasma outage": what there is room for. */
+/** "plasma outage, as predicted" → "plasma outage": the reason without its details. */
 export function shortReason(words: string): string {
   return words.split(/[,:;(]/)[0]?.trim() ?? words;
 }
 
-/** How many are known to have fired, and how many of them only by their tone. */
+/** The number of known firings, and how many of them are known by a tone only. */
 export function firedCount(
   store: RunStore,
   plan: readonly TimepointRow[],
@@ -150,7 +150,7 @@ const VERDICTS = {
   failed: 'failed',
 } as const;
 
-/** "passed": nothing told of it, and one after it has fired. */
+/** "passed": nothing reported it, and a later timepoint has fired. */
 type PointState =
   | (typeof VERDICTS)[keyof typeof VERDICTS]
   | 'passed'
@@ -162,18 +162,18 @@ type PointState =
 interface PointDetail {
   row: TimepointRow;
   state: PointState;
-  /** Of one that has fired: which way it is known, and flight's own word for how it ended. */
+  /** For a fired timepoint: how it became known, and flight's verdict. */
   by: Heard['by'] | undefined;
   verdict: string;
   firedLive_e_s: number | undefined;
   firedRecorded_e_s: number | undefined;
   tone_e_s: number | undefined;
   triggered_e_s: number | undefined;
-  /** What flight said of this timepoint last: why it fired, or what it is held by. */
+  /** Flight's newest explanation of it: why it fired, or what holds it. */
   why: Explanation | undefined;
 }
 
-/** Why a timepoint fired or has not. */
+/** State and evidence of a timepoint. */
 export function pointDetail(
   store: RunStore,
   dictionary: Dictionary,
@@ -222,12 +222,12 @@ function stateOf(
     : 'pending';
 }
 
-/** An anchor is found once a timepoint that hangs from it has been triggered. */
+/** Whether the anchor of a timepoint is known: a timepoint that counts from it has been triggered. */
 function predecessorAnchored(plan: readonly TimepointRow[], at: number, last: number): boolean {
   return plan.slice(0, last + 1).some((row) => row.anchor === plan[at]?.anchor);
 }
 
-/** By the vehicle's own word: its action was triggered and the reply is due. */
+/** Whether the vehicle reports that its action was triggered and the reply is due. */
 function awaitsReply(store: RunStore, dictionary: Dictionary, row: TimepointRow, cutoff: number): boolean {
   const [index, state] = [dictionary.pick(LAYOUT.currentTimepoint), dictionary.pick(LAYOUT.timepointState)];
   const [now, told] = [index && store.latest(index.id, cutoff), state && store.latest(state.id, cutoff)];
@@ -239,7 +239,7 @@ function awaitsReply(store: RunStore, dictionary: Dictionary, row: TimepointRow,
   );
 }
 
-/** The first timepoint, in the order of the timeline, after the last one known to have fired. */
+/** The timepoint after the last known one, in the order of the timeline. */
 export function nextTimepoint(
   store: RunStore,
   plan: readonly TimepointRow[],
@@ -249,5 +249,5 @@ export function nextTimepoint(
 }
 
 export const title = inWords;
-/** For a picture: "straighten up and fly right (SUFR)" is "SUFR". */
+/** The short title for pictures: "SUFR" for "straighten up and fly right (SUFR)". */
 export const shortTitle = (name: string): string => /\((\w+)\)$/.exec(inWords(name))?.[1] ?? inWords(name);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What people wait for that is no timepoint: flight tells it by an event and a tone of the same name.
+// Moments that people wait for but that are no timepoints; flight reports each by an event and a tone of the same name.
 import type { TimepointRow } from '../gen/aeolis/v1/run_pb';
 import { LAYOUT } from '../layout';
 import type { Dictionary } from '../run/dictionary';
@@ -10,13 +10,13 @@ export interface Moment {
   name: string;
   before: string;
   plain: string;
-  /** When it was, as far as it was told; else when it is predicted. */
+  /** The reported time, else the predicted one. */
   e_s: number | undefined;
-  /** Told, or passed: the timepoint after it is known. */
+  /** Reported, or passed because the next timepoint is known. */
   done: boolean;
 }
 
-/** Those of the plan that is shown, in their order. */
+/** The moments of the plan shown, in order. */
 export function momentsOf(
   store: RunStore,
   dictionary: Dictionary,

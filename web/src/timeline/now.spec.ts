@@ -68,7 +68,7 @@ describe('the prediction of the run that is shown', () => {
     answered();
     expect(predicted.value.length).toBe(2);
     pastRange.value = { from: 0, to: 250 };
-    expect(predicted.value.length).toBe(2); // a replay that has gone on
+    expect(predicted.value.length).toBe(2); // the replay has advanced
     pastRange.value = { from: 0, to: 200 };
     expect(predicted.value).toEqual([]);
     pastRange.value = { from: 0, to: 240 };
@@ -83,7 +83,7 @@ describe('the effect of a command, before it is sent', () => {
   it('is what the server would move by that very command, and nothing until it has said so', () => {
     store.value = aStore([], at(-100));
     answered();
-    expect(moved.value).toBeUndefined(); // the answer is of no command
+    expect(moved.value).toBeUndefined(); // the answer belongs to a query without a command
     answered(create(TimepointListSchema, { ...LIST, commandMoves: true }));
     expect(moved.value).toEqual([{ id: 1, name: 'mortar', from_e_s: 250, to_e_s: 260 }]);
     answered(create(TimepointListSchema, { ...LIST, commandMoves: true }), { command: 'another' });

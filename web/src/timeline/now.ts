@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The server's prediction of the run that is shown, and how the command in the form would move it.
+// The server's prediction for the run shown, and the effect of the command in the form.
 import { computed } from '@preact/signals';
 import { pastRange, shownRun, tick } from '../run/shown';
 import { anchorTree } from './anchors';
@@ -13,9 +13,9 @@ export const predicted = computed<Prediction[]>(() =>
   ),
 );
 
-const BEHIND_S = 5; // ours: less is not worth a word
+const BEHIND_S = 5; // chosen: a smaller delay is not worth a word
 
-/** Seconds from entry of the instant whose knowledge the prediction is of, where what is shown has gone on from there. */
+/** The instant of the prediction in seconds from entry, if the display has advanced beyond it. */
 export const predictedAsOf = computed<number | undefined>(() => {
   void tick.value;
   const known_e_s = timelineKnown.value?.list.knownAtES;
@@ -23,7 +23,10 @@ export const predictedAsOf = computed<number | undefined>(() => {
   return known_e_s !== undefined && shown_e_s !== undefined && shown_e_s - known_e_s > BEHIND_S ? known_e_s : undefined;
 });
 
-/** Before it is sent: what it would move. Undefined where the chosen command moves nothing by its kind, and until the server has said it. */
+/**
+ * The timepoints that the command in the form would move. Undefined if it moves none by its kind, and until the server
+ * has answered.
+ */
 export const moved = computed<Moved[] | undefined>(() => {
   const known = timelineKnown.value;
   if (!known?.list.commandMoves || known.asked.command !== timelineQuestion.value.command) return undefined;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The timeline: lanes one under the other on one axis of time, so that plan and each way of knowing can be compared.
+// The timeline: lanes one below the other over one time axis, for comparing the plan with each source.
 import { signal } from '@preact/signals';
 import { Canvas } from '../draw/canvas';
 import type { Surface } from '../draw/canvas';
@@ -24,8 +24,8 @@ import './style.css';
 
 const GUTTER = 118;
 const TOP = 26;
-const CLOSE_UP_S = 180; // ours: in a shorter stretch every timepoint has room for its name
-const LABELS = 42; // two rows of names at least
+const CLOSE_UP_S = 180; // chosen: in a shorter stretch every timepoint has room for its name
+const LABELS = 42; // at least two rows of names
 const LANES = ['plan', 'predicted', 'by tone', 'by UHF, live', 'by recording'] as const;
 const selected = signal<number | undefined>(undefined);
 const anchorsShown = signal(false);
@@ -33,11 +33,11 @@ const anchorsShown = signal(false);
 export function toggleAnchors(): void {
   anchorsShown.value = !anchorsShown.value;
   if (!anchorsShown.value) return;
-  selected.value = undefined; // they stand in the same place
+  selected.value = undefined; // the anchors take its place
   requestAnimationFrame(() => document.querySelector<HTMLElement>('[data-testid="anchors"]')?.focus());
 }
 
-/** By keyboard: the timepoint after or before the one that is shown; from nothing, the next that the vehicle waits for. */
+/** Selects the next or the previous timepoint by key; without a selection, the next one that the vehicle waits for. */
 export function stepTimepoint(direction: 1 | -1): void {
   const plan = timepoints.value;
   const at = plan.findIndex((row) => row.id === selected.value);
@@ -56,7 +56,7 @@ function select(id: number | undefined): void {
   anchorsShown.value = false;
 }
 
-/** What is shown; while a command in the form would move something of the landing, the landing. */
+/** The stretch shown. While the command in the form would move timepoints, it is widened to include them. */
 function shown(run: RunStore | undefined): { from: number; to: number } {
   const span = spanNow(run);
   const all = moved.value ?? [];
@@ -69,7 +69,7 @@ function shown(run: RunStore | undefined): { from: number; to: number } {
 
 let hits: { x: number; y: number; id: number }[] = [];
 
-/** By how much it is drawn larger than on the console, where it has a panel of a large screen to itself. */
+/** The magnification against the console, for a panel alone on a large screen. */
 let grown = 1;
 
 function drawTimeline({ context: c, width: width_px, height: height_px, colours }: Surface): void {
@@ -84,7 +84,7 @@ function drawTimeline({ context: c, width: width_px, height: height_px, colours 
   const bottom = TOP + lane_px * LANES.length;
   hits = [];
 
-  const now_px = run ? x(pastRange.value?.to ?? run.seenE) : -1000; // its flag stands where labels would
+  const now_px = run ? x(pastRange.value?.to ?? run.seenE) : -1000; // its flag is where labels would be
   const pointed_px = cursor.value === undefined ? -1000 : x(cursor.value);
   const step = timeStep(to - from, Math.floor((width - GUTTER) / 90));
   c.textAlign = 'center';
@@ -205,14 +205,17 @@ function drawOutages(
   }
 }
 
-/** As much of `words` as there is room for, and that it is not all. */
+/** The part of `words` that fits, with an ellipsis. */
 function cutOff(c: CanvasRenderingContext2D, words: string, room: number): string {
   let length = words.length;
   while (length > 0 && c.measureText(`${words.slice(0, length)}…`).width > room) --length;
   return length > 2 ? `${words.slice(0, length).trimEnd()}…` : '';
 }
 
-/** What is still to come in the colour of what comes next; behind it, as it was predicted; and where a command in the form would move it. */
+/**
+ * Draws predictions: future ones in the accent's colour, past ones as they were predicted, and the new places under the
+ * command in the form.
+ */
 function drawPredicted(
   c: CanvasRenderingContext2D,
   x: (e: number) => number,
@@ -251,7 +254,7 @@ function marks(
   }
 }
 
-/** Names under the lanes, in as many rows as it takes that none covers another. */
+/** Draws the names below the lanes, in as many rows as keep them apart. */
 function labels(
   c: CanvasRenderingContext2D,
   lanes: Lanes,
@@ -307,7 +310,7 @@ function cursors(
   right: number,
   going: boolean,
 ): void {
-  const past = pastRange.value; // then both flags stand where they stood
+  const past = pastRange.value; // a past view keeps both flags at its instant
   if (lightTime > 0)
     flag(c, x(seen + lightTime), past ? 'then at Mars' : 'at Mars', colours.dim, colours.page, bottom, right);
   flag(
@@ -330,7 +333,7 @@ function flag(
   bottom: number,
   right: number,
 ): void {
-  if (px < GUTTER - 6 || px > right + 10) return; // a stretch that was zoomed to may end before it
+  if (px < GUTTER - 6 || px > right + 10) return; // a zoomed stretch may end before it
   c.strokeStyle = colour;
   line(c, Math.round(px) + 0.5, TOP - 8, Math.round(px) + 0.5, bottom + 4);
   c.font = 'bold 11px sans-serif';
@@ -433,7 +436,7 @@ function Detail() {
   const offset = (value: number | undefined) => (value === undefined ? 'undefined' : `${value} s`);
   const at = (e_s: number) => fromEntry(e_s, { tenths: true });
   const isOver = detail.by !== undefined || detail.state === 'passed';
-  // Of what has fired, what flight looked at then; of what has not, its conditions as they stand now.
+  // For a fired timepoint, flight's conditions at the firing; otherwise its present conditions.
   const lines = !isOver
     ? conditions(run, words, timepoints.value, row, cutoff.value, predicted.value)
     : why?.verdict === 'fired'
@@ -519,7 +522,7 @@ function Detail() {
   );
 }
 
-/** Flight's own verdicts, in words. */
+/** Flight's verdicts in words. */
 const ENDS: Record<string, string> = {
   completed: 'done; no reply was asked for',
   replied: 'the reply came',

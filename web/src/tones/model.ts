@@ -6,11 +6,11 @@ import type { NamedTone } from '../stream/names';
 interface ToneBar {
   from_e_s: number;
   to_e_s: number;
-  tone: number | undefined; // undefined: an erasure, nothing decoded
+  tone: number | undefined; // undefined: an erasure
   likelihood: number;
 }
 
-const SYMBOL_S = 10; // R31: one tone for 10 s
+const SYMBOL_S = 10; // R31: one tone takes 10 s
 
 export function toneBars(store: RunStore, cutoff: number): ToneBar[] {
   const bars: ToneBar[] = [];
@@ -31,7 +31,7 @@ export function latestTone(store: RunStore, cutoff: number): NamedTone | undefin
   return store.tonesBy(cutoff).at(-1)?.fact;
 }
 
-/** The symbol at `sclk`, or the newest by `cutoff` where none is chosen or the chosen one came later than that. */
+/** The symbol at `sclk`, or the newest by `cutoff` if none is chosen or the chosen one is later. */
 export function shownTone(store: RunStore, cutoff: number, chosen_sclk: number | undefined): NamedTone | undefined {
   const chosen =
     chosen_sclk === undefined || chosen_sclk > cutoff
@@ -40,7 +40,10 @@ export function shownTone(store: RunStore, cutoff: number, chosen_sclk: number |
   return chosen ?? latestTone(store, cutoff);
 }
 
-/** Of the symbol before or after that of `sclk`, its SCLK; undefined after the newest: that is no choice, it moves on. */
+/**
+ * SCLK of the symbol before or after the one at `sclk`. Undefined at the newest symbol, which is the default and
+ * advances.
+ */
 export function neighbour(
   store: RunStore,
   cutoff: number,
@@ -53,13 +56,13 @@ export function neighbour(
   return to >= all.length - 1 ? undefined : all[to];
 }
 
-const OLD_S = 40; // ours: four symbols; by then the next would have come, decoded or not
+const OLD_S = 40; // chosen: four symbols; the next would have arrived by then, decoded or not
 
-/** Whether it is not what the vehicle says now, at `seen_sclk`, but the last that was heard of it. */
+/** Whether the tone is too old, at `seen_sclk`, to be the vehicle's present report. */
 export const isOld = (tone: NamedTone | undefined, seen_sclk: number): boolean =>
   tone !== undefined && seen_sclk - tone.sclk > OLD_S;
 
-/** The title in words: what the vehicle says now, or what was heard last and when. */
+/** The title: the present tone, or the last one heard and its time. */
 export function toneTitle(tone: NamedTone | undefined, last_e_s?: number): string {
   if (!tone) return 'Tones';
   const meaning =
@@ -74,17 +77,17 @@ function lockInWords(tone: NamedTone): string {
   return '□ no lock';
 }
 
-/** The best tones with their likelihoods, all that came. */
+/** The received best tones with their likelihoods. */
 export function bestTones(tone: NamedTone | undefined): string {
   return (tone?.best ?? []).map((each) => `${each.tone}: ${each.likelihood.toFixed(4)}`).join(' · ');
 }
 
 interface SpectrumLine {
-  tone: number; // and the next one
+  tone: number; // this tone and the next one
   level_db: number; // energy over noise
 }
 
-/** The receiver's spectrum of tones; none when the decision does not come from a signal. */
+/** The receiver's spectrum of tones; empty for a decision without a signal. */
 export function toneSpectrum(tone: NamedTone | undefined): SpectrumLine[] {
   return Array.from(tone?.spectrum ?? [], (octet, index) => ({ tone: 2 * index, level_db: octet / 2 - 30 }));
 }

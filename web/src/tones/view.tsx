@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The strip of tones: 256 high, 10 s wide each.
+// The strip of tones: 256 rows, 10 s per column.
 import { signal } from '@preact/signals';
 import { Canvas } from '../draw/canvas';
 import type { Surface } from '../draw/canvas';
@@ -14,13 +14,13 @@ import { bestTones, isOld, neighbour, shownTone, toneBars, toneEvidence, toneSpe
 import './style.css';
 
 const LEFT = 42;
-const SPECTRUM = 106; // wide, at the right, where there is one
+const SPECTRUM = 106; // width of the spectrum at the right, if there is one
 const TONES = 256;
 const LOUDEST_DB = 30;
 const LABEL_PX = 12;
-const HEIGHTS = [64, 128, 256]; // the strip is as high as the tones that came need
+const HEIGHTS = [64, 128, 256]; // the strip is only as high as the received tones need
 
-/** The symbol that is looked at, of one run; undefined: the newest. */
+/** The selected symbol of the run; undefined: the newest. */
 const choice = signal<{ run: number; sclk: number } | undefined>(undefined);
 const chosenSclk = () => (choice.value?.run === shownRun()?.id ? choice.value?.sclk : undefined);
 function toneNow(): NamedTone | undefined {
@@ -45,7 +45,7 @@ function onKey(event: KeyboardEvent): void {
   event.preventDefault();
 }
 
-let scale: { from: number; to: number; width: number } | undefined; // of the strip, as it was drawn last
+let scale: { from: number; to: number; width: number } | undefined; // the strip as last drawn
 const timeAt = (px: number) =>
   scale && scale.from + ((px - LEFT) / (scale.width - LEFT - 12)) * (scale.to - scale.from);
 
@@ -57,7 +57,10 @@ function choose(px: number): void {
   look(at < 0 || at === bars.length - 1 ? undefined : run.tonesBy(cutoff.value)[at]?.fact.sclk);
 }
 
-/** What the receiver saw of the symbol that is looked at, beside the strip: all 256 that were weighed, on a scale of their own; the decided one and the runner-up by number. */
+/**
+ * The spectrum of the selected symbol beside the strip: all 256 tones on a scale of its own, with the numbers of the
+ * decided tone and the runner-up.
+ */
 export function drawSpectrum(
   { context: c, width, colours }: Pick<Surface, 'context' | 'width' | 'colours'>,
   tone: NamedTone | undefined,
@@ -133,7 +136,7 @@ function draw(surface: Surface): void {
       c.strokeRect(left - 2.5, y(bar.tone ?? high / 2) - 6.5, wide + 5, 13);
     }
     if (bar.tone === undefined) {
-      // An erasure: an empty dashed box in the middle, never nothing.
+      // An erasure is an empty dashed box in the middle.
       c.strokeStyle = colours.dim;
       c.setLineDash([2, 2]);
       c.strokeRect(left + 0.5, y(high / 2) - 3.5, wide, 7);

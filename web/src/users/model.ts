@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Accounts, tokens of programs and what everyone did: for administrators. Nothing of it is kept in the page longer than it is shown.
+// Accounts, tokens and the audit, for administrators. The page keeps them only while they are shown.
 import { signal } from '@preact/signals';
 import { call, wordsFor } from '../run/api';
 import type { Dictionary } from '../run/dictionary';
@@ -10,7 +10,7 @@ export const ROLES = ['observer', 'controller', 'director', 'administrator'] as 
 interface User {
   user: string;
   role: string;
-  commands?: string[]; // only these may be sent; none: all that the role may send
+  commands?: string[]; // the only commands allowed; undefined: all commands of the role
 }
 interface Token {
   name: string;
@@ -31,27 +31,30 @@ interface AuditEntry {
 export const users = signal<User[]>([]);
 export const tokens = signal<Token[]>([]);
 export const audit = signal<AuditEntry[]>([]);
-/** The page of the audit ends before this number; empty: the newest. */
+/** The audit page ends before this entry; empty: the newest page. */
 export const auditBefore = signal('');
 export const message = signal<{ good: boolean; text: string } | undefined>(undefined);
-/** Shown once, for the server keeps no readable copy. */
+/** The secret of a new token. It is shown once, since the server keeps no readable copy. */
 export const newToken = signal<{ name: string; token: string } | undefined>(undefined);
 export const busy = signal(false);
 
 const AUDIT_LIMIT = 100;
-const OFFERED = 20; // ours: names under a field that is being typed in
+const OFFERED = 20; // chosen: names offered under a field
 
 const auditPage = async (after: number, limit: number) =>
   (await call<{ entries?: AuditEntry[] }>('GET', `/audit?after=${after}&limit=${limit}`)).entries ?? [];
 
-/** Newest first. The server counts from the oldest on: where the end is, is found by halving, each step one entry by its number. */
+/**
+ * A page of the audit, newest first. The server pages from the oldest entry, so the end is found by bisection, one
+ * entry per request.
+ */
 async function auditUpTo(before: number): Promise<AuditEntry[]> {
   if (before > 0)
     return (await auditPage(Math.max(0, before - 1 - AUDIT_LIMIT), AUDIT_LIMIT))
       .filter(({ entry }) => Number(entry) < before)
       .reverse();
   const isThere = async (entry: number) => (await auditPage(entry - 1, 1)).length > 0;
-  let [low, high] = [0, AUDIT_LIMIT]; // numbered from 1, without a gap
+  let [low, high] = [0, AUDIT_LIMIT]; // numbered from 1 without gaps
   while (await isThere(high)) [low, high] = [high, high * 2];
   while (high - low > AUDIT_LIMIT) {
     const middle = Math.floor((low + high) / 2);
@@ -81,7 +84,7 @@ export function lookAtAudit(before: string): void {
   void refreshUsers();
 }
 
-/** Does one thing once, says what became of it, and asks for the lists again. */
+/** Performs one change, reports the result, and asks for the lists again. */
 export async function change(words: string, what: () => Promise<unknown>): Promise<boolean> {
   if (busy.value) return false;
   busy.value = true;
@@ -101,7 +104,10 @@ export async function change(words: string, what: () => Promise<unknown>): Promi
 
 const at = (path: string, name: string) => `${path}/${encodeURIComponent(name)}`;
 
-/** Names as they are typed, in any case, between commas or spaces; an Error names what the dictionary does not have. */
+/**
+ * Reads command names in any case, separated by commas or spaces. Throws an Error with the names unknown to the
+ * dictionary.
+ */
 function commandsOf(text: string, known: Pick<Dictionary, 'command'> | undefined): string[] {
   const names = [
     ...new Set(
@@ -116,7 +122,7 @@ function commandsOf(text: string, known: Pick<Dictionary, 'command'> | undefined
   return names;
 }
 
-/** What may follow of what is being typed: each offer is the whole field with its last word completed. */
+/** Completions of the typed text: each is the whole field with its last word completed. */
 export function offersFor(text: string, all: readonly { name: string }[]): string[] {
   const [, stem = '', begun = ''] = /^([^]*?)([^\s,;]*)$/.exec(text) ?? [];
   return begun === ''
@@ -133,7 +139,7 @@ export const addUser = (user: string, role: string, password: string, commands =
   change(`${user} is ${role} now`, async () =>
     call('POST', '/users', { user, role, password, ...listed(commandsOf(commands, dictionary.value)) }),
   );
-/** Nothing typed: all that the role may send. */
+/** Sets the allowed commands; an empty text allows all commands of the role. */
 export const setCommands = (user: string, typed: string) =>
   change(`what ${user} may send is changed`, async () => {
     const commands = commandsOf(typed, dictionary.value);

@@ -34,7 +34,7 @@ const commands = signal('');
 const tokenName = signal('');
 const tokenCommands = signal('');
 const tokenRole = signal<string>('observer');
-/** What is about to be removed: a second press does it. */
+/** The entry whose removal needs a second press. */
 const removing = signal('');
 
 function Roles({ of, label, onChoose }: { of: string; label: string; onChoose: (role: string) => void }) {
@@ -54,7 +54,7 @@ function Roles({ of, label, onChoose }: { of: string; label: string; onChoose: (
 
 const ALL_OF_ROLE = 'all of the role';
 
-/** Names of commands, with what the dictionary has for the last one while it is typed. */
+/** A field for names of commands, with completions of the last one. */
 function CommandNames({ of, label, onType }: { of: string; label: string; onType: (text: string) => void }) {
   const offers = useId();
   return (
@@ -80,7 +80,7 @@ function CommandNames({ of, label, onType }: { of: string; label: string; onType
   );
 }
 
-/** What is being typed stays until it is set or the list of another comes. */
+/** The typed text stays until it is set or the list of another user arrives. */
 function CommandsOf({ user, may }: { user: string; may: readonly string[] }) {
   const now = may.join(' ');
   const typed = useSignal(now);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A verdict as every panel shows it.
+// A verdict, drawn the same in every panel.
 import { STATUS, VERDICTS } from '../design/status';
 import type { Verdict } from '../design/status';
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What was seen live against the recording: the sentence that matters, the rows in order of trouble, and where octets differ.
+// Live data against the recording: one sentence, the rows with trouble first, and the octets that differ.
 import type { ProofReport, ProofRow, ToneVerdict } from '../gen/aeolis/v1/run_pb';
 import type { Status } from '../design/status';
 
@@ -31,7 +31,7 @@ function rowOf(row: ProofRow): Row {
 
 export const trouble = (row: Row) => row.differs + row.missing + row.notDecoded;
 
-/** What is in trouble first, then what there is most of. */
+/** The rows: those with trouble first, then by number of packets. */
 export function rowsOf(rows: readonly ProofRow[]): Row[] {
   return rows
     .map(rowOf)
@@ -70,7 +70,10 @@ export function totalOf(rows: readonly Row[]): Row {
 
 const many = (count: number) => count.toLocaleString('en').replaceAll(',', ' ');
 
-/** The one sentence. Before the recording is complete, missing means not yet, and nothing is called proven. */
+/**
+ * The summary in one sentence. Until the recording is complete, missing means not yet received, and nothing is called
+ * proven.
+ */
 export function sentence(proof: ProofReport): { status: Status; text: string } {
   const total = totalOf(proof.streams.map(rowOf));
   if (total.differs > 0)
@@ -99,7 +102,7 @@ export function sentence(proof: ProofReport): { status: Status; text: string } {
   return { status: 'holds', text: `All ${many(total.live)} packets seen live are in the recording, bit for bit.` };
 }
 
-/** How often each verdict on tones was given, and those that need a look. */
+/** The number of each verdict on tones, and the tones that are not identical. */
 export function toneSummary(tones: readonly ToneVerdict[]): { counts: [string, number][]; odd: ToneVerdict[] } {
   const counts = new Map<string, number>();
   for (const tone of tones) counts.set(tone.verdict, (counts.get(tone.verdict) ?? 0) + 1);
@@ -118,7 +121,7 @@ interface DiffLine {
 
 const A_LINE = 16;
 
-/** Both packets, sixteen octets a line; an octet that only one of them has differs too. */
+/** Both packets, sixteen octets per line. An octet that only one of them has counts as different. */
 export function diffLines(one: string, other: string): { lines: DiffLine[]; differing: number } {
   const split = (hex: string): string[] => hex.toLowerCase().match(/../g) ?? [];
   const [a, b] = [split(one), split(other)];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Live against recorded: one sentence, then the counts by packet and by link, the tones, and any packet octet by octet.
+// Live against recorded: one sentence, the counts by packet and by link, the tones, and any packet octet by octet.
 import { signal } from '@preact/signals';
 import { useEffect } from 'preact/hooks';
 import { STATUS, VERDICTS } from '../design/status';
@@ -36,7 +36,7 @@ async function list(): Promise<void> {
   }
 }
 
-/** Of what the recording has: how much was seen live, and what disagrees. Widths, so that words stand beside it. */
+/** Bars for the recording: the part seen live and the part that disagrees. Text can stand beside them. */
 function Bar({ row }: { row: Row }) {
   const all = Math.max(1, row.recorded + row.missing);
   const part = (count: number) => `${(100 * count) / all}%`;

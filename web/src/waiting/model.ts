@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the vehicle waits for and which condition is missing, in plain words; and before that, what to press.
+// What the vehicle waits for and which condition is missing, in plain words; before the landing, what to press.
 import type { Explanation, Condition } from '../gen/aeolis/v1/items_pb';
 import type { TimepointRow } from '../gen/aeolis/v1/run_pb';
 import { staleWords } from '../channels/model';
@@ -17,20 +17,23 @@ import type { Prediction } from '../timeline/model';
 import { momentsOf } from '../timeline/moments';
 import type { Moment } from '../timeline/moments';
 
-/** A precondition of a command that fails, in the server's words. A status that never came is no reason to wait, for flight decides by what it knows. */
+/**
+ * A failing precondition of a command, in the server's words. An unknown state does not count, since flight decides by
+ * its own data.
+ */
 export interface Against {
   command: string;
   words: string;
   value: string;
 }
-/** What the server says of how the run may begin. */
+/** The server's answers about the beginning of the run. */
 export interface Told {
-  /** At the vehicle, in seconds from entry: from then on it refuses the last of the first steps. */
+  /** Vehicle time in seconds from entry from which the vehicle refuses the last of the first steps. */
   beginBy_e_s?: number | undefined;
   against?: Against | undefined;
 }
 
-/** holds: yes, no, or not known. */
+/** A condition. `holds`: yes, no, or not known. */
 export interface Line {
   words: string;
   value: string;
@@ -41,16 +44,16 @@ export interface Waiting {
   title: string;
   words: string;
   lines: Line[];
-  /** What comes before it and has no name that people wait for, with when. */
+  /** The next timepoint if it comes before the named one, with its time. */
   before?: Line | undefined;
   beforeName?: string;
-  /** The last that was heard of, where only a tone told it. */
+  /** The last known timepoint, if only a tone reported it. */
   byTone?: string;
-  /** How much of the recording has come down while nothing else is waited for, 0 … 1. */
+  /** Fraction of the recording received after the end of the timeline, 0 … 1. */
   coming?: number;
-  /** What is to be typed. */
+  /** The command to type. */
   type?: string;
-  /** Nothing can come of this run: another is to be started. */
+  /** The run can no longer begin; another must be started. */
   late?: boolean;
 }
 
@@ -68,7 +71,7 @@ const UNITS: Record<string, string> = {
   g: 'g',
 };
 
-/** A quantity's name ends in its unit: "speed_mps" is "speed", in m/s. */
+/** Splits a quantity's name at its unit: "speed_mps" is "speed" in m/s. */
 function quantityWords(quantity: string): { words: string; unit: string } {
   const at = quantity.lastIndexOf('_');
   const unit = UNITS[quantity.slice(at + 1)];
@@ -92,7 +95,7 @@ export function conditionLine({
   };
 }
 
-/** What the vehicle does next that people wait for: the next named moment; where none is left, the next timepoint. */
+/** The vehicle's next step that people wait for: the next named timepoint, or the next one if no named one is left. */
 function waitedFor(
   store: RunStore,
   plan: readonly TimepointRow[],
@@ -140,7 +143,7 @@ export function waitingFor(
     lines: moment
       ? momentLines(store, dictionary, plan, moment, cutoff)
       : conditions(store, dictionary, plan, main, cutoff, predicted),
-    // By tone nobody tells of what has none: it may have fired.
+    // Nothing reports an unnamed timepoint by tone: it may have fired.
     ...(first !== main &&
       !moment &&
       lastWas?.by !== 'tone' && {
@@ -181,7 +184,7 @@ function momentLines(
   ];
 }
 
-/** A note of the plan as a sentence. */
+/** A note of the plan as a sentence, without marks. */
 export function noteWords(note: string): string {
   const words = LAYOUT.noteMarks.reduce((text, mark) => text.replace(mark, ''), note).trim();
   return /[^.!?…]$/.test(words) ? `${words}.` : words;
@@ -203,7 +206,7 @@ function ended(store: RunStore): Waiting {
 
 type FirstStep = (typeof LAYOUT.firstSteps)[number];
 
-/** By which word of the vehicle a step is known to be done: its answer to the command, or the tone that says so. */
+/** The evidence that a step is done: the vehicle's answer to the command, or the tone that reports it. */
 function stepEvidence(store: RunStore, step: FirstStep | undefined, cutoff = Infinity): string | undefined {
   if (!step) return undefined;
   for (const row of store.commands.values()) {
@@ -214,21 +217,21 @@ function stepEvidence(store: RunStore, step: FirstStep | undefined, cutoff = Inf
   return tone && `by tone ${tone.tone}`;
 }
 
-/** What was said last of a stage, as it was known then. */
+/** The last word on a stage that was known at `cutoff`. */
 const lastWord = (store: RunStore, row: CommandRow, stage: string, cutoff: number) =>
   row.stages.get(stage)?.findLast((word) => store.knownBy(word.ert_s, cutoff));
 
-/** `state`: there is nothing under way, it waits on the ground, or it has left. */
+/** A missing step. `state`: no command under way, waiting on the ground, or sent. */
 interface Missing {
   number: number;
   step: FirstStep;
   state: 'unsent' | 'on_ground' | 'sent';
-  evidence: string; // for how far it has come
-  /** What the vehicle's own status still says against it: it would be refused. */
+  evidence: string; // its progress in words
+  /** A precondition that the vehicle's status still contradicts: the command would be refused. */
   against: Against | undefined;
 }
 
-/** The first of the commands that begin a landing which the vehicle has not said to be done. */
+/** The first of the landing's first steps that the vehicle has not confirmed. */
 export function missingStep(
   store: RunStore,
   dictionary: Dictionary,
@@ -254,8 +257,9 @@ const firstSteps = (dictionary: Dictionary) => LAYOUT.firstSteps.filter((step) =
 const ANSWERS = 'It answers by a tone of 10 s, which is decided up to 20 s after its end, or by UHF once that is on.';
 
 /**
- * That this run can begin no more, and by when it had to: the last of the first steps has not left, and would come later than flight takes it,
- * a light time from now. Said by the clock on top, another light time behind. `beginBy_e_s`: from then on flight refuses it, by the server's word.
+ * Why this run can no longer begin, with the latest time of departure: the last of the first steps has not been sent,
+ * and a command sent now would arrive after flight starts to refuse it. Times are by the clock from entry, which lags
+ * by another light time. `beginBy_e_s`: the server's time from which flight refuses the command.
  */
 export function tooLate(
   store: RunStore,
@@ -274,7 +278,7 @@ function beginning(store: RunStore, dictionary: Dictionary, told: Told, cutoff: 
   const missing = missingStep(store, dictionary, cutoff, told.against);
   if (!missing) return listening(store, dictionary);
   const { step, state, evidence, against } = missing;
-  const past = cutoff !== Infinity; // then there was something to be pressed
+  const past = cutoff !== Infinity; // in the past there was something to press
   const late = tooLate(store, dictionary, told.beginBy_e_s, cutoff);
   const [title, words] =
     late !== undefined
@@ -302,7 +306,7 @@ function beginning(store: RunStore, dictionary: Dictionary, told: Told, cutoff: 
   };
 }
 
-/** Of a mission whose commands are not here: there is nothing to be pressed, only to be heard. */
+/** The state of a mission without commands in the dictionary: nothing to press, only to listen. */
 function listening(store: RunStore, dictionary: Dictionary): Waiting {
   return {
     kind: 'waiting',
@@ -315,7 +319,7 @@ function listening(store: RunStore, dictionary: Dictionary): Waiting {
   };
 }
 
-/** How far the newest of a step that had been heard of by then has come, with what says so. */
+/** The progress of a step at `cutoff`, by its newest command, in words. */
 function progress(store: RunStore, step: FirstStep, cutoff: number): Pick<Missing, 'state' | 'evidence'> {
   const words = (row: CommandRow) =>
     [...row.stages.keys()].flatMap((stage) => lastWord(store, row, stage, cutoff) ?? []);
@@ -339,7 +343,9 @@ function progress(store: RunStore, step: FirstStep, cutoff: number): Pick<Missin
   };
 }
 
-/** Of a timepoint that has not fired: its times, then what flight says that it compares, each with its newest value. */
+/**
+ * The conditions of a timepoint that has not fired: its times, then flight's conditions, each with its newest value.
+ */
 export function conditions(
   store: RunStore,
   dictionary: Dictionary,
@@ -354,15 +360,15 @@ export function conditions(
     const sample = channel && store.latest(channel.id, cutoff);
     return sample && now - sample.sclk <= within_s ? sample.value : undefined;
   };
-  // The vehicle's own times only count while it speaks of this timepoint.
+  // The vehicle's own times count only while it reports this timepoint.
   const current = value(LAYOUT.currentTimepoint);
   const itsOwn = current === undefined ? nextTimepoint(store, plan, cutoff) === row : current === row.id;
   const foreseen = predicted.find((each) => each.id === row.id && !each.fired);
-  // History has no undefined samples: what is older is the time of the timepoint before.
+  // History has no undefined samples: an older value is the time of the previous timepoint.
   const desired = itsOwn ? value(LAYOUT.nextDesired, FRESH_S) : undefined;
   const minimum = itsOwn ? value(LAYOUT.nextMinimum, FRESH_S) : undefined;
   const base = row.anchor ? inWords(row.anchor) : 'the one before';
-  // An anchor that GNC starts has no time in the plan: what is waited for is the vehicle's own word.
+  // An anchor that GNC starts has no time in the plan: it depends on the vehicle's own declaration.
   const declared = row.anchor !== '' && row.desiredOffsetS === 0 && row.plannedES === undefined;
   const words = declared
     ? `the vehicle declares “${base}”`
@@ -370,7 +376,8 @@ export function conditions(
       ? 'with the one before'
       : `${offsetWords(row.desiredOffsetS)} ${base}`;
   const time = timeLine(words, desired, foreseen && foreseen.e_s + store.entrySclk, now, store.entrySclk);
-  const lines: Line[] = [declared && time.holds ? { words, value: 'not yet', holds: false } : time]; // what is declared fires, and is heard of so
+  // a declaration holds only once it is reported by its firing
+  const lines: Line[] = [declared && time.holds ? { words, value: 'not yet', holds: false } : time];
   if (itsOwn && row.minimumOffsetS !== undefined && row.minimumOffsetS > 0 && row.anchor !== '') {
     lines.push(timeLine(`${offsetWords(row.minimumOffsetS)} the one before`, minimum, undefined, now, store.entrySclk));
   }
@@ -379,7 +386,7 @@ export function conditions(
   return [...lines, ...watched(store, dictionary, plan, row.name, cutoff)];
 }
 
-/** What is compared for the timepoint or moment of this name, as far as it is known; what is old says so, and holds nothing. */
+/** The known comparisons for the timepoint or moment of this name. A stale value says its age and satisfies nothing. */
 function watched(
   store: RunStore,
   dictionary: Dictionary,
@@ -429,7 +436,7 @@ function offsetWords(offset_s: number | undefined): string {
   return offset_s < 0 ? `${numberText(-offset_s)} s before` : `${numberText(offset_s)} s after`;
 }
 
-/** `due`: by the vehicle's word, NaN while it has none itself; `foreseen`: as the server predicts it. */
+/** `due_sclk`: the vehicle's own time, NaN while it has none; `foreseen_sclk`: the server's prediction. */
 function timeLine(
   words: string,
   due_sclk: number | undefined,
@@ -451,9 +458,11 @@ function timeLine(
     : { words, value: 'not yet', holds: false };
 }
 
-const FRESH_S = 5; // ours: an explanation older than this no longer says why it is held now, nor a time what this timepoint waits for
+// chosen: an older explanation no longer says what holds the decision now, and an older time belongs to another
+// timepoint
+const FRESH_S = 5;
 
-/** What flight says that this, and nothing else, is held by. */
+/** Flight's recent explanation that this decision is held. */
 function latestHeld(store: RunStore, isOf: (fact: Explanation) => boolean, cutoff: number): Explanation | undefined {
   const now = Math.min(store.seenSclk, cutoff);
   const told = store.explanations.findLast(

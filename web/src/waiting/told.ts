@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the server says of how the run that is shown may begin: until when, and what still speaks against the next step.
+// The server's answers about the beginning of the run shown: the deadline, and the condition that still blocks the next
+// step.
 import { computed } from '@preact/signals';
 import { conditionWords } from '../commands/model';
 import { read } from '../run/connection';
@@ -15,7 +16,7 @@ export const told = computed<Told>(() => ({
   against: answered.value?.at === cutoff.value ? answered.value.against : undefined,
 }));
 
-/** Asks for the preconditions of the step that comes next, where one does and has any. */
+/** Asks for the preconditions of the next step, if there is one with preconditions. */
 export async function refreshAgainst(): Promise<void> {
   const [run, words, at] = [shownRun(), dictionary.value, cutoff.value];
   const missing = run && words && missingStep(run, words, at);
@@ -31,6 +32,6 @@ export async function refreshAgainst(): Promise<void> {
     if (shownRun()?.id === run.id)
       answered.value = { at, against: fails && { command: command.name, ...conditionWords(fails.text ?? '') } };
   } catch {
-    // Nothing is known against it; the dry run of the command will say so.
+    // No objection is known; the dry run of the command will report any.
   }
 }

@@ -28,7 +28,8 @@ export function WaitingFor() {
     );
   }
   const waiting = waitingFor(run, words, timepoints.value, cutoff.value, predicted.value, told.value);
-  const isOld = isLost.value && cutoff.value === Infinity && waiting.kind === 'waiting'; // the clocks stand still, what is compared is of then
+  // the clocks stand still, so the conditions are old
+  const isOld = isLost.value && cutoff.value === Infinity && waiting.kind === 'waiting';
   return (
     <section
       class={`panel waiting waiting-${waiting.kind} ${waiting.late || waiting.type !== undefined ? 'waiting-said' : ''}`}
