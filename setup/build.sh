@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-# Sourced after setup/install.sh: builds the parts, each only when something of it changed.
+# Sourced after setup/install.sh: builds the parts, each only if it has changed.
 
-export CCACHE_SLOPPINESS=pch_defines,time_macros  # without it ccache takes no file that uses a precompiled header
+export CCACHE_SLOPPINESS=pch_defines,time_macros  # otherwise ccache skips files that use a precompiled header
 
-# build_target PRESET TARGET...
+# build_target PRESET TARGET...: configures the preset if needed and builds the targets.
 build_target() {
     local preset=$1 folder=build/$1
     shift
@@ -15,13 +15,13 @@ build_target() {
     cmake --build --preset "$preset" --target "$@" >&2 || { say "the build of $* ($preset) failed"; return 1; }
 }
 
-# Everything that the console is made from, as one line: names, sizes and times.
+# One line that identifies the console's sources: a hash of their names, sizes and times.
 console_sources() {
     find web schema -name node_modules -prune -o -path web/dist -prune -o -path web/src/gen -prune -o -type f -printf '%p %s %T@\n' |
         LC_ALL=C sort | sha256sum
 }
 
-# The console, into web/dist.
+# Builds the console into web/dist.
 build_console() {
     local stamp=build/console.stamp
     [ -d web/node_modules ] || stop "web/ has no node_modules: need_node and npm_ci come first"
@@ -32,7 +32,8 @@ build_console() {
     console_sources >$stamp
 }
 
-# test_names PROGRAM [Catch2 arguments]: the names of these tests, one a line, as --input-file takes them. Catch2 3 has another option for it.
+# test_names PROGRAM [Catch2 arguments]: prints the names of these tests, one a line, for --input-file. Catch2 2 and 3
+# have different options for it.
 test_names() {
     local program=$1 option=(--list-tests --verbosity quiet)
     shift

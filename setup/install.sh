@@ -1,20 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
-# Sourced by ./run, ./test, .ci/run and bench/run: brings what they need, as root or with sudo, and removes nothing.
-# What is already there costs a fraction of a second. Every function ends the script with 2 when it cannot.
+# Sourced by ./run, ./test, .ci/run and bench/run: installs their packages, as root or with sudo, and removes nothing.
+# Checking installed packages takes a fraction of a second. Each function ends the script with 2 if it fails.
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$root" || exit 2
 say() { printf 'aeolis: %s\n' "$*" >&2; }
 stop() { say "$@"; exit 2; }
 
-# 12 or 13 on Debian, another number on another Debian, nothing elsewhere.
+# Prints the number of the Debian release, or nothing on other systems.
 debian_release() (
     ID='' VERSION_ID=''
     [ -r /etc/os-release ] && . /etc/os-release
     if [ "$ID" = debian ]; then echo "$VERSION_ID"; fi
 )
 
-# packages_for RELEASE KIND...: names of the packages of these kinds (run, test, check, node) on that release.
+# packages_for RELEASE KIND...: prints the packages of these kinds (run, test, check, node) on that release.
 packages_for() {
     local release=$1
     shift
@@ -27,7 +27,7 @@ packages_for() {
 
 is_installed() { [ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" = installed ]; }
 
-# need_packages KIND...: installs what is missing of these kinds. On a system that is not Debian 12 or 13 it only says what they are.
+# need_packages KIND...: installs the missing packages of these kinds. Outside Debian 12 and 13 it only names them.
 need_packages() {
     local missing=() package as_root=() release
     release=$(debian_release)
@@ -64,7 +64,7 @@ node_is_new_enough() {
     node -e 'const [major, minor] = process.versions.node.split(".").map(Number); process.exit(major > 20 || (major === 20 && minor >= 19) ? 0 : 1)'
 }
 
-# npm_ci FOLDER: node_modules as the folder's lock file says; nothing to do while it is newer than the lock.
+# npm_ci FOLDER: installs node_modules by the folder's lock file, unless they are newer than that file.
 npm_ci() {
     local stamp=$1/node_modules/.aeolis-installed
     [ -e "$stamp" ] && [ "$stamp" -nt "$1/package-lock.json" ] && return
@@ -74,7 +74,8 @@ npm_ci() {
     touch "$stamp"
 }
 
-# A Node that the web build accepts: the system's, Debian's (13), or else the one that setup/node pins (Debian 12's own is 18).
+# need_node: provides a Node that the web build accepts: the system's, Debian 13's, or the one pinned by setup/node
+# (Debian 12 has Node 18).
 need_node() {
     node_is_new_enough && return
     need_packages node
