@@ -10,8 +10,8 @@ const POLICY =
   "object-src 'none'; base-uri 'none'; frame-ancestors 'none'";
 
 /**
- * Starts the proxy. `routes`: { 'GET /session': (body) => [status, answer] }; `gate(path)`: false refuses an API request
- * with 401.
+ * Starts the proxy. `routes`: { 'GET /session': (body) => [status, answer] }; `gate(path)`: false refuses an API
+ * request with 401.
  */
 export async function standIn(address, routes, gate = () => true) {
   const { hostname, port, host } = new URL(address);

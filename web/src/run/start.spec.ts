@@ -7,7 +7,7 @@ import { askDictionary, askRuns } from './start';
 
 const server = aServer();
 const asServed = { useProtoFieldName: true, alwaysEmitImplicit: true };
-/** Of a message only what was sent: no name of its type. */
+/** The fields of a message that were sent, without the name of its type. */
 const plain = (message: unknown): unknown =>
   JSON.parse(
     JSON.stringify(message, (name, value: unknown) =>
