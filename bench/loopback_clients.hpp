@@ -10,43 +10,43 @@
 #include <string_view>
 #include <vector>
 
-// Many clients on loopback, in a process of their own so that what they cost is not the server's.
+// Many clients on loopback, in a process of their own so that their cost is not charged to the server.
 namespace aeolis::bench {
 
-constexpr std::size_t latency_bins = 20'000;  ///< of 50 us: up to one second
+constexpr std::size_t latency_bins = 20'000;  ///< bins of 50 us: up to one second
 
-/// Shared by both processes.
+/// Memory that the benchmark and the client process share.
 struct Board {
     std::atomic<int> phase{0};    ///< odd: connect and read; even: close
-    std::atomic<int> settled{0};  ///< the phase that the clients have reached
+    std::atomic<int> settled{0};  ///< the last phase that the clients have reached
     std::atomic<std::uint16_t> port{0};
-    std::atomic<std::uint64_t> messages{0};  ///< marks that came in, at all clients
+    std::atomic<std::uint64_t> messages{0};  ///< messages with a mark received, over all clients
     std::atomic<std::uint64_t> octets{0};
-    std::atomic<std::uint64_t> broken{0};  ///< connections that ended by themselves
+    std::atomic<std::uint64_t> broken{0};  ///< connections that the server ended
     std::array<std::atomic<std::uint32_t>, latency_bins> latencies{};
 };
 
-/// What a message carries: a mark, and when it was made (nanoseconds of CLOCK_MONOTONIC, 16 hexadecimal digits).
+/// Begins the time stamp in a message; the time of making follows (ns of CLOCK_MONOTONIC, 16 hexadecimal digits).
 inline constexpr std::string_view mark = "made=";
-/// A pong that nobody asked for: a client that says nothing at all is taken for dead.
+/// An unsolicited pong: the server drops a client that stays silent.
 inline constexpr std::string_view alive{"\x8A\x80\0\0\0\0", 6};
 std::string mark_now();
 
 class LoopbackClients {
   public:
     struct Settings {
-        std::size_t clients = 1000, stalled = 0;  ///< stalled: the last of them subscribe and never read
-        bool websocket = true;                    ///< else what comes is only read
-        std::vector<std::string> subscriptions;   ///< ClientMessages; each client sends one, by turns
+        std::size_t clients = 1000, stalled = 0;  ///< stalled: this many of them, the last, subscribe and never read
+        bool websocket = true;                    ///< false: a plain socket that only reads
+        std::vector<std::string> subscriptions;   ///< ClientMessages; the clients send them in turn, one each
     };
-    /// Before any thread is started. Raises the limit of open files as far as it goes.
+    /// Forks the client process. Call before any thread starts. Raises the limit of open files to its maximum.
     LoopbackClients();
     ~LoopbackClients();
 
     void connect(std::uint16_t port, const Settings& settings);
     void close();
 
-    void forget();  ///< figures begin again
+    void forget();  ///< resets the counts
     std::uint64_t messages() const { return board_->messages; }
     std::uint64_t octets() const { return board_->octets; }
     std::uint64_t broken() const { return board_->broken; }

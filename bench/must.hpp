@@ -7,7 +7,7 @@
 
 namespace aeolis::bench {
 
-/// What a benchmark cannot do without: else it says so and ends.
+/// Ends the benchmark with a message unless `done`.
 inline void must(bool done, const char* what) {
     if (done) return;
     std::fprintf(stderr, "%s: %s failed\n", program_invocation_short_name, what);

@@ -10,7 +10,7 @@
 
 namespace aeolis::commands {
 
-/// Significance critical or severe: needs arming and the command's name typed.
+/// Whether the command's significance is critical or severe: it needs arming and its name typed.
 bool is_hazardous(const dictionary::Command& command);
 
 struct Intent {
@@ -18,9 +18,9 @@ struct Intent {
     std::string confirmation;  ///< what the controller typed
 };
 
-/// Whether the command may be released. Refused, with the reason in words, when it is hazardous and not armed or its
-/// name was not typed exactly, or when a precondition fails. One that ground does not know refuses nothing: flight
-/// holds the same conditions and decides by what it knows; the caller tells the controller. R23
+/// Checks whether the command may be released. Refused, with the reason in words, when it is hazardous and not armed or
+/// its name was not typed exactly, or when a precondition fails. An unknown precondition does not refuse: flight holds
+/// the same conditions and decides with its own data; the caller tells the controller. R23
 Result<void> authorise(const dictionary::Command& command, const Intent& intent,
                        std::span<const PreconditionState> preconditions);
 

@@ -26,75 +26,76 @@
 
 namespace aeolis::commands {
 
-/// The command path of one run: the only one. WebSocket, POST and the scenario's own script all come through here.
+/// The only command path of a run: WebSocket, POST and the scenario's script all submit here.
 ///
 /// In       requests; packets as they reach Earth; Earth's clock     Out   CLTUs to radiate, replies, stages
 /// Order    look up → arguments → encode → preconditions → arming and typed confirmation → queued → authorised →
-///          released → radiated, as commands/command_link has it; then what telemetry shows, by commands/lifecycle
+///          released → radiated (commands/command_link); from then on commands/lifecycle follows the evidence in
+///          telemetry
 /// Memory   at most `commands_max` commands a run, a few kilooctets each; the latest value of each channel
 /// Faults   a refused request has no number, changes nothing, and the reply names the check and its values
-/// Timeline commands that change it leave in the order of their numbers, in which they were analysed; when one comes to
-/// nothing those
-///          behind it wait until the server has said of each what becomes of the timeline without it
-/// One thread owns it, that of the run: a decision depends on what has arrived on Earth by this cycle and never on how
-/// far another thread has come, so that the digest of a run does not change with its pace.
+/// Timeline commands that change the timeline leave in the order of their numbers, as they were analysed. When one
+///          fails, those behind it wait until the server has analysed the timeline without it
+///
+/// The run's thread owns it: a decision depends on what has reached Earth by this cycle and never on another thread's
+/// progress, so the digest of a run does not change with its pace.
 class CommandGateway {
   public:
-    static constexpr std::size_t commands_max = 4096;  ///< ours: a landing needs two
+    static constexpr std::size_t commands_max = 4096;  ///< our assumption: a landing needs two
 
-    /// `second_person`: names of commands that leave only when another controller than the one who asked has approved
-    /// them. `stations`: nothing leaves while none of them sees the vehicle. `entry`: as predicted when the run begins;
-    /// none: nobody says what a command is too late for.
+    /// `second_person`: names of commands that need the approval of a controller other than the one who asked.
+    /// `stations`: nothing leaves while none of them sees the vehicle. `entry`: predicted when the run begins; without
+    /// it no deadlines are reported.
     CommandGateway(const dictionary::Dictionary& dictionary, double light_time_s, std::vector<NamedValue> solution,
                    std::vector<std::string> second_person = {}, TrackingSchedule stations = {},
                    std::optional<Scet> entry = {});
 
-    /// Ground has another navigation solution from here on.
+    /// Replaces ground's navigation solution.
     void renew_solution(std::vector<NamedValue> solution) { solution_ = std::move(solution); }
 
-    /// The first stage carries the arguments and the octets. A dry run makes every check, says what would happen, and
-    /// leaves all as it is.
+    /// Checks and queues a request. The first stage reported carries the arguments and the octets. A dry run makes
+    /// every check, reports the outcome, and changes nothing.
     enum class Asker : std::uint8_t { person, script };
     Reply submit(const Request& request, Ert now, std::vector<StageReport>& stages, Asker asker = Asker::person);
 
-    /// Refused when the command does not wait for a verdict, or more changes have come to nothing since the analysis:
-    /// that was another timeline, and another analysis is on its way.
+    /// Applies a verdict to a waiting command. Fails when the command waits for none, or when more changes have failed
+    /// since the analysis: that verdict is outdated, and a newer analysis is on its way.
     Result<void> judge(const TimelineVerdict& verdict, Ert now, std::vector<StageReport>& stages);
 
-    /// Of a file: what would become of each if all before it were taken. Leaves all as it is.
+    /// Replies to each request of a file as if all before it had been accepted. Changes nothing.
     std::vector<Reply> look(std::span<const Request> file, Ert now);
 
-    /// One of a scenario's script was refused: it gets a number and a history that says so, for nobody waits for its
+    /// Records a refused command of the scenario's script with a number and a history, because nobody waits for its
     /// reply.
     void note_refused(const Request& request, const std::string& reason, Ert now, std::vector<StageReport>& stages);
 
-    /// Whether the run has room for so many more.
+    /// Fails when the run has no room for `more` commands.
     Result<void> takes(std::size_t more) const;
-    /// Commands that wait for their time, a controller, a pass or an analysis; and those that the uplink has and has
-    /// not radiated.
+    /// Commands that wait for their time, a controller, a pass or an analysis; and those handed to the uplink and not
+    /// yet radiated.
     std::size_t queued() const { return queue_.waiting().size(); }
     std::size_t at_uplink() const { return link_.waiting(); }
 
-    /// What of the plan a command can still come before.
+    /// The next planned timepoint that a command could still precede.
     const PlannedDeadlines& deadlines() const { return deadlines_; }
 
-    /// What the station is to radiate now, each a CLTU.
+    /// Hands over the CLTUs that the station is to radiate now.
     Uplink take_uplinks() { return std::exchange(uplinks_, {}); }
 
-    /// A packet that reached Earth, as it was decoded.
+    /// A decoded packet that reached Earth.
     struct Heard {
         const dictionary::Decoded& decoded;
         std::span<const std::uint8_t> octets;
-        bool live = false;  ///< else it tells the past
+        bool live = false;  ///< false: from a recording
         Ert ert;
-        const dictionary::Event* event = nullptr;  ///< of a packet that is one,
+        const dictionary::Event* event = nullptr;  ///< of an event report,
         std::string text{};                        ///< in words
     };
     void receive(const Heard& packet, std::vector<StageReport>& stages);
-    /// Whether what comes later than live can still tell it something.
+    /// Whether packets of a recording could still change a command's stages.
     bool awaits_answers() const { return !underway_.empty(); }
 
-    /// Windows run out by Earth's clock.
+    /// Lets Earth's clock advance: ends the windows that have run out.
     void pass(Ert now, std::vector<StageReport>& stages);
 
   private:
@@ -102,19 +103,19 @@ class CommandGateway {
         std::uint64_t number = 0;
         std::vector<std::uint8_t> packet;
         std::string arguments, controller, browser;
-        std::string timeline;  ///< what was said of it when it was looked at again; empty: it was not
+        std::string timeline;  ///< verdict of a later analysis; empty: not analysed again
         std::uint32_t priority = 0;
         std::optional<Fop::Service> wanted;
-        const dictionary::Packet* report = nullptr;  ///< in which flight reports what it holds after this command
+        const dictionary::Packet* report = nullptr;  ///< the packet in which flight reads back this command
         CommandLifecycle lifecycle;
     };
-    /// A request that can be encoded, before it is authorised.
+    /// An encoded request that is not yet authorised.
     struct Prepared {
         const dictionary::Command* command = nullptr;
         std::vector<std::uint8_t> packet;
         std::string arguments;
         std::vector<PreconditionState> preconditions;
-        std::optional<Fop::Service> wanted;  ///< none: what suits when it is released
+        std::optional<Fop::Service> wanted;  ///< none: chosen at release
         std::optional<Ert> release_at;
     };
     struct Latest {
@@ -126,59 +127,59 @@ class CommandGateway {
         std::size_t packet = 0, field = 0;  ///< in the dictionary
     };
 
-    /// What a command that was radiated came to, where flight reports back what it holds.
+    /// The read-back of a radiated command.
     struct ReadBack {
         std::uint64_t number = 0;
-        Status held = Status::pending;  ///< ok: as sent; failed: something else; unknown: nothing came in its time
-        bool renewed = false;           ///< after another one: the vehicle may still hold that
+        Status held = Status::pending;  ///< ok: as sent; failed: different; unknown: no report in time
+        bool renewed = false;           ///< follows an earlier one, whose values the vehicle may still hold
     };
 
     Result<Prepared> prepare(const Request& request, Ert now) const;
-    /// The dictionary's, by what was heard; and where parameters are wanted on board, that they are those that were
-    /// sent.
+    /// Evaluates the dictionary's preconditions against the latest values. Where parameters must be on board, also
+    /// checks that they are the ones sent.
     std::vector<PreconditionState> preconditions(const dictionary::Command& command, Ert now) const;
     void note_read_back(const Underway& underway, const StageChange& change);
     void tell(const Prepared& prepared, Ert now, Reply& reply) const;
     void queue(const Prepared& prepared, const Request& request, Asker asker, Ert now, Reply& reply,
                std::vector<StageReport>& stages);
-    /// Whether a second person must approve it; an Error when then nobody says who asks.
+    /// Whether a second person must approve it. Fails when approval is needed and the request names no controller.
     Result<bool> needs_approval(const Request& request) const;
-    /// Hold, release, cancel or approval of one that waits.
+    /// Holds, releases, cancels or approves a waiting command.
     Reply act(const Request& request, Ert now, std::vector<StageReport>& stages);
-    /// After an action or a verdict: its wait is told anew, and what may leave does.
+    /// Reports a command's new wait after an action or a verdict, and releases what is due.
     void go_on(Underway& underway, Ert now, std::vector<StageReport>& stages);
-    /// Why what is asked about a waiting command cannot be: it does not wait.
+    /// Why an action on a waiting command is impossible: the command does not wait.
     std::string does_not_wait(std::uint64_t number, Ert now) const;
-    /// Does what is asked; why not, or nothing.
+    /// Performs the action. Returns why it could not, or an empty string.
     std::string perform(const Request& asked, const Underway* command, Ert now);
-    /// Its line in the queue; null: it does not wait.
+    /// The command's entry in the queue; null: it does not wait.
     const CommandQueue::Entry* waiting(std::uint64_t number) const;
-    /// Why this one may not approve it; empty: they may.
+    /// Why this controller may not approve the command; empty: they may.
     static std::string not_another_person(const Request& asked, const Underway& command);
-    /// When it is at the vehicle, when Earth can see what it does, and what it comes too late for.
+    /// Fills in when the command arrives, when Earth can see its effect, and what it would be too late for.
     void tell_arrival(const dictionary::Command& command, std::span<const std::uint8_t> packet, Ert now, Ert leaves,
                       Reply& reply) const;
     void tell_station(Ert leaves, Reply& reply) const;
-    /// Of one that was acted upon: by which station and when it is there, as far as that is settled.
+    /// Fills in by which station a command leaves and when it arrives, as far as that is settled.
     void tell_leaving(const Underway& command, Ert now, Reply& reply) const;
     void tell_wait(Underway& underway, Ert now, std::vector<StageReport>& stages);
-    /// When it leaves, and by which station, as the queue has it.
+    /// Text: when the command leaves and by which station, as queued.
     std::string leaving_text(const CommandQueue::Entry& entry) const;
-    /// Which of its preconditions are known not to hold now; empty: none.
+    /// The preconditions that are known not to hold now; empty: none.
     std::string failing_now(const dictionary::Command& command, Ert now) const;
-    /// Hands those that are due to the uplink: after another look at their preconditions, by what is known now.
+    /// Hands due commands to the uplink after checking their preconditions again with the latest values.
     void release_due(Ert now, std::vector<StageReport>& stages);
-    /// While no station sees the vehicle: what is due, and what the uplink has not radiated, waits for the next pass.
-    /// Where none comes all that waits fails, whatever it waits for.
+    /// Applies while no station sees the vehicle: due commands, and those that the uplink has not radiated, wait for
+    /// the next pass. Without a next pass every waiting command fails.
     void await_pass(Ert now, std::vector<StageReport>& stages);
-    /// What the uplink gave back waits again.
+    /// Queues again a command that the uplink gave back.
     void wait_again(std::uint64_t number, std::optional<Ert> until, const std::string& why, Ert now,
                     std::vector<StageReport>& stages);
-    /// A change of the timeline came to nothing: those after it, which were analysed with it, do not leave before they
-    /// are analysed anew; of those that have left it is said.
+    /// A timeline change failed: later changes, which were analysed with it, wait for a new analysis. The histories of
+    /// those already sent say so.
     void doubt_after(std::uint64_t undone, Ert now, std::vector<StageReport>& stages);
-    /// When a pass begins: what the vehicle has not acknowledged would be radiated again, so its preconditions are
-    /// looked at again.
+    /// Starts a pass. Commands that the vehicle has not acknowledged would be radiated again, so their preconditions
+    /// are checked again.
     void begin_pass(Ert now, std::vector<StageReport>& stages);
     static std::vector<FieldPlace> clcw_places(const dictionary::Dictionary& dictionary);
     Underway* underway(std::optional<std::uint64_t> number);
@@ -193,7 +194,7 @@ class CommandGateway {
 
     const dictionary::Dictionary& dictionary_;
     double light_time_s_;
-    std::vector<FieldPlace> clcw_;  ///< where telemetry has it, of each computer; none in a dictionary without
+    std::vector<FieldPlace> clcw_;  ///< places of the CLCW in telemetry, one a computer; none in a dictionary without
     CommandQueue queue_;
     CommandLink link_;
     Uplink uplinks_;
@@ -201,14 +202,13 @@ class CommandGateway {
     std::vector<std::string> second_person_;
     TrackingSchedule stations_;
     PlannedDeadlines deadlines_;
-    std::set<std::uint64_t> undone_;      ///< changes of the timeline that came to nothing
-    std::vector<std::uint64_t> doubted_;  ///< by what has just come to nothing; their histories do not say so yet
-    bool unseen_ = false;                 ///< no station saw the vehicle when it was last looked at
-    std::vector<Latest> heard_;           ///< by ChannelId
+    std::set<std::uint64_t> undone_;      ///< timeline changes that failed
+    std::vector<std::uint64_t> doubted_;  ///< by the latest failure; their histories do not say so yet
+    bool unseen_ = false;                 ///< no station saw the vehicle at the last check
+    std::vector<Latest> heard_;           ///< latest values by ChannelId
     std::list<Underway> underway_;
     std::map<std::string, std::vector<ReadBack>>
-        read_backs_;  ///< by the command's name, in the order in which they left: those of which the vehicle may hold
-                      ///< what was sent
+        read_backs_;  ///< by the command's name, in the order of sending: those whose values the vehicle may hold
     std::vector<StageChange> changes_;
     std::uint64_t commands_ = 0;
     std::uint16_t count_ = 0;  ///< packet count of the uplink

@@ -9,11 +9,11 @@
 
 namespace aeolis::commands {
 
-/// Commands that may be sent and have not left: they wait for their time, for a controller, or for a second one.
+/// Authorised commands that wait for their time, a controller or a second person's approval.
 ///
-/// Order    of those that are due, the larger priority first; of equals by their number, as they were asked for. Those
-///          that are `in_order` among themselves by their number alone: each was judged by what those before it do
-/// Memory   a line a command; whoever adds them bounds their number
+/// Order    of due commands the higher priority first, equals by number, as they were requested. Commands that are
+///          `in_order` leave by number alone, because each was judged by the effects of those before it
+/// Memory   one entry a command; the owner bounds their number
 class CommandQueue {
   public:
     struct Entry {
@@ -23,35 +23,34 @@ class CommandQueue {
         bool held = false;
         bool needs_approval = false;  ///< by a second person
         bool in_order = false;        ///< leaves after all others of this kind that have a smaller number
-        bool doubted = false;         ///< what it was judged by has changed: it does not leave until it is judged anew
+        bool doubted = false;         ///< an earlier command in order failed: it waits until it is judged anew
     };
 
     void add(const Entry& entry);
 
-    /// False when no such command waits.
+    /// Returns false when no such command waits.
     bool hold(std::uint64_t number) { return set_held(number, true); }
-    bool release(std::uint64_t number) { return set_held(number, false); }  ///< it still waits for its time
+    bool release(std::uint64_t number) { return set_held(number, false); }  ///< from hold; it still waits for its time
     bool cancel(std::uint64_t number);
-    /// False also when it needs none.
+    /// Returns false also when it needs no approval.
     bool approve(std::uint64_t number);
-    /// One that is in order, and was before those that wait, has come to nothing: those behind it are doubted. Their
-    /// numbers.
+    /// Marks as doubted the waiting commands that are in order behind the failed one. Returns their numbers.
     std::vector<std::uint64_t> doubt_after(std::uint64_t number);
-    /// It was judged anew. False also when it was not doubted.
+    /// Ends a doubt. Returns false also when the command was not doubted.
     bool judged(std::uint64_t number);
-    /// After which other it leaves; none: it waits for none.
+    /// The command that must leave before it; none: it waits for none.
     std::optional<std::uint64_t> leaves_after(const Entry& entry) const;
 
-    /// Whether it waits for nothing but to be taken out.
+    /// Whether the command waits for nothing else and can be taken out now.
     bool due(std::uint64_t number, Ert now) const;
-    /// Takes out the one that leaves next; none: no other is due.
+    /// Takes out the next command to leave; none: none is due.
     std::optional<std::uint64_t> take_next(Ert now);
-    /// Takes out all, in that order.
+    /// Takes out all commands in the order of leaving.
     std::vector<std::uint64_t> take_all();
-    /// Those that are due wait until then instead; their numbers.
+    /// Postpones the due commands until then; returns their numbers.
     std::vector<std::uint64_t> postpone_due(Ert now, Ert until);
 
-    /// In the order in which they would leave.
+    /// Waiting commands in the order of leaving.
     const std::vector<Entry>& waiting() const { return entries_; }
 
   private:

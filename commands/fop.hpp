@@ -12,18 +12,18 @@
 
 namespace aeolis::commands {
 
-/// FOP-1 without timers: telecommand frames of one virtual channel, sent again until the vehicle says that it took
-/// them. [ccsds-232.1-b-2]
+/// FOP-1 without timers: sends telecommand frames of one virtual channel until the vehicle acknowledges them.
+/// [ccsds-232.1-b-2]
 ///
-/// In       data to send, each with a tag of the caller's; CLCWs as they come; repeat() when the caller has waited for
-///          long enough (a light time there and back, and more)
-/// Out      frames to radiate, one by one; for each tag, once, what is known of it
-/// Limit    `frames_max` wait or are outstanding; a frame is radiated `transmissions_max` times at most
-/// Faults   lockout, a report that contradicts what was sent, or too many transmissions halt the service: what was
-///          radiated and not acknowledged is reported so, what was not radiated waits for restart()
+/// In       data to send, each with a tag of the caller's; CLCWs as received; repeat() when the caller's time-out ends
+///          (longer than the light time there and back)
+/// Out      frames to radiate, one by one; for each tag, once, its fate
+/// Limit    at most `frames_max` wait or are outstanding; a frame is radiated at most `transmissions_max` times
+/// Faults   lockout, a report that contradicts what was sent, or too many transmissions halt the service: radiated
+///          frames without acknowledgement are reported as such, the others wait for restart()
 class Fop {
   public:
-    static constexpr std::size_t frames_max = 1024;  ///< ours: far more than a person sends
+    static constexpr std::size_t frames_max = 1024;  ///< chosen: far more than a person sends
 
     struct Settings {
         std::uint16_t spacecraft = 0;
@@ -32,21 +32,21 @@ class Fop {
         unsigned transmissions_max = 8;
     };
     enum class Service {
-        sequence_controlled,  ///< AD: in order, acknowledged, sent again
+        sequence_controlled,  ///< AD: in order, acknowledged, retransmitted
         expedited,            ///< BD: once, without acknowledgement
     };
     enum class State {
         active,
-        retransmitting,  ///< asked to; the same request is not followed twice
+        retransmitting,  ///< retransmission was requested; a repeated request is ignored
         waiting,         ///< the vehicle has no room
-        halted,          ///< nothing in sequence goes out until restart()
+        halted,          ///< no sequence-controlled frame goes out until restart()
         restarting,      ///< the receiver is being told which sequence comes next
     };
     enum class Halt { none, lockout, contradiction, too_many_transmissions };
     enum class Fate {
         acknowledged,
-        radiated,            ///< by the expedited service: nobody will say more
-        never_acknowledged,  ///< radiated; the vehicle may have taken it or not
+        radiated,            ///< by the expedited service: nothing more will be known
+        never_acknowledged,  ///< radiated; the vehicle may or may not have taken it
     };
     struct Report {
         std::uint64_t tag = 0;
@@ -56,32 +56,32 @@ class Fop {
     };
     struct Outgoing {
         std::vector<std::uint8_t> frame;
-        std::optional<std::uint64_t> tag;  ///< none: a control command to the receiver of frames
+        std::optional<std::uint64_t> tag;  ///< none: a control command to the frame receiver
         unsigned transmission = 1;
     };
 
     explicit Fop(const Settings& settings);
 
-    /// Takes `data` (1 … 1017 octets) to be sent. Fails when it does not fit a frame or too many wait.
+    /// Queues `data` (1 … 1017 octets). Fails when it does not fit a frame or too many wait.
     Result<void> send(std::uint64_t tag, std::span<const std::uint8_t> data, Service service);
 
-    /// The next frame to be radiated; none when there is nothing to send, or the window is full.
+    /// The next frame to radiate; none when there is nothing to send or the window is full.
     std::optional<Outgoing> next();
 
     void on(const Clcw& clcw);
 
-    /// No CLCW has acknowledged what is outstanding in the time it takes: it is sent again, or given up.
+    /// Handles the time-out of the outstanding frames: sends them again, or gives up.
     void repeat();
 
-    /// Unlocks the receiver and tells it the next sequence; what waits is sent once it has said so.
+    /// Unlocks the receiver and sets its next sequence number; waiting frames go out once it has confirmed.
     void restart();
 
-    /// Takes out what waits and was never radiated; the tags, in the order in which it would have gone.
+    /// Takes back data that were never radiated; returns their tags in the order of sending.
     std::vector<std::uint64_t> take_back();
-    /// Tags of what was radiated and is not acknowledged, in that order.
+    /// Tags of radiated frames that are not acknowledged, in that order.
     std::vector<std::uint64_t> unacknowledged() const;
 
-    /// What became known since the last call, in order.
+    /// Reports since the last call, in order.
     std::vector<Report> take_reports();
 
     State state() const { return state_; }
@@ -95,7 +95,7 @@ class Fop {
         std::vector<std::uint8_t> data;
         std::uint8_t sequence = 0;
         unsigned transmissions = 0;
-        bool due = true;  ///< to be radiated, again
+        bool due = true;  ///< to be radiated, for the first time or again
     };
 
     Outgoing radiate(Item& item, bool bypass);

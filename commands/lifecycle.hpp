@@ -21,7 +21,7 @@ enum class Status : std::uint8_t { pending, ok, failed, unknown };
 const char* name_of(Stage stage);
 const char* name_of(Status status);
 
-/// What is now known of one stage, and by what.
+/// A stage's new status, with its evidence.
 struct StageChange {
     Stage stage{};
     Status status{};
@@ -33,46 +33,48 @@ struct StageChange {
 struct Answer {
     EvrId event;
     std::string event_name;  ///< "COMMAND_ACCEPTED"
-    std::string text;        ///< as people read it; for a refusal it says why
+    std::string text;        ///< in words; for a refusal it says why
     Opcode opcode;
     std::uint16_t count = 0;  ///< packet count of the telecommand that it answers
-    Sclk sclk;                ///< when it happened on board
-    Ert ert;                  ///< when Earth learnt of it
+    Sclk sclk;                ///< time of the event on board
+    Ert ert;                  ///< time of its receipt on Earth
 };
 
-/// One telecommand on its way, stage by stage, each with its evidence.
+/// The stages of one telecommand, each with its evidence.
 ///
-/// In       notices of ground's own stages; answers; read-backs; time passing (Earth's clock)
+/// In       reports of ground's own stages; answers; read-backs; Earth's clock
 /// Out      changes, appended to `out`
-/// Rules    a stage is ok only by evidence. `received` is observed when the vehicle reports the frame (CLCW), else
-///          inferred from an answer, and says so. Silence until the window (of the dictionary, from radiation) plus
-///          light time both ways is `unknown`, with words: the answer may be lost, or come later with the recording; it
-///          then still counts. A refusal, or a read-back that differs, is `failed`. Ok never changes again, but for
-///          `released` of what is taken back before it was radiated; failed only when a later read-back is equal.
+/// Rules    A stage is ok only by evidence. `received` is observed when the vehicle reports the frame (CLCW), else
+///          inferred from an answer, and the evidence says which. Silence beyond the window (of the dictionary, from
+///          radiation) plus light time both ways is `unknown`: the answer may be lost, or arrive later with the
+///          recording, and then still counts. A refusal, or a read-back that differs, is `failed`. `ok` never changes
+///          again, except `released` of a command taken back before radiation. `failed` changes only when a later
+///          read-back is equal.
 /// Memory   a kilooctet
 class CommandLifecycle {
   public:
-    /// `read_back`: flight reports what it holds after this command, which decides `verified`; else that stage does not
-    /// exist for it. The command must outlive this.
+    /// `read_back`: flight reads this command back, which decides `verified`; without it the command has no such stage.
+    /// `command` must outlive this object.
     CommandLifecycle(const dictionary::Command& command, std::uint16_t count, double light_time_s, bool read_back);
 
-    /// One of ground's own stages, queued … radiated, was done (ok) or failed, which ends the command.
+    /// Notes that one of ground's own stages, queued … radiated, is done (ok) or failed, which ends the command.
     void ground_stage(Stage stage, Status status, std::string evidence, Ert at, std::vector<StageChange>& out);
 
-    /// A second person has approved it.
+    /// Notes the approval by a second person.
     void approved(std::string evidence, Ert at, std::vector<StageChange>& out);
-    /// It may be sent, and waits on the ground.
+    /// Notes that the command is authorised and waits on the ground.
     void await_release(std::string evidence, Ert at, std::vector<StageChange>& out);
-    /// The uplink has given it back before it was radiated: it waits on the ground again, and `released` with it.
+    /// Notes that the uplink gave the command back before radiation: it waits on the ground, and `released` is pending
+    /// again.
     void taken_back(std::string evidence, Ert at, std::vector<StageChange>& out);
-    /// Its frame went out once more: the windows begin anew.
+    /// Notes that the frame was radiated again: the windows restart.
     void radiated_again(std::string evidence, Ert at, std::vector<StageChange>& out);
-    /// It has left, and would not any more: why its frame does not go out once more, or what it was judged by no longer
-    /// holds.
+    /// Notes a doubt about a radiated command that would not be sent now: why its frame is not radiated again, or what
+    /// its analysis relied on and no longer holds.
     void radiated_in_doubt(std::string evidence, Ert at, std::vector<StageChange>& out);
-    /// The vehicle's receiver of frames reports that it took the frame: `received`, observed.
+    /// Notes that the vehicle's frame receiver reports the frame: `received`, observed.
     void frame_taken(std::string evidence, Ert at, std::vector<StageChange>& out);
-    /// No report will tell: the vehicle may have taken it or not.
+    /// Notes that no report will come: the vehicle may or may not have taken the frame.
     void frame_not_acknowledged(std::string evidence, Ert at, std::vector<StageChange>& out);
 
     void on(const Answer& answer, std::vector<StageChange>& out);
@@ -81,7 +83,7 @@ class CommandLifecycle {
 
     Status status(Stage stage) const { return status_[static_cast<std::size_t>(stage)]; }
     bool exists(Stage stage) const;
-    /// Nothing can change any more: every stage is ok or failed.
+    /// Whether every stage is ok or failed, so that nothing can change any more.
     bool finished() const;
     std::uint16_t count() const { return count_; }
     const dictionary::Command& command() const { return *command_; }

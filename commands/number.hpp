@@ -7,15 +7,15 @@
 #include <cstdint>
 #include <string>
 
-// Numbers as they stand in a packet, and as people read them.
+// Numbers as they stand in a packet, and as text.
 namespace aeolis::commands {
 
-/// The fewest digits that give the same double again: "405", "-4.49", "1e+20".
+/// The fewest digits that give the same double: "405", "-4.49", "1e+20".
 std::string shortest_text(double value);
 
 std::string text_of(Sclk time);  ///< to a millisecond: "397501022.156"
 
-/// The number that `word`, the field's bits, stands for; before calibration.
+/// The number in a field's bits, `word`, before calibration.
 double number_of(const dictionary::Type& type, std::uint64_t word);
 
 }  // namespace aeolis::commands

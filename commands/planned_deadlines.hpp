@@ -12,34 +12,34 @@
 
 namespace aeolis::commands {
 
-/// Until when a command is of use: what is planned by the clock, and the light time before it.
+/// The latest time at which a command is still of use: the planned time of a timepoint less the light time.
 ///
-/// In       the dictionary's timeline; the entry that was predicted when the run began      Out   Earth's clock, names
-///          of timepoints
-/// Rule     a command that changes an offset must be there before what it moves, which where its time is decided in
-///          flight is as predicted (predicted_anchors.csv); any other before the next that is planned. An offset that
-///          flight has changed counts as it is then; a later navigation solution, which moves entry by seconds at most,
-///          does not
+/// In       the dictionary's timeline; the entry predicted when the run began      Out   Earth's clock, names of
+///          timepoints
+/// Rule     A command that changes an offset must arrive before the timepoint it moves; where flight decides that time,
+///          the prediction counts (predicted_anchors.csv). Any other command must arrive before the next planned
+///          timepoint. Offsets changed in flight count. A later navigation solution, which moves entry by seconds at
+///          most, does not
 class PlannedDeadlines {
   public:
     struct Deadline {
         std::string timepoint;
-        Ert latest;  ///< what leaves then or later comes too late
+        Ert latest;  ///< leaving at this time or later is too late
         bool operator==(const Deadline&) const = default;
     };
 
-    /// Without `entry` nothing is planned nor predicted.
+    /// Without `entry` nothing is planned or predicted.
     PlannedDeadlines(const dictionary::Dictionary& dictionary, std::optional<Scet> entry, double light_time_s);
 
-    /// Flight has executed it. What changes no offset changes nothing here.
+    /// Notes a command that flight has executed. Only a change of an offset has an effect.
     void executed(const dictionary::Command& command, std::span<const NamedValue> arguments);
 
-    /// Of a command that leaves then; none: nothing that anyone knows the time of waits for it.
+    /// The deadline of a command that would leave at `leaves`; none: it precedes no timepoint of known time.
     std::optional<Deadline> of(const dictionary::Command& command, std::span<const NamedValue> arguments,
                                Ert leaves) const;
-    /// Of any that can still leave.
+    /// The earliest deadline that a command can still meet.
     std::optional<Deadline> next(Ert now) const;
-    /// Planned after `now`, and not after what leaves then is there; in their order.
+    /// Timepoints planned after `now` that a command leaving at `leaves` would miss; in their order.
     std::vector<std::string> missed(Ert now, Ert leaves) const;
 
   private:
@@ -56,7 +56,7 @@ class PlannedDeadlines {
         changed_;  ///< with the offsets that flight has now; none: those of dictionary_
     std::optional<Scet> entry_;
     std::int64_t light_time_us_;
-    std::vector<Planned> planned_, predicted_;  ///< in order of their time; the latter all of which anyone says when
+    std::vector<Planned> planned_, predicted_;  ///< in order of time; the latter has all of known or predicted time
 };
 
 }  // namespace aeolis::commands

@@ -4,10 +4,10 @@
 #include <cstdint>
 #include <vector>
 
-// The port of the uplink: what leaves a station towards the vehicle, whoever it is that hears it.
+// The port of the uplink: octets that leave a station for the vehicle, simulated or real.
 namespace aeolis::commands {
 
-/// Octets that a station radiates, a unit each, in their order: CLTUs.
+/// CLTUs for a station to radiate, in order.
 using Uplink = std::vector<std::vector<std::uint8_t>>;
 
 }  // namespace aeolis::commands

@@ -13,10 +13,10 @@ namespace aeolis::commands {
 /// The latest value of a channel that ground has received.
 struct LatestValue {
     std::optional<double> value;  ///< none: never received, or undefined on board
-    double age_s = 0.0;           ///< since it was received; light time comes on top
+    double age_s = 0.0;           ///< since its receipt; light time comes on top
 };
 
-/// Older than this it says nothing about now. Ours: thirty missed samples of a 1 Hz channel.
+/// A value older than this says nothing about now. Our assumption: thirty missed samples of a 1 Hz channel.
 inline constexpr double stale_after_s = 30.0;
 
 struct PreconditionState {
@@ -29,7 +29,7 @@ struct PreconditionState {
 /// "holds", "fails", "unknown"
 const char* name_of(PreconditionState::State state);
 
-/// Each transmission constraint of the command against the latest values, which are indexed by ChannelId.
+/// Checks each transmission constraint of the command against the latest values, which are indexed by ChannelId.
 std::vector<PreconditionState> check(const dictionary::Dictionary& dictionary, const dictionary::Command& command,
                                      std::span<const LatestValue> latest);
 

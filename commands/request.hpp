@@ -12,34 +12,35 @@
 #include <string>
 #include <vector>
 
-// What is said to the command path, and what it says.
+// Requests to the command path, and its replies.
 namespace aeolis::commands {
 
-/// A command that is asked for, or what is to be done about one that waits.
+/// A request for a command, or for an action on a waiting one.
 struct Request {
-    std::uint64_t request = 0;  ///< the client's own number, given back
+    std::uint64_t request = 0;  ///< the client's own number, returned in the reply
     std::string command{};
     std::vector<NamedValue> arguments{};
-    bool from_solution = false;  ///< arguments that are not given come from ground's navigation solution
+    bool from_solution = false;  ///< fills arguments that are not given from ground's navigation solution
     bool armed = false;          ///< a hazardous command was armed,
     std::string confirmation{};  ///< and its name typed
-    std::string service{};       ///< "AD", "BD"; empty: what suits
-    bool dry_run = false;        ///< every check, and nothing is sent
+    std::string service{};       ///< "AD", "BD"; empty: the default
+    bool dry_run = false;        ///< makes every check and sends nothing
     std::string release_at{};    ///< ERT, day-of-year form; empty: at once
     bool hold = false;           ///< it waits until a controller releases it
-    std::uint32_t priority = 0;  ///< of those that are due the largest leaves first
-    std::string action{};        ///< about a command that waits; then `number` says which
+    std::uint32_t priority = 0;  ///< of due commands the largest leaves first
+    std::string action{};        ///< on the waiting command `number`
     std::uint64_t number = 0;
     std::string controller{};  ///< who asks
-    std::string browser{};     ///< from where, where there are no accounts
+    std::string browser{};     ///< from where, when there are no accounts
 };
 
-/// What the server's analysis of the timeline says of a command that waits and changes it: after an earlier change came
-/// to nothing it leaves only once its timeline is known to hold, or never.
+/// The server's verdict on the timeline of a waiting command that changes it.
+///
+/// After an earlier change has failed, the command leaves once its timeline is known to hold, or never.
 struct TimelineVerdict {
     std::uint64_t command = 0;  ///< its number in the run
-    std::uint64_t undone = 0;   ///< changes that had come to nothing when it was analysed
-    bool refuted = false;       ///< its timeline breaks a bound, and it never leaves
+    std::uint64_t undone = 0;   ///< failed changes at the time of the analysis
+    bool refuted = false;       ///< its timeline violates a bound, and it never leaves
     std::string analysis{};     ///< in words, for its history
 };
 
@@ -49,30 +50,30 @@ struct Reply {
     std::uint64_t command = 0;  ///< its number in the run, 0 when refused
     bool accepted = false;      ///< of a dry run: it would be
     bool dry_run = false;
-    std::string reason{};                ///< when refused: which check, with values
+    std::string reason{};                ///< of a refusal: the check and its values
     std::vector<std::uint8_t> octets{};  ///< the encoded packet
-    std::string arguments{};             ///< as they are sent
+    std::string arguments{};             ///< as sent
     std::vector<PreconditionState> preconditions{};
     std::string service{};
     bool needs_approval = false;
     std::optional<Ert> leaves{};       ///< as far as that is settled
     std::optional<Scet> arrives{};     ///< at the vehicle
-    std::optional<Ert> effect_seen{};  ///< before which no effect of it can be seen
+    std::optional<Ert> effect_seen{};  ///< no effect can be seen before
     std::string station{};             ///< by which it leaves
     std::optional<Ert> station_until{};
     std::optional<PlannedDeadlines::Deadline> deadline{};  ///< until when it is of use
     std::vector<std::string> too_late_for{};               ///< timepoints
 };
 
-/// A change of one command's stage. The first of a command carries its arguments and octets.
+/// A change of one command's stage. The first report of a command carries its arguments and octets.
 struct StageReport : StageChange {
     std::uint64_t command = 0;
     std::string name{};
     std::uint32_t count = 0;
     std::string arguments{};
     std::vector<std::uint8_t> octets{};
-    bool held = false, needs_approval = false;  ///< of `released` while pending: what it waits for
-    std::string asked_by{};                     ///< of one that needs approval: who may not give it
+    bool held = false, needs_approval = false;  ///< of a pending `released`: what it waits for
+    std::string asked_by{};                     ///< of a command that needs approval: who may not give it
 };
 
 }  // namespace aeolis::commands

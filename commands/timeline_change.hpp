@@ -13,20 +13,20 @@
 
 namespace aeolis::commands {
 
-/// Whether flight gives the command to the timeline: it changes an offset of a timepoint or an anchor. R19
+/// Whether flight hands the command to the timeline: it changes an offset of a timepoint or an anchor. R19
 bool changes_offsets(std::string_view command);
 
-/// Does to the timeline of `dictionary` what flight does when such a command is executed; nothing where the row it
-/// names is not there, or for any other command.
+/// Applies to the timeline of `dictionary` what flight does when it executes the command. Does nothing for other
+/// commands, or when the named row does not exist.
 void apply_offsets(dictionary::Dictionary& dictionary, std::string_view command, std::span<const NamedValue> arguments);
 
-/// What such a command, or another time of entry in "set edl parameters", changes on board. None for any other command,
-/// and where the row it names is not there or an argument is missing.
+/// The change that the command makes on board: of an offset, or of the entry time in "set edl parameters". None for
+/// other commands, when the named row does not exist, or when an argument is missing.
 std::optional<dictionary::OffsetChange> offset_change(const dictionary::Dictionary& dictionary,
                                                       std::string_view command, std::span<const NamedValue> arguments);
 
-/// Indices of the timepoints that such a command moves by itself: the one that it names, or those that hang on the
-/// anchor that it names. None for any other command.
+/// Indices of the timepoints that the command moves directly: the one it names, or those relative to the anchor it
+/// names. None for other commands.
 std::vector<std::size_t> moved_timepoints(const dictionary::Dictionary& dictionary, std::string_view command,
                                           std::span<const NamedValue> arguments);
 

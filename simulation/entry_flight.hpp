@@ -5,7 +5,7 @@
 #include "simulation/mars/point_mass.hpp"
 #include "simulation/scenario.hpp"
 
-// Undisturbed flight of the entry vehicle under a given bank: what the generator of the guidance reference integrates.
+// Undisturbed flight of the entry vehicle under a given bank, integrated for the guidance reference.
 namespace aeolis::simulation {
 
 /// The scenario's nominal state at entry interface, without its delivery error.
@@ -18,13 +18,13 @@ struct Sensed {
     double mach = 0.0;
 };
 
-/// In the scenario's nominal air (table × scale, no departure), without wind.
+/// The aeroshell in the scenario's nominal air (table × scale, no departure), without wind.
 class EntryFlight {
   public:
     explicit EntryFlight(const Scenario& scenario);
 
     Sensed sensed(const PointMass& at) const;
-    /// Force by mass [m/s²] in M with the lift vector at `bank_rad`, positive to the right of the velocity.
+    /// Specific force [m/s²] in M with the lift vector at `bank_rad`, positive to the right of the velocity.
     Vector3 specific_force(const PointMass& at, double bank_rad) const;
     PointMass step(const PointMass& at, double bank_rad, double step_s) const;
     double altitude_m(const PointMass& at) const { return at.p_MoB_M.norm() - landing_radius_m_; }
@@ -35,7 +35,7 @@ class EntryFlight {
     double mass_kg_;
 };
 
-/// Unit vector of lift for a velocity through the air and a bank angle about it; `p_MoB_M` says where up is.
+/// Unit vector of lift for a velocity through the air and a bank angle about it; `p_MoB_M` gives the upward direction.
 Vector3 lift_direction(const Vector3& p_MoB_M, const Vector3& v_AB_M, double bank_rad);
 
 }  // namespace aeolis::simulation

@@ -4,22 +4,22 @@
 #include "flight/load.hpp"
 #include "simulation/scenario.hpp"
 
-// The reference that entry guidance follows: one undisturbed flight of the scenario's nominal entry in the simulation's
-// own dynamics, under a bank profile chosen so that it ends at the target, and how range depends on departures from it.
+// The reference of entry guidance: one undisturbed flight of the scenario's nominal entry in the simulation's own
+// dynamics, under a bank profile chosen so that it ends at the target, with the partial derivatives of range.
 //
-// Reference bank (ours, shaped as [od137] flew): 77° down to 5300 m/s, then in a straight line to a bank that is held
-// from 4400 to 1100 m/s, then lift up. The held bank is found by the secant method on range. Only the upright part of
-// lift is flown: what points sideways is taken to cancel between reversals.
+// Reference bank (our assumption, shaped as [od137] flew): 77° down to 5300 m/s, then in a straight line to a bank held
+// from 4400 to 1100 m/s, then lift up. The secant method on range finds the held bank. Only the vertical part of lift
+// is flown: the sideways part is assumed to cancel between reversals.
 //
 // Partials: with velocity V as the independent variable, y = (height, flight path angle), dy/dV = F, ds/dV = G, u the
 // vertical lift-to-drag, range to go R = ∫ G dV to the end of the reference:
-//     λ = ∂R/∂y:   dλ/dV = −F_yᵀ λ − G_y        μ = ∂R/∂u:   dμ/dV = −(λᵀ F_u + G_u)        λ at the end from the
-//     descent, μ nil ∂R/∂D = λ_h / (∂D/∂h)       ∂R/∂ḣ = λ_γ / (V cos γ)       ∂R/∂(L/D) = μ
+//     λ = ∂R/∂y:   dλ/dV = −F_yᵀ λ − G_y        μ = ∂R/∂u:   dμ/dV = −(λᵀ F_u + G_u)
+//     λ at the end from the descent, μ nil
+//     ∂R/∂D = λ_h / (∂D/∂h)       ∂R/∂ḣ = λ_γ / (V cos γ)       ∂R/∂(L/D) = μ
 // Source: [apollo-entry-guidance] for the tables and their use, [bryson-1975] for the adjoint.
 namespace aeolis::simulation {
 
-/// What it takes flight to do, for nobody in the world may look into flight's parameters: a test holds them against
-/// those.
+/// Flight's plan as the reference assumes it. Simulation may not read flight's parameters; a test compares the two.
 struct EntryPlan {
     static constexpr double bank_before_guidance_deg = 77.0;   // [facts]
     static constexpr double sufr_above_parachute_mps = 48.0;   // [facts]: 453 against 405 m/s
@@ -28,11 +28,11 @@ struct EntryPlan {
     static constexpr double heatshield_after_mortar_s = 20.0;  // at least, by the timeline
 };
 
-/// Rows ascend in velocity from the start of SUFR to where the vehicle begins to slow down. About 15 ms.
-/// A target out of reach gives the reference of the bank that comes nearest.
+/// Computes the reference. Rows ascend in velocity from the start of SUFR to where the vehicle begins to slow down. For
+/// a target out of reach the bank with the nearest end is used. Takes about 15 ms.
 flight::EntryReference make_entry_reference(const Scenario& scenario);
 
-/// The reference's bank [rad] at a velocity, `held_rad` being what was found. For tests and reports.
+/// The reference's bank [rad] at a velocity; `held_rad` is the bank that was found. For tests and reports.
 double reference_bank_rad(double velocity_mps, double held_rad);
 
 }  // namespace aeolis::simulation

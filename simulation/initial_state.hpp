@@ -9,24 +9,24 @@
 
 namespace aeolis::simulation {
 
-/// Where the vehicle truly is at the start, and what ground believes.
+/// The vehicle's true state at the start, and ground's knowledge of it.
 ///
-/// The scenario's entry state is taken at `entry_sclk`, there disturbed by the delivery error, and propagated back in
-/// vacuum. The delivery error moves it along the surface (so entry stays at `entry_sclk`) and turns its flight path;
-/// ground's solution departs from the truth by the knowledge error. A position or velocity deviation of the scenario is
-/// that of the whole vector: each axis has 1/√3 of it (1/√2 of a delivery in two).
+/// The scenario's entry state is taken at `entry_sclk`, disturbed by the delivery error, and propagated back in vacuum.
+/// The delivery error moves the position along the surface (so entry stays at `entry_sclk`) and turns the flight path;
+/// ground's solution departs from the truth by the knowledge error. A position or velocity deviation in the scenario is
+/// that of the whole vector: each axis has 1/√3 of it (1/√2 for a delivery in two).
 struct InitialState {
     PointMass truth;
     NavigationSolution solution;
     Sclk start;
 };
 InitialState initial_state(const Scenario& scenario, std::uint64_t seed, std::uint64_t case_number);
-/// The same at another moment than the start, a multiple of 1/64 s.
+/// The same at a time other than the start, a multiple of 1/64 s before entry.
 InitialState state_before_entry(const Scenario& scenario, double before_entry_s, std::uint64_t seed,
                                 std::uint64_t case_number);
 
-/// Attitude in late cruise: z of B away from Earth, as the antenna of a spinning spacecraft needs it; it gives the
-/// published angle to the velocity within a degree.
+/// Attitude in late cruise: z of B points away from Earth, as the antenna of a spinning spacecraft needs. The angle to
+/// the velocity agrees with the published one within a degree.
 Quaternion cruise_attitude(double before_entry_s);
 
 }  // namespace aeolis::simulation

@@ -16,10 +16,10 @@
 #include <string>
 #include <vector>
 
-// A landing: the vehicle with its computer, Mars, and the links home. A value: copy it and the landing is forked.
+// A landing: the vehicle with its computers, Mars, and the links home. A value: copying it forks the landing.
 namespace aeolis::simulation {
 
-/// What ground's navigators deliver: the scenario's truth with the delivery's knowledge error. Frame M, Mars-relative.
+/// A delivery of ground's navigators: the scenario's truth with the knowledge error. Frame M, Mars-relative.
 struct NavigationSolution {
     std::uint16_t solution_id = 1;
     Sclk epoch;
@@ -32,14 +32,14 @@ struct NavigationSolution {
     double backshell_altitude_m = 1660.0;
 };
 
-/// A symbol that was sent on X-band: truth, for the run's score only.
+/// A symbol sent on X-band: truth, for the run's score only.
 struct SentSymbol {
     ToneId tone;
-    Sclk at;         ///< when it began on board
-    Ert start, end;  ///< of what of it arrives on Earth
+    Sclk at;         ///< its beginning on board
+    Ert start, end;  ///< of its part that arrives on Earth
 };
 
-/// Whether a link brings anything, and why it does not: truth, which ground is not told.
+/// Whether a link works, and if not, why: truth, hidden from ground.
 struct LinkTruth {
     telemetry::Link link;
     Ert ert;
@@ -47,7 +47,7 @@ struct LinkTruth {
     std::string reason;  ///< "plasma blackout", "Earth set", "not switched on", "no orbiter in view", "nominal"
 };
 
-/// A moment of the truth, named as in the design's table.
+/// A true event, named as in the design's table.
 struct TruthEvent {
     std::string name;
     Sclk sclk;
@@ -64,9 +64,9 @@ struct TruthState {
     double altitude_m = 0.0, speed_mps = 0.0, sensed_mps2 = 0.0;
 };
 
-/// What a test or a report may want to see of the truth, and flight never does.
+/// The part of the truth that a test or a report may want to see. Hidden from flight.
 struct Inspection {
-    double mass_kg = 0.0;  ///< of all that flies on
+    double mass_kg = 0.0;  ///< of everything that flies on
     double propellant_kg = 0.0;
     double mach = 0.0;
     double dynamic_pressure_Pa = 0.0;
@@ -90,48 +90,49 @@ struct TouchdownReport {
     double vertical_mps = 0.0, horizontal_mps = 0.0, miss_m = 0.0, latitude_deg = 0.0, longitude_deg = 0.0;
 };
 
-/// What happened in one 64 Hz cycle. The vectors live until the next step; they keep their capacity.
+/// Results of one 64 Hz cycle. Valid until the next step; the vectors keep their capacity.
 struct CycleReport {
-    int ticks_skipped = 0;  ///< that went by in it beyond its own; nil but for a venue's real-time clock
+    int ticks_skipped = 0;                   ///< lost in it beyond its own; nil except with a venue's real-time clock
     std::span<const std::uint8_t> recorded;  ///< whole packets appended to NVM in this cycle
     std::span<const std::uint8_t> radiated;  ///< PLTUs given to the UHF transmitter
-    telemetry::Downlink earth;               ///< that reaches Earth by the end of this cycle: all that ground is given
-    std::vector<XBandField> x_band;          ///< when tones come from samples: what then arrives instead of decisions
-    std::vector<SentSymbol> symbols;         ///< whose end arrives by then
+    telemetry::Downlink earth;               ///< reaches Earth by the end of this cycle: all that ground is given
+    std::vector<XBandField> x_band;          ///< arrives instead of decisions when tones are samples
+    std::vector<SentSymbol> symbols;         ///< whose end arrives in this cycle
     std::vector<LinkTruth> links;
     std::vector<TruthEvent> events;
 };
 
-/// Events of the design's table that are decisions on board: the truth learns of them from the recorded event report of
-/// the same name in capitals, and dates them by its SCLK.
+/// Events of the design's table that are decided on board. The truth takes them from the recorded event reports of the
+/// same names in capitals, with their SCLK.
 inline constexpr std::array<const char*, 7> decided_on_board{
     "guidance_start",          "heading_alignment",           "radar_lock", "powered_approach_start",
     "constant_velocity_start", "constant_deceleration_start", "touchdown"};
 
-/// How one of them is found in the recording, from the dictionary: packets of `apid` begin their data with an event id.
+/// An on-board event's report in the recording: packets of `apid` begin their data with the event id.
 struct EventReportName {
     Apid apid;
     EvrId id;
     std::string name;  ///< as in decided_on_board
 };
 
-/// The air that the parachute opened into.
+/// The air at parachute deployment.
 struct ParachuteReport {
     double mach = 0.0, dynamic_pressure_Pa = 0.0;
 };
 
-/// How near the vehicle came again to what it had let go; none: never nearer once that was clear.
+/// The closest return of the vehicle to a separated body, once clear of it; none: it never came closer.
 struct SeparationReport {
     std::optional<double> heatshield_least_m, backshell_least_m;
-    const char* struck = nullptr;  ///< the body that it came back to
+    const char* struck = nullptr;  ///< the body that was struck
 };
 
 class Landing {
   public:
-    /// `case_number` selects an independent draw of all dispersions under the same seed. Without `reports` the events
-    /// decided on board are missing from the truth's. When the scenario has its dispersions drawn later than at the
-    /// start, up to that tick nothing depends on the case: not the links' fortune either, which is case 0's throughout.
-    /// `clock`: how its clock runs against UTC; none: as UTC does, from the scenario's instant of entry.
+    /// `case_number` selects an independent draw of all dispersions under the same seed. Without `reports` the truth
+    /// lacks the events decided on board. When the scenario draws its dispersions after the start, nothing depends on
+    /// the case up to that tick; the links' random draws are case 0's throughout.
+    /// `clock`: correlation of the vehicle's clock with UTC; none: runs as UTC does, from the scenario's instant of
+    /// entry.
     Landing(const Scenario& scenario, std::uint64_t seed, std::uint64_t case_number = 0,
             std::vector<EventReportName> reports = {}, std::optional<ClockCorrelation> clock = {});
     Landing(const Landing&);
@@ -140,47 +141,47 @@ class Landing {
     Landing& operator=(Landing&&) noexcept;
     ~Landing();
 
-    /// One cycle of 1/64 s, and as many ticks more as a venue's real-time clock lost in it. After the outcome is known
-    /// and the last packet has arrived, finished() is true.
+    /// Runs one cycle of 1/64 s, and any ticks that a venue's real-time clock lost in it. finished() becomes true after
+    /// the outcome is known and the last packet has arrived.
     const CycleReport& step();
-    /// Of the last step.
+    /// The report of the last step.
     const CycleReport& report() const;
 
-    /// X-band reaches Earth as samples of this antenna from here on.
+    /// Makes X-band reach Earth as samples of this antenna from here on.
     void listen_by(XBandFrontEnd antenna);
 
-    /// Whether the dispersions were drawn: from the start, or since the tick at which the scenario has them drawn.
+    /// Whether the dispersions have been drawn: at the start, or at the tick that the scenario sets.
     bool dispersed() const;
-    /// It will be this case's flight. Only while it has not been dispersed.
+    /// Sets the case. Only before the dispersions are drawn.
     void take_case(std::uint64_t case_number);
 
-    /// Octets leave the station now; what the uplink leaves of them reaches the vehicle a light time later.
+    /// Sends octets from the station now; what survives the uplink reaches the vehicle a light time later.
     void uplink(std::span<const std::uint8_t> octets);
 
-    /// A PLTU for the rover leaves the station now; the next orbiter in view when it is there hands it down.
+    /// Sends a PLTU for the rover from the station now; the next orbiter in view on its arrival relays it.
     void forward(std::span<const std::uint8_t> pltu);
 
-    /// It begins with the next cycle, whatever it says itself.
+    /// Injects a fault with the next cycle, whatever start time it states.
     void inject(Fault fault);
 
-    /// The prime computer's modules are run by a venue's executive from here on.
+    /// Runs the prime computer's modules by a venue's executive from here on.
     void run_prime_by(std::shared_ptr<flight::CycleRunner> runner);
 
-    /// A fault: the prime computer starts anew with the next cycle.
+    /// Injects a fault: the prime computer restarts with the next cycle.
     void reset_prime();
 
     Sclk sclk() const;  ///< at the vehicle
     Scet scet() const;
-    Ert ert_now() const;  ///< what Earth's clocks show at this moment: SCET of the vehicle's now
+    Ert ert_now() const;  ///< Earth's UTC at this moment; equal to the vehicle's SCET
     double light_time_s() const;
     ClockCorrelation correlation() const;
     const NavigationSolution& solution() const;
     TruthState truth() const;
     Outcome outcome() const;
     std::string outcome_reason() const;
-    bool flown() const;     ///< the outcome is known, and the computers are off
-    bool finished() const;  ///< and the links are empty, and the recording is down, as ground has told the rover, or no
-                            ///< pass is left
+    bool flown() const;  ///< the outcome is known, and the computers are off
+    /// flown(), and the links are empty, and ground has confirmed the recording to the rover or no pass is left.
+    bool finished() const;
     std::optional<TouchdownReport> touchdown() const;
     double peak_deceleration_mps2() const;
     std::optional<ParachuteReport> parachute() const;  ///< at deployment
@@ -189,7 +190,7 @@ class Landing {
     flight::Computer::Counters counters() const;
     std::span<const std::uint8_t> recording() const;  ///< NVM so far: whole packets, one after another
     bool recording_closed() const;                    ///< nothing will be added
-    bool relaying() const;                            ///< it comes, or came, down
+    bool relaying() const;                            ///< the recording is being, or was, relayed
 
   private:
     struct State;

@@ -6,16 +6,16 @@
 #include <cstdint>
 #include <optional>
 
-// Moments of the truth that only show afterwards: a lift vector that changed sides, a deceleration that was the
-// largest.
+// True events that are known only afterwards: a change of side of the lift vector, the peak deceleration.
 namespace aeolis::simulation {
 
-/// Counts the lift vector's changes of side above 1100 m/s, from the moment when air is first felt (0.2 g).
-/// A change counts once the bank has gone 10° beyond (ours: so that a wobble about zero is no reversal); its moment is
-/// that of the change itself.
+/// Counts the lift vector's changes of side above 1100 m/s, once the air is felt (0.2 g).
+///
+/// A change counts when the bank has gone 10° beyond (our assumption: a wobble about zero is no reversal); it is dated
+/// at the change itself.
 class BankReversals {
   public:
-    /// Each tick. Returns a reversal that is now certain, named and dated.
+    /// Call each tick. Returns a reversal that has become certain, named and dated.
     std::optional<TruthEvent> observe(const TruthState& truth, double bank_rad);
 
   private:
@@ -25,7 +25,7 @@ class BankReversals {
     int count_ = 0;
 };
 
-/// The largest sensed acceleration, certain once what is sensed has fallen to seven tenths of it.
+/// The largest sensed acceleration, certain when the acceleration has fallen to seven tenths of it.
 class PeakDeceleration {
   public:
     std::optional<TruthEvent> observe(const TruthState& truth);
@@ -37,7 +37,7 @@ class PeakDeceleration {
     bool told_ = false;
 };
 
-/// `truth` as an event of that name.
+/// An event of that name with the time and state of `truth`.
 TruthEvent moment(const char* name, const TruthState& truth);
 
 }  // namespace aeolis::simulation

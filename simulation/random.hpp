@@ -6,8 +6,7 @@
 
 namespace aeolis::simulation {
 
-/// What one draw is for. Each error source has its own stream, so that switching one off leaves the others as they
-/// were.
+/// The purpose of a draw. Each error source has its own stream, so that switching one off does not change the others.
 enum class Stream : std::uint64_t {
     delivery = 1,
     knowledge,
@@ -40,8 +39,9 @@ enum class Stream : std::uint64_t {
     relay,
 };
 
-/// Random numbers of one stream of one case of one seed: SplitMix64, and Box–Muller for the normal distribution,
-/// because the standard library's distributions differ between implementations. A value: copies go on alike. Source:
+/// Random numbers of one stream of one case of one seed: SplitMix64, and Box–Muller for the normal distribution.
+///
+/// The standard library's distributions differ between implementations. A value: copies continue alike. Source:
 /// [steele-2014], [box-muller-1958].
 class Random {
   public:

@@ -13,10 +13,10 @@
 #include <variant>
 #include <vector>
 
-// All that makes one landing what it is. Filled by the server from a text file, checked there with `validate`.
+// The definition of one landing. The server fills it from a text file and checks it with `impossible_values`.
 namespace aeolis::simulation {
 
-/// Truth at the epoch, relative to rotating Mars, or at entry interface, from where it is propagated back. [facts]
+/// The true state at entry interface, relative to rotating Mars; the start is propagated back from it. [facts]
 struct EntryState {
     double radius_m = 3522200.0;
     double latitude_deg = -3.9226;   ///< areocentric
@@ -44,8 +44,8 @@ struct Masses {
     double rover_kg = 899.0;
 };
 
-/// Radii of gyration by what is attached: about z, and about any axis across it. What flight takes them for is
-/// flight/devices/effectors.hpp; a scenario may have others, which then are an error that the vehicle flies with.
+/// Radii of gyration by the attached parts: about z, and about any axis across it. Flight's values are in
+/// flight/devices/effectors.hpp; a scenario may differ, which is then a modelling error in flight.
 struct Gyration {
     double with_cruise_stage_across_m = flight::gyration_with_cruise_stage.across_m;
     double with_cruise_stage_along_m = flight::gyration_with_cruise_stage.along_z_m;
@@ -59,8 +59,8 @@ struct Gyration {
     double stage_along_m = flight::gyration_of_stage.along_z_m;
 };
 
-/// Where the parts' centres of mass sit along z, from the descent stage's own; and how far off the axis the balance
-/// masses, which give the 0.1 m of the entry vehicle [facts] (L). Not published: all ours.
+/// Stations of the parts' centres of mass along z, from the descent stage's; and the balance masses' distance from the
+/// axis, which gives the entry vehicle's offset of 0.1 m [facts] (L). Not published: all are our assumptions.
 struct Stations {
     double rover_m = 0.4;
     double heatshield_m = 1.0;
@@ -74,7 +74,7 @@ struct Stations {
 struct Dispersions {
     double delivery_flight_path_deg = 0.0167;
     double delivery_position_m = 900.0;
-    double knowledge_position_m = 930.0;  ///< ground's solution against the truth
+    double knowledge_position_m = 930.0;  ///< ground's solution less the truth
     double knowledge_velocity_mps = 0.67;
     double density_fraction = 0.04;
     double drag_fraction = 0.01;
@@ -85,25 +85,25 @@ struct Dispersions {
     double attitude_rad = 1.5e-3;
     double radar_range_fraction = 0.0067;
     double radar_velocity_mps = 0.033;
-    double imu_misalignment_rad = 1.0e-4;  ///< of the sensors' axes, about each axis of B. Ours
-    double gust_mps = 2.0;                 ///< of each horizontal part of gusts near the ground. Ours
-    double radar_dropout_fraction = 0.01;  ///< no deviation: the part of the radar's readings that fail. Ours
+    double imu_misalignment_rad = 1.0e-4;  ///< of the sensors' axes, about each axis of B. Our assumption
+    double gust_mps = 2.0;                 ///< of each horizontal component of gusts near the ground. Our assumption
+    double radar_dropout_fraction = 0.01;  ///< not a deviation: the part of readings that fail. Our assumption
     double terrain_height_m = 0.0;
-    double terrain_slope_deg = 0.0;       ///< of the rise towards east and towards north
-    double parachute_plane_deg = 30.0;    ///< of the plane in which the parachute begins to lift, off up. Ours
+    double terrain_slope_deg = 0.0;       ///< of the slope towards east and towards north
+    double parachute_plane_deg = 30.0;    ///< of the plane of the parachute's first lift, from up. Our assumption
     double mass_fraction = 0.001;         ///< of all parts alike
     double slow_drag_fraction = 0.033;    ///< of drag and lift at low Mach numbers; drag_fraction is for high ones
-    double imu_scale_fraction = 1.0e-4;   ///< of each accelerometer. Ours
-    double gyro_scale_fraction = 1.0e-5;  ///< of each gyro. Ours
-    double imu_noise_mps = 5.0e-5;        ///< of each accelerometer, a reading. Ours
-    double gyro_noise_rad = 2.0e-6;       ///< of each gyro, a reading. Ours
+    double imu_scale_fraction = 1.0e-4;   ///< of each accelerometer. Our assumption
+    double gyro_scale_fraction = 1.0e-5;  ///< of each gyro. Our assumption
+    double imu_noise_mps = 5.0e-5;        ///< of each accelerometer, a reading. Our assumption
+    double gyro_noise_rad = 2.0e-6;       ///< of each gyro, a reading. Our assumption
 };
 
-/// The ground around the target, over the sphere of its radius; a case adds its own (Dispersions). Ours.
+/// The ground around the target, over the sphere of its radius. A case adds its own (Dispersions). Our assumption.
 struct Ground {
     double height_m = 0.0;  ///< at the target
     double slope_deg = 0.0;
-    double uphill_azimuth_deg = 0.0;  ///< where it rises to, from north to east
+    double uphill_azimuth_deg = 0.0;  ///< direction of the rise, from north to east
 };
 
 /// Atmosphere scale by height above the landing radius: density = table × scale.
@@ -112,31 +112,31 @@ struct DensityScale {
     double scale = 1.0;
 };
 
-/// A pass of an orbiter: it hears the vehicle's UHF from rise to set, and hands on to Earth what it heard.
+/// A pass of an orbiter: it hears the vehicle's UHF from rise to set, and relays it to Earth.
 struct RelayPass {
-    /// From `after_rise_s` on the rover sends its files at this rate.
+    /// From `after_rise_s` on, the rover sends its files at this rate.
     struct Rate {
         double after_rise_s = 0.0;
         double bps = 0.0;
     };
     std::string orbiter;  ///< "odyssey": names its links
-    bool stored = false;  ///< it records, and delivers later; else a bent pipe
+    bool stored = false;  ///< it records, and delivers later; false: a bent pipe
     double rise_after_entry_s = 0.0, set_after_entry_s = 0.0;
     double horizon_km = 0.0, nearest_km = 0.0;  ///< range at rise and set, and half-way between
-    double delivery_after_set_s = 0.0;          ///< stored: from then on Earth receives what it recorded,
+    double delivery_after_set_s = 0.0;          ///< stored: delivery to Earth begins,
     double delivery_rate_bps = 2.0e6;           ///< at that rate
     std::vector<Rate> rates;                    ///< none: the radio's relay_rate_bps throughout
 };
 
-/// When tones may be lost by plan: ground counts on none there.
+/// A planned interval in which tones may be lost, so that ground expects none.
 struct ToneOutage {
     std::string name;                 ///< "line stretch"
-    std::string event;                ///< of the truth, as "parachute_deploy", or "earth_set"
+    std::string event;                ///< a true event, as "parachute_deploy", or "earth_set"
     double from_s = 0.0, to_s = 0.0;  ///< after the event
 };
 
-/// When a station on Earth can send to the vehicle: begin and end of track by Earth's clock, as seconds after the UTC
-/// of entry. What leaves then is at the vehicle a light time later.
+/// A time in which a station on Earth can send to the vehicle: begin and end of track by Earth's clock, in seconds
+/// after the UTC of entry. Commands arrive a light time later.
 struct TrackingPass {
     std::string station;  ///< "DSS-43"
     double begin_after_entry_s = 0.0, end_after_entry_s = 0.0;
@@ -148,27 +148,26 @@ struct Radio {
     double blackout_start_speed_mps = 5400.0;  ///< plasma: between these two speeds after entry, while decelerating
     double blackout_end_speed_mps = 2400.0;
     double blackout_start_altitude_m = 65000.0;
-    double uhf_loss_fraction = 0.0;     ///< of the octets outside the blackout, spoilt in bursts of errors
-    double uhf_burst_s = 0.2;           ///< mean length of those. Ours
-    double uplink_loss_fraction = 0.0;  ///< of the octets of the uplink, spoilt in bursts
+    double uhf_loss_fraction = 0.0;     ///< of the octets outside the blackout, garbled in error bursts
+    double uhf_burst_s = 0.2;           ///< mean length of those bursts. Our assumption
+    double uplink_loss_fraction = 0.0;  ///< of the uplink's octets, garbled in bursts
     double x_band_c_n0_dbhz = 22.0;     ///< total power to noise density in an antenna's best direction
-    /// Tones by a real receiver from a real waveform, or drawn from its symbol error. None: whoever flies the landing
-    /// chooses by the pace; nobody else does, so that they are drawn.
+    /// True: tones from a real receiver on a real waveform; false: drawn from the symbol error rate. None: the
+    /// rehearsal chooses by its pace; elsewhere they are drawn.
     std::optional<bool> tones_from_samples;
-    std::optional<double> earth_set_after_entry_s;  ///< no tone after that; none: when it sets behind the terrain
+    std::optional<double> earth_set_after_entry_s;  ///< no tone after that; none: Earth sets behind the terrain
     std::vector<ToneOutage> tone_outages;
     double relay_rate_bps = 2.0e6;  ///< of the recording, after landing
     double relay_start_after_touchdown_s = 20.0;
-    /// Outside its bursts a pass is as good as at this range; the part of spoilt octets grows with the square of the
-    /// range.
+    /// The range of a pass at which uhf_loss_fraction holds; the fraction grows with the square of the range.
     double uhf_loss_range_km = 1000.0;
-    double uhf_hand_over_s = 0.0;               ///< nothing arrives for so long when the vehicle changes antennas. Ours
-    std::vector<RelayPass> relay_passes;        ///< none: one bent pipe, always in view, without regard to range
+    double uhf_hand_over_s = 0.0;               ///< outage while the vehicle changes antennas. Our assumption
+    std::vector<RelayPass> relay_passes;        ///< none: one bent pipe, always in view, regardless of range
     std::vector<TrackingPass> tracking_passes;  ///< none: some station always sees the vehicle
-    std::vector<double> delivery_restarts_after_touchdown_s;  ///< the rover's delivery of files begins anew: a fault
+    std::vector<double> delivery_restarts_after_touchdown_s;  ///< a fault: the rover's file delivery restarts
 };
 
-/// A command of the scenario itself ("commands scripted"), by name as a controller would send it.
+/// A command of the scenario's own script, by its name.
 struct ScriptedCommand {
     double send_before_entry_s = 0.0;
     std::string command;
@@ -176,13 +175,13 @@ struct ScriptedCommand {
     bool from_solution = false;  ///< fill the arguments from ground's navigation solution
 };
 
-/// Something on the spacecraft is broken for a while, outside EDL: its fault protection may hold EDL meanwhile. R24
+/// A temporary fault on the spacecraft outside EDL, for which its fault protection may hold EDL. R24
 struct SystemFault {
     double begin_before_entry_s = 0.0;
     double duration_s = 0.0;
 };
 
-/// One unit of a device misbehaves for a while; simulation/buses/device_faults.hpp says how. R2
+/// A temporary fault of one unit of a device; simulation/buses/device_faults.hpp gives the effects. R2
 struct DeviceFault {
     enum class Kind : std::uint8_t { silent, refuses, late, dropout };
     flight::Device device{};
@@ -190,29 +189,29 @@ struct DeviceFault {
     Kind kind{};
     double begin_before_entry_s = 0.0;
     double duration_s = 0.0;
-    double late_s = 5.0;  ///< ours: longer than every reply time-out of the timeline
+    double late_s = 5.0;  ///< our assumption: longer than every reply time-out of the timeline
 };
 
-/// The prime computer fails and starts anew. R32, R33
+/// A failure and restart of the prime computer. R32, R33
 struct ComputerReset {
     double before_entry_s = 0.0;  ///< a multiple of 1/64 s; negative after entry
 };
 
-/// What reaches Earth meanwhile is lost to ground: its station, or the line from there. Commands still leave.
+/// An outage of the station or the line from it: what reaches Earth meanwhile is lost to ground. Commands still leave.
 struct StationOutage {
-    double begin_before_entry_s = 0.0;  ///< by Earth's clock: before the instant of entry, not before that is seen
+    double begin_before_entry_s = 0.0;  ///< by Earth's clock: before entry itself, not before its signal arrives
     double duration_s = 0.0;
 };
 
-/// What an instructor may break while a landing flies.
+/// The faults that an instructor may inject during a landing.
 using Fault = std::variant<SystemFault, DeviceFault, ComputerReset, StationOutage>;
 
-/// What of the flight software flies, and what is simulated beside it; the software is the same in each. R36
+/// The part of the flight software that flies, and what stands in for the rest. The software is the same in each. R36
 enum class TestVenue : std::uint8_t {
     flight_software,  ///< all of it
     gnc_alone,        ///< EdlGnc, with a few lines in place of the timeline
-    all_but_gnc,      ///< what stands in for EdlGnc looks at the truth
-    performance,      ///< all of it as tasks of the threaded executive, each message timed
+    all_but_gnc,      ///< a stand-in for EdlGnc looks at the truth
+    performance,      ///< all of it as tasks of the threaded executive, with each message timed
 };
 
 /// "flight_software", …
@@ -220,13 +219,13 @@ const char* name_of(TestVenue venue);
 
 struct Scenario {
     std::string name;
-    std::string title;             ///< a line for people
+    std::string title;             ///< one line, for people
     Scet entry_scet;               ///< of entry interface, 2012-08-06T05:10:47.4
     Sclk entry_sclk{397501715.0};  ///< at entry interface
     double start_before_entry_s = 1200.0;
     double end_after_touchdown_s = 30.0;
     double timeout_after_entry_s = 900.0;
-    /// When the dispersions are drawn; none: at the start. Until then everything flies as if there were none.
+    /// The time at which dispersions are drawn; none: at the start. Until then the flight has none.
     std::optional<double> disperse_before_entry_s;
     EntryState entry;
     Target target;
@@ -242,30 +241,30 @@ struct Scenario {
     Radio radio;
     TestVenue test_venue = TestVenue::flight_software;
     flight::Plan telemetry_plan = flight::Plan::mission;
-    double parachute_speed_mps = 405.0;  ///< trigger of ground's solution
+    double parachute_speed_mps = 405.0;  ///< trigger in ground's solution
     double heatshield_speed_mps = 142.0;
     double backshell_altitude_m = 1660.0;
     std::vector<ScriptedCommand> commands;
-    std::vector<std::string> second_person;  ///< commands that leave only when a second controller has approved them
+    std::vector<std::string> second_person;  ///< commands that need a second controller's approval
     std::vector<SystemFault> system_faults;
     std::vector<DeviceFault> device_faults;
     std::vector<ComputerReset> computer_resets;
     std::vector<StationOutage> station_outages;
-    double bus_message_error_fraction = 1.0e-4;  ///< of the messages on the buses, each time they are sent. Ours
+    double bus_message_error_fraction = 1.0e-4;  ///< of the messages on the buses, at each transmission. Our assumption
 };
 
-/// How many rows a list of a scenario may have. Ours: more than a landing needs, and so few that looking at all of them
-/// in every cycle costs nothing beside the flight, wherever the scenario comes from.
+/// Maximum rows of a list in a scenario. Our assumption: more than a landing needs, and few enough to look at all of
+/// them in every cycle at no cost beside the flight, wherever the scenario comes from.
 inline constexpr std::size_t scenario_passes_max =
-    128;  ///< of orbiters, of stations: five a day over all the time in which one may lie
-inline constexpr std::size_t scenario_rows_max = 256;  ///< of each other list
+    128;  ///< of orbiters or stations: five a day over the whole permitted time
+inline constexpr std::size_t scenario_rows_max = 256;  ///< of any other list
 
-/// Whether the dispersions are drawn later than at the start: all cases then have the flight up to there in common.
+/// Whether the dispersions are drawn after the start, so that all cases share the flight up to then.
 bool disperses_later(const Scenario& scenario);
-/// The same with every seeded error of `dispersions` switched off.
+/// The scenario with every seeded error of `dispersions` switched off.
 Scenario undispersed(Scenario scenario);
 
-/// Empty when the scenario is possible; else "entry.speed_mps: -3 is outside 1000 … 20000", one line a field.
+/// Returns one line for each impossible field, as "entry.speed_mps: -3 is outside 1000 … 20000"; empty: none.
 std::vector<std::string> impossible_values(const Scenario& scenario);
 
 }  // namespace aeolis::simulation

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-// The few words of geometry that the whole simulation shares. Frames: docs/frames_and_units.md.
+// Vectors and rotations shared by the whole simulation. Frames: docs/frames_and_units.md.
 namespace aeolis::simulation {
 
 using Vector3 = Eigen::Vector3d;
@@ -26,7 +26,7 @@ inline std::array<double, 4> array4(const Quaternion& q) {
     return {q.w(), q.x(), q.y(), q.z()};
 }
 
-/// The rotation by `v`: its norm the angle [rad], its direction the axis.
+/// The rotation by the vector `v`: its norm is the angle [rad], its direction the axis.
 inline Quaternion rotation(const Vector3& v) {
     const double angle_rad = v.norm();
     // Below this the half angle is its own sine to the last bit.

@@ -18,25 +18,25 @@ struct AlarmChange {
     dictionary::Severity before{};
     double value = 0.0;
     Sclk sclk;
-    std::string limit;  ///< what the value broke: "> 14.5 g", "= failed", "> 1.5 m/s in sky_crane"; empty when cleared
+    std::string limit;  ///< the limit violated: "> 14.5 g", "= failed", "> 1.5 m/s in sky_crane"; empty when cleared
 };
 const char* name_of(dictionary::Severity severity);
-/// None for a word that is no severity's.
+/// None for a word that names no severity.
 std::optional<dictionary::Severity> severity_of(std::string_view word);
-/// "sky_crane" where one state of one channel is asked for; else the conditions in words.
+/// "sky_crane" for a condition on one state of one channel; else the conditions in words.
 std::string context_text(const dictionary::Dictionary& dictionary,
                          const std::vector<dictionary::Precondition>& context);
-/// Whether an alarm of the channel stays until it is reset: in any context.
+/// Whether an alarm of the channel, in any context, latches until it is reset.
 bool latches(const dictionary::Alarms& alarms);
 
-/// Tells when a channel goes into, out of, or from one to another severity of alarm.
+/// Detects when a channel enters, leaves, or changes its severity of alarm.
 ///
-/// In       samples of each channel in the order of SCLK, one source only (real time, or the recording)
+/// In       samples of each channel in the order of SCLK, from one source only (real time, or the recording)
 /// Out      changes, appended to `out`
-/// Rule     a severity is raised when `min_violations` samples in a row were at least that severe, and cleared when
-///          `min_conformance` in a row were less. [xtce-1.2] minViolations, minConformance. The limits are those of the
-///          first context that holds by the latest values of the channels it compares, else the default ones;
-///          counting begins again when the context changes.
+/// Rule     A severity is raised when `min_violations` consecutive samples were at least that severe, and cleared when
+///          `min_conformance` were less. [xtce-1.2] minViolations, minConformance. The limits are those of the first
+///          context that holds by the latest values of the channels it compares, else the defaults. Counting restarts
+///          when the context changes.
 /// Memory   64 octets a channel, made at the start
 class AlarmMonitor {
   public:
@@ -51,7 +51,7 @@ class AlarmMonitor {
     static constexpr std::size_t severities = 6;
     struct Level {
         std::uint32_t violations = 0,
-                      conformances = 0;  ///< samples in a row up to the last, at least this severe or less
+                      conformances = 0;  ///< consecutive latest samples, at least this severe or less
         bool stands = false;
     };
     struct State {

@@ -11,69 +11,69 @@
 
 namespace aeolis::telemetry {
 
-/// All that is known of one file on its way: plain values, to be kept with the file's octets in one transaction, so
-/// that either end may be restarted at any time.
+/// The state of one file's reception: plain values, to be stored with the file's octets in one transaction, so that
+/// either end may restart at any time.
 struct Reception {
     enum class Outcome : std::uint8_t {
         under_way,
         complete,
-        wrong_checksum,  ///< all octets came, and are not those that the sender counted
-        wrong_size,      ///< the sender says fewer octets than came
+        wrong_checksum,  ///< all octets received, but their checksum is not the sender's
+        wrong_size,      ///< the sender states fewer octets than were received
         cancelled,       ///< by the sender
     };
 
-    std::uint64_t source = 0;  ///< with `sequence` the name of the transaction
+    std::uint64_t source = 0;  ///< with `sequence`, identifies the transaction
     std::uint64_t sequence = 0;
     std::uint64_t destination = 0;
     std::optional<std::uint32_t> file_octets;  ///< from the metadata
     std::string source_name, destination_name;
     std::optional<cfdp::Eof> eof;
     std::vector<cfdp::Range> received;  ///< sorted; no two touch
-    std::uint32_t checksum = 0;         ///< of what was received
+    std::uint32_t checksum = 0;         ///< of the octets received
     Outcome outcome = Outcome::under_way;
     bool outcome_acknowledged = false;  ///< the sender knows it
 };
 
-/// That of a transaction which this PDU begins; none when it comes from a receiver, is of class 1, or has ids longer
-/// than those that we write.
+/// The state of a transaction that this PDU begins. None when it comes from a receiver, is of class 1, or its ids are
+/// longer than ours.
 std::optional<Reception> reception_of(const cfdp::Header& header);
 
-/// The octets that came, each counted once.
+/// The number of octets received, each counted once.
 std::uint64_t received_octets(const Reception& reception);
 
 /// Receives one file by CFDP class 2. [ccsds-727.0-b-5]
 ///
-/// In       PDUs of one transaction, in any order and number; ask() at the beginning of a pass, or when what was asked
-///          for has not come in the time that it takes
+/// In       PDUs of one transaction, in any order and number; ask() at the beginning of a pass, or when an answer is
+///          overdue
 /// Out      octets to write, never twice; PDUs to send back
-/// Memory   a range for each piece that stands alone, `ranges_max` of them; what would need more is dropped and asked
-///          for again
-/// Faults   what does not belong to the transaction or contradicts what is known is counted and changes nothing
+/// Memory   one range for each separate piece, at most `ranges_max`; data that would need more are dropped and
+///          requested again
+/// Faults   PDUs of other transactions, and contradictions, are counted and change nothing
 class CfdpReceiver {
   public:
-    static constexpr std::size_t ranges_max = 65536;                   ///< ours
-    static constexpr std::uint32_t file_octets_max = 1024U * 1048576;  ///< ours: what the disk is asked for at most
-    static constexpr std::size_t naks_at_once_max = 8;                 ///< ours: as much as our sender keeps
+    static constexpr std::size_t ranges_max = 65536;                   ///< chosen
+    static constexpr std::uint32_t file_octets_max = 1024U * 1048576;  ///< chosen: space on disk for one file
+    static constexpr std::size_t naks_at_once_max = 8;                 ///< chosen: as many as our sender keeps
 
     struct Write {
         std::uint32_t offset = 0;
-        std::span<const std::uint8_t> octets;  ///< of the PDU's
+        std::span<const std::uint8_t> octets;  ///< of the PDU
     };
 
-    /// A new transaction, or one that was kept.
+    /// Continues a stored transaction, or begins a new one.
     explicit CfdpReceiver(Reception kept) : state_(std::move(kept)) {}
 
-    /// What is to be written to the file; then `state()` is to be kept with it.
+    /// Takes a PDU. Returns the octets to write to the file; store `state()` with them.
     std::vector<Write> on(const cfdp::Pdu& pdu);
 
-    /// The next PDU to send to the sender of the file.
+    /// The next PDU to the file's sender.
     std::optional<std::vector<std::uint8_t>> next();
 
-    /// Asks for what is missing so far, or says again how it ended.
+    /// Requests what is still missing, or repeats the outcome.
     void ask();
 
     const Reception& state() const { return state_; }
-    std::uint64_t refused() const { return refused_; }  ///< PDUs that do not belong here or contradict what is known
+    std::uint64_t refused() const { return refused_; }  ///< PDUs of other transactions, and contradictions
 
   private:
     std::vector<Write> take(const cfdp::FileData& data);

@@ -14,27 +14,27 @@
 
 namespace aeolis::telemetry {
 
-/// Why a packet was not decoded.
+/// Reasons for not decoding a packet.
 enum class Refusal {
-    not_a_packet,  ///< no primary header of ours, a telecommand, or its length disagrees with the octets
+    not_a_packet,  ///< no primary header of our format, a telecommand, or a length that disagrees with the octets
     bad_crc,
-    other_dictionary,  ///< written with another version of the dictionary: its fields may mean something else
+    other_dictionary,  ///< made with another version of the dictionary: its fields may have other meanings
     unknown_apid,
     unknown_event,  ///< an event packet whose event id the dictionary lacks
-    wrong_length,   ///< the container of this name is longer or shorter
+    wrong_length,   ///< the octets do not match the length of the APID's container
 };
 inline constexpr std::size_t refusal_count = 6;
 const char* name_of(Refusal refusal);
 
 using dictionary::Decoded;
 
-/// Packets to calibrated values, by a flat plan compiled once from the dictionary's containers.
+/// Decodes packets into calibrated values by a flat plan, compiled once from the dictionary's containers.
 ///
-/// In       the octets of one space packet, any octets          Out   Decoded, or the reason why not
+/// In       the octets of one space packet, any octets          Out   Decoded, or the reason for refusal
 /// Values   enumerated: the raw number; boolean: 0 or 1; a float that is not finite is undefined
 /// Rate     over a million packets a second on one core (bench/decommutate_bench.cpp)
-/// Memory   a plan of some 32 octets a field; decode() allocates nothing once `into` has seen the largest packet
-/// Faults   none: whatever the octets are, nothing outside them is read. Many threads may share one.
+/// Memory   a plan of some 32 octets a field; decode() allocates nothing once `into` has held the largest packet
+/// Faults   none: reads nothing outside the octets, whatever they are. Many threads may share one.
 class Decommutator {
   public:
     /// The dictionary has passed the loader's rules. Its plan is copied: it need not outlive this.

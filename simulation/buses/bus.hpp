@@ -9,40 +9,40 @@
 
 namespace aeolis::simulation {
 
-/// One command on its way to a remote terminal.
+/// A command on its way to a remote terminal.
 struct BusCommand {
     enum class Kind : std::uint8_t { pyro, device_switch, thrusters };
-    flight::Device device{};  ///< addressed, with its unit
+    flight::Device device{};  ///< the device addressed, with its unit
     flight::Unit unit{};
     Kind kind{};
     flight::PyroId pyro{};
     flight::SwitchId switch_id{};
-    flight::Unit switched{};  ///< the unit that is powered or not
+    flight::Unit switched{};  ///< the unit to power or switch off
     bool on = false;
     std::uint8_t tries = 0;
 };
 
-/// One MIL-STD-1553 bus with its controller: a frame each 1/64 s or each 1/8 s, in which messages go one after another.
+/// One MIL-STD-1553 bus with its controller: a frame every 1/64 s or 1/8 s, its messages in sequence.
 ///
 /// In       commands at any time; they wait for the next frame, in order
-/// Errors   each message is garbled with a seeded probability. The controller repeats a message once in its frame; a
-///          command that fails then, or that its terminal does not answer, is tried in three frames (ours) and given
-///          up. What is given up nobody learns but the one who waits for a reply
-/// Memory   a queue of 32 commands; 24 messages a frame, what is over waits (ours: a 1553 bus carries about 20 messages
-///          of 32 words in 1/64 s, and ours are a few words)
-/// Model    no words and no microseconds: a message that gets through does so with the tick on which its frame begins
+/// Errors   each message is garbled with a seeded probability. The controller repeats a garbled message once in its
+///          frame. A command that still fails, or that its terminal does not answer, is tried in three frames (our
+///          assumption) and given up. Only a requester that waits for a reply notices
+/// Memory   a queue of 32 commands; at most 24 messages a frame, the rest waits (our assumption: a 1553 bus carries
+///          about 20 messages of 32 words in 1/64 s, and these have a few words)
+/// Model    no words and no microseconds: a message that gets through does so at the tick on which its frame begins
 class Bus {
   public:
     Bus(std::int64_t frame_ticks, double message_error_fraction, Random random)
         : frame_ticks_(frame_ticks), message_error_fraction_(message_error_fraction), random_(random) {}
 
     bool frame_begins(std::int64_t tick) const { return tick % frame_ticks_ == 0; }
-    /// For the next frame. What finds no room is lost and counted.
+    /// Queues a command for the next frame. Without room it is lost and counted.
     void queue(const BusCommand& command) {
         if (!waiting_.try_push_back(command)) ++counters_.given_up;
     }
 
-    /// The commands' part of a frame; `execute(command)` says whether the terminal answered.
+    /// Sends the frame's commands; `execute(command)` says whether the terminal answered.
     template <typename Execute>
     void send(const Execute& execute) {
         unsigned held_up = 0;  // devices whose earlier command has to come first
@@ -61,7 +61,7 @@ class Bus {
         while (waiting_.size() > kept) waiting_.erase_at(waiting_.size() - 1);
     }
 
-    /// One message, with its repetition: whether it got through.
+    /// Exchanges one message, with its repetition; returns whether it got through.
     bool exchange() {
         ++counters_.messages;
         if (!garbled()) return true;
@@ -71,14 +71,14 @@ class Bus {
         return false;
     }
 
-    /// Another fortune from here on.
+    /// Draws from `random` from here on.
     void disperse(Random random) { random_ = random; }
 
     struct Counters {
         std::uint64_t messages = 0;
         std::uint64_t repeated = 0;  ///< garbled once
         std::uint64_t failed = 0;    ///< garbled twice in a frame
-        std::uint64_t given_up = 0;  ///< commands that nobody will carry out
+        std::uint64_t given_up = 0;  ///< commands that will not be carried out
     };
     const Counters& counters() const { return counters_; }
 

@@ -8,53 +8,52 @@
 
 namespace aeolis::simulation {
 
-/// The vehicle's two 1553 buses, run by the computer that flies, with the devices behind their remote terminals. R2
+/// The vehicle's two 1553 buses, run by the computer in command, with the devices behind their remote terminals. R2
 ///
-///   64 Hz   radar, pyro controllers, descent engines with the bridle, thrusters
-///    8 Hz   power switches and heaters, UHF, X-band with the antennas
+/// 64 Hz   radar, pyro controllers, descent engines with the bridle, thrusters
+/// 8 Hz   power switches and heaters, UHF, X-band with the antennas
 ///
-/// The IMU hangs on neither: its samples come over a link of its own.
+/// The IMU is on neither: its samples come over a link of its own.
 ///
-/// In       what a cycle commands, each to the unit addressed in it
-/// Out      what is done, and replies for the computer
+/// In       a cycle's commands, each to the unit that it addresses
+/// Out      the devices' actions, and replies for the computer
 /// Timing   the commands of cycle n go out with the first frame after it: at 64 Hz with tick n + 1, at 8 Hz with the
 ///          next multiple of 1/8 s. A reply is fetched by the first frame in which the device has it ready
-/// Cyclic   on-times, throttles and pay-out go out in every 64 Hz frame, and radar and engines are read in it.
-///          Thrusters that hear nothing close at once; engines keep their last throttles for 2 s and then go safe.
-///          [facts]
+/// Cyclic   on-times, throttles and pay-out go out in every 64 Hz frame, which also reads radar and engines. Thrusters
+///          without a command close at once; engines keep their last throttles for 2 s and then go safe. [facts]
 class Buses {
   public:
     Buses(const Scenario& scenario, std::uint64_t seed, std::uint64_t case_number);
 
-    /// A case of a campaign begins: errors and jitter are drawn anew, what is under way stays.
+    /// Starts a campaign case: draws errors and jitter anew; commands under way stay.
     void disperse(std::uint64_t seed, std::uint64_t case_number);
 
-    /// What the computer commands in this cycle.
+    /// Takes the computer's commands of this cycle.
     void take(const flight::DeviceOutputs& out);
-    /// No computer runs the buses in this cycle: no frame begins with the next tick.
+    /// Notes that no computer runs the buses in this cycle: no frame begins with the next tick.
     void leave_alone() { commanded_ = false; }
-    /// The frames that begin with this tick.
+    /// Runs the frames that begin with this tick.
     void frame(Sclk now);
 
-    /// Pyros that fired in the frame of this tick, each for the first time.
+    /// Pyros fired for the first time in the frame of this tick.
     std::span<const flight::PyroId> fired() const { return fired_.span(); }
     const flight::ThrusterCommand& thrusters() const { return thrusters_; }
     const flight::EngineCommand& engines() const { return engines_; }
     bool pay_out_bridle() const { return pay_out_bridle_; }
     const Avionics& devices() const { return devices_; }
 
-    /// Adds the replies that the frames of this tick brought.
+    /// Adds the replies fetched by the frames of this tick.
     void reply(flight::DeviceInputs& in) const;
     bool radar_was_read() const { return radar_was_read_; }
     bool engines_were_read() const { return engines_were_read_; }
     bool uhf_radiates() const;
     bool parachute_antenna_on() const { return devices_.on(flight::SwitchId::parachute_antenna); }
     std::optional<XBandAntenna> x_band_antenna() const;  ///< the one selected
-    /// Whether the sample that the IMU's link carries now arrives.
+    /// Whether the sample now on the IMU's link arrives.
     bool imu_sample_arrives();
     flight::Unit unit(flight::Device device) const { return addressed_[device]; }
     const DeviceFaults& faults() const { return faults_; }
-    /// It counts from `now` on, not only from the next frame.
+    /// Adds a fault that acts from `now` on, not only from the next frame.
     void inject(const DeviceFault& fault, Sclk now) {
         faults_.add(fault);
         faults_.at(now);
@@ -76,20 +75,20 @@ class Buses {
     Avionics devices_;
     Random imu_link_;
 
-    // As commanded in the cycle that ended last.
+    // Commands of the last cycle.
     flight::UnitSelection addressed_;
     flight::ThrusterCommand thrusters_due_;
     flight::EngineCommand engines_due_;
     bool pay_out_bridle_due_ = false;
     bool commanded_ = false;
 
-    // As the drivers hold it.
-    flight::ThrusterCommand thrusters_;  ///< of this tick; none where none came
+    // Commands that the drivers hold.
+    flight::ThrusterCommand thrusters_;  ///< of this tick; nil when no command came
     flight::EngineCommand engines_;
     bool pay_out_bridle_ = false;
     std::int64_t engines_tick_ = 0;
 
-    // Of the frames of this tick.
+    // Results of this tick's frames.
     FixedVector<flight::PyroId, 32> fired_;
     FixedVector<Avionics::Reply, 16> fetched_;
     bool radar_was_read_ = false;

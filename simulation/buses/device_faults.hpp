@@ -8,19 +8,19 @@
 
 namespace aeolis::simulation {
 
-/// What is broken now, by device and unit.
+/// The present faults, by device and unit.
 ///
-/// silent   its terminal answers nothing on the bus; what it was told before it keeps
-/// refuses  its terminal answers, and does not do what it is told
-/// late     its replies come a while later than they should
-/// dropout  what it carries fails: the radar measures nothing valid, the IMU loses one sample in two, UHF radiates
-/// nothing
+/// silent   the terminal does not answer on the bus; the device keeps its last command
+/// refuses  the terminal answers, and the device does not act
+/// late     replies come later than they should
+/// dropout  the device's data fail: the radar has no valid measurement, the IMU loses every other sample, UHF radiates
+///          nothing
 class DeviceFaults {
   public:
     DeviceFaults(std::vector<DeviceFault> faults, Sclk entry) : faults_(std::move(faults)), entry_(entry) {}
 
     void add(const DeviceFault& fault) { faults_.push_back(fault); }
-    /// To be told each tick before it is asked.
+    /// Updates the states for this tick. Call each tick before any query.
     void at(Sclk now);
 
     bool has(DeviceFault::Kind kind, flight::Device device, flight::Unit unit) const {
@@ -29,7 +29,7 @@ class DeviceFaults {
     bool answers(flight::Device device, flight::Unit unit) const {
         return !has(DeviceFault::Kind::silent, device, unit);
     }
-    /// How much later replies come, in ticks.
+    /// The delay of replies [ticks].
     std::int64_t late_ticks(flight::Device device, flight::Unit unit) const { return state(device, unit).late_ticks; }
 
   private:

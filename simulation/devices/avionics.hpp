@@ -6,18 +6,17 @@
 
 namespace aeolis::simulation {
 
-/// The boxes behind the remote terminals: what is on, what was fired, and the replies that they have ready a little
-/// later.
+/// The devices behind the remote terminals: switch positions, fired pyros, and pending replies.
 ///
-/// A command acts when it reaches its terminal; the reply is ready a fixed time later and up to 2 ticks of jitter. The
-/// times are ours: pyro 2 ticks (31 ms), thrusters 3, heaters 4, antenna 6, IMU 8, radar 12 (0.19 s), UHF 32 (0.5 s).
-/// At start (ours): thrusters enabled, both IMUs and UHF transmitters on, entry antenna selected; radar and heaters
-/// off. An antenna that is switched on takes over from the other. Both units of a device drive the same hardware.
+/// A command acts when it reaches its terminal; the reply is ready a fixed time later, plus up to 2 ticks of jitter.
+/// Our assumptions: pyro 2 ticks (31 ms), thrusters 3, heaters 4, antenna 6, IMU 8, radar 12 (0.19 s), UHF 32 (0.5 s);
+/// at start thrusters enabled, both IMUs and UHF transmitters on, entry antenna selected, radar and heaters off. An
+/// antenna that is switched on replaces the other. Both units of a device drive the same hardware.
 class Avionics {
   public:
     explicit Avionics(Random random) : random_(random) {}
 
-    /// Other jitter from here on.
+    /// Draws jitter from `random` from here on.
     void disperse(Random random) { random_ = random; }
 
     bool on(flight::SwitchId id, flight::Unit unit = flight::Unit::a) const {
@@ -26,7 +25,7 @@ class Avionics {
     bool thrusters_enabled() const { return thrusters_enabled_; }
     bool fired(flight::PyroId pyro) const { return fired_[static_cast<std::size_t>(pyro)]; }
 
-    /// A command reached its terminal. True when it fired a pyro that had not been fired before.
+    /// Executes a command that reached its terminal. Returns true when it fired a pyro for the first time.
     bool execute(const BusCommand& command, std::int64_t tick, const DeviceFaults& faults);
 
     struct Reply {
@@ -39,16 +38,16 @@ class Avionics {
         bool on = false;  ///< fired, on, enabled
         bool refused = false;
     };
-    /// Oldest command first. Their owner takes out what the bus fetched.
+    /// Pending replies, oldest command first. The owner removes those that the bus fetched.
     FixedVector<Reply, 64>& replies() { return replies_; }
 
   private:
     Reply obey(const BusCommand& command, bool& first_firing);
     Reply refuse(const BusCommand& command) const;
 
-    // In cruise telemetry flows: the mission's came over X-band then, here the UHF link stands in for it from the
-    // start, so that ground sees the answers to its commands. Both transmitters are on, the selected one gets the data.
-    // Ours.
+    // Telemetry flows in cruise: the mission's came over X-band; here UHF stands in for it from the start, so that
+    // ground sees the answers to its commands. Both transmitters are on, and the selected one gets the data. Our
+    // assumption.
     std::array<std::array<bool, 2>, 6> on_{{{}, {true, true}, {true, true}, {true, true}, {}, {}}};
     std::array<bool, flight::pyro_count> fired_{};
     bool thrusters_enabled_ = true;

@@ -6,7 +6,7 @@
 
 namespace aeolis::simulation {
 
-/// What is loaded into the vehicle's computers before the landing of a scenario begins.
+/// The computers' load before a scenario's landing begins.
 flight::Load load_for(const Scenario& scenario);
 
 }  // namespace aeolis::simulation

@@ -10,22 +10,22 @@
 
 namespace aeolis::simulation {
 
-/// The rover's UHF radio after landing, with the delivery of files that runs on it.
+/// The rover's UHF radio after landing, with file delivery on top.
 ///
 /// In       the recording; PLTUs from ground; the rate of the pass, cycle by cycle     Out   PLTUs, as octets
-/// When nothing is left to send, and answers have not come in both light times and 10 s (ours), or a pass begins, the
-/// ends of the files on their way are announced again.
+/// The ends of the files under way are announced again when a pass begins, or when nothing is left to send and no
+/// answer has come within both light times and 10 s (our assumption).
 class RelayRadio {
   public:
     explicit RelayRadio(double light_time_s) : answer_cycles_(cycles_for_answer(light_time_s)) {}
 
     void receive(std::span<const std::uint8_t> pltu) { delivery_.on(pltu); }
 
-    /// One cycle at `rate_bps`, 0 without a pass: what is sent, good until the next. PLTUs go whole; a part of a cycle
-    /// is saved up.
+    /// Runs one cycle at `rate_bps`, 0 without a pass. Returns the octets sent, valid until the next call. PLTUs go
+    /// whole; unused octets carry over.
     std::span<const std::uint8_t> cycle(const flight::RecordingDelivery::Recording& recording, double rate_bps);
 
-    /// A fault: it forgets what it was doing.
+    /// Injects a fault: the radio loses its state.
     void restart() { delivery_ = {}; }
 
     bool done(const flight::RecordingDelivery::Recording& recording) const { return delivery_.done(recording); }

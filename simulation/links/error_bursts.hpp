@@ -8,18 +8,18 @@
 
 namespace aeolis::simulation {
 
-/// Errors of a link come in bursts: within one an octet is anything, between them all arrive as they were sent. Lengths
-/// of bursts, and of the times between, are exponential ([gilbert-1960], with mean lengths in place of probabilities).
+/// Error bursts of a link: within a burst an octet takes any value, between bursts octets arrive unchanged. Lengths of
+/// bursts and gaps are exponential ([gilbert-1960], with mean lengths in place of probabilities).
 class ErrorBursts {
   public:
-    /// `fraction` of all octets are in bursts, 0 … below 1, of `mean_octets` on average, above 0.
+    /// `fraction` of all octets is in bursts, 0 … below 1; a burst has `mean_octets` on average, above 0.
     ErrorBursts(double fraction, double mean_octets, Random random);
 
-    /// From here on another part of all octets; a burst, or a good stretch, that has begun ends as it was drawn.
+    /// Sets another fraction from here on; the present burst or gap keeps its drawn length.
     void set_fraction(double fraction);
 
     void spoil(std::span<std::uint8_t> octets);
-    /// Nothing is sent for as long as so many octets take: a burst goes on, and ends, all the same.
+    /// Lets the time of `octets` pass without sending: bursts begin and end all the same.
     void idle(double octets);
 
   private:
@@ -27,10 +27,10 @@ class ErrorBursts {
     void turn();
     static double good_octets(double fraction, double bad_octets);
 
-    double bad_octets_, good_octets_;  ///< means; no good_octets_: no bursts at all
+    double bad_octets_, good_octets_;  ///< means; good_octets_ of 0: no bursts
     Random random_;
     bool bad_ = false;
-    double left_octets_ = 0.0;  ///< of the state it is in
+    double left_octets_ = 0.0;  ///< of the present burst or gap
 };
 
 }  // namespace aeolis::simulation

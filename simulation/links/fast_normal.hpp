@@ -9,10 +9,11 @@
 
 namespace aeolis::simulation {
 
-/// Normal deviates for millions of noise samples a second: each draw's four 16-bit parts are looked up among the 65 536
-/// quantiles of the normal distribution and turned by a Hadamard matrix, which fills the gaps between quantiles.
+/// Normal deviates for millions of noise samples a second.
 ///
-/// Mean 0, deviation 1, uncorrelated; a deviate reaches 8.6. Copies go on alike. Source: ours, on [steele-2014]'s bits.
+/// The four 16-bit parts of a draw are looked up among the 65 536 quantiles of the normal distribution, then turned by
+/// a Hadamard matrix, which fills the gaps between quantiles. Mean 0, deviation 1, uncorrelated; a deviate reaches 8.6.
+/// Copies continue alike. Source: our design, on the bits of [steele-2014].
 class FastNormal {
   public:
     FastNormal(std::uint64_t seed, std::uint64_t case_number, Stream stream);

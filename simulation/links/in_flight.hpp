@@ -7,15 +7,15 @@
 
 namespace aeolis::simulation {
 
-/// What is on its way between the planets: things in the order they were sent, each with the time when it arrives.
-/// All travel alike long, so that the order of arrival is the order of sending.
+/// Items on their way between the planets, in the order of sending, each with its time of arrival. All travel equally
+/// long, so the order of arrival is the order of sending.
 template <typename T>
 class InFlight {
   public:
     void send(std::int64_t arrives_us, T what) { queue_.emplace_back(arrives_us, std::move(what)); }
     bool empty() const { return queue_.empty(); }
 
-    /// Hands over all that has arrived by `now_us`.
+    /// Hands over all items that have arrived by `now_us`.
     template <typename Receive>
     void arrive(std::int64_t now_us, Receive&& receive) {
         while (!queue_.empty() && queue_.front().first <= now_us) {

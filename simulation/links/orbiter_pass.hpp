@@ -13,18 +13,20 @@
 
 namespace aeolis::simulation {
 
-/// Octets on UHF are the landing's own, or files of its recording.
+/// Kinds of octets on UHF: real-time data of the landing, or files of its recording.
 enum class Traffic : std::uint8_t { realtime, files };
 
-/// A pass of an orbiter over the vehicle: what it hears, spoilt the more the farther it is, and when Earth has it.
+/// An orbiter's pass over the vehicle: what it hears, with errors that grow with range, and when Earth has it.
 ///
-/// In       octets that leave the vehicle while it is in view, in order     Out   the same, spoilt: at once, or later
-/// Memory   what it has recorded and not delivered
-/// Left out: its orbit; range runs along a parabola between rise and set. Light time from orbiter to vehicle, Doppler.
+/// In       octets that leave the vehicle while the orbiter is in view, in order
+/// Out      the same, with errors: at once, or later
+/// Memory   the recorded octets that are not yet delivered
+/// Left out: the orbit (range follows a parabola between rise and set), light time between orbiter and vehicle,
+/// Doppler.
 class OrbiterPass {
   public:
     OrbiterPass(RelayPass row, const Radio& radio, Random random);
-    /// The bent pipe of a scenario without passes: always in view, wherever it is.
+    /// The bent pipe of a scenario without passes: always in view.
     static RelayPass always();
 
     const RelayPass& row() const { return row_; }
@@ -35,16 +37,16 @@ class OrbiterPass {
     double loss_fraction(double e_s) const;
     double file_rate_bps(double e_s) const;
 
-    /// What is sent in one cycle, of a bent pipe what Earth receives of it, good until the next call; an orbiter that
-    /// records keeps it. Bursts of errors last by the clock, also while the vehicle has nothing to send in real time.
+    /// Receives the octets of one cycle. A bent pipe returns what Earth receives of them, valid until the next call; a
+    /// recording orbiter keeps them. Error bursts follow the clock, also while the vehicle sends nothing in real time.
     std::span<const std::uint8_t> hear(Traffic traffic, std::span<const std::uint8_t> octets, double e_s);
-    /// What an orbiter that records delivers in this cycle, files after all else; good until the next call.
+    /// A recording orbiter's delivery in this cycle, files last; valid until the next call.
     std::span<const std::uint8_t> deliver(Traffic traffic, double e_s);
-    /// Something that it recorded is not delivered yet.
+    /// Whether recorded octets are still undelivered.
     bool waits() const { return waits(Traffic::realtime) || waits(Traffic::files); }
     bool delivers(double e_s) const { return waits() && e_s >= delivery_begins_s(); }
 
-    /// What of ground's octets reaches the vehicle.
+    /// Adds the link's errors to ground's octets for the vehicle.
     void spoil_forward(std::span<std::uint8_t> octets, double e_s);
 
   private:
@@ -62,7 +64,7 @@ class OrbiterPass {
     RelayPass row_;
     double loss_, loss_range_km_, default_rate_bps_;
     double realtime_octets_a_cycle_;
-    std::array<ErrorBursts, 3> errors_;  ///< of both kinds of traffic, and of the forward link
+    std::array<ErrorBursts, 3> errors_;  ///< of both kinds of traffic and of the forward link
     std::array<Store, 2> stores_;
     std::vector<std::uint8_t> heard_;
     double delivery_credit_octets_ = 0.0;

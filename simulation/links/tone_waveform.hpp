@@ -9,20 +9,21 @@
 
 namespace aeolis::simulation {
 
-/// A tone as the transmitter sends it: from `start_s` for a symbol, in the samples' time.
+/// A transmitted tone: one symbol from `start_s`, in the samples' time.
 struct SentTone {
     double start_s = 0.0;
     std::uint8_t tone = 0;
 };
 
-/// What the modulator makes of one tone at a sample rate: exp(j m sq) = cos m + j sin m · sq, the square wave without
-/// those harmonics that the sampling could not hold (a front end filters them off before it samples).
+/// One tone's modulation at a sample rate: exp(j m sq) = cos m + j sin m · sq, the square wave without the harmonics
+/// that the sampling could not hold (a front end filters them off before it samples).
 class ModulatedTone {
   public:
     /// Harmonics up to 0.45 of `rate_hz`.
     ModulatedTone(const MfskWaveform& waveform, int tone, double rate_hz);
 
-    /// Of amplitude 1 · e^j0 without modulation. `cycles`: of the subcarrier, from the rise of its square wave.
+    /// The signal relative to the unmodulated carrier, 1 · e^j0. `cycles`: of the subcarrier, from the rise of its
+    /// square wave.
     std::complex<float> at(double cycles) const {
         const double within = cycles - static_cast<double>(static_cast<std::int64_t>(cycles));
         const auto place = static_cast<std::size_t>((within < 0.0 ? within + 1.0 : within) * places);

@@ -9,10 +9,12 @@
 
 namespace aeolis::simulation {
 
-/// The vehicle's UHF transmitter while it lands: octets leave it at the link's rate. What leaves it in plasma, or while
-/// its antenna is changed, nobody hears. It knows nothing of frames, and nothing of who hears it (orbiter_pass.hpp).
+/// The vehicle's UHF transmitter during landing: octets leave it at the link's rate.
 ///
-/// Memory   ours: it holds 64 KiB that wait; what finds no room is lost, and counted
+/// Octets sent in plasma, or while the antenna is switched, are lost. The link knows neither frames nor receivers
+/// (orbiter_pass.hpp).
+///
+/// Memory   our assumption: 64 KiB of waiting octets; what finds no room is lost and counted
 /// Plasma   from below the scenario's altitude or speed of its start, whichever comes first after entry, to its end
 ///          speed
 /// Left out: antenna patterns
@@ -24,20 +26,20 @@ class UhfLink {
         double altitude_m = 0.0;
         double speed_mps = 0.0;
         bool transmitter_on = false;     ///< and an antenna selected
-        bool parachute_antenna = false;  ///< else that of entry
+        bool parachute_antenna = false;  ///< false: the entry antenna
     };
 
     explicit UhfLink(const Radio& radio) : radio_(radio) {}
 
-    /// Octets given to the transmitter at the start of a cycle.
+    /// Gives octets to the transmitter at the start of a cycle.
     void offer(std::span<const std::uint8_t> octets);
 
-    /// One cycle of 1/64 s: what can be heard of it. Good until the next.
+    /// Runs one cycle of 1/64 s; returns the octets that can be heard, valid until the next call.
     std::span<const std::uint8_t> cycle(const Surroundings& at);
 
     bool up() const { return up_; }
     const char* reason() const { return reason_; }              ///< static text
-    std::uint64_t lost_octets() const { return lost_octets_; }  ///< for want of room, or while the link was down
+    std::uint64_t lost_octets() const { return lost_octets_; }  ///< for lack of room, or while the link was down
 
   private:
     const char* why_down(const Surroundings& at);

@@ -7,9 +7,11 @@
 
 namespace aeolis::simulation {
 
-/// The low-gain antennas of X-band on the backshell. The vehicle uses one of them: the timeline switches to that of the
-/// parachute while it straightens up. Patterns are ours, because the mission's are not published here: both turn about
-/// z of B, so rolling changes nothing; 3 dB below their best at 60° to either side of it, and nowhere below −20 dB.
+/// The low-gain X-band antennas on the backshell. One is in use: the timeline switches to the parachute's while the
+/// vehicle straightens up.
+///
+/// Our assumption, because the mission's patterns are not published here: both are symmetric about z of B, so rolling
+/// changes nothing; 3 dB below their best at 60° to either side of it, and nowhere below −20 dB.
 ///
 ///   entry      best away from the heatshield (−z of B), where Earth is from cruise until the parachute opens
 ///   parachute  best at 70° from there: under the parachute −z points up and Earth stands at the horizon

@@ -13,24 +13,24 @@
 
 namespace aeolis::simulation {
 
-/// X-band as it reaches Earth over a cycle: carrier, and what modulates it. For an antenna to make samples of.
+/// The X-band signal at Earth over a cycle: carrier and modulation. Input of an antenna's front end.
 struct XBandField {
     Ert ert;                     ///< of the cycle's start
-    double e_s = 0.0;            ///< when it left the vehicle, from the scenario's entry
+    double e_s = 0.0;            ///< departure from the vehicle, from the scenario's entry
     double doppler_hz = 0.0;     ///< one way, at the cycle's start
-    bool up = false;             ///< else Earth has set, or no antenna is selected: nothing but noise
+    bool up = false;             ///< false: Earth has set, or no antenna is selected; only noise
     double gain_db = 0.0;        ///< of the antenna towards Earth, against its best direction
     std::optional<ToneId> tone;  ///< none: the carrier alone
     double tone_age_s = 0.0;     ///< since the symbol began
 };
 
-/// The antenna on Earth and its front end: samples of what arrives, noise and all, with ground's predict removed.
+/// An antenna on Earth with its front end: samples of the arriving signal and noise, less ground's predict.
 ///
 /// In       X-band fields, one a cycle without a gap        Out   a cycle's samples, telemetry::x_band_rate_hz
-/// A value; copies go on alike.
+/// A value; copies continue alike.
 class XBandFrontEnd {
   public:
-    /// `predict_hz` by seconds from the scenario's entry.
+    /// `predict_hz`: by seconds from the scenario's entry.
     XBandFrontEnd(const MfskWaveform& waveform, double total_c_n0_dbhz, TimeTable predict_hz, std::uint64_t seed,
                   std::uint64_t case_number);
 

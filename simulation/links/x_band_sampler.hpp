@@ -11,25 +11,26 @@
 
 namespace aeolis::simulation {
 
-/// The front end of a ground station: complex baseband samples of carrier and tone, phase-continuous, with white noise
-/// of power 1 a sample (N0 = 1/rate).
+/// The front end of a ground station: complex baseband samples of carrier and tone, phase-continuous, with white noise.
 ///
+/// Noise has power 1 a sample (N0 = 1/rate).
 /// In      stretches, in each of which Doppler is linear and gain constant        Out   their samples, in portions of
 ///         any size
-/// Memory  one modulated tone's table; nothing grows
+/// Memory  the table of one modulated tone, of constant size
 class XBandSampler {
   public:
     XBandSampler(const MfskWaveform& waveform, double rate_hz, std::uint64_t seed, std::uint64_t case_number);
 
     struct Stretch {
         int samples = 0;
-        double residual_from_hz = 0.0, residual_to_hz = 0.0;  ///< of the carrier less the predict, at its ends
+        double residual_from_hz = 0.0, residual_to_hz = 0.0;  ///< carrier less predict, at both ends
         double doppler_hz = 0.0;                              ///< mean; motion scales the subcarrier with it
-        std::optional<double> total_c_n0_dbhz;                ///< none: nothing but noise
+        std::optional<double> total_c_n0_dbhz;                ///< none: only noise
     };
     void begin(const Stretch& stretch);
 
-    /// Samples of the stretch; a tone that began `tone_age_s` before the first of them, or the carrier alone.
+    /// Fills samples of the stretch with a tone that began `tone_age_s` before the first of them, or with the carrier
+    /// alone.
     void take(std::span<std::complex<float>> samples, std::optional<std::uint8_t> tone, double tone_age_s);
 
   private:
@@ -39,7 +40,7 @@ class XBandSampler {
     std::optional<std::uint8_t> modulated_for_;
     std::optional<ModulatedTone> modulated_;
     std::complex<double> carrier_{1.0, 0.0}, turn_, turn_of_turn_;
-    double lead_s_ = 0.0, lead_rate_ = 0.0;  ///< the subcarrier's time runs ahead by this: ∫ Doppler / carrier
+    double lead_s_ = 0.0, lead_rate_ = 0.0;  ///< lead of the subcarrier's time: ∫ Doppler / carrier
     float amplitude_ = 0.0F;
 };
 

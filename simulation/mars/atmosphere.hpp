@@ -15,13 +15,12 @@ struct Air {
     double speed_of_sound_mps = 0.0;
 };
 
-/// The air above Gale: a published table (see atmosphere.cpp), the scenario's scale by height, and a case's own
-/// departure.
+/// The air above Gale: a published table (see atmosphere.cpp), the scenario's scale by height, and a case's departure.
 ///
-/// Density is interpolated exponentially, temperature and scale linearly; outside the table its last layers go on.
+/// Density is interpolated exponentially, temperature and scale linearly; outside the table its last layers continue.
 /// Range −1 … 250 km above the landing radius; above 250 km there is no air.
-/// The departure is ours: four fifths of the scenario's fraction alike at all heights, three fifths as a wave over
-/// height.
+/// The departure is our assumption: four fifths of the scenario's fraction at all heights alike, three fifths as a wave
+/// over height.
 class Atmosphere {
   public:
     explicit Atmosphere(std::span<const DensityScale> scales);  ///< without departure

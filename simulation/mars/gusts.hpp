@@ -8,19 +8,19 @@
 
 namespace aeolis::simulation {
 
-/// Gusts along the way of one vehicle: each part a first-order Gauss–Markov process by the length of air flown through.
+/// Gusts along one vehicle's path: each component is a first-order Gauss–Markov process over the length of air flown.
 ///
 ///   u ← a u + σ √(1 − a²) n,   a = exp(−V Δt / L),   n normal
 ///
-/// so that the deviation does not depend on the step. All numbers are ours: σ is the scenario's at the ground and fades
-/// to nothing at 5 km, half of it vertically; L is half the height, within 25 … 500 m. The first part of what is known
-/// of gusts near Earth's ground (Dryden) has this form.
+/// The deviation so does not depend on the step. All numbers are our assumptions: σ is the scenario's at the ground and
+/// falls to zero at 5 km, half of it vertically; L is half the height, within 25 … 500 m. The first component of gusts
+/// near Earth's ground (Dryden) has this form.
 class Gusts {
   public:
     Gusts(double deviation_mps, Random random) : deviation_mps_(deviation_mps), random_(random) {}
 
     bool blow_at(double altitude_m) const { return deviation_mps_ > 0.0 && altitude_m < top_m; }
-    /// The vehicle has flown for `step_s` at this speed through the air.
+    /// Advances the gusts by `step_s` of flight at this speed through the air.
     void advance(double altitude_m, double airspeed_mps, double step_s);
     /// [m/s] in M
     Vector3 at(double altitude_m, const Horizon& local) const;
@@ -31,7 +31,7 @@ class Gusts {
     double deviation_mps_;
     Random random_;
     bool begun_ = false;
-    std::array<double, 3> parts_{};  ///< east, north, up, of deviation 1
+    std::array<double, 3> parts_{};  ///< east, north, up, each of deviation 1
 };
 
 }  // namespace aeolis::simulation

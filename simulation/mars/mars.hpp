@@ -3,7 +3,7 @@
 
 #include "simulation/vectors.hpp"
 
-// Mars as a body: gravity, spin, places on it. Everything in frame M, fixed to the rotating planet.
+// Mars as a body: gravity, spin, positions on it. Everything in frame M, fixed to the rotating planet.
 namespace aeolis::simulation {
 
 inline constexpr double mars_gm_m3ps2 = 42828.3737e9;          // [konopliv-2016]
@@ -15,8 +15,7 @@ inline constexpr double mars_spin_rps = 7.088218e-5;           // [iau-mars]
 /// surface. `p_MoB_M` [m], norm above 3.0e6. Source: [konopliv-2016] constants, [vallado-2013] form.
 Vector3 gravity(const Vector3& p_MoB_M);
 
-/// What a body that moves relative to rotating Mars feels besides forces: gravity, Coriolis and centrifugal
-/// acceleration. [m/s²] in M.
+/// Acceleration without other forces, relative to rotating Mars: gravity, Coriolis and centrifugal. [m/s²] in M.
 Vector3 free_fall(const Vector3& p_MoB_M, const Vector3& v_MB_M);
 
 /// Velocity relative to inertial space, in axes M. [m/s]

@@ -3,7 +3,7 @@
 
 #include "simulation/mars/mars.hpp"
 
-// A point that flies around rotating Mars, and how it is integrated.
+// A point mass in flight around rotating Mars, and its integration.
 namespace aeolis::simulation {
 
 /// Position from Mars's centre and velocity relative to rotating Mars, in M. [m, m/s]
@@ -14,9 +14,9 @@ struct PointMass {
 
 /// One step of the classical fourth-order Runge–Kutta method over `step_s` (negative: back in time).
 ///
-/// `specific_force(fraction, p, v)` gives force by mass [m/s²] in M at that fraction of the step (0, 0.5, 1).
-/// `mean_specific_force`, when given, receives its mean over the step by Simpson's rule: what an accelerometer sees.
-/// Source: [hairer-1993].
+/// `specific_force(fraction, p, v)` gives the specific force [m/s²] in M at that fraction of the step (0, 0.5, 1).
+/// `mean_specific_force`, when given, receives the mean over the step by Simpson's rule, as an accelerometer measures
+/// it. Source: [hairer-1993].
 template <typename SpecificForce>
 PointMass runge_kutta_step(const PointMass& at, double step_s, SpecificForce&& specific_force,
                            Vector3* mean_specific_force = nullptr) {
@@ -41,8 +41,8 @@ PointMass runge_kutta_step(const PointMass& at, double step_s, SpecificForce&& s
             at.v_MB_M + sixth_s * (a1 + 2.0 * (a2 + a3) + a4)};
 }
 
-/// Falls freely for `duration_s` (negative: back in time) in steps of at most one second, which keeps better than
-/// a millimetre over an hour on an approach orbit.
+/// Propagates free fall over `duration_s` (negative: back in time) in steps of at most one second; the error stays
+/// below a millimetre over an hour on an approach orbit.
 PointMass coast(PointMass from, double duration_s);
 
 }  // namespace aeolis::simulation

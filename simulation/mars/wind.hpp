@@ -7,17 +7,19 @@
 
 namespace aeolis::simulation {
 
-/// Wind over Gale. No measured winds are published for the landing, so all of it is ours: the scenario's steady wind, a
-/// case's own constant part, below 5 km two waves over height half as strong, for shear; these are horizontal
-/// everywhere. And gusts, which change as the vehicle flies on.
+/// Wind over Gale: steady wind, a case's own constant part, shear, and gusts.
+///
+/// No measured winds are published for the landing, so all of it is our assumption. The steady wind is the scenario's.
+/// Shear, below 5 km, is two waves over height, half as strong as the case's part. These are horizontal everywhere.
+/// Gusts change along the flight.
 class Wind {
   public:
     Wind(double steady_east_mps, double steady_north_mps, double deviation_mps, Random random, const Gusts& gusts);
 
-    /// Velocity of the air relative to rotating Mars [m/s] in M, at `p_MoB_M`, whose height is `altitude_m`.
+    /// Velocity of the air relative to rotating Mars [m/s] in M, at `p_MoB_M`, which has the height `altitude_m`.
     Vector3 at(const Vector3& p_MoB_M, double altitude_m) const;
 
-    /// The vehicle, there with that velocity, flies on for `step_s`.
+    /// Advances the gusts by `step_s` of flight at this position and velocity.
     void advance(const Vector3& p_MoB_M, const Vector3& v_MB_M, double altitude_m, double step_s) {
         if (gusts_.blow_at(altitude_m)) gusts_.advance(altitude_m, (v_MB_M - at(p_MoB_M, altitude_m)).norm(), step_s);
     }

@@ -14,24 +14,24 @@ namespace aeolis::simulation {
 
 /// The landing radar: six beams in turn, each at 20 Hz.
 ///
-/// Beam 0 along z of B, 1…3 at 20°, 4…5 at 50° from it. [facts] Ours: their azimuths (0°, 120°, 240°; 60°, 240°),
-/// ranges of 4 m to 12, 12 and 9 km (the flatter, the weaker the echo), a largest angle of 65° between beam and the
-/// ground's normal, and that a reading is as of its tick. A case has one range scale error and each beam its own
-/// velocity bias, of the scenario's deviations; half as much is noise on each reading, and a part of them fails. The
-/// hung rover and the plume are not seen.
+/// Beam 0 along z of B, 1…3 at 20°, 4…5 at 50° from it. [facts]
+/// Our assumptions: their azimuths (0°, 120°, 240°; 60°, 240°), ranges from 4 m to 12, 12 and 9 km (a flatter beam has
+/// a weaker echo), at most 65° between beam and the ground's normal, and that a reading is as of its tick. A case has
+/// one range scale error, and each beam its own velocity bias, with the scenario's deviations; noise on each reading
+/// has half of that, and a fraction of the readings fails. The hung rover and the plume are not seen.
 class Radar {
   public:
-    /// `dropouts` draws which readings fail.
+    /// `dropouts` draws the readings that fail.
     Radar(const Dispersions& dispersions, Random random, Random dropouts);
 
     static constexpr std::uint32_t beams = 6;
     static std::array<double, 3> direction_B(std::uint32_t beam);
 
-    /// Whether the heatshield, which is `to_heatshield_M` away, stands in a beam: nearer than 90 m, where it fills the
-    /// 3° of a beam [facts], and in any part of it. Ours: farther off the ground's echo is the stronger.
+    /// Whether the heatshield, `to_heatshield_M` away, blocks a beam: within 90 m, where it fills the beam's 3°
+    /// [facts], and in any part of it. Our assumption: beyond that the ground's echo is stronger.
     static bool hides(const Vector3& to_heatshield_M, const Vector3& direction_M);
 
-    /// The reading of one beam now.
+    /// Measures with one beam now.
     flight::RadarBeam measure(std::uint32_t beam, const PointMass& at, const Quaternion& q_MB, const Terrain& terrain);
 
     /// Whether `beam` measures between two moments of the 1600 Hz grid (first excluded, last included).

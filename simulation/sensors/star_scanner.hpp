@@ -8,8 +8,9 @@
 
 namespace aeolis::simulation {
 
-/// Cruise attitude determination: the attitude once a second while the cruise stage, which carries it, is there.
-/// A case has one constant error, a small rotation in B of the scenario's deviation on each axis.
+/// Cruise attitude determination: the attitude once a second while the cruise stage, which carries it, is attached.
+///
+/// A case has one constant error, a small rotation in B with the scenario's deviation on each axis.
 class StarScanner {
   public:
     StarScanner(const Dispersions& dispersions, Random random)

@@ -5,13 +5,13 @@
 
 namespace aeolis::simulation {
 
-/// The bridle that lets the rover down from the descent stage: its three legs meet in one point of the stage and are
-/// taken as one, a damped spring that can only pull, between that point and the rover's centre of mass.
+/// The bridle that lowers the rover from the descent stage: a damped spring that can only pull.
 ///
-/// 7.5 m in 5 s. [facts] Ours: the speed of pay-out rises for 0.6 s, is steady, and falls for 0.6 s; the confluence is
-/// 0.2 m below the stage's centre of mass, the stowed rover's centre 0.2 m below that; the rover's weight stretches it
-/// by 15 mm, so that the rover bobs at 16 rad/s under a stage that stands still, damped to three tenths of the
-/// critical.
+/// Its three legs meet in one point of the stage and act as one, between that point and the rover's centre of mass. 7.5
+/// m in 5 s. [facts]
+/// Our assumptions: the speed of pay-out rises for 0.6 s, is steady, and falls for 0.6 s; the confluence is 0.2 m below
+/// the stage's centre of mass, and the stowed rover's centre 0.2 m below that; the rover's weight stretches it by 15
+/// mm, so that the rover bobs at 16 rad/s under a motionless stage, with damping of three tenths of the critical.
 class Bridle {
   public:
     static constexpr double length_m = 7.5;
@@ -24,8 +24,8 @@ class Bridle {
     double payed_out_m(double now_s) const;
     double speed_mps(double now_s) const;  ///< of the rover away from the stage
 
-    /// What it pulls the rover with, which is `offset` from the confluence and moves away from it with `rate`. [N],
-    /// [m], [m/s], all in one frame
+    /// Force on the rover at `offset` from the confluence, moving away from it with `rate`. [N], [m], [m/s], all in one
+    /// frame
     Vector3 pull_N(double now_s, double rover_kg, const Vector3& offset, const Vector3& rate) const;
 
   private:

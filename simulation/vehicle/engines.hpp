@@ -11,8 +11,8 @@ namespace aeolis::simulation {
 /// Eight throttled descent engines, each with its own thrust, mounted as flight/devices/effectors.hpp draws them.
 ///
 /// 31 … 3603 N each, specific impulse 204 s at least thrust to 223 s at most. [facts]
-/// Ours: they light only when the valves have been open for 5 s (priming), 0.15 s after the command; thrust follows the
-/// throttle with a time constant of 0.06 s and dies with one of 0.03 s.
+/// Our assumptions: they ignite 0.15 s after the command, and only when the valves have been open for 5 s (priming);
+/// thrust follows the throttle with a time constant of 0.06 s and decays with one of 0.03 s.
 class Engines {
   public:
     static constexpr double largest_thrust_N = 3603.0;
@@ -22,11 +22,11 @@ class Engines {
     bool valves_open() const { return valves_open_; }
 
     void command(const flight::EngineCommand& command, double now_s);
-    /// Propellant that the next `step_s` burn [kg]; thrust moves on by that time.
+    /// Advances thrust by `step_s` and returns the propellant burnt in that time [kg].
     double advance(double now_s, double step_s, double propellant_left_kg);
 
     bool running() const { return running_; }
-    double thrust_N() const { return thrust_sum_N_; }  ///< of all, along each one's own direction
+    double thrust_N() const { return thrust_sum_N_; }  ///< sum over the engines, each along its own direction
     Vector3 force_B_N() const { return force_B_N_; }
     Vector3 torque_B_Nm() const { return torque_B_Nm_; }
 

@@ -3,7 +3,7 @@
 
 #include "simulation/mars/mars.hpp"
 
-// A rigid body that flies around rotating Mars in six degrees of freedom.
+// A rigid body in flight around rotating Mars in six degrees of freedom.
 //
 //   ṗ = v    v̇ = F/m + gravity − 2 Ω×v − Ω×(Ω×p)    q̇_MB = ½ (q_MB ω − Ω q_MB)    I ω̇ = T − ω × Iω
 //
@@ -18,18 +18,18 @@ struct RigidBody {
     Vector3 rate_B_rps = Vector3::Zero();
 };
 
-/// Moments about the principal axes, which are those of B. [kg m²]
+/// Principal moments of inertia; the principal axes are those of B. [kg m²]
 struct Inertia {
     Vector3 moments_B = Vector3::Ones();
 };
 
-/// What pushes and turns it. [N] in M, [N m] in B
+/// Force and torque on a body. [N] in M, [N m] in B
 struct Wrench {
     Vector3 force_M = Vector3::Zero();
     Vector3 torque_B = Vector3::Zero();
 };
 
-/// How fast a rigid body's state changes, and under which force.
+/// Time derivative of a rigid body's state, and the force that acts.
 struct RigidBodySlope {
     Vector3 v, a;
     Eigen::Vector4d q;
@@ -48,7 +48,7 @@ inline RigidBodySlope slope_of(const RigidBody& body, const Wrench& by, double m
             by.force_M};
 }
 
-/// After `time_s` of an even slope; the attitude is unit again.
+/// The state after `time_s` at a constant slope, with the attitude normalised.
 inline RigidBody moved(const RigidBody& at, const RigidBodySlope& by, double time_s) {
     RigidBody body;
     body.p_MoB_M = at.p_MoB_M + time_s * by.v;
@@ -58,7 +58,7 @@ inline RigidBody moved(const RigidBody& at, const RigidBodySlope& by, double tim
     return body;
 }
 
-/// The four slopes of a Runge–Kutta step in one.
+/// The Runge–Kutta mean of a step's four slopes.
 inline RigidBodySlope mean_slope(const RigidBodySlope& k1, const RigidBodySlope& k2, const RigidBodySlope& k3,
                                  const RigidBodySlope& k4) {
     RigidBodySlope mean;
@@ -72,9 +72,9 @@ inline RigidBodySlope mean_slope(const RigidBodySlope& k1, const RigidBodySlope&
 
 /// One step of the classical fourth-order Runge–Kutta method over `step_s`; mass and inertia are constant over it.
 ///
-/// `wrench(fraction, body)` at that fraction of the step (0, 0.5, 1); the attitude it sees is unit.
-/// `mean_force_M`, when given, receives the mean force over the step by Simpson's rule: what an accelerometer feels.
-/// Source: [hairer-1993].
+/// `wrench(fraction, body)` is evaluated at that fraction of the step (0, 0.5, 1) with a unit attitude. `mean_force_M`,
+/// when given, receives the mean force over the step by Simpson's rule, as an accelerometer measures it. Source:
+/// [hairer-1993].
 template <typename WrenchAt>
 RigidBody runge_kutta_step(const RigidBody& at, double step_s, double mass_kg, const Inertia& inertia,
                            WrenchAt&& wrench, Vector3* mean_force_M = nullptr) {

@@ -12,31 +12,31 @@
 
 namespace aeolis::simulation {
 
-/// A body that the vehicle has let go: a point with drag in the vehicle's air and wind, until it lies on the ground;
-/// and how near the vehicle, or the rover on its bridle, comes to it once it has got clear.
+/// A jettisoned body: a point with drag in the vehicle's air and wind, until it lies on the ground.
 ///
-/// Rate     a step each 1/16 s of its own time, told of the vehicle each 1/64 s           Memory   none beyond itself
-/// Left out lift, tumbling, what the one does to the other's air
+/// Also measures how close the vehicle, or the rover on its bridle, comes to it after separation.
+/// Rate     a step each 1/16 s of its own time; the vehicle's position each 1/64 s           Memory   constant
+/// Left out lift, tumbling, disturbance of each other's air
 class SeparatedBody {
   public:
-    /// It is clear of the vehicle at `clear_m`, and strikes it when it comes within `size_m` after that, or does not
-    /// get clear within `clear_within_s`.
+    /// It is clear of the vehicle at `clear_m`. It has struck the vehicle when it comes within `size_m` after that, or
+    /// is not clear within `clear_within_s`.
     SeparatedBody(double size_m, double clear_m) : size_m_(size_m), clear_m_(clear_m) {}
 
-    /// Let go at `at`. Once.
+    /// Releases the body with the state `at`. Call once.
     void release(const PointMass& at, double mass_kg, double drag_area_m2);
-    /// A tick has passed; the vehicle is now at `p_MoB_M`, and the rover, if it hangs on its bridle, where it is.
+    /// Advances by one tick. The vehicle is now at `p_MoB_M`; `rover`: its state while it hangs on the bridle.
     void tick(const Vector3& p_MoB_M, const std::optional<PointMass>& rover, const Atmosphere& atmosphere,
               const Wind& wind, const Terrain& terrain);
 
     bool released() const { return released_; }
-    /// How near the vehicle has come to it again; none: it never came nearer once it was clear.
+    /// Least distance of the vehicle on its return, after clearance; none: it never came closer again.
     std::optional<double> least_m() const { return least_m_; }
     bool struck() const { return (least_m_ && *least_m_ < size_m_) || (!clear_ && since_release_s_ > clear_within_s); }
-    static constexpr double clear_within_s = 10.0;  ///< ours
-    /// As of the last step, at most 3/64 s ago.
+    static constexpr double clear_within_s = 10.0;  ///< our assumption
+    /// State after the last step, at most 3/64 s ago.
     const PointMass& at() const { return at_; }
-    /// To where it is now, from the vehicle. [m] in M
+    /// Vector from the vehicle to its present position. [m] in M
     Vector3 from(const Vector3& p_MoB_M) const { return at_.p_MoB_M + since_step_s_ * at_.v_MB_M - p_MoB_M; }
 
   private:
@@ -51,9 +51,10 @@ class SeparatedBody {
     std::optional<double> least_m_;
 };
 
-/// What comes off the vehicle and could come back to it. Sizes are ours: the heatshield is 4.5 m across; of the
-/// backshell the parachute's lines count too. So is the heatshield's drag area, broadside at the drag of the entry
-/// vehicle below Mach 1.
+/// Jettisoned bodies that could come back to the vehicle.
+///
+/// Sizes are our assumptions: the heatshield is 4.5 m across; the backshell's includes the parachute's lines. So is the
+/// heatshield's drag area: broadside, with the drag of the entry vehicle below Mach 1.
 struct SeparatedBodies {
     SeparatedBody heatshield{5.0, 15.0};
     SeparatedBody backshell{10.0, 40.0};

@@ -4,8 +4,8 @@
 #include "simulation/mars/point_mass.hpp"
 #include "simulation/vehicle/rigid_body.hpp"
 
-// The sky crane: the descent stage, a rigid body, and the rover below it, a point that swings on the bridle. They push
-// each other by what `loads` gives them, and are flown in one step, so that momentum is kept to the integrator's order.
+// The sky crane: the descent stage, a rigid body, and the rover below it, a point that swings on the bridle. `loads`
+// gives the forces between them. One step integrates both, so that momentum is kept to the integrator's order.
 namespace aeolis::simulation {
 
 struct StageAndRover {

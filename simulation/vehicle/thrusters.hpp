@@ -8,14 +8,16 @@
 
 namespace aeolis::simulation {
 
-/// Eight entry thrusters of 302 N [facts], mounted as flight/devices/effectors.hpp draws them. Pulses are rectangular;
-/// ours: a valve opens and closes 4 ms after it is told, and stays open 4 ms at least. Specific impulse 220 s. [facts]
+/// Eight entry thrusters of 302 N, specific impulse 220 s [facts], mounted as flight/devices/effectors.hpp draws them.
+///
+/// Pulses are rectangular. Our assumption: a valve opens and closes 4 ms after its command, and stays open for at least
+/// 4 ms.
 class Thrusters {
   public:
-    /// Pulses of the cycle that begins now.
+    /// Sets the pulses of the cycle that begins now.
     void command(const flight::ThrusterCommand& command, bool enabled, double now_s);
 
-    /// Mean over a step, in B, torque about the drawing's origin; and what it burns.
+    /// Mean force and torque over a step, in B, torque about the drawing's origin; and the propellant burnt.
     struct Push {
         Vector3 force_B = Vector3::Zero();
         Vector3 torque_B = Vector3::Zero();
@@ -27,7 +29,7 @@ class Thrusters {
     struct Pulse {
         double from_s = 0.0, until_s = 0.0;
     };
-    /// The last pulse may still burn when the next is told.
+    /// Two pulses a thruster: the last may still burn when the next is commanded.
     std::array<std::array<Pulse, 2>, 8> pulses_{};
     double last_until_s_ = 0.0;
 };

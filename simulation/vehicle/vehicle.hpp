@@ -21,28 +21,28 @@
 
 namespace aeolis::simulation {
 
-/// All that moves: a rigid body with a configuration, air and a parachute that push and turn it, thrusters, engines;
-/// and once it is let down, the rover on its bridle as a second body, which swings and comes to stand.
+/// The flying vehicle: a rigid body with a configuration, moved by air, parachute, thrusters and engines.
 ///
-/// Its point is the centre of mass of what is rigid: with each jettison it moves to that of what flies on, and with the
-/// velocity there. Thrusters and engines push where they are mounted, by arms from where it is now. Time is in seconds
-/// since the start of the world.
+/// After the bridle pays out, the rover is a second body, which swings and comes to rest. The state is that of the
+/// rigid body's centre of mass: each jettison moves it to the centre of what flies on, with the velocity there.
+/// Thrusters and engines push at their mounts, with arms from that centre. Time is in seconds since the start of the
+/// world.
 class Vehicle {
   public:
     Vehicle(const Scenario& scenario, const PointMass& start, const Quaternion& q_MB, std::uint64_t seed,
             std::uint64_t case_number);
 
-    /// A case of a campaign begins: masses, drag, parachute, air and wind are drawn anew, and it is where it truly is.
+    /// Starts a campaign case: draws masses, drag, parachute, air and wind anew, and sets the true position.
     void disperse(const Scenario& scenario, const PointMass& at, std::uint64_t seed, std::uint64_t case_number);
 
-    /// What a pyro does to it. Firing one twice does nothing.
+    /// Applies the effect of a pyro. A second firing does nothing.
     void fire(flight::PyroId pyro, double now_s);
-    /// What the drivers of thrusters, engines and bridle do from now on.
+    /// Sets what the drivers of thrusters, engines and bridle do from now on.
     void command(const flight::ThrusterCommand& thrusters, bool thrusters_enabled, const flight::EngineCommand& engines,
                  bool pay_out_bridle, double now_s);
-    /// Flies on by at most 5 ms.
+    /// Integrates one step of at most 5 ms.
     void step(double now_s, double step_s);
-    /// A tick of 1/64 s has been flown: so do the bodies that it has let go.
+    /// Advances the jettisoned bodies by a tick of 1/64 s. Call after the vehicle has flown it.
     void fly_separated();
 
     PointMass at() const { return {body_.p_MoB_M, body_.v_MB_M}; }
@@ -58,7 +58,7 @@ class Vehicle {
     const SeparatedBodies& separated() const { return separated_; }
     const Terrain& terrain() const { return terrain_; }
 
-    /// What the air does to it now.
+    /// Present aerodynamic quantities.
     struct Flow {
         double density_kgm3 = 0.0, mach = 0.0, dynamic_pressure_Pa = 0.0;
         double angle_of_attack_rad = 0.0, bank_rad = 0.0;
@@ -66,29 +66,29 @@ class Vehicle {
     Flow flow() const;
     bool parachute_open(double now_s) const;
 
-    /// The rover while the bridle holds it off the stage: its centre of mass.
+    /// State of the rover's centre of mass while it hangs below the stage on the bridle.
     std::optional<PointMass> rover() const { return rover_hangs() ? std::optional{rover_} : std::nullopt; }
-    /// Height of its wheels above ground. [m]
+    /// Height of the rover's wheels above ground. [m]
     double wheels_height_m() const;
-    /// How far the bridle is off the vertical. [rad]
+    /// Angle of the bridle from the vertical. [rad]
     double swing_rad() const;
 
   private:
-    /// What pushes by itself over a step, constant or linear over it.
+    /// Inputs over a step, each constant or linear over it.
     struct Step {
         double start_s = 0.0, length_s = 0.0;
         Thrusters::Push thrusters;
         Vector3 engines_start_B_N, engines_end_B_N, engines_start_B_Nm, engines_end_B_Nm;
-        std::optional<Trim> trim;  ///< by the Mach number at its start: it changes slowly
+        std::optional<Trim> trim;  ///< by the Mach number at the step's start, since it changes slowly
     };
-    /// A body whose station it is is let go.
+    /// Releases a jettisoned body from its station.
     void let_go(SeparatedBody& body, double station_m, double mass_kg, double drag_area_m2) const;
-    /// Where and how fast a point of it moves that is `from_centre_B` from its centre of mass.
+    /// State of a point of the body at `from_centre_B` from its centre of mass.
     PointMass point_at(const RigidBody& body, const Vector3& from_centre_B) const;
-    /// What is attached has changed: its point moves on to the centre of mass.
+    /// Moves the state to the new centre of mass after the attached parts have changed.
     void recentre();
     bool rover_hangs() const { return !configuration_.rover_on_stage && configuration_.bridle; }
-    /// From where the bridle meets the stage to the rover, and how that changes. [m, m/s] in M
+    /// Vector from the bridle's mount on the stage to the rover, and its rate. [m, m/s] in M
     PointMass on_bridle(const RigidBody& stage, const PointMass& rover) const;
     StageAndRoverLoads loads(Step& step, double fraction, const StageAndRover& both) const;
     Wrench wrench(Step& step, double fraction, const RigidBody& body) const;
@@ -96,9 +96,9 @@ class Vehicle {
     void add_air(double now_s, Step& step, const RigidBody& body, Wrench& wrench) const;
 
     Terrain terrain_;
-    double parachute_area_m2_;                 ///< with this case's own drag
-    double parachute_plane_rad_;               ///< this case's own, from up, in which its lift begins
-    std::array<double, 2> aeroshell_factors_;  ///< this case's own drag and lift, at high and at low Mach numbers
+    double parachute_area_m2_;                 ///< with this case's drag
+    double parachute_plane_rad_;               ///< this case's angle from up of the plane of its first lift
+    std::array<double, 2> aeroshell_factors_;  ///< this case's drag and lift, at high and at low Mach numbers
     Atmosphere atmosphere_;
     Wind wind_;
 
@@ -108,13 +108,13 @@ class Vehicle {
     Thrusters thrusters_;
     Configuration configuration_;
     std::bitset<32> fired_;  ///< by PyroId
-    Vector3 centre_B_m_;     ///< the point of body_, from the stage's own centre of mass
-    /// Origins of the drawings of thrusters and engines, likewise: on the axis.
+    Vector3 centre_B_m_;     ///< reference point of body_, from the stage's own centre of mass
+    /// Origins of the drawings of thrusters and engines, also from there: on the axis.
     Vector3 thrusters_from_B_m_, engines_from_B_m_;
     Engines engines_;
     Bridle bridle_;
     std::optional<double> mortar_s_;
-    Vector3 right_at_mortar_M_ = Vector3::UnitZ();  ///< level, to the right of its flight
+    Vector3 right_at_mortar_M_ = Vector3::UnitZ();  ///< horizontal, to the right of its flight
     SeparatedBodies separated_;
 };
 

@@ -8,19 +8,20 @@
 
 namespace aeolis::simulation {
 
-/// As GNC takes it: angles in radians. What ground's navigators do not bring keeps GNC's own value.
+/// Ground's solution in the form that GNC takes: angles in radians. Fields that ground lacks keep GNC's own values.
 flight::gnc::Solution solution_of(const NavigationSolution& from);
 
-/// The test venue "GNC alone" (the paper's GSTS): EdlGnc and the radar's batch filter as they fly, and a few lines in
-/// place of the timeline. Nothing of executive, telemetry, commands or radio takes part. R36
+/// The test venue "GNC alone" (the paper's GSTS): EdlGnc and the radar's batch filter as flown, with a few lines in
+/// place of the timeline.
 ///
-/// In       DeviceInputs of each tick                     Out   DeviceOutputs of that cycle, what GNC told
+/// Executive, telemetry, commands and radio take no part. R36
+/// In       DeviceInputs of each tick                     Out   DeviceOutputs of that cycle, GNC's output
 /// Rate     64 Hz        Memory   a value: copying it is a fork
 class GncAlone {
   public:
     GncAlone(const flight::Load& load, const NavigationSolution& solution, Sclk now);
 
-    /// What goes out to the devices, until the next.
+    /// Runs one cycle; returns the outputs to the devices, valid until the next call.
     const flight::DeviceOutputs& cycle(const flight::DeviceInputs& in);
 
     void shift_navigation(const flight::NavigationShift& by) { gnc_.shift_navigation(by); }
@@ -37,7 +38,7 @@ class GncAlone {
     VenueTimeline timeline_;
 };
 
-/// The name of what GNC decided, among those in decided_on_board; none for what the truth shows by itself.
+/// The name in decided_on_board of a GNC decision; null when the truth shows it by itself.
 const char* decided_by_gnc(flight::gnc::Trigger trigger);
 
 }  // namespace aeolis::simulation

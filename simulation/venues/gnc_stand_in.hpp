@@ -9,12 +9,13 @@
 
 namespace aeolis::simulation {
 
-/// What stands in for GNC in the test venue "all but GNC": it looks at the truth and lands by a few rules of thumb, no
-/// navigation, no guidance. It tells what EdlGnc tells, so that everything behind EdlGnc can be tried without it. R36
+/// Stand-in for GNC in the test venue "all but GNC": looks at the truth and lands by a few rules of thumb.
 ///
-/// In       the world, what the timeline has done         Out   gnc::Output of a cycle
+/// It has no navigation and no guidance. Its outputs are those of EdlGnc, so that everything behind EdlGnc can be
+/// tested without it. R36
+/// In       the world, the timeline's actions         Out   gnc::Output of a cycle
 /// Rate     64 Hz        Memory   a value: copying it is a fork
-/// Source   bank history roughly [od137]; the rest is ours
+/// Source   bank history roughly [od137]; the rest is our assumption
 class GncStandIn {
   public:
     explicit GncStandIn(const flight::Load& load) : load_(load), steering_(load.engine_max_thrust_N) {}

@@ -13,10 +13,10 @@
 
 namespace aeolis::simulation {
 
-/// A few lines in place of the timeline, for venues that fly without it: what the vehicle needs to land, at the times
-/// of timeline.csv, with nothing that waits, fails or is told.
+/// A short replacement of the timeline: the actions that a landing needs, at the times of timeline.csv.
 ///
-/// In       GNC's triggers, which start anchors          Out   the configuration that GNC flies, commands to devices
+/// Nothing waits, fails or is reported.
+/// In       GNC's triggers, which start anchors          Out   GNC's configuration, commands to devices
 /// Rate     64 Hz: act() before GNC and after it         Memory   none beyond itself; a value
 class VenueTimeline {
   public:
@@ -26,7 +26,7 @@ class VenueTimeline {
     void take(const flight::gnc::Output& told, Sclk now);
 
     struct Line {
-        std::string_view timepoint;                 ///< of timeline.csv, whose place it takes
+        std::string_view timepoint;                 ///< the row of timeline.csv that it replaces
         std::optional<flight::gnc::Trigger> after;  ///< none: entry
         double offset_s = 0.0;
     };
