@@ -37,10 +37,10 @@ using dictionary::Decoded;
 /// Faults   none: reads nothing outside the octets, whatever they are. Many threads may share one.
 class Decommutator {
   public:
-    /// The dictionary has passed the loader's rules. Its plan is copied: it need not outlive this.
+    /// `dictionary` must have passed the loader's rules. Its plan is copied, so it need not outlive this.
     explicit Decommutator(const dictionary::Dictionary& dictionary);
 
-    /// None when decoded; `into` is unspecified after a refusal.
+    /// Decodes a packet. Returns none on success; after a refusal `into` is unspecified.
     std::optional<Refusal> decode(std::span<const std::uint8_t> packet, Decoded& into) const;
 
   private:

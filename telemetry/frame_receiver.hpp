@@ -13,30 +13,30 @@
 
 namespace aeolis::telemetry {
 
-/// How the TM or AOS frames of a stream stand in it. All frames have one length.
+/// The layout of TM or AOS frames in a stream. All frames have one length.
 struct FrameStream {
     enum class Kind : std::uint8_t { tm, aos };
     Kind kind = Kind::tm;
     std::size_t frame_octets = 1115;  ///< without marker; 1115: five interleaved code words of Reed–Solomon
-    bool marker = true;               ///< each behind the attached sync marker (CADU)
-    std::size_t prefix_octets = 0;    ///< before each, without meaning, as a recorder at the station adds; no marker
-    std::size_t suffix_octets = 0;    ///< behind each, without meaning here: the code's check symbols
+    bool marker = true;               ///< each after the attached sync marker (CADU)
+    std::size_t prefix_octets = 0;    ///< ignored before each frame, as a station's recorder adds; only without marker
+    std::size_t suffix_octets = 0;    ///< ignored after each frame: the code's check symbols
     bool randomised = false;
     FrameAgreement agreed{};
 };
 
 /// Finds TM or AOS frames in a stream of octets.
 ///
-/// In       octets as they come, in pieces of any size       Out   frames that can be read, and what is missing
+/// In       octets as received, in pieces of any size       Out   readable frames, and how many are missing
 /// Memory   the last piece and two frames
-/// Faults   where there is a marker, the search goes on behind it after anything else than a good frame; without one,
-///          a frame that cannot be read is skipped as a whole
-/// Left out error correction: a stream is taken as decoded already, or free of errors
+/// Faults   with a marker, after anything but a good frame the search continues right behind the marker; without one,
+///          an unreadable frame is skipped whole
+/// Left out error correction: the stream is assumed decoded, or free of errors
 class FrameReceiver {
   public:
     struct Received {
-        TransferFrame frame;               ///< until the next next() or receive()
-        std::uint32_t missing_before = 0;  ///< frames of its virtual channel that did not come
+        TransferFrame frame;               ///< valid until the next next() or receive()
+        std::uint32_t missing_before = 0;  ///< frames of its virtual channel that were not received
     };
 
     explicit FrameReceiver(const FrameStream& stream);
@@ -44,7 +44,7 @@ class FrameReceiver {
     void receive(std::span<const std::uint8_t> octets);
     /// The next frame; none when more octets are needed.
     std::optional<Received> next();
-    /// Nothing more will come: what waits to become a frame counts as skipped.
+    /// Ends the stream: counts octets of an incomplete frame as skipped.
     void end();
 
     const LinkCounters& counters() const { return counters_; }
@@ -61,16 +61,16 @@ class FrameReceiver {
     LinkCounters counters_;
 };
 
-/// Length of the frames of a CADU stream: the most frequent distance of two markers, without the marker. None when
-/// fewer than two stand in it.
+/// Length of a CADU stream's frames: the most frequent distance of two markers, without the marker. None with fewer
+/// than two markers.
 std::optional<std::size_t> cadu_frame_octets(std::span<const std::uint8_t> octets);
 
-/// Length of frames that end with a CRC-16 and stand one after another, each behind `prefix_octets`: the smallest at
-/// which the first two are right, or the only one is.
+/// Length of contiguous frames with a CRC-16, each after `prefix_octets`: the smallest at which the CRCs of the first
+/// two, or of the only one, are right.
 std::optional<std::size_t> crc_frame_octets(std::span<const std::uint8_t> octets, std::size_t prefix_octets);
 
-/// How the frames of a CADU stream are, found by trying: length, TM or AOS, randomised or not, check symbols of the
-/// code behind them, CRC. None when no two markers stand in it.
+/// Detects a CADU stream's layout by trial: frame length, TM or AOS, randomisation, the code's check symbols, CRC. None
+/// without two markers.
 std::optional<FrameStream> recognise_cadus(std::span<const std::uint8_t> octets);
 
 }  // namespace aeolis::telemetry

@@ -14,8 +14,8 @@ namespace aeolis::telemetry {
 /// An instant of UTC, to the microsecond.
 struct UtcInstant {
     std::int64_t microseconds =
-        0;  ///< since 2000-01-01T12:00:00 UTC, leap seconds not counted; in one: as the second before
-    bool leap_second = false;  ///< it lies in the second that is called 60
+        0;  ///< since 2000-01-01T12:00:00 UTC, without leap seconds; during one: as the second before
+    bool leap_second = false;  ///< within second 60
     constexpr bool operator==(const UtcInstant&) const = default;
 
     /// Day-of-year form with milliseconds: 2012-219T05:17:57.123, 2016-366T23:59:60.500.
@@ -24,9 +24,9 @@ struct UtcInstant {
 
 /// Leap seconds and the difference of TDB and TT, from a leap-second kernel (DELTET/…).
 ///
-/// Scales   TT and TDB in seconds since 2000-01-01T12:00:00 of that scale; TAI = TT - 32.184 s where the kernel says so
-/// Range    from the first leap second of the kernel (1972) on; none before. After the last one no other is assumed.
-/// Accuracy 30 us in TDB - TT: one periodic term, as NAIF's own library takes
+/// Scales   TT and TDB in seconds since 2000-01-01T12:00:00 of that scale; TAI = TT - 32.184 s by the kernel
+/// Range    from the kernel's first leap second (1972) on; none before. No leap second is assumed after the last.
+/// Accuracy 30 us in TDB - TT: one periodic term, as in NAIF's own library
 /// Source   [naif-time]
 class LeapSeconds {
   public:
@@ -36,12 +36,12 @@ class LeapSeconds {
     std::optional<UtcInstant> utc_of_tai(double tai_s) const;
     std::optional<UtcInstant> utc_of_tt(double tt_s) const { return utc_of_tai(tt_s - tt_minus_tai_s_); }
     std::optional<UtcInstant> utc_of_tdb(double tdb_s) const { return utc_of_tt(tdb_s - tdb_minus_tt(tdb_s)); }
-    /// In a leap second too.
+    /// Also within a leap second.
     std::optional<double> tdb_of_utc(const UtcInstant& utc) const;
 
   private:
     struct Step {
-        double utc_s = 0.0;  ///< from here on, by the calendar
+        double utc_s = 0.0;  ///< valid from this UTC on, by the calendar
         double tai_minus_utc_s = 0.0;
     };
     double tt_minus_tai_s_ = 0.0, amplitude_s_ = 0.0, eccentricity_ = 0.0;

@@ -8,24 +8,24 @@
 
 namespace aeolis::telemetry {
 
-/// What a link brought so far. Every octet received is counted once: in a good unit, or as skipped.
+/// Counters of a link's reception. Every received octet counts once: in a good frame, or as skipped.
 struct LinkCounters {
     std::uint64_t octets = 0;
     std::uint64_t frames = 0;           ///< whole, with a good CRC
-    std::uint64_t bad_crc = 0;          ///< a marker with a possible header and a wrong CRC behind it
-    std::uint64_t bad_header = 0;       ///< a marker with something else than a header behind it
-    std::uint64_t skipped_octets = 0;   ///< between good units
-    std::uint64_t gaps = 0;             ///< places where the frame sequence is not the next
-    std::uint64_t missing_frames = 0;   ///< by the frame sequence: a multiple of its modulus cannot be seen
-    std::uint64_t repeated_frames = 0;  ///< with the sequence of the one before
+    std::uint64_t bad_crc = 0;          ///< marker and possible header, but a wrong CRC
+    std::uint64_t bad_header = 0;       ///< marker without a valid header
+    std::uint64_t skipped_octets = 0;   ///< between good frames
+    std::uint64_t gaps = 0;             ///< frame sequences that do not continue the last
+    std::uint64_t missing_frames = 0;   ///< by frame sequence; multiples of its modulus go unnoticed
+    std::uint64_t repeated_frames = 0;  ///< with the previous frame's sequence
 
     bool operator==(const LinkCounters&) const = default;
 };
 
-/// Whether the frames of one stream follow each other.
+/// Checks a stream's frame sequence for gaps.
 class SequenceGaps {
   public:
-    /// `modulus` is a power of two. Counts into `counters`; returns how many frames are missing before this one.
+    /// Counts a frame in `counters` and returns the number missing before it. `modulus` is a power of two.
     std::uint32_t next(std::uint32_t sequence, std::uint32_t modulus, LinkCounters& counters);
 
   private:
@@ -33,14 +33,14 @@ class SequenceGaps {
     bool begun_ = false;
 };
 
-/// Something a second, over the last ten whole seconds.
+/// A rate per second, over the last ten whole seconds.
 class RateMeter {
   public:
     static constexpr std::int64_t seconds = 10;
 
-    /// `amount` at `at`; what is older than what came before counts with the newest.
+    /// Adds `amount` at `at`; an older time than the latest counts as the latest.
     void add(Ert at, std::uint64_t amount);
-    /// Mean of the ten whole seconds before that of `now`.
+    /// Mean over the ten whole seconds before the present one.
     double per_second(Ert now) const;
 
   private:

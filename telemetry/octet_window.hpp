@@ -11,8 +11,8 @@
 
 namespace aeolis::telemetry {
 
-/// Octets of a stream that are received but not yet used: added at the end, used from the front. What was used is
-/// moved away at the next add(), so that spans into it stay good until then.
+/// Received octets of a stream that are not yet used: added at the end, used from the front. Used octets are removed at
+/// the next add(); spans stay valid until then.
 class OctetWindow {
   public:
     void add(std::span<const std::uint8_t> octets) {
@@ -31,7 +31,7 @@ class OctetWindow {
     std::size_t used_ = 0;
 };
 
-/// Where the first of `octets` that is `wanted` stands; their number when none is.
+/// Position of the first octet equal to `wanted`; the size of `octets` when there is none.
 inline std::size_t find_octet(std::span<const std::uint8_t> octets, std::uint8_t wanted) {
     if (octets.empty()) return 0;
     const void* found = std::memchr(octets.data(), wanted, octets.size());

@@ -15,35 +15,35 @@
 
 namespace aeolis::telemetry {
 
-/// Another mission in the words that our ground speaks: a packet a container, a channel a number that its containers
-/// hold.
+/// Another mission in terms of our dictionary: each container is a packet, each number in it a channel.
 ///
-/// In       the octets of a packet                       Out   Decoded by the indices of dictionary(), or why not
-/// Channels numbers, labels (by their number), flags and times; of what is repeated or sized by the packet the first
-///          `elements_max`. Text and octets are no channels: contents() has everything.
-/// Names    those of the file; where two are alike the later one has the path of its SpaceSystem before it
-/// Time     what the packet says of it as if it were the spacecraft's clock; none: the clock stands at 0
-/// Faults   a packet that can be read in part is decoded in part: what is not in it is undefined
+/// In       the octets of a packet                       Out   Decoded by the indices of dictionary(), or the reason
+///          for refusal
+/// Channels numbers, labels (by their number), flags and times; of arrays, and of parameters whose size varies, the
+/// first `elements_max`. Text and octets are no channels: contents() has everything.
+/// Names    those of the file; of two equal names the later is prefixed with its SpaceSystem's path
+/// Time     the packet's own time, as if from the spacecraft's clock; without one the clock stands at 0
+/// Faults   a partly readable packet is decoded in part; the rest is undefined
 /// Many threads may share one.
 class OtherMission {
   public:
-    static constexpr std::size_t elements_max = 16;  ///< ours: of a list of unknown length
+    static constexpr std::size_t elements_max = 16;  ///< chosen: of a list of unknown length
     static constexpr std::size_t channels_max = 0xFFFF;
-    static constexpr std::size_t fields_max = std::size_t{1} << 20U;  ///< ours: of all packets together
-    /// APID of a packet whose container does not ask for one: no packet has it.
+    static constexpr std::size_t fields_max = std::size_t{1} << 20U;  ///< chosen: of all packets together
+    /// APID for a packet whose container asks for none; no real packet has it.
     static constexpr Apid any_apid{0xFFFF};
 
-    /// @param id  of the XTCE text, as our dictionary's id is of ours
+    /// @param id  of the XTCE text, like the id of our dictionary
     OtherMission(dictionary::xtce::PacketModel model, std::uint16_t id);
     OtherMission(const OtherMission&) = delete;
     OtherMission& operator=(const OtherMission&) = delete;
 
     const dictionary::Dictionary& dictionary() const { return dictionary_; }
-    /// Fields that found no place among channels_max and fields_max.
+    /// Number of fields beyond channels_max and fields_max.
     std::size_t left_out() const { return left_out_; }
 
     DecodedContents contents(std::span<const std::uint8_t> packet) const { return decoder_.decode(packet); }
-    /// None when at least a part was decoded; `into` is unspecified after a refusal.
+    /// Decodes a packet. Returns none when at least a part was decoded; after a refusal `into` is unspecified.
     std::optional<std::string> decode(std::span<const std::uint8_t> packet, Decoded& into) const;
 
   private:

@@ -18,15 +18,15 @@ namespace aeolis::telemetry {
 enum class DownlinkFormat : std::uint8_t { packets, tm, aos, cadu, pltu };
 std::optional<DownlinkFormat> downlink_format(std::string_view name);
 
-/// Space packets one after another, each behind `prefix_octets` without meaning.
+/// Contiguous space packets, each after `prefix_octets` that are ignored.
 ///
-/// Faults   where no header stands it ends: there is no mark to find the next packet by
+/// Faults   where no valid header stands it ends: there is no mark to find the next packet by
 class BarePackets {
   public:
     explicit BarePackets(std::size_t prefix_octets) : prefix_octets_(prefix_octets) {}
     void receive(std::span<const std::uint8_t> octets) { window_.add(octets); }
     std::optional<std::span<const std::uint8_t>> next();
-    /// Nothing more will come.
+    /// Ends the stream.
     void end();
     bool lost() const { return lost_; }
     const PacketCounters& counters() const { return counters_; }
@@ -38,9 +38,9 @@ class BarePackets {
     bool lost_ = false;
 };
 
-/// Space packets of any mission out of a stream in any of the formats.
+/// Extracts space packets of any mission from a stream in any of the formats.
 ///
-/// In       octets as they come, in pieces of any size       Out   packets, in the order in which they are complete
+/// In       octets as received, in pieces of any size       Out   packets, in the order of completion
 class PacketSource {
   public:
     static PacketSource of_packets(std::size_t prefix_octets) { return PacketSource{BarePackets{prefix_octets}}; }
@@ -48,14 +48,14 @@ class PacketSource {
     static PacketSource of_pltus() { return PacketSource{Pltus{}}; }
 
     void receive(std::span<const std::uint8_t> octets);
-    /// Nothing more will come; next() may give more.
+    /// Ends the stream; next() may then return more packets.
     void end();
-    /// The next packet; its octets are good until the next call of anything.
+    /// The next packet; valid until the next call of any function.
     std::optional<std::span<const std::uint8_t>> next();
 
-    /// Bare packets that cannot be found any more: nothing will come.
+    /// Whether bare packets lost their boundaries, so that none can follow.
     bool lost() const;
-    LinkCounters link() const;  ///< of frames; nothing for bare packets
+    LinkCounters link() const;  ///< of frames; zero for bare packets
     PacketCounters packets() const;
 
   private:

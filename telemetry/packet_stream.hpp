@@ -8,21 +8,21 @@
 
 namespace aeolis::telemetry {
 
-/// Splits octets that hold whole space packets one after another: a recording, the radiated octets of a cycle.
+/// Splits contiguous whole space packets: a recording, the radiated octets of a cycle.
 ///
 /// In       any octets; not copied, they must outlive this      Out   each packet's octets, CRC not yet checked
-/// Faults   where no primary header of ours stands, or a packet is cut off, it ends: there is no mark to find the
-///          next packet by. What is left is counted, never skipped in silence.
+/// Faults   ends at an invalid primary header or a truncated packet: there is no mark to find the next packet by. The
+///          rest is counted, never skipped in silence
 class PacketStream {
   public:
     explicit PacketStream(std::span<const std::uint8_t> octets) : rest_(octets) {}
 
-    /// The next packet; none at the end, or where the octets cannot be read on.
+    /// The next packet; none at the end, or where reading cannot continue.
     std::optional<std::span<const std::uint8_t>> next();
 
     std::size_t packets() const { return packets_; }
 
-    /// After next() gave none: octets that belong to no whole packet; 0 when all were read.
+    /// Octets left after next() returned none; 0 when all were read.
     std::size_t unreadable_octets() const { return rest_.size(); }
 
   private:

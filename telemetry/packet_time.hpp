@@ -9,19 +9,19 @@
 
 namespace aeolis::telemetry {
 
-/// What turns a packet's own time into UTC, as far as it is given.
+/// The kernels that convert a packet's time to UTC, as far as given.
 struct TimeKernels {
     std::optional<ClockKernel> clock;
     std::optional<LeapSeconds> leaps;
     std::optional<std::size_t> partition;  ///< of the clock; none: the first that holds the count
 };
 
-/// The instant in UTC, where that is known: of a spacecraft's clock (no epoch) by both kernels, of the epochs GPS and
-/// TAI by the leap seconds, of UNIX always. None for other epochs, and outside what the kernels cover.
+/// The UTC instant, where known: of a spacecraft's clock (no epoch) by both kernels, of the epochs GPS and TAI by leap
+/// seconds, of UNIX always. None for other epochs, and outside the kernels' range.
 std::optional<UtcInstant> scet_of(const PacketTime& time, const TimeKernels& kernels);
 
-/// That instant in day-of-year form, else the seconds as a number; "undefined" where a clock kernel is given and does
-/// not cover the count.
+/// The instant in day-of-year form, else the seconds as a number; "undefined" when a given clock kernel does not cover
+/// the count.
 std::string time_text(const PacketTime& time, const TimeKernels& kernels);
 
 }  // namespace aeolis::telemetry

@@ -8,14 +8,15 @@
 
 namespace aeolis::telemetry {
 
-/// Real time against the recording: every real-time unit must be found, bit for bit, in the recording.
-/// The sentence is meaningful once the whole recording is down; before that `realtime_not_recorded` means "not yet".
+/// The proof of real time against the recording: every real-time packet must be in the recording, bit for bit.
+///
+/// It holds once the whole recording is received; before that `realtime_not_recorded` means "not yet".
 struct Proof {
     std::uint64_t recorded = 0;
     std::uint64_t realtime = 0;
     std::uint64_t realtime_not_recorded = 0;
     std::uint64_t realtime_differs = 0;
-    std::uint64_t never_seen_live = 0;  ///< recorded, and lost on the link or never sent over it
+    std::uint64_t never_seen_live = 0;  ///< recorded, but lost on the link or never sent over it
     std::uint64_t unregistered = 0;     ///< not compared: the register was full
 
     bool holds() const { return realtime_not_recorded == 0 && realtime_differs == 0 && unregistered == 0; }

@@ -14,17 +14,17 @@
 
 namespace aeolis::telemetry {
 
-/// Space packets out of Proximity-1 frames: whole ones, and those that were cut into segments over several frames.
+/// Extracts space packets from Proximity-1 frames, whole or in segments over several frames.
 ///
 /// In       frames in order, of any number of spacecraft      Out   whole packets, of any mission
 /// Memory   one packet for each pseudo packet id in use, 65542 octets each at most; the packets of one frame
-/// Faults   a missing frame costs the segmented packets that were begun on its stream; supervisory frames, and data
-///          that are not packets, are counted only
+/// Faults   a missing frame loses the unfinished segmented packets of its stream; supervisory frames, and data that are
+///          not packets, are only counted
 class ProximityPackets {
   public:
     void add(const PltuReceiver::Received& received);
 
-    /// The next whole packet; its octets are good until the next add().
+    /// The next whole packet; valid until the next add().
     std::optional<std::span<const std::uint8_t>> next();
 
     const PacketCounters& counters() const { return counters_; }

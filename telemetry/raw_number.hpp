@@ -10,7 +10,8 @@ namespace aeolis::telemetry {
 
 using RawNumber = std::variant<std::uint64_t, std::int64_t, double>;
 
-/// The number that `bits` (1 … 64) bits stand for in a coding of numbers, most significant bit first.
+/// Reads a number from `bits` (1 … 64) bits of a coding, most significant bit first.
+///
 /// Source: [xtce-1.2]; [mil-std-1750a] for its real number of 24 bits mantissa and 8 bits exponent, both two's
 /// complement
 RawNumber number_in(std::uint64_t field, unsigned bits, const dictionary::xtce::Coding& coding);

@@ -13,47 +13,45 @@
 
 namespace aeolis::telemetry {
 
-inline constexpr double stale_intervals =
-    4.0;  ///< ours: so many packets in a row are not lost by chance on a link that loses few
-inline constexpr double stale_chance =
-    1.0e-5;  ///< ours: nor so many that the link's losses explain them less often than this
-inline constexpr double stale_intervals_max = 12.0;  ///< ours: however bad the link
-inline constexpr double stale_memory_s = 60.0;       ///< ours: over which the link's losses are reckoned
-inline constexpr double stale_least_s = 5.0;         ///< ours: a burst of losses and the link's queue fit in
+inline constexpr double stale_intervals = 4.0;       ///< our assumption: a good link loses fewer in a row by chance
+inline constexpr double stale_chance = 1.0e-5;       ///< our assumption: below this, losses are no explanation
+inline constexpr double stale_intervals_max = 12.0;  ///< our assumption: the limit for any link
+inline constexpr double stale_memory_s = 60.0;       ///< our assumption: the link's losses are averaged over this time
+inline constexpr double stale_least_s = 5.0;         ///< our assumption: covers a burst of losses and the link's queue
 
-inline constexpr auto stale_severity = dictionary::Severity::warning;  ///< ours: what one acts upon may be old
-inline constexpr auto lost_severity =
-    dictionary::Severity::distress;  ///< ours, of a link whose silence nobody predicted: the vehicle or the ground is
-                                     ///< not as one believes
+inline constexpr auto stale_severity = dictionary::Severity::warning;  ///< chosen: decisions may rest on old values
+/// Severity of a link's unpredicted silence. Chosen: the vehicle or the ground is not in the state assumed.
+inline constexpr auto lost_severity = dictionary::Severity::distress;
 
-/// Whether a link's packets are to be expected, the least first.
+/// Whether a link's packets are expected; the least expectation first.
 enum class LinkIs : std::uint8_t {
-    down,  ///< for a reason that was predicted: nothing is due
-    lost,  ///< for none, or by a fault on the ground: what is due goes on to be due
+    down,  ///< for a predicted reason: nothing is due
+    lost,  ///< unexplained, or by a fault on the ground: packets stay due
     up,
 };
 
 struct StalenessChange {
     std::size_t packet = 0;  ///< index in the dictionary's packets
     bool stale = false;
-    double silent_s = 0.0;    ///< since it was last heard
-    double expected_s = 0.0;  ///< interval at which it should come now; 0 when it is not stale
+    double silent_s = 0.0;    ///< since it was last received
+    double expected_s = 0.0;  ///< interval at which it is due now; 0 when it is not stale
     std::string reason;  ///< "heard again", "not expected in landed", "the link is down: plasma blackout"; when stale
                          ///< "the link is lost: unexplained: …", empty while one is up
 };
 
 /// Tells when a packet that should come in real time does not.
+/// Detects missing real-time packets.
 ///
 /// In       packets, links and phase of EDL as they reach Earth, and the time on Earth, in that order
 /// Out      changes, appended to `out`
-/// Rule     A packet is expected at its rate (DefaultRateInStream) thinned by the rows of telemetry_plan.csv that hold
-///          in every plan, once it has come at all. It is stale when nothing of it came for `stale_intervals` of that,
-///          and `stale_least_s`, while a link was up or lost and the phase as it is for as long. Of a link that loses
-///          much it takes more: as many intervals as losses like those before its last packet explain by
-///          `stale_chance`. While all links are down nothing is expected: silence is then the link's, which says why.
-///          One that is lost cannot say why: what was stale stays so, and the rest becomes it.
-/// Losses   of all packets, each time one comes again that was not stale: one came of as many as were due since the
-///          last. Both numbers fade with `stale_memory_s`
+/// Rule     A packet is expected at its rate (DefaultRateInStream), thinned by the rows of telemetry_plan.csv that hold
+///          in every plan, once it has been received at all. It is stale when it was absent for `stale_intervals` of
+///          its intervals, and for `stale_least_s`, while a link was up or lost and the phase unchanged. A link with
+///          heavy losses is allowed more: as many intervals as its losses before the last packet explain with a
+///          probability of `stale_chance`. While all links are down nothing is expected: the silence is then the
+///          link's, which has a reason. A lost link has none: stale packets stay stale, and the others become stale.
+/// Losses   over all packets, at each reception after no staleness: one received of as many as were due since the last.
+///          Both numbers fade with `stale_memory_s`
 /// Memory   a row for each packet with a rate
 class StalenessMonitor {
   public:
@@ -61,7 +59,7 @@ class StalenessMonitor {
     explicit StalenessMonitor(const dictionary::Dictionary& dictionary);
 
     void heard(std::size_t packet, Ert ert, std::vector<StalenessChange>& out);
-    /// @param name  "uhf_live", "uhf_<orbiter>", "downlink" bring packets in real time; others are passed over
+    /// @param name  "uhf_live", "uhf_<orbiter>", "downlink" bring packets in real time; other links are ignored
     void link(std::string_view name, LinkIs is, std::string_view reason, Ert ert, std::vector<StalenessChange>& out);
     /// @param label  of EdlPhase
     void phase(std::string_view label, Ert ert, std::vector<StalenessChange>& out);
@@ -71,10 +69,10 @@ class StalenessMonitor {
     struct Expected {
         std::size_t packet = 0;
         std::vector<double>
-            interval_s;             ///< by state of the vehicle; 0: none. One entry where the plan does not name it
-        std::optional<Ert> last{};  ///< none: never came
-        Ert since{};                ///< from then on its absence counts
-        double intervals = stale_intervals;  ///< of absence that it takes, by the losses before it was last heard
+            interval_s;  ///< by state of the vehicle; 0: not expected. One entry when the plan does not name it
+        std::optional<Ert> last{};           ///< none: never received
+        Ert since{};                         ///< its absence counts from then on
+        double intervals = stale_intervals;  ///< absent until it is stale, by the losses before its last reception
         bool stale = false;
     };
     struct Link {
@@ -82,10 +80,10 @@ class StalenessMonitor {
         std::string reason{};
     };
     double interval_s(const Expected& expected) const;
-    /// One has come again: how many of its intervals its absence now takes.
+    /// Updates the losses on a reception; returns the absent intervals that the packet is now allowed.
     double reckon(const Expected& expected, Ert ert);
     void clear(Expected& expected, const std::string& reason, Ert now, std::vector<StalenessChange>& out) const;
-    /// Why nothing may come although it is expected; empty while a link is up.
+    /// Why expected packets may be missing; empty while a link is up.
     std::string lost_for() const;
 
     std::vector<Expected> expected_;

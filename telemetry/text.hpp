@@ -9,31 +9,30 @@
 #include <string_view>
 #include <vector>
 
-// Telemetry in words for people. Pure functions of the dictionary and one decoded packet.
+// Telemetry in words. Pure functions of the dictionary and one decoded packet.
 namespace aeolis::telemetry {
 
-/// The number alone, with digits that suit the unit (metres and m/s to a tenth, degrees to a hundredth, …; ours), or
-/// the label of an enumeration, "true"/"false", "undefined".
+/// A value without unit: a number with digits that suit its unit (metres and m/s to a tenth, degrees to a hundredth, …;
+/// chosen), the label of an enumeration, "true"/"false", "undefined".
 std::string number_text(const dictionary::Type& type, std::optional<double> value);
 
-/// With the unit: "404.6 m/s", "parachute_descent", "undefined".
+/// A value with its unit: "404.6 m/s", "parachute_descent", "undefined".
 std::string value_text(const dictionary::Type& type, std::optional<double> value);
 
-/// A number that names a thing of the dictionary, by the name of its field: "opcode", "timepoint", "anchor", "tone",
-/// "constraint". "EDL_DO_EDL", "14 parachute_mortar"; of a constraint its two moments and its line; the number alone
-/// where it names nothing.
+/// The name of a dictionary entry given by number in a field: "opcode", "timepoint", "anchor", "tone", "constraint".
+/// "EDL_DO_EDL", "14 parachute_mortar"; of a constraint its two moments and its line; an unknown number alone.
 std::string reference_text(const dictionary::Dictionary& dictionary, std::string_view field, double number);
 
-/// For a number whose unit is only known from the ending of its name, "speed_mps": "speed" and "12.3 m/s".
+/// For a number whose unit is only in the ending of its name, "speed_mps": "speed" and "12.3 m/s".
 std::string_view without_unit(std::string_view name);  ///< "speed"
 std::string named_value_text(std::string_view name, double value);
 
 const char* name_of(dictionary::EventLevel level);  ///< "ACTIVITY_HI"
 
-/// The event of a packet that is one, else none.
+/// The event of an event report; null for other packets.
 const dictionary::Event* event_of(const dictionary::Dictionary& dictionary, const Decoded& decoded);
 
-/// The event's format with its arguments put in, references by name; a brace that names no argument stays as it is.
+/// The event's format with its arguments inserted, references by name; braces without a matching argument stay.
 std::string event_text(const dictionary::Dictionary& dictionary, const dictionary::Event& event,
                        const Decoded& decoded);
 

@@ -15,23 +15,23 @@ namespace aeolis::telemetry {
 
 /// An eighth of a second of signal with its carrier removed.
 struct CarrierHop {
-    std::int64_t first_sample = 0;  ///< of the samples pushed to the tracker since the beginning of everything
+    std::int64_t first_sample = 0;  ///< counted from the first sample ever pushed to the tracker
     CarrierLock lock = CarrierLock::searching;
-    bool found = false;                          ///< else `quadrature` is empty
-    double frequency_hz = 0.0, rate_hzps = 0.0;  ///< of the carrier among the samples, in the hop's middle
+    bool found = false;                          ///< false: `quadrature` is empty
+    double frequency_hz = 0.0, rate_hzps = 0.0;  ///< of the carrier in the samples, at the hop's middle
     double carrier_n0_hz = 0.0;                  ///< carrier power to noise density
-    /// What stands at right angles to the carrier, with noise of deviation 1 a sample: the tone, if any.
+    /// Component in quadrature to the carrier, with noise of deviation 1 a sample: the tone, if any.
     std::vector<float> quadrature;
 };
 
-/// How samples are cut for the tracker and the tone correlator.
+/// The division of samples into hops, for the tracker and the tone correlator.
 struct HopLayout {
-    /// For samples at `rate_hz`: hops of about 1/8 s of 32 parts, thinned to not below 6 kHz or not at all.
+    /// For samples at `rate_hz`: hops of about 1/8 s in 32 parts, decimated to 6 kHz or more where possible.
     explicit HopLayout(double rate_hz);
 
     double rate_hz;
-    int thinning;      ///< samples summed to one
-    int part_samples;  ///< thinned samples in a part
+    int thinning;      ///< samples summed into one
+    int part_samples;  ///< decimated samples in a part
     static constexpr int parts = 32;
     int hop_samples() const { return thinning * thinned_samples(); }
     int thinned_samples() const { return parts * part_samples; }
@@ -39,37 +39,36 @@ struct HopLayout {
     double hop_s() const { return hop_samples() / rate_hz; }
 };
 
-/// Follows a carrier whose frequency was found: each hop is fitted in the middle of a window of hops, and frequency and
-/// rate of the newest fit predict where the next is looked for.
+/// Tracks a carrier of known initial frequency. Each hop is fitted in the middle of a window of hops.
 ///
-/// In      hops of samples, one after the other     Out   each hop once, in order, up to half a window later
-/// Effort  a narrow look at 0.6 s; where that finds nothing a wide one; windows of 1.4, 2.6 and 5.1 s when the carrier
-///         is weak
+/// Frequency and rate of the newest fit predict where the next is searched.
+/// In      hops of samples, contiguous     Out   each hop once, in order, up to half a window later
+/// Effort  a narrow fit over 0.6 s, a wide one when that fails; windows of 1.4, 2.6 and 5.1 s for a weak carrier
 /// Memory  the longest window
-/// Faults  after 1.5 s, or three quarters of a window, without a carrier (20 s when it has long been too weak to be
-///         found anew) it is lost: the hops in memory come out as not found
+/// Faults  the carrier is lost after 1.5 s, or three quarters of a window, without it (20 s when it has long been too
+///         weak to be acquired again): hops in memory are then reported as not found
 class CarrierTracker {
   public:
     explicit CarrierTracker(const HopLayout& layout, double carrier_fraction);
 
-    /// Begins with the hop that begins at `first_sample`.
+    /// Starts tracking with the hop that begins at `first_sample`.
     void start(std::int64_t first_sample, double frequency_hz, double rate_hzps);
 
-    /// One hop of samples; what became of this and earlier hops is added to `out`.
+    /// Takes one hop of samples; appends the hops that are now decided to `out`.
     void push(std::span<const std::complex<float>> hop, std::vector<CarrierHop>& out);
-    /// The hops that wait for later ones, as far as they can be fitted; then it is as before a start.
+    /// Fits the waiting hops as far as possible; afterwards the tracker is as before start().
     void finish(std::vector<CarrierHop>& out);
 
     bool lost() const { return lost_; }
-    std::int64_t next_sample() const { return next_sample_; }  ///< where the next hop begins
+    std::int64_t next_sample() const { return next_sample_; }  ///< start of the next hop
 
   private:
-    struct Wiped {  ///< a hop turned back by the predicted phase
+    struct Wiped {  ///< a hop with the predicted phase removed
         std::int64_t first_sample = 0;
-        double phase_cycles = 0.0, frequency_hz = 0.0, rate_hzps = 0.0;  ///< of the prediction, at the hop's beginning
+        double phase_cycles = 0.0, frequency_hz = 0.0, rate_hzps = 0.0;  ///< of the prediction, at the hop's start
         std::vector<std::complex<float>> thinned;
         std::array<std::complex<float>, HopLayout::parts> parts{};
-        double noise = 0.0;  ///< power to density N0 of the time, per hertz
+        double noise = 0.0;  ///< noise density N0 at the time, in power per hertz
         double cycles_at(double from_begin_s) const {
             return phase_cycles + frequency_hz * from_begin_s + 0.5 * rate_hzps * from_begin_s * from_begin_s;
         }
@@ -97,17 +96,17 @@ class CarrierTracker {
     std::vector<std::complex<float>> aligned_;
 
     std::deque<Wiped> hops_;
-    std::size_t waiting_ = 0;  ///< in hops_: the first not yet fitted
+    std::size_t waiting_ = 0;  ///< index in hops_ of the first not yet fitted
     std::int64_t next_sample_ = 0;
     double phase_cycles_ = 0.0;
     double frequency_hz_ = 0.0, rate_hzps_ = 0.0;  ///< of the newest fit
-    std::int64_t frequency_sample_ = 0;            ///< where that holds
+    std::int64_t frequency_sample_ = 0;            ///< the sample at which that holds
     double noise_density_ = 0.0, carrier_power_ = 0.0;
-    double level_hz_ = 0.0;  ///< carrier to noise density, over a longer time
+    double level_hz_ = 0.0;  ///< carrier to noise density, a long average
     int missed_ = 0;
     bool lost_ = true, settled_ = false;
-    double energy_before_longer_ = 0.0;  ///< above 0: the window has just been lengthened
-    int short_for_ = 0;                  ///< no longer window for so many hops
+    double energy_before_longer_ = 0.0;  ///< positive while a longer window is on trial
+    int short_for_ = 0;                  ///< hops for which no longer window is tried
 };
 
 }  // namespace aeolis::telemetry

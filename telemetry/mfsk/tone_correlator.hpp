@@ -14,7 +14,8 @@ namespace aeolis::telemetry {
 using ToneSums = std::array<std::complex<float>, MfskWaveform::tones>;
 
 /// Correlates a hop of quadrature with the first harmonic of every tone: c_k = Σ y exp(−j 2π f_k t).
-/// Noise of deviation 1 a sample gives E|c|² = thinned samples of a hop; a tone of C/N0 ρ adds that times ρ · hop_s.
+///
+/// Noise of deviation 1 a sample gives E|c|² = decimated samples of a hop; a tone of C/N0 ρ adds that times ρ · hop_s.
 class ToneCorrelator {
   public:
     ToneCorrelator(const MfskWaveform& waveform, double sample_rate_hz, int samples);
@@ -22,7 +23,7 @@ class ToneCorrelator {
     ToneCorrelator(const ToneCorrelator&);
     ToneCorrelator(ToneCorrelator&&) noexcept;
 
-    /// `begin_s`: of the subcarriers' time at the hop's beginning; sums of hops with their times may be added.
+    /// Correlates one hop. `begin_s`: the subcarriers' time at its start; sums of consecutive hops may then be added.
     void correlate(std::span<const float> quadrature, double begin_s, ToneSums& sums) const;
 
   private:

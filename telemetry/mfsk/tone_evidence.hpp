@@ -6,17 +6,19 @@
 
 namespace aeolis::telemetry {
 
-/// What a symbol's worth of signal says about which tone was sent.
+/// The evidence for each tone in a symbol's worth of signal.
 struct ToneEvidence {
     BestTones best{};
     ToneSpectrum spectrum{};
-    /// Natural logarithm of how much likelier the signal is with some tone than without one.
+    /// Natural logarithm of the likelihood ratio of any tone to none.
     double log_likelihood_ratio = 0.0;
 };
 
-/// The exact non-coherent statistic: with `sums` scaled so that noise has E|G|² = `energy` and the tone adds |G| =
-/// energy, tone k is likelier than none by I0(2|G_k|) exp(−energy). `energy`: expected, E/N0 of the symbol as the
-/// carrier tells. Source: [proakis-digital-communications].
+/// Weighs the tones by the exact non-coherent statistic.
+///
+/// With `sums` scaled so that noise has E|G|² = `energy` and the tone adds |G| = energy, tone k is likelier than none
+/// by I0(2|G_k|) exp(−energy). `energy`: expected E/N0 of the symbol, from the carrier. Source:
+/// [proakis-digital-communications].
 ToneEvidence weigh(const ToneSums& sums, double energy);
 
 }  // namespace aeolis::telemetry

@@ -14,46 +14,46 @@
 
 namespace aeolis::telemetry {
 
-/// A tone, or an erasure, and why.
+/// A decided tone or an erasure, with its evidence.
 struct ToneReception {
     std::optional<std::uint8_t> tone;           ///< none: erased
     double start_s = 0.0;                       ///< in the samples' time, to a hop (1/8 s)
     double total_c_n0_dbhz = 0.0;               ///< total power to noise density
-    double doppler_hz = 0.0;                    ///< predict and what was tracked beyond it; the symbol's mean
+    double doppler_hz = 0.0;                    ///< predicted plus tracked; the symbol's mean
     CarrierLock lock = CarrierLock::searching;  ///< the worst during the symbol
-    double seen_fraction = 0.0;                 ///< of the symbol, with a carrier
+    double seen_fraction = 0.0;                 ///< fraction of the symbol with a carrier
     ToneEvidence evidence;
 };
 
-/// What the receiver is at, after the newest decided hop.
+/// The receiver's state after the newest decided hop.
 struct ReceiverStatus {
     CarrierLock lock = CarrierLock::searching;
     double total_c_n0_dbhz = 0.0, doppler_hz = 0.0;
-    double carrier_s = 0.0, without_s = 0.0;  ///< so long with and without a carrier until now
+    double carrier_s = 0.0, without_s = 0.0;  ///< present times with and without a carrier
     int acquisitions = 0;
-    double loudest = 0.0;  ///< greatest power of a sample
+    double loudest = 0.0;  ///< largest power of a sample
 };
 
-/// The ground's receiver of X-band tones: complex samples in, decisions out.
+/// Ground's receiver of X-band tones: complex samples in, decisions out.
 ///
 /// In      blocks of samples of any length, at a fixed rate; the predict that was removed before sampling
-/// Out     a reception a symbol, 1 to 20 s after the symbol's end, by take()
-/// Memory  4 s of samples while it searches, 5 s while it tracks, a few symbols of sums
-/// Faults  silence, noise and what is no number give no reception; a pulse far above the rest is blanked; a carrier
-///         lost is searched for again
+/// Out     one reception a symbol by take(), 1 to 20 s after the symbol's end
+/// Memory  4 s of samples in search, 5 s in tracking, the sums of a few symbols
+/// Faults  silence, noise and values that are not numbers give no reception; a pulse far above the rest is blanked; a
+///         lost carrier is searched for again
 class ToneReceiver {
   public:
-    static constexpr double rate_least_hz = 3000.0, rate_greatest_hz = 1.0e6;  ///< ours
+    static constexpr double rate_least_hz = 3000.0, rate_greatest_hz = 1.0e6;  ///< chosen
 
-    /// Fails for a rate that is out of range or cannot hold the tones. `start_s`: the first sample's time in
+    /// Fails for a rate out of range or too low for the tones. `start_s`: the first sample's time on the scale of
     /// `predict_hz`.
     static Result<ToneReceiver> make(const MfskWaveform& waveform, double rate_hz, TimeTable predict_hz = {},
                                      double start_s = 0.0);
 
     void push(std::span<const std::complex<float>> samples);
-    /// Nothing more comes: what waits is decided.
+    /// Decides everything that still waits, as if no more samples came.
     void finish();
-    /// What was decided since the last call, in the order of time.
+    /// Receptions since the last call, in the order of time.
     std::vector<ToneReception> take();
 
     const ReceiverStatus& status() const { return status_; }
@@ -67,7 +67,7 @@ class ToneReceiver {
     void work();
     bool search();
     bool track();
-    void pass_without_carrier();  ///< the first hop kept
+    void pass_without_carrier();  ///< drops the first kept hop
     void weigh_hops();
     void publish();
 
@@ -89,7 +89,7 @@ class ToneReceiver {
     std::vector<CarrierHop> hops_;
     std::vector<DecidedSymbol> decided_;
     std::vector<ToneReception> receptions_;
-    double mean_power_ = 0.0;  ///< of the samples lately; 0: none yet
+    double mean_power_ = 0.0;  ///< recent mean of the samples; 0: none yet
     double lead_s_ = 0.0;      ///< of the subcarriers' time, by Doppler
     double carrier_n0_hz_ = 0.0;
     ReceiverStatus status_;

@@ -14,49 +14,50 @@
 
 namespace aeolis::telemetry {
 
-/// Where what comes down is decoded: octets of each UHF link into frames, those into packets, and the files of the
-/// recording into the packets that are in it; samples of X-band into tones. Silences get ground's reasons.
+/// The ground station's decoding: UHF octets to frames and packets, the recording's files to packets, X-band samples to
+/// tones.
 ///
-/// In       what the port delivers                    Out   packets, tones, states of links; PLTUs for the rover
-/// Memory   some kilobytes a link: a frame that is not whole yet; files of the recording that are not
-/// Faults   what is no good frame is counted, and the next good one is decoded. A damaged length holds the frames
-///          behind it back no longer than quiet_s after the last octet: a frame leaves the vehicle without a pause
-/// A value, as the landing is whose links it hears.
+/// Adds ground's reasons to silences.
+/// In       the port's deliveries                    Out   packets, tones, states of links; PLTUs for the rover
+/// Memory   some kilobytes a link for an incomplete frame; incomplete files of the recording
+/// Faults   bad frames are counted, and the next good one is decoded. A damaged length delays the frames behind it by
+///          at most quiet_s after the last octet, since a frame leaves the vehicle without a pause
+/// A value, like the landing whose links it receives.
 class GroundStation {
   public:
-    static constexpr double quiet_s = 0.5;  ///< ours: at the link's rate an octet comes each cycle
+    static constexpr double quiet_s = 0.5;  ///< our assumption: at the link's rate an octet arrives each cycle
 
     explicit GroundStation(double light_time_s) : recording_(light_time_s) {}
 
-    /// X-band comes as samples.
+    /// Sets the receiver of X-band samples.
     void listen_by(ToneStation tones) { tones_.emplace(std::move(tones)); }
-    /// Silences are explained by what is predicted.
+    /// Sets the predictions that explain silences.
     void explain_by(SilenceClassifier silences) { silences_.emplace(std::move(silences)); }
 
-    /// Stands until the next call.
+    /// Processes a delivery. The result is valid until the next call.
     const Received& receive(const Downlink& downlink);
-    /// Replaces the states of links in what was received last by those with ground's reasons, if it has any.
-    /// @param recording_progress  0 … 1 that has come down
+    /// Replaces the links' states in the last result by those with ground's reasons, if it has any.
+    /// @param recording_progress  0 … 1, the fraction received
     void explain_silences(double recording_progress);
     const Received& received() const { return received_; }
 
-    /// What one link brought.
+    /// The receiver of one link.
     struct LinkReceiver {
         Link link;
         PltuReceiver pltus{};
         ProximityPackets packets{};
         RateMeter rate{};
-        Ert heard_at{};      ///< its last octet
-        bool waits = false;  ///< something came since it was last searched to the end
+        Ert heard_at{};      ///< time of its last octet
+        bool waits = false;  ///< something arrived since the last search to the end
     };
-    /// In the order in which they were first heard.
+    /// In the order of first reception.
     const std::vector<LinkReceiver>& links() const { return links_; }
     const RecordingReceiver& recording() const { return recording_; }
     std::uint64_t unreadable_file_octets() const {
         return unreadable_file_octets_;
     }  ///< of whole files, behind the last packet
 
-    /// What the station is to send to the rover now.
+    /// PLTUs that the station is to send to the rover now.
     std::vector<std::vector<std::uint8_t>> take_forward() { return recording_.take_pltus(); }
 
   private:

@@ -7,8 +7,8 @@
 
 namespace aeolis::telemetry {
 
-/// When ground expects to hear nothing, as predicted before the vehicle flies. Times are seconds from the predicted
-/// entry, at the vehicle. Empty: nothing is predicted.
+/// Silences that ground predicts before the flight. Times are seconds from the predicted entry, at the vehicle. Empty:
+/// none.
 struct PredictedSilences {
     struct Window {
         double from_s = 0.0, to_s = 0.0;
@@ -19,10 +19,10 @@ struct PredictedSilences {
         bool stored = false;  ///< it records, and delivers from delivery_s on
     };
     std::optional<Window> blackout;     ///< of UHF
-    std::optional<double> hand_over_s;  ///< to the antenna of the parachute
-    std::optional<double> uhf_stop_s;   ///< when the plan switches the transmitter off
-    std::optional<double> earth_set_s;  ///< none: not while it lands
-    bool carrier_weak = false;          ///< too weak for a lock however the antenna points
+    std::optional<double> hand_over_s;  ///< to the parachute antenna
+    std::optional<double> uhf_stop_s;   ///< the plan switches the transmitter off
+    std::optional<double> earth_set_s;  ///< none: not during the landing
+    bool carrier_weak = false;          ///< too weak for a lock in any attitude
     std::vector<OrbiterPass> passes;    ///< none: an orbiter is always in view
     double light_time_s = 0.0;
 };

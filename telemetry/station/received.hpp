@@ -15,12 +15,12 @@ struct ReceivedPacket {
     std::vector<std::uint8_t> octets;
 };
 
-/// Time goes on at the station: what does not come is told by nothing else.
+/// The time at the station, which passes even when nothing arrives.
 struct EarthTime {
     Ert now;
 };
 
-/// What a station makes of a Downlink.
+/// A station's output for one Downlink.
 struct Received {
     std::vector<ReceivedPacket> packets;
     std::vector<ReceivedTone> tones;

@@ -13,22 +13,22 @@
 
 namespace aeolis::telemetry {
 
-/// Receives the files in which the recording comes down (CFDP class 2), and asks for what of them is missing.
+/// Receives the recording's files (CFDP class 2), and requests their missing parts.
 ///
-/// In       PDUs as they come, over any orbiter, in any order; Earth's clock; whether a bent pipe is up
-/// Out      each file, once, when all of it is here and its checksum holds; PLTUs for the rover
-/// Rule     what is missing is asked for when the end of a file is announced, and again each time that an answer is
-///          overdue: both light times and 30 s (ours). Without a bent pipe once, until something has come again
-/// Memory   at most `files_under_way_max` files of `file_octets_max` that are not whole; of whole ones some octets
-/// Faults   what is no PDU, or is of no file of this vehicle, is counted. A file that failed is forgotten, and received
-///          anew: the rover sends again what was not delivered. When too many are under way the one longest silent is
+/// In       PDUs as received, over any orbiter, in any order; Earth's clock; whether a bent pipe is up
+/// Out      each file, once, when it is complete and its checksum right; PLTUs for the rover
+/// Rule     missing parts are requested when a file's end is announced, and again when an answer is overdue: after both
+///          light times and 30 s (our assumption). Without a bent pipe only once, until something is received again
+/// Memory   at most `files_under_way_max` incomplete files of `file_octets_max`; some octets for each complete one
+/// Faults   octets that are no PDU, or of no file of this vehicle, are counted. A failed file is forgotten and received
+///          anew: the rover resends what was not delivered. When too many are under way, the longest silent is
 ///          forgotten
 class RecordingReceiver {
   public:
     using OnFile = std::function<void(std::span<const std::uint8_t>)>;
 
-    static constexpr std::uint32_t file_octets_max = 4U << 20;  ///< ours: sixteen times what the rover puts into one
-    static constexpr std::size_t files_under_way_max = 64;      ///< ours: twice what it has open at once
+    static constexpr std::uint32_t file_octets_max = 4U << 20;  ///< chosen: sixteen times the rover's largest
+    static constexpr std::size_t files_under_way_max = 64;      ///< chosen: twice what the rover has open at once
 
     explicit RecordingReceiver(double light_time_s) : light_time_s_(light_time_s) {}
 
@@ -39,11 +39,11 @@ class RecordingReceiver {
     std::uint64_t received_octets() const;  ///< of the recording, each counted once
     std::size_t files_whole() const;
     std::size_t files_under_way() const { return files_.size() - files_whole(); }
-    std::uint64_t asked() const { return asked_; }  ///< PDUs that asked for something again
-    std::uint64_t refused() const;  ///< what was no PDU, belonged to no file, or contradicted what is known of one
+    std::uint64_t asked() const { return asked_; }  ///< PDUs that requested something
+    std::uint64_t refused() const;                  ///< octets that are no PDU, belong to no file, or contradict one
 
   private:
-    static constexpr std::size_t files_max = 4096;  ///< ours: of 256 KiB each a gigabyte
+    static constexpr std::size_t files_max = 4096;  ///< chosen: at 256 KiB each, a gigabyte
 
     static bool fits(const cfdp::Pdu& pdu);
     struct File {

@@ -11,64 +11,63 @@
 
 namespace aeolis::telemetry {
 
-/// What a link's silence is taken for.
+/// The cause that a link's silence is attributed to.
 enum class SilenceClass : std::uint8_t {
-    light_time,    ///< nothing can have come yet
-    switched_off,  ///< the plan has the transmitter off again
+    light_time,    ///< nothing can have arrived yet
+    switched_off,  ///< the plan has switched the transmitter off
     blackout,
     hand_over,        ///< between antennas of the vehicle
-    no_orbiter,       ///< none that hands on at once is in view
-    orbiter_records,  ///< one is that delivers later
+    no_orbiter,       ///< no bent pipe is in view
+    orbiter_records,  ///< an orbiter in view delivers later
     earth_set,
     weak_carrier,
-    delivered,  ///< an orbiter has given all that it recorded
+    delivered,  ///< an orbiter has delivered everything it recorded
     recording_complete,
-    ground_fault,  ///< the station, or the way to it
-    unexplained,   ///< nothing that was predicted: look at it
+    ground_fault,  ///< the station, or the line to it
+    unexplained,   ///< not predicted: a controller should look
 };
 /// "plasma blackout", "Earth set", …
 const char* name_of(SilenceClass silence);
-/// Whether a link that is silent so should be there.
+/// Whether a link with this silence should be up.
 bool is_lost(SilenceClass silence);
-/// "plasma blackout: predicted from E+45 s to E+98 s": as a link's change says it. No sentence: the name alone.
+/// "plasma blackout: predicted from E+45 s to E+98 s", as reported for a link. Without a sentence: the name alone.
 std::string words_of(SilenceClass silence, const std::string& sentence);
 
-/// Says why a link brings nothing, by what ground knows: predictions, light time, which link it is, its last octet.
-/// That a receiver has lost or found a link is what the port brings.
+/// Explains why a link is silent from ground's knowledge: predictions, light time, the link, its last octet.
 ///
+/// The port reports whether a receiver has lost or found a link.
 /// In       changes of links as they reach Earth (name, up or down), time on Earth
 /// Out      the same changes, with ground's reason and whether the link is lost
-/// Rate     any; a silence is judged anew with each call: when its explanation is over, it gets another
-/// Margin   a prediction counts for `margin_s` on both sides, as dispersed landings come so much earlier or later
+/// Rate     any; each call judges silences anew: when an explanation ends, another replaces it
+/// Margin   a prediction counts for `margin_s` on both sides, since dispersed landings come that much earlier or later
 /// Rules    in this order: the plan's switching, passes, blackout, hand-over; X-band: Earth set, link budget; the
-///          recording: complete, passes. Where none holds: the fault that the station has, or unexplained
+///          recording: complete, passes. If none holds: the station's fault, or unexplained
 /// Memory   a row a link
-/// A value, as the landing is.
+/// A value, like the landing.
 class SilenceClassifier {
   public:
-    static constexpr double margin_s = 35.0;  ///< ours: four deviations of when Earth sets for dispersed landings
-                                              ///< (docs/decisions/0027), and the coarse prediction
+    /// Chosen: four deviations of Earth set over dispersed landings (docs/decisions/0027), and the coarse prediction.
+    static constexpr double margin_s = 35.0;
+    static constexpr double pass_margin_s = 1.0;  ///< chosen: this near its rise or set an orbiter explains a silence
 
-    static constexpr double pass_margin_s = 1.0;  ///< ours: so near its rise or set an orbiter explains a silence
-
-    /// @param start_ert  when the run begins on Earth; what leaves the vehicle then comes a light time later
-    /// @param entry_ert  when what leaves at the predicted entry is heard
+    /// @param start_ert  when the run begins on Earth; signals sent then arrive a light time later
+    /// @param entry_ert  when a signal sent at the predicted entry arrives
     SilenceClassifier(PredictedSilences predicted, Ert start_ert, Ert entry_ert);
 
-    /// What ground has of the recording, and when it last heard of a link.
+    /// The station's knowledge: received part of the recording, last octets of links, its fault.
     struct Station {
         double recording_progress = 0.0;
         std::vector<std::pair<std::string_view, Ert>> heard{};  ///< last octets, by link
-        std::string fault{};  ///< of the station, or the line from it; empty: none that anyone knows of
+        std::string fault{};  ///< of the station, or the line from it; empty: none known
     };
-    /// @return what to tell of links now: `changes` with ground's reasons, and silences that became others. Empty:
-    ///   nothing.
+    /// @return the links' reports now: `changes` with ground's reasons, and silences whose cause has changed. May be
+    /// empty.
     std::vector<LinkState> tell(const std::vector<LinkState>& changes, Ert now, const Station& station);
 
   private:
     struct Silence {
         Link link;
-        bool cut = false;  ///< it began while the station failed
+        bool cut = false;  ///< began while the station had a fault
         SilenceClass told{};
     };
     struct Explanation {

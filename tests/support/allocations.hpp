@@ -5,7 +5,7 @@
 
 namespace aeolis::test {
 
-/// How often this thread has asked for memory since the program started.
+/// The number of allocations by this thread since the program started.
 std::uint64_t allocations();
 
 }  // namespace aeolis::test

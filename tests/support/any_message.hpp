@@ -10,11 +10,11 @@
 #include <type_traits>
 #include <utility>
 
-// Values of any type of message from given octets, a fuzzer's or random ones. What a type is made of is taken from the
-// type itself; a field that is added to a message is filled too.
+// Message values built from octets, a fuzzer's or random ones. The fields come from the type itself, so that a new
+// field is filled too.
 namespace aeolis::test {
 
-/// The octets given, then zeros.
+/// A source of octets: the given ones, then zeros.
 class Source {
   public:
     explicit Source(std::span<const std::uint8_t> octets) : rest_(octets) {}
@@ -33,7 +33,7 @@ class Source {
     std::span<const std::uint8_t> rest_;
 };
 
-/// Stands for an initialiser of any field.
+/// Converts to any type: counts the initialisers of an aggregate.
 struct AnyField {
     template <typename T>
     operator T() const;
@@ -43,7 +43,7 @@ template <typename T, std::size_t... I>
 constexpr bool takes_fields(std::index_sequence<I...>) {
     return requires { T{(static_cast<void>(I), AnyField{})...}; };
 }
-/// How many fields an aggregate has.
+/// The number of fields of an aggregate.
 template <typename T, std::size_t N = 24>
 constexpr std::size_t field_count() {
     if constexpr (N == 0 || takes_fields<T>(std::make_index_sequence<N>{}))
@@ -77,13 +77,13 @@ void fill(Source& from, std::optional<T>& value) {
     value.reset();
     if (from.take<std::uint8_t>() % 2 != 0) fill(from, value.emplace());
 }
-/// Whatever the time is, the clock counts in 1/64 s: forty bits of them are five centuries. R21
+/// Limits times to what the clock can count, in 1/64 s: forty bits of ticks are five centuries. R21
 inline void fill(Source& from, Sclk& time) {
     const auto low = from.take<std::uint32_t>();
     time = Sclk::from_ticks(std::int64_t{from.take<std::int8_t>()} * 0x100000000 + low);
 }
 
-/// A class with a state of its own hands it to whoever carries it, as it does to the other computer.
+/// Fills a class with private state through carry(), which the other computer uses too.
 template <typename T>
 void carry_into(Source& from, T& value) {
     const auto exchange = [&](auto&... fields) { (fill(from, fields), ...); };
@@ -127,7 +127,7 @@ void fill(Source& from, T& value) {
         fill_fields(from, value);
 }
 
-/// A message of the type that stands at `index` of the variant.
+/// A message of the variant's type at `index`.
 template <std::size_t Index = 0>
 flight::Message message_of(std::size_t index, Source& from) {
     if constexpr (Index + 1 < std::variant_size_v<flight::Message>)

@@ -15,7 +15,7 @@ using Matchers::EndsWith;
 using Matchers::StartsWith;
 using Matchers::VectorContains;
 
-inline constexpr const char* list_names = "--list-tests --verbosity quiet";  ///< the option that prints names alone
+inline constexpr const char* list_names = "--list-tests --verbosity quiet";  ///< the option that prints only names
 
 inline auto Contains(const std::string& text) {
     return Matchers::ContainsSubstring(text);

@@ -5,7 +5,7 @@
 
 namespace aeolis::test {
 
-/// A module of its own, spoken to by messages; what the last one made it send is in `recorder`.
+/// One module, driven by messages; `recorder` holds what the last message made it send.
 template <typename Module>
 struct Spoken {
     flight::ModuleId id;
@@ -27,7 +27,7 @@ inline flight::UnitsSelected all_b() {
     return selected;
 }
 
-/// A manager of the rate group confirms each tick, and addresses the unit that it was told.
+/// Whether a manager of the rate group confirms each tick and addresses the unit it was given.
 template <typename Module>
 bool confirms_and_addresses(flight::ModuleId id, flight::Device device) {
     Spoken<Module> spoken{id};

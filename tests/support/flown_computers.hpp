@@ -10,13 +10,13 @@
 
 #include <vector>
 
-// Computers as they are in the middle of a landing, for tests that begin there.
+// Computers in the middle of a landing, as a start for tests.
 namespace aeolis::test {
 
 /// Two computers that fly the nominal landing in the world, without the links home. A value: a copy is a fork.
 class FlownComputers {
   public:
-    /// In pre-EDL, EDL begun.
+    /// Starts in pre-EDL with EDL begun.
     explicit FlownComputers(const simulation::Scenario& scenario = tests::gale_scenario(900.0))
         : world_(scenario, 1), prime_(simulation::load_for(scenario), world_.sclk()),
           backup_(backup_load(scenario), world_.sclk()) {

@@ -11,10 +11,10 @@
 
 namespace aeolis::tests {
 
-/// The test venue "GNC alone" without a landing's links around it, for a look inside.
+/// The test venue "GNC alone" without links, open for inspection.
 class GncVenue {
   public:
-    /// A trigger of GNC, or a reversal, with what GNC and the truth said at that moment.
+    /// A trigger of GNC or a bank reversal, with GNC's output and the truth at that moment.
     struct Event {
         std::optional<flight::gnc::Trigger> trigger;
         std::uint8_t reversal = 0;

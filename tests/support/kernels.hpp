@@ -6,10 +6,10 @@
 
 #include <string>
 
-// Kernels of a few lines, for tests of time.
+// Short SPICE kernels for tests of time.
 namespace aeolis::tests {
 
-/// The constants and all leap seconds of NAIF's naif0012, re-typed.
+/// The constants and all leap seconds of NAIF's naif0012, retyped.
 inline const std::string leap_second_kernel = R"(KPL/LSK
 \begindata
 DELTET/DELTA_T_A = 32.184
@@ -41,7 +41,7 @@ inline Result<telemetry::ClockKernel> clock_of(const std::string& assignments) {
     return telemetry::ClockKernel::read(*kernel);
 }
 
-/// A clock of seconds and 1/65536 s that runs as TT through one point: 397501174 is 2012-219T05:10:47.400 UTC.
+/// A clock of seconds and 1/65536 s that follows TT through one point: 397501174 is 2012-219T05:10:47.400 UTC.
 inline const std::string landing_clock = R"(SCLK_DATA_TYPE_76 = ( 1 )
 SCLK01_TIME_SYSTEM_76 = ( 2 )
 SCLK01_N_FIELDS_76 = ( 2 )

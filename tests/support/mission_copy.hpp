@@ -11,7 +11,7 @@
 #include <string_view>
 #include <unistd.h>
 
-// The shipped dictionary in a folder of its own, to be broken.
+// A copy of the shipped dictionary in its own folder, for a test to break.
 namespace aeolis::tests {
 
 inline const std::filesystem::path shipped_mission = std::filesystem::path{AEOLIS_SOURCE_DIR} / "dictionaries" / "msl";
@@ -49,12 +49,12 @@ class MissionCopy {
     std::filesystem::path path_;
 };
 
-/// Line, from 1, of the character at `position`.
+/// The line, from 1, of the character at `position`.
 inline unsigned line_at(std::string_view text, std::size_t position) {
     return 1 + static_cast<unsigned>(std::ranges::count(text.substr(0, position), '\n'));
 }
 
-/// All findings, a line each.
+/// All findings, one a line.
 inline std::string lines_of(const dictionary::Loaded& loaded) {
     std::string lines;
     for (const auto& finding : loaded.findings) lines += finding.text() + "\n";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Octets as tests write them down, and at random.
+// Octets from hexadecimal text, and random octets.
 #pragma once
 
 #include <cstdint>

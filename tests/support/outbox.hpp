@@ -8,7 +8,7 @@
 
 namespace aeolis::test {
 
-/// An outbox with a bus behind it, and what was put in, by type.
+/// An outbox with a bus, recording what was sent, by type.
 struct OutboxRecorder {
     std::unique_ptr<flight::DeviceOutputs> bus = std::make_unique<flight::DeviceOutputs>();
     flight::Outbox out;
@@ -25,7 +25,7 @@ struct OutboxRecorder {
             if (const auto* message = std::get_if<M>(&envelope.message)) found.push_back(*message);
         return found;
     }
-    /// How often the event was reported.
+    /// The number of reports of an event.
     template <typename Evr>
     int events() const {
         int count = 0;

@@ -8,14 +8,14 @@
 
 namespace aeolis::tests {
 
-/// One broken rule, made by changing a few words of a shipped file, and the one finding that it must give.
+/// A rule broken by a small change of a shipped file, and the only finding that this must give.
 struct Planted {
     const char* rule;
     const char* file;
     const char* find;  ///< first occurrence in the file
     const char* replace;
     const char* message;  ///< part of the finding's text
-    int line_offset = 0;  ///< of the finding, from the line where the change begins
+    int line_offset = 0;  ///< of the finding, from the first changed line
 };
 
 inline void check_planted(const Planted& planted) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The packets in what is radiated: PLTUs one after another.
+// The packets in radiated PLTUs.
 #pragma once
 
 #include "telemetry/proximity_packets.hpp"
@@ -11,7 +11,7 @@
 
 namespace aeolis::test {
 
-/// Of whole PLTUs without any fault.
+/// Splits PLTUs, which must be whole and without faults.
 inline std::vector<std::vector<std::uint8_t>> packets_in_pltus(std::span<const std::uint8_t> pltus) {
     std::vector<std::vector<std::uint8_t>> found;
     telemetry::PltuReceiver receiver;

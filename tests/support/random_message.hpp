@@ -8,7 +8,7 @@
 
 namespace aeolis::test {
 
-/// A message of the type that stands at `type` of the variant, every field of it random.
+/// A message of the variant's type at `type`, with every field random.
 inline flight::Message random_message_of(std::size_t type, std::mt19937& random) {
     std::array<std::uint8_t, 2 * sizeof(flight::Message)> octets{};
     for (std::uint8_t& octet : octets) octet = static_cast<std::uint8_t>(random());
@@ -16,8 +16,7 @@ inline flight::Message random_message_of(std::size_t type, std::mt19937& random)
     return message_of(type, from);
 }
 
-/// A message of any type: half of them random throughout, the others as a module may well send them, so that their
-/// content is not refused at once.
+/// A message of any type: half of them wholly random, the others plausible, so that they are not refused at once.
 inline flight::Message random_message(std::mt19937& random) {
     const std::size_t type = random() % std::variant_size_v<flight::Message>;
     if (random() % 2 == 0) return random_message_of(type, random);

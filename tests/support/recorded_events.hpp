@@ -10,7 +10,7 @@
 
 namespace aeolis::tests {
 
-/// How often an event report stands in a recording.
+/// The number of an event's reports in a recording.
 template <typename Evr>
 int count_recorded(std::span<const std::uint8_t> recording) {
     int count = 0;

@@ -6,7 +6,7 @@
 
 namespace aeolis::tests {
 
-/// dictionaries/msl, loaded once.
+/// The dictionary in dictionaries/msl, loaded once.
 inline const dictionary::Dictionary& shipped_dictionary() {
     static const auto loaded = dictionary::load(AEOLIS_SOURCE_DIR "/dictionaries/msl");
     for (const auto& finding : loaded.findings) UNSCOPED_INFO(finding.text());

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-// A mission of a few words, so that a test of the ground shows everything that it depends on.
+// A mission of a few words, so that a ground test shows everything that it depends on.
 namespace aeolis::tests {
 
 inline dictionary::Type number(std::string_view unit, dictionary::Encoding encoding, unsigned bits) {
@@ -50,7 +50,7 @@ inline dictionary::Type within(dictionary::Type type, double least, double large
     return type;
 }
 
-/// Fields one after another behind the secondary header; the packet ends on a whole octet before its CRC.
+/// Builds a packet of consecutive fields after the secondary header, padded to a whole octet before its CRC.
 class PacketMaker {
   public:
     PacketMaker(dictionary::Dictionary& dictionary, std::string_view name, Apid apid) : dictionary_(dictionary) {
@@ -73,7 +73,7 @@ class PacketMaker {
         packet_.fields.back().channel = id;
         return *this;
     }
-    /// The bit behind the last field says whether it is defined.
+    /// Adds a validity bit after the last field.
     PacketMaker& with_validity() {
         packet_.fields.back().validity_bit = at_++;
         return *this;
@@ -217,7 +217,7 @@ inline dictionary::Dictionary small_dictionary() {
     return dictionary;
 }
 
-/// A telemetry packet by the names of its fields; what is not set is zero.
+/// Builds a telemetry packet by the names of its fields; unset fields are zero.
 class PacketFiller {
   public:
     PacketFiller(const dictionary::Dictionary& dictionary, std::string_view name)

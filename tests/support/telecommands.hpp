@@ -12,8 +12,8 @@
 #include <span>
 #include <vector>
 
-// The commands of a landing, packed field by field here and not by the encoder of commands/, as the CLTUs that reach
-// the vehicle: each packet in a frame of the expedited service.
+// The telecommands of a landing as CLTUs, each packet in an expedited frame. They are packed field by field here,
+// independently of the encoder in commands/.
 namespace aeolis::test {
 
 inline std::vector<std::uint8_t> cltu_of(std::span<const std::uint8_t> packet, const TcFrameHeader& header) {

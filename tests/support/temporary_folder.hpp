@@ -9,7 +9,7 @@
 
 namespace aeolis::test {
 
-/// A new folder, removed with all that is in it.
+/// A new folder, removed with its contents.
 class TemporaryFolder {
   public:
     TemporaryFolder() {

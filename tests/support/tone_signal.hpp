@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-// Samples of tones for tests, with the shipped dictionary's numbers.
+// Samples of tones for tests, with the numbers of the shipped dictionary.
 namespace aeolis::tests {
 
 inline constexpr MfskWaveform mfsk{8.4e9, 300.0, 1.0, 10.0, 32.0 * std::numbers::pi / 180.0};
