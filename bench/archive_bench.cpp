@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the archive costs above bare SQLite with the same table, index, batch and synchronous=FULL; what a landing's
-// telemetry costs from packet to durable row; what a plot of ten million samples costs to read; what a sample takes;
-// how long a start has to wait for an archive that was closed, or whose writer was killed.
+// Measures the archive: its cost over bare SQLite with the same table, index, batch and synchronous=FULL; the cost of a
+// landing's telemetry from packet to durable row; reading a plot of ten million samples; octets a sample; and the start
+// on an archive that was closed, or whose writer was killed.
 
 #include "bench/must.hpp"
 #include "common/bytes.hpp"
@@ -58,7 +58,7 @@ Cost cost_of(Work work) {
     work();
     return {wall_s() - wall, cpu_s() - cpu};
 }
-/// A packet of floats, each a channel; thirty: the shape of the wideband load.
+/// A packet of floats, each a channel. Thirty have the shape of the wideband load.
 dictionary::Dictionary wideband(std::size_t channels = fields) {
     dictionary::Dictionary d;
     d.mission = "BENCH";
@@ -143,7 +143,7 @@ Cost archive_append(const std::filesystem::path& file, const std::vector<std::ui
 
 constexpr std::size_t landing_units = 100'000;
 
-/// Packets made beforehand: only the ground's work is measured.
+/// Packets made beforehand, so that only the ground's work is measured.
 std::vector<telemetry::ReceivedPacket> landing() {
     std::vector<telemetry::ReceivedPacket> packets(landing_units);
     for (std::size_t i = 0; i < landing_units; ++i) {
@@ -182,7 +182,7 @@ double median_ms(const std::function<void()>& work) {
 
 constexpr std::size_t long_samples = 10'000'000;
 
-/// Segments and pyramid only, as a finished run leaves them: of one packet with two channels that move.
+/// Stores segments and pyramid only, as a finished run leaves them: one packet with two changing channels.
 void store_long(const std::filesystem::path& file, const dictionary::Dictionary& dictionary) {
     auto opened = archive::Archive::open(file);
     must(opened.ok(), "Archive::open");
@@ -211,7 +211,7 @@ void store_long(const std::filesystem::path& file, const dictionary::Dictionary&
     must(opened->append(*run, batch).ok(), "append");
 }
 
-/// Ten million samples come in packets of `fields`; then kill -9, in the midst of the run.
+/// Stores ten million samples in packets of `fields`, then is ended by kill -9 in the middle of the run.
 void store_until_killed(const std::filesystem::path& file, const dictionary::Dictionary& dictionary) {
     const pid_t child = ::fork();
     must(child >= 0, "fork");
@@ -236,8 +236,8 @@ void store_until_killed(const std::filesystem::path& file, const dictionary::Dic
     must(::waitpid(child, &status, 0) == child && WIFSIGNALED(status), "the killed writer");
 }
 
-/// As a start does: the writer, then a reader, up to its first answer. The median of five, each of a copy: what a
-/// writer that was killed has left is mended by opening it. Closing is not part of it.
+/// Measures a start: the writer, then a reader, up to its first answer. Returns the median of five, each on a copy,
+/// because opening repairs what a killed writer has left. Closing is not included.
 double reopening_ms(const std::filesystem::path& file, const dictionary::Dictionary& dictionary,
                     std::size_t interrupted) {
     std::vector<double> times;
@@ -258,7 +258,7 @@ double reopening_ms(const std::filesystem::path& file, const dictionary::Diction
     return times[2];
 }
 
-/// Of the pages that hold samples, for each value of a channel.
+/// Octets of the pages that hold samples, for each value of a channel.
 double octets_of_samples(const std::filesystem::path& file) {
     auto database = archive::sqlite::Database::open(file.string(), archive::sqlite::Mode::read_only);
     must(database.ok(), "open");
@@ -271,7 +271,7 @@ double octets_of_samples(const std::filesystem::path& file) {
     return static_cast<double>(*octets) / static_cast<double>(*samples);
 }
 
-/// The median of some tries, each with the file out of the kernel's cache and a connection that has read nothing yet.
+/// The median of some tries, each with the file out of the kernel's cache and a new connection.
 double first_touch_ms(const std::filesystem::path& file, const dictionary::Dictionary& dictionary,
                       const archive::SeriesQuery& query) {
     std::vector<double> times;
@@ -293,7 +293,7 @@ double first_touch_ms(const std::filesystem::path& file, const dictionary::Dicti
 int main() {
     const test::TemporaryFolder folder;
     const std::vector<std::uint8_t> octets(unit_octets, 0x5A);
-    // By turns, the best of each: the disk is shared.
+    // By turns, the best of each, because the disk is shared.
     Cost raw{1e9, 1e9}, ours{1e9, 1e9};
     for (int i = 0; i < 4; ++i) {
         const auto better = [](Cost a, Cost b) { return Cost{std::min(a.wall, b.wall), std::min(a.cpu, b.cpu)}; };

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a case of a campaign costs beside its dynamics: one thread, the same cases, the same stretch of flight.
+// Measures a campaign case against its dynamics: one thread, the same cases, the same stretch of flight.
 //
-//   case       copied at the moment of dispersion, flown to its end by all of the flight software: as `aeolis campaign`
-//   dynamics   the world alone over that stretch, flown by what stands in for the flight software in tests/simulation
-//   goal       a case at 0.4 of the rate of its dynamics; 8001 cases in 30 minutes on 2 processors
+//   case       copied at the moment of dispersion, flown to its end by the whole flight software, as in `aeolis
+//              campaign`
+//   dynamics   the world alone over that stretch, flown by the stand-in for flight software in tests/simulation
+//   goal       cases at 0.4 of the rate of their dynamics; 8001 cases in 30 minutes on 2 processors
 #include "server/campaign/case_flights.hpp"
 #include "server/scenario/scenario_text.hpp"
 #include "tests/simulation/truth_pilot.hpp"
@@ -19,7 +20,7 @@ constexpr std::uint64_t cases = 24;
 constexpr double rate_goal = 0.4;
 constexpr double case_goal_s = 30.0 * 60.0 * 2.0 / 8001.0;
 
-/// Processor time: what else the machine does does not count.
+/// Processor time, so that other processes do not count.
 double now_s() {
     return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
@@ -34,7 +35,7 @@ int main() {
     tests::TruthPilot trunk{*scenario, 1};
     trunk.run_until(-*scenario->disperse_before_entry_s);
 
-    // In turn, so that a processor that slows down slows both alike.
+    // In turn, so that a slowing processor slows both alike.
     double case_s = 0.0, dynamics_s = 0.0;
     std::uint64_t landed = 0;
     for (std::uint64_t number = 1; number <= cases; ++number) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Packets decommutated a second on one core, against the goal of a million, and against the packet's CRC alone: the one
-// pass over the octets that no decommutator can do without.
+// Decommutated packets a second on one core, against the goal of a million, and against the packet's CRC alone: the one
+// pass over the octets that every decommutator needs.
 #include "common/crc.hpp"
 #include "telemetry/decommutator.hpp"
 #include "telemetry/unit_identity.hpp"
@@ -33,7 +33,7 @@ std::vector<std::vector<std::uint8_t>> packets_of(const dictionary::Dictionary& 
     return made;
 }
 
-/// Calls `each` on every packet, again and again; by the processor time of this process, the best of five parts.
+/// Calls `each` on every packet repeatedly; returns the best rate of five parts, by processor time of this process.
 template <typename Each>
 double rate_per_s(const std::vector<std::vector<std::uint8_t>>& octets, Each each) {
     double best = 0.0;
@@ -63,7 +63,7 @@ int main() {
     std::uint64_t sum = 0;
     const double limit = rate_per_s(octets, [&](const auto& packet) { sum += crc16(packet); });
 
-    // What moving the same octets costs: none can be faster who looks at each.
+    // Cost of copying the same octets: a lower bound for anything that reads each of them.
     std::vector<std::uint8_t> copy(wanted->octets);
     const double copied = rate_per_s(octets, [&](const auto& packet) {
         std::memcpy(copy.data(), packet.data(), packet.size());

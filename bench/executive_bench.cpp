@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the deterministic executive adds to the modules' own work, and what a snapshot of a computer costs.
+// Measures the deterministic executive's overhead over the modules' own work, and the cost of a computer's snapshot.
 //
-//   dispatch   a cycle of a computer that has nothing to do (before EDL): every module has its turn or its tick and is
-//              idle; goal 300 ns beyond the modules' own work, which is measured by calling the same handlers directly
-//   copy       of a computer's whole state; goal 1 ms, and at most 4 MB
+//   dispatch   a cycle of an idle computer (before EDL): every module has its turn or its tick; goal 300 ns beyond the
+//              modules' own work, measured by calling the same handlers directly
+//   copy       a copy of a computer's whole state; goal 1 ms, and at most 4 MB
 #include "flight/computer.hpp"
 #include "flight/computer_state.hpp"
 #include "flight/kernel/dispatch.hpp"
@@ -32,7 +32,7 @@ double thread_cpu_ns() {
     return static_cast<double>(time.tv_sec) * 1.0e9 + static_cast<double>(time.tv_nsec);
 }
 
-/// Processor time of the least round: what else the machine does only adds.
+/// Processor time of the fastest round, because other processes only add to it.
 double ns_a_cycle(const auto& run) {
     double least_ns = std::numeric_limits<double>::max();
     for (int round = 0; round < rounds; ++round) {
@@ -43,7 +43,7 @@ double ns_a_cycle(const auto& run) {
     return least_ns / cycles;
 }
 
-/// The same handlers with the same messages in the same order, without mailboxes.
+/// The same handlers with the same messages in the same order, but without mailboxes.
 struct Tapped final : MessageTap {
     std::vector<std::pair<ModuleId, Message>> messages;
     void sent(ModuleId, ModuleId to, const Message& message) override { messages.emplace_back(to, message); }
@@ -57,7 +57,7 @@ int main() {
     DeviceInputs in;
     in.nvm_capacity_octets = 1U << 30;
     std::int64_t ticks = 64000;
-    // A tick between whole seconds: no status packets, so that what is measured is the dispatch.
+    // A tick between whole seconds has no status packets, so that only the dispatch is measured.
     const auto next_tick = [&] {
         if (++ticks % 64 == 0) ++ticks;
         in.now = Sclk::from_ticks(ticks);

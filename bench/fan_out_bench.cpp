@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What it costs to give one message to a thousand clients of the stream, against a bare send of the same octets to as
-// many sockets: CPU a delivered message, and how long it is on its way. Then eight messages a tick.
+// Measures one message to a thousand clients of the stream against a bare send of the same octets to as many sockets:
+// CPU a delivered message, and latency. Then eight messages a tick.
 
 #include "bench/loopback_clients.hpp"
 #include "bench/must.hpp"
@@ -43,7 +43,7 @@ struct Figures {
     }
 };
 
-/// `give` is called `ticks_per_s` times a second.
+/// Calls `give` `ticks_per_s` times a second.
 template <typename Give>
 void tick(double ticks_per_s, Give give) {
     const auto begin = Clock::now();
@@ -60,7 +60,7 @@ Figures figures(const LoopbackClients& all, double cpu, double expected) {
     return {1e6 * cpu / expected, all.latency_ms(0.5), all.latency_ms(0.99)};
 }
 
-/// The limit: one thread, one send a socket.
+/// The lower bound: one thread, one send a socket.
 Figures bare(LoopbackClients& all) {
     const int listener = ::socket(AF_INET, SOCK_STREAM, 0);
     sockaddr_in address{};

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The ground under its design load: 2000 packets of 1.5 kB a second, each of their parameters decoded and stored, to a
-// thousand clients that follow 30 channels at 20 Hz and every event, one of them stalled: all the same channels, then
-// each some of its own. Those that joined first, in the middle and last are looked at, and the stalled one when it
-// reads again. And the start of the real program on an archive of a hundred runs, up to the first answer with data.
+// The ground under its design load.
+//
+// Each second 2000 packets of 1.5 kB are decoded and stored, and sent to a thousand clients that follow 30 channels at
+// 20 Hz and every event; one client is stalled. First all follow the same channels, then each has some of its own. The
+// first, a middle and the last client are watched, and the stalled one when it reads again. Then the real program
+// starts on an archive of a hundred runs, up to the first answer with data.
 
 #include "bench/loopback_clients.hpp"
 #include "bench/must.hpp"
@@ -39,7 +41,7 @@ namespace {
 constexpr std::size_t clients = 1000, watched = 4, watched_channels = 30;  // one of those watched is stalled
 constexpr std::size_t packet_kinds = 32, packets_per_s = 2000, channels_a_packet = 368;  // 1.5 kB
 constexpr std::size_t events_per_s = 10, tones_per_s = 1, stages_per_s = 2;
-constexpr int stalled_receive_octets = 4096;  // else the kernel would read for it
+constexpr int stalled_receive_octets = 4096;  // otherwise the kernel would read for it
 constexpr double seconds = 10.0;
 constexpr double sample_rate_hz = 20.0;
 constexpr Apid event_apid{0x7F};
@@ -48,7 +50,7 @@ double now_s() {
     return std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
 }
 
-/// Packets of floats, each a channel; and an event that tells when it was made: two numbers of 32 bits.
+/// Packets of floats, each a channel, and an event with its time of making: two numbers of 32 bits.
 dictionary::Dictionary load() {
     dictionary::Dictionary d;
     d.mission = "LOAD";
@@ -97,10 +99,10 @@ std::uint64_t resident_octets() {
     return resident * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
 }
 
-/// A client that reads every item: what a console knows. One thread.
+/// A client that reads every item, as a console does. One thread.
 class Watcher {
   public:
-    /// @param stalled  it says that it lives, and reads nothing until read_on()
+    /// @param stalled  it sends signs of life, and reads nothing until read_on()
     Watcher(const char* who, std::uint16_t port, const std::string& subscription, bool stalled = false)
         : name(who), reads_(!stalled), socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
         if (stalled)
@@ -131,10 +133,10 @@ class Watcher {
 
     void read_on() { reads_ = true; }
 
-    const char* name;  ///< as it is told of
+    const char* name;  ///< in the report
     std::atomic<std::uint64_t> events{0}, tones{0}, stages{0}, through{0};
-    std::atomic<std::uint64_t> thinned{0};  ///< samples that say that some before them were left out
-    std::atomic<bool> broken{false};        ///< a batch that does not join the one before
+    std::atomic<std::uint64_t> thinned{0};  ///< samples marked as preceded by omitted ones
+    std::atomic<bool> broken{false};        ///< a batch did not continue the one before
     std::vector<double> event_ms, sample_ms;
 
   private:
@@ -211,7 +213,7 @@ void goal(const std::string& what, double figure, double most, const char* unit)
     met = met && figure <= most;
 }
 
-/// A client's subscription: 30 channels of the first kind of packet; or ten of each of three kinds, other ones for each
+/// A client's subscription: 30 channels of the first kind of packet, or ten of each of three kinds, different for each
 /// client.
 enum class Channels { same, own };
 std::string subscription_of(std::size_t client, Channels channels) {
@@ -227,9 +229,9 @@ std::string subscription_of(std::size_t client, Channels channels) {
     return message.SerializeAsString();
 }
 
-/// Threads and connections as `aeolis serve` has them, with packets made here in place of a landing.
+/// Runs threads and connections as in `aeolis serve`, with packets made here in place of a landing's.
 void under_load(Channels channels) {
-    std::array<LoopbackClients, 2> others;  // who joins between the first and the middle one, and after it
+    std::array<LoopbackClients, 2> others;  // clients that join between the first and the middle one, and after it
     spdlog::set_level(spdlog::level::err);
     const test::TemporaryFolder folder;
     const auto file = folder / "load.db";
@@ -329,7 +331,7 @@ void under_load(Channels channels) {
         stalled.read_on();
         must(pipeline.finish({"stopped", "", "", ""}).ok(), "finish");
         state.set_state("finished");
-        web->post([&hub, state] { hub.run_state(state); });  // as a run tells its end
+        web->post([&hub, state] { hub.run_state(state); });  // as a run reports its end
         const std::uint64_t last_seq = 2 * (sent_packets + sent_events) + sent_tones + sent_stages;
         const auto has_all = [&](const Watcher* each) { return each->through == last_seq; };
         while (!std::ranges::all_of(all, has_all) && now_s() - stopped < 10.0)
@@ -352,7 +354,7 @@ void under_load(Channels channels) {
                  std::abs(lost(sent_tones, each->tones)) + std::abs(lost(sent_stages, each->stages)), 0.0, "");
             goal("sequence numbers without an answer" + who, lost(last_seq, each->through), 0.0, "");
             goal("batches that do not join the one before" + who, each->broken ? 1.0 : 0.0, 0.0, "");
-            if (each == &stalled) continue;  // what it sees late it sees by its own choice
+            if (each == &stalled) continue;  // its delay is its own choice
             goal("event, from receipt to the client, p99" + who, quantile(each->event_ms, 0.99), 40.0, "ms");
             goal("newest sample's age when a batch arrives, p99" + who, quantile(each->sample_ms, 0.99), 65.0, "ms");
         }
@@ -375,7 +377,7 @@ void under_load(Channels channels) {
     queries.reset();
 }
 
-/// `aeolis serve` on an archive of a hundred runs: until its list of runs, and a channel of the last one, are there.
+/// Starts `aeolis serve` on an archive of a hundred runs, until the list of runs and a channel of the last one arrive.
 void start() {
     const test::TemporaryFolder folder;
     const auto file = folder / "runs.db";
@@ -383,7 +385,7 @@ void start() {
     const auto flown = program + " rehearse --scenario nominal_auto --archive " + file.string() + " >/dev/null";
     must(std::system(flown.c_str()) == 0, flown.c_str());
     {
-        // The other ninety-nine are of a minute each: a list of runs and the last of them is what a start reads.
+        // The other ninety-nine have a minute each: a start reads only the list of runs and the last of them.
         const auto dictionary = load();
         auto archive = std::move(archive::Archive::open(file)).value();
         pipeline::Pipeline pipeline{archive, dictionary};
@@ -430,9 +432,7 @@ void start() {
 }  // namespace
 
 int main() {
-    for (const auto channels :
-         {Channels::same,
-          Channels::own}) {  // each in a process of its own: what one leaves in the heap is not the other's
+    for (const auto channels : {Channels::same, Channels::own}) {  // each in its own process, with its own heap
         const pid_t child = ::fork();
         must(child >= 0, "fork");
         if (child == 0) {

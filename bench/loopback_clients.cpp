@@ -41,7 +41,7 @@ void send_all(int socket, std::string_view octets) {
     must(::send(socket, octets.data(), octets.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(octets.size()), "send");
 }
 
-/// The upgrade, then the subscription in one masked frame (mask 0).
+/// Sends the upgrade, then the subscription in one masked frame (mask 0).
 void open_stream(int socket, const std::string& subscription) {
     send_all(socket, "GET /api/v1/stream HTTP/1.1\r\nHost: 127.0.0.1\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
                      "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n"
@@ -73,7 +73,7 @@ int connect_to(std::uint16_t port) {
     return socket;
 }
 
-/// Marks in what has come; one that is cut by the end of a read is found with what comes next.
+/// Finds marks in the octets read; a mark cut by the end of a read is completed by the next one.
 struct Reading {
     std::string kept;
 
@@ -138,7 +138,7 @@ void read_until_closed(Board& board, int phase, const std::vector<int>& sockets,
 struct Order {
     std::size_t clients = 0, stalled = 0;
     bool websocket = true;
-    std::uint32_t subscriptions = 0;  ///< that follow, each behind its number of octets
+    std::uint32_t subscriptions = 0;  ///< number of those that follow, each after its size in octets
 };
 
 void read_all(int orders, void* into, std::size_t octets) {

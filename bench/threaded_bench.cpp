@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The threaded executive over a whole landing: processor time of each task in a cycle against its budget, by message,
-// and the deepest use of its stack. On a virtual clock, as fast as it goes; with AEOLIS_REAL_TIME=1 at 1 x, a quarter
-// of an hour and more, with wall-clock overruns and jitter. AEOLIS_SECONDS=N ends after N seconds of flight.
+// The threaded executive over a whole landing: each task's processor time in a cycle against its budget, by message,
+// and the deepest use of its stack.
+//
+// It runs on a virtual clock, as fast as possible; with AEOLIS_REAL_TIME=1 at 1 x, for a quarter of an hour and more,
+// with wall-clock overruns and jitter. AEOLIS_SECONDS=N ends after N seconds of flight.
 //
 // Goal: no cycle's own processor time, summed over all its tasks, above 1/64 s; each task within its budget in 999 of
-// 1000.
+// 1000 cycles.
 #include "server/scenario/scenario_text.hpp"
 #include "server/venue/task_report.hpp"
 #include "server/venue/threaded_executive.hpp"

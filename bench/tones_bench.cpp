@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The X-band tone receiver beside exact theory: what `aeolis tones bench` prints. AEOLIS_FULL=1 adds the points that
-// take long.
+// The X-band tone receiver against exact theory, as printed by `aeolis tones bench`. AEOLIS_FULL=1 adds the slow
+// points.
 #include "server/scenario/scenario_text.hpp"
 #include "server/tones/tone_bench.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What reaches Earth and decides what is known of commands: values for preconditions, answers, reports of what is held.
+// Packets on Earth that decide what is known of commands: values for preconditions, answers, read-back reports.
 #include "commands/command_gateway.hpp"
 
 #include "commands/read_back.hpp"
@@ -9,7 +9,7 @@
 
 namespace aeolis::commands {
 void CommandGateway::receive(const Heard& packet, std::vector<StageReport>& stages) {
-    // What comes later tells the past: it decides no precondition, but an answer that was lost live still counts.
+    // A recording tells the past: it decides no precondition, but an answer that was lost live still counts.
     const auto& decoded = packet.decoded;
     if (packet.live) note_channels(packet);
     if (packet.live)
@@ -84,8 +84,8 @@ void CommandGateway::note_read_back(const Underway& underway, const StageChange&
     if (told == sent.end()) return;
     if (change.stage == Stage::verified) {
         told->held = change.status;
-        if (change.status == Status::ok) sent.erase(sent.begin(), told);  // none before it is held any more
-    } else if (change.status == Status::failed) {  // it was not carried out: what is held is still of the one before
+        if (change.status == Status::ok) sent.erase(sent.begin(), told);  // earlier values are no longer held
+    } else if (change.status == Status::failed) {  // it was not carried out, so the earlier values are still held
         sent.erase(told);
     }
 }

@@ -13,11 +13,11 @@ namespace aeolis::commands {
 namespace {
 
 constexpr const char* of_script =
-    "asked for by the scenario's script, ";  // the console tells people's commands from the script's by it
+    "asked for by the scenario's script, ";  // by this the console tells the script's commands from people's
 constexpr const char* parameters_received =
-    "parameters_received";  // the vehicle says that it has some; that they are right is ground's to say
+    "parameters_received";  // the vehicle has some; whether they are right, ground must decide
 
-/// None: as the link chooses.
+/// The service of that name; an empty name leaves the choice to the link.
 Result<std::optional<Fop::Service>> service_named(const std::string& name) {
     using Service = Fop::Service;
     if (name.empty()) return std::optional<Service>{};
@@ -26,14 +26,14 @@ Result<std::optional<Fop::Service>> service_named(const std::string& name) {
     return Error{fmt::format("unknown service '{}': AD, BD, or none for what suits", name)};
 }
 
-/// Whether the command comes to nothing by it. That it could not be verified does not undo it.
+/// Whether the change means that the command has no effect. A failed verification does not undo it.
 bool undoes(const StageChange& change) {
     return change.status == Status::failed && change.stage != Stage::verified;
 }
 
-constexpr std::size_t controller_name_max = 64;  // ours
+constexpr std::size_t controller_name_max = 64;  // chosen
 
-/// Of a person, as it was typed: without blanks around it, in small letters.
+/// A controller's name as typed, without surrounding blanks and in small letters.
 std::string same_person(std::string_view name) {
     const auto first = name.find_first_not_of(' ');
     if (first == std::string_view::npos) return {};
@@ -89,7 +89,7 @@ Result<CommandGateway::Prepared> CommandGateway::prepare(const Request& request,
         if (*release_at < now)
             return Error{fmt::format("release_at: {} is past, it is {}", request.release_at, day_of_year_text(now))};
     }
-    const auto held = decode(*command, *packet);  // as encoded: defaults are in it
+    const auto held = decode(*command, *packet);  // as encoded, with defaults
     return Prepared{command, *packet,   arguments_text(held ? *held : arguments), preconditions(*command, now),
                     *wanted, release_at};
 }
@@ -106,8 +106,8 @@ std::vector<PreconditionState> CommandGateway::preconditions(const dictionary::C
         if (sent.empty()) continue;
         const ReadBack& told = sent.back();
         auto& state = states.emplace_back();
-        // Of the first that was sent flight itself says whether it has it. That it has a later one only the read-back
-        // tells, so while that can still come it is waited for.
+        // The first set's reception is confirmed by flight's own channel. A later set is confirmed only by its
+        // read-back, which is waited for while it can still arrive.
         const auto [holds, words] =
             told.held == Status::ok        ? std::pair{State::holds, "read back"}
             : told.held == Status::failed  ? std::pair{State::fails, "the vehicle reports other values"}
@@ -133,10 +133,10 @@ Reply CommandGateway::submit(const Request& request, Ert now, std::vector<StageR
     if (!prepared) return refuse(prepared.error().message);
     tell(*prepared, now, reply);
     const Ert leaves = prepared->release_at.value_or(now);
-    const bool settled = prepared->release_at || !request.hold;  // else nobody can say yet when it leaves
+    const bool settled = prepared->release_at || !request.hold;  // otherwise its time of leaving is unknown
     if (settled ? !stations_.sees(leaves) : stations_.over(now)) return refuse(stations_.refusal(leaves));
     if (settled) tell_station(leaves, reply);
-    // What waits is looked at when it leaves: a condition that fails now may hold then.
+    // A waiting command's preconditions are checked when it leaves: one that fails now may hold then.
     const bool waits = request.hold || prepared->release_at;
     const auto authorised = authorise(*prepared->command, {request.armed, request.confirmation},
                                       waits ? std::span<const PreconditionState>{} : prepared->preconditions);
@@ -163,7 +163,7 @@ Result<bool> CommandGateway::needs_approval(const Request& request) const {
 
 void CommandGateway::queue(const Prepared& prepared, const Request& request, Asker asker, Ert now, Reply& reply,
                            std::vector<StageReport>& stages) {
-    // What ground does not know is no reason to refuse: flight holds the same conditions and decides by what it knows.
+    // An unknown condition is no reason to refuse: flight holds the same conditions and decides with its own data.
     std::string not_known;
     for (const auto& condition : prepared.preconditions)
         if (condition.state == PreconditionState::State::unknown)
@@ -204,7 +204,7 @@ std::vector<Reply> CommandGateway::look(std::span<const Request> file, Ert now) 
     std::vector<Reply> replies;
     std::vector<StageReport> none;
     const auto kept = read_backs_;
-    std::size_t more = 0;  // each needs its place
+    std::size_t more = 0;  // each needs room
     for (Request request : file) {
         request.dry_run = true;
         auto& reply = replies.emplace_back(submit(request, now, none));
@@ -216,7 +216,7 @@ std::vector<Reply> CommandGateway::look(std::span<const Request> file, Ert now) 
         }
         const bool leaves = !request.hold && request.release_at.empty() && !reply.needs_approval;
         if (!leaves || read_back_packet(dictionary_, *dictionary_.command(request.command)) == nullptr) continue;
-        auto& sent = read_backs_[request.command];  // for those behind it in the file
+        auto& sent = read_backs_[request.command];  // for later commands of the file
         sent.push_back({commands_ + more, Status::pending, !sent.empty()});
     }
     read_backs_ = kept;
@@ -226,7 +226,7 @@ std::vector<Reply> CommandGateway::look(std::span<const Request> file, Ert now) 
 void CommandGateway::note_refused(const Request& request, const std::string& reason, Ert now,
                                   std::vector<StageReport>& stages) {
     const auto* command = dictionary_.command(request.command);
-    if (command == nullptr) return;  // no script is begun with one
+    if (command == nullptr) return;  // a script with an unknown command is not started
     auto prepared = prepare(request, now);
     Underway refused{++commands_, {}, "", "",      "",
                      "",          0,  {}, nullptr, CommandLifecycle{*command, count_, light_time_s_, false}};
@@ -284,7 +284,7 @@ std::string CommandGateway::not_another_person(const Request& asked, const Under
     if (person == same_person(command.controller))
         return fmt::format("command {} was asked for by {}: another controller must approve it", command.number,
                            command.controller);
-    // Names are only typed where there are no accounts.
+    // Names are only typed when there are no accounts.
     if (asked.browser.empty() || asked.browser != command.browser) return {};
     return fmt::format("command {} was asked for, as {}, from where it would now be approved: a second person approves "
                        "it in a browser of their own",
@@ -303,7 +303,7 @@ Reply CommandGateway::act(const Request& request, Ert now, std::vector<StageRepo
     if (!refusal.empty()) {
         reply.reason = refusal;
     } else {
-        AEOLIS_CHECK(command != nullptr);  // what waits is under way
+        AEOLIS_CHECK(command != nullptr);  // a waiting command is under way
         reply.accepted = true;
         reply.command = command->number;
         changes_.clear();
@@ -320,7 +320,7 @@ Reply CommandGateway::act(const Request& request, Ert now, std::vector<StageRepo
 
 void CommandGateway::go_on(Underway& underway, Ert now, std::vector<StageReport>& stages) {
     append(underway, changes_, stages);
-    // What is due while no station sees the vehicle is told below, with the pass for which it waits.
+    // A due command while no station sees the vehicle is reported below, with the pass that it waits for.
     if (stations_.sees(now) || !queue_.due(underway.number, now)) tell_wait(underway, now, stages);
     release_due(now, stages);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How commands leave: out of the queue, while a station sees the vehicle, by the uplink; and what the vehicle's reports
-// say of their frames.
+// How commands leave: from the queue, while a station sees the vehicle, through the uplink; and what the vehicle's
+// reports say of their frames.
 #include "commands/command_gateway.hpp"
 
 #include "commands/timeline_change.hpp"
@@ -82,7 +82,7 @@ void CommandGateway::doubt_after(std::uint64_t undone, Ert now, std::vector<Stag
     };
     if (std::ranges::any_of(underway_, [&](const Underway& each) { return after(each) && at_uplink(each); }))
         for (const std::uint64_t number :
-             link_.take_back())  // all of it: those that nobody doubts are released again at once
+             link_.take_back())  // all of them: those not in doubt are released again at once
             wait_again(number, {}, fmt::format("when command {} came to nothing", undone), now, stages);
     for (const std::uint64_t number : queue_.doubt_after(undone)) doubted_.push_back(number);
     for (Underway& each : underway_) {
@@ -109,7 +109,7 @@ void CommandGateway::begin_pass(Ert now, std::vector<StageReport>& stages) {
         append(*command, changes_, stages);
     }
     if (!any) return;
-    // Frames that are sent again go in sequence: none of them can be left out alone.
+    // Frames are sent again in sequence: none can be left out.
     link_.give_up();
     note_frames(now, stages);
 }
@@ -200,7 +200,7 @@ void CommandGateway::pass(Ert now, std::vector<StageReport>& stages) {
         underway.lifecycle.pass(now, changes_);
         append(underway, changes_, stages);
     }
-    if (stations_.sees(now)) link_.pass(now);  // else what is not acknowledged is sent again when the next pass begins
+    if (stations_.sees(now)) link_.pass(now);  // otherwise unacknowledged frames are sent again in the next pass
     release_due(now, stages);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a reply tells of a command besides yes or no.
+// The details of a reply besides acceptance or refusal.
 #include "commands/command_gateway.hpp"
 
 #include "common/check.hpp"

@@ -56,10 +56,10 @@ bool is_label(const Type& type, double value) {
 
 struct Bits {
     std::uint64_t word = 0;
-    double means = 0.0;  ///< what the other end reads: the value rounded to the encoding
+    double means = 0.0;  ///< the receiver's value: rounded to the encoding
 };
 
-/// The number that stands in the packet for the engineering value; only a straight line can be turned round.
+/// The raw number for an engineering value. Only a linear calibration can be inverted.
 Result<double> uncalibrated(const std::string& prefix, const Type& type, double value) {
     const auto& c = type.calibrator;
     if (c.empty()) return value;
@@ -106,7 +106,8 @@ Result<Bits> bits_of(const dictionary::Command& command, const Argument& argumen
     if (!raw) return raw.error();
     auto bits = type.encoding == Encoding::ieee754 ? floating(prefix, type, *raw) : whole_number(prefix, type, *raw);
     if (!bits) return bits;
-    // Flight checks what it reads: rounding to 32 bits must not carry a value that is just inside to just outside.
+    // Flight checks what it reads: rounding to 32 bits must not move a value from just inside the range to just
+    // outside.
     bits->means = calibrated(type, bits->means);
     if (!in_range(type, bits->means))
         return Error{prefix + "becomes " + with_unit(type, shortest_text(bits->means)) + " in 32 bits, " +
@@ -114,7 +115,7 @@ Result<Bits> bits_of(const dictionary::Command& command, const Argument& argumen
     return bits;
 }
 
-/// Arguments may stand in any order and leave gaps: each is put where the dictionary says. `octets` start at zero.
+/// Writes one field. Arguments may be in any order and leave gaps; `octets` start at zero.
 void put_at(std::span<std::uint8_t> octets, std::size_t position_bits, unsigned bits, std::uint64_t word) {
     AEOLIS_CHECK(bits >= 1 && bits <= 64 && position_bits + bits <= octets.size() * 8);
     for (unsigned i = 0; i < bits; ++i) {

@@ -85,7 +85,7 @@ void Fop::on(const Clcw& clcw) {
         if (done) state_ = State::active;
         return;
     }
-    // Locked: it may have forgotten what it took, and its count says nothing.
+    // A locked receiver may have forgotten what it took, so its count means nothing.
     if (clcw.lockout) return halt(Halt::lockout);
     const auto acknowledged = static_cast<std::uint8_t>(clcw.expected - first_outstanding());
     if (acknowledged > outstanding_.size()) return halt(Halt::contradiction);
@@ -102,7 +102,7 @@ void Fop::on(const Clcw& clcw) {
 void Fop::send_again() {
     const auto tired = [&](const Item& item) { return item.transmissions >= settings_.transmissions_max; };
     if (std::ranges::any_of(outstanding_, tired)) return halt(Halt::too_many_transmissions);
-    // What has not been radiated since the last request is due anyway.
+    // Frames not radiated since the last request are due anyway.
     for (Item& item : outstanding_) item.due = true;
     state_ = State::retransmitting;
 }

@@ -9,7 +9,7 @@
 namespace aeolis::commands {
 namespace {
 
-// How long an answer may take where the dictionary gives no window. Ours: the read-back report comes every 10 s.
+// Time for an answer when the dictionary gives no window. Our assumption: the read-back report comes every 10 s.
 constexpr double answer_window_s = 10.0;
 constexpr double read_back_window_s = 30.0;
 
@@ -117,7 +117,7 @@ void CommandLifecycle::frame_not_acknowledged(std::string evidence, Ert at, std:
     set(Stage::received, Status::unknown, std::move(evidence), at, out);
 }
 
-/// Says of each later stage what it waits for, or that nothing will ever show it.
+/// States what each later stage waits for, or that nothing will ever show it.
 void CommandLifecycle::await_answers(Ert at, std::vector<StageChange>& out) {
     set(Stage::received, Status::pending, "no answer yet; the command is there after " + seconds_text(light_time_s_),
         at, out);
@@ -145,7 +145,7 @@ void CommandLifecycle::on(const Answer& answer, std::vector<StageChange>& out) {
     if (std::any_of(command_->verifiers.begin(), command_->verifiers.end(), refuses)) refused(answer, out);
 }
 
-/// A command that was accepted can still be refused by the module that was to carry it out.
+/// An accepted command can still be refused by the module that executes it.
 void CommandLifecycle::refused(const Answer& answer, std::vector<StageChange>& out) {
     const Stage failed = status(Stage::accepted) == Status::ok ? Stage::executed : Stage::accepted;
     if (status(failed) == Status::ok) return;
@@ -155,7 +155,7 @@ void CommandLifecycle::refused(const Answer& answer, std::vector<StageChange>& o
 }
 
 void CommandLifecycle::on(const ReadBack& read_back, Ert at, std::vector<StageChange>& out) {
-    // What flight held before it executed this command says nothing about it.
+    // A report from before the execution says nothing about this command.
     if (!exists(Stage::verified) || !executed_sclk_ || read_back.held_at < *executed_sclk_) return;
     set(Stage::verified, read_back.equal() ? Status::ok : Status::failed, "read back: " + read_back.text(), at, out);
 }
@@ -175,7 +175,7 @@ void CommandLifecycle::pass(Ert now, std::vector<StageChange>& out) {
 
 void CommandLifecycle::set(Stage stage, Status status, std::string evidence, Ert at, std::vector<StageChange>& out) {
     Status& now = status_[index_of(stage)];
-    // Flight may take a cycle or two to hold what it has executed: a later report that is equal still counts.
+    // Flight may need a cycle or two to hold what it executed, so a later equal report still counts.
     const bool may_recover = stage == Stage::verified && status == Status::ok;
     if (now == Status::ok || (now == Status::failed && !may_recover)) return;
     if (now == status && status != Status::pending) return;
@@ -183,7 +183,7 @@ void CommandLifecycle::set(Stage stage, Status status, std::string evidence, Ert
     out.push_back({stage, status, std::move(evidence), at});
 }
 
-/// An answer about `stage` shows that the command came that far, even where the answers before it were lost.
+/// An answer about `stage` shows that the command got that far, even when earlier answers were lost.
 void CommandLifecycle::infer_before(Stage stage, const Answer& answer, std::vector<StageChange>& out) {
     for (const Stage before : {Stage::received, Stage::accepted, Stage::executed})
         if (before < stage)

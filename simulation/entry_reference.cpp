@@ -17,16 +17,16 @@ namespace {
 constexpr double step_s = 0.25;
 constexpr double descent_step_s = 0.05;  // a parachute that opens a step later lands 20 m farther
 constexpr double longest_s = 900.0;
-constexpr double least_deceleration_mps2 = 0.5;  // below it velocity is no clock
+constexpr double least_deceleration_mps2 = 0.5;  // below this, velocity is no independent variable
 
 /// One point of the reference flight, in the plane of flight.
 struct Node {
     double velocity_mps, flight_path_rad, altitude_m, radius_m, ground_m;
     double drag_mps2, lift_to_drag, vertical_lift_to_drag;
-    double coriolis_rps;  ///< what the spin of Mars adds to the rate of the flight path angle
+    double coriolis_rps;  ///< rate of the flight path angle due to Mars's spin
 };
 
-/// Rates with velocity as the independent variable.
+/// Derivatives with respect to velocity.
 struct Rates {
     double altitude_s, flight_path_radspm, ground_s;
 };
@@ -51,19 +51,19 @@ Node node_of(const EntryFlight& flight, const PointMass& at, double ground_m, do
     return node;
 }
 
-/// How the range still to come, R, changes with the state at a node.
+/// Derivatives of the remaining range R by the state at a node.
 struct Costate {
     double altitude = 0.0;        ///< ∂R/∂h
     double flight_path_m = 0.0;   ///< ∂R/∂γ
     double lift_to_drag_m = 0.0;  ///< ∂R/∂u
 };
 
-/// The reference flight and what comes after it.
+/// The reference flight and the descent after it.
 struct Flight {
     std::vector<Node> nodes;  ///< from where it slows down to the start of SUFR
     double ground_at_end_m = 0.0;
     double after_m = 0.0;  ///< along the ground from the start of SUFR to the landing
-    Costate at_end;        ///< how that changes with the state in which SUFR starts
+    Costate at_end;        ///< derivatives of after_m by the state at the start of SUFR
 };
 
 double ground_step_m(const PointMass& before, const PointMass& after, double target_radius_m) {
@@ -71,7 +71,7 @@ double ground_step_m(const PointMass& before, const PointMass& after, double tar
     return target_radius_m * std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-/// Range from the start of SUFR: straightened up, under the parachute, and the sidestep of the powered approach.
+/// Range from the start of SUFR: straightening up, the parachute, and the sidestep of the powered approach.
 double range_after_entry_m(const Scenario& scenario, const Atmosphere& atmosphere, PointMass at) {
     const Masses& masses = scenario.masses;
     double mass_kg = masses.entry_kg - 6.0 * masses.entry_balance_each_kg;
@@ -159,7 +159,7 @@ Flight fly(const Scenario& scenario, const EntryFlight& flight, const Atmosphere
     return result;
 }
 
-/// F and G at a departure (altitude, flight path angle, vertical lift-to-drag) from a node.
+/// F and G at an offset (altitude, flight path angle, vertical lift-to-drag) from a node.
 Rates rates(const Node& node, double scale_height_m, double target_radius_m, double d_altitude_m,
             double d_flight_path_rad, double d_lift_to_drag) {
     const double v = node.velocity_mps;
@@ -186,16 +186,16 @@ Costate costate_rate(const Node& node, double scale_height_m, double target_radi
             slope(by(0, 0, du), by(0, 0, -du), du)};
 }
 
-/// Height in which drag falls by e at the node's height, from the air itself.
+/// Height in which drag falls by a factor of e at that altitude, from the air itself.
 double drag_scale_height_m(const Atmosphere& atmosphere, double altitude_m) {
     constexpr double dh = 500.0;
     return 2.0 * dh /
            std::log(atmosphere.at(altitude_m - dh).density_kgm3 / atmosphere.at(altitude_m + dh).density_kgm3);
 }
 
-/// Where rows stand: they divide evenly what changes along the flight, counted from its end, of velocity, range and the
-/// logarithm of drag a third each. Rows even in velocity alone left 100 km of range and a factor of 17 of drag between
-/// the first two, and guidance saw errors of 30 km that were not there.
+/// The measure that spaces the rows evenly, counted from the end of the flight: a third each of velocity, range and the
+/// logarithm of drag. Rows even in velocity alone left 100 km of range and a factor of 17 in drag between the first
+/// two, so that guidance saw errors of 30 km that were not there.
 std::vector<double> row_measure(const std::vector<Node>& nodes) {
     const auto range_m = [&](std::size_t i) { return nodes[i].ground_m; };
     const auto log_drag = [&](std::size_t i) { return std::log(std::max(nodes[i].drag_mps2, 0.1)); };
@@ -231,7 +231,7 @@ flight::EntryReference make_entry_reference(const Scenario& scenario) {
     const double wanted_m =
         ground_step_m(nominal_entry(scenario), PointMass{target, Vector3::Zero()}, scenario.target.radius_m);
 
-    // Range falls smoothly with bank: a few steps of the secant method find it to metres.
+    // Range falls smoothly with bank, so a few steps of the secant method find it to metres.
     constexpr double most_bank_rad = 100.0 * degree_rad;
     double before_rad = 35.0 * degree_rad, held_rad = 50.0 * degree_rad;
     Flight best = fly(scenario, flight, atmosphere, before_rad);
@@ -246,7 +246,7 @@ flight::EntryReference make_entry_reference(const Scenario& scenario) {
         held_rad = std::clamp(next_rad, 0.0, most_bank_rad);
     }
 
-    // Backwards along the flight, Heun's method.
+    // Integrates backwards along the flight by Heun's method.
     const std::vector<Node>& nodes = best.nodes;
     std::vector<Costate> costates(nodes.size());
     costates.back() = best.at_end;
@@ -269,7 +269,7 @@ flight::EntryReference make_entry_reference(const Scenario& scenario) {
     if (nodes.size() < 2) return reference;
     const std::vector<double> measure = row_measure(nodes);
     const auto count = static_cast<std::uint32_t>(reference.rows.size());
-    std::size_t i = nodes.size() - 1;  // nodes[i] is the slower end of the piece that holds the row's velocity
+    std::size_t i = nodes.size() - 1;  // nodes[i] is the slower end of the interval that holds the row's velocity
     for (std::uint32_t row_index = 0; row_index < count; ++row_index) {
         const double wanted = measure.front() * row_index / (count - 1.0);
         while (i > 1 && measure[i - 1] < wanted) --i;

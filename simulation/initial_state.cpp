@@ -22,7 +22,7 @@ PointMass delivered(const Scenario& scenario, Random random) {
     return at;
 }
 
-/// When a vehicle at `at` passes the entry radius, seconds from now; first order is enough for a kilometre.
+/// Seconds until a vehicle at `at` passes the entry radius; first order is enough for a kilometre.
 double entry_delay_s(const PointMass& at, double entry_radius_m) {
     const Vector3 up = at.p_MoB_M.normalized();
     return (entry_radius_m - at.p_MoB_M.norm()) / at.v_MB_M.dot(up);

@@ -29,7 +29,7 @@ constexpr double x_band_hz = 8.4e9;            // [facts]
 constexpr double light_mps = 299792458.0;      // [bipm-si]
 constexpr std::size_t remembered_ticks = 256;  // 4 s: an event report is recorded within a few cycles
 constexpr double symbol_s = 10.0;
-constexpr double uplink_burst_octets = 32.0;  // ours: mean length of a burst of errors
+constexpr double uplink_burst_octets = 32.0;  // our assumption: mean length of an error burst
 
 constexpr const char* station_out_reason = "station out";
 
@@ -39,7 +39,7 @@ std::int64_t microseconds(double seconds) {
 
 }  // namespace
 
-/// A link's last state: a change is sent to Earth like everything else.
+/// The last reported state of a link. Its changes travel to Earth like everything else.
 struct LinkTeller {
     telemetry::Link link;
     bool told = false, up = false;
@@ -54,7 +54,7 @@ struct LinkTeller {
     }
 };
 
-/// An orbiter that records has links of its own, told of when it delivers.
+/// The links of a recording orbiter, reported when it delivers.
 struct StoredLinks {
     LinkTeller realtime, files;
     explicit StoredLinks(const std::string& orbiter)
@@ -87,7 +87,7 @@ struct Landing::State {
     XBandLink x_band;
     std::vector<OrbiterPass> passes;
     RelayRadio relay_radio;
-    std::deque<std::vector<std::uint8_t>> forwarded;  ///< with an orbiter, for the rover
+    std::deque<std::vector<std::uint8_t>> forwarded;  ///< PLTUs for the rover, at an orbiter
     std::size_t delivery_restarts = 0;                ///< of the scenario's, so far
 
     std::int64_t light_time_us;
@@ -102,8 +102,8 @@ struct Landing::State {
         relay_told{.link = telemetry::relay_link};
     std::vector<StoredLinks> stored_told;  ///< one a pass
     InFlight<telemetry::ReceivedOctets> octets;
-    std::vector<LinkTruth> at_station;   ///< how each link was last when that reached Earth
-    std::vector<LinkTruth> told_ground;  ///< and as ground was told last
+    std::vector<LinkTruth> at_station;   ///< each link's latest state that has reached Earth
+    std::vector<LinkTruth> told_ground;  ///< and as last reported to ground
     std::optional<XBandFrontEnd> antenna;
 
     std::array<TruthState, remembered_ticks> remembered{};
@@ -154,13 +154,13 @@ struct Landing::State {
 
     void fly();
     void fly_tick(bool skipped);
-    /// The commands of this cycle that go out on the buses; none: nobody runs them.
+    /// The commands of this cycle that go out on the buses; null: nobody runs them.
     const flight::DeviceOutputs* run_computers(bool skipped);
     const flight::DeviceOutputs* run_gnc_alone();
     void radiate(std::span<const std::uint8_t> pltus, std::int64_t cycle_start_us);
     void receive_tone(std::optional<ToneId> sent, std::int64_t cycle_start_us);
     void relay_recording(std::int64_t cycle_start_us);
-    /// Octets that leave Mars with this cycle.
+    /// Sends octets that leave Mars with this cycle.
     void send_octets(const telemetry::Link& link, std::span<const std::uint8_t> what, std::int64_t cycle_start_us);
     void deliver_stored(std::int64_t cycle_start_us);
     OrbiterPass* first_in_view(bool also_stored);
@@ -170,9 +170,10 @@ struct Landing::State {
     void read_event_reports();
     void tell(LinkTeller& teller, bool up, const std::string& reason, std::int64_t at_us);
     bool station_out() const;
-    /// What of a link's change ground hears of: that it brings something again, or nothing any more.
+    /// Reports a link's change to ground, as far as ground can see it: the link brings something again, or nothing any
+    /// more.
     void tell(const LinkTruth& state, Ert ert);
-    /// What ground sees of links while the station, or the line from it, fails, and after that.
+    /// Reports the links as ground sees them during an outage of the station or its line, and after that.
     void tell_station(bool out, std::int64_t now_us);
     bool tones_from_samples() const { return scenario.radio.tones_from_samples.value_or(false); }
     bool relaying() const;
@@ -181,7 +182,7 @@ struct Landing::State {
     bool stored_down() const {
         return std::ranges::all_of(passes, [](const OrbiterPass& pass) { return !pass.waits(); });
     }
-    /// From the scenario's entry, as passes count.
+    /// Seconds from the scenario's entry, as for passes.
     double e_s() const { return sclk() - scenario.entry_sclk; }
 };
 
@@ -297,7 +298,7 @@ OrbiterPass* Landing::State::first_in_view(bool also_stored) {
 void Landing::State::deliver_stored(std::int64_t cycle_start_us) {
     for (std::size_t i = 0; i < passes.size(); ++i) {
         if (!passes[i].row().stored) continue;
-        // An orbiter has one link to Earth: what it recorded in an earlier pass goes first.
+        // An orbiter has one link to Earth: an earlier pass's recording goes first.
         const bool busy = std::any_of(
             passes.begin(), passes.begin() + static_cast<std::ptrdiff_t>(i), [&](const OrbiterPass& earlier) {
                 return earlier.row().stored && earlier.row().orbiter == passes[i].row().orbiter &&
@@ -357,7 +358,7 @@ bool Landing::State::station_out() const {
 
 void Landing::State::tell(const LinkTruth& state, Ert ert) {
     report.links.push_back({state.link, ert, state.up, state.reason});
-    // With samples the receiver on the ground finds the carrier, or does not.
+    // With samples, the receiver on the ground finds the carrier or does not.
     if (state.link == telemetry::x_band_link && tones_from_samples()) return;
     const auto same = std::ranges::find(told_ground, state.link, &LinkTruth::link);
     if (same != told_ground.end() && same->up == state.up && (!state.up || same->reason == state.reason)) return;
@@ -377,7 +378,7 @@ void Landing::State::tell_station(bool out, std::int64_t now_us) {
         if (!out && !ends) tell(state, state.ert);
     });
     if (ends) {
-        told_ground.clear();  // a station that is back says how each of its links is
+        told_ground.clear();  // a station that is back reports all its links
         for (const LinkTruth& state : at_station) tell(state, Ert{now_us});
     }
 }
@@ -450,7 +451,7 @@ void Landing::State::read_event_reports() {
         if (found == reports.end()) continue;
         const TruthState& truth = remembered[static_cast<std::size_t>(header->time.ticks()) % remembered_ticks];
         if (truth.sclk == header->time) report.events.push_back(moment(found->name.c_str(), truth));
-        reports.erase(found);  // the first of a name is the moment
+        reports.erase(found);  // the first report of a name dates the event
     }
 }
 
@@ -458,7 +459,7 @@ Landing::Landing(const Scenario& scenario, std::uint64_t seed, std::uint64_t cas
                  std::vector<EventReportName> reports, std::optional<ClockCorrelation> clock)
     : state_(std::make_unique<State>(scenario, load_for(scenario), seed, case_number, std::move(reports), clock)) {}
 Landing::Landing(const Landing& other) : state_(std::make_unique<State>(*other.state_)) {
-    // What was reported of the last cycle points into the original.
+    // The last cycle's report points into the original.
     state_->report = {};
 }
 Landing& Landing::operator=(const Landing& other) {
@@ -485,7 +486,7 @@ const CycleReport& Landing::step() {
         s.fly();
     } else {
         ++s.ticks_without_computer;
-        for (LinkTeller* told : {&s.uhf_told, &s.x_band_told})  // nobody drives the transmitters any more
+        for (LinkTeller* told : {&s.uhf_told, &s.x_band_told})  // the transmitters have no driver any more
             if (told->up) s.tell(*told, false, "computer off", cycle_start_us);
     }
     s.relay_recording(cycle_start_us);
@@ -550,7 +551,7 @@ void Landing::inject(Fault fault) {
         system->begin_before_entry_s = before_entry_s;
         s.world.inject(*system);
     } else {
-        // By Earth's clock, which goes on where the computer is off.
+        // By Earth's clock, which continues when the computer is off.
         s.scenario.station_outages.push_back(
             {s.scenario.entry_sclk - s.sclk(), std::get<StationOutage>(fault).duration_s});
     }

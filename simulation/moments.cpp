@@ -10,7 +10,7 @@ constexpr double slowest_reversal_mps = 1100.0;
 constexpr double felt_mps2 = 0.2 * standard_gravity_mps2;
 constexpr double certain_bank_rad = 10.0 * degree_rad;
 constexpr double certain_fall = 0.7;
-constexpr double least_peak_mps2 = 20.0;  // ours: no entry is gentler
+constexpr double least_peak_mps2 = 20.0;  // our assumption: no entry is gentler
 
 }  // namespace
 

@@ -22,7 +22,8 @@ std::string number(double value) {
     return text.data();
 }
 
-/// The bounds are ours: wide enough for any landing on Mars that the models know, narrow enough to catch a slip.
+/// Bounds of the fields. Our assumption: wide enough for any landing on Mars that the models cover, narrow enough to
+/// catch a slip.
 std::vector<Bounded> bounded_fields(const Scenario& s) {
     return {
         {"entry_sclk", s.entry_sclk.seconds, 1.0e6, 4.2e9},
@@ -204,7 +205,7 @@ void check_relay_passes(const Radio& radio, std::vector<std::string>& found) {
 }
 
 void check_tracking_passes(const std::vector<TrackingPass>& passes, std::vector<std::string>& found) {
-    constexpr double most_s = 1.0e6;  // ours: eleven days
+    constexpr double most_s = 1.0e6;  // our assumption: eleven days
     for (std::size_t i = 0; i < passes.size(); ++i) {
         const TrackingPass& pass = passes[i];
         const std::string name = "radio.tracking_passes[" + std::to_string(i) + "]";
@@ -251,7 +252,7 @@ void check_commands(const Scenario& scenario, std::vector<std::string>& found) {
     }
 }
 
-/// What can happen to a device: only who is commanded can refuse or be late, only who carries data can lose them.
+/// Whether a device can have the fault: only commanded devices can refuse or be late, only data sources can lose data.
 bool is_possible(flight::Device device, DeviceFault::Kind kind) {
     using flight::Device;
     const bool sensor = device == Device::radar || device == Device::imu;
@@ -282,7 +283,7 @@ void check_device_faults(const Scenario& scenario, std::vector<std::string>& fou
     }
 }
 
-/// Of SystemFault or StationOutage.
+/// Checks the rows of SystemFault or StationOutage.
 template <typename Row>
 void check_spells(const Scenario& scenario, const std::vector<Row>& rows, const std::string& field,
                   std::vector<std::string>& found) {
@@ -309,7 +310,7 @@ void check_computer_resets(const Scenario& scenario, std::vector<std::string>& f
     }
 }
 
-/// What nobody in that venue could take part in.
+/// Rejects settings that have no effect in the test venue.
 void check_test_venue(const Scenario& scenario, std::vector<std::string>& found) {
     if (scenario.test_venue != TestVenue::gnc_alone) return;
     const auto refuse = [&](bool any, const char* field) {
@@ -338,14 +339,15 @@ bool disperses_later(const Scenario& scenario) {
 }
 
 Scenario undispersed(Scenario scenario) {
-    // Each of its fields is a deviation, so a new one cannot be left out.
+    // Each of its fields is a deviation, so a new field cannot be forgotten.
     scenario.dispersions = std::bit_cast<Dispersions>(std::array<double, sizeof(Dispersions) / sizeof(double)>{});
     return scenario;
 }
 
-// Wider than any entry of this design reaches, so that what is refused is a mistake.
+// Wider than any entry of this design reaches, so that only mistakes are refused.
 void check_target_range(const Scenario& s, std::vector<std::string>& found) {
-    constexpr double least_km = 300.0, most_km = 1500.0;  // ours; this vehicle steers within some 520 … 800 km
+    constexpr double least_km = 300.0,
+                     most_km = 1500.0;  // our assumption; this vehicle steers within some 520 … 800 km
     const auto direction = [](double latitude_deg, double longitude_deg) {
         return place(latitude_deg * degree_rad, longitude_deg * degree_rad, 1.0);
     };
@@ -360,8 +362,8 @@ void check_target_range(const Scenario& s, std::vector<std::string>& found) {
 std::vector<std::string> impossible_values(const Scenario& scenario) {
     std::vector<std::string> found;
     check_list_sizes(scenario, found);
-    if (!found.empty()) return found;  // not a line for each row of a list that is too long
-    // Not within, rather than outside: a value that is no number is neither.
+    if (!found.empty()) return found;  // one line, not one for each row of an overlong list
+    // "Not within" instead of "outside", because a NaN is neither.
     for (const Bounded& field : bounded_fields(scenario))
         if (!(field.value >= field.least && field.value <= field.most))
             found.push_back(std::string(field.name) + ": " + number(field.value) + " is outside " +

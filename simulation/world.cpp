@@ -17,17 +17,17 @@
 namespace aeolis::simulation {
 namespace {
 
-// All time on a grid of 1/1600 s, in which both the 200 Hz of the IMU and the 64 Hz of the computer are whole.
+// All time is on a grid of 1/1600 s, which divides both the IMU's 1/200 s and the computer's 1/64 s.
 constexpr std::int64_t grid_hz = 1600;
 constexpr std::int64_t grid_per_tick = 25;
 constexpr std::int64_t grid_per_reading = 8;
 
-constexpr double entry_margin_m = 1.0;               // the state was propagated back and forth: far below a tick's 25 m
-constexpr double burns_up_m = 80000.0;               // ours: below it a cruise stage that is still there is the end
-constexpr double wheels_break_vertical_mps = 2.0;    // ours
-constexpr double wheels_break_horizontal_mps = 1.5;  // ours
-constexpr double stage_clear_m = 50.0;               // ours: a stage that falls nearer has hit the rover
-constexpr double waits_for_cutting_s = 20.0;         // ours
+constexpr double entry_margin_m = 1.0;  // from propagation back and forth: far below a tick's 25 m
+constexpr double burns_up_m = 80000.0;  // our assumption: a cruise stage still attached below this ends the run
+constexpr double wheels_break_vertical_mps = 2.0;    // our assumption
+constexpr double wheels_break_horizontal_mps = 1.5;  // our assumption
+constexpr double stage_clear_m = 50.0;               // our assumption: a stage that falls nearer has hit the rover
+constexpr double waits_for_cutting_s = 20.0;         // our assumption
 
 Imu imu(const Scenario& scenario, std::uint64_t seed, std::uint64_t case_number, flight::Unit unit) {
     const bool a = unit == flight::Unit::a;
@@ -59,7 +59,7 @@ struct World::State {
     StarScanner star_scanner;
 
     std::int64_t ticks = 0;                   ///< since the start
-    flight::Unit imu_unit = flight::Unit::a;  ///< whose link the computer listens to
+    flight::Unit imu_unit = flight::Unit::a;  ///< the unit whose link the computer listens to
     flight::DeviceInputs in;
     FixedVector<flight::ImuSample, 4> imu_samples;
     FixedVector<flight::UplinkPacket, 8> received;
@@ -171,7 +171,7 @@ void World::State::take_pyro(flight::PyroId pyro) {
     vehicle.fire(pyro, now_s());
 }
 
-// What reached the devices with the frames of this tick.
+// Applies the commands that reached the devices with this tick's frames.
 void World::State::obey() {
     for (const flight::PyroId pyro : buses.fired()) take_pyro(pyro);
     const flight::EngineCommand& engines = buses.engines();
@@ -191,7 +191,7 @@ void World::State::obey() {
     engines_commanded = engines.ignited;
 }
 
-// Only the unit that is listened to is integrated: the other costs time and tells nobody.
+// Integrates only the unit in use: the other would cost time without effect.
 void World::State::listen_to_imu(flight::Unit unit) {
     if (unit == imu_unit) return;
     imu_unit = unit;
@@ -225,7 +225,7 @@ void World::State::fly_one_tick() {
     if (!stage_down) vehicle.fly_separated();
 }
 
-// `rover` as it was a step ago: the ground has begun to slow it since its wheels touched.
+// `rover`: its state a step ago, because the ground has slowed it since its wheels touched.
 void World::State::touch_ground(const std::optional<PointMass>& rover) {
     if (rover && !contact && vehicle.wheels_height_m() <= 0.0) {
         const Vector3& p = rover->p_MoB_M;
@@ -304,7 +304,7 @@ flight::NavigationShift World::disperse(std::uint64_t seed, std::uint64_t case_n
     const auto shift = [](const PointMass& to, const PointMass& from) {
         return PointMass{to.p_MoB_M - from.p_MoB_M, to.v_MB_M - from.v_MB_M};
     };
-    // What the flight up to here has done beside falling freely is kept.
+    // Keeps the flight's departure from free fall so far.
     const PointMass flown = shift(s.vehicle.at(), nominal);
     const PointMass believed{vector3(drawn.solution.p_MoB_M_m), vector3(drawn.solution.v_MB_M_mps)};
     const PointMass learnt = shift(believed, nominal);

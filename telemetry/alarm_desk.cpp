@@ -17,7 +17,7 @@ bool is_shelved(const AlarmState& state, Ert now) {
     return state.shelved_until && now < *state.shelved_until;
 }
 
-/// Within limits, and nothing is left to be done about it.
+/// Ends an alarm that is within limits and needs no further action.
 void settle(AlarmState& state) {
     if (state.severity != Severity::none || state.latches || !state.acknowledged) return;
     state.worst = Severity::none;

@@ -15,7 +15,7 @@ bool breaks(const dictionary::AlarmRange& range, double value) {
     return (range.below && value < *range.below) || (range.above && value > *range.above);
 }
 
-/// Of the most severe limit that `value` breaks.
+/// Severity of the most severe limit that `value` violates.
 Severity worst(const dictionary::Alarms& alarms, double value) {
     Severity worst = Severity::none;
     for (const dictionary::AlarmRange& range : alarms.ranges)
@@ -25,7 +25,7 @@ Severity worst(const dictionary::Alarms& alarms, double value) {
     return worst;
 }
 
-/// The limit that `value` breaks, in words: the one of `severity`, or, where that one guards the other side only, any.
+/// The limit that `value` violates, in words: the one of `severity`, or any when that one guards only the other side.
 std::string limit_text(const dictionary::Type& type, const dictionary::Alarms& alarms, Severity severity,
                        double value) {
     std::string text;

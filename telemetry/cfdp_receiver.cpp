@@ -10,12 +10,12 @@ namespace {
 using cfdp::Range;
 using Outcome = Reception::Outcome;
 
-/// The first range that ends at `offset` or behind it.
+/// The first range that ends at `offset` or after it.
 auto first_touching(std::vector<Range>& ranges, std::uint32_t offset) {
     return std::ranges::lower_bound(ranges, offset, {}, &Range::end);
 }
 
-/// What of `wanted` is in none of `ranges`.
+/// The parts of `wanted` that are in none of `ranges`.
 std::vector<Range> missing_in(const std::vector<Range>& ranges, const Range& wanted) {
     std::vector<Range> missing;
     std::uint32_t at = wanted.start;
@@ -100,7 +100,7 @@ std::vector<CfdpReceiver::Write> CfdpReceiver::take(const cfdp::FileData& data) 
     return writes;
 }
 
-/// False when there would be too many ranges.
+/// Adds a range. Returns false when there would be too many.
 bool CfdpReceiver::insert(const Range& range) {
     auto& all = state_.received;
     const auto first = first_touching(all, range.start);
@@ -120,7 +120,7 @@ bool CfdpReceiver::insert(const Range& range) {
     return true;
 }
 
-/// Who sends the file does not know, or has forgotten, how it ended.
+/// Repeats the outcome: the file's sender does not know it, or has forgotten it.
 void CfdpReceiver::say_again() {
     finished_due_ = true;
     state_.outcome_acknowledged = false;

@@ -8,7 +8,7 @@ namespace aeolis::telemetry {
 namespace {
 
 constexpr double fields_max = 10.0;   // [naif-sclk]: no clock has more
-constexpr double ticks_max = 1.0e17;  // ours: far beyond what a double counts without gaps
+constexpr double ticks_max = 1.0e17;  // chosen: far beyond a double's range of exact counts
 
 Error clock_fault(const TextKernel& kernel, const std::string& name, const std::string& what) {
     const auto* variable = kernel.find(name);
@@ -132,7 +132,7 @@ std::optional<std::pair<double, std::size_t>> ClockKernel::count_at(double paral
     const Point& point = *std::prev(after);
     const double all_ticks = point.ticks + (parallel_time_s - point.time_s) / point.rate_s * ticks_per_count_;
     if (after != points_.end() && all_ticks >= after->ticks)
-        return std::nullopt;  // passed over when the next point was set
+        return std::nullopt;  // skipped when the next point was set
     for (std::size_t i = 0; i < partitions_.size(); ++i) {
         const Partition& partition = partitions_[i];
         const double ticks = all_ticks - partition.before_ticks + partition.start_ticks;

@@ -20,9 +20,9 @@ namespace {
 using namespace dictionary::xtce;
 namespace xtce = dictionary::xtce;  // telemetry has a Condition of its own
 
-constexpr std::size_t steps_max = 4 * ContainerDecoder::values_max;  // entries read, of a packet
+constexpr std::size_t steps_max = 4 * ContainerDecoder::values_max;  // entries read, for a packet
 
-/// A number to compare and compute with; none for text and octets.
+/// A number for comparison and arithmetic; none for text and octets.
 std::optional<long double> number_of(const Datum& datum) {
     if (const auto* value = std::get_if<std::uint64_t>(&datum)) return *value;
     if (const auto* value = std::get_if<std::int64_t>(&datum)) return *value;
@@ -70,12 +70,12 @@ Datum calibrated_by(const Calibration& calibration, double raw) {
     return defined(below->second + part * (above->second - below->second));
 }
 
-/// The reading of one packet.
+/// The decoding of one packet.
 class Reading {
   public:
     Reading(const PacketModel& model, std::span<const std::uint8_t> packet) : model_(model), packet_(packet) {}
 
-    /// False when the packet cannot be read on.
+    /// Reads a container. Returns false when the packet cannot be read further.
     bool read_container(const PacketContainer& container, std::size_t start_bits, unsigned depth) {
         if (depth == ContainerDecoder::depth_max) return stop("containers are nested too deep", container.line);
         for (const PacketEntry& entry : container.entries)
@@ -98,7 +98,7 @@ class Reading {
     DecodedContents contents;
 
   private:
-    /// Where the last value of a parameter stands: several, when it is composed.
+    /// The values of a parameter's latest occurrence: several for an aggregate or array.
     struct Latest {
         std::size_t first = 0;
         std::size_t count = 0;
@@ -135,7 +135,7 @@ class Reading {
         return number && wanted && compared(*number, condition.op, *wanted);
     }
 
-    /// A whole number of at most 2^40; none when it cannot be known, is negative or no number.
+    /// A whole number of at most 2^40; none when it is unknown, negative or not a number.
     std::optional<std::size_t> evaluate(const Amount& amount) const {
         double value = amount.intercept;
         if (!amount.cases.empty()) {
@@ -170,7 +170,7 @@ class Reading {
         const bool repeated = entry.count.parameter || !entry.count.cases.empty() || entry.count.intercept != 1.0;
         for (std::size_t i = 0; i < *count; ++i) {
             if (i > 0) position_ += *gap;
-            // What takes no room could be repeated for ever.
+            // Entries without size could be repeated for ever.
             if (++steps_ > steps_max) return stop("it repeats more than a packet may", entry.line);
             const std::string suffix = repeated ? "[" + std::to_string(i) + "]" : "";
             if (!read_once(entry, suffix, depth)) return false;
@@ -353,11 +353,11 @@ class Reading {
     const PacketModel& model_;
     std::span<const std::uint8_t> packet_;
     std::unordered_map<std::size_t, Latest>
-        latest_;  ///< by parameter; only those that the packet has: a model has thousands
+        latest_;  ///< by parameter; only those in the packet, as a model has thousands
     std::size_t position_ = 0;
     std::size_t steps_ = 0;
     std::size_t reading_ = 0;               ///< the parameter
-    std::optional<std::size_t> time_from_;  ///< the parameter that contents.time is of
+    std::optional<std::size_t> time_from_;  ///< the parameter that gave contents.time
 };
 
 bool is_named(const std::string& name, std::string_view part) {
@@ -365,7 +365,7 @@ bool is_named(const std::string& name, std::string_view part) {
     return !std::ranges::search(name, part, same).empty();
 }
 
-/// By names alone: so instruments' files have it that leave time to the reader.
+/// Recognises a clock by names alone, as in files of instruments that leave time to the reader.
 std::optional<PacketTime> coarse_and_fine(const std::vector<DecodedValue>& values) {
     constexpr std::size_t coarse_bits_max = 32, fine_bits_max = 24;  // [ccsds-301.0-b-4], without its extension
     const auto coarse = std::ranges::find(values, primary_header_octets * 8, &DecodedValue::position_bits);

@@ -15,13 +15,13 @@ constexpr unsigned event_id_position_bits = tm_data_offset_octets * 8;
 constexpr unsigned event_id_bits = 16;
 constexpr std::size_t apid_count = 2048;
 
-// Written out, so that the compiler makes one load and one swap of each.
+// Written out so that the compiler makes one load and one swap of each.
 std::uint64_t word32(const std::uint8_t* octet) {
     return static_cast<std::uint32_t>(octet[0]) << 24 | static_cast<std::uint32_t>(octet[1]) << 16 |
            static_cast<std::uint32_t>(octet[2]) << 8 | static_cast<std::uint32_t>(octet[3]);
 }
 
-/// Most fields begin and end at octets: those are read as words.
+/// Reads a field. Most fields begin and end at octets: those are read as words.
 std::uint64_t read_field(std::span<const std::uint8_t> packet, std::uint32_t position_bits, unsigned bits) {
     if (position_bits % 8 != 0) return read_bits(packet, position_bits, bits);
     const std::uint8_t* octet = packet.data() + position_bits / 8;
@@ -71,7 +71,7 @@ Decommutator::Decommutator(const dictionary::Dictionary& dictionary)
 
 Decommutator::Step Decommutator::compile(const dictionary::Field& field, const dictionary::Packet& packet) {
     const dictionary::Type& type = field.type;
-    // The one place where the bounds are looked at: decode() then only compares the packet's length with the plan's.
+    // The only check of bounds: decode() then just compares the packet's length with the plan's.
     AEOLIS_CHECK(type.bits >= 1 && type.bits <= 64);
     AEOLIS_CHECK(field.position_bits + type.bits <= packet.octets * 8);
     AEOLIS_CHECK(!field.validity_bit || *field.validity_bit < packet.octets * 8);

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t slots = 4;
 
-/// Fields of the packet by name; one that the dictionary lacks is empty or zero.
+/// Fields of the packet by name; a field that the dictionary lacks is empty or zero.
 struct Reader {
     const dictionary::Packet& packet;
     const Decoded& decoded;
@@ -45,7 +45,7 @@ std::string subject_of(const dictionary::Dictionary& dictionary, const std::stri
     return channel != nullptr ? number_text(channel->type, number) : std::string{};
 }
 
-/// What holds instead, as a reader says it: of a condition "<= 405.0" that does not hold, "> 405.0".
+/// The opposite of a condition that does not hold: of "<= 405.0", "> 405.0".
 std::string opposite_of(const std::string& symbol) {
     if (symbol == "<") return ">=";
     if (symbol == "<=") return ">";
@@ -55,7 +55,7 @@ std::string opposite_of(const std::string& symbol) {
     return "not " + symbol;
 }
 
-/// A quantity that is a tone's number names that tone: "overtaking_tone 50 radar_lock".
+/// Whether the quantity is a tone's number, whose name is added: "overtaking_tone 50 radar_lock".
 bool names_a_tone(const std::string& quantity) {
     return quantity.ends_with("_tone");
 }
@@ -68,7 +68,7 @@ std::string sentence_of(const dictionary::Dictionary& dictionary, const Conditio
            named_value_text(condition.quantity, condition.bound);
 }
 
-/// All in order; of a decision that is held first what is missing, then in brackets what is there.
+/// All conditions in order; of a held decision first the unmet ones, then in brackets the met ones.
 std::string sentences_of(const dictionary::Dictionary& dictionary, const Explanation& explanation) {
     const bool held = explanation.verdict == "held";
     std::string text;

@@ -18,8 +18,10 @@ bool begins_with_marker(std::span<const std::uint8_t> octets) {
            std::equal(attached_sync_marker.begin(), attached_sync_marker.end(), octets.begin());
 }
 
-/// Packets that come whole out of a stream read in this way, less those that its own frames contradict: with check
-/// symbols taken for data, a packet ends where no frame says that the next begins. None when not one frame can be read.
+/// The number of whole packets in a stream under this layout, less those that its own frames contradict.
+///
+/// With check symbols read as data, a packet ends where no frame says that the next begins. None when no frame can be
+/// read.
 std::optional<std::int64_t> packets_in_agreement(const FrameStream& stream, std::span<const std::uint8_t> octets) {
     FrameReceiver receiver{stream};
     receiver.receive(octets);
@@ -67,7 +69,7 @@ std::size_t FrameReceiver::unit_octets() const {
            stream_.suffix_octets;
 }
 
-/// Skips to the next marker; false when none stands in what there is.
+/// Skips to the next marker. Returns false when there is none.
 bool FrameReceiver::at_marker() {
     while (true) {
         skip(find_octet(window_.rest(), attached_sync_marker.front()));
@@ -128,7 +130,7 @@ std::optional<FrameStream> recognise_cadus(std::span<const std::uint8_t> octets)
     std::optional<FrameStream> best;
     std::int64_t most = 0;
     for (const bool crc : {true, false}) {
-        if (best) break;  // a CRC that holds leaves no doubt
+        if (best) break;  // a right CRC leaves no doubt
         for (const std::size_t symbols : check_symbols)
             for (const bool randomised : {false, true})
                 for (const auto kind : {FrameStream::Kind::tm, FrameStream::Kind::aos}) {

@@ -9,8 +9,8 @@
 namespace aeolis::telemetry {
 namespace {
 
-constexpr std::size_t leap_seconds_max = 10'000;  // ours
-constexpr double utc_s_max = 1.0e11;              // 3000 years: what the calendar's text can say
+constexpr std::size_t leap_seconds_max = 10'000;  // chosen
+constexpr double utc_s_max = 1.0e11;              // 3000 years: the limit of the calendar's text
 constexpr std::size_t seconds_position = 15;      // of the two digits in 2012-219T05:17:57.123
 
 std::int64_t microseconds_of(double seconds) {
@@ -63,13 +63,13 @@ double LeapSeconds::tdb_minus_tt(double tdb_s) const {
 
 std::optional<UtcInstant> LeapSeconds::utc_of_tai(double tai_s) const {
     if (!(std::abs(tai_s) < utc_s_max)) return std::nullopt;
-    // Whole microseconds from here on, so that no rounding crosses a leap second afterwards.
+    // Whole microseconds from here on, so that later rounding cannot cross a leap second.
     const std::int64_t tai_us = microseconds_of(tai_s);
     const auto after = std::ranges::upper_bound(
         steps_, tai_us, {}, [](const Step& step) { return microseconds_of(step.utc_s + step.tai_minus_utc_s); });
     if (after == steps_.begin()) return std::nullopt;
     const std::int64_t utc_us = tai_us - microseconds_of(std::prev(after)->tai_minus_utc_s);
-    // The second that is put in lies behind the old count's midnight and before the new one's.
+    // An inserted second lies after midnight by the old count and before midnight by the new one.
     if (after != steps_.end() && utc_us >= microseconds_of(after->utc_s)) return UtcInstant{utc_us - 1'000'000, true};
     return UtcInstant{utc_us, false};
 }

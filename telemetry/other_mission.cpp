@@ -24,7 +24,7 @@ std::optional<std::size_t> fixed_amount(const Amount& amount) {
     return static_cast<std::size_t>(value);
 }
 
-/// How many of a list are fields: all of a short list of known length.
+/// The number of a list's elements that become fields: all of a short list of known length.
 std::size_t elements_of(const std::vector<Amount>& last_indices) {
     std::size_t elements = 1;
     for (const Amount& last : last_indices)
@@ -81,7 +81,7 @@ std::optional<double> channel_value(const DecodedValue& value) {
 
 }  // namespace
 
-/// Makes packets and channels of containers and parameters, once.
+/// Builds packets and channels from containers and parameters, once.
 class OtherMission::Builder {
   public:
     Builder(OtherMission& mission, const PacketModel& model) : mission_(mission), model_(model) {}
@@ -98,20 +98,20 @@ class OtherMission::Builder {
     }
 
   private:
-    /// References within references multiply, also where depth is bounded: what is not reached counts as left out.
+    /// Nested references multiply even when depth is bounded: what is not reached counts as left out.
     bool too_many_steps() {
         if (++steps_ <= steps_max) return false;
         mission_.left_out_ = std::max<std::size_t>(mission_.left_out_, 1);
         return true;
     }
 
-    /// Base containers first, as packets are read; no deeper than they are read.
+    /// Adds base containers first, in the order of decoding and no deeper.
     void add_container(std::size_t index, unsigned depth) {
         if (depth == ContainerDecoder::depth_max || too_many_steps()) return;
         const PacketContainer& container = model_.containers[index];
         if (container.base) add_container(*container.base, depth + 1);
         for (const PacketEntry& entry : container.entries) {
-            if (entry.what == PacketEntry::What::unknown) return;  // packets are read up to it
+            if (entry.what == PacketEntry::What::unknown) return;  // decoding ends here
             if (entry.what == PacketEntry::What::container) {
                 add_container(entry.index, depth + 1);
                 continue;
@@ -137,7 +137,7 @@ class OtherMission::Builder {
                 add_type(name + "." + member.name, model_.types[member.type], {}, depth + 1);
         } else if (type.kind == PacketType::Kind::array) {
             const auto& dimensions = last_indices.empty() ? type.last_indices : last_indices;
-            if (dimensions.size() != 1) return;  // of tables only contents() speaks
+            if (dimensions.size() != 1) return;  // tables are only in contents()
             for (std::size_t i = 0; i < elements_of(dimensions); ++i)
                 add_type(name + "[" + std::to_string(i) + "]", model_.types[type.element], {}, depth + 1);
         } else if (is_number(type)) {
@@ -169,7 +169,7 @@ class OtherMission::Builder {
         packet.fields.push_back({channel.name, channel.type, channel.id, 0, std::nullopt});
     }
 
-    /// The parameter that stands where the primary header has the APID, in the container that all others derive from.
+    /// The parameter at the primary header's APID, in the container that all others derive from.
     std::optional<std::size_t> apid_parameter(std::size_t root) const {
         std::size_t position = 0;
         for (const PacketEntry& entry : model_.containers[root].entries) {
@@ -211,13 +211,13 @@ class OtherMission::Builder {
     }
 
     static constexpr std::size_t steps_max = std::size_t{1}
-                                             << 21U;  ///< ours: a second's work, and twice what fields_max takes
+                                             << 21U;  ///< chosen: a second's work, and twice what fields_max takes
     std::size_t steps_ = 0;
     OtherMission& mission_;
     const PacketModel& model_;
     std::map<FieldKey, ChannelId> channels_;
     std::set<std::string> names_;  ///< taken
-    std::size_t parameter_ = 0;    ///< whose fields are being added
+    std::size_t parameter_ = 0;    ///< the parameter whose fields are being added
     std::size_t fields_ = 0;
 };
 
@@ -228,7 +228,7 @@ OtherMission::OtherMission(PacketModel model, std::uint16_t id) : model_(std::mo
 }
 
 std::optional<std::string> OtherMission::decode(std::span<const std::uint8_t> packet, Decoded& into) const {
-    // Of the primary header only what each mission means alike: parts of segmented packets are packets too.
+    // Checks only what all missions' primary headers share: parts of segmented packets are packets too.
     if (space_packet_octets(packet) != packet.size()) return name_of(Refusal::not_a_packet);
     const DecodedContents contents = decoder_.decode(packet);
     if (model_.containers.empty() || contents.values.empty() || model_.containers[contents.container_index].abstract)

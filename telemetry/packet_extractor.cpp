@@ -22,7 +22,7 @@ void PacketExtractor::begin_at(const TransferFrame& frame) {
     in_step_ = begins;
 }
 
-/// Whether the packet that was begun, continued by this frame, ends where the frame says that the next begins.
+/// Whether the unfinished packet, continued by this frame, ends where the frame says that the next begins.
 bool PacketExtractor::pointer_agrees(const TransferFrame& frame) const {
     std::size_t missing = 0;
     if (begun_octets_ > 0) {

@@ -6,7 +6,7 @@
 namespace aeolis::telemetry {
 namespace {
 
-// All to 2000-01-01T12:00:00 of their own scale, by the calendar. [ccsds-301.0-b-4], [naif-time]
+// Epochs in seconds from 2000-01-01T12:00:00 of their own scale, by the calendar. [ccsds-301.0-b-4], [naif-time]
 constexpr double unix_epoch_s = -946728000.0;            // 1970-01-01 UTC
 constexpr double tai_epoch_s = -1325419200.0;            // 1958-01-01 TAI
 constexpr double gps_epoch_tai_s = -630763200.0 + 19.0;  // 1980-01-06 UTC, when TAI was 19 s ahead

@@ -10,7 +10,8 @@
 namespace aeolis::telemetry {
 namespace {
 
-constexpr std::size_t part_cost_octets = 64;  // of keeping one, about: its vector and its place; ours
+constexpr std::size_t part_cost_octets =
+    64;  // approximate cost of keeping a part: its vector and its place; our assumption
 
 }  // namespace
 

@@ -23,7 +23,7 @@ std::uint64_t bits_reversed(std::uint64_t field, unsigned bits) {
     return result;
 }
 
-/// IEEE 754 of 16 bits: sign 1, exponent 5, fraction 10.
+/// A number in IEEE 754 of 16 bits: sign 1, exponent 5, fraction 10.
 double half_of(std::uint64_t field) {
     const auto exponent = static_cast<int>((field >> 10) & 0x1F);
     const auto fraction = static_cast<double>(field & 0x3FF);

@@ -27,7 +27,7 @@ StalenessMonitor::StalenessMonitor(const dictionary::Dictionary& dictionary) {
         const auto row = std::ranges::find_if(dictionary.telemetry_plan, named);
         if (row == dictionary.telemetry_plan.end() && !dictionary.telemetry_plan.empty()) continue;
         if (row != dictionary.telemetry_plan.end()) {
-            if (row->plan != "all") continue;  // which plan is flown ground is not told
+            if (row->plan != "all") continue;  // ground does not know which plan is flown
             expected.interval_s.clear();
             for (const std::uint32_t every : row->every)
                 expected.interval_s.push_back(every / *packet.expected_rate_hz);
@@ -82,8 +82,7 @@ void StalenessMonitor::link(std::string_view name, LinkIs is, std::string_view r
     for (const auto& each : links_) best = std::max(best, each.second.is);
     const LinkIs before = std::exchange(best_, best);
     if (best == before) return;
-    if (before == LinkIs::up && best == LinkIs::lost)
-        return;  // its absence goes on to count from when it was last heard
+    if (before == LinkIs::up && best == LinkIs::lost) return;  // absence keeps counting from the last reception
     for (Expected& expected : expected_) {
         if (best == LinkIs::down) clear(expected, "the link is down: " + std::string(reason), ert, out);
         expected.since = ert;

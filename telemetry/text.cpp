@@ -8,7 +8,7 @@
 namespace aeolis::telemetry {
 namespace {
 
-/// How a unit is written and how many decimals tell a person enough. Ours.
+/// Spelling of a unit, and the decimals that people need. Chosen.
 struct Notation {
     std::string_view unit;    ///< as in the dictionary
     std::string_view suffix;  ///< as the ending of a name
@@ -34,7 +34,7 @@ std::string digits(double value, std::optional<int> decimals) {
         std::snprintf(buffer, sizeof buffer, "%.*f", *decimals, value);
     else
         std::snprintf(buffer, sizeof buffer, "%.6g", value);
-    // "-0.0" is a sign without a number.
+    // "-0.0" would be a sign without a number.
     std::string text = buffer;
     if (text.front() == '-' && text.find_first_not_of("-0.") == std::string::npos) text.erase(0, 1);
     return text;

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::string_view blanks = " \t\r\n\f\v";
 
-/// A number as FORTRAN writes it: "1.657D-3", "+10", ".5".
+/// Reads a number in FORTRAN's notation: "1.657D-3", "+10", ".5".
 std::optional<double> kernel_number(std::string_view word) {
     std::string text{word.starts_with('+') ? word.substr(1) : word};
     std::ranges::replace_if(text, [](char c) { return c == 'D' || c == 'd'; }, 'e');
@@ -36,10 +36,10 @@ std::optional<unsigned> month_of(std::string_view word) {
     return static_cast<unsigned>(found - names.begin()) + 1;
 }
 
-/// "1972-JAN-1", "01-JAN-1980-00:00:00.0", "2012-08-06/05:17:57", "2012-219T05:17".
+/// Reads a date: "1972-JAN-1", "01-JAN-1980-00:00:00.0", "2012-08-06/05:17:57", "2012-219T05:17".
 std::optional<double> kernel_date(std::string_view word) {
     std::vector<std::string_view> parts;
-    std::size_t date_parts = 0;  // those before a sign that only a time of day follows
+    std::size_t date_parts = 0;  // those before a separator that only a time of day follows
     std::size_t begin = 0;
     for (std::size_t i = 0; i <= word.size(); ++i) {
         const bool digit_before = i > 0 && std::isdigit(static_cast<unsigned char>(word[i - 1])) != 0;
@@ -76,7 +76,7 @@ std::optional<double> kernel_date(std::string_view word) {
            numbers[date_parts + 1] * 60.0 + numbers[date_parts + 2];
 }
 
-/// The words of the data sections: names, =, +=, (, ), numbers, dates, 'texts'.
+/// A word of the data sections: name, =, +=, (, ), number, date, 'text'.
 struct Word {
     std::string text;
     unsigned line = 0;
@@ -89,7 +89,7 @@ std::string_view trimmed_line(std::string_view line) {
     return line.substr(first, line.find_last_not_of(blanks) - first + 1);
 }
 
-/// False when a text does not end in its line.
+/// Splits a line into words. Returns false when a text does not end in its line.
 bool words_of_line(std::string_view line, unsigned number, std::vector<Word>& into) {
     for (std::size_t i = line.find_first_not_of(blanks); i < line.size();) {
         if (line[i] == '\'') {

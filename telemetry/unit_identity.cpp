@@ -16,7 +16,7 @@ std::uint64_t mixed(std::uint64_t word) {
     return word ^ (word >> 31);
 }
 
-/// Eight octets at a time: the proof is worth a few tens of nanoseconds a packet, not more.
+/// Digests eight octets at a time: the proof may cost a few tens of nanoseconds a packet, not more.
 std::uint64_t digest_of(std::span<const std::uint8_t> octets) {
     std::uint64_t digest = mixed(octets.size());
     std::uint64_t word = 0;

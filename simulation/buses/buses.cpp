@@ -77,7 +77,7 @@ void Buses::frame(Sclk now) {
     fired_.clear();
     fetched_.clear();
     radar_was_read_ = engines_were_read_ = false;
-    thrusters_ = {};  // a pulse is told anew each tick or not given
+    thrusters_ = {};  // pulses are commanded anew each tick
     if (commanded_) {
         run(bus_64_hz_, tick);
         run_cyclic(tick);
@@ -125,7 +125,7 @@ void Buses::fetch(Bus& bus, std::int64_t tick) {
             ++i;
             continue;
         }
-        // A terminal that has fallen silent forgets what it had to say.
+        // A terminal that has fallen silent loses its pending replies.
         const bool answers = faults_.answers(reply.device, reply.unit);
         if (answers && !bus.exchange()) {
             ++i;

@@ -39,7 +39,7 @@ bool Avionics::execute(const BusCommand& command, std::int64_t tick, const Devic
                                                                                        : obey(command, first_firing);
     reply.ready_tick = tick + work_ticks(command) + static_cast<std::int64_t>(random_.bits() % jitter_ticks) +
                        faults.late_ticks(command.device, command.unit);
-    // A terminal that is flooded loses replies; flight's time-outs cover it.
+    // A flooded terminal loses replies; flight's time-outs cover that.
     (void)replies_.try_push_back(reply);
     return first_firing;
 }
@@ -47,7 +47,7 @@ bool Avionics::execute(const BusCommand& command, std::int64_t tick, const Devic
 Avionics::Reply Avionics::obey(const BusCommand& command, bool& first_firing) {
     switch (command.kind) {
     case BusCommand::Kind::pyro: {
-        // One that had fired before says so again: it is fired.
+        // A repeated firing is answered as fired.
         bool& fired = fired_[static_cast<std::size_t>(command.pyro)];
         first_firing = !fired;
         fired = true;

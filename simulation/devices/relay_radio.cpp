@@ -24,7 +24,7 @@ std::span<const std::uint8_t> RelayRadio::cycle(const flight::RecordingDelivery:
     }
     credit_octets_ += rate_bps / 8.0 * seconds_per_tick;
     std::array<std::uint8_t, pltu_octets_max> pltu;
-    // What a PLTU takes more than there is, the next cycles have less.
+    // A PLTU that exceeds the credit reduces that of the next cycles.
     while (credit_octets_ > 0.0) {
         const std::size_t octets = delivery_.next(recording, pltu);
         if (octets == 0) {

@@ -8,7 +8,7 @@
 namespace aeolis::simulation {
 namespace {
 
-/// Quantiles of the normal distribution in the middle of 65 536 equal parts, by Newton's method from part to part.
+/// Quantiles of the normal distribution at the middles of 65 536 equal parts, by Newton's method from part to part.
 std::vector<float> normal_quantiles() {
     constexpr int parts = 65536;
     std::vector<float> quantiles(parts);

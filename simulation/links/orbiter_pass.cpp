@@ -9,8 +9,8 @@
 namespace aeolis::simulation {
 namespace {
 
-constexpr double worst_loss_fraction = 0.9;    // ours: more would be no link
-constexpr double forward_burst_octets = 32.0;  // ours, as of the uplink
+constexpr double worst_loss_fraction = 0.9;    // our assumption: more would be no link
+constexpr double forward_burst_octets = 32.0;  // our assumption, as for the uplink
 
 double octets_of_burst(const Radio& radio, Traffic traffic) {
     return radio.uhf_burst_s * (traffic == Traffic::realtime ? radio.uhf_rate_bps : radio.relay_rate_bps) / 8.0;

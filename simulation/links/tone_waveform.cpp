@@ -8,7 +8,7 @@ namespace aeolis::simulation {
 
 ModulatedTone::ModulatedTone(const MfskWaveform& waveform, int tone, double rate_hz)
     : in_phase_(static_cast<float>(std::cos(waveform.modulation_index_rad))), quadrature_(places) {
-    const double highest_hz = 0.45 * rate_hz;  // ours
+    const double highest_hz = 0.45 * rate_hz;  // chosen
     for (std::size_t place = 0; place < places; ++place) {
         const double angle = 2.0 * std::numbers::pi * (static_cast<double>(place) + 0.5) / places;
         double square = 0.0;

@@ -8,7 +8,7 @@
 namespace aeolis::simulation {
 namespace {
 
-constexpr std::size_t transmitter_octets = 65536;  // ours
+constexpr std::size_t transmitter_octets = 65536;  // our assumption
 constexpr const char* nominal = "nominal";
 
 }  // namespace

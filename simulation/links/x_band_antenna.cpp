@@ -6,11 +6,11 @@
 namespace aeolis::simulation {
 namespace {
 
-constexpr double half_power_off_best_rad = 60.0 * degree_rad;  // ours
-constexpr double least_gain = 0.01;                            // ours: what leaks to the sides
+constexpr double half_power_off_best_rad = 60.0 * degree_rad;  // our assumption
+constexpr double least_gain = 0.01;                            // our assumption: leakage to the sides
 
 double best_rad(XBandAntenna antenna) {
-    return antenna == XBandAntenna::entry ? 0.0 : 70.0 * degree_rad;  // ours
+    return antenna == XBandAntenna::entry ? 0.0 : 70.0 * degree_rad;  // our assumption
 }
 
 }  // namespace

@@ -8,7 +8,7 @@ namespace aeolis::simulation {
 namespace {
 
 constexpr double channel_step_s =
-    1.0 / 128.0;  // ours: Doppler bends by 1e-4 cycles of the carrier within, at 1000 Hz/s²
+    1.0 / 128.0;  // chosen: Doppler bends the phase by 1e-4 cycles within a step, at 1000 Hz/s²
 
 }  // namespace
 

@@ -9,9 +9,9 @@ namespace {
 
 constexpr int symbol_ticks = 640;
 constexpr double symbol_s = 10.0;                           // [facts]
-constexpr double modulation_index_rad = 32.0 * degree_rad;  // as mfsk.csv says; a test holds the two together
-constexpr double carrier_lock_dbhz = 15.8;                  // ours: what the receiver's search over 4 s needs
-constexpr double least_likelihood = 0.9;                    // ours
+constexpr double modulation_index_rad = 32.0 * degree_rad;  // as in mfsk.csv; a test compares the two
+constexpr double carrier_lock_dbhz = 15.8;                  // our assumption: what the receiver's search over 4 s needs
+constexpr double least_likelihood = 0.9;                    // chosen
 
 }  // namespace
 

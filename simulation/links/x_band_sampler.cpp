@@ -22,7 +22,7 @@ void XBandSampler::begin(const Stretch& stretch) {
 }
 
 void XBandSampler::take(std::span<std::complex<float>> samples, std::optional<std::uint8_t> tone, double tone_age_s) {
-    constexpr float deviation = std::numbers::sqrt2_v<float> / 2.0F;  // of each of two parts: power 1
+    constexpr float deviation = std::numbers::sqrt2_v<float> / 2.0F;  // of each of two components: power 1
     const double sample_s = 1.0 / rate_hz_;
     if (tone && modulated_for_ != tone) {
         modulated_.emplace(waveform_, *tone, rate_hz_);

@@ -55,13 +55,13 @@ constexpr std::array<AtmosphereRow, 35> gale{{
 }};
 // clang-format on
 
-// Square of the speed of sound by temperature: ratio of specific heats × gas constant, as the Mach numbers of the
-// published trajectory have it, within 0.3 %. [od137]
+// Square of the speed of sound over temperature: ratio of specific heats × gas constant, from the Mach numbers of the
+// published trajectory, within 0.3 %. [od137]
 constexpr double sound_m2ps2K = 252.0;
 constexpr double bottom_m = -2000.0;
 constexpr double spacing_m = 1000.0;
 constexpr double top_m = 250000.0;
-constexpr double wave_length_m = 30000.0;  // ours
+constexpr double wave_length_m = 30000.0;  // our assumption
 
 double scale_at(std::span<const DensityScale> scales, double altitude_m) {
     if (scales.empty()) return 1.0;

@@ -4,11 +4,11 @@
 namespace aeolis::simulation {
 namespace {
 
-// In axes M as they stand at entry interface.
+// In the axes M at entry interface.
 constexpr double earth_latitude_rad = 23.450 * degree_rad;
 constexpr double earth_longitude_rad = 48.378 * degree_rad;
 constexpr double mars_recedes_mps = 10450.0;
-constexpr double highlands_m = 6130.0;  // (R + 8200 m) cos 2.0° − R, of the published set
+constexpr double highlands_m = 6130.0;  // (R + 8200 m) cos 2.0° − R, from the published set
 
 }  // namespace
 

@@ -8,7 +8,7 @@ namespace aeolis::simulation {
 namespace {
 
 constexpr double slope_reach_m =
-    30000.0;  // ours: the ground is level beyond, else a slope at the site would be a mountain at entry
+    30000.0;  // our assumption: level beyond, else a slope at the site would be a mountain at entry
 
 }  // namespace
 

@@ -7,15 +7,15 @@
 namespace aeolis::simulation {
 namespace {
 
-constexpr double least_range_m = 4.0;                                                          // ours
-constexpr std::array<double, Radar::beams> largest_range_m{12e3, 12e3, 12e3, 12e3, 9e3, 9e3};  // ours
-constexpr double largest_incidence_rad = 65.0 * degree_rad;                                    // ours
+constexpr double least_range_m = 4.0;                                                          // our assumption
+constexpr std::array<double, Radar::beams> largest_range_m{12e3, 12e3, 12e3, 12e3, 9e3, 9e3};  // our assumption
+constexpr double largest_incidence_rad = 65.0 * degree_rad;                                    // our assumption
 constexpr std::array<double, Radar::beams> off_axis_deg{0.0, 20.0, 20.0, 20.0, 50.0, 50.0};    // [facts]
-constexpr std::array<double, Radar::beams> azimuth_deg{0.0, 0.0, 120.0, 240.0, 60.0, 240.0};   // ours
+constexpr std::array<double, Radar::beams> azimuth_deg{0.0, 0.0, 120.0, 240.0, 60.0, 240.0};   // our assumption
 constexpr double heatshield_radius_m = 2.25;                                                   // [facts]
 constexpr double half_beam_rad = 1.5 * degree_rad;                                             // [facts]
-constexpr double hides_within_m = 90.0;                                                        // ours: see the header
-constexpr std::int64_t period_grid = 80;                                                       // of 1/1600 s: 20 Hz
+constexpr double hides_within_m = 90.0;   // our assumption: see the header
+constexpr std::int64_t period_grid = 80;  // of 1/1600 s: 20 Hz
 constexpr std::array<std::int64_t, Radar::beams> phase_grid{0, 13, 27, 40, 53, 67};
 
 }  // namespace
@@ -49,7 +49,7 @@ flight::RadarBeam Radar::measure(std::uint32_t beam, const PointMass& at, const 
     reading.direction_B = direction_B(beam);
     const Vector3 direction_M = q_MB * vector3(reading.direction_B);
     const Terrain::Meeting truth = terrain.meet(at.p_MoB_M, direction_M);
-    // Drawn whether valid or not: the stream stays in step.
+    // Drawn even for an invalid reading, so that the stream stays in step.
     const double range_noise = noise_.normal();
     const double velocity_noise = noise_.normal();
     const bool fails = dropouts_.uniform() < dropout_fraction_;

@@ -14,7 +14,7 @@ constexpr std::array<double, 6> table_angles_deg{0.0, 2.0, 4.0, 6.0, 11.0, 16.0}
 
 struct CoefficientRow {
     double mach;
-    std::array<double, 6> lift;  ///< magnitude; the source gives it a sign by its axes
+    std::array<double, 6> lift;  ///< magnitude; the source's axes give it a sign
     std::array<double, 6> drag;
 };
 
@@ -60,7 +60,7 @@ constexpr std::array<CoefficientRow, 33> table{{
 struct TrimRow {
     double mach, angle_deg;
 };
-/// Means over the published attitude, which swings by a degree or two about them. [od137]
+/// Means over the published attitude, which oscillates by a degree or two. [od137]
 constexpr std::array<TrimRow, 12> trim{{
     {2.0, 21.5},
     {2.25, 20.9},
@@ -76,10 +76,10 @@ constexpr std::array<TrimRow, 12> trim{{
     {27.0, 15.5},
 }};
 
-constexpr double lift_slope_beyond_table = 0.6;  // ours
+constexpr double lift_slope_beyond_table = 0.6;  // our assumption
 constexpr double lift_of_flight =
-    1.04;  // ours: what the published trajectory flew of the table's lift-to-drag, 1.01 … 1.07
-constexpr double largest_lift_angle_deg = 30.0;  // ours: beyond it lift fades to nothing at 90°
+    1.04;  // our assumption: lift-to-drag of the published trajectory over the table's, 1.01 … 1.07
+constexpr double largest_lift_angle_deg = 30.0;  // our assumption: beyond it lift fades to zero at 90°
 
 struct Place {
     std::size_t below;

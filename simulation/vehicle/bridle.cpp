@@ -10,7 +10,7 @@ namespace {
 constexpr double ramp_s = 0.6;
 constexpr double steady_mps = Bridle::length_m / (Bridle::pay_out_s - ramp_s);
 constexpr double ramp_mps2 = steady_mps / ramp_s;
-constexpr double stowed_m = 0.2;             // from the confluence to the rover, with its weight on it
+constexpr double stowed_m = 0.2;             // from the confluence to the rover, under the rover's weight
 constexpr double bridle_weight_mps2 = 3.71;  // [facts]
 constexpr double stretch_by_weight_m = 0.015;
 constexpr double damping_ratio = 0.3;

@@ -56,7 +56,7 @@ Vector3 Configuration::centre_B_m() const {
     if (backshell) along_kgm += stations_.backshell_m * masses_.backshell_and_parachute_kg;
     if (heatshield) along_kgm += stations_.heatshield_m * masses_.heatshield_kg;
     if (cruise_stage) along_kgm += stations_.cruise_stage_m * masses_.cruise_stage_kg;
-    // Cruise balance masses sit across from those that give the entry vehicle its lift.
+    // Cruise balance masses sit opposite those that give the entry vehicle its lift.
     const double across_kgm = stations_.balances_off_axis_m * (entry_balances_kg - cruise_balances_kg);
     return Vector3{across_kgm, 0.0, along_kgm} / rigid_kg();
 }

@@ -9,14 +9,14 @@
 namespace aeolis::simulation {
 namespace {
 
-constexpr double overshoot = 0.2;           // ours
-constexpr double overshoot_decay_s = 0.25;  // ours
+constexpr double overshoot = 0.2;           // our assumption
+constexpr double overshoot_decay_s = 0.25;  // our assumption
 constexpr double plane_turns_rps = 4.5 * 0.017453292519943295;
 
 struct MachRow {
     double mach, factor;
 };
-// ours: see the header
+// Our assumption: see the header.
 constexpr std::array<MachRow, 8> factors{
     {{0.7, 1.0}, {0.85, 0.99}, {1.0, 0.92}, {1.1, 1.13}, {1.25, 1.24}, {1.6, 1.27}, {1.9, 1.22}, {2.5, 1.05}}};
 

@@ -9,7 +9,7 @@ namespace aeolis::simulation {
 namespace {
 
 constexpr double spin_rps = 2.0 * 2.0 * std::numbers::pi / 60.0;  // [od137] 2 rpm
-constexpr double powered_drag_area_m2 = 5.0;                      // ours: what free fall at backshell separation shows
+constexpr double powered_drag_area_m2 = 5.0;  // our assumption, from the free fall at backshell separation
 constexpr double air_ends_m = 250000.0;
 
 Vector3 on_axis(const Vector3& station_B) {
@@ -91,7 +91,7 @@ void Vehicle::fire(flight::PyroId pyro, double now_s) {
         configuration_.rover_on_stage = false;
         break;
     case PyroId::bridle_cutter: configuration_.bridle = false; break;
-    // Neither moves the vehicle in this model: coolant's push is small, the cables only join cruise stage and
+    // Neither moves the vehicle in this model: the coolant's push is small, and the cables only join cruise stage and
     // aeroshell.
     case PyroId::cruise_cable_cutter:
     case PyroId::coolant_vent: break;
@@ -101,7 +101,7 @@ void Vehicle::fire(flight::PyroId pyro, double now_s) {
 
 void Vehicle::command(const flight::ThrusterCommand& thrusters, bool thrusters_enabled,
                       const flight::EngineCommand& engines, bool pay_out_bridle, double now_s) {
-    // The spin-stabilised cruise stage has its own; those of the entry vehicle lie under it.
+    // The spin-stabilised cruise stage has thrusters of its own and covers those of the entry vehicle.
     thrusters_.command(thrusters, thrusters_enabled && !configuration_.cruise_stage, now_s);
     engines_.command(engines, now_s);
     if (pay_out_bridle && !configuration_.rover_on_stage) bridle_.start(now_s);
@@ -130,7 +130,7 @@ void Vehicle::fly_separated() {
 }
 
 double Vehicle::aeroshell_factor(double mach) const {
-    constexpr double slow_below_mach = 3.0, fast_above_mach = 8.0;  // ours
+    constexpr double slow_below_mach = 3.0, fast_above_mach = 8.0;  // our assumption
     const double fast = std::clamp((mach - slow_below_mach) / (fast_above_mach - slow_below_mach), 0.0, 1.0);
     return aeroshell_factors_[1] + fast * (aeroshell_factors_[0] - aeroshell_factors_[1]);
 }
@@ -153,7 +153,7 @@ void Vehicle::step(double now_s, double step_s) {
         step.thrusters.propellant_kg + engines_.advance(now_s, step_s, configuration_.propellant_kg());
     step.engines_end_B_N = engines_.force_B_N();
     step.engines_end_B_Nm = engines_.torque_B_Nm() + engines_arm_B_m.cross(step.engines_end_B_N);
-    configuration_.burn(0.5 * burnt_kg);  // mass in the middle of the step
+    configuration_.burn(0.5 * burnt_kg);  // mass at the middle of the step
     const double mass_kg = configuration_.rigid_kg();
     Vector3 force_M;
     if (rover_hangs()) {
@@ -228,7 +228,7 @@ void Vehicle::add_air(double now_s, Step& step, const RigidBody& body, Wrench& w
         wrench.force_M += pull_M;
         wrench.torque_B += confluence_B.cross(body.q_MB.conjugate() * pull_M) - wrist_damping_Nms * body.rate_B_rps;
     }
-    // The parachute's drag area is told with the vehicle in its wake: the vehicle's own fades as it opens.
+    // The parachute's drag area includes the vehicle in its wake, so the vehicle's own drag fades as it opens.
     if (inflation >= 1.0) return;
     const Vector3 z_M = body.q_MB * Vector3::UnitZ();
     const double cosine = std::clamp(z_M.dot(forward), -1.0, 1.0);
@@ -239,7 +239,7 @@ void Vehicle::add_air(double now_s, Step& step, const RigidBody& body, Wrench& w
     const double sine = lean.norm();
     if (sine > 1e-6) wrench.force_M -= (area_N * coefficients.lift / sine) * lean;
 
-    // Turned back to trim, where the wind comes along x as much as the centre of mass is off the axis.
+    // Restoring moment to trim, where the wind's part along x matches the centre of mass's offset.
     const Vector3 wind_B = body.q_MB.conjugate() * forward;
     const double offset = configuration_.offset();
     if (!step.trim) step.trim = trim_at(mach);

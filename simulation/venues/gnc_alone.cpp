@@ -30,7 +30,8 @@ const flight::DeviceOutputs& GncAlone::cycle(const flight::DeviceInputs& in) {
     timeline_.act(in.now, out_);
     gnc_.cycle(in, configuration(), told_);
     if (configuration().radar_on) {
-        // As in flight: the beams meet the attitude of their own tick, and the solution waits for the next cycle.
+        // As in flight: the beams are combined with the attitude of their own tick, and the solution waits for the next
+        // cycle.
         batch_.on(in.now, in.radar.span(), flight::gnc::to_quaternion(told_.q_MB),
                   flight::gnc::to_vector(told_.p_MoB_M_m).normalized());
         if (in.now.ticks() % 64 == 0)

@@ -23,9 +23,9 @@ using flight::parameters;
 constexpr double sufr_mps = 453.0;  // [od137]
 constexpr double priming_above_backshell_m = 1340.0;
 constexpr double approach_end_m = 150.0, slow_below_m = 32.0;
-constexpr double sidestep_mps = 12.0;  // while it approaches: from under the backshell
+constexpr double sidestep_mps = 12.0;  // during the approach: out from under the backshell
 
-/// Lift to the left or right as in [od137], roughly.
+/// Bank angle, roughly as in [od137].
 double bank_deg(const TruthState& truth) {
     if (truth.speed_mps <= parameters.heading_alignment_speed_mps) return 0.0;
     if (truth.e_s > 124.0) return -49.0;
@@ -37,7 +37,7 @@ int reversals(const TruthState& truth) {
     return (truth.e_s > 72.0) + (truth.e_s > 98.0) + (truth.e_s > 124.0);
 }
 
-/// Two stretches of even deceleration, then slow and steady.
+/// Climb rate: two stretches of constant deceleration, then slow and steady.
 double wanted_climb_mps(double height_m) {
     if (height_m > approach_end_m)
         return -std::min(75.0, std::sqrt(parameters.constant_velocity_mps * parameters.constant_velocity_mps +
@@ -184,7 +184,7 @@ void GncStandIn::guide(const World& world, const flight::gnc::Configuration& con
                                                                      : (thrust_N - 4 * least_N) / 4 / full_N;
 }
 
-// Attitude control is GNC's own, as a part of the vehicle's plant: what is replaced is who decides.
+// Attitude control is GNC's own, as part of the plant: only the decisions are replaced.
 void GncStandIn::steer(const World& world, const flight::gnc::Configuration& configuration) {
     const World::Inspection seen = world.inspect();
     const TruthState truth = world.truth();

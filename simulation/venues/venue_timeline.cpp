@@ -7,7 +7,7 @@ namespace {
 using flight::PyroId;
 using flight::gnc::Trigger;
 
-/// What a row may touch.
+/// The objects that a row may change.
 struct Touched {
     Sclk now;
     flight::gnc::Configuration& configuration;
@@ -15,7 +15,7 @@ struct Touched {
 };
 
 struct Row {
-    std::string_view timepoint;    ///< of the timeline, whose place it takes
+    std::string_view timepoint;    ///< the timepoint that it replaces
     std::optional<Trigger> after;  ///< none: entry
     double offset_s;
     void (*action)(Touched&);
@@ -112,7 +112,7 @@ void VenueTimeline::act(Sclk now, flight::DeviceOutputs& out) {
     for (std::size_t i = 0; i < rows.size(); ++i) {
         if (done_[i]) continue;
         const auto& start = rows[i].after ? triggered_[static_cast<std::size_t>(*rows[i].after)] : entry_;
-        // No line waits for the one before it.
+        // No row waits for the one before it.
         const timeline::Offsets offsets{.anchor = AnchorId{}, .desired_s = rows[i].offset_s, .minimum_s = {}};
         if (!(now >= timeline::due_times(offsets, {}, start).desired)) continue;
         done_[i] = true;

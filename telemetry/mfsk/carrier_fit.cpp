@@ -14,7 +14,7 @@
 namespace aeolis::telemetry {
 namespace {
 
-constexpr double line_step = 1.6;  // rates 1.6/T² apart: 0.2 dB between two lines at most, before refinement; ours
+constexpr double line_step = 1.6;  // rates 1.6/T² apart: at most 0.2 dB between two lines before refinement; chosen
 
 }  // namespace
 

@@ -12,12 +12,12 @@
 namespace aeolis::telemetry {
 namespace {
 
-constexpr double segment_s = 0.02;     // ours: 1200 Hz/s bends the phase by 0.4 rad at most
+constexpr double segment_s = 0.02;     // chosen: 1200 Hz/s bends the phase by at most 0.4 rad
 constexpr int segments_a_window = 50;  // 1 s
 constexpr int windows_a_long_one = 4;  // 4 s
 constexpr int lines_aside = 24;        // to either side of rate 0
 constexpr int rate_lines = 2 * lines_aside + 1;
-constexpr double rate_max_hzps = 1200.0;  // ours: what a predict may leave
+constexpr double rate_max_hzps = 1200.0;  // our assumption: the largest residual of a predict
 
 }  // namespace
 
@@ -56,7 +56,7 @@ struct CarrierSearch::State {
         fft.fwd(transformed, padded);
         const int column = static_cast<int>(segments_seen % powers.cols());
         const float scale = 1.0F / static_cast<float>(segment);
-        // Frequency 0 in the middle; what lies beyond the band's end is its other end.
+        // Frequency 0 is in the middle; the spectrum wraps around at the band's ends.
         for (int i = 0; i < powers.rows(); ++i) {
             const int bin = ((i - guard + bins / 2) % bins + bins) % bins;
             powers(i, column) = scale * std::norm(transformed[static_cast<std::size_t>(bin)]);
@@ -65,7 +65,7 @@ struct CarrierSearch::State {
         filled = 0;
     }
 
-    /// Powers along the line of `rate` through each bin at the middle of the last `count` segments.
+    /// Sums powers along the line of `rate` through each bin at the middle of the last `count` segments.
     void sum_line(int count, double rate_hzps) {
         line.setZero(bins);
         for (int i = 0; i < count; ++i) {
@@ -119,10 +119,10 @@ struct CarrierSearch::State {
     double rate_hz;
     int segment, bins;
     double bin_hz, segment_length_s;
-    int guard;  ///< bins to either side that lines of the greatest slope run into
+    int guard;  ///< bins to either side that the steepest lines reach
     Eigen::ArrayXXf powers;
     std::vector<std::complex<float>> padded, transformed;
-    std::vector<double> thresholds;  ///< of the short and of the long window
+    std::vector<double> thresholds;  ///< of the short and the long window
     Eigen::FFT<float> fft;
     Eigen::ArrayXf line;
     std::int64_t segments_seen = 0;

@@ -9,18 +9,18 @@ namespace aeolis::telemetry {
 namespace {
 
 constexpr double turn_rad = 2.0 * std::numbers::pi;
-constexpr double thinned_rate_least_hz = 6000.0;  // the sum droops by 0.12 dB at the highest tone; ours
-constexpr double parts_hz = 256.0;                // ours: a wrong prediction by 100 Hz is still seen
-constexpr double false_find = 0.005;              // of a look at noise; ours
-constexpr double longer_gain = 1.2;               // what a longer window must gather more; ours
-constexpr int short_for_hops = 16;                // then no longer one is tried; ours
-constexpr double energy_weak = 22.0;              // below this a longer window is taken; ours
-constexpr double energy_strong = 60.0;            // above this a shorter one; ours
-constexpr double lost_after_s = 1.5;              // at least; ours
-constexpr double weak_lost_after_s = 20.0;        // ours
-constexpr double weak_level_hz = 25.0;            // 14 dB-Hz: the search over 4 s needs more; ours
-constexpr double level_of_old = 0.99;             // of each hop in the running mean of C/N0: 12 s; ours
-constexpr double noise_gain = 0.08;               // of each hop in the running mean of the noise: 1.5 s; ours
+constexpr double thinned_rate_least_hz = 6000.0;  // the sum attenuates the highest tone by 0.12 dB; chosen
+constexpr double parts_hz = 256.0;                // chosen: a prediction wrong by 100 Hz is still seen
+constexpr double false_find = 0.005;              // probability in noise, a fit; chosen
+constexpr double longer_gain = 1.2;               // a longer window must gather this factor more; chosen
+constexpr int short_for_hops = 16;                // after a failure, for which no longer window is tried; chosen
+constexpr double energy_weak = 22.0;              // below this a longer window is tried; chosen
+constexpr double energy_strong = 60.0;            // above this a shorter one; chosen
+constexpr double lost_after_s = 1.5;              // at least; chosen
+constexpr double weak_lost_after_s = 20.0;        // chosen
+constexpr double weak_level_hz = 25.0;            // 14 dB-Hz: the search over 4 s needs more; chosen
+constexpr double level_of_old = 0.99;             // of each hop in the running mean of C/N0: 12 s; chosen
+constexpr double noise_gain = 0.08;               // of each hop in the running mean of the noise: 1.5 s; chosen
 
 }  // namespace
 
@@ -90,7 +90,7 @@ CarrierTracker::Wiped CarrierTracker::wipe(std::span<const std::complex<float>> 
     phase_cycles_ = std::fmod(wiped.cycles_at(layout_.hop_s()), 1.0);
     next_sample_ += layout_.hop_samples();
 
-    // What is not signal is noise; of a signal without noise a millionth is taken for it.
+    // Noise is the power that is not signal; for a signal without noise, a millionth of it.
     const double total = power / layout_.thinned_samples();
     const double density =
         std::max(total - carrier_power_ / carrier_fraction_, 1e-6 * total) / layout_.thinned_rate_hz();
@@ -107,7 +107,7 @@ CarrierLine CarrierTracker::fit_around(std::size_t middle, Window& window, bool 
     for (std::size_t i = middle - aside; i <= middle + aside; ++i) {
         const Wiped& hop = hops_[i];
         const double begin_s = static_cast<double>(hop.first_sample - reference.first_sample) / layout_.rate_hz;
-        // Turned from the hop's own prediction to that of the window's middle.
+        // Rotates from the hop's own prediction to that of the window's middle.
         for (int part = 0; part < HopLayout::parts; ++part) {
             const double at_s = (part + 0.5) * part_s;
             const double cycles = hop.cycles_at(at_s) - reference.cycles_at(begin_s + at_s);
@@ -171,7 +171,7 @@ void CarrierTracker::choose_window(double energy) {
     }
 }
 
-// A longer window gathers more of a weak carrier, and less of one that swerves.
+// A longer window gathers more of a weak carrier, and less of a swerving one.
 void CarrierTracker::shorten() {
     --window_;
     energy_before_longer_ = 0.0;
@@ -206,7 +206,7 @@ void CarrierTracker::fit_waiting(std::vector<CarrierHop>& out) {
             energy_before_longer_ = 0.0;
             if (middle == waiting_) {
                 done = demodulated(hop, line);
-            } else {  // carried over from the window's middle to this earlier hop
+            } else {  // extrapolated from the window's middle to this earlier hop
                 const Wiped& reference = hops_[middle];
                 const double back_s = static_cast<double>(hop.first_sample - reference.first_sample) / layout_.rate_hz;
                 const double mid_s = 0.5 * layout_.hop_s();
@@ -245,14 +245,14 @@ void CarrierTracker::fit_waiting(std::vector<CarrierHop>& out) {
 void CarrierTracker::push(std::span<const std::complex<float>> hop, std::vector<CarrierHop>& out) {
     hops_.push_back(wipe(hop));
     fit_waiting(out);
-    // What is too weak to be found anew is waited for.
+    // A carrier too weak for a new search is waited for.
     const bool is_weak = level_hz_ < weak_level_hz;
     const double patience_s = is_weak ? weak_lost_after_s : std::max(lost_after_s, 0.75 * windows_[window_].length_s);
     if (missed_ * layout_.hop_s() > patience_s) finish(out);
 }
 
 void CarrierTracker::finish(std::vector<CarrierHop>& out) {
-    // A shorter window still reaches some of the hops that wait.
+    // A shorter window still covers some of the waiting hops.
     if (missed_ == 0 && window_ > 0) {
         window_ = 0;
         fit_waiting(out);

@@ -9,8 +9,7 @@
 namespace aeolis::telemetry {
 
 double symbol_error(double energy, int tones) {
-    // Over x = √u, whose density is within 8 of √E; Simpson's rule. What is integrated is the error itself, not 1 −
-    // error.
+    // Simpson's rule over x = √u, whose density lies within 8 of √E. The integrand is the error itself, not 1 − error.
     constexpr int intervals = 4000;
     const double root = std::sqrt(energy);
     const double begin = std::max(root - 8.0, 0.0), step = (root + 8.0 - begin) / intervals;

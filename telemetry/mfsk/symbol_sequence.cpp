@@ -8,10 +8,10 @@
 namespace aeolis::telemetry {
 namespace {
 
-constexpr double energy_of_use = 2.0;  // E/N0: with less no tone can be told; ours
-constexpr int settle_hops = 8;         // ours: decisions are looked for once a second
+constexpr double energy_of_use = 2.0;  // E/N0 below which no tone can be told; chosen
+constexpr int settle_hops = 8;         // chosen: decisions are sought once a second
 
-/// Sum of hops' evidence, the newest hop first.
+/// Sum of the hops' evidence, the newest hop first.
 struct Gathered {
     ToneSums sums{};
     double energy = 0.0;
@@ -87,7 +87,7 @@ bool SymbolSequence::is_same(std::int64_t end, std::int64_t other_end) const {
 
 void SymbolSequence::settle(std::vector<DecidedSymbol>& out) {
     if (hops_.empty()) return;
-    // Each later way leads through one of the last symbol's worth of states, with the part of a symbol seen since.
+    // Every later path leads through one of the last symbol's worth of states, with the part of a symbol seen since.
     struct Survivor {
         double score;
         std::int64_t hops;
@@ -121,7 +121,7 @@ void SymbolSequence::settle(std::vector<DecidedSymbol>& out) {
 
 void SymbolSequence::come_out(std::int64_t first, std::vector<DecidedSymbol>& out) {
     out.push_back(*state(first).symbol);
-    // What came out stays: states that were reached without it are reached through it instead.
+    // A decided symbol stays: states that were reached without it are reached through it instead.
     while (first_state_ < first) {
         states_.pop_front();
         ++first_state_;

@@ -8,18 +8,18 @@
 namespace aeolis::telemetry {
 namespace {
 
-constexpr double level_gain = 0.1;  // of each hop in the running mean of C/N0: 1.2 s; ours
+constexpr double level_gain = 0.1;  // of each hop in the running mean of C/N0: 1.2 s; chosen
 
-// A pulse is 40 dB above the mean power, which noise never is; the mean forgets in 1024 samples. Ours.
+// A pulse is 40 dB above the mean power, which noise never is; the mean is over 1024 samples. Chosen.
 constexpr double pulse_ratio = 1e4;
 constexpr double power_gain = 1.0 / 1024.0;
 
-/// As double: the square of a float need not be one.
+/// Power as double, because the square of a float may overflow one.
 double power_of(const std::complex<float>& sample) {
     return std::norm(std::complex<double>{sample});
 }
 
-/// The middle of a block's powers: a few pulses do not move it.
+/// Median of a block's powers: a few pulses do not move it.
 double middle_power(std::span<const std::complex<float>> samples) {
     std::vector<double> powers;
     for (const auto& sample : samples)
@@ -49,7 +49,8 @@ ToneReceiver::ToneReceiver(const MfskWaveform& waveform, double rate_hz, TimeTab
       correlator_(waveform, layout_.thinned_rate_hz(), layout_.thinned_samples()),
       sequence_(static_cast<int>(std::lround(waveform.symbol_s / layout_.hop_s())), layout_.hop_samples()) {}
 
-/// What is no number is one too. A level that rises or falls for good is followed within some hundreds of samples.
+/// Whether a sample is a pulse, or not a number. The mean follows a lasting change of level within some hundreds of
+/// samples.
 bool ToneReceiver::is_pulse(const std::complex<float>& sample) {
     const double power = power_of(sample);
     if (!std::isfinite(power)) return true;
@@ -93,7 +94,7 @@ void ToneReceiver::pass_without_carrier() {
     drop(static_cast<std::size_t>(layout_.hop_samples()));
 }
 
-/// True when a carrier was found.
+/// Returns true when a carrier was found.
 bool ToneReceiver::search() {
     const auto unsearched = kept().subspan(static_cast<std::size_t>(searched_ - first_kept_));
     const auto found = carrier_search_.push(unsearched);
@@ -114,7 +115,7 @@ bool ToneReceiver::search() {
     return true;
 }
 
-/// True when the carrier was lost and the search is to go on.
+/// Returns true when the carrier was lost and the search must continue.
 bool ToneReceiver::track() {
     const auto hop_samples = static_cast<std::size_t>(layout_.hop_samples());
     while (kept().size() >= hop_samples) {

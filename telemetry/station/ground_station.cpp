@@ -59,7 +59,7 @@ void GroundStation::receive_frames(LinkReceiver& from, Ert ert) {
     }
 }
 
-/// A link that went down brings nothing that could complete a frame: what waits for octets is searched as it is.
+/// Handles a link's change. A link that went down cannot complete a frame: its waiting octets are searched as they are.
 void GroundStation::note(const LinkState& state) {
     if (state.link == relay_link) relay_up_ = state.up;
     const auto known = std::ranges::find(links_, state.link, &LinkReceiver::link);

@@ -46,7 +46,7 @@ std::uint64_t RecordingReceiver::refused() const {
     return refused;
 }
 
-/// A file is as long as the octets that it is said to have: what says too many is not believed.
+/// Whether a PDU is plausible: memory grows with the octets that it claims, so excessive claims are refused.
 bool RecordingReceiver::fits(const cfdp::Pdu& pdu) {
     const cfdp::Header& header = pdu.header;
     if (header.source != spacecraft_id || header.destination != ground_entity || header.sequence == 0 ||
@@ -73,7 +73,7 @@ void RecordingReceiver::receive(std::span<const std::uint8_t> octets, Ert now, c
         if (file->octets.size() < end) file->octets.resize(end);
         std::ranges::copy(write.octets, file->octets.begin() + write.offset);
     }
-    // An end that is announced again says that the answer to the first did not get there.
+    // A repeated end of file shows that the answer to the first was lost.
     if (std::holds_alternative<cfdp::Eof>(pdu->content)) file->receiver.ask();
     answer(*file);
     if (file->receiver.state().outcome == Outcome::complete && !std::exchange(file->given_out, true)) {

@@ -92,7 +92,7 @@ LinkState SilenceClassifier::told(Silence& silence, const Explanation& why, Ert 
 SilenceClassifier::Explanation SilenceClassifier::explain(const Silence& silence, double e_s,
                                                           const Station& station) const {
     auto why = explain_by_link(silence.link, e_s, station);
-    // An orbiter whose delivery breaks off with the station has not delivered.
+    // An orbiter whose delivery the station's outage interrupts has not delivered.
     const bool predicted =
         why.silence != SilenceClass::unexplained && !(why.silence == SilenceClass::delivered && silence.cut);
     if (!predicted && !station.fault.empty()) return {SilenceClass::ground_fault, station.fault};
@@ -107,7 +107,7 @@ SilenceClassifier::Explanation SilenceClassifier::explain_by_link(const Link& li
     return {SilenceClass::delivered, "nothing more comes until the orbiter's next pass"};
 }
 
-/// None: one that hands on at once is in view.
+/// The explanation by passes; none while a bent pipe is in view.
 std::optional<SilenceClassifier::Explanation> SilenceClassifier::explain_by_passes(double e_s) const {
     if (predicted_.passes.empty()) return {};
     const PredictedSilences::OrbiterPass *recording = nullptr, *next = nullptr;

@@ -27,7 +27,7 @@ void ToneStation::receive(const Downlink& downlink, Received& out) {
         samples_.insert(samples_.end(), piece.samples.begin(), piece.samples.end());
     }
     if (!receiver_ || ended_) return;
-    ended_ = downlink.x_band.empty();  // there are no more
+    ended_ = downlink.x_band.empty();  // no more samples
     if (ended_ || samples_.size() >= push_samples) push(out);
     const auto& status = receiver_->status();
     const bool carrier = !ended_ && !downlink.station_out && status.lock != CarrierLock::searching;

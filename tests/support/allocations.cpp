@@ -18,7 +18,7 @@ std::uint64_t aeolis::test::allocations() {
     return count;
 }
 
-// All of the test program's memory comes through here, so that a test can say "none was asked for".
+// All memory of the test program is allocated here, so that a test can claim that none was.
 void* operator new(std::size_t size) {
     return counted(size);
 }
