@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Measures the archive: its cost over bare SQLite with the same table, index, batch and synchronous=FULL; the cost of a
-// landing's telemetry from packet to durable row; reading a plot of ten million samples; octets a sample; and the start
-// on an archive that was closed, or whose writer was killed.
+// Measures the archive.
+//
+//   append   its cost over bare SQLite with the same table, index, batch and synchronous=FULL
+//   landing  a landing's telemetry from packet to durable row
+//   read     a plot of ten million samples
+//   size     octets a sample
+//   start    on an archive that was closed, or whose writer was killed
 
 #include "bench/must.hpp"
 #include "common/bytes.hpp"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Measures one message to a thousand clients of the stream against a bare send of the same octets to as many sockets:
-// CPU a delivered message, and latency. Then eight messages a tick.
+// Measures one message to a thousand clients of the stream: CPU a delivered message, and latency.
+//
+// The reference is a bare send of the same octets to as many sockets. Then eight messages a tick.
 
 #include "bench/loopback_clients.hpp"
 #include "bench/must.hpp"

@@ -213,8 +213,8 @@ void goal(const std::string& what, double figure, double most, const char* unit)
     met = met && figure <= most;
 }
 
-/// A client's subscription: 30 channels of the first kind of packet, or ten of each of three kinds, different for each
-/// client.
+/// A client's subscription to 30 channels: all of the first kind of packet, or ten of each of three kinds, different
+/// for each client.
 enum class Channels { same, own };
 std::string subscription_of(std::size_t client, Channels channels) {
     v1::ClientMessage message;

@@ -22,7 +22,7 @@ struct Board {
     std::atomic<std::uint16_t> port{0};
     std::atomic<std::uint64_t> messages{0};  ///< messages with a mark received, over all clients
     std::atomic<std::uint64_t> octets{0};
-    std::atomic<std::uint64_t> broken{0};  ///< connections that the server ended
+    std::atomic<std::uint64_t> broken{0};  ///< connections that the other end closed or that failed
     std::array<std::atomic<std::uint32_t>, latency_bins> latencies{};
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The threaded executive over a whole landing: each task's processor time in a cycle against its budget, by message,
-// and the deepest use of its stack.
+// Measures the threaded executive over a whole landing.
+//
+// It prints each task's processor time in a cycle against its budget, by message, and the deepest use of its stack.
 //
 // It runs on a virtual clock, as fast as possible; with AEOLIS_REAL_TIME=1 at 1 x, for a quarter of an hour and more,
 // with wall-clock overruns and jitter. AEOLIS_SECONDS=N ends after N seconds of flight.

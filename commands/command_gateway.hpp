@@ -53,9 +53,9 @@ class CommandGateway {
     /// Replaces ground's navigation solution.
     void renew_solution(std::vector<NamedValue> solution) { solution_ = std::move(solution); }
 
+    enum class Asker : std::uint8_t { person, script };
     /// Checks and queues a request. The first stage reported carries the arguments and the octets. A dry run makes
     /// every check, reports the outcome, and changes nothing.
-    enum class Asker : std::uint8_t { person, script };
     Reply submit(const Request& request, Ert now, std::vector<StageReport>& stages, Asker asker = Asker::person);
 
     /// Applies a verdict to a waiting command. Fails when the command waits for none, or when more changes have failed
@@ -65,14 +65,13 @@ class CommandGateway {
     /// Replies to each request of a file as if all before it had been accepted. Changes nothing.
     std::vector<Reply> look(std::span<const Request> file, Ert now);
 
-    /// Records a refused command of the scenario's script with a number and a history, because nobody waits for its
-    /// reply.
+    /// Records a refused command of the scenario's script with a number and a history. Nobody waits for its reply.
     void note_refused(const Request& request, const std::string& reason, Ert now, std::vector<StageReport>& stages);
 
     /// Fails when the run has no room for `more` commands.
     Result<void> takes(std::size_t more) const;
-    /// Commands that wait for their time, a controller, a pass or an analysis; and those handed to the uplink and not
-    /// yet radiated.
+    /// Counts of commands: waiting for a time, a controller, a pass or an analysis; and handed to the uplink, not yet
+    /// radiated.
     std::size_t queued() const { return queue_.waiting().size(); }
     std::size_t at_uplink() const { return link_.waiting(); }
 
@@ -169,8 +168,8 @@ class CommandGateway {
     std::string failing_now(const dictionary::Command& command, Ert now) const;
     /// Hands due commands to the uplink after checking their preconditions again with the latest values.
     void release_due(Ert now, std::vector<StageReport>& stages);
-    /// Applies while no station sees the vehicle: due commands, and those that the uplink has not radiated, wait for
-    /// the next pass. Without a next pass every waiting command fails.
+    /// Applies the rule for times when no station sees the vehicle. Due commands, and those that the uplink has not
+    /// radiated, wait for the next pass. Without a next pass every waiting command fails.
     void await_pass(Ert now, std::vector<StageReport>& stages);
     /// Queues again a command that the uplink gave back.
     void wait_again(std::uint64_t number, std::optional<Ert> until, const std::string& why, Ert now,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How commands leave: from the queue, while a station sees the vehicle, through the uplink; and what the vehicle's
+// How commands leave: from the queue, through the uplink, while a station sees the vehicle. Also what the vehicle's
 // reports say of their frames.
 #include "commands/command_gateway.hpp"
 

@@ -40,7 +40,7 @@ class Fop {
         retransmitting,  ///< retransmission was requested; a repeated request is ignored
         waiting,         ///< the vehicle has no room
         halted,          ///< no sequence-controlled frame goes out until restart()
-        restarting,      ///< the receiver is being told which sequence comes next
+        restarting,      ///< the receiver's next sequence number is being set
     };
     enum class Halt { none, lockout, contradiction, too_many_transmissions };
     enum class Fate {

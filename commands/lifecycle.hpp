@@ -53,8 +53,8 @@ struct Answer {
 /// Memory   a kilooctet
 class CommandLifecycle {
   public:
-    /// `read_back`: flight reads this command back, which decides `verified`; without it the command has no such stage.
-    /// `command` must outlive this object.
+    /// `read_back`: whether flight reads this command back, which decides `verified`; otherwise that stage does not
+    /// exist. `command` must outlive this object.
     CommandLifecycle(const dictionary::Command& command, std::uint16_t count, double light_time_s, bool read_back);
 
     /// Notes that one of ground's own stages, queued … radiated, is done (ok) or failed, which ends the command.
@@ -64,13 +64,13 @@ class CommandLifecycle {
     void approved(std::string evidence, Ert at, std::vector<StageChange>& out);
     /// Notes that the command is authorised and waits on the ground.
     void await_release(std::string evidence, Ert at, std::vector<StageChange>& out);
-    /// Notes that the uplink gave the command back before radiation: it waits on the ground, and `released` is pending
-    /// again.
+    /// Notes that the uplink gave the command back before radiation. It waits on the ground again; `released` is
+    /// pending.
     void taken_back(std::string evidence, Ert at, std::vector<StageChange>& out);
     /// Notes that the frame was radiated again: the windows restart.
     void radiated_again(std::string evidence, Ert at, std::vector<StageChange>& out);
-    /// Notes a doubt about a radiated command that would not be sent now: why its frame is not radiated again, or what
-    /// its analysis relied on and no longer holds.
+    /// Notes a doubt about a radiated command that would not be sent now. The evidence says why its frame is not
+    /// radiated again, or what its analysis relied on and no longer holds.
     void radiated_in_doubt(std::string evidence, Ert at, std::vector<StageChange>& out);
     /// Notes that the vehicle's frame receiver reports the frame: `received`, observed.
     void frame_taken(std::string evidence, Ert at, std::vector<StageChange>& out);

@@ -44,7 +44,7 @@ struct TimelineVerdict {
     std::string analysis{};     ///< in words, for its history
 };
 
-/// What became of a request.
+/// The outcome of a request.
 struct Reply {
     std::uint64_t request = 0;
     std::uint64_t command = 0;  ///< its number in the run, 0 when refused

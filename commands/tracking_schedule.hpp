@@ -31,8 +31,10 @@ class TrackingSchedule {
     const TrackingPass* next_after(Ert at) const;
     /// Whether no station sees the vehicle at that time or later.
     bool over(Ert at) const { return !sees(at) && next_after(at) == nullptr; }
-    /// Text: why nothing can leave at that time, and what a controller can do: "no station sees the vehicle at …: the
-    /// last pass, of DSS-43, ended …; the next, of DSS-34, is … to …: give a release time within it".
+    /// States why nothing can leave at that time, and what a controller can do.
+    ///
+    /// "no station sees the vehicle at …: the last pass, of DSS-43, ended …; the next, of DSS-34, is … to …: give a
+    /// release time within it".
     std::string refusal(Ert at) const;
 
   private:

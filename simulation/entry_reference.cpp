@@ -193,9 +193,10 @@ double drag_scale_height_m(const Atmosphere& atmosphere, double altitude_m) {
            std::log(atmosphere.at(altitude_m - dh).density_kgm3 / atmosphere.at(altitude_m + dh).density_kgm3);
 }
 
-/// The measure that spaces the rows evenly, counted from the end of the flight: a third each of velocity, range and the
-/// logarithm of drag. Rows even in velocity alone left 100 km of range and a factor of 17 in drag between the first
-/// two, so that guidance saw errors of 30 km that were not there.
+/// The measure that spaces the rows evenly, counted from the end of the flight.
+///
+/// Velocity, range and the logarithm of drag have a third each. Rows even in velocity alone left 100 km of range and a
+/// factor of 17 in drag between the first two, so that guidance saw errors of 30 km that were not there.
 std::vector<double> row_measure(const std::vector<Node>& nodes) {
     const auto range_m = [&](std::size_t i) { return nodes[i].ground_m; };
     const auto log_drag = [&](std::size_t i) { return std::log(std::max(nodes[i].drag_mps2, 0.1)); };

@@ -4,8 +4,9 @@
 #include "flight/load.hpp"
 #include "simulation/scenario.hpp"
 
-// The reference of entry guidance: one undisturbed flight of the scenario's nominal entry in the simulation's own
-// dynamics, under a bank profile chosen so that it ends at the target, with the partial derivatives of range.
+// The reference of entry guidance: one undisturbed flight of the scenario's nominal entry, with range's derivatives.
+//
+// It flies in the simulation's own dynamics, under a bank profile chosen so that it ends at the target.
 //
 // Reference bank (our assumption, shaped as [od137] flew): 77° down to 5300 m/s, then in a straight line to a bank held
 // from 4400 to 1100 m/s, then lift up. The secant method on range finds the held bank. Only the vertical part of lift

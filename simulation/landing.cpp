@@ -170,8 +170,7 @@ struct Landing::State {
     void read_event_reports();
     void tell(LinkTeller& teller, bool up, const std::string& reason, std::int64_t at_us);
     bool station_out() const;
-    /// Reports a link's change to ground, as far as ground can see it: the link brings something again, or nothing any
-    /// more.
+    /// Reports a link's change to ground, as far as ground can see it: data arrive again, or no more.
     void tell(const LinkTruth& state, Ert ert);
     /// Reports the links as ground sees them during an outage of the station or its line, and after that.
     void tell_station(bool out, std::int64_t now_us);

@@ -141,8 +141,9 @@ class Landing {
     Landing& operator=(Landing&&) noexcept;
     ~Landing();
 
-    /// Runs one cycle of 1/64 s, and any ticks that a venue's real-time clock lost in it. finished() becomes true after
-    /// the outcome is known and the last packet has arrived.
+    /// Runs one cycle of 1/64 s, and any ticks that a venue's real-time clock lost in it.
+    ///
+    /// finished() becomes true after the outcome is known and the last packet has arrived.
     const CycleReport& step();
     /// The report of the last step.
     const CycleReport& report() const;

@@ -59,8 +59,10 @@ struct Gyration {
     double stage_along_m = flight::gyration_of_stage.along_z_m;
 };
 
-/// Stations of the parts' centres of mass along z, from the descent stage's; and the balance masses' distance from the
-/// axis, which gives the entry vehicle's offset of 0.1 m [facts] (L). Not published: all are our assumptions.
+/// Stations of the parts' centres of mass along z, from the descent stage's.
+///
+/// The balance masses' distance from the axis gives the entry vehicle's offset of 0.1 m [facts] (L). Not published: all
+/// are our assumptions.
 struct Stations {
     double rover_m = 0.4;
     double heatshield_m = 1.0;
@@ -135,8 +137,9 @@ struct ToneOutage {
     double from_s = 0.0, to_s = 0.0;  ///< after the event
 };
 
-/// A time in which a station on Earth can send to the vehicle: begin and end of track by Earth's clock, in seconds
-/// after the UTC of entry. Commands arrive a light time later.
+/// A time in which a station on Earth can send to the vehicle.
+///
+/// Begin and end of track by Earth's clock, in seconds after the UTC of entry. Commands arrive a light time later.
 struct TrackingPass {
     std::string station;  ///< "DSS-43"
     double begin_after_entry_s = 0.0, end_after_entry_s = 0.0;

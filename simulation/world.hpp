@@ -84,8 +84,8 @@ class World {
     const NavigationSolution& solution() const;
     bool uhf_on() const;                ///< the selected transmitter radiates through an antenna
     bool parachute_antenna_on() const;  ///< false: the entry antenna
-    /// The X-band path to Earth: whether it is above the terrain, and the selected antenna's gain towards it (none: no
-    /// antenna is selected).
+    /// The X-band path to Earth: whether it is above the terrain, and the gain of the selected antenna (none: none
+    /// selected).
     struct EarthView {
         bool up = false;
         std::optional<double> gain;

@@ -31,8 +31,10 @@ struct AlarmState {
     bool acknowledged = false;
     std::optional<Ert> shelved_until;
 
-    /// normal, unacknowledged, acknowledged, returned (within limits again, unacknowledged), latched (within limits
-    /// again, held until reset), shelved (overrides the others)
+    /// The state in words: normal, unacknowledged, acknowledged, returned, latched or shelved.
+    ///
+    /// Returned: within limits again, unacknowledged. Latched: within limits again, held until reset. Shelved overrides
+    /// the others.
     const char* name(Ert now) const;
     bool normal() const { return worst == dictionary::Severity::none; }
 };

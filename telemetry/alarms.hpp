@@ -34,9 +34,9 @@ bool latches(const dictionary::Alarms& alarms);
 /// In       samples of each channel in the order of SCLK, from one source only (real time, or the recording)
 /// Out      changes, appended to `out`
 /// Rule     A severity is raised when `min_violations` consecutive samples were at least that severe, and cleared when
-///          `min_conformance` were less. [xtce-1.2] minViolations, minConformance. The limits are those of the first
-///          context that holds by the latest values of the channels it compares, else the defaults. Counting restarts
-///          when the context changes.
+///          `min_conformance` consecutive samples were less severe. [xtce-1.2] minViolations, minConformance. The
+///          limits are those of the first context that holds by the latest values of the channels it compares, else
+///          the defaults. Counting restarts when the context changes.
 /// Memory   64 octets a channel, made at the start
 class AlarmMonitor {
   public:

@@ -11,8 +11,9 @@
 
 namespace aeolis::telemetry {
 
-/// The state of one file's reception: plain values, to be stored with the file's octets in one transaction, so that
-/// either end may restart at any time.
+/// The state of one file's reception, in plain values.
+///
+/// Stored with the file's octets in one transaction, it lets either end restart at any time.
 struct Reception {
     enum class Outcome : std::uint8_t {
         under_way,

@@ -21,7 +21,7 @@ enum class Refusal {
     other_dictionary,  ///< made with another version of the dictionary: its fields may have other meanings
     unknown_apid,
     unknown_event,  ///< an event packet whose event id the dictionary lacks
-    wrong_length,   ///< the octets do not match the length of the APID's container
+    wrong_length,   ///< the packet is longer or shorter than its container
 };
 inline constexpr std::size_t refusal_count = 6;
 const char* name_of(Refusal refusal);

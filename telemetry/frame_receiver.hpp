@@ -65,8 +65,8 @@ class FrameReceiver {
 /// than two markers.
 std::optional<std::size_t> cadu_frame_octets(std::span<const std::uint8_t> octets);
 
-/// Length of contiguous frames with a CRC-16, each after `prefix_octets`: the smallest at which the CRCs of the first
-/// two, or of the only one, are right.
+/// Length of contiguous frames with a CRC-16, each after `prefix_octets`. It is the smallest at which the CRCs of the
+/// first two, or of the only one, are right.
 std::optional<std::size_t> crc_frame_octets(std::span<const std::uint8_t> octets, std::size_t prefix_octets);
 
 /// Detects a CADU stream's layout by trial: frame length, TM or AOS, randomisation, the code's check symbols, CRC. None

@@ -16,11 +16,13 @@ struct TimeKernels {
     std::optional<std::size_t> partition;  ///< of the clock; none: the first that holds the count
 };
 
-/// The UTC instant, where known: of a spacecraft's clock (no epoch) by both kernels, of the epochs GPS and TAI by leap
-/// seconds, of UNIX always. None for other epochs, and outside the kernels' range.
+/// The UTC instant of a packet's time, where known.
+///
+/// A spacecraft's clock (no epoch) needs both kernels, the epochs GPS and TAI the leap seconds, UNIX nothing. None for
+/// other epochs, and outside the kernels' range.
 std::optional<UtcInstant> scet_of(const PacketTime& time, const TimeKernels& kernels);
 
-/// The instant in day-of-year form, else the seconds as a number; "undefined" when a given clock kernel does not cover
+/// The instant in day-of-year form, else the seconds as a number. "undefined" when a given clock kernel does not cover
 /// the count.
 std::string time_text(const PacketTime& time, const TimeKernels& kernels);
 

@@ -15,8 +15,10 @@
 // link deliver the same types. None of them holds what was really sent or why a link is really silent.
 namespace aeolis::telemetry {
 
-/// A link to Earth, by name: "uhf_live" through a bent pipe, "uhf_<orbiter>" recorded by one, "relay" and
-/// "relay_<orbiter>" the same for files after landing, "x_band"; "downlink" of another mission.
+/// A link to Earth, by name.
+///
+/// "uhf_live" is through a bent pipe, "uhf_<orbiter>" recorded by one; "relay" and "relay_<orbiter>" are the same for
+/// files after landing; "x_band"; "downlink" of another mission.
 struct Link {
     std::string name;
     bool recorded = false;  ///< it delivers the recording; false: what was sent live, however late

@@ -8,7 +8,7 @@
 
 namespace aeolis::telemetry {
 
-/// The proof of real time against the recording: every real-time packet must be in the recording, bit for bit.
+/// The proof that every real-time packet is in the recording, bit for bit.
 ///
 /// It holds once the whole recording is received; before that `realtime_not_recorded` means "not yet".
 struct Proof {

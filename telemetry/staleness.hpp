@@ -39,7 +39,6 @@ struct StalenessChange {
                          ///< "the link is lost: unexplained: …", empty while one is up
 };
 
-/// Tells when a packet that should come in real time does not.
 /// Detects missing real-time packets.
 ///
 /// In       packets, links and phase of EDL as they reach Earth, and the time on Earth, in that order

@@ -12,15 +12,18 @@
 // Telemetry in words. Pure functions of the dictionary and one decoded packet.
 namespace aeolis::telemetry {
 
-/// A value without unit: a number with digits that suit its unit (metres and m/s to a tenth, degrees to a hundredth, …;
-/// chosen), the label of an enumeration, "true"/"false", "undefined".
+/// A value without unit: a number, the label of an enumeration, "true"/"false", "undefined".
+///
+/// Digits suit the unit (metres and m/s to a tenth, degrees to a hundredth, …; chosen).
 std::string number_text(const dictionary::Type& type, std::optional<double> value);
 
 /// A value with its unit: "404.6 m/s", "parachute_descent", "undefined".
 std::string value_text(const dictionary::Type& type, std::optional<double> value);
 
-/// The name of a dictionary entry given by number in a field: "opcode", "timepoint", "anchor", "tone", "constraint".
-/// "EDL_DO_EDL", "14 parachute_mortar"; of a constraint its two moments and its line; an unknown number alone.
+/// The name of a dictionary entry given by number in a field.
+///
+/// Fields: "opcode", "timepoint", "anchor", "tone", "constraint". "EDL_DO_EDL", "14 parachute_mortar"; of a constraint
+/// its two moments and its line; an unknown number alone.
 std::string reference_text(const dictionary::Dictionary& dictionary, std::string_view field, double number);
 
 /// For a number whose unit is only in the ending of its name, "speed_mps": "speed" and "12.3 m/s".

@@ -9,8 +9,10 @@
 
 namespace aeolis::simulation {
 
-/// The vehicle's two flight computers, the latch that designates prime, the line between them, the memory that keeps a
-/// state over a restart, and the bus, which obeys one of them.
+/// The vehicle's two flight computers, and what connects them.
+///
+/// That is the latch that designates prime, the line between them, the memory that keeps a state over a restart, and
+/// the bus, which obeys one of them.
 ///
 /// In       the inputs of the computer in command, by tick; both receive the clock, the IMU's own link and the uplink
 /// Out      the commands that the bus takes, and the recordings and radiation of both computers

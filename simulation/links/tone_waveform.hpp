@@ -15,8 +15,10 @@ struct SentTone {
     std::uint8_t tone = 0;
 };
 
-/// One tone's modulation at a sample rate: exp(j m sq) = cos m + j sin m · sq, the square wave without the harmonics
-/// that the sampling could not hold (a front end filters them off before it samples).
+/// One tone's modulation at a sample rate: exp(j m sq) = cos m + j sin m · sq.
+///
+/// The square wave sq is without the harmonics that the sampling could not hold: a front end filters them off before it
+/// samples.
 class ModulatedTone {
   public:
     /// Harmonics up to 0.45 of `rate_hz`.

@@ -20,7 +20,7 @@ namespace aeolis::simulation {
 /// Left out: antenna patterns
 class UhfLink {
   public:
-    /// What the link sees of the vehicle in a cycle.
+    /// The vehicle's state in a cycle that the link depends on.
     struct Surroundings {
         double e_s = 0.0;
         double altitude_m = 0.0;

@@ -13,8 +13,8 @@ namespace aeolis::simulation {
 ///   u ← a u + σ √(1 − a²) n,   a = exp(−V Δt / L),   n normal
 ///
 /// The deviation so does not depend on the step. All numbers are our assumptions: σ is the scenario's at the ground and
-/// falls to zero at 5 km, half of it vertically; L is half the height, within 25 … 500 m. The first component of gusts
-/// near Earth's ground (Dryden) has this form.
+/// falls to zero at 5 km, half of it vertically; L is half the height, within 25 … 500 m. The first component
+/// of the Dryden model for gusts near Earth's ground has this form.
 class Gusts {
   public:
     Gusts(double deviation_mps, Random random) : deviation_mps_(deviation_mps), random_(random) {}

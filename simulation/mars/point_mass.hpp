@@ -41,7 +41,7 @@ PointMass runge_kutta_step(const PointMass& at, double step_s, SpecificForce&& s
             at.v_MB_M + sixth_s * (a1 + 2.0 * (a2 + a3) + a4)};
 }
 
-/// Propagates free fall over `duration_s` (negative: back in time) in steps of at most one second; the error stays
+/// Propagates free fall over `duration_s` (negative: back in time) in steps of at most one second. The error stays
 /// below a millimetre over an hour on an approach orbit.
 PointMass coast(PointMass from, double duration_s);
 

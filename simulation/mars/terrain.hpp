@@ -26,8 +26,8 @@ class Terrain {
     /// Unit normal of the ground there, pointing away from it.
     Vector3 normal(const Vector3& p_MoB_M) const;
 
-    /// The point where a ray from `p_MoB_M` along the unit vector `direction_M` meets the ground, taken as the sphere
-    /// that touches the ground below the start.
+    /// The point where a ray from `p_MoB_M` along the unit vector `direction_M` meets the ground. The ground is taken
+    /// as the sphere that touches it below the start.
     struct Meeting {
         bool meets = false;
         double range_m = 0.0;

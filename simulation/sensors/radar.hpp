@@ -27,8 +27,10 @@ class Radar {
     static constexpr std::uint32_t beams = 6;
     static std::array<double, 3> direction_B(std::uint32_t beam);
 
-    /// Whether the heatshield, `to_heatshield_M` away, blocks a beam: within 90 m, where it fills the beam's 3°
-    /// [facts], and in any part of it. Our assumption: beyond that the ground's echo is stronger.
+    /// Whether the heatshield, `to_heatshield_M` away, blocks a beam.
+    ///
+    /// It does within 90 m, where it fills the beam's 3° [facts], in any part of the beam. Our assumption: beyond that
+    /// the ground's echo is stronger.
     static bool hides(const Vector3& to_heatshield_M, const Vector3& direction_M);
 
     /// Measures with one beam now.

@@ -14,7 +14,7 @@ class Configuration {
     explicit Configuration(const Scenario& scenario)
         : masses_(scenario.masses), gyration_(scenario.gyration), stations_(scenario.stations),
           propellant_kg_(scenario.masses.propellant_kg) {}
-    /// At entry, and when the engines take over: the drawings of flight/devices/effectors.hpp are for these two.
+    /// The configurations that flight/devices/effectors.hpp draws: at entry, and when the engines take over.
     static Configuration at_entry(const Scenario& scenario);
     static Configuration at_powered_descent(const Scenario& scenario);
 

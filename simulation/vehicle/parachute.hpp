@@ -17,8 +17,8 @@ inline constexpr double first_peak_s = 1.8;
 /// 0 until line stretch, above 1 at the first peak, then 1.
 double parachute_inflation(double since_mortar_s);
 
-/// Station of the bridles' confluence, where the riser pulls, along z from the descent stage's centre of mass: about 2
-/// m behind that of everything below it. Our assumption.
+/// Station of the bridles' confluence, where the riser pulls, along z from the descent stage's centre of mass. About 2
+/// m behind the centre of mass of everything below it. Our assumption.
 inline constexpr double riser_station_m = -1.9;
 /// Damping of the vehicle's swing below the confluence (wrist mode) by friction in bridles and risers. [N m s] Our
 /// assumption.

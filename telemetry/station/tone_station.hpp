@@ -25,8 +25,8 @@ class ToneStation {
   public:
     static constexpr double first_search_s = 10.0;  ///< chosen: twice the longest search
 
-    /// `predict_hz`: the predict removed, by seconds from `entry`, the time at which a signal sent at the predicted
-    /// entry arrives.
+    /// `predict_hz`: the predict removed, by seconds from `entry`. `entry`: arrival of a signal sent at the predicted
+    /// entry.
     ToneStation(const MfskWaveform& waveform, TimeTable predict_hz, Ert entry)
         : waveform_(waveform), predict_hz_(std::move(predict_hz)), entry_(entry) {}
 
