@@ -331,7 +331,7 @@ Result<void> CommandGateway::judge(const TimelineVerdict& verdict, Ert now, std:
         return Error{fmt::format("command {} was analysed on a timeline that now is another", number)};
     if (!(verdict.refuted ? queue_.cancel(number) : queue_.judged(number))) return Error{does_not_wait(number, now)};
     auto* command = underway(number);
-    AEOLIS_CHECK(command != nullptr);  // what waits is under way
+    AEOLIS_CHECK(command != nullptr);  // a waiting command is under way
     changes_.clear();
     if (verdict.refuted)
         command->lifecycle.ground_stage(Stage::released, Status::failed,
