@@ -15,7 +15,7 @@ class BitWriter {
   public:
     explicit constexpr BitWriter(std::span<std::uint8_t> octets) : octets_(octets) {}
 
-    /// The `bits` (1…64) least significant bits of `value`. Writing past the end is a bug.
+    /// Writes the `bits` (1…64) least significant bits of `value`. Writing past the end is a bug.
     constexpr void put(std::uint64_t value, unsigned bits) {
         AEOLIS_CHECK(bits >= 1 && bits <= 64 && position_ + bits <= octets_.size() * 8);
         while (bits > 0) {
@@ -42,7 +42,7 @@ class BitWriter {
     std::size_t position_ = 0;
 };
 
-/// The `bits` (1…64) at bit `position`, most significant first; zero-extended. The caller has checked the range.
+/// Reads the `bits` (1…64) bits at bit `position`, most significant first, zero-extended. The caller checks the range.
 constexpr std::uint64_t read_bits(std::span<const std::uint8_t> octets, std::size_t position, unsigned bits) {
     AEOLIS_CHECK(bits >= 1 && bits <= 64 && position + bits <= octets.size() * 8);
     std::uint64_t value = 0;

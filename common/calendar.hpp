@@ -6,8 +6,8 @@
 
 namespace aeolis {
 
-/// Days from 2000-01-01 to a date of the Gregorian calendar, also before its introduction; none when there is no such
-/// date.
+/// Days from 2000-01-01 to a date of the Gregorian calendar, extended to before its introduction.
+/// None when there is no such date.
 /// @param year 1 … 9999, @param month 1 … 12, @param day 1 …
 constexpr std::optional<std::int64_t> days_since_2000(int year, unsigned month, unsigned day) {
     constexpr unsigned lengths[] = {31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31};

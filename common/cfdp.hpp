@@ -10,18 +10,18 @@
 #include <string_view>
 #include <variant>
 
-/// Protocol data units of CFDP, class 2: files that arrive whole over links that lose. [ccsds-727.0-b-5]
+/// Protocol data units (PDUs) of CFDP class 2: reliable file delivery over links that lose data. [ccsds-727.0-b-5]
 ///
 ///   header: version 3 (001) | file data 1 | toward sender 1 | unacknowledged 1 | CRC 1 | large file 1 |
-///           octets behind the header, with the CRC 16 | segmentation control 1 | octets of an entity id less one 3 |
+///           octets after the header, with the CRC 16 | segmentation control 1 | octets of an entity id less one 3 |
 ///           segment metadata 1 | octets of a sequence number less one 3 | source | sequence number | destination
 ///   then file data: offset 32 | octets;  or a directive: code 8 | its parameters;  then a CRC-16 when the flag is set
-/// Read: ids of 1 … 8 octets, also the version bits 000 of before B-5. Written: entity ids of 2 octets, sequence
+/// Read: ids of 1 … 8 octets, and also the version bits 000 used before B-5. Written: entity ids of 2 octets, sequence
 /// numbers of 4, version 001. Not read: large files (64-bit offsets), segment metadata.
 namespace aeolis::cfdp {
 
 inline constexpr std::size_t written_header_octets = 12;
-inline constexpr std::size_t nak_requests_max = 64;  ///< ours: of one PDU; the rest is asked for in the next
+inline constexpr std::size_t nak_requests_max = 64;  ///< per PDU, chosen; further requests go into the next PDU
 
 struct Header {
     bool toward_sender = false;
@@ -71,8 +71,8 @@ struct Metadata {
     bool closure_requested = false;
     Checksum checksum = Checksum::modular;
     std::uint32_t file_octets = 0;
-    std::string_view source_name{};       ///< 255 octets at most, of any content
-    std::string_view destination_name{};  ///< the same
+    std::string_view source_name{};       ///< at most 255 octets, any content
+    std::string_view destination_name{};  ///< likewise
 };
 struct Eof {
     Condition condition = Condition::no_error;
@@ -89,7 +89,7 @@ struct Ack {
     Condition condition = Condition::no_error;
     std::uint8_t transaction_status = 1;  ///< 0 undefined, 1 active, 2 terminated, 3 unrecognised
 };
-/// From `start` up to but without `end`; {0, 0} asks for the metadata.
+/// Octets from `start` up to but not including `end`; {0, 0} requests the metadata.
 struct Range {
     std::uint32_t start = 0;
     std::uint32_t end = 0;
@@ -98,10 +98,10 @@ struct Range {
 };
 struct Nak {
     Range scope;
-    FixedVector<Range, nak_requests_max> requests;  ///< of a longer one that was read, the first
+    FixedVector<Range, nak_requests_max> requests;  ///< a NAK read with more than fits keeps its first requests
 };
 struct Prompt {
-    bool keep_alive = false;  ///< else: send a NAK
+    bool keep_alive = false;  ///< true: asks for a keep-alive; false: asks for a NAK
 };
 struct KeepAlive {
     std::uint32_t progress_octets = 0;
@@ -114,18 +114,19 @@ struct Pdu {
     Content content;
 };
 
-/// One whole PDU; spans and names point into `octets`. too_short, too_long, other_version, bad_checksum; bad_field for
-/// a directive, condition or flag that is not read here.
+/// Parses one whole PDU; spans and names in it point into `octets`.
+/// Fails with too_short, too_long, other_version, bad_checksum; bad_field for a directive, condition or flag that is
+/// not read here.
 Parsed<Pdu> read(std::span<const std::uint8_t> octets);
 
-/// Octets that write() makes of it.
+/// Number of octets that write() produces for `pdu`.
 std::size_t octets_of(const Pdu& pdu);
-/// Writes the PDU and returns its octets; `into` has room for them.
+/// Writes the PDU and returns the number of octets written. `into` must have room for octets_of(pdu).
 std::size_t write(const Pdu& pdu, std::span<std::uint8_t> into);
 
-/// The part of the modular checksum that `octets` at `offset` of the file contribute: the sum, modulo 2^32, of the
-/// file's 32-bit words, each beginning at a multiple of four, the last filled up with zeros. The file's checksum is
-/// the sum over parts that cover it once, in any order.
+/// Contribution of `octets`, at `offset` in the file, to the file's modular checksum.
+/// The checksum is the sum, modulo 2^32, of the file's 32-bit words, each beginning at a multiple of four and the last
+/// padded with zeros. The contributions of parts that cover the file exactly once add up to it, in any order.
 std::uint32_t modular_checksum(std::uint32_t offset, std::span<const std::uint8_t> octets);
 
 }  // namespace aeolis::cfdp

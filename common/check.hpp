@@ -6,7 +6,8 @@
 
 namespace aeolis {
 
-/// A bug was found. On board it becomes a FATAL event and a reset of that computer; it never ends the process.
+/// Thrown by a failed AEOLIS_CHECK, that is, by a bug.
+/// On board it becomes a FATAL event and a reset of that computer; it never ends the process.
 class CheckFailed : public std::exception {
   public:
     CheckFailed(const char* condition, const char* file, std::uint32_t line)
@@ -23,7 +24,7 @@ class CheckFailed : public std::exception {
 
 }  // namespace aeolis
 
-/// On in every build. Needs no memory until it fails.
+/// Throws CheckFailed when `condition` is false. On in every build. Allocates nothing unless it fails.
 #define AEOLIS_CHECK(condition)                                                                                        \
     do {                                                                                                               \
         if (!(condition)) [[unlikely]]                                                                                 \

@@ -8,7 +8,7 @@
 
 namespace aeolis {
 
-/// First in, first out, at most N values held in place.
+/// First-in, first-out queue of at most N values, held in place.
 template <typename T, std::size_t N>
 class FixedQueue {
   public:
@@ -17,14 +17,14 @@ class FixedQueue {
     constexpr bool empty() const { return size_ == 0; }
     constexpr bool full() const { return size_ == N; }
 
-    /// False, and nothing added, when full.
+    /// Adds `value` at the end; returns false and adds nothing when full.
     [[nodiscard]] constexpr bool try_push(const T& value) {
         if (full()) return false;
         values_[(first_ + size_) % N] = value;
         ++size_;
         return true;
     }
-    /// A place at the end for the caller to fill, holding what stood there before; none when full.
+    /// Adds an element at the end for the caller to fill; it still holds an old value. Null when full.
     [[nodiscard]] constexpr T* try_grow() {
         if (full()) return nullptr;
         return &values_[(first_ + size_++) % N];
@@ -35,7 +35,7 @@ class FixedQueue {
     }
     constexpr void pop() {
         AEOLIS_CHECK(!empty());
-        // Emptied, it begins anew: a queue that is short most of the time stays in the places that are in the cache.
+        // When emptied, start again at the first place: a mostly short queue then stays in the cache.
         first_ = --size_ == 0 ? 0 : (first_ + 1) % N;
     }
 

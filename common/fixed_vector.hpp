@@ -10,7 +10,7 @@
 
 namespace aeolis {
 
-/// A vector of at most N values, held in place. Copying it copies the values; nothing is ever allocated.
+/// Vector of at most N values, held in place. Copying it copies the values; it never allocates.
 template <typename T, std::size_t N>
 class FixedVector {
   public:
@@ -20,23 +20,23 @@ class FixedVector {
     constexpr bool full() const { return size_ == N; }
     constexpr void clear() { size_ = 0; }
 
-    /// False, and nothing added, when full.
+    /// Adds `value` at the end; returns false and adds nothing when full.
     [[nodiscard]] constexpr bool try_push_back(const T& value) {
         if (full()) return false;
         values_[size_++] = value;
         return true;
     }
-    /// A place at the end for the caller to fill, holding what stood there before; none when full.
+    /// Adds an element at the end for the caller to fill; it still holds an old value. Null when full.
     [[nodiscard]] constexpr T* try_grow() {
         if (full()) return nullptr;
         return &values_[size_++];
     }
-    /// The caller knows that there is room.
+    /// Adds `value` at the end; calling it when full is a bug.
     constexpr void push_back(const T& value) {
         AEOLIS_CHECK(!full());
         values_[size_++] = value;
     }
-    /// All of `values`; the caller knows that there is room.
+    /// Adds all of `values` at the end; calling it without room for them is a bug.
     constexpr void append(std::span<const T> values) {
         AEOLIS_CHECK(values.size() <= N - size_);
         std::copy(values.begin(), values.end(), values_.data() + size_);
@@ -46,7 +46,7 @@ class FixedVector {
         AEOLIS_CHECK(!empty());
         --size_;
     }
-    /// Order is kept.
+    /// Removes one value and keeps the order of the rest.
     constexpr void erase_at(std::size_t index) {
         AEOLIS_CHECK(index < size_);
         for (std::size_t i = index + 1; i < size_; ++i) values_[i - 1] = values_[i];

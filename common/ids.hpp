@@ -8,7 +8,7 @@
 
 namespace aeolis {
 
-/// A number that names one kind of thing. Two kinds do not mix; none converts to a plain number by itself.
+/// Number that identifies one kind of thing. Two kinds do not mix, and none converts to a plain number implicitly.
 template <typename Tag, typename Rep>
 struct Id {
     Rep value{};
@@ -23,11 +23,11 @@ using ToneId = Id<struct ToneTag, std::uint8_t>;             ///< one of the 256
 using TimepointId = Id<struct TimepointTag, std::uint16_t>;  ///< row of the timeline, from 0
 using AnchorId = Id<struct AnchorTag, std::uint16_t>;        ///< row of the anchors in topological order, 0 the root
 
-/// How links name the vehicle, and its one channel of telecommand frames: 10 bits and 6. The number is ours, a name and
-/// no more.
+/// The vehicle's spacecraft id on every link (10 bits), and its only telecommand virtual channel (6 bits).
+/// The number is chosen and has no further meaning.
 inline constexpr std::uint16_t spacecraft_id = 76;
 inline constexpr std::uint8_t telecommand_channel = 0;
-/// The end of file deliveries on the ground; the vehicle's end has the spacecraft's number. Chosen.
+/// CFDP entity id of the ground, chosen. The vehicle's entity id is `spacecraft_id`.
 inline constexpr std::uint16_t ground_entity = 1;
 
 }  // namespace aeolis

@@ -7,12 +7,11 @@
 
 namespace aeolis {
 
-/// The X-band waveform: a carrier whose phase a square wave at the tone's own frequency swings by ± the modulation
-/// index.
+/// X-band waveform: a square wave at the tone's frequency swings the carrier's phase by ± the modulation index.
 ///
 ///   s(t) = A exp j(φ(t) + m sq(2π f_k t)),   f_k = first + k · spacing,   sq = ±1; without a tone m sq is 0.
 ///
-/// The numbers are the dictionary's (mfsk.csv, docs/tones.md).
+/// The values come from the dictionary (mfsk.csv, docs/tones.md).
 struct MfskWaveform {
     static constexpr int tones = 256;  ///< R31
 
@@ -23,9 +22,9 @@ struct MfskWaveform {
 
     double tone_hz(int tone) const { return first_tone_hz + tone * tone_spacing_hz; }
     double highest_tone_hz() const { return tone_hz(tones - 1); }
-    /// Part of the total power that stays in the carrier while a tone is sent.
+    /// Fraction of the total power that stays in the carrier while a tone is sent.
     double carrier_fraction() const { return std::cos(modulation_index_rad) * std::cos(modulation_index_rad); }
-    /// Part of the total power in both first sidebands, which are what the receiver uses.
+    /// Fraction of the total power in the two first-order sidebands, which the receiver uses.
     double tone_fraction() const {
         const double sine = std::sin(modulation_index_rad);
         return 8.0 / (std::numbers::pi * std::numbers::pi) * sine * sine;

@@ -8,15 +8,15 @@
 
 namespace aeolis {
 
-/// Why octets from a link are not the unit that they were read as.
+/// Reason why octets from a link could not be parsed as the expected packet, frame, CLTU, PLTU or PDU.
 enum class Malformed : std::uint8_t {
     none,
-    too_short,      ///< ends before its header, its length field or one of its fields says
-    too_long,       ///< longer than the unit may be, or than its length field says
+    too_short,      ///< ends before its header, its length field or one of its fields requires
+    too_long,       ///< longer than allowed, or than its length field says
     other_version,  ///< the version bits are those of another protocol
     bad_checksum,   ///< CRC or parity
-    no_start,       ///< does not begin with the mark that it should
-    bad_field,      ///< a field has a value that the standard does not give a meaning
+    no_start,       ///< does not begin with the expected marker
+    bad_field,      ///< a field has a value to which the standard gives no meaning
 };
 
 constexpr const char* name_of(Malformed why) {
@@ -32,7 +32,7 @@ constexpr const char* name_of(Malformed why) {
     return "";
 }
 
-/// What octets say, or why they say nothing. Never allocates, so that flight may use it.
+/// Parsed value, or the reason why parsing failed. Never allocates, so that flight may use it.
 template <typename T>
 class [[nodiscard]] Parsed {
   public:

@@ -10,10 +10,10 @@
 
 namespace aeolis {
 
-/// An expected failure, in words for the person who must act on it: names the thing, says what is wrong with it.
+/// An expected failure, in words for the person who must act on it: names the thing and says what is wrong with it.
 struct Error {
     std::string message;
-    bool internal = false;  ///< no fault of what was asked: a disk or a library failed, or too much waits already
+    bool internal = false;  ///< the request is not at fault: a disk or a library failed, or too much is queued already
 };
 
 /// A value or an Error. Not used in flight's cycle, where a failure is a message or an event.

@@ -10,7 +10,7 @@
 
 namespace aeolis {
 
-/// CCSDS space packet, as our vehicle writes it. [ccsds-133.0-b-2]
+/// CCSDS space packet, in the layout that our vehicle writes. [ccsds-133.0-b-2]
 ///
 ///   primary header 6 octets | telemetry: CUC coarse 4, fine 2, dictionary id 2 | data | CRC-16 2
 ///                           | telecommand: opcode 2                            | data | CRC-16 2
@@ -19,7 +19,7 @@ inline constexpr std::size_t tm_secondary_header_octets = 8;
 inline constexpr std::size_t tm_data_offset_octets = primary_header_octets + tm_secondary_header_octets;
 inline constexpr std::size_t packet_crc_octets = 2;
 inline constexpr std::size_t tm_overhead_octets = tm_data_offset_octets + packet_crc_octets;
-inline constexpr std::size_t packet_octets_max = 1024;  ///< ours: one packet fits a message of the recorder
+inline constexpr std::size_t packet_octets_max = 1024;  ///< chosen: one packet fits one message of the recorder
 
 struct PrimaryHeader {
     bool telecommand = false;
@@ -32,14 +32,15 @@ struct PrimaryHeader {
     constexpr auto operator<=>(const PrimaryHeader&) const = default;
 };
 
-/// Octets of the space packet that begins `octets`, whoever wrote it, segmented or not; none when its header is not
-/// there whole or of another version.
+/// Length in octets of the space packet that begins `octets`, from any sender, segmented or not.
+/// None when its header is incomplete or of another version.
 std::optional<std::size_t> space_packet_octets(std::span<const std::uint8_t> octets);
 inline constexpr std::size_t space_packet_octets_max = primary_header_octets + 65536;
 inline constexpr std::uint16_t idle_apid = 0x7FF;
-inline constexpr Apid file_delivery_apid{0x7FD};  ///< packets whose data are a CFDP PDU; 2045, as reserved for it
+inline constexpr Apid file_delivery_apid{0x7FD};  ///< packets whose data are a CFDP PDU; 2045, the APID reserved for
+                                                  ///< CFDP
 
-/// Into the first six octets; unsegmented.
+/// Writes the header of an unsegmented packet into the first six octets.
 void write_primary_header(const PrimaryHeader& header, std::span<std::uint8_t> packet);
 
 struct TmHeader {
@@ -48,20 +49,22 @@ struct TmHeader {
     std::uint16_t dictionary_id = 0;
 };
 
-/// None when shorter than a header, of another version, or segmented.
+/// Reads the primary header. None when `octets` are too short, of another version, or segmented.
 std::optional<PrimaryHeader> read_primary_header(std::span<const std::uint8_t> octets);
 
-/// The header of a whole telemetry packet. None when the length field disagrees with the octets or the CRC is wrong.
+/// Reads the headers of a whole telemetry packet. None when the length field disagrees with the octets or the CRC is
+/// wrong.
 std::optional<TmHeader> read_tm_packet(std::span<const std::uint8_t> packet);
 
-/// Writes both headers and the CRC around the data that already stands at `tm_data_offset_octets`.
-/// `packet` is the whole packet: tm_overhead_octets + data.
+/// Writes both headers and the CRC around data that is already in place at `tm_data_offset_octets`.
+/// `packet` spans the whole packet: tm_overhead_octets + data.
 void seal_tm_packet(std::span<std::uint8_t> packet, Apid apid, std::uint16_t count, Sclk time,
                     std::uint16_t dictionary_id);
 
-/// A telecommand packet: writes header, opcode and CRC around arguments that already stand at offset 8.
+/// Offset of a telecommand packet's arguments: after the primary header and the opcode.
 inline constexpr std::size_t tc_arguments_offset_octets = primary_header_octets + 2;
 inline constexpr std::size_t tc_overhead_octets = tc_arguments_offset_octets + packet_crc_octets;
+/// Writes header, opcode and CRC around arguments that are already in place at `tc_arguments_offset_octets`.
 void seal_tc_packet(std::span<std::uint8_t> packet, Apid apid, std::uint16_t count, Opcode opcode);
 
 struct TcPacket {
@@ -69,7 +72,7 @@ struct TcPacket {
     Opcode opcode;
     std::span<const std::uint8_t> arguments;
 };
-/// None when it is not a whole, unsegmented telecommand packet with a good CRC.
+/// Reads a telecommand packet. None unless it is whole and unsegmented and has a correct CRC.
 std::optional<TcPacket> read_tc_packet(std::span<const std::uint8_t> packet);
 
 }  // namespace aeolis

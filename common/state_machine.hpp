@@ -13,12 +13,13 @@ struct Transition {
     State to;
 };
 
-/// A state that changes only as its table says. The table is not its own: the autocoder makes it from
-/// state_machines.csv, whose rules see to it that an event leads from a state to one state at most.
+/// State that changes only as its table permits.
+/// The table is not part of the object: the autocoder generates it from state_machines.csv, whose rules ensure that an
+/// event leads from one state to at most one other.
 ///
-/// An event is a condition that has come true. It may be offered for as long as it is true, each cycle: where the table
-/// has no row for it from the present state nothing happens, and that is no fault. Whoever must not lose an event asks
-/// `can` first.
+/// An event is a condition that has become true. It may be offered in every cycle while it holds. Where the table has
+/// no row for it from the current state, nothing happens, and that is not a fault. A caller that must not lose an event
+/// checks `can` first.
 template <typename State, typename Event>
 class StateMachine {
   public:
@@ -39,7 +40,7 @@ class StateMachine {
         return true;
     }
 
-    /// Goes on from a state that another computer, or this one before a restart, had reached by the same table.
+    /// Continues from a state reached under the same table by another computer, or by this one before a restart.
     template <typename Exchange>
     void carry(Exchange& exchange) {
         exchange(state_);

@@ -9,10 +9,10 @@
 
 namespace aeolis {
 
-/// Telecommand transfer frame, and the report (CLCW) by which the vehicle says what it took. [ccsds-232.0-b-4]
+/// Telecommand transfer frame, and the CLCW by which the vehicle reports what it accepted. [ccsds-232.0-b-4]
 ///
 ///   header 40 bits: version 2 (00) | bypass 1 | control 1 | spare 2 | spacecraft 10 | virtual channel 6 |
-///                   octets of the frame less one 10 | frame sequence 8;   data | CRC-16 over all before it
+///                   octets of the frame less one 10 | frame sequence 8;   data | CRC-16 over all that precedes it
 inline constexpr std::size_t tc_frame_header_octets = 5;
 inline constexpr std::size_t tc_frame_crc_octets = 2;
 inline constexpr std::size_t tc_frame_overhead_octets = tc_frame_header_octets + tc_frame_crc_octets;
@@ -20,8 +20,8 @@ inline constexpr std::size_t tc_frame_octets_max = 1024;
 inline constexpr std::size_t tc_frame_data_octets_max = tc_frame_octets_max - tc_frame_overhead_octets;
 
 struct TcFrameHeader {
-    bool bypass = false;               ///< true: B, taken whatever its sequence; false: A, in sequence only
-    bool control = false;              ///< the data field is a command to the receiver of frames, not data
+    bool bypass = false;               ///< true: type B, accepted in any sequence; false: type A, in sequence only
+    bool control = false;              ///< the data field is a control command to FARM-1, not data
     std::uint16_t spacecraft = 0;      ///< 10 bits
     std::uint8_t virtual_channel = 0;  ///< 6 bits
     std::uint8_t sequence = 0;         ///< N(S)
@@ -34,14 +34,14 @@ struct TcFrame {
     std::span<const std::uint8_t> data;
 };
 
-/// The frame at the beginning of `octets`; what stands behind it, as the fill of a CLTU, is left alone.
+/// Parses the frame at the beginning of `octets`; octets after it, such as the fill of a CLTU, are ignored.
 Parsed<TcFrame> read_tc_frame(std::span<const std::uint8_t> octets);
 
-/// Writes the frame and returns its octets. `data` holds 1 … 1017 octets, `into` has room.
+/// Writes the frame and returns the number of octets written. `data`: 1 … 1017 octets. `into` must have room.
 std::size_t write_tc_frame(const TcFrameHeader& header, std::span<const std::uint8_t> data,
                            std::span<std::uint8_t> into);
 
-/// Communications link control word: the state of FARM-1 of one virtual channel. 32 bits:
+/// Communications link control word: the state of FARM-1 for one virtual channel. 32 bits:
 ///   type 1 (0) | version 2 (00) | status 3 | COP 2 (01) | virtual channel 6 | spare 2 | no RF 1 | no bit lock 1 |
 ///   lockout 1 | wait 1 | retransmit 1 | FARM-B counter 2 | spare 1 | N(R) 8
 struct Clcw {
@@ -52,16 +52,16 @@ struct Clcw {
     bool lockout = false;
     bool wait = false;
     bool retransmit = false;
-    std::uint8_t farm_b = 0;    ///< frames taken by bypass, modulo 4
-    std::uint8_t expected = 0;  ///< N(R): the sequence that comes next
+    std::uint8_t farm_b = 0;    ///< frames accepted by bypass, modulo 4
+    std::uint8_t expected = 0;  ///< N(R): the next sequence number expected
 
     constexpr bool operator==(const Clcw&) const = default;
 };
 inline constexpr std::size_t clcw_octets = 4;
 
-/// Of four octets; bad_field when the type is not that of a CLCW, other_version.
+/// Parses four octets. Fails with other_version; bad_field when the type is not that of a CLCW.
 Parsed<Clcw> read_clcw(std::span<const std::uint8_t> octets);
-/// Its 32 bits as a number.
+/// The CLCW as a 32-bit number.
 std::uint32_t word_of(const Clcw& clcw);
 void write_clcw(const Clcw& clcw, std::span<std::uint8_t, clcw_octets> into);
 

@@ -30,43 +30,44 @@ constexpr Sclk operator-(Sclk t, double offset_s) {
     return {t.seconds - offset_s};
 }
 
-/// UTC at the spacecraft, and UTC at the receiving station on Earth: microseconds since 2000-01-01T12:00:00 UTC,
-/// leap seconds not counted (as POSIX does).
+/// UTC at the spacecraft: microseconds since 2000-01-01T12:00:00 UTC, not counting leap seconds (as in POSIX).
 struct Scet {
     std::int64_t microseconds = 0;
     constexpr auto operator<=>(const Scet&) const = default;
 };
+/// UTC at the receiving station on Earth, counted in the same way.
 struct Ert {
     std::int64_t microseconds = 0;
     constexpr auto operator<=>(const Ert&) const = default;
 };
 
-/// Day-of-year form with milliseconds: 2012-219T05:10:47.400.
+/// Day-of-year text with milliseconds: 2012-219T05:10:47.400.
 std::string day_of_year_text(Scet time);
 std::string day_of_year_text(Ert time);
-/// Back from that form; fractions of a second may be left out. None for what is no such text or no such day.
+/// Parses that form; the fraction of a second is optional. None for any other text, or for a day that does not exist.
 std::optional<Ert> ert_from_day_of_year(std::string_view text);
 std::optional<Scet> scet_from_day_of_year(std::string_view text);
 
-/// SCLK and SCET meet at one known instant, and from there on UTC runs `rate` times as fast as the clock on board. A
-/// row of the dictionary's clock_correlation.csv, or of a clock that only its scenario knows: version 0.
+/// Correlation of SCLK and SCET: equal instants `sclk` and `scet`, and the rate of UTC against the onboard clock.
+/// From a row of the dictionary's clock_correlation.csv; version 0 for a clock that only its scenario defines.
 struct ClockCorrelation {
     Sclk sclk;
     Scet scet;
-    double rate = 1.0;              ///< seconds of UTC a second of SCLK; 1 + drift
-    std::int32_t leap_seconds = 0;  ///< TAI - UTC [s] at `scet`; 0: not known
+    double rate = 1.0;              ///< seconds of UTC per second of SCLK; 1 + drift
+    std::int32_t leap_seconds = 0;  ///< TAI - UTC [s] at `scet`; 0: unknown
     std::uint32_t version = 0;
 
     constexpr Scet scet_of(Sclk t) const {
         return {scet.microseconds + static_cast<std::int64_t>((t - sclk) * rate * 1.0e6)};
     }
-    /// Not cut to a tick.
+    /// SCLK at `t`, not rounded to a tick.
     constexpr Sclk sclk_of(Scet t) const {
         return sclk + static_cast<double>(t.microseconds - scet.microseconds) * 1.0e-6 / rate;
     }
 };
 
-/// `t` cut to the resolution of a clock of `hz` (a power of two up to 64): what `clk_1_hz` … `clk_64_hz` return. R21
+/// `t` truncated to the resolution of a clock of `hz` (a power of two up to 64), as `clk_1_hz` … `clk_64_hz` return it.
+/// R21
 constexpr Sclk at_resolution(Sclk t, std::int64_t hz) {
     const std::int64_t ticks_per_step = 64 / hz;
     const std::int64_t ticks = t.ticks();
@@ -82,7 +83,7 @@ constexpr bool is_multiple_of_tick(double seconds) {
 /// An offset in seconds, or undefined. R13
 using MaybeOffset = std::optional<double>;
 
-/// A time or "undefined", which spreads through arithmetic and is false in every comparison. R13
+/// A time or "undefined", which propagates through arithmetic and makes every comparison false. R13
 class MaybeTime {
   public:
     constexpr MaybeTime() = default;

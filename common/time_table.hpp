@@ -8,8 +8,9 @@
 
 namespace aeolis {
 
-/// A quantity against time, smooth between rows: cubic Hermite with the slopes of neighbouring rows' chords, so value
-/// and rate are continuous; before the first and after the last row the value is held. Empty: zero everywhere.
+/// A quantity over time, interpolated smoothly between rows.
+/// Cubic Hermite, with slopes from the chords of neighbouring rows: value and rate are continuous. Before the first and
+/// after the last row the value is held. An empty table is zero everywhere.
 class TimeTable {
   public:
     TimeTable() = default;

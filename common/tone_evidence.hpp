@@ -6,14 +6,14 @@
 #include <cmath>
 #include <cstdint>
 
-// On what a tone decision rests, as receiver, archive and console speak of it.
+// Evidence for a tone decision, in the terms shared by receiver, archive and console.
 namespace aeolis {
 
-/// The worse, the greater.
+/// State of the receiver's lock on the carrier; greater is worse.
 enum class CarrierLock : std::uint8_t {
-    locked,       ///< found where it was predicted
-    fluctuating,  ///< found, but only by a wider or longer look
-    coasting,     ///< not found: frequency goes on as it last did
+    locked,       ///< found at the predicted frequency
+    fluctuating,  ///< found, but only by a wider or longer search
+    coasting,     ///< not found: the frequency is extrapolated
     searching,    ///< no carrier: the whole band is searched
 };
 constexpr const char* to_text(CarrierLock lock) {
@@ -28,15 +28,15 @@ constexpr const char* to_text(CarrierLock lock) {
 
 struct ToneLikelihood {
     std::uint8_t tone = 0;
-    double likelihood = 0.0;  ///< posterior probability, all tones being equally likely before
+    double likelihood = 0.0;  ///< posterior probability, with all tones equally likely a priori
 };
-/// The likeliest first.
+/// The five likeliest tones, likeliest first.
 using BestTones = std::array<ToneLikelihood, 5>;
 
-/// Energy over noise of the tones, the greater of each two: octet n stands for n/2 − 30 dB. The mean of noise alone is
-/// 0 dB.
+/// Ratio of energy to noise of the 256 tones, the greater of each pair.
+/// Octet n stands for n/2 − 30 dB. The mean of noise alone is 0 dB.
 using ToneSpectrum = std::array<std::uint8_t, 128>;
-inline constexpr double spectrum_floor_db = -30.0, spectrum_step_db = 0.5;  ///< ours
+inline constexpr double spectrum_floor_db = -30.0, spectrum_step_db = 0.5;  ///< chosen
 inline std::uint8_t spectrum_octet(double level_db) {
     return static_cast<std::uint8_t>(
         std::clamp(std::lround((level_db - spectrum_floor_db) / spectrum_step_db), 0L, 255L));

@@ -10,12 +10,12 @@
 
 namespace aeolis::dictionary {
 
-/// What one packet says. Keep one and give it to every decode(): its vectors keep their capacity.
+/// Decoded content of one packet. Reuse one object for every decode(): its vectors keep their capacity.
 struct Decoded {
     std::size_t packet = 0;  ///< index in Dictionary::packets
     TmHeader header;
-    std::vector<std::uint64_t> raw;            ///< a field each: the bits as they stand, zero-extended
-    std::vector<std::optional<double>> value;  ///< a field each: calibrated; none when undefined
+    std::vector<std::uint64_t> raw;            ///< one per field: the bits as received, zero-extended
+    std::vector<std::optional<double>> value;  ///< one per field: calibrated; none when undefined
 };
 
 }  // namespace aeolis::dictionary

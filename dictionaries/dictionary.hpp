@@ -15,8 +15,8 @@
 #include <string_view>
 #include <vector>
 
-// A mission's words, loaded and checked: XTCE for commands, channels, packets and events; CSV for timeline, anchors,
-// tones and parameters. Plain values; every part of the ground, and the autocoder, reads the same ones.
+// A mission's dictionary, loaded and checked. XTCE: commands, channels, packets and events. CSV: timeline, anchors,
+// tones and parameters. Plain values, shared by the autocoder and every part of the ground.
 namespace aeolis::dictionary {
 
 // ---- types -----------------------------------------------------------------------------------------------------
@@ -43,7 +43,7 @@ struct EnumAlarm {
     Severity severity = Severity::none;
     std::int64_t value = 0;
 };
-/// A condition on a channel's latest value: for a command to be released, for the alarms of a context to count.
+/// Condition on a channel's latest value: for the release of a command, or for the alarms of a context.
 struct Precondition {
     ChannelId channel;
     std::string comparison;  ///< "==", "!=", "<", "<=", ">", ">="
@@ -57,25 +57,25 @@ struct ContextAlarms;
 struct Alarms {
     std::vector<AlarmRange> ranges;  ///< nested, least severe first
     std::vector<EnumAlarm> values;
-    std::uint32_t min_violations = 1;     ///< samples in a row before the alarm is raised
-    std::uint32_t min_conformance = 1;    ///< samples in a row before it is cleared
-    bool latches = false;                 ///< cleared, it stays until someone resets it
-    std::vector<ContextAlarms> contexts;  ///< of a channel: the first that holds takes the place of the above
+    std::uint32_t min_violations = 1;     ///< consecutive samples before the alarm is raised
+    std::uint32_t min_conformance = 1;    ///< consecutive samples before it is cleared
+    bool latches = false;                 ///< stays raised after clearing until someone resets it
+    std::vector<ContextAlarms> contexts;  ///< of a channel: the first whose context holds replaces the alarms above
 };
-/// What the limits are while something else is so: in a phase of EDL.
+/// Alarms that apply while their context holds, for example in one phase of EDL.
 struct ContextAlarms {
-    std::vector<Precondition> context;  ///< all of them
+    std::vector<Precondition> context;  ///< all must hold
     Alarms alarms;
 };
 
-/// How one number stands in a packet or a command, and what it means.
+/// Encoding of one value in a packet or a command, and its meaning.
 struct Type {
     std::string name;
     ValueKind kind = ValueKind::integer;
     Encoding encoding = Encoding::unsigned_integer;
     unsigned bits = 0;
-    bool binary = false;  ///< no number but bits / 8 octets: never a field, only Packet::content
-    std::string unit;     ///< "1" for a pure number
+    bool binary = false;  ///< not a number but bits / 8 octets: never a field, only Packet::content
+    std::string unit;     ///< "1" for a dimensionless number
     Polynomial calibrator;
     std::vector<EnumValue> enumeration;
     std::optional<double> valid_min, valid_max;
@@ -89,11 +89,11 @@ struct Channel {
     ChannelId id;
     std::string name;   ///< XTCE parameter name, snake_case with the unit last: "altitude_m"
     std::string alias;  ///< "GNC-0101"
-    std::string text;   ///< one line for people
+    std::string text;   ///< one line, for people
     Type type;
 };
 
-/// A field of a packet: a channel, or a header field or an argument that is no channel.
+/// A field of a packet: a channel, or a header field or argument that is not a channel.
 struct Field {
     std::string name;
     Type type;
@@ -102,14 +102,14 @@ struct Field {
     std::optional<unsigned> validity_bit;  ///< position of the bit that says whether the value is defined
 };
 
-/// Octets in a packet that are no number: a part of a data product. They stand at a whole octet.
+/// Octets in a packet that are not a number: a part of a data product. They begin at a whole octet.
 struct Content {
     std::string name;
     unsigned offset_octets = 0;  ///< from the first octet of the packet
     unsigned octets = 0;
 };
 
-/// One concrete container: what a packet with this APID (and, for events, this event id) holds.
+/// One concrete container: the content of packets with this APID and, for events, this event id.
 struct Packet {
     std::string name;  ///< "GncNavigation"
     std::string text;
@@ -120,13 +120,13 @@ struct Packet {
     std::optional<double> expected_rate_hz;
     std::optional<Content> content;
 };
-/// The field's index in the packet, by name; for people and for the few fields that ground itself interprets.
+/// Index of the field with this name; for people, and for the few fields that ground itself interprets.
 std::optional<std::size_t> field_index(const Packet& packet, std::string_view name);
 
 enum class EventLevel { fatal, warning_hi, warning_lo, command, activity_hi, activity_lo, diagnostic };
 
-/// Event report (EVR). Its arguments are the fields of its packet; `format` names them in braces: "speed {speed_mps}
-/// m/s".
+/// Event report (EVR). Its arguments are the fields of its packet.
+/// `format` names them in braces: "speed {speed_mps} m/s".
 struct Event {
     EvrId id;
     std::string name;
@@ -147,7 +147,7 @@ struct Argument {
 
 enum class Significance { none, watch, warning, distress, critical, severe };
 
-/// What shows that a stage was reached: an event whose `opcode` field equals the command's.
+/// Evidence that a command reached a stage: an event whose `opcode` field equals the command's.
 struct Verifier {
     std::string stage;  ///< "accepted", "executed", "verified"
     EvrId event;
@@ -177,8 +177,8 @@ struct TimelineRow {
     MaybeOffset desired_offset_s;
     MaybeOffset minimum_offset_s;           ///< from the previous timepoint
     std::string action;                     ///< name of a function in aeolis::flight::actions; empty: none
-    std::optional<double> reply_timeout_s;  ///< set when the action's reply is waited for
-    std::string backtrack;                  ///< timepoint to go back to after a reboot in pre-EDL; empty: none
+    std::optional<double> reply_timeout_s;  ///< set when the timeline waits for the action's reply
+    std::string backtrack;                  ///< timepoint to return to after a reboot in pre-EDL; empty: none
     bool essential = true;                  ///< kept in Second Chance
     std::optional<ToneId> tone;
     std::string event;  ///< name of an event emitted on firing; empty: none
@@ -196,7 +196,7 @@ struct AnchorRow {
 
 enum class ToneSet { prime, second_chance, spare };
 
-/// A tone of prime's and the one that means the same in Second Chance: "touchdown" and "sc_touchdown". R35
+/// Prefix of the Second Chance tone with the same meaning: "touchdown" and "sc_touchdown". R35
 inline constexpr std::string_view second_chance_prefix = "sc_";
 
 struct ToneRow {
@@ -206,7 +206,7 @@ struct ToneRow {
     std::string meaning;     ///< for people
     int priority = 0;        ///< larger is more important
     double expires_s = 0.0;  ///< a request older than this is dropped
-    std::string supersedes;  ///< name of a tone whose outstanding request this one drops; empty: none
+    std::string supersedes;  ///< tone whose outstanding request a request for this one drops, by name; empty: none
 };
 
 /// A flight parameter: parameters.csv.
@@ -225,23 +225,23 @@ struct StateTransition {
     std::string note;
     unsigned line = 0;  ///< in state_machines.csv
 };
-/// One state machine of flight; its name is that of the XTCE enumeration whose labels are its states.
+/// One state machine of flight. Its name is that of the XTCE enumeration whose labels are its states.
 struct StateMachineTable {
     std::string name;
     std::string initial;
     std::vector<StateTransition> transitions;
 };
 
-/// A row of owners.csv: the one module that is the point of contact for an action, a device or a decision. R5
+/// A row of owners.csv: the one module responsible for an action, a device or a decision. R5
 struct OwnerRow {
     enum class Kind {
         action,    ///< of timeline.csv
-        device,    ///< a part of what leaves the flight computer
+        device,    ///< a part of DeviceOutputs
         decision,  ///< a label of the XTCE enumeration Decision
     };
     Kind kind = Kind::action;
     std::string name;
-    std::string module;  ///< a name of flight's ModuleId; the compiler checks it
+    std::string module;  ///< an enumerator of flight's ModuleId; the compiler checks it
     std::string note;
     unsigned line = 0;  ///< in owners.csv
 };
@@ -252,7 +252,7 @@ using timeline::Moment;  // NAME:anchor, NAME:triggered, NAME:fired, do_edl
 struct ConstraintRow {
     enum class Kind {
         required,  ///< must follow from the timeline and the given rows
-        given,     ///< what GNC or ground's commands hold to: when an anchor is set
+        given,     ///< a bound that GNC or ground's commands keep on when an anchor is set
     };
     Kind kind = Kind::required;
     Moment from, to;
@@ -262,10 +262,10 @@ struct ConstraintRow {
     unsigned line = 0;  ///< in constraints.csv
 };
 
-/// A row of clock_correlation.csv: how SCLK leads to SCET from `valid_from` until the next row's.
+/// A row of clock_correlation.csv: the correlation of SCLK and SCET from `valid_from` until the next row's.
 struct ClockRow {
     Sclk valid_from;
-    ClockCorrelation correlation;  ///< its version is the row's
+    ClockCorrelation correlation;  ///< with the row's version
     std::string note;
     unsigned line = 0;  ///< in clock_correlation.csv
 };
@@ -274,7 +274,7 @@ struct ClockRow {
 
 struct Dictionary {
     std::string mission;   ///< SpaceSystem name
-    std::uint16_t id = 0;  ///< in every telemetry packet: changes with every change of any file on board
+    std::uint16_t id = 0;  ///< in every telemetry packet; changes with any change of a file used on board
     std::uint16_t timeline_version = 0;
     std::vector<Channel> channels;
     std::vector<Packet> packets;
@@ -289,7 +289,7 @@ struct Dictionary {
     std::vector<OwnerRow> owners;
     std::vector<TelemetryPlanRow> telemetry_plan;
     MfskWaveform mfsk;                                        ///< how tones are sent: mfsk.csv
-    std::vector<ClockRow> clock;                              ///< by valid_from. Ground's alone, as the next
+    std::vector<ClockRow> clock;                              ///< by valid_from. Used by ground only, like the next
     std::vector<std::optional<double>> predicted_anchor_e_s;  ///< by anchor: seconds from entry; none: not predicted
 
     const Channel* channel(std::string_view name_or_alias) const;
@@ -298,7 +298,7 @@ struct Dictionary {
     const Event* event(EvrId id) const;
     const Event* event(std::string_view name) const;
     const Packet* packet(std::string_view name) const;
-    /// That holds at `t`; none before the first row.
+    /// The correlation that holds at `t`; none before the first row.
     const ClockCorrelation* clock_at(Sclk t) const;
 };
 
@@ -310,17 +310,20 @@ struct Finding {
     std::string text() const;
 };
 
-/// Everything a mission's folder says, or every rule that it breaks; never half of it.
+/// The whole dictionary of a mission's folder, or every rule that the folder breaks; never a part of a dictionary.
 struct Loaded {
     std::optional<Dictionary> dictionary;  ///< none when there are findings
     std::vector<Finding> findings;
 };
 
-/// Reads DIR/*.xml (one SpaceSystem), timeline.csv, anchors.csv, tones.csv, mfsk.csv, parameters.csv,
-/// constraints.csv, state_machines.csv, owners.csv, telemetry_plan.csv, all of them on board, so that `id` follows
-/// each; only the timeline's own two change what it does, so `timeline_version` follows those alone. And what only
-/// ground has, which changes neither: clock_correlation.csv, predicted_anchors.csv. DIR may also be one file that holds
-/// them all: dictionaries/mission_files.hpp.
+/// Loads and checks the dictionary in `directory`: one XTCE file (*.xml with one SpaceSystem) and the sheets.
+///
+/// Used on board   timeline.csv, anchors.csv, tones.csv, mfsk.csv, parameters.csv, constraints.csv, state_machines.csv,
+///                 owners.csv, telemetry_plan.csv and the XTCE file. `id` changes with each of them, `timeline_version`
+///                 only with the timeline's own two, timeline.csv and anchors.csv.
+/// Ground only     clock_correlation.csv, predicted_anchors.csv. They change neither number.
+///
+/// `directory` may also be one file that holds them all: dictionaries/mission_files.hpp.
 Loaded load(const std::filesystem::path& directory);
 
 }  // namespace aeolis::dictionary

@@ -7,7 +7,7 @@
 
 namespace aeolis::dictionary {
 
-/// The enumerated types of packets and commands, each once, in the order in which they are first used.
+/// The enumerated types of packets and commands, each once, in order of first use.
 std::vector<const Type*> enumerations_of(const std::vector<Packet>& packets, const std::vector<Command>& commands);
 
 }  // namespace aeolis::dictionary

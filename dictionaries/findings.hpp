@@ -10,12 +10,12 @@
 
 namespace aeolis::dictionary {
 
-/// Where the rules of one file put what they find.
+/// Collects the findings of one file's rules.
 class Findings {
   public:
     Findings(std::string file, std::vector<Finding>& all) : file_(std::move(file)), all_(all) {}
 
-    /// So far, those of other files too.
+    /// Number of findings so far, including those of other files.
     std::size_t size() const { return all_.size(); }
 
     void add(unsigned line, std::string message) { all_.push_back({file_, line, std::move(message)}); }

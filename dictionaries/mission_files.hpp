@@ -19,7 +19,7 @@ struct MissionFile {
     bool operator==(const MissionFile&) const = default;
 };
 
-/// The texts that a mission's dictionary is read from.
+/// The file texts from which a mission's dictionary is read.
 struct MissionFiles {
     static constexpr std::array<std::string_view, 11> sheet_names{
         "anchors.csv",    "clock_correlation.csv", "constraints.csv", "mfsk.csv",           "owners.csv",
@@ -33,13 +33,14 @@ struct MissionFiles {
     bool operator==(const MissionFiles&) const = default;
 };
 
-/// Those of a folder (one *.xml and the sheets), or those that stand in one file that one_file_of() made.
+/// Reads the files of a folder (one *.xml and the sheets), or those inside one file made by one_file_of().
 MissionFiles read_mission_files(const std::filesystem::path& path, std::vector<Finding>& all);
 
-/// One XTCE file: the XTCE text as it stands, and each sheet as ancillary data of its SpaceSystem, under the sheet's
-/// name. What reads XTCE finds packets and commands in it, load() the whole mission again: octet for octet the same
-/// texts. Fails where a text is missing, the SpaceSystem has ancillary data of its own, or a sheet holds what XML
-/// cannot.
+/// Combines all files into one XTCE file.
+/// The XTCE text stays unchanged; each sheet is added as ancillary data of the SpaceSystem, under the sheet's name. Any
+/// XTCE reader finds the packets and commands in the file. load() finds the whole mission in it, every text identical
+/// octet for octet. Fails where a text is missing, the SpaceSystem has ancillary data of its own, or a sheet holds a
+/// character that XML cannot.
 Result<std::string> one_file_of(const MissionFiles& files);
 
 }  // namespace aeolis::dictionary

@@ -9,17 +9,17 @@
 #include <string_view>
 #include <utility>
 
-// telemetry_plan.csv: what of the recording goes to ground in real time, by the state of the vehicle. R30
+// telemetry_plan.csv: the part of the recording that is sent in real time, by the state of the vehicle. R30
 namespace aeolis::dictionary {
 
-/// Least important first; the words of the sheet.
+/// Priority of a packet, least important first; the words used in the sheet.
 enum class TelemetryPriority { low, normal, high, first };
 inline constexpr std::array<std::string_view, 4> telemetry_priority_words{"low", "normal", "high", "first"};
 
-/// The states of the vehicle that a plan tells apart: columns of the sheet.
+/// States of the vehicle that a plan distinguishes; columns of the sheet.
 inline constexpr std::array<std::string_view, 4> telemetry_state_columns{"before_entry", "entry", "descent", "landed"};
 
-/// The phases of EDL, labels of the XTCE enumeration EdlPhase, and the column that each belongs to.
+/// The phases of EDL (labels of the XTCE enumeration EdlPhase), and the column of each.
 inline constexpr std::array<std::pair<std::string_view, std::size_t>, 13> telemetry_state_of_phase{
     {{"pre_edl", 0},
      {"late_cruise", 0},

@@ -8,11 +8,11 @@
 #include <variant>
 #include <vector>
 
-// Ground's plan and prediction of a timeline, by timeline_rule.hpp. All times are seconds from the entry that was
-// predicted when the run began. Replies are taken to come at once.
+// Ground's plan and prediction of a timeline, by timeline_rule.hpp. All times are seconds from the entry time predicted
+// when the run began. Replies are assumed to be immediate.
 namespace aeolis::dictionary {
 
-/// A change of offsets, as a command makes it on board.
+/// A change of offsets that a command makes on board.
 struct OffsetChange {
     struct OfTimepoint {
         TimepointId id;
@@ -23,44 +23,44 @@ struct OffsetChange {
         MaybeOffset offset_s;  ///< from its parent
     };
     std::variant<OfTimepoint, OfAnchor> what;
-    double since_e_s = std::numeric_limits<double>::infinity();  ///< when flight made it; infinite: it is yet to do so
+    double since_e_s = std::numeric_limits<double>::infinity();  ///< when flight made it; infinite: not yet
 };
 
-/// What ground knows of a timeline at one instant.
+/// Ground's knowledge of a timeline at one instant.
 struct TimelineKnowledge {
     struct Heard {
         double triggered_e_s = 0.0, fired_e_s = 0.0;
     };
     struct Report {
         double anchor_e_s = 0.0;
-        double at_e_s = 0.0;  ///< when flight wrote it
+        double at_e_s = 0.0;  ///< when flight wrote the report
     };
-    std::vector<MaybeOffset> design_e_s;         ///< by anchor: when the design has it (predicted_anchors.csv)
+    std::vector<MaybeOffset> design_e_s;         ///< by anchor: its time in the design (predicted_anchors.csv)
     std::vector<std::optional<Heard>> heard;     ///< by timepoint; may be shorter than the timeline
-    std::vector<std::optional<Report>> reports;  ///< by anchor: the time that flight says it holds; may be shorter
+    std::vector<std::optional<Report>> reports;  ///< by anchor: the time that flight reports for it; may be shorter
     std::vector<OffsetChange> changes;           ///< oldest first
-    MaybeOffset clock_zero_e_s;                  ///< the zero of the spacecraft clock, where the root anchor stands
-    MaybeOffset now_e_s;                         ///< how far the vehicle has been heard; none: nothing is overdue
+    MaybeOffset clock_zero_e_s;                  ///< zero of the spacecraft clock, which is the time of the root anchor
+    MaybeOffset now_e_s;                         ///< the latest time heard from the vehicle; none: nothing is overdue
 };
 
 struct TimelinePrediction {
     struct Anchor {
         enum class Basis : std::uint8_t {
-            nothing,  ///< nobody knows it, nor predicts it
+            nothing,  ///< neither known nor predicted
             clock,    ///< the root
-            report,   ///< flight's own word
-            firing,   ///< a timepoint of it has fired
-            command,  ///< flight has made a change of it
+            report,   ///< reported by flight
+            firing,   ///< a timepoint anchored to it has fired
+            command,  ///< flight has executed a change of it
             parent,   ///< its offset from its parent
-            plan,     ///< entry, as it was predicted when the run began
-            design,   ///< its distance in the design from the anchor before it
-            overdue,  ///< the design had it before now
+            plan,     ///< entry, as predicted when the run began
+            design,   ///< its distance in the design from the previous anchor
+            overdue,  ///< its time in the design has passed
         };
         MaybeOffset e_s;
         Basis basis = Basis::nothing;
-        MaybeOffset offset_s;               ///< from its parent, as the last change has it
-        std::optional<TimepointId> firing;  ///< the one that tells it
-        /// Decided on board, or following from what is. What else has a time is predicted.
+        MaybeOffset offset_s;               ///< from its parent, after the last change
+        std::optional<TimepointId> firing;  ///< the timepoint whose firing gives its time
+        /// Decided on board, or derived from such a time. Every other time is a prediction.
         bool defined = false;
     };
     struct Timepoint {
@@ -68,31 +68,31 @@ struct TimelinePrediction {
             nothing,   ///< it is predicted
             offset,    ///< its desired or minimum offset is undefined
             anchor,    ///< its anchor has no time
-            previous,  ///< the one before it is not predicted; before the first: "do edl"
+            previous,  ///< the previous timepoint is not predicted; for the first: "do edl" is not
         };
-        MaybeOffset e_s;  ///< of one that has fired: as predicted before its anchor was heard of
+        MaybeOffset e_s;  ///< if it has fired: as predicted before its anchor was reported
         Unknown unknown = Unknown::nothing;
     };
     std::vector<Anchor> anchors;
     std::vector<Timepoint> timepoints;
-    MaybeOffset latest_begin_e_s;  ///< of an acceptance of "do edl" with which nothing is overdue
+    MaybeOffset latest_begin_e_s;  ///< the latest acceptance of "do edl" with which nothing is overdue
 };
 
-/// When each anchor and each timepoint comes, as far as anyone can say.
+/// Predicts the time of each anchor and each timepoint, from everything known.
 ///
-/// Anchors     By the vehicle's report or an executed change, whichever is newer; else by what has fired of it, which
-///             overtakes a change made before. Else by the offset from its parent, the plan, or its distance in the
-///             design from the anchor before it; one of the design that is overdue comes now at the earliest
-/// Timepoints  By the rule. A previous firing whose time nobody knows holds nothing up
+/// Anchors     By the vehicle's report or an executed change, whichever is newer; otherwise by a firing relative to it,
+///             which overrides an earlier change. Otherwise by the offset from its parent, the plan, or its distance in
+///             the design from the previous anchor. An overdue time of the design is moved to now
+/// Timepoints  By the rule. A previous firing at an unknown time delays nothing
 TimelinePrediction predict(const Dictionary& dictionary, const TimelineKnowledge& known);
 
-/// When each timepoint would fire if nothing but the plan decided; none where that depends on what happens in flight.
+/// Times at which timepoints fire by the plan alone; none where that depends on events in flight.
 std::vector<MaybeOffset> planned_from_entry_s(const Dictionary& dictionary);
 
-/// When each timepoint is predicted, with what was heard until then.
+/// Predicted time of each timepoint, from what had been heard until then.
 ///
 /// @param design_e_s  by anchor
-/// @param heard_e_s  by timepoint: when it fired, as far as ground had heard of it
+/// @param heard_e_s  by timepoint: when it fired, as far as ground had heard
 std::vector<MaybeOffset> predicted_from_entry_s(const Dictionary& dictionary,
                                                 const std::vector<MaybeOffset>& design_e_s,
                                                 const std::vector<MaybeOffset>& heard_e_s);

@@ -8,16 +8,17 @@
 #include <cstdint>
 #include <optional>
 
-// The timeline's rule: when a timepoint is triggered, when it fires, and whether a constraint holds. The engine on board
-// and its monitor, the analysis, ground's plan and prediction, and the venues without a timeline follow this one text.
+// The timeline's rule: when a timepoint is triggered, when it fires, and whether a constraint holds.
+// Shared by the engine on board and its monitor, the analysis, ground's plan and prediction, and the venues without a
+// timeline.
 //
-// Sequence     A timepoint is triggered once its desired offset and its minimum offset have come, and the one before
-//              it has fired. The acceptance of "do edl" stands before the first. R11, R16
-// Undefined    An undefined offset or time never comes. R13
-// Reply        A timepoint fires when it is triggered. One that waits for a reply fires when that comes, or at its
-//              time-out. R14
+// Sequence     A timepoint is triggered once the previous one has fired, and its desired offset and its minimum offset
+//              have elapsed. For the first, the acceptance of "do edl" stands for the previous firing. R11, R16
+// Undefined    A time that is undefined, or depends on an undefined offset, is never reached. R13
+// Reply        A timepoint fires when it is triggered. One that waits for a reply fires when the reply arrives, or at
+//              its time-out. R14
 // Cycle        At most five timepoints are triggered in one cycle. R15
-// Anchors      An anchor stands at its parent's time and its offset. The root is the zero of the clock. R17
+// Anchors      The time of an anchor is its parent's time plus its offset. The root is the zero of the clock. R17
 // Constraints  minimum <= to - from <= maximum. R19
 // Memory       None: every function is pure, and fit for flight
 // Clock        Any whose zero all times share: SCLK on board, seconds from entry in a plan
@@ -25,13 +26,13 @@ namespace aeolis::timeline {
 
 inline constexpr std::size_t triggered_per_cycle_max = 5;  ///< so as not to overload the processor. R15
 
-/// An instant that a constraint speaks of.
+/// An instant that a constraint refers to.
 struct Moment {
     enum class Kind : std::uint8_t {
-        do_edl,     ///< its acceptance
-        anchor,     ///< the time that the anchor stands for; it may lie ahead
+        do_edl,     ///< "do edl" is accepted
+        anchor,     ///< the time of the anchor; it may be in the future
         triggered,  ///< the timepoint's action begins
-        fired,      ///< its reply came, or its time-out; the same instant where none is asked for
+        fired,      ///< its reply arrived, or its time-out; without a reply, the instant of triggering
     };
     Kind kind = Kind::do_edl;
     std::uint16_t index = 0;  ///< of the anchor or timepoint
@@ -49,13 +50,13 @@ struct Offsets {
     MaybeOffset desired_s;
     MaybeOffset minimum_s;  ///< from the previous firing
 };
-/// Of a row of timeline.csv, as the dictionary or flight holds it.
+/// Offsets of a row of timeline.csv, as the dictionary or flight holds it.
 template <typename Row>
 constexpr Offsets offsets_of(const Row& row) {
     return {row.anchor, row.desired_offset_s, row.minimum_offset_s};
 }
 
-/// One of the conditions of a triggering: `offset_s` after `from`.
+/// One of the two conditions for triggering: `offset_s` after `from`.
 struct Condition {
     enum class From : std::uint8_t { previous_firing, anchor };
     From from = From::previous_firing;
@@ -70,7 +71,7 @@ constexpr Conditions conditions_of(const Offsets& offsets) {
             {From::previous_firing, offsets.minimum_s}};
 }
 
-/// The times of both conditions of a triggering.
+/// The times of both conditions for triggering.
 struct DueTimes {
     MaybeTime desired, minimum;
 
@@ -85,18 +86,19 @@ constexpr DueTimes due_times(const Offsets& offsets, MaybeTime previous_fired, M
     return {time_of(conditions.desired), time_of(conditions.minimum)};
 }
 
-/// The latest time at which a timepoint fires: its time-out, or the instant of its triggering where it asks for no reply.
+/// The latest time at which a timepoint fires: its time-out, or the instant of its triggering when it awaits no reply.
 constexpr Sclk latest_firing(Sclk triggered, const std::optional<double>& reply_timeout_s) {
     return reply_timeout_s ? triggered + *reply_timeout_s : triggered;
 }
 
-/// Of any anchor but the root.
+/// Time of any anchor except the root.
 constexpr MaybeTime anchor_time(MaybeTime parent, MaybeOffset offset_s) {
     return parent + offset_s;
 }
 
-/// The latest acceptance of "do edl" with which nothing is overdue: when the first timepoint with an anchor is desired,
-/// less what those before it take. Undefined while that anchor is, and where no timepoint has one. R23
+/// The latest acceptance of "do edl" with which nothing is overdue. R23
+/// It is the desired time of the first timepoint with an anchor, less the durations of those before it. Undefined while
+/// that anchor is undefined, or when no timepoint has an anchor.
 /// @param offsets_of  Offsets of a row         @param reply_timeout_of  of a row, if any
 /// @param anchor_time_of  MaybeTime of an AnchorId
 constexpr MaybeTime latest_begin(std::size_t rows, const auto& offsets_of, const auto& reply_timeout_of,
@@ -110,14 +112,14 @@ constexpr MaybeTime latest_begin(std::size_t rows, const auto& offsets_of, const
     return {};
 }
 
-/// How long one moment may be after another; undefined: no bound.
+/// Bounds on the time from one moment to another; undefined: no bound.
 struct Bounds {
     MaybeOffset minimum_s, maximum_s;
 
     constexpr bool too_soon(double elapsed_s) const { return minimum_s && elapsed_s < *minimum_s; }
     constexpr bool too_late(double elapsed_s) const { return maximum_s && elapsed_s > *maximum_s; }
 };
-/// Of a row of constraints.csv, as the dictionary or flight holds it.
+/// Bounds of a row of constraints.csv, as the dictionary or flight holds it.
 template <typename Row>
 constexpr Bounds bounds_of(const Row& row) {
     return {row.minimum_s, row.maximum_s};

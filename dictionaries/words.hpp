@@ -6,8 +6,7 @@
 #include <string>
 #include <string_view>
 
-// Reading of single words in spreadsheets and XML. Nothing is guessed: a word is wholly what it should be, or it is
-// not.
+// Parsing of single words in spreadsheets and XML. Nothing is guessed: the whole word must be valid.
 namespace aeolis::dictionary {
 
 /// A finite decimal number: "-600.046875", "1e-3".
@@ -16,13 +15,13 @@ std::optional<double> to_number(std::string_view word);
 /// A whole number, decimal or hexadecimal: "16", "-1", "0x010".
 std::optional<std::int64_t> to_integer(std::string_view word);
 
-/// Shortest text that reads back as the same number.
+/// Shortest text that parses to the same number.
 std::string number_word(double value);
 
-/// Why `name` cannot be a name in the C++ that the autocoder writes; none when it can.
+/// Why `name` cannot be a name in the C++ that the autocoder generates; none when it can.
 std::optional<std::string> unusable_as_identifier(std::string_view name);
 
-/// Whether the structs that the autocoder writes for packets, events or commands have a member of that name already.
+/// Whether the structs generated for packets, events or commands already have a member of that name.
 bool is_taken_in_packets(std::string_view name);
 bool is_taken_in_commands(std::string_view name);
 

@@ -8,8 +8,8 @@
 
 namespace aeolis::dictionary {
 
-/// Moments and least differences between them, in ticks of 1/64 s: a system of difference constraints, solved exactly
-/// by longest paths (Bellman-Ford). An upper bound is a least difference the other way round.
+/// Moments and the least differences between them, in ticks of 1/64 s: a system of difference constraints.
+/// Solved exactly by longest paths (Bellman-Ford). An upper bound is a least difference in the opposite direction.
 class DifferenceNetwork {
   public:
     /// t(to) - t(from) >= ticks
@@ -25,23 +25,23 @@ class DifferenceNetwork {
         edges_.push_back(edge);
         return edges_.size() - 1;
     }
-    /// Takes back the edge added last.
+    /// Removes the edge added last.
     void remove_last() { edges_.pop_back(); }
     const std::vector<Edge>& edges() const { return edges_; }
     std::size_t moments() const { return moments_; }
 
-    /// Of all solutions without a negative time the one in which every moment is earliest; or why there is none.
+    /// The solution in which every moment is earliest and none is negative; or the reason why there is no solution.
     struct Earliest {
-        std::vector<std::int64_t> ticks;       ///< a time for each moment; empty when the edges contradict one another
-        std::vector<EdgeIndex> contradiction;  ///< a ring of edges whose least differences add up to more than nil
+        std::vector<std::int64_t> ticks;       ///< a time for each moment; empty when the edges contradict each other
+        std::vector<EdgeIndex> contradiction;  ///< a cycle of edges whose least differences add up to more than zero
     };
     Earliest earliest() const;
 
     struct Path {
         std::int64_t ticks = 0;
-        std::vector<EdgeIndex> edges;  ///< those that force it, from the first moment to the last
+        std::vector<EdgeIndex> edges;  ///< the edges that force `ticks`, from the first moment to the last
     };
-    /// The least that t(to) - t(from) can be; none: it has no lower bound. Only where `earliest` has a solution.
+    /// The least possible t(to) - t(from); none: no lower bound. Requires that `earliest` has a solution.
     std::optional<Path> least_difference(std::size_t from, std::size_t to) const;
 
   private:

@@ -7,16 +7,16 @@
 #include <string>
 #include <vector>
 
-// Whether the timeline's explicit constraints imply those of constraints.csv. R19
+// Proof that the timeline's explicit constraints imply the required rows of constraints.csv. R19
 //
-// Explicit    By dictionaries/timeline_rule.hpp, as the engine on board decides: a timepoint is triggered as soon as it
-//             may be, and fires when its reply comes, at any time until the time-out.
-// Free        When "do edl" is accepted, and every anchor whose offset is undefined (ground's entry time, GNC's
+// Explicit    By dictionaries/timeline_rule.hpp, as the engine on board applies it: a timepoint is triggered as soon as
+//             it may be. It fires when its reply arrives, at any time up to the time-out.
+// Free        The acceptance of "do edl", and every anchor whose offset is undefined (ground's entry time, GNC's
 //             triggers), within the given rows of constraints.csv.
-// Left out    Offsets changed by command, but for an undefined offset, which leaves its timepoint free: after its
-//             predecessor, at any time. An anchor is taken as known in time for what has a negative offset from it.
-// Method      Difference constraints over ticks of 1/64 s. "As soon as" is a choice: one of the causes was the last to
-//             come. The search solves without it, and chooses only where the solution is late without a cause.
+// Left out    Offsets changed by command. Exception: a timepoint with an undefined offset is free, at any time after
+//             its predecessor. An anchor is assumed to be known early enough for a negative offset from it.
+// Method      Difference constraints over ticks of 1/64 s. "As soon as" is a disjunction: one of the causes came last.
+//             The search first solves without it, and branches only where the solution is late without a cause.
 namespace aeolis::dictionary {
 
 /// One constraint in a chain: to - from >= at_least_s.
@@ -45,30 +45,30 @@ struct Instant {
 
 enum class Proof { proven, refuted, undecided };
 
-/// What became of one bound of one required row.
+/// Result for one bound of one required row.
 struct BoundProof {
     std::size_t constraint = 0;  ///< index in Dictionary::constraints
     bool is_minimum = true;      ///< of minimum_s; else of maximum_s
     Proof proof = Proof::undecided;
-    /// What is left between the bound and the worst schedule; undefined: that has no bound. Proven: not negative.
+    /// Margin between the bound and the worst schedule; undefined: the worst case is unbounded. Proven: not negative.
     MaybeOffset slack_s;
-    std::vector<ChainStep> chain;  ///< critical: what forces the worst case to be no worse; empty when nothing does
-    /// A schedule of every moment that reaches the worst case, or, where that has no bound, breaks the row by 1/64 s.
+    std::vector<ChainStep> chain;  ///< critical chain: the constraints that limit the worst case; empty when nothing
+                                   ///< limits it
+    /// A schedule of all moments that reaches the worst case, or, if unbounded, one that breaks the row by 1/64 s.
     std::vector<Instant> schedule;
 };
 
-/// How long before its anchor makes it due a timepoint is free to fire, in the worst case.
+/// The least time, in the worst case, from when a timepoint is free to fire until its anchor makes it due.
 struct DueMargin {
     TimepointId timepoint;
-    MaybeOffset
-        slack_s;  ///< negative: it may fire so much late; undefined: no bound, the anchor may be set at any time
+    MaybeOffset slack_s;  ///< negative: it may fire that late; undefined: unbounded, the anchor may be set at any time
 };
 
 struct TimelineAnalysis {
-    /// Not empty: the timeline and the given rows admit no schedule, by this ring; then nothing else is there.
+    /// The cycle of constraints by which the timeline and the given rows admit no schedule. If set, the rest is empty.
     std::vector<ChainStep> contradiction;
-    bool stopped = false;  ///< it was asked to end before it was done: what is there is not all
-    /// Without a ring of its own: no schedule has a cause for every firing.
+    bool stopped = false;  ///< stopped on request before it was done: the results are incomplete
+    /// False, with no contradiction: no schedule has a cause for every firing.
     bool admits_schedule = true;
     std::vector<BoundProof> bounds;
     std::vector<DueMargin> margins;  ///< of the timepoints with an anchor
@@ -76,12 +76,12 @@ struct TimelineAnalysis {
     bool all_proven() const;
 };
 
-/// `stop` is asked at each step of the search, some thousand times a second; null: the analysis goes on to its end.
+/// Analyses the timeline. `stop` is called at each step, some thousand times a second; null: runs to the end.
 TimelineAnalysis analyse_timeline(const Dictionary& dictionary, const std::function<bool()>& stop = {});
-/// The same without the margins, which decide nothing.
+/// The same without the margins, which do not affect the proofs.
 TimelineAnalysis analyse_bounds(const Dictionary& dictionary, const std::function<bool()>& stop = {});
 
-/// As in constraints.csv: "do_edl", "parachute:anchor", "radar_power:fired".
+/// Text of a moment as in constraints.csv: "do_edl", "parachute:anchor", "radar_power:fired".
 std::string moment_text(const Dictionary& dictionary, const Moment& moment);
 
 }  // namespace aeolis::dictionary

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-// What changed from one version of the timeline to another, row by row and cell by cell. R20
+// Differences between two versions of the timeline, by row and cell. R20
 namespace aeolis::dictionary {
 
 struct CellChange {
@@ -15,16 +15,16 @@ struct CellChange {
     std::string before, after;  ///< as in the sheet; numbers in their shortest form
 };
 
-/// A row of either version that is not the same in both.
-struct RowChange {
+/// A row that differs between the two versions, or is in only one of them.
+struct RowChange {                             ///< identifies the row: timepoint, anchor, or "required a -> b"
     std::string name;                          ///< what identifies the row: timepoint, anchor, or "required a -> b"
-    std::optional<std::size_t> before, after;  ///< place in the sheet, from 1; none: it was added, or removed
-    bool moved = false;                        ///< stands elsewhere among the rows that both have
+    std::optional<std::size_t> before, after;  ///< place in the sheet, from 1; none: the row is not in that version
+    bool moved = false;                        ///< its order among the rows common to both has changed
     std::vector<CellChange> cells;
 };
 
 struct SheetDiff {
-    std::string file;
+    std::string file;             ///< in the later version's order, removed rows first
     std::vector<RowChange> rows;  ///< removed ones first, then as in the later version
 };
 
@@ -35,8 +35,9 @@ struct TimelineDiff {
     bool same() const;
 };
 
-/// Compares what the rows say. Two versions that differ in spelling only (7 and 7.0, line ends, quotes) have different
-/// numbers and no difference here.
+/// Compares the meaning of the rows, not their spelling.
+/// Two versions that differ only in spelling (7 and 7.0, line ends, quotes) have different version numbers, but no
+/// difference here.
 TimelineDiff compare_timelines(const Dictionary& before, const Dictionary& after);
 
 }  // namespace aeolis::dictionary

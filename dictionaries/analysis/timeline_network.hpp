@@ -12,29 +12,31 @@
 
 namespace aeolis::dictionary {
 
-/// The timeline and the given rows as a network, and the search for its worst schedules. A step of
-/// timeline_analysis.hpp.
+/// The timeline and the given rows as a network, and the search for its worst schedules.
+/// Used by timeline_analysis.hpp.
 class TimelineNetwork {
   public:
     using MaybeTicks = std::optional<std::int64_t>;
 
-    /// The search is cut short where it is asked to `stop`.
+    /// `stop` is called during the search; when it returns true, the search is cut short.
     TimelineNetwork(const Dictionary& dictionary, std::function<bool()> stop);
 
-    /// Why nothing satisfies the constraints; empty: something does, though perhaps not as soon as it could.
+    /// Why nothing satisfies the constraints; empty: a solution exists, perhaps with timepoints later than they could
+    /// be.
     std::vector<ChainStep> contradiction() const;
 
-    /// The least difference of two moments.
+    /// The least difference of two moments, and how it was found.
     struct Worst {
-        bool found = false;   ///< `ticks`, `chain` and `schedule` are those of a real schedule
-        bool bounded = true;  ///< false: there is no least difference; the schedule may have the one that was enough
+        bool found = false;   ///< `ticks`, `chain` and `schedule` describe a valid schedule
+        bool bounded = true;  ///< false: there is no least difference; the schedule may be one that reached
+                              ///< `enough_ticks`
         std::int64_t ticks = 0;
         std::vector<ChainStep> chain;
         std::vector<Instant> schedule;
         bool exhausted = false;  ///< the search was cut short
-        MaybeTicks open_ticks;   ///< then: what was not searched is no less than this, if anything
+        MaybeTicks open_ticks;   ///< if exhausted: lower bound of the part not searched, if any
     };
-    /// The least that t(to) - t(from) can be. Where it has no bound, a schedule with `enough_ticks`.
+    /// Finds the least possible t(to) - t(from). If it is unbounded, returns a schedule with `enough_ticks`.
     Worst least_difference(const Moment& from, const Moment& to, std::int64_t enough_ticks);
 
   private:
@@ -62,9 +64,11 @@ class TimelineNetwork {
     const Dictionary& dictionary_;
     std::function<bool()> stop_;
     DifferenceNetwork network_;
-    std::int64_t horizon_ticks_ = 0;                               ///< no bounded difference is less than its negative
+    std::int64_t horizon_ticks_ = 0;                               ///< no bounded difference is less than the negative
+                                                                   ///< of this
     std::vector<std::pair<ChainStep::Reason, unsigned>> reasons_;  ///< of the edges, by index
-    std::vector<std::vector<DifferenceNetwork::Edge>> causes_;     ///< of each triggering; empty: it is free
+    std::vector<std::vector<DifferenceNetwork::Edge>> causes_;     ///< of each triggering; empty: the triggering is
+                                                                   ///< free
 };
 
 }  // namespace aeolis::dictionary

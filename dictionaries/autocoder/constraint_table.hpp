@@ -7,8 +7,8 @@
 
 namespace aeolis::dictionary::autocoder {
 
-/// The table that flight checks its sub-constraints by, for generated/timeline.cpp: each row under a #line of
-/// constraints.csv, its moments as C++ names of timepoints and anchors. R39, R40
+/// The table of sub-constraints that flight checks, for generated/timeline.cpp.
+/// One row for each row of constraints.csv, under its #line; moments as C++ names of timepoints and anchors. R39, R40
 std::string constraint_table(const Dictionary& dictionary);
 
 }  // namespace aeolis::dictionary::autocoder

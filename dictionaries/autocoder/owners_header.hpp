@@ -7,8 +7,9 @@
 
 namespace aeolis::dictionary::autocoder {
 
-/// generated/owners.hpp: which module owns each decision, device and action. Modules stand in it as the C++ names of
-/// flight's ModuleId, each row under a #line of owners.csv, so that the compiler checks them. R5, R40
+/// generated/owners.hpp: the module that owns each decision, device and action.
+/// Modules appear as enumerators of flight's ModuleId, each row under a #line of owners.csv, so that the compiler
+/// checks them. R5, R40
 std::string owners_header(const Dictionary& dictionary);
 
 }  // namespace aeolis::dictionary::autocoder

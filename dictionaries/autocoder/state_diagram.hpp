@@ -7,8 +7,8 @@
 
 namespace aeolis::dictionary::autocoder {
 
-/// The state machines as diagrams in Mermaid's text, from the same table as flight's code: a heading and a fenced block
-/// each. R48
+/// The state machines as Mermaid diagrams, each under a heading in a fenced block.
+/// Generated from the same table as flight's code. R48
 std::string state_diagrams(const Dictionary& dictionary);
 
 }  // namespace aeolis::dictionary::autocoder

@@ -10,7 +10,7 @@
 
 namespace aeolis::dictionary {
 
-/// A spreadsheet as it was saved: a header and rows of as many cells. Lines count from 1.
+/// A spreadsheet as saved: a header, and rows with as many cells. Lines count from 1.
 struct Sheet {
     struct Row {
         unsigned line = 0;
@@ -20,9 +20,9 @@ struct Sheet {
     std::vector<Row> rows;  ///< rows whose cells are all empty are left out
 };
 
-/// RFC 4180: commas, quotes doubled within quotes, line breaks within quotes. A byte order mark and CRLF, which
-/// spreadsheet programs write, are accepted; nothing else is mended. Faults name line and column; then there is no
-/// sheet.
+/// Parses RFC 4180 text: commas, quotes doubled within quotes, line breaks within quotes.
+/// A byte order mark and CRLF, which spreadsheet programs write, are accepted; nothing else is corrected. A finding
+/// names line and column; then no sheet is returned.
 std::optional<Sheet> read_csv(std::string_view text, Findings& findings);
 
 }  // namespace aeolis::dictionary

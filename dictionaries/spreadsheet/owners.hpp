@@ -10,16 +10,16 @@
 
 namespace aeolis::dictionary {
 
-inline constexpr std::size_t owners_max = 1000;  ///< ours: ten times the landing's
+inline constexpr std::size_t owners_max = 1000;  ///< chosen: ten times the rows of the landing
 
-/// What must have an owner; a null pointer: unknown because its own file could not be read, so not checked.
+/// Everything that must have an owner. A null pointer: its own file could not be read, so it is not checked.
 struct OwnerContext {
     const std::vector<TimelineRow>* timeline = nullptr;
     const std::vector<const Type*>* enumerations = nullptr;
 };
 
-/// owners.csv: each action of the timeline, each device and each label of the enumeration Decision has one owning
-/// module: none has a second, none is missing, and nothing is owned that is not there. R5
+/// Reads owners.csv: one owning module for each action of the timeline, each device and each label of Decision.
+/// A second owner, a missing owner, and an owner of something that does not exist are findings. R5
 std::optional<std::vector<OwnerRow>> read_owners(std::string_view text, const OwnerContext& context,
                                                  Findings& findings);
 

@@ -10,10 +10,11 @@
 
 namespace aeolis::dictionary {
 
-inline constexpr std::size_t transitions_max = 1000;  ///< ours: twenty times the landing's
+inline constexpr std::size_t transitions_max = 1000;  ///< chosen: twenty times the rows of the landing
 
-/// state_machines.csv: which event leads from which state to which. `enumerations`: of the XTCE, whose labels are the
-/// states; a null pointer: not known because its own file could not be read, so not checked.
+/// Reads state_machines.csv: the transitions of each state machine.
+/// `enumerations`: those of the XTCE file, whose labels are the states. Null: that file could not be read, so states
+/// are not checked.
 ///
 /// Rules: a machine is an enumeration; its states are labels of it; one row, without from and event, names the initial
 /// state; an event leads from a state to one state; every label can be reached.

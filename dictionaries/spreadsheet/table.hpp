@@ -11,10 +11,10 @@
 
 namespace aeolis::dictionary {
 
-/// A sheet whose header names exactly the columns asked for, in any order.
+/// A sheet whose header names exactly the required columns, in any order.
 class Table {
   public:
-    /// None, with findings, when the text is no CSV, a column is missing, unknown or there twice.
+    /// None, with findings, when the text is not CSV, or a column is missing, unknown or repeated.
     static std::optional<Table> read(std::string_view text, std::initializer_list<std::string_view> columns,
                                      Findings& findings);
 
@@ -26,16 +26,16 @@ class Table {
     std::map<std::string, std::size_t> columns_;
 };
 
-/// Reads the cells of one row; what is not as it should be becomes a finding that names row and column.
+/// Reads the cells of one row; each wrong cell becomes a finding that names row and column.
 class RowReader {
   public:
-    /// `kind` and the cell of `name_column` name the row in findings: timepoint 'coolant_vent'.
+    /// `kind` and the cell in `name_column` identify the row in findings: timepoint 'coolant_vent'.
     RowReader(const Table& table, const Sheet::Row& row, std::string_view kind, std::string_view name_column,
               Findings& findings);
 
     const std::string& text(std::string_view column) const;
     std::string required_text(std::string_view column);
-    /// Usable as a name in C++.
+    /// A text that is usable as a name in C++.
     std::string identifier(std::string_view column);
     std::optional<double> number(std::string_view column);
     std::optional<std::int64_t> integer(std::string_view column, std::int64_t min, std::int64_t max);

@@ -9,12 +9,13 @@
 
 namespace aeolis::dictionary {
 
-inline constexpr std::size_t telemetry_plan_rows_max = 1000;  ///< ours: fifty times the landing's
-inline constexpr std::int64_t telemetry_every_max = 4096;     ///< ours: of a packet at 64 Hz, about one a minute
+inline constexpr std::size_t telemetry_plan_rows_max = 1000;  ///< chosen: fifty times the rows of the landing
+inline constexpr std::int64_t telemetry_every_max = 4096;     ///< chosen: about one packet a minute at 64 Hz
 
-/// In the order of the file. Each plan says once what becomes of each packet, in its own rows or in those of "all"; a
-/// packet that goes first is never thinned. `packets` null: unknown because their file could not be read, so references
-/// and completeness are not checked. R30
+/// Reads telemetry_plan.csv, in the order of the file. R30
+/// Each plan states once what happens to each packet, in its own rows or in those of "all". A packet of priority
+/// `first` is never thinned. `packets` null: their file could not be read, so references and completeness are not
+/// checked.
 std::optional<std::vector<TelemetryPlanRow>>
 read_telemetry_plan(std::string_view text, const std::vector<Packet>* packets, Findings& findings);
 

@@ -5,13 +5,13 @@
 
 namespace aeolis::dictionary::xtce {
 
-/// DefaultAlarm of a type: static ranges, of which a more severe one lies outside every less severe one, or labels of
-/// an enumeration. An absent element gives no alarms.
-/// minViolations and minConformance are samples in a row; AncillaryData "latch" with the content "true" makes the alarm
-/// one that stays until it is reset.
+/// Reads the DefaultAlarm of a type; an absent element gives no alarms.
+/// Static ranges, each lying outside all less severe ones, or labels of an enumeration. minViolations and
+/// minConformance count consecutive samples. AncillaryData "latch" with the content "true" makes the alarm stay until
+/// it is reset.
 Alarms read_alarms(pugi::xml_node default_alarm, const Type& type, Reporter& report);
 
-/// The ContextAlarmList of each channel's type, into the channel: the context compares other channels.
+/// Reads the ContextAlarmList of each channel's type into the channel. Contexts compare other channels.
 void read_context_alarms(const Symbols& symbols, Parameters& parameters, Reporter& report);
 
 }  // namespace aeolis::dictionary::xtce

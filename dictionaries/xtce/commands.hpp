@@ -7,7 +7,7 @@
 
 namespace aeolis::dictionary::xtce {
 
-/// The concrete MetaCommands: opcode, arguments, what must hold before, what shows that a stage was reached.
+/// Reads the concrete MetaCommands: opcode, arguments, preconditions and verifiers.
 std::vector<Command> read_commands(const Symbols& symbols, const Types& types, const Parameters& parameters,
                                    const Packets& packets, Reporter& report);
 

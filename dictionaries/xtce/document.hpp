@@ -16,7 +16,7 @@ namespace aeolis::dictionary::xtce {
 /// A parsed XML file that knows the line of each of its elements.
 class Document {
   public:
-    /// None, with a finding, when the text is no XML or holds no SpaceSystem.
+    /// None, with a finding, when the text is not XML or holds no SpaceSystem.
     static std::unique_ptr<Document> parse(const std::string& text, Findings& findings);
 
     pugi::xml_node space_system() const { return xml_.child("SpaceSystem"); }
@@ -30,19 +30,18 @@ class Document {
     std::vector<std::ptrdiff_t> line_starts_;
 };
 
-/// Says what is wrong with an element, and where.
+/// Reports faults of elements, with their lines.
 class Reporter {
   public:
     Reporter(const Document& document, Findings& findings) : document_(document), findings_(findings) {}
 
     void fault(pugi::xml_node element, const std::string& message) { findings_.add(document_.line(element), message); }
 
-    /// Every child element and attribute must be among those named: what we do not read, we do not pass over in
-    /// silence.
+    /// Reports every child element and attribute that is not named here: unread content is never ignored silently.
     void expect(pugi::xml_node element, std::initializer_list<std::string_view> children,
                 std::initializer_list<std::string_view> attributes);
 
-    /// The attribute as a number; none, with a finding, when it is there and is no number.
+    /// The attribute as a number. None when absent; none, with a finding, when it is not a number.
     std::optional<double> number(pugi::xml_node element, const char* attribute);
     std::optional<std::int64_t> integer(pugi::xml_node element, const char* attribute, std::int64_t min,
                                         std::int64_t max);

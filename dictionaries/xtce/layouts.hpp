@@ -16,16 +16,16 @@ struct Placed {
     pugi::xml_node element;
 };
 
-/// A SequenceContainer with all that its base containers put before it.
+/// A SequenceContainer, including the entries of its base containers.
 struct Layout {
-    bool sound = true;  ///< false: something of it has findings; then nothing more is said about it
+    bool sound = true;  ///< false: part of it has findings; nothing more is reported about it
     bool abstract = false;
     std::vector<Placed> entries;
     unsigned end_bits = 0;
-    std::map<std::string, std::int64_t> conditions;  ///< restriction criteria, by name of the parameter
+    std::map<std::string, std::int64_t> conditions;  ///< restriction criteria, by parameter name
 };
 
-/// Lays every container out, base containers first.
+/// Layouts of all containers, base containers first.
 class Layouts {
   public:
     Layouts(const Symbols& symbols, const Parameters& parameters, Reporter& report);
@@ -38,7 +38,7 @@ class Layouts {
     void read_conditions(const Symbol& container, pugi::xml_node criteria, Layout& layout);
     void read_condition(const Symbol& container, pugi::xml_node comparison, Layout& layout);
     void read_entry(const Symbol& container, pugi::xml_node entry, Layout& layout);
-    /// Where the entry begins, by its LocationInContainerInBits or right after the one before.
+    /// Position of the entry: its LocationInContainerInBits, or directly after the previous entry.
     std::optional<unsigned> position_of(pugi::xml_node entry, const Layout& layout);
     void check_overlap(pugi::xml_node entry, const Placed& placed, Layout& layout);
 

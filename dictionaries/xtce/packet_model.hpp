@@ -10,26 +10,26 @@
 #include <utility>
 #include <vector>
 
-/// The packets of any mission, as its XTCE file describes them: what telemetry/container_decoder.hpp reads packets by.
-/// Our own dictionary goes through space_system.hpp, whose rules are strict; here what cannot be read is a finding, and
-/// everything else is kept. [xtce-1.2], and files of 1.0 and 1.1
+/// Packets of any mission, as its XTCE file describes them. telemetry/container_decoder.hpp decodes by this model.
+/// Our own dictionary is read through space_system.hpp, whose rules are strict. Here, unreadable content is a finding,
+/// and everything else is kept. [xtce-1.2], and files of 1.0 and 1.1
 namespace aeolis::dictionary::xtce {
 
-/// A comparison, or several taken together.
+/// A comparison, or a combination of several.
 struct Condition {
     enum class Form : std::uint8_t {
         always,
         compare,
-        all,  ///< of `parts`
-        any,
-        unknown,  ///< not supported: taken as false
+        all,      ///< of `parts`: all must hold
+        any,      ///< of `parts`: one must hold
+        unknown,  ///< not supported: treated as false
     };
     enum class Operator : std::uint8_t { equal, not_equal, less, less_or_equal, greater, greater_or_equal };
 
     Form form = Form::always;
     std::vector<Condition> parts{};
-    std::size_t parameter = 0;  ///< in PacketModel::parameters; its latest value in the packet
-    std::string member{};       ///< of what is composed: ".flags.valid", as the decoder names it
+    std::size_t parameter = 0;  ///< index in PacketModel::parameters; its latest value in the packet
+    std::string member{};       ///< of a composite value: ".flags.valid", as the decoder names it
     bool calibrated = true;
     Operator op = Operator::equal;
     std::string value{};  ///< a number or a label
@@ -42,11 +42,11 @@ struct Amount {
         double value = 0.0;
     };
     std::optional<std::size_t> parameter{};  ///< intercept + slope × its value
-    std::string member{};                    ///< of what is composed: ".length"
+    std::string member{};                    ///< of a composite value: ".length"
     bool calibrated = true;
     double slope = 1.0;
-    double intercept = 0.0;     ///< without parameter: the number itself
-    std::vector<Case> cases{};  ///< where there are any: that of the first that holds
+    double intercept = 0.0;     ///< without parameter: the amount itself
+    std::vector<Case> cases{};  ///< if not empty: the amount is that of the first case that holds
     bool known = true;          ///< false: not supported
 
     static Amount fixed(double value) { return {.intercept = value}; }
@@ -54,7 +54,7 @@ struct Amount {
 
 struct Calibration {
     std::vector<double> polynomial{};                 ///< coefficient of each power
-    std::vector<std::pair<double, double>> spline{};  ///< raw, calibrated; sorted; straight lines between
+    std::vector<std::pair<double, double>> spline{};  ///< raw, calibrated; sorted; linear between points
     bool flat = false;                                ///< spline of order 0: steps
     bool empty() const { return polynomial.empty() && spline.empty(); }
 };
@@ -65,25 +65,27 @@ struct Coding {
         twos_complement,
         ones_complement,
         sign_and_magnitude,
-        bcd,  ///< a decimal digit each four bits
+        bcd,  ///< four bits per decimal digit
         ieee754,
         mil1750a,
         text,
         octets,
     };
     Form form = Form::unsigned_integer;
-    Amount bits{};  ///< of text and octets: without what ends or precedes them
+    Amount bits{};  ///< of text and octets: without terminator or leading size
     bool least_significant_octet_first = false;
     bool least_significant_bit_first = false;
-    std::optional<std::uint8_t> terminator{};  ///< text ends with it; `bits` is the most it may take
-    unsigned leading_size_bits = 0;            ///< text: its number of bits stands before it, in so many
-    bool boxed = true;                         ///< text takes `bits`, wherever it ends in them; else only what it needs
+    std::optional<std::uint8_t> terminator{};  ///< terminator of the text; `bits` is then its maximum size
+    unsigned leading_size_bits = 0;            ///< text: size in bits of the leading field that holds its number of
+                                               ///< bits
+    bool boxed = true;                         ///< text always takes `bits`, wherever it ends in them; false: only as
+                                               ///< many as it needs
     Calibration calibration{};
     struct Context {
         Condition when;
         Calibration calibration;
     };
-    std::vector<Context> contexts{};  ///< the first that holds is taken instead
+    std::vector<Context> contexts{};  ///< the first that holds replaces `calibration`
 };
 
 struct PacketType {
@@ -111,8 +113,8 @@ struct PacketType {
 
     std::string name{};
     unsigned line = 0;
-    Kind kind = Kind::unknown;  ///< unknown: not supported; a packet is read up to where it stands
-    std::string unit{};         ///< the first one; empty: the file says none
+    Kind kind = Kind::unknown;  ///< unknown: not supported; a packet is decoded only up to such a field
+    std::string unit{};         ///< the first one; empty: the file gives none
     Coding coding{};
     std::vector<Label> labels{};
     std::string zero = "False", one = "True";  ///< of a boolean
@@ -127,9 +129,9 @@ struct PacketType {
 
 struct PacketParameter {
     std::string name;
-    std::string path;      ///< "/MSL/Events/opcode": no other has it
+    std::string path;      ///< "/MSL/Events/opcode": unique
     std::size_t type = 0;  ///< in PacketModel::types
-    Condition valid{};     ///< where it does not hold, the value is undefined
+    Condition valid{};     ///< where it is false, the value is undefined
 };
 
 struct PacketEntry {
@@ -143,17 +145,17 @@ struct PacketEntry {
     Condition when{};
     Amount count = Amount::fixed(1);
     Amount gap_bits = Amount::fixed(0);  ///< between repetitions
-    std::vector<Amount> last_indices{};  ///< of an array that is given its dimensions here
+    std::vector<Amount> last_indices{};  ///< of an array whose dimensions are given here
     unsigned line = 0;
 };
 
 struct PacketContainer {
     std::string name;
-    std::string path;  ///< as of parameters
+    std::string path;  ///< unique
     unsigned line = 0;
     bool abstract = false;
     std::optional<std::size_t> base;
-    Condition when;  ///< on what the base holds
+    Condition when;  ///< on the fields of the base
     std::vector<PacketEntry> entries;
 };
 
@@ -164,7 +166,7 @@ struct PacketModel {
     std::vector<PacketContainer> containers;
 };
 
-/// None when the text is no XTCE at all; what is not supported, and what is wrong, are findings with their line.
+/// Reads the model. None when the text is not XTCE; unsupported or wrong content becomes findings with lines.
 std::optional<PacketModel> read_packet_model(const std::string& text, Findings& findings);
 
 }  // namespace aeolis::dictionary::xtce

@@ -11,7 +11,7 @@
 
 namespace aeolis::dictionary::xtce {
 
-/// What types and containers are made of: references, conditions, amounts. All that is not supported is a finding.
+/// Reads the parts of types and containers: references, conditions, amounts. Unsupported content is a finding.
 class ModelParts {
   public:
     ModelParts(const Symbols& symbols, Reporter& report);
@@ -21,9 +21,9 @@ class ModelParts {
         std::string member;  ///< ".flags.valid" for "STATUS/flags/valid"
     };
     std::optional<Reference> parameter(const std::string& scope, pugi::xml_node at, const char* attribute) const;
-    /// The children of `parent`: Comparison, ComparisonList, BooleanExpression, or nothing.
+    /// Reads the children of `parent`: Comparison, ComparisonList, BooleanExpression, or none.
     Condition condition(const std::string& scope, pugi::xml_node parent) const;
-    /// The child of `parent`: FixedValue, Fixed, DynamicValue or DiscreteLookupList.
+    /// Reads the child of `parent`: FixedValue, Fixed, DynamicValue or DiscreteLookupList.
     Amount amount(const std::string& scope, pugi::xml_node parent) const;
 
     const Symbols& symbols;
@@ -38,12 +38,12 @@ class ModelParts {
     std::map<std::string, std::size_t> parameters_;
 };
 
-/// Reads types as they are asked for, since they refer to one another.
+/// Reads types on demand, since they refer to each other.
 class ModelTypes {
   public:
     explicit ModelTypes(const ModelParts& parts) : parts_(parts) {}
 
-    /// Index of the type; of one that is unknown when there is none of that name.
+    /// Index of the type; index of an unknown type when no type has that name.
     std::size_t of(const std::string& scope, pugi::xml_node at, const char* reference);
 
     std::vector<PacketType> types;
@@ -68,7 +68,7 @@ class ModelTypes {
 
 std::vector<PacketContainer> read_model_containers(const ModelParts& parts);
 
-/// One at most for each dimension: DimensionList, or those that the type counts.
+/// Reads at most one last index per dimension: from a DimensionList, or as many as the type has.
 std::vector<Amount> read_last_indices(const ModelParts& parts, const std::string& scope, pugi::xml_node list);
 
 }  // namespace aeolis::dictionary::xtce

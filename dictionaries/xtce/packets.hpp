@@ -10,12 +10,12 @@
 
 namespace aeolis::dictionary::xtce {
 
-/// Packets and events as the dictionary has them.
+/// Packets and events in the form that the dictionary holds.
 struct Packets {
     std::vector<Packet> packets;
     std::vector<Event> events;
 
-    /// Every container of an event, also those with findings, and whether its own entries are arguments.
+    /// An event's container, even one with findings, and whether it has entries of its own as arguments.
     struct DeclaredEvent {
         std::string name;
         bool has_arguments = false;

@@ -9,7 +9,7 @@
 
 namespace aeolis::dictionary::xtce {
 
-/// What a mission's XTCE file says. pugixml stays behind this header.
+/// Content of a mission's XTCE file. pugixml stays behind this header.
 struct SpaceSystem {
     struct DeclaredEvent {
         std::string name;
@@ -21,10 +21,10 @@ struct SpaceSystem {
     std::vector<Packet> packets;
     std::vector<Event> events;
     std::vector<Command> commands;
-    std::vector<DeclaredEvent> declared_events;  ///< also those with findings
+    std::vector<DeclaredEvent> declared_events;  ///< including those with findings
 };
 
-/// None, with a finding, when the text is no XTCE at all. [xtce-1.2], the part of it that docs/decisions/0002 names.
+/// Reads the subset of [xtce-1.2] that docs/decisions/0002 names. None, with a finding, when the text is not XTCE.
 std::optional<SpaceSystem> read_space_system(const std::string& text, Findings& findings);
 
 }  // namespace aeolis::dictionary::xtce

@@ -12,7 +12,7 @@ namespace aeolis::dictionary::xtce {
 
 enum class Kind { parameter_type, argument_type, parameter, container, command, command_container };
 
-/// Something with a name in a SpaceSystem, where it stands, and its element.
+/// A named element of a SpaceSystem, and its path.
 struct Symbol {
     Kind kind{};
     std::string path;   ///< "/MSL/Events/COMMAND_ACCEPTED"
@@ -20,15 +20,15 @@ struct Symbol {
     pugi::xml_node element;
 };
 
-/// All names of a file. A reference is looked for in its own SpaceSystem, then outwards; "Events/X" and "/MSL/Events/X"
-/// lead into others.
+/// All names of a file. A reference is resolved in its own SpaceSystem, then outwards.
+/// "Events/X" and "/MSL/Events/X" lead into other SpaceSystems.
 class Symbols {
   public:
     /// Duplicates within a SpaceSystem are findings.
     Symbols(const Document& document, Reporter& report);
 
     const Symbol* find(Kind kind, const std::string& scope, std::string_view reference) const;
-    /// In the order of the file.
+    /// All symbols, in the order of the file.
     const std::vector<Symbol>& all() const { return all_; }
 
   private:

@@ -9,12 +9,12 @@
 
 namespace aeolis::dictionary::xtce {
 
-/// The types of parameters and arguments, each checked once, where it stands.
+/// The types of parameters and arguments, each checked once, at its definition.
 class Types {
   public:
     Types(const Symbols& symbols, Reporter& report);
 
-    /// None when `reference` is dangling, which is a finding at `element`, or when the type itself has findings.
+    /// None when the reference is dangling, which is a finding at `element`, or when the type itself has findings.
     std::optional<Type> of(Kind kind, const std::string& scope, pugi::xml_node element, const char* attribute,
                            Reporter& report) const;
 
