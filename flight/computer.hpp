@@ -15,17 +15,18 @@ struct Configuration;
 struct Output;
 }  // namespace gnc
 
-/// Ours: from a reset until the software runs again.
+/// Time from a reset until the software runs again; our assumption.
 inline constexpr double restart_s = 30.0;
 
-/// A flight computer: all of its state in one object of fixed size, made before the first tick.
+/// A flight computer: all of its state in one object of fixed size, created before the first tick.
 ///
 /// In       DeviceInputs, one for each 1/64 s            Out   DeviceOutputs of that cycle
-/// Memory   allocated when made and when copied, never in step()
+/// Memory   allocated on construction and copying, never in step()
 /// Faults   a failed check inside step() is a FATAL event and a reset of this computer; step() itself never throws
-/// Roles    prime, or Second Chance behind it, as the vehicle's latch says; when the latch changes it starts anew. R1
-/// Do no harm: whatever its modules put out, nothing of a computer that is not in command reaches a device. R34
-/// Copying a computer is a snapshot: two copies fed the same inputs stay bit-identical.
+/// Roles    prime, or Second Chance as its backup, according to the vehicle's latch. A change of the latch restarts it.
+///          R1
+/// Do no harm: outputs of a computer that is not in command reach no device. R34 Copying a computer is a snapshot: two
+/// copies given the same inputs stay bit-identical.
 class Computer {
   public:
     explicit Computer(const Load& load, Sclk start);
@@ -35,25 +36,25 @@ class Computer {
     Computer& operator=(Computer&&) noexcept;
     ~Computer();
 
-    /// Runs one 64 Hz cycle, by the deterministic executive unless a venue brings another. `out` holds the commands of
-    /// the cycle before and is begun anew here.
+    /// Runs one 64 Hz cycle, with the deterministic executive unless a venue provides another `runner`.
+    /// On entry `out` holds the commands of the previous cycle; they are cleared here.
     void step(const DeviceInputs& in, DeviceOutputs& out, CycleRunner* runner = nullptr);
 
-    /// Loses all it knows and starts anew, as if the power had failed: what a fault injected from outside does.
+    /// Loses its whole state and restarts, as after a power failure; used by injected faults.
     void reset(Sclk now);
 
-    /// The test venue "all but GNC": what stands in for GNC looks at what the timeline has done, and what it tells
-    /// counts as GNC's in the next step. R36
+    /// For the test venue "all but GNC", whose substitute for GNC reads the timeline's progress here. R36
     const gnc::Configuration& gnc_configuration() const;
+    /// Replaces GNC's output in the next step by `told`. R36
     void replace_gnc(const gnc::Output& told);
 
-    /// A case of a campaign begins: what this computer's navigation believes is moved.
+    /// Shifts this computer's navigation state at the start of a campaign case.
     void shift_navigation(const NavigationShift& by);
 
-    /// What it holds, for faults that are put in from outside (flight/computer_state.hpp).
+    /// The whole state, for injected faults (flight/computer_state.hpp).
     ComputerState& state() { return *state_; }
 
-    /// What the executive counted: for reports and tests.
+    /// Counts kept by the executive, for reports and tests.
     struct Counters {
         std::uint64_t cycles = 0;
         std::uint64_t overruns = 0;

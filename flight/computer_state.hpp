@@ -27,9 +27,9 @@
 
 namespace aeolis::flight {
 
-inline constexpr std::size_t mailbox_messages_max = 64;  ///< ours: an IMU, radar and reply burst twice over
+inline constexpr std::size_t mailbox_messages_max = 64;  ///< chosen: twice a burst of IMU, radar and replies
 
-/// Everything that a flight computer holds: its modules, their mailboxes, and the messages of one cycle for the next.
+/// The whole state of a flight computer: its modules, their mailboxes, and messages held for the next cycle.
 struct ComputerState {
     ComputerState(const Load& its_load, Sclk start)
         : load(its_load), now(start), sync(load), radar(load), imu(load), edl(load), pyro(load), descent_engines(load),
@@ -59,16 +59,16 @@ struct ComputerState {
     EdlComm edl_comm;
 
     std::array<FixedQueue<Message, mailbox_messages_max>, module_count> mailboxes;
-    std::uint32_t ready = 0;  // a bit for each module that has something to run for
-    // What modules outside the rate group sent: delivered at the start of the next cycle, whatever the executive.
+    std::uint32_t ready = 0;  // a bit for each module that has work
+    // Messages from modules outside the rate group, delivered at the start of the next cycle under every executive.
     FixedVector<Envelope, 128> next_cycle;
     Outbox outbox;
 
     std::uint32_t mailbox_overflows = 0;
     std::uint32_t unexpected_messages = 0;
-    std::optional<Sclk> runs_from;  // while it starts after a reset
-    std::optional<Sclk> ran_from;   // since it did
-    bool forgets = false;           // starts from nothing: with what was kept it failed at once
+    std::optional<Sclk> runs_from;  // set while it restarts after a reset
+    std::optional<Sclk> ran_from;   // start of the software after the last reset
+    bool forgets = false;           // starts without stored state: with it, the last start failed at once
 };
 static_assert(std::is_copy_constructible_v<ComputerState> && std::is_trivially_destructible_v<ComputerState>,
               "copying a computer is a snapshot");

@@ -11,14 +11,14 @@
 
 namespace aeolis::flight {
 
-/// Takes uplinked units apart, CLTU, frame and packet, and sends each command to the one module that owns it.
+/// Unpacks uplinked CLTUs, frames and packets, and sends each command to the one module that owns it.
 ///
 /// In      UplinkReceived (any octets), CommandOutcome from the owner, Resume when Second Chance takes over
 /// Out     the command as a message; COMMAND_ACCEPTED and COMMAND_EXECUTED, or COMMAND_REFUSED with the reason;
-///         UplinkStatus, by which ground learns what to send again
-/// Faults  whatever cannot be read is refused with its reason; nothing is acted on before it is read whole. R3, R23
-///         After a restart of the computer nothing in sequence is taken until ground unlocks the channel: it sees that
-///         by the status. So no command is carried out twice because its frame was sent again
+///         UplinkStatus, which tells ground what to retransmit
+/// Faults  Unreadable input is refused with its reason; nothing is acted on before all of it has been parsed. R3, R23
+///         After a restart of the computer, no sequenced frame is accepted until ground unlocks the channel;
+///         UplinkStatus shows the lock. So a retransmitted frame never executes a command twice
 class CommandDispatcher {
   public:
     explicit CommandDispatcher(const Load& load) : role_(load.role) {}
@@ -37,7 +37,7 @@ class CommandDispatcher {
     Role role_;
     Farm farm_{
         {.spacecraft = spacecraft_id, .virtual_channel = telecommand_channel, .window = 128, .locked_at_start = true}};
-    bool in_control_ = false;  ///< as Second Chance
+    bool in_control_ = false;  ///< while Second Chance
     std::uint16_t refused_ = 0;
 };
 

@@ -7,31 +7,31 @@
 
 namespace aeolis::flight {
 
-/// FARM-1: which telecommand frames of one virtual channel are taken, and what ground is told of it. [ccsds-232.1-b-2]
+/// FARM-1: accepts telecommand frames of one virtual channel and reports its state to ground. [ccsds-232.1-b-2]
 ///
-/// In      frames whose CRC is right                          Out   a verdict each; the CLCW at any time
-/// Rule    A frames in sequence only, none twice; B frames always; a sequence far from the expected one locks the
-///         channel until ground unlocks it
-/// Memory  this object. What is accepted is handed on at once, so that the wait flag is never raised
-/// Faults  a frame of another spacecraft or channel, or a control command that is none, is refused and changes nothing
+/// In      frames with a correct CRC                           Out   a verdict on each; the CLCW at any time
+/// Rule    A frames are accepted in sequence only, none twice; B frames always. A frame whose sequence number is far
+///         from the expected one locks the channel until ground unlocks it
+/// Memory  this object. Accepted frames are passed on at once, so the wait flag is never raised
+/// Faults  a frame for another spacecraft or channel, or an invalid control command, is refused and changes nothing
 class Farm {
   public:
-    /// `window`: even, 2 … 254. The half of it lies before the expected sequence, the half behind.
+    /// `window`: even, 2 … 254. Half of it lies ahead of the expected sequence number, half behind.
     struct Settings {
         std::uint16_t spacecraft = 0;
         std::uint8_t virtual_channel = 0;
         std::uint8_t window = 128;
-        /// Nothing in sequence is taken before ground has unlocked the channel: who has forgotten the sequence must not
-        /// take for new what it took before.
+        /// Refuses sequenced frames until ground unlocks the channel. After losing the expected sequence number, FARM-1
+        /// could otherwise accept an old frame as new.
         bool locked_at_start = false;
     };
 
     enum class Verdict : std::uint8_t {
-        accepted,         ///< its data are to be acted on
-        executed,         ///< a control command: this object did it
-        repeated,         ///< taken already
-        out_of_sequence,  ///< one before it is missing: ground is asked to send again from there
-        locked_out,       ///< so far from the sequence that the channel is locked, or was locked already
+        accepted,         ///< data to be acted on
+        executed,         ///< a control command, which FARM-1 has executed
+        repeated,         ///< already accepted
+        out_of_sequence,  ///< an earlier frame is missing: ground must retransmit from there
+        locked_out,       ///< so far out of sequence that the channel is now locked, or it was locked already
         not_for_this_channel,
         no_such_control,
     };
@@ -79,7 +79,7 @@ class Farm {
         return Verdict::locked_out;
     }
 
-    /// Unlock: 00. Set V(R): 82 00 and the sequence.
+    /// Executes a control command. Unlock: 00. Set V(R): 82 00 and the sequence number.
     constexpr Verdict execute(std::span<const std::uint8_t> control) {
         const bool unlock = control.size() == 1 && control[0] == 0x00;
         const bool set = control.size() == 3 && control[0] == 0x82 && control[1] == 0x00;

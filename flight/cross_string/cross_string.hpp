@@ -7,23 +7,23 @@
 
 namespace aeolis::flight {
 
-/// Ours: well beyond a cycle or two that an overrun costs, well within the second in which Second Chance must fly.
+/// Chosen: well above the one or two cycles of an overrun, well below the second in which Second Chance must fly.
 inline constexpr double prime_silent_s = 0.25;
 
-/// A state that is older is not flown from: Edl keeps the IMU's readings of one second.
+/// Oldest state from which Second Chance takes over: Edl keeps one second of IMU readings.
 inline constexpr double state_age_max_s = 0.9;
 
-/// The line between the two computers. On prime it tells; in Second Chance it listens, and decides to take over.
+/// The line between the two computers: prime sends its state, Second Chance listens and decides to take over.
 ///
 /// In      StatePart from edl (prime) or from the line (Second Chance), StoredStatePart, ClockTick,
 ///         EnableSecondChanceCommand, SelectPrimeCommand, EdlFinished
-/// Out     prime: the state on the line each cycle, and kept for a restart when it has changed; after a restart the
-///         kept state to edl, and Resume. Second Chance: the same when it takes over; the units that prime addresses,
-///         to units; SecondChanceStatus; CommandOutcome
-/// Rule    it takes over when ground has enabled it, prime's line has been silent for 0.25 s, prime's last state is
-///         less than 0.9 s old, and says that EDL had begun, pre-EDL was over and touchdown was still to come. What
-///         comes on the line counts as life, readable or not: in doubt it does nothing. Touchdown turns it off for
-///         good. R1, R33, R34
+/// Out     prime: the state on the line each cycle, and stored for a restart when its revision has changed; after a
+///         restart, Resume and the stored state to edl. Second Chance: the same when it takes over; the units that
+///         prime addresses, to units; SecondChanceStatus; CommandOutcome
+/// Rule    Second Chance takes over when ground has enabled it, prime's line has been silent for 0.25 s, and prime's
+///         last state is less than 0.9 s old and says that EDL had begun, pre-EDL was over and touchdown was still to
+///         come. Anything received on the line, readable or not, counts as a sign of life: in doubt it does nothing.
+///         Touchdown turns it off permanently. R1, R33, R34
 class CrossString {
   public:
     explicit CrossString(const Load& load) : load_role_(load.role) {}
@@ -33,10 +33,10 @@ class CrossString {
     void on(const EnableSecondChanceCommand& command, Outbox& out);
     void on(const SelectPrimeCommand& command, Outbox& out);
     void on(const ClockTick& tick, Outbox& out);
-    /// Second Chance has landed the vehicle: nothing is left to do.
+    /// Second Chance has landed the vehicle: it turns off.
     void on(const EdlFinished& finished, Outbox& out);
 
-    /// Whether the bus may listen to this computer as Second Chance.
+    /// Whether this computer is in control as Second Chance, so that the bus may listen to it.
     bool in_control() const { return in_control_ && !off_; }
 
   private:

@@ -10,12 +10,13 @@
 #include <span>
 #include <type_traits>
 
-// How a module's state goes from one computer to the other: each class says once, in `carry(exchange)`, which of its
-// numbers the other must know, and the same line writes them and reads them. R33
+// Transfer of a module's state between computers. Each class lists in `carry(exchange)` the values that the other
+// computer needs; the same line writes and reads them. R33
 namespace aeolis::flight {
 
-/// Numbers one after another, as the processor holds them: both computers are the same and run the same build, which
-/// the frame around the state checks. Past the end nothing is written or read, and ok() is false.
+/// Writes or reads values one after another, in the processor's representation.
+/// Both computers are of the same type and run the same build, which the frame around the state checks. Past the end
+/// nothing is written or read, and ok() is false.
 template <typename Octet>
 class StateExchange {
   public:
@@ -71,7 +72,7 @@ class StateExchange {
             ok_ = false;
             return;
         }
-        // -fno-builtin would make each of these a call; some hundred a cycle.
+        // -fno-builtin would turn each of these into a call; there are some hundred a cycle.
         if constexpr (writing)
             __builtin_memcpy(octets_.data() + at_, &value, sizeof value);
         else

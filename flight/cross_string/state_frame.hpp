@@ -6,19 +6,20 @@
 #include "flight/devices/device_messages.hpp"
 #include "flight/kernel/state_parts.hpp"
 
-// A computer's EDL state as it crosses to the other computer, and as it is kept over a restart.
+// A computer's EDL state, framed for the line to the other computer and for storage over a restart.
 //
-//   dictionary id 2 | size of all 2 | header | state | checksum 8
+//   dictionary id 2 | size of the frame 2 | header | state | checksum 8
 namespace aeolis::flight {
 
-/// What others must know of a state without reading it.
+/// Properties of a state that others use without reading the state itself.
 struct StateHeader {
     Sclk time;
-    std::uint32_t revision = 0;  ///< grows with what a restart must not forget: parameters, "do edl", timepoints
+    std::uint32_t revision = 0;  ///< changes with everything that must survive a restart: parameters, "do edl",
+                                 ///< timepoints
     bool begun = false;          ///< "do edl" was accepted
     bool pre_edl = true;
     bool touchdown = false;
-    UnitSelection units{};  ///< that are addressed
+    UnitSelection units{};  ///< units addressed
 
     template <typename Exchange>
     void carry(Exchange& exchange) {
@@ -26,13 +27,13 @@ struct StateHeader {
     }
 };
 
-/// Whole frames only: made by this build of the flight software, of the right size, not one bit changed.
+/// A whole frame: from this build of the flight software, of the right size, with a correct checksum.
 class StateFrame {
   public:
     std::span<const std::uint8_t> octets() const { return octets_.span(); }
     bool empty() const { return octets_.empty(); }
 
-    /// The state that `carry` says, framed.
+    /// Frames the state that `state.carry` lists.
     template <typename State>
     static StateFrame of(StateHeader header, State& state) {
         std::array<std::uint8_t, state_octets_max> room{};
@@ -44,14 +45,14 @@ class StateFrame {
         return frame;
     }
 
-    /// None when the octets are no whole frame of ours.
+    /// None when the octets are not a whole frame of this build.
     static std::optional<StateFrame> read(std::span<const std::uint8_t> octets);
 
     StateHeader header() const { return header_of(octets()); }
-    /// Of octets that are a frame, or may be.
+    /// Header of octets that may or may not be a frame.
     static StateHeader header_of(std::span<const std::uint8_t> octets);
 
-    /// False when the state does not fill the frame: then nothing may be believed.
+    /// Reads the state. False when it does not fill the frame exactly: then `state` must not be used.
     template <typename State>
     [[nodiscard]] bool restore(State& state) const {
         StateHeader header;
@@ -60,7 +61,7 @@ class StateFrame {
         return exchange.ok() && exchange.size() == content().size();
     }
 
-    /// In pieces that fit a message, in order.
+    /// Sends the frame in parts that fit a message, in order.
     template <typename Send>
     void in_parts(Send&& send) const {
         state_parts(octets(), header().time, send);
@@ -78,13 +79,13 @@ class StateFrame {
     FixedVector<std::uint8_t, state_octets_max> octets_;
 };
 
-/// Puts pieces together again. One that is out of order drops what came before it.
+/// Reassembles parts. A part that is out of order discards the parts before it.
 class StateAssembly {
   public:
-    /// The frame that this piece completes, if it does.
+    /// The frame that this part completes, if it does.
     std::optional<StateFrame> on(const StatePart& part);
 
-    /// The same for who only passes it on: true when this piece is the last, octets() then being all, unread.
+    /// For forwarding without reading: true when this part is the last and octets() holds the whole frame, unchecked.
     bool take(const StatePart& part);
     std::span<const std::uint8_t> octets() const { return octets_.span(); }
 

@@ -6,12 +6,12 @@
 
 namespace aeolis::flight {
 
-/// Cruise attitude control, as much of it as EDL needs: the attitude from the star scanner, with which navigation
-/// starts. It ends with the cruise stage, and Second Chance's load has none. R10, R33
+/// Cruise attitude control, reduced to what EDL needs: the star scanner's attitude, from which navigation starts. It
+/// ends with the cruise stage, and Second Chance's load does not contain it. R10, R33
 ///
 /// In      CruiseAttitude (interrupt), once a second until the cruise stage goes
 /// Out     CruiseAttitude to Edl
-/// Faults  a quaternion that is none is dropped and reported (CRUISE_ATTITUDE_UNUSABLE): the one before it stays
+/// Faults  an invalid quaternion is dropped and reported (CRUISE_ATTITUDE_UNUSABLE): the previous one stays in use
 class CruiseAttitudeControl {
   public:
     explicit CruiseAttitudeControl(const Load&) {}

@@ -6,13 +6,13 @@
 
 namespace aeolis::flight {
 
-/// The descent engines and the bridle's brake, on the 64 Hz bus. In the rate group: it confirms every tick, idle or
-/// not. R5, R10, R22
+/// Manager of the descent engines and the bridle's brake, on the 64 Hz bus. R5, R10, R22 In the rate group: it confirms
+/// every tick, idle or not.
 ///
 /// In      RunEngines, PayOutBridle, EngineReply and BridleReply (interrupts), Tick, UnitsSelected
-/// Out     engine commands at its tick; EngineReply and BridleReply on to Edl; ActionReply when the engines start to
-///         run, and when the bridle is payed out; Confirm
-/// Faults  engines that do not run and a bridle that stops answer nobody: the timeline's time-out does
+/// Out     engine commands at its tick; EngineReply and BridleReply forwarded to Edl; ActionReply when the engines
+///         start to run, and when the bridle is payed out; Confirm
+/// Faults  if the engines do not run or the bridle stops, no reply is sent: the timeline's time-out handles it
 class DescentEngines {
   public:
     explicit DescentEngines(const Load&) {}

@@ -11,24 +11,25 @@
 #include <cstdint>
 #include <optional>
 
-// What crosses the border between a flight computer and the vehicle it flies. The simulation knows flight by this
-// folder and by the computer's one step, and nothing else. Plain numbers in SI; no Eigen types, no pointers.
+// Inputs and outputs of a flight computer, at its border with the vehicle. The simulation knows this folder and the
+// computer's one step, and nothing else of flight. Plain numbers in SI; no Eigen types, no pointers.
 //
-// Frames (docs/frames_and_units.md): M is fixed to rotating Mars, origin its centre, z along the spin axis, x through
-// the prime meridian. B is fixed to the vehicle, z along the symmetry axis: towards the heatshield in entry, down in
-// powered descent. A quaternion q_MB is {w, x, y, z}, unit, and turns components in B into components in M.
+// Frames (docs/frames_and_units.md): M is fixed to rotating Mars, origin at its centre, z along the spin axis, x
+// through the prime meridian. B is fixed to the vehicle, z along the symmetry axis: towards the heatshield in entry,
+// down in powered descent. A quaternion q_MB is {w, x, y, z}, unit, and transforms components in B into components in
+// M.
 namespace aeolis::flight {
 
 // ---- redundant units -------------------------------------------------------------------------------------------
 
-/// One of the two units of a redundant device. Which one is used is commanded before EDL and stays. R2
+/// One of the two units of a redundant device. The choice is commanded before EDL and then fixed. R2
 enum class Unit : std::uint8_t { a, b };
-/// The devices that are there twice: a list of ours. Both units of one do the same to the vehicle: they are
-/// cross-coupled to the same pyros, thrusters, engines and antennas; a sensor has errors of its own.
+/// Devices with two units; the list is our assumption. Both units of a device act on the same hardware.
+/// They are cross-coupled to the same pyros, thrusters, engines and antennas; each unit of a sensor has its own errors.
 enum class Device : std::uint8_t { radar, imu, pyro, descent_engines, thrusters, power, uhf, x_band };
 inline constexpr std::size_t device_count = 8;
 
-/// The unit of each device that is addressed.
+/// The addressed unit of each device.
 class UnitSelection {
   public:
     Unit operator[](Device device) const { return units_[static_cast<std::size_t>(device)]; }
@@ -46,17 +47,17 @@ class UnitSelection {
 
 // ---- to the computer -------------------------------------------------------------------------------------------
 
-/// One reading of the IMU, 200 Hz: what it integrated since the reading before, in B.
+/// One reading of the IMU, 200 Hz: the increments since the previous reading, in B.
 struct ImuSample {
     std::uint32_t count = 0;                  ///< 200 Hz count since the unit was started
     std::array<double, 3> delta_v_mps{};      ///< specific force × time
     std::array<double, 3> delta_angle_rad{};  ///< rate relative to inertial space × time
 };
 
-/// Attitude at start, from cruise attitude determination (star scanner): sent once a second until separation.
+/// Initial attitude from cruise attitude determination (star scanner), sent once a second until separation.
 struct CruiseAttitude {
     std::array<double, 4> q_MB{1, 0, 0, 0};
-    Sclk at{};  ///< the tick of which it is
+    Sclk at{};  ///< the tick at which it is valid
 };
 
 /// One velocity and slant-range measurement of the landing radar along one beam.
@@ -65,7 +66,7 @@ struct RadarBeam {
     std::array<double, 3> direction_B{};  ///< unit, from the vehicle towards the ground
     bool valid = false;
     double range_m = 0.0;
-    double range_rate_mps = 0.0;  ///< positive: the range grows
+    double range_rate_mps = 0.0;  ///< positive: increasing range
 };
 
 enum class PyroId : std::uint8_t {
@@ -86,36 +87,36 @@ enum class PyroId : std::uint8_t {
 };
 inline constexpr std::size_t pyro_count = 14;
 
-/// A device says that what was asked of it is done, or that it will not do it. A device that does not answer says
-/// nothing: the bus then brings nothing, and only a time-out tells.
+/// Reply of a pyro controller: the pyro fired, or the controller refuses to fire it.
+/// A device that does not answer sends nothing over the bus; only a time-out shows it.
 struct PyroReply {
     PyroId pyro{};
     bool fired = false;
-    Unit unit = Unit::a;  ///< that answered
+    Unit unit = Unit::a;  ///< the unit that answered
 };
 enum class SwitchId : std::uint8_t { radar, uhf, descent_imu, entry_antenna, parachute_antenna, thruster_heaters };
 inline constexpr std::size_t switch_count = 6;
-/// Those that the telecom units hold; the power unit holds the others.
+/// Whether the telecom units hold the switch; the power unit holds the others.
 constexpr bool is_telecom(SwitchId id) {
     return id == SwitchId::uhf || id == SwitchId::entry_antenna || id == SwitchId::parachute_antenna;
 }
-/// The device whose unit is told to switch `id`.
+/// The device whose unit is commanded to switch `id`.
 constexpr Device switched_by(SwitchId id) {
     if (!is_telecom(id)) return Device::power;
     return id == SwitchId::uhf ? Device::uhf : Device::x_band;
 }
 struct SwitchReply {
     SwitchId id{};
-    bool on = false;  ///< as it is now
+    bool on = false;  ///< present state
     Unit unit = Unit::a;
     bool refused = false;
 };
 struct EngineReply {
     bool running = false;
-    double thrust_N = 0.0;  ///< sum of the engines, as their pressure sensors tell
+    double thrust_N = 0.0;  ///< sum of the engines, from their pressure sensors
 };
 struct ThrusterReply {
-    bool enabled = false;  ///< as it is now
+    bool enabled = false;  ///< present state
     Unit unit = Unit::a;
     bool refused = false;
 };
@@ -123,37 +124,37 @@ struct BridleReply {
     double payed_out_m = 0.0;  ///< 0 … 7.5
 };
 
-/// The spacecraft's own monitors, outside EDL: whether something is broken that must be put right first. R24
+/// Report of the spacecraft's own monitors, outside EDL: whether a fault must be repaired first. R24
 struct SystemFaultReport {
     bool present = false;
 };
 
-/// A telecommand packet from the receiver, as it came: nothing about it is trusted.
+/// A telecommand packet from the receiver, as received and unchecked.
 struct UplinkPacket {
     std::array<std::uint8_t, packet_octets_max> octets{};
     std::uint16_t size = 0;
 };
 
-/// A computer's EDL state as it crosses the line between the two, or lies in non-volatile memory: a frame that only
-/// flight software reads (flight/cross_string). 2560 octets are ours: half as much again as it takes.
+/// A computer's EDL state on the line between computers or in non-volatile memory: a frame that only flight reads.
+/// See flight/cross_string. The size is chosen: one and a half times what the state takes.
 inline constexpr std::size_t state_octets_max = 2560;
 using StateOctets = FixedVector<std::uint8_t, state_octets_max>;
 
-/// Everything that reaches the computer with one tick of its clock.
+/// All inputs of the computer with one tick of its clock.
 struct DeviceInputs {
     Sclk now;                       ///< the tick
     bool prime_is_b = false;        ///< the latch that designates the prime computer. R1
-    StateOctets cross_string;       ///< what the other computer sent in the cycle before; empty: nothing
-    StateOctets restart_record;     ///< once, in the first cycle after a restart, if there is one
-    FixedVector<ImuSample, 4> imu;  ///< 3 or 4 in a cycle
+    StateOctets cross_string;       ///< sent by the other computer in the previous cycle; empty: nothing
+    StateOctets restart_record;     ///< once, in the first cycle after a restart, if stored
+    FixedVector<ImuSample, 4> imu;  ///< 3 or 4 per cycle
     std::optional<CruiseAttitude> cruise_attitude;
     FixedVector<RadarBeam, 6> radar;  ///< each beam at 20 Hz
     FixedVector<PyroReply, 8> pyro_replies;
     FixedVector<SwitchReply, 8> switch_replies;
-    std::optional<EngineReply> engines;             ///< each cycle once valves are open
+    std::optional<EngineReply> engines;             ///< each cycle once the valves are open
     std::optional<ThrusterReply> thrusters;         ///< on change
     std::optional<BridleReply> bridle;              ///< each cycle after rover separation
-    std::optional<SystemFaultReport> system_fault;  ///< each second while there is one, and once when it is over
+    std::optional<SystemFaultReport> system_fault;  ///< each second during a fault, and once when it is over
     FixedVector<UplinkPacket, 2> uplink;
     std::uint32_t nvm_used_octets = 0;
     std::uint32_t nvm_capacity_octets = 0;
@@ -161,18 +162,18 @@ struct DeviceInputs {
 
 // ---- from the computer -----------------------------------------------------------------------------------------
 
-/// How long each entry thruster burns in the cycle that begins when this arrives; a driver that is told nothing closes
-/// its valves. flight/devices/effectors.hpp says where they are.
+/// Burn time of each entry thruster in the cycle that begins when this arrives. Without a command the valves close.
+/// flight/devices/effectors.hpp gives the thrusters' positions.
 struct ThrusterCommand {
     std::array<double, 8> on_s{};  ///< 0 … 1/64 s
     bool operator==(const ThrusterCommand&) const = default;
 };
 struct EngineCommand {
     bool ignited = false;
-    std::array<double, 8> throttle{};  ///< of each engine, 0 … 1 of its largest thrust
+    std::array<double, 8> throttle{};  ///< of each engine, 0 … 1 of its maximum thrust
 };
 
-/// One packet to be kept for ever, or to be sent.
+/// One packet to be recorded or sent.
 struct PacketOut {
     std::array<std::uint8_t, packet_octets_max> octets{};
     std::uint16_t size = 0;
@@ -189,26 +190,26 @@ struct SwitchCommand {
 
 using SwitchCommands = FixedVector<SwitchCommand, 8>;
 
-/// Everything that leaves the computer in one cycle.
+/// All outputs of the computer in one cycle.
 struct DeviceOutputs {
-    UnitSelection units;           ///< to which the commands of this cycle are addressed
-    FixedVector<PyroId, 8> pyros;  ///< fire
-    SwitchCommands switches;       ///< of power
-    SwitchCommands telecom;        ///< of the radio
+    UnitSelection units;           ///< to which this cycle's commands are addressed
+    FixedVector<PyroId, 8> pyros;  ///< to fire
+    SwitchCommands switches;       ///< of the power unit
+    SwitchCommands telecom;        ///< of the telecom units
     std::optional<bool> thrusters_enabled;
     ThrusterCommand thrusters;
     EngineCommand engines;
     bool pay_out_bridle = false;
-    std::optional<ToneId> tone;             ///< what X-band sends during this cycle; none: carrier only
+    std::optional<ToneId> tone;             ///< sent by X-band during this cycle; none: carrier only
     OctetBuffer<65536> nvm;                 ///< packets to append to the recording, in order
-    OctetBuffer<8192> uhf;                  ///< PLTUs to radiate; their packets are a subset of what was recorded
+    OctetBuffer<8192> uhf;                  ///< PLTUs to radiate; their packets are a subset of the recorded ones
     StateOctets cross_string;               ///< to the other computer; empty: nothing in this cycle
-    StateOctets restart_record;             ///< to be kept in place of the one before; empty: keep
-    std::optional<bool> designate_b_prime;  ///< set the latch
+    StateOctets restart_record;             ///< replaces the stored record; empty: keep that
+    std::optional<bool> designate_b_prime;  ///< sets the latch
     bool in_command = false;                ///< the bus listens to this computer
-    bool wants_restart_record = false;      ///< starting: with the next tick, please
+    bool wants_restart_record = false;      ///< requests the restart record with the next tick, while starting
 
-    /// Back to nothing commanded, for the next cycle; units and engines keep their last command.
+    /// Clears the commands for the next cycle; units and engines keep their last command.
     void begin_cycle() {
         pyros.clear();
         switches.clear();

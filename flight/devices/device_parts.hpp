@@ -8,13 +8,13 @@
 
 namespace aeolis::flight {
 
-/// What leaves the computer, device by device: calls `visit(DeviceLine, part)` for each. A part that DeviceOutputs gets
-/// and this does not name, or that owners.csv gives no owner, does not compile. R5
+/// Calls `visit(DeviceLine, part)` for each part of a computer's outputs, device by device.
+/// A member of DeviceOutputs that is missing here, or that has no owner in owners.csv, does not compile. R5
 template <typename Outputs, typename Visit>
 void each_device(Outputs& outputs, Visit&& visit) {
     auto& [units, pyros, switches, telecom, thrusters_enabled, attitude, engines, pay_out_bridle, tone, nvm, uhf,
            cross_string, restart_record, designate_b_prime, in_command, wants_restart_record] = outputs;
-    static_cast<void>(units);  // each manager writes the place of its own device: no line by itself
+    static_cast<void>(units);  // not a line by itself: each manager sets the unit of its own device
     const std::tuple parts{
         std::pair{DeviceLine::pyros, &pyros},
         std::pair{DeviceLine::switches, &switches},

@@ -5,9 +5,9 @@
 #include <cstddef>
 #include <numbers>
 
-// Where the thrusters and the descent engines sit and which way they push: the one drawing that the software steers by
-// and the simulated vehicle is built from. Frame B, from the centre of mass [m]. Nothing of it is published: all of it
-// is ours, but for the numbers of effectors and their forces. [facts] Vehicle
+// Positions and directions of thrusters and descent engines, shared by the flight software and the simulated vehicle.
+// Frame B, from the centre of mass [m]. Only the numbers of effectors and their forces are published; everything else
+// is our assumption. [facts] Vehicle
 namespace aeolis::flight {
 
 struct Effector {
@@ -18,11 +18,11 @@ struct Effector {
 inline constexpr std::size_t thruster_count = 8;
 inline constexpr std::size_t engine_count = 8;
 inline constexpr double thruster_force_N = 302.0;
-inline constexpr double thruster_least_on_s = 0.004;  ///< a valve cannot be quicker. Ours
+inline constexpr double thruster_least_on_s = 0.004;  ///< shortest on-time of a valve; our assumption
 
 namespace effector_detail {
 
-/// Unit vectors at a mount, by its azimuth about z.
+/// Outward unit vector at a mount, by its azimuth about z.
 struct Mount {
     double outward_x = 0.0, outward_y = 0.0;
 };
@@ -34,8 +34,8 @@ constexpr Mount mount(std::size_t number) {
 
 }  // namespace effector_detail
 
-/// Entry thrusters: at four mounts on the backshell two each, which push against each other along the rim. Even:
-/// towards growing azimuth (right-handed about z); odd: against it.
+/// Entry thrusters: two at each of four mounts on the backshell, pushing in opposite directions along the rim.
+/// Even: towards increasing azimuth (right-handed about z); odd: towards decreasing.
 constexpr std::array<Effector, thruster_count> entry_thrusters() {
     constexpr double radius_m = 1.6, behind_m = 1.5;
     std::array<Effector, thruster_count> all{};
@@ -48,8 +48,9 @@ constexpr std::array<Effector, thruster_count> entry_thrusters() {
     return all;
 }
 
-/// Descent engines: at four corners two each, canted a little along the rim, so that they turn the vehicle about z too.
-/// Numbered so that every other one, the four that fly the sky crane, are one of each corner and balance about z.
+/// Descent engines: two at each of four corners, canted slightly along the rim so that they also turn the vehicle about
+/// z.
+/// Numbered so that every other one is used in the sky crane: one in each corner, balanced about z.
 constexpr std::array<Effector, engine_count> descent_engines() {
     constexpr double radius_m = 1.5, sine = 0.087, cosine = 0.9962082;  // 5°
     constexpr double senses[] = {1.0, -1.0, -1.0, 1.0, 1.0, -1.0, -1.0, 1.0};
@@ -62,7 +63,7 @@ constexpr std::array<Effector, engine_count> descent_engines() {
     return all;
 }
 
-/// Radii of gyration [m]: about z, and about any axis across it. Products of inertia are left out.
+/// Radii of gyration [m]: about z, and about any axis across it. Products of inertia are neglected.
 struct Gyration {
     double along_z_m = 0.0, across_m = 0.0;
 };

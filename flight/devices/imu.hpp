@@ -6,13 +6,13 @@
 
 namespace aeolis::flight {
 
-/// The inertial measurement unit, on a link of its own at 200 Hz: what came since the last tick is in GNC's hands in
-/// the same cycle. In the rate group: it confirms every tick, samples or not. R2, R5, R10, R22
+/// Manager of the inertial measurement unit, which has its own link at 200 Hz. R2, R5, R10, R22 Samples received since
+/// the last tick reach GNC in the same cycle. In the rate group: it confirms every tick, with samples or without.
 ///
 /// In      ImuReadings (interrupt; 3 or 4 samples a cycle), Tick, UnitsSelected
-/// Out     ImuReadings to Edl before its turn; Confirm
-/// Faults  in each whole second fewer samples than 200 are reported with their number (IMU_SAMPLES_MISSING): once a
-///         second at most, and not in the second in which the unit was changed
+/// Out     ImuReadings to Edl before Edl's turn, and to EdlComm; Confirm
+/// Faults  fewer than 200 samples in a whole second are reported with their number (IMU_SAMPLES_MISSING), except in the
+///         second in which the unit changed
 class ImuManager {
   public:
     explicit ImuManager(const Load&) {}
@@ -26,7 +26,7 @@ class ImuManager {
 
     ImuReadings latest_;
     Unit unit_ = Unit::a;
-    bool whole_second_ = false;  // the second under way was counted from its start
+    bool whole_second_ = false;  // the current second was counted from its start
     std::uint16_t samples_in_second_ = 0;
 };
 

@@ -6,12 +6,12 @@
 
 namespace aeolis::flight {
 
-/// Power switching, on the 8 Hz bus: radar, IMU, thruster heaters. Outside the rate group. R5, R10, R28
+/// Manager of power switching, on the 8 Hz bus: radar, IMU, thruster heaters. Outside the rate group. R5, R10, R28
 ///
 /// In      SetSwitch, SwitchReply (interrupt), UnitsSelected
 /// Out     switch commands; ActionReply to Edl when the switch is as commanded
-/// Faults  a switch that refuses is reported (DEVICE_REFUSED) and answers nobody: the timeline's time-out does. A reply
-///         that was not due, or from the other unit, is reported (REPLY_UNEXPECTED)
+/// Faults  a refusal is reported (DEVICE_REFUSED) and no ActionReply is sent: the timeline's time-out handles it. A
+///         reply that was not due, or from the other unit, is reported (REPLY_UNEXPECTED)
 class PowerManager {
   public:
     explicit PowerManager(const Load&) {}

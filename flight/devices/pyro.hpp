@@ -6,12 +6,14 @@
 
 namespace aeolis::flight {
 
-/// The pyro controllers, on the 64 Hz bus. In the rate group: it confirms every tick, idle or not. R5, R10, R22
+/// Manager of the pyro controllers, on the 64 Hz bus. In the rate group: it confirms every tick, idle or not. R5, R10,
+/// R22
 ///
 /// In      FirePyro, PyroReply (interrupt), Tick, UnitsSelected
-/// Out     pyros to fire, at its tick; ActionReply to Edl once the controller says that the pyro fired; Confirm
-/// Faults  a pyro that the controller did not fire (PYRO_NOT_FIRED) answers nobody: the timeline's time-out does. A
-///         reply that was not due, or from the other unit, is reported (REPLY_UNEXPECTED) and goes no further
+/// Out     pyros to fire, at its tick; ActionReply to Edl once the controller reports that the pyro fired; Confirm
+/// Faults  if the controller did not fire a pyro (PYRO_NOT_FIRED), no ActionReply is sent: the timeline's time-out
+///         handles it. A reply that was not due, or from the other unit, is reported (REPLY_UNEXPECTED) and not
+///         forwarded
 class PyroManager {
   public:
     explicit PyroManager(const Load&) {}

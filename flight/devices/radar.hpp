@@ -6,11 +6,11 @@
 
 namespace aeolis::flight {
 
-/// The landing radar, on the 64 Hz bus. In the rate group: it confirms every tick, idle or not. R5, R10, R22
+/// Manager of the landing radar, on the 64 Hz bus. In the rate group: it confirms every tick, idle or not. R5, R10, R22
 ///
 /// In      RadarReturns (interrupt), Tick, UnitsSelected
 /// Out     RadarReturns to EdlBg, once a cycle when there are any; Confirm
-/// Faults  returns that do not come are missed by EdlBg, which needs them (RADAR_LOST)
+/// Faults  missing returns are detected by EdlBg, which needs them (RADAR_LOST)
 class RadarManager {
   public:
     explicit RadarManager(const Load&) {}

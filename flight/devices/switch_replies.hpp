@@ -5,13 +5,13 @@
 
 namespace aeolis::flight {
 
-/// Which switches have been told something and not answered yet: what power and telecom have in common, and all that
-/// either knows of time. Whether an answer comes too late is the timeline's question.
+/// Switch commands that have not been answered yet; shared by the power and telecom managers.
+/// It keeps no time: the timeline decides whether an answer is too late.
 class SwitchReplies {
   public:
     /// Puts `command` on its owner's part of the bus, or reports that there is no room (SWITCH_QUEUE_FULL).
     void command(const SetSwitch& command, SwitchCommands& bus, Outbox& out);
-    /// Turns a reply into an answer for the timeline, or into a report: refused, or not due, or from another unit.
+    /// Turns a reply into an answer for the timeline, or into a report: refused, not due, or from the other unit.
     void reply(const SwitchReply& reply, Unit selected, Outbox& out);
 
   private:

@@ -6,12 +6,13 @@
 
 namespace aeolis::flight {
 
-/// The thruster drivers, on the 64 Hz bus. In the rate group: it confirms every tick, idle or not. R5, R10, R22
+/// Manager of the thruster drivers, on the 64 Hz bus. In the rate group: it confirms every tick, idle or not. R5, R10,
+/// R22
 ///
 /// In      FireThrusters, EnableThrusters, ThrusterReply (interrupt), Tick, UnitsSelected
 /// Out     on-times and enable commands, at its tick, once; ActionReply to Edl when the driver is as commanded; Confirm
-/// Faults  a driver that refuses is reported (DEVICE_REFUSED) and answers nobody: the timeline's time-out does. A reply
-///         that was not due, or from the other unit, is reported (REPLY_UNEXPECTED)
+/// Faults  a refusal is reported (DEVICE_REFUSED) and no ActionReply is sent: the timeline's time-out handles it. A
+///         reply that was not due, or from the other unit, is reported (REPLY_UNEXPECTED)
 class Thrusters {
   public:
     explicit Thrusters(const Load&) {}
@@ -23,9 +24,9 @@ class Thrusters {
     void on(const Tick& tick, Outbox& out);
 
   private:
-    ThrusterCommand thrusters_;    // of the next tick, then none
+    ThrusterCommand thrusters_;    // for the next tick only
     std::optional<bool> enable_;   // to be commanded at the next tick
-    std::optional<bool> awaited_;  // what the reply that is due should say
+    std::optional<bool> awaited_;  // the state that the pending reply should report
     Unit unit_ = Unit::a;
 };
 

@@ -6,13 +6,13 @@
 
 namespace aeolis::flight {
 
-/// The one owner of the choice between redundant units. Each device manager addresses the unit that it is told; none
-/// changes over by itself, and from "do edl" on the choice stands: EDL has no time to switch. R2, R5
+/// Selects between redundant units; the only module that may. Each device manager addresses the unit selected here. No
+/// manager changes over by itself. From "do edl" on the choice is fixed: EDL has no time to switch. R2, R5
 ///
-/// In      SelectUnitsCommand; EdlBegun and StandBy from Edl; ClockTick; UnitsSelected (as prime held them, for a
-///         computer that takes over)
-/// Out     UnitsSelected to every device manager, and to Edl, which tells the other computer; CommandOutcome; channels
-///         of the choice, each 10 s and when it changes, but none from a computer that only follows or stands by
+/// In      SelectUnitsCommand; EdlBegun and StandBy from Edl; ClockTick; UnitsSelected (prime's choice, for a computer
+///         that takes over)
+/// Out     UnitsSelected to every device manager, and to Edl, which forwards it to the other computer; CommandOutcome;
+///         channels of the choice every 10 s and on change, but none while this computer only follows or stands by
 /// Faults  a selection after "do edl" is refused (wrong_phase): nothing is changed
 class UnitSelector {
   public:
@@ -29,7 +29,7 @@ class UnitSelector {
   private:
     void select(const UnitSelection& units, Outbox& out);
 
-    UnitSelection selected_;  // A of each, until ground says otherwise
+    UnitSelection selected_;  // A of each, until ground commands otherwise
     bool edl_begun_ = false;
     bool reports_;
 };

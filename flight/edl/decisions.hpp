@@ -8,27 +8,27 @@
 
 #include <optional>
 
-// What GNC starts, in the words of the timeline and of the ground: anchor, event, explanation. R17, R38
+// Announces GNC's triggers to timeline and ground: anchor, event, explanation. R17, R38
 namespace aeolis::flight {
 
 Decision decision_of(gnc::Trigger trigger);
 
-/// The anchor that becomes defined; none where nothing on the timeline waits for it.
+/// The anchor that becomes defined; none when no timepoint depends on the trigger.
 std::optional<AnchorId> anchor_of(gnc::Trigger trigger);
 
 void announce(gnc::Trigger trigger, const gnc::Output& gnc, Outbox& out);
 void announce_bank_reversal(const gnc::Output& gnc, Outbox& out);
 
-/// The conditions that led to the decision, with their values and bounds; and how often it was held untold before.
+/// Explains the decision by its conditions, with values and bounds, and counts the held explanations not sent before.
 void explain(gnc::Trigger trigger, const gnc::Output& gnc, std::uint16_t suppressed, Outbox& out);
 
-/// What GNC is near to deciding, and which condition is missing.
+/// Explains triggers that are near, and which of their conditions are missing.
 void explain_held(const gnc::Output& gnc, HeldExplanations& held, Outbox& out);
 
-/// What the timeline waits for when its time has come: its minimum offset, or a reply.
+/// Explains why the timeline waits although its time has come: for its minimum offset, or for a reply.
 void explain_held(const Timeline& timeline, HeldExplanations& held, Outbox& out);
 
-/// Says when the largest sensed deceleration of the entry has passed.
+/// Announces the largest sensed deceleration of the entry once it has passed.
 class PeakDeceleration {
   public:
     void watch(const gnc::Output& gnc, Outbox& out);
@@ -45,7 +45,7 @@ class PeakDeceleration {
     bool passed_ = false;
 };
 
-/// Why "do edl" was accepted or refused. R23
+/// Explains why "do edl" was accepted or refused. R23
 void explain_do_edl(std::optional<CommandRefusal> refused, MaybeTime entry, MaybeTime first_desired, Outbox& out);
 
 }  // namespace aeolis::flight

@@ -15,17 +15,17 @@
 
 namespace aeolis::flight {
 
-/// EdlMain: the one thread of EDL. Each 64 Hz cycle it runs the timeline, GNC exactly once, and the timeline again, so
-/// that what GNC decides happens in the same cycle. R15, R17, R18, R47
+/// EdlMain: the one thread of EDL. R15, R17, R18, R47 Each 64 Hz cycle it runs the timeline, GNC exactly once, and the
+/// timeline again, so that GNC's decisions take effect in the same cycle.
 ///
-/// In      StatePart and Resume: go on from a state of another computer, or of before a restart. R32, R33
+/// In      StatePart and Resume: continue from the state of another computer, or from before a restart. R32, R33
 ///         Tick; ImuReadings, EngineReply, BridleReply, CruiseAttitude, RadarSolution; ActionReply;
 ///         ParametersUpdate, DoEdlCommand, SetTimepointOffsetCommand, SetAnchorOffsetCommand; InhibitEdl
-/// Out     actions to the managers of devices; tones; events, firings, explanations and channels to EdlComm; Confirm
-/// Gate    nothing runs before parameters came and then "do edl", in late cruise, and not too late for it. R23
-/// Roles   prime flies, and tells its state each cycle; Second Chance waits with its IMU readings at hand until it must
-///         take over; a prime that was restarted after pre-EDL stands by. R33, R34
-///         Before the end of pre-EDL system fault protection can hold all of it, afterwards it cannot. R24
+/// Out     actions to the device managers; tones; events, firings, explanations and channels to EdlComm; Confirm
+/// Gate    nothing runs before parameters and then "do edl" were received, the latter in late cruise and in time. R23
+/// Roles   prime flies, and sends its state each cycle; Second Chance keeps recent IMU readings until it must take
+///         over; a prime that was restarted after pre-EDL stands by. R33, R34 Until the end of pre-EDL, system fault
+///         protection can hold all of it; afterwards it cannot. R24
 class EdlMain {
   public:
     explicit EdlMain(const Load& load);
@@ -50,7 +50,7 @@ class EdlMain {
     void on(const StatePart& part, Outbox& out);
     void on(const Resume& resume, Outbox& out);
 
-    /// The test venue "all but GNC": `told` counts in the next cycle in place of what EdlGnc would say. R36
+    /// For the test venue "all but GNC": in the next cycle, `told` replaces EdlGnc's output. R36
     void replace_gnc(const gnc::Output& told) { instead_of_gnc_ = told; }
     const gnc::Configuration& configuration() const { return configuration_; }
 
@@ -59,7 +59,7 @@ class EdlMain {
     /// Whether this computer leaves the landing to the other one.
     bool stands_by() const { return activity_ != Activity::flies; }
 
-    /// Not what is told again anyway (a fault that is present), nor what watches only (constraint_monitor.hpp).
+    /// Leaves out values that are reported again anyway (a present fault), and the monitor (constraint_monitor.hpp).
     template <typename Exchange>
     void carry(Exchange& exchange) {
         exchange(parameters_, timeline_, configuration_, gnc_, peak_deceleration_, mode_, phase_, bridle_m_,
@@ -97,23 +97,23 @@ class EdlMain {
     gnc::Configuration configuration_;
     gnc::Output output_;
     std::optional<gnc::Output> instead_of_gnc_;
-    DeviceInputs gnc_inputs_;  // what the device managers sent for this cycle
+    DeviceInputs gnc_inputs_;  // inputs from the device managers for this cycle
     StateAssembly assembly_;
     std::optional<StateFrame> state_of_another_;
     std::uint32_t revision_ = 0;
-    FixedQueue<ImuReadings, 64> recent_readings_;  // of the last second: what prime's last state does not hold yet
+    FixedQueue<ImuReadings, 64> recent_readings_;  // of the last second, for what prime's last state does not cover
     double bridle_m_ = 0.0;
     std::optional<command::EDL_SET_PARAMETERS> parameters_;
     PeakDeceleration peak_deceleration_;
     HeldExplanations held_;
     gnc::Mode mode_ = gnc::Mode::off;
     Phase phase_;
-    UnitSelection units_;  // for who takes over; they are no business of EDL's otherwise
+    UnitSelection units_;  // kept only for a computer that takes over
     std::uint32_t cycle_count_ = 0;
     bool inhibited_ = false;
-    bool designation_pending_ = false;  // both computers are about to start anew: nothing begins before that
-    bool refused_to_hold_ = false;      // told once a fault, not once a report
-    // As of the cycle before: their ends are events.
+    bool designation_pending_ = false;  // both computers are about to restart: nothing begins before that
+    bool refused_to_hold_ = false;      // reported once per fault, not once per report
+    // Values of the previous cycle: the ends of these phases are events.
     bool was_pre_edl_ = true;
     bool was_late_cruise_ = false;
 };

@@ -7,13 +7,13 @@
 
 namespace aeolis::flight {
 
-/// The state of the vehicle in the words of the mission: it follows what the timeline did and the mode that GNC is in,
-/// by the transitions of state_machines.csv and no others.
+/// The vehicle's EDL phase, in the mission's terms.
+/// It follows the timeline and GNC's mode, only by the transitions of state_machines.csv.
 class Phase {
   public:
     EdlPhase state() const { return machine_.state(); }
 
-    /// As things stand in this cycle. True when the phase changed.
+    /// Updates the phase for this cycle. True when it changed.
     bool follow(gnc::Mode mode, const gnc::Configuration& configuration, bool late_cruise);
 
     template <typename Exchange>

@@ -11,7 +11,7 @@
 
 namespace aeolis::flight {
 
-/// What EDL_SET_PARAMETERS says, as GNC takes it: angles in radians.
+/// Converts the arguments of EDL_SET_PARAMETERS to GNC's form: angles in radians.
 inline gnc::Solution solution_of(const command::EDL_SET_PARAMETERS& p) {
     constexpr double degree_rad = std::numbers::pi / 180.0;
     gnc::Solution solution;
@@ -30,8 +30,8 @@ inline gnc::Solution solution_of(const command::EDL_SET_PARAMETERS& p) {
     return solution;
 }
 
-/// Whether GNC can fly from there. Each argument of a command is inside its own range already; these are what only
-/// several together show, and what the moment does.
+/// Whether GNC can fly from these parameters.
+/// Each argument is already within its own range. Checked here: combinations of arguments, and their relation to `now`.
 inline bool possible(const command::EDL_SET_PARAMETERS& p, Sclk now) {
     const double radius_m = std::hypot(p.position_x_m, p.position_y_m, p.position_z_m);
     const double speed_mps = std::hypot(p.velocity_x_mps, p.velocity_y_mps, p.velocity_z_mps);

@@ -9,13 +9,13 @@
 
 namespace aeolis::flight {
 
-/// EdlBg: batches radar data into averages over 5 s for the navigation filter, and takes the parameter updates for all
-/// of EDL. Outside the rate group: what it sends arrives at the start of the next cycle. R25, R47
+/// EdlBg: averages radar data over 5 s for the navigation filter, and checks parameter updates for all of EDL. R25, R47
+/// Outside the rate group: its messages arrive at the start of the next cycle.
 ///
 /// In      RadarReturns (64 Hz while the radar is on), NavigatedAttitude, SetParametersCommand, ClockTick
 /// Out     RadarSolution to Edl at 1 Hz, GncRadar; ParametersUpdate to Edl, or the outcome "refused"
-/// Faults  five solutions in a row that do not come, while Edl wants them, are reported once (RADAR_LOST): the averages
-///         outlive the last beam by 5 s, and navigation goes on without
+/// Faults  five consecutive solutions missing, while Edl wants them, are reported once (RADAR_LOST). The averages
+///         outlive the last beam by 5 s; navigation then continues without radar
 class EdlBg {
   public:
     explicit EdlBg(const Load&) {}
@@ -29,12 +29,12 @@ class EdlBg {
     void watch_radar(Sclk now, Outbox& out);
 
     gnc::RadarBatch batch_;
-    RadarReturns latest_;  ///< of this cycle; the attitude that belongs to them comes after them
+    RadarReturns latest_;  ///< of this cycle; their attitude arrives after them
     bool navigated_ = false;
     bool radar_locked_ = false;
     bool radar_lost_ = false;
-    Sclk attitude_at_;  ///< Edl sends the attitude as long as it wants the radar
-    Sclk solved_at_;    ///< the last solution; before the first one, when Edl began to want it
+    Sclk attitude_at_;  ///< Edl sends the attitude while it wants the radar
+    Sclk solved_at_;    ///< time of the last solution; before the first, when Edl began to want one
     std::uint16_t solutions_ = 0;
 };
 

@@ -12,21 +12,22 @@
 
 namespace aeolis::flight {
 
-/// All EDL telemetry: everything is recorded in non-volatile memory, and ground gets a subset of the same packets, bit
-/// for bit, as fast as the link is. R29, R30
+/// All EDL telemetry: records every packet in non-volatile memory (NVM), and sends a subset in real time. R29, R30 The
+/// subset is bit-identical to the recording and limited by the rate of the link.
 ///
 /// In      Record (any module), ImuReadings, PhaseChanged, NvmStatus, ToneStatus, UplinkStatus, ClockTick (64 Hz)
 /// Out     packets to NVM, in order; PLTUs with some of them to the UHF transmitter, within its rate; CommStatus at 1
 ///         Hz; data products
-/// Memory  192 packets wait for the link; see RealtimeQueue for what gives way. Never the recording, never the cycle
-/// Faults  the queue for the link full: said once an episode (UHF_QUEUE_FULL), counted by priority in CommStatus
-///         NVM nearly full: said once (NVM_FULL, and by tone); the last 64 KiB are kept for what goes first
-///         A record that no packet can hold is refused as an unexpected message
-/// Whole packets go together in a Proximity-1 frame, expedited, of this computer's own physical channel. When more
-/// waits, a frame is not sent before it can hold 256 octets (ours: at 8 kb/s a quarter of a second, and 5 % for the
-/// frame itself). What computer B says of itself goes as CommStatusB and SyncStatusB, so that a channel is of one
-/// computer. Records are packets, each with a CRC-16 over all of it; NVM is outside the computer and outlives its
-/// resets.
+/// Memory  192 packets wait for the link; RealtimeQueue decides which are dropped. Neither recording nor cycle suffers
+/// Faults  a full link queue is reported once per episode (UHF_QUEUE_FULL), and drops are counted by priority in
+///         CommStatus
+///         NVM nearly full is reported once (NVM_FULL, and by tone); the last 64 KiB are kept for packets of priority
+///         first A record that no packet can hold is refused as an unexpected message
+/// Frames  A Proximity-1 frame, expedited, on this computer's own physical channel, carries whole packets. While more
+///         wait, a frame is sent only when it can hold 256 octets (chosen: a quarter of a second at 8 kb/s, 5 % frame
+///         overhead)
+/// Names   Computer B reports its own status as CommStatusB and SyncStatusB, so that a channel belongs to one computer
+/// Records are packets, each with a CRC-16; NVM is outside the computer and survives its resets.
 class EdlComm {
   public:
     explicit EdlComm(const Load& load);
@@ -54,7 +55,7 @@ class EdlComm {
     bool append_to_recording(TelemetryPriority priority, const TelemetryPacket& packet, Outbox& out);
     void offer_to_link(const TelemetryPlanRow& plan, Stream& stream, const TelemetryPacket& packet, Outbox& out);
     void radiate(Outbox& out);
-    /// Octets of packets that the next frame is to hold, at least.
+    /// Octets of packets that the next frame must hold, at least.
     std::size_t frame_wanted_octets() const;
     void send_frame(Outbox& out);
     packet::CommStatus status() const;
@@ -67,7 +68,7 @@ class EdlComm {
     std::array<Stream, 128> streams_{};
     RealtimeQueue queue_;
     DataProducts products_;
-    double credit_octets_ = 0.0;  // what the link could have sent and has not yet
+    double credit_octets_ = 0.0;  // octets that the link could have sent so far but has not
     std::uint32_t sent_octets_ = 0;
     std::uint32_t records_ = 0;
     std::uint32_t unrecorded_packets_ = 0;
@@ -75,7 +76,8 @@ class EdlComm {
     bool nvm_full_reported_ = false;
     bool queue_full_reported_ = false;
     ToneStatus tone_;
-    UplinkStatus uplink_{word_of({.lockout = true})};  // as of a dispatcher that has heard nothing
+    UplinkStatus uplink_{word_of({.lockout = true})};  // initial value: the status of a dispatcher that has received
+                                                       // nothing
 };
 
 }  // namespace aeolis::flight

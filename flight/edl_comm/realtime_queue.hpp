@@ -22,23 +22,23 @@ struct TelemetryPacket {
     std::span<const std::uint8_t> span() const { return std::span{octets}.first(size); }
 };
 
-/// What was chosen for the link and waits for it. The most important go first, of equals the oldest. R30
+/// Packets selected for the link and waiting for it. The most important go first; among equals, the oldest. R30
 ///
-/// Memory   192 packets (ours: at 8 kb/s some 20 s of the link). When all are taken the least important gives way, of
-///          equals the oldest: old real time is worth least; a newcomer less important than all that wait does not
-///          enter.
-/// Nothing is lost by that but real time: what is here is in the recording already.
+/// Memory   192 packets (chosen: about 20 s of the link at 8 kb/s). When full, the least important is dropped, among
+///          equals the oldest, because old real-time data is worth least. A packet less important than all that wait is
+///          not queued.
+/// Only real-time data is lost by a drop: every packet here has already been recorded.
 class RealtimeQueue {
   public:
     static constexpr std::size_t packets_max = 192;
 
     RealtimeQueue();
 
-    /// False when a packet had to go for it, or it itself.
+    /// Queues the packet. False when another packet, or this one, had to be dropped.
     bool offer(const TelemetryPacket& packet, TelemetryPriority priority);
 
     bool empty() const { return waiting() == 0; }
-    /// The packet to be sent next; there is one.
+    /// The next packet to send; the queue must not be empty.
     const TelemetryPacket& front() const;
     void pop();
 

@@ -9,7 +9,7 @@
 
 namespace aeolis::flight {
 
-// What a decision looked at; whoever decides outside GNC says it in the same words.
+// Conditions behind a decision; deciders outside GNC use the same functions.
 using gnc::at_least;
 using gnc::at_most;
 using gnc::below;
@@ -19,12 +19,12 @@ constexpr gnc::Condition above(Quantity quantity, double value, double bound) {
 constexpr gnc::Condition is(Quantity quantity, double value, double bound) {
     return {quantity, value, bound, Comparison::eq, value == bound};
 }
-/// Which tone: a name, not an amount.
+/// Names a tone; not a comparison of amounts.
 constexpr gnc::Condition is_tone(Quantity quantity, ToneId tone) {
     return is(quantity, tone.value, tone.value);
 }
 
-/// The packet that tells ground of a decision and its conditions; it has places for four. R38
+/// The packet that explains a decision by its conditions, at most four. R38
 packet::Explanation explanation(Decision decision, ExplanationVerdict verdict, std::uint16_t subject,
                                 std::span<const gnc::Condition> conditions, std::uint16_t suppressed = 0);
 

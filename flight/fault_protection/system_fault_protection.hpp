@@ -6,12 +6,12 @@
 
 namespace aeolis::flight {
 
-/// Asks EDL to make no progress while the spacecraft has a fault that must be put right first, so that neither
-/// disturbs the other. Whether EDL may still be inhibited is EDL's own rule: before the end of pre-EDL only. R24
+/// Holds EDL while the spacecraft has a fault that must be repaired first, so that neither disturbs the other. Edl
+/// itself decides whether it may still be inhibited: only until the end of pre-EDL. R24
 ///
-/// In      SystemFaultReport, each second while there is a fault, and once when it is over
-/// Out     InhibitEdl with each report, so that one that was lost is made good by the next
-/// Faults  the repair itself is the spacecraft's, not modelled here
+/// In      SystemFaultReport, each second during a fault, and once when it is over
+/// Out     InhibitEdl with each report, so that the next one makes up for a lost one
+/// Faults  the repair itself is up to the spacecraft and not modelled here
 class SystemFaultProtection {
   public:
     explicit SystemFaultProtection(const Load&) {}
