@@ -18,7 +18,7 @@ struct Match : Cases... {
     using Cases::operator()...;
 };
 
-/// Takes fields from the front; after the first that is not there whole everything is zero and `ok` is false.
+/// Takes fields from the front. After the first incomplete field, every field is zero and `ok` is false.
 class Fields {
   public:
     explicit Fields(std::span<const std::uint8_t> octets) : rest_(octets) {}
@@ -76,7 +76,7 @@ Parsed<Content> read_directive(Fields fields) {
         metadata.file_octets = fields.word();
         metadata.source_name = fields.text();
         metadata.destination_name = fields.text();
-        content = metadata;  // options may follow: messages to users, requests to the filestore; none is acted on
+        content = metadata;  // options may follow (messages to users, filestore requests); all are ignored
         break;
     }
     case static_cast<std::uint8_t>(Directive::eof): {

@@ -11,7 +11,7 @@ constexpr std::array<std::uint8_t, 2> cltu_start{0xEB, 0x90};
 constexpr std::array<std::uint8_t, 8> cltu_tail{0xC5, 0xC5, 0xC5, 0xC5, 0xC5, 0xC5, 0xC5, 0x79};
 constexpr std::uint8_t cltu_fill = 0x55;
 
-/// Remainder of an octet behind the seven bits so far, for x^7 + x^6 + x^2 + 1; bits 7 … 1 hold it.
+/// Remainders by x^7 + x^6 + x^2 + 1, in bits 7 … 1, indexed by the remainder so far xor the next octet.
 constexpr std::array<std::uint8_t, 256> make_bch_table() {
     std::array<std::uint8_t, 256> table{};
     for (unsigned octet = 0; octet < 256; ++octet) {

@@ -23,8 +23,8 @@ constexpr std::array<Word, 256> make_table() {
 }
 
 constexpr auto table16 = make_table<std::uint16_t, 0x1021>();
-/// Table k is that of an octet with k octets of zero behind it, so that eight octets are taken in one step: a frame's
-/// CRC is most of the work of searching a stream for frames.
+/// Table k is for an octet followed by k zero octets, so that one step takes eight octets. Finding frames in a stream
+/// spends most of its time on their CRCs.
 constexpr std::array<std::array<std::uint32_t, 256>, 8> make_tables32() {
     std::array<std::array<std::uint32_t, 256>, 8> tables{};
     tables[0] = make_table<std::uint32_t, 0x00A00805>();

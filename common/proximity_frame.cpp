@@ -46,7 +46,7 @@ Parsed<ProximityFrame> read_pltu(std::span<const std::uint8_t> pltu) {
     const auto frame =
         read_proximity_frame(pltu.subspan(pltu_marker.size(), pltu.size() - pltu_marker.size() - pltu_crc_octets));
     if (!frame) return frame;
-    // A frame followed by its own CRC leaves none.
+    // The remainder over a frame and its own CRC is zero.
     if (crc32_proximity(pltu.subspan(pltu_marker.size())) != 0) return Malformed::bad_checksum;
     return frame;
 }

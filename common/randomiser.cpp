@@ -8,9 +8,9 @@
 namespace aeolis {
 namespace {
 
-using Sequence = std::array<std::uint8_t, 255>;  // 255 bits come round after as many octets
+using Sequence = std::array<std::uint8_t, 255>;  // 255 bits repeat after 255 octets
 
-/// A register of eight ones; the oldest bit leaves, the sum of those that `taps` names comes in. Bit 0 leaves next.
+/// Shift register, initially eight ones: bit 0 is output, and the sum of the bits in `taps` is shifted in.
 constexpr Sequence sequence_of(unsigned taps) {
     Sequence octets{};
     unsigned state = 0xFF;

@@ -24,7 +24,7 @@ std::string text(std::int64_t microseconds_since_2000) {
     return buffer;
 }
 
-/// A number of just these digits; none when something else is among them.
+/// Number of a text of digits only; none when it holds another character.
 std::optional<std::int64_t> digits(std::string_view text) {
     std::int64_t number = 0;
     for (const char c : text) {

@@ -14,7 +14,7 @@ constexpr std::size_t packet_zone_header_octets = 2;
 constexpr std::size_t control_field_octets = 4;
 constexpr std::size_t transfer_crc_octets = 2;
 
-/// The octets behind the header without CRC and control field, which goes to `into`.
+/// The octets after the header, without CRC and control field; the control field is stored in `into`.
 Parsed<std::span<const std::uint8_t>> body_of(std::span<const std::uint8_t> frame, bool crc, bool control_field,
                                               TransferFrame& into) {
     if (crc && crc16(frame) != 0) return Malformed::bad_checksum;
@@ -70,7 +70,7 @@ Parsed<TransferFrame> read_tm_frame(std::span<const std::uint8_t> octets, const 
     const auto body = body_of(octets, agreed.crc, control_field, frame);
     if (!body) return body.why();
     if (no_packets) return Malformed::bad_field;
-    // Its first octet says how many follow, in six bits.
+    // The first octet of the secondary header gives the number of octets after it, in six bits.
     const std::size_t skipped = secondary_header ? ((*body)[0] & 0x3FU) + std::size_t{1} : 0;
     if (skipped >= body->size()) return Malformed::bad_field;
     frame.data = body->subspan(skipped);

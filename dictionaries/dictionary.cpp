@@ -22,7 +22,7 @@ bool Precondition::holds(double latest) const {
     if (comparison == "<") return latest < value;
     if (comparison == "<=") return latest <= value;
     if (comparison == ">") return latest > value;
-    AEOLIS_CHECK(comparison == ">=");  // the loader admits no other
+    AEOLIS_CHECK(comparison == ">=");  // the loader accepts no other
     return latest >= value;
 }
 

@@ -19,7 +19,7 @@ namespace {
 
 using File = MissionFile;
 
-/// Changes with every change of any of the files, and with a move of content from one to the next.
+/// Hash that changes with any change of the files, and when content moves from one file to the next.
 std::uint16_t hash(std::initializer_list<const File*> files) {
     std::vector<std::uint8_t> octets;
     for (const File* file : files) {
@@ -55,7 +55,7 @@ Loaded load(const std::filesystem::path& path) {
         Findings findings{file.name, all};
         return reader(*file.text, findings);
     };
-    // A name that its own sheet has wrong is one fault, not one more for each row of another that uses it.
+    // A name that is wrong in its own sheet is one fault; rows of other sheets that use it are not reported as well.
     const auto is_sound = [&](const File& file) {
         return std::ranges::find(all, file.name, &Finding::file) == all.end();
     };
@@ -112,7 +112,7 @@ Loaded load(const std::filesystem::path& path) {
     dictionary.mission = std::move(system->mission);
     dictionary.id = hash({&xml, &anchors_csv, &tones_csv, &mfsk_csv, &parameters_csv, &timeline_csv, &constraints_csv,
                           &state_machines_csv, &owners_csv, &plan_csv});
-    // Without constraints.csv: flight checks it and does not act on it, so it makes no other timeline.
+    // constraints.csv is left out: flight only monitors it, so it does not change the timeline.
     dictionary.timeline_version = hash({&timeline_csv, &anchors_csv});
     dictionary.channels = std::move(system->channels);
     dictionary.packets = std::move(system->packets);

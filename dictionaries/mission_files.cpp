@@ -11,11 +11,11 @@
 namespace aeolis::dictionary {
 namespace {
 
-constexpr std::uintmax_t file_octets_max = 16U << 20U;  // ours: a hundred times the landing's largest file
+constexpr std::uintmax_t file_octets_max = 16U << 20U;  // chosen: a hundred times the landing's largest file
 
 constexpr std::string_view set_begins = "<AncillaryDataSet>\n";
 constexpr std::string_view set_ends = "</AncillaryDataSet>\n    ";
-/// What the XTCE file itself was called stands first: findings speak of it.
+/// Entry that holds the original name of the XTCE file, which findings refer to. It comes first.
 constexpr std::string_view xtce_entry = "xtce";
 
 MissionFile read_file(const std::filesystem::path& path, std::vector<Finding>& all) {
@@ -67,7 +67,7 @@ std::optional<std::string> escaped(std::string_view text) {
     return escaped;
 }
 
-/// Where the sheets stand, or would stand: before the first element that the schema has behind ancillary data.
+/// Position of the sheets: before the first element that the schema places after ancillary data.
 pugi::xml_node place_of_sheets(pugi::xml_node system) {
     for (const pugi::xml_node child : system.children()) {
         const std::string_view name = child.name();
@@ -76,7 +76,7 @@ pugi::xml_node place_of_sheets(pugi::xml_node system) {
     return {};
 }
 
-/// Of the "<" of an element.
+/// Offset of the "<" of an element.
 std::size_t beginning_of(pugi::xml_node element) {
     return static_cast<std::size_t>(element.offset_debug()) - 1;
 }

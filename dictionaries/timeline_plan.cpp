@@ -27,7 +27,7 @@ MaybeOffset seconds_of(MaybeTime time) {
     return time.defined() ? MaybeOffset{time.get()->seconds} : MaybeOffset{};
 }
 
-/// One prediction in the making.
+/// One prediction, step by step.
 class Predictor {
   public:
     Predictor(const Dictionary& dictionary, const TimelineKnowledge& known)
@@ -50,19 +50,19 @@ class Predictor {
     }
 
   private:
-    /// What firings tell of an anchor.
+    /// Time of an anchor as derived from firings.
     struct Told {
-        MaybeOffset e_s;                    ///< by the earliest: a timepoint may come later than its anchor says
+        MaybeOffset e_s;                    ///< by the earliest firing: a timepoint may fire later than due
         std::optional<TimepointId> firing;  ///< the earliest
-        double at_e_s = never_s;            ///< when that fired
-        double passed_e_s = never_s;        ///< when one fired that comes after all that hang on it
+        double at_e_s = never_s;            ///< when it fired
+        double passed_e_s = never_s;        ///< when a timepoint fired that follows all timepoints with this anchor
     };
 
     std::optional<TimelineKnowledge::Heard> heard(std::size_t timepoint) const {
         return at_or_none(known_.heard, timepoint);
     }
 
-    /// As flight has them when the timepoint comes, or had them when it came.
+    /// Offsets that flight has when the timepoint occurs, or had when it occurred.
     timeline::Offsets offsets(std::size_t timepoint) const {
         const auto& row = dictionary_.timeline[timepoint];
         auto offsets = timeline::offsets_of(row);
@@ -97,7 +97,7 @@ class Predictor {
         }
     }
 
-    /// Parents stand before their children.
+    /// Parents precede their children.
     MaybeOffset by_parent(const AnchorRow& row, const std::vector<MaybeOffset>& times, MaybeOffset offset_s) const {
         if (!row.parent) return {};
         return seconds_of(timeline::anchor_time(time_of(times[row.parent->value]), offset_s));
@@ -112,7 +112,7 @@ class Predictor {
 
     MaybeOffset now(AnchorId anchor) const { return prediction_.anchors[anchor.value].e_s; }
 
-    /// The last change of an anchor.
+    /// The latest change of an anchor's offset.
     const OffsetChange* change_of(std::size_t anchor) const {
         const OffsetChange* last = nullptr;
         for (const auto& change : known_.changes)
@@ -177,7 +177,7 @@ class Predictor {
 
     void predict_timepoints() {
         const std::size_t count = offsets_.size();
-        std::vector<double> until_e_s(count + 1, never_s);  // when one fired that comes later in the timeline
+        std::vector<double> until_e_s(count + 1, never_s);  // when a later timepoint was triggered
         for (std::size_t i = count; i-- > 0;) {
             const auto fired = heard(i);
             until_e_s[i] = fired ? std::min(until_e_s[i + 1], fired->triggered_e_s) : until_e_s[i + 1];
@@ -219,8 +219,8 @@ class Predictor {
     const TimelineKnowledge& known_;
     std::vector<timeline::Offsets> offsets_;  ///< by timepoint
     std::vector<Told> told_;                  ///< by anchor
-    std::vector<MaybeOffset> before_;         ///< by anchor: until something was heard of it itself
-    std::optional<std::size_t> last_design_;  ///< the last anchor that the design has
+    std::vector<MaybeOffset> before_;         ///< by anchor: the prediction before anything was heard of it
+    std::optional<std::size_t> last_design_;  ///< the last anchor with a time in the design
     TimelinePrediction prediction_;
 };
 

@@ -7,13 +7,13 @@ namespace aeolis::flight {
 namespace {
 
 bool in_command(const ComputerState& state) {
-    // Second Chance is obeyed from the cycle in which its EDL flies: before that its managers hold no commands yet, and
-    // an engine that is told nothing for a cycle goes out.
+    // Second Chance is in command only from the cycle in which its EDL flies: before that its managers hold no commands
+    // yet, and engines that receive no command for a cycle shut down.
     if (state.edl.stands_by()) return false;
     return state.load.role == Role::prime || state.cross_string.in_control();
 }
 
-/// Everything that a device could take for a command. What is recorded and told to ground stays.
+/// Clears every output that a device could take for a command. Recording and telemetry stay.
 void command_nothing(DeviceOutputs& out) {
     out.pyros.clear();
     out.switches.clear();
@@ -58,8 +58,8 @@ void Computer::step(const DeviceInputs& in, DeviceOutputs& out, CycleRunner* run
             Executive{*state_}.cycle(in, out);
         out.in_command = in_command(*state_);
     } catch (const CheckFailed& bug) {
-        // A bug on board stays on board: the computer starts anew, and says why in its first cycle. What the failed
-        // cycle put out is not to be trusted, and a state on which it fails at once is not taken up a second time.
+        // A bug on board stays on board: the computer restarts, and reports the reason in its first cycle. Outputs of
+        // the failed cycle are not trusted. If the restored state fails at once, it is not restored a second time.
         const bool at_once = state_->ran_from && in.now - *state_->ran_from < restart_s;
         start_anew(in.now, designated, in.now - seconds_per_tick);
         state_->forgets = at_once;
@@ -81,7 +81,7 @@ void Computer::start_anew(Sclk now, Role role, Sclk told_until) {
     Load load = state_->load;
     load.role = role;
     ++load.resets;
-    if (!state_->runs_from) load.told_until = told_until;  // else it has told nothing since it was last started
+    if (!state_->runs_from) load.told_until = told_until;  // otherwise it has sent no state since its last start
     std::destroy_at(state_.get());
     std::construct_at(state_.get(), load, now);
     state_->runs_from = now + restart_s;

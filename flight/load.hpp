@@ -7,12 +7,12 @@
 #include <cstdint>
 #include <optional>
 
-// What is loaded into a flight computer before the first tick and never changes in flight by itself: mission design
-// values that are not commands. The scenario fills it; the ground's navigation comes by EDL_SET_PARAMETERS.
+// Values loaded into a flight computer before the first tick: mission design values that are not commands. The scenario
+// sets them; ground's navigation solution arrives by EDL_SET_PARAMETERS.
 namespace aeolis::flight {
 
-/// The reference that entry guidance follows, tabulated against planet-relative velocity, made from a scenario by
-/// simulation/entry_reference and never by hand. Rows ascend in velocity. [apollo-entry-guidance]
+/// Reference trajectory of entry guidance, tabulated against planet-relative velocity; rows ascend in velocity.
+/// Generated from a scenario by simulation/entry_reference, never written by hand. [apollo-entry-guidance]
 struct EntryReferenceRow {
     double velocity_mps = 0.0;
     double range_to_go_m = 0.0;
@@ -30,16 +30,15 @@ struct EntryReference {
 
 enum class Plan : std::uint8_t { mission, wideband };
 
-/// What a computer was started as: which is prime is designated by command before EDL, and the other stands behind it.
-/// R1
+/// Role in which a computer was started. Ground designates prime by command before EDL; the other is its backup. R1
 enum class Role : std::uint8_t { prime, second_chance };
-/// Which of the two computers this is, by its place in the vehicle.
+/// One of the two computers, by its place in the vehicle.
 enum class String : std::uint8_t { a, b };
 
 struct Load {
     String string = String::a;
     Role role = Role::prime;
-    /// After a restart: the last cycle whose state the other computer can have.
+    /// After a restart: the last cycle whose state the other computer can have received.
     std::optional<Sclk> told_until;
     std::uint32_t resets = 0;             ///< so far
     double uhf_rate_bps = 8000.0;         ///< rate of the real-time link
@@ -57,13 +56,13 @@ struct Load {
     EntryReference entry_reference;
 };
 
-/// How much what navigation believes is moved: a case of a campaign begins, as if it had been so all along. Put in from
-/// outside; nothing on board asks for it.
+/// Shift of the navigation state for a campaign case, as if navigation had had these errors from the start.
+/// Applied from outside; nothing on board requests it.
 struct NavigationShift {
     std::array<double, 3> p_MoB_M_m{};
     std::array<double, 3> v_MB_M_mps{};
-    std::array<double, 4> q_BB{1, 0, 0, 0};           ///< after the attitude, in B
-    std::array<double, 3> accelerometer_bias_mps2{};  ///< in B: what it would have learnt of it in vacuum
+    std::array<double, 4> q_BB{1, 0, 0, 0};           ///< applied after the attitude, in B
+    std::array<double, 3> accelerometer_bias_mps2{};  ///< in B: change of the bias learnt in vacuum
 };
 
 }  // namespace aeolis::flight

@@ -12,7 +12,7 @@ namespace {
 constexpr std::int64_t unreached = std::numeric_limits<std::int64_t>::min();
 constexpr DifferenceNetwork::EdgeIndex no_edge = std::numeric_limits<DifferenceNetwork::EdgeIndex>::max();
 
-/// One sweep over all edges; the moment moved last, or none when nothing moved.
+/// One sweep over all edges. Returns the moment moved last; none when nothing moved.
 std::optional<std::size_t> relax(const std::vector<DifferenceNetwork::Edge>& edges, std::vector<std::int64_t>& ticks,
                                  std::vector<DifferenceNetwork::EdgeIndex>& reached_by) {
     std::optional<std::size_t> moved;
@@ -36,7 +36,7 @@ DifferenceNetwork::Earliest DifferenceNetwork::earliest() const {
         moved = relax(edges_, ticks, reached_by);
         if (!moved) return {std::move(ticks), {}};
     }
-    // Still moving after as many sweeps as there are moments: whoever walks back that far stands on the ring.
+    // A move even after as many sweeps as there are moments means a cycle: walking back that many edges reaches it.
     std::size_t on_ring = *moved;
     for (std::size_t step = 0; step < moments_; ++step) on_ring = edges_[reached_by[on_ring]].from;
     Earliest none;
@@ -54,7 +54,7 @@ std::optional<DifferenceNetwork::Path> DifferenceNetwork::least_difference(std::
     std::vector<EdgeIndex> reached_by(moments_, no_edge);
     ticks[from] = 0;
     for (std::size_t sweep = 0; relax(edges_, ticks, reached_by); ++sweep)
-        AEOLIS_CHECK(sweep <= moments_);  // a ring: the edges have no solution
+        AEOLIS_CHECK(sweep <= moments_);  // otherwise a cycle: the edges have no solution
     if (ticks[to] == unreached) return std::nullopt;
     Path path{ticks[to], {}};
     for (std::size_t at = to; at != from; at = edges_[reached_by[at]].from) path.edges.push_back(reached_by[at]);

@@ -14,7 +14,7 @@ double seconds_of(std::int64_t ticks) {
     return static_cast<double>(ticks) * seconds_per_tick;
 }
 
-/// t(to) - t(from) >= bound_s, for every schedule?
+/// Tries to prove t(to) - t(from) >= bound_s for every schedule.
 BoundProof prove(TimelineNetwork& network, const Moment& from, const Moment& to, double bound_s) {
     const std::int64_t bound = Sclk{bound_s}.ticks();
     auto worst = network.least_difference(from, to, bound - 1);
@@ -68,7 +68,7 @@ TimelineAnalysis analyse_bounds(const Dictionary& dictionary, const std::functio
 
     const auto prove_row = [&](std::size_t index, bool is_minimum) {
         const ConstraintRow& row = dictionary.constraints[index];
-        // A maximum from -> to is a least difference to -> from.
+        // A maximum of to - from is a least difference of from - to.
         BoundProof bound = is_minimum ? prove(network, row.from, row.to, *row.minimum_s)
                                       : prove(network, row.to, row.from, -*row.maximum_s);
         bound.constraint = index;

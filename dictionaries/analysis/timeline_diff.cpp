@@ -65,7 +65,7 @@ Rows constraint_rows(const Dictionary& d) {
     return rows;
 }
 
-/// Marks the places that form a longest increasing sequence: rows that kept their order. The fewest others moved.
+/// Marks the places that form a longest increasing subsequence: rows that kept their order. All others moved.
 std::vector<bool> in_order(const std::vector<std::size_t>& places) {
     std::vector<std::size_t> length(places.size(), 1);
     std::vector<std::size_t> comes_after(places.size(), places.size());

@@ -12,7 +12,7 @@ using Kind = Moment::Kind;
 using Reason = ChainStep::Reason;
 using timeline::triggered_per_cycle_max;
 
-constexpr std::size_t search_nodes_max = 20'000;  // ours: a hundred times what the landing's hardest row takes
+constexpr std::size_t search_nodes_max = 20'000;  // chosen: a hundred times the nodes of the landing's hardest row
 
 std::int64_t ticks_of(double seconds) {
     return Sclk{seconds}.ticks();
@@ -31,7 +31,7 @@ TimelineNetwork::TimelineNetwork(const Dictionary& dictionary, std::function<boo
     for (std::size_t i = 0; i < dictionary.timeline.size(); ++i) add_timepoint(i);
     add_given();
     for (const auto& edge : network_.edges())
-        horizon_ticks_ += 2 * std::abs(edge.ticks) + 1;  // twice: "as soon as" turns an edge round
+        horizon_ticks_ += 2 * std::abs(edge.ticks) + 1;  // twice: "as soon as" reverses an edge
 }
 
 // The nodes: do_edl, the anchors, then triggering and firing of each timepoint.
@@ -82,7 +82,7 @@ void TimelineNetwork::add_timepoint(std::size_t index) {
         causes_[index].push_back(network_.edges().back());
     };
 
-    // Of what is counted from the previous firing only the largest matters; the order of the timeline counts as nil.
+    // Only the largest offset from the previous firing matters; the order of the timeline is an offset of zero.
     std::int64_t after_previous = 0;
     Reason why = Reason::order;
     const auto [desired, minimum] = timeline::conditions_of(timeline::offsets_of(row));
@@ -141,7 +141,7 @@ std::vector<std::int64_t> TimelineNetwork::earliest_with(const Query& query, std
     return schedule;
 }
 
-/// The last timepoint that is triggered later than each of its causes came.
+/// The last timepoint that is triggered later than all of its causes require.
 std::optional<std::size_t> TimelineNetwork::without_cause(const std::vector<std::int64_t>& ticks) const {
     for (std::size_t i = causes_.size(); i-- > 0;) {
         const std::int64_t triggered = ticks[node(at(Kind::triggered, i))];
@@ -151,9 +151,10 @@ std::optional<std::size_t> TimelineNetwork::without_cause(const std::vector<std:
     return std::nullopt;
 }
 
-// Branch and bound. Without "as soon as" the network gives the least difference that there could be. If the earliest
-// schedule that reaches it has a cause for every firing, it is real. If one has none, each of its causes is tried as
-// the one that came last: every real schedule is in one of these branches, and each settles that timepoint for good.
+// Branch and bound. Without "as soon as", the network gives a lower bound on the least difference. If the earliest
+// schedule that reaches it has a cause for every firing, the schedule is valid. For a firing without a cause, each of
+// its causes is tried as the one that came last. Every valid schedule is in one of these branches, and each branch
+// settles that timepoint for good.
 void TimelineNetwork::search(Query& query) {
     if (query.done || !network_.earliest().contradiction.empty()) return;
     const auto least = network_.least_difference(query.from, query.to);
@@ -173,7 +174,8 @@ void TimelineNetwork::search(Query& query) {
     const auto schedule = earliest_with(query, aim);
     const auto late = without_cause(schedule);
     if (!late) {
-        // What goes beyond every sum of the offsets has no bound. A smaller step over the line is easier to read.
+        // A difference beyond every sum of the offsets is unbounded. A schedule just beyond `enough_ticks` is easier to
+        // read.
         const auto readable = least ? schedule : earliest_with(query, query.enough_ticks);
         const auto& shown = without_cause(readable) ? schedule : readable;
         worst.found = true;

@@ -14,7 +14,7 @@ namespace {
 
 constexpr unsigned header_bits = static_cast<unsigned>(tm_data_offset_octets) * 8;
 
-/// One value at its place, as an expression that yields an unsigned number or a floating one.
+/// One value at its position, as an expression that yields an unsigned or a floating-point number.
 struct Write {
     unsigned position_bits = 0;
     unsigned bits = 0;
@@ -81,7 +81,7 @@ class HeaderWriter {
         }
     }
 
-    /// A packet's data in the order of bits, spare bits included. `event_id` of an event is a constant, no member.
+    /// A packet's data in bit order, including spare bits. The `event_id` of an event is a constant, not a member.
     static std::vector<Write> writes(const Packet& packet, const Event* event) {
         std::vector<Write> all;
         for (const Field& field : packet.fields) {
@@ -175,7 +175,7 @@ class HeaderWriter {
         out_ << "    bool operator==(const " << command.name << "&) const = default;\n};\n\n";
     }
 
-    /// How a command that is held on board goes to another computer (flight/cross_string).
+    /// Writes the function that transfers a command held on board to another computer (flight/cross_string).
     void write_carry(const Command& command) {
         if (command.arguments.empty()) return;
         out_ << "\n    template <typename Exchange>\n    void carry(Exchange& exchange) {\n        exchange(";
@@ -208,7 +208,7 @@ class HeaderWriter {
         if (most) refuse_when("static_cast<double>(" + name + ") > " + double_literal(*most));
     }
 
-    /// A bound that the encoding itself keeps needs no test.
+    /// Range of valid values to test; a bound that the encoding enforces needs no test.
     static std::pair<std::optional<double>, std::optional<double>> range(const Type& type) {
         auto least = type.valid_min;
         auto most = type.valid_max;

@@ -11,8 +11,8 @@
 #include <iterator>
 
 // aeolis_autocoder MSL_DIR OUT_DIR: writes dictionary_flight.hpp, state_machines.hpp, owners.hpp, timeline.cpp and
-// telemetry_plan.cpp, or prints every finding and writes nothing. A file that would not change is left alone, so that
-// flight is not compiled anew when only the autocoder was. Ends with 0 done, 1 findings or not writable, 2 bad use.
+// telemetry_plan.cpp, or prints every finding and writes nothing. Unchanged files are not rewritten, so that a change
+// of the autocoder alone does not recompile flight. Exit status: 0 done, 1 findings or not writable, 2 bad usage.
 namespace {
 
 bool write(const std::filesystem::path& path, const std::string& text) {

@@ -10,7 +10,7 @@
 namespace aeolis::dictionary::autocoder {
 namespace {
 
-/// In the order in which the sheet first names them.
+/// The machine's events, in the order of first use in the sheet.
 std::vector<std::string> events_of(const StateMachineTable& machine) {
     std::vector<std::string> events;
     for (const StateTransition& row : machine.transitions)

@@ -9,10 +9,10 @@
 namespace aeolis::dictionary::autocoder {
 namespace {
 
-/// The encoder's name of what the row speaks of; of event reports, which share an APID, any.
+/// Name of the encoder of the row's packet; for event reports, which share an APID, the name of any of them.
 std::string encoder_of(const Dictionary& dictionary, const TelemetryPlanRow& row) {
     const auto packet = std::ranges::find(dictionary.packets, row.apid, &Packet::apid);
-    if (packet == dictionary.packets.end()) return row.packet;  // the loader has made sure that there is one
+    if (packet == dictionary.packets.end()) return row.packet;  // the loader ensures that there is one
     return (packet->event ? "evr::" : "packet::") + packet->name;
 }
 

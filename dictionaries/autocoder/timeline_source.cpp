@@ -15,7 +15,7 @@ std::string id_literal(const char* type, const std::optional<Id>& id) {
     return id ? std::string{type} + "{" + std::to_string(unsigned{id->value}) + "}" : "std::nullopt";
 }
 
-/// Id of the row of that name; the loader has made sure that there is one.
+/// Id of the row with that name; the loader ensures that there is one.
 template <typename Rows>
 auto id_of(const Rows& rows, const std::string& name) {
     using Id = decltype(rows.front().id);

@@ -11,7 +11,7 @@ namespace {
 
 struct Anchor {
     std::string name;
-    std::string parent;  ///< empty: none, or not known
+    std::string parent;  ///< empty: none, or unknown
     MaybeOffset offset_s;
     std::string note;
     unsigned line = 0;
@@ -37,7 +37,7 @@ void check_parents(std::vector<Anchor>& anchors, const std::map<std::string, std
     if (root == nullptr) findings.add(1, "no anchor is the root: each has a parent");
 }
 
-/// Follows parents from `start` until one comes again, and names the ring once.
+/// Follows parents from `start` until one repeats, and reports the cycle once.
 void report_cycle(std::vector<Anchor>& anchors, const std::map<std::string, std::size_t>& by_name, std::size_t start,
                   Findings& findings) {
     std::vector<std::size_t> path;
@@ -56,7 +56,7 @@ void report_cycle(std::vector<Anchor>& anchors, const std::map<std::string, std:
     for (const std::size_t step : path) anchors[step].placed = true;
 }
 
-/// Parents before children; otherwise the order of the file is kept.
+/// Order with parents before children; otherwise the order of the file is kept.
 std::vector<std::size_t> topological_order(std::vector<Anchor>& anchors,
                                            const std::map<std::string, std::size_t>& by_name, Findings& findings) {
     std::vector<std::size_t> order;
@@ -121,7 +121,7 @@ std::optional<std::vector<AnchorRow>> read_anchors(std::string_view text, Findin
                         anchor.offset_s, anchor.note});
         placed.emplace(anchor.name, id);
     }
-    for (const Anchor& anchor : anchors)  // those on a cycle are names all the same
+    for (const Anchor& anchor : anchors)  // anchors on a cycle still count as names
         if (!placed.contains(anchor.name)) rows.push_back({AnchorId{}, anchor.name, {}, {}, anchor.note});
     return rows;
 }

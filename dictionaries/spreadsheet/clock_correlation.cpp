@@ -8,10 +8,10 @@
 namespace aeolis::dictionary {
 namespace {
 
-constexpr std::size_t clock_rows_max = 1000;  // ours: one a week for twenty years
-constexpr double drift_max = 1.0e-4;          // ours: an oscillator that is off by more is broken
-constexpr double step_max_s = 0.5;  // ours: less than a leap second, more than a clock drifts between two rows
-constexpr std::int64_t leap_seconds_max = 99;  // ours: 37 in 2017
+constexpr std::size_t clock_rows_max = 1000;  // chosen: one a week for twenty years
+constexpr double drift_max = 1.0e-4;          // chosen: an oscillator with more drift is broken
+constexpr double step_max_s = 0.5;  // chosen: less than a leap second, more than a clock drifts between two rows
+constexpr std::int64_t leap_seconds_max = 99;  // chosen; 37 in 2017
 
 ClockRow row_of(RowReader& cells) {
     ClockRow row;
@@ -37,7 +37,7 @@ void check_order(const ClockRow& row, const ClockRow& before, RowReader& cells) 
     if (row.valid_from <= before.valid_from) return cells.fault("valid_from_sclk: is not after that of the row before");
     const std::int64_t now_us = row.correlation.scet_of(row.valid_from).microseconds;
     const std::int64_t then_us = before.correlation.scet_of(row.valid_from).microseconds;
-    const int leap_s = row.correlation.leap_seconds - before.correlation.leap_seconds;  // UTC stands still for it
+    const int leap_s = row.correlation.leap_seconds - before.correlation.leap_seconds;  // UTC stops for a leap second
     if (std::abs(static_cast<double>(now_us - then_us) * 1.0e-6 + leap_s) > step_max_s)
         cells.fault("scet: by the row before it was " + day_of_year_text(Scet{then_us}) +
                     " at valid_from_sclk, by this one " + day_of_year_text(Scet{now_us}) +

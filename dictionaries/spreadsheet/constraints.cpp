@@ -17,7 +17,7 @@ std::optional<std::uint16_t> index_of(const Rows& rows, std::string_view name) {
     return static_cast<std::uint16_t>(row - rows.begin());
 }
 
-/// None when the cell names nothing, with a finding, or when what it names could not be read.
+/// None, with a finding, when the cell names nothing; none when the file of the named row could not be read.
 std::optional<Moment> read_moment(RowReader& cells, std::string_view column, Moment::Kind kind_of_plain_name,
                                   const ConstraintContext& context) {
     const std::string& cell = cells.text(column);
@@ -59,7 +59,7 @@ void check_bounds(RowReader& cells, const ConstraintRow& row) {
         cells.fault("minimum_s " + cells.text("minimum_s") + " is above maximum_s " + cells.text("maximum_s"));
 }
 
-/// What is given tells when an anchor is set: only the timeline itself says when timepoints fire.
+/// A given row bounds when an anchor is set. Firings of timepoints follow from the timeline alone.
 bool may_be_given(const Moment& to) {
     return to.kind == Moment::Kind::anchor;
 }

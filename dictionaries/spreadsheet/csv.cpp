@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
 
-/// Walks over the characters and knows where it stands. CRLF reads as LF.
+/// Steps through the characters and tracks line and column. Reads CRLF as LF.
 class Cursor {
   public:
     explicit Cursor(std::string_view text) : text_(text) {}

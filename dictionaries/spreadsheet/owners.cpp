@@ -30,7 +30,7 @@ const Type* decisions_of(const OwnerContext& context) {
     return found == context.enumerations->end() ? nullptr : *found;
 }
 
-/// What the row owns must be there: an action in the timeline, a decision in the enumeration.
+/// Checks that the row's subject exists: an action in the timeline, a decision in the enumeration.
 void check_owned(RowReader& cells, OwnedKind kind, const std::string& name, const OwnerContext& context) {
     const Type* decisions = decisions_of(context);
     if (kind == OwnedKind::action && context.timeline != nullptr &&
@@ -41,7 +41,7 @@ void check_owned(RowReader& cells, OwnedKind kind, const std::string& name, cons
         cells.fault("is no label of the enumeration 'Decision'");
 }
 
-/// A finding at the sheet's end for each that no row owns.
+/// Adds a finding at the sheet's end for each subject without an owner.
 void check_missing(const OwnerContext& context, const Lines& lines, unsigned last_line, Findings& findings) {
     std::vector<std::string> missing;
     const auto need = [&](OwnedKind kind, const char* word, const std::string& name) {
@@ -68,7 +68,7 @@ std::optional<std::vector<OwnerRow>> read_owners(std::string_view text, const Ow
     }
     Lines lines;
     std::vector<OwnerRow> rows;
-    bool sound = true;  // what a broken row may have meant to own is not called missing as well
+    bool sound = true;  // false: a row is broken, so its subject must not be reported as missing too
     for (const Sheet::Row& sheet_row : table->rows()) {
         const std::size_t before = findings.size();
         RowReader cells{*table, sheet_row, sheet_row.cells[table->column("kind")], "name", findings};

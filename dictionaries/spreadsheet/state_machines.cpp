@@ -14,13 +14,13 @@ namespace {
 
 struct Machine {
     StateMachineTable table;
-    const Type* states = nullptr;  ///< none: not known, not checked
+    const Type* states = nullptr;  ///< null: unknown, not checked
     unsigned first_line = 0;
     std::optional<unsigned> initial_line;
     std::map<std::pair<std::string, std::string>, unsigned> line_of;  ///< of each from and event
 };
 
-/// A state's name; a finding when the machine's enumeration has no such label.
+/// Reads a state's name; a finding when the machine's enumeration has no such label.
 std::string read_state(RowReader& cells, std::string_view column, const Machine& machine) {
     const std::string state = cells.identifier(column);
     const bool known =
@@ -81,7 +81,7 @@ read_state_machines(std::string_view text, const std::vector<const Type*>* enume
         return std::nullopt;
     }
     std::vector<Machine> machines;
-    bool sound = true;  // what a broken row would have led to is not called unreachable as well
+    bool sound = true;  // false: a row is broken, so its states must not be reported as unreachable too
     for (const Sheet::Row& sheet_row : table->rows()) {
         const std::size_t before = findings.size();
         RowReader cells{*table, sheet_row, "machine", "machine", findings};

@@ -15,7 +15,7 @@ namespace {
 constexpr std::string_view every_plan = "all";
 constexpr std::string_view event_reports = "events";
 
-/// What the rows of the sheet speak of: each packet by name, the event reports as one.
+/// Names that the sheet's rows may use, with APIDs: each packet by name, the event reports as one.
 std::map<std::string, Apid> planned_packets(const std::vector<Packet>& packets) {
     std::map<std::string, Apid> planned;
     for (const Packet& packet : packets)

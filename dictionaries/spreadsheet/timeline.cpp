@@ -53,7 +53,7 @@ void read_event(RowReader& cells, const TimelineContext& context, TimelineRow& r
         cells.fault("event " + in_quotes(row.event) + " has arguments; a timepoint announces only events without");
 }
 
-/// A reboot goes back to a timepoint at or before the one it interrupted. R32
+/// Reads the backtrack point: after a reboot, a timepoint at or before the interrupted one. R32
 void read_backtrack(RowReader& cells, const LinesByName& all, const LinesByName& so_far, TimelineRow& row) {
     row.backtrack = cells.text("backtrack_point");
     if (row.backtrack.empty() || so_far.contains(row.backtrack)) return;

@@ -9,7 +9,7 @@
 namespace aeolis::dictionary {
 namespace {
 
-constexpr std::int64_t priority_max = 255;  // ToneSelected holds it in an octet
+constexpr std::int64_t priority_max = 255;  // ToneSelected holds the priority in one octet
 
 struct Read {
     ToneRow tone;

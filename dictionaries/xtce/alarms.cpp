@@ -121,7 +121,7 @@ Alarms read_alarms(pugi::xml_node default_alarm, const Type& type, Reporter& rep
 }
 
 void read_context_alarms(const Symbols& symbols, Parameters& parameters, Reporter& report) {
-    std::map<std::string, std::vector<ContextAlarms>> by_type;  // each is read, and its faults told, once
+    std::map<std::string, std::vector<ContextAlarms>> by_type;  // each type is read, and its faults reported, once
     for (const auto& [path, parameter] : parameters.by_path) {
         if (!parameter.channel || !parameter.type) continue;
         const Symbol* symbol = symbols.find(Kind::parameter_type, path.substr(0, path.rfind('/')),

@@ -15,7 +15,7 @@ namespace {
 constexpr std::int64_t opcode_max = 0xFFFF;
 constexpr unsigned argument_bits_max = static_cast<unsigned>(packet_octets_max - tc_overhead_octets) * 8;
 
-// XTCE 1.2 knows other words than its alarms do.
+// XTCE 1.2 names the significances of commands differently from the levels of alarms.
 constexpr std::array significances{
     std::pair{"normal", Significance::none},       std::pair{"user1", Significance::watch},
     std::pair{"vital", Significance::warning},     std::pair{"user2", Significance::distress},
@@ -85,7 +85,7 @@ class CommandReader {
         report_.fault(at, "command " + in_quotes(command.name) + ": " + message);
     }
 
-    /// The opcode is the one argument that base commands bring and that is assigned.
+    /// The opcode is the one argument that a base command declares and this command assigns.
     bool read_opcode(const Symbol& symbol, Command& command) {
         const pugi::xml_node base = symbol.element.child("BaseMetaCommand");
         report_.expect(base, {"ArgumentAssignmentList"}, {"metaCommandRef"});
@@ -256,7 +256,7 @@ class CommandReader {
         const auto event = packets_.event_by_path.find(found->path);
         if (event != packets_.event_by_path.end()) return Verifier{{}, event->second, std::nullopt, *window_s};
         const auto is_declared = [&](const auto& e) { return e.name == name_of(found->element); };
-        if (std::ranges::none_of(packets_.declared_events, is_declared))  // else it has findings of its own
+        if (std::ranges::none_of(packets_.declared_events, is_declared))  // otherwise it has findings of its own
             fault(container, command, in_quotes(reference) + " is no event");
         return std::nullopt;
     }

@@ -28,8 +28,8 @@ std::unique_ptr<Document> Document::parse(const std::string& text, Findings& fin
     return document;
 }
 
-/// The root's prefix stands for XTCE, whatever it is called: "xtce:SpaceSystem". Elements of other prefixes keep
-/// theirs.
+/// Removes the root's prefix, which is that of XTCE whatever its name: "xtce:SpaceSystem". Elements with other prefixes
+/// keep theirs.
 void Document::drop_prefix() {
     const std::string root = xml_.document_element().name();
     const std::size_t colon = root.find(':');
@@ -38,7 +38,7 @@ void Document::drop_prefix() {
         std::string prefix;
         bool for_each(pugi::xml_node& node) override {
             const std::string name = node.name();
-            // A shorter name is written where the longer one stood, so that its line stays known.
+            // A shorter name is written over the longer one in place, so that the line can still be found.
             if (name.starts_with(prefix)) node.set_name(name.substr(prefix.size()).c_str());
             return true;
         }

@@ -25,7 +25,7 @@ class ContainerReader {
         if (const pugi::xml_node base = element.child("BaseContainer")) {
             container.base = index_of(symbol, base);
             container.when = parts_.condition(symbol.scope, base.child("RestrictionCriteria"));
-            // Without its base a container would be taken for a packet of its own.
+            // Without its base, a container would be mistaken for a packet of its own.
             if (!container.base) container.when.form = Condition::Form::unknown;
         }
         for (const pugi::xml_node entry : element.child("EntryList").children())

@@ -11,7 +11,7 @@
 namespace aeolis::dictionary::xtce {
 namespace {
 
-constexpr unsigned condition_depth_max = 16;  // ours, so that a hostile file cannot exhaust the stack
+constexpr unsigned condition_depth_max = 16;  // chosen, so that a hostile file cannot exhaust the stack
 
 std::optional<Condition::Operator> operator_of(std::string_view word) {
     using enum Condition::Operator;
@@ -31,7 +31,7 @@ ModelParts::ModelParts(const Symbols& symbols_in, Reporter& report_in) : symbols
         if (symbol.kind == Kind::parameter) parameters_.emplace(symbol.path, parameters_.size());
 }
 
-/// Whether the parameter's type has members that `path` ("flags/valid") leads to.
+/// Whether `path` ("flags/valid") leads to a member of the parameter's type.
 bool ModelParts::has_member(const Symbol& parameter, std::string_view path) const {
     const Symbol* type =
         symbols.find(Kind::parameter_type, parameter.scope, parameter.element.attribute("parameterTypeRef").value());
@@ -51,7 +51,7 @@ std::optional<ModelParts::Reference> ModelParts::parameter(const std::string& sc
                                                            const char* attribute) const {
     const std::string word = at.attribute(attribute).value();
     const Symbol* symbol = symbols.find(Kind::parameter, scope, word);
-    // "STATUS/flags": the longest beginning that is a parameter, then its members.
+    // "STATUS/flags": the longest prefix that names a parameter, then its members.
     std::size_t end = word.size();
     while (symbol == nullptr && (end = word.rfind('/', end - 1)) != std::string::npos && end > 0)
         symbol = symbols.find(Kind::parameter, scope, std::string_view{word}.substr(0, end));

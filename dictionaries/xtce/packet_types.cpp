@@ -9,8 +9,8 @@
 namespace aeolis::dictionary::xtce {
 namespace {
 
-constexpr unsigned type_depth_max = 16;    // ours: types within types, and types of types
-constexpr std::int64_t exponent_max = 32;  // ours: of a polynomial
+constexpr unsigned type_depth_max = 16;    // chosen: types within types, and types of types
+constexpr std::int64_t exponent_max = 32;  // chosen: of a polynomial
 constexpr std::size_t label_values_max = 1U << 20U;
 
 PacketType::Kind model_kind_of(std::string_view element) {
@@ -112,7 +112,7 @@ void ModelTypes::read_coding(const Symbol& symbol, pugi::xml_node holder, Packet
                                     std::string{algorithm} + " is not supported: the octets are given as they are");
         return;
     }
-    if (symbol.element.attribute("baseType")) return;  // that of its base
+    if (symbol.element.attribute("baseType")) return;  // the base type has the encoding
     parts_.report.fault(holder, "type " + in_quotes(type.name) + " has no data encoding that is supported");
     type.kind = PacketType::Kind::unknown;
 }
@@ -126,7 +126,7 @@ void ModelTypes::read_number(const Symbol& symbol, pugi::xml_node coding, Packet
     if (!form)
         parts_.report.fault(coding, "encoding " + in_quotes(word) + " of " + std::to_string(bits.value_or(0)) +
                                         " bits is not supported");
-    // Its size is known all the same: what stands behind it can be read.
+    // The size is known nevertheless: fields after it can be read.
     type.coding.form = form.value_or(Coding::Form::octets);
     if (!form) type.kind = PacketType::Kind::octets;
     if (!bits) type.kind = PacketType::Kind::unknown;
@@ -146,7 +146,7 @@ void ModelTypes::read_order(pugi::xml_node coding, Coding& into) {
     if (!order.empty() && order != "leastSignificantByteFirst" && order != "mostSignificantByteFirst")
         parts_.report.fault(coding,
                             "byte order " + in_quotes(order) + " is not supported: most significant first is taken");
-    // 1.0 and 1.1 list the octets, each with its significance.
+    // XTCE 1.0 and 1.1 list the octets, each with its significance.
     std::vector<int> octet_order;
     for (const pugi::xml_node each : coding.child("ByteOrderList").children("Byte"))
         octet_order.push_back(each.attribute("byteSignificance").as_int());

@@ -84,7 +84,7 @@ class PacketReader {
         return report_.number(element, "minimumValue");
     }
 
-    /// Entries after the headers. A flag that says whether another is defined is part of that one.
+    /// Fields after the headers. A validity flag is part of the field it applies to.
     std::vector<Field> fields(const Layout& layout) {
         std::vector<Field> all;
         std::set<std::string> flags;
@@ -172,7 +172,7 @@ class PacketReader {
         }
     }
 
-    /// Only events share an APID, with one another.
+    /// Only events may share an APID, and only with each other.
     void claim_apid(pugi::xml_node element, const Packet& packet) {
         const auto [first, added] = apids_.emplace(packet.apid, Claim{report_.line(element), packet.event.has_value()});
         if (added || (packet.event && first->second.event)) return;

@@ -9,10 +9,10 @@
 namespace aeolis::dictionary::xtce {
 namespace {
 
-constexpr std::size_t channels_max = 4096;  // ours
+constexpr std::size_t channels_max = 4096;  // chosen
 constexpr std::array comparisons{"==", "!=", "<", "<=", ">", ">="};
 
-/// A label of the parameter's enumeration, or a number.
+/// Value of a label of the parameter's enumeration, or of a number.
 std::optional<double> value_of(const Parameter& parameter, const std::string& word) {
     if (parameter.type)
         for (const EnumValue& entry : parameter.type->enumeration)
@@ -112,7 +112,7 @@ std::optional<Precondition> read_comparison(const Symbols& symbols, const Parame
     Precondition condition{*parameter.channel, comparison.attribute("comparisonOperator").as_string("=="), 0.0, {}};
     if (std::ranges::find(comparisons, condition.comparison) == comparisons.end())
         return fault("comparison " + in_quotes(condition.comparison) + " is unknown");
-    if (!parameter.type) return std::nullopt;  // that has been told
+    if (!parameter.type) return std::nullopt;  // already reported
     const std::string word = comparison.attribute("value").value();
     const auto value = value_of(parameter, word);
     if (!value) return fault("value " + in_quotes(word) + " is neither a number nor a label");

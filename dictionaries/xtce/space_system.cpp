@@ -7,7 +7,7 @@
 namespace aeolis::dictionary::xtce {
 namespace {
 
-/// A channel that no packet carries can never have a value.
+/// Reports channels that no packet carries: they could never have a value.
 void check_channels_carried(const Parameters& parameters, const Symbols& symbols, const Layouts& layouts,
                             Reporter& report) {
     std::set<const Parameter*> carried;

@@ -5,7 +5,7 @@ namespace aeolis::dictionary::xtce {
 namespace {
 
 constexpr unsigned system_depth_max =
-    8;  // of nested SpaceSystems: ours, so that a hostile file cannot exhaust the stack
+    8;  // of nested SpaceSystems; chosen, so that a hostile file cannot exhaust the stack
 
 }  // namespace
 

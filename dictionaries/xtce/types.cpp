@@ -40,7 +40,7 @@ class TypeReader {
   public:
     TypeReader(pugi::xml_node element, Reporter& report) : element_(element), report_(report) {}
 
-    /// The type as far as it can be read; what is wrong with it are findings.
+    /// Reads the type as far as possible; faults become findings.
     std::optional<Type> read() {
         if (std::string_view{element_.name()} == "BinaryParameterType") return read_binary();
         const auto kind = kind_of(element_.name());
@@ -191,7 +191,7 @@ class TypeReader {
         const auto [least, most] = encodable(type_);
         if (type_.valid_min && type_.valid_max && *type_.valid_min > *type_.valid_max) {
             fault(range, "minInclusive is above maxInclusive");
-            type_.valid_min = type_.valid_max = std::nullopt;  // so that no default is said to be outside
+            type_.valid_min = type_.valid_max = std::nullopt;  // so that no default is reported as outside the range
         } else if (type_.calibrator.empty() &&
                    (type_.valid_min.value_or(least) < least || type_.valid_max.value_or(most) > most))
             fault(range, "the valid range does not fit " + std::to_string(type_.bits) + " bits");
@@ -210,7 +210,7 @@ Types::Types(const Symbols& symbols, Reporter& report) : symbols_(symbols) {
         if (symbol.kind != Kind::parameter_type && symbol.kind != Kind::argument_type) continue;
         auto type = TypeReader{symbol.element, report}.read();
         if (type && type->kind == ValueKind::enumerated) {
-            // Each becomes an enum class of flight, in one namespace.
+            // Each enumeration becomes an enum class of flight, all in one namespace.
             const auto [first, added] = enumerations.emplace(type->name, report.line(symbol.element));
             if (!added)
                 report.fault(symbol.element, "enumeration " + in_quotes(type->name) +

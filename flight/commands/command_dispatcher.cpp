@@ -15,7 +15,7 @@ void refuse(Outbox& out, CommandTag tag, CommandRefusal reason) {
     out.send(ModuleId::mfsk, ToneRequest{tone::command_refused, out.now()});
 }
 
-/// Arguments to the owner, or the reason why not.
+/// Sends the decoded arguments to the owner, or refuses the command with the reason.
 template <typename Command, typename Route>
 void route(Outbox& out, CommandTag tag, std::span<const std::uint8_t> arguments, const Route& to_owner) {
     if (arguments.size() != Command::argument_octets) return refuse(out, tag, CommandRefusal::bad_length);
@@ -26,7 +26,7 @@ void route(Outbox& out, CommandTag tag, std::span<const std::uint8_t> arguments,
 
 }  // namespace
 
-// Both computers hear every command; each answers only those that are for it.
+// Both computers receive every command; each answers only those addressed to it.
 bool CommandDispatcher::is_for_this_computer(Opcode opcode) const {
     const bool for_the_backup = opcode == command::SECOND_CHANCE_ENABLE::opcode;
     return role_ == Role::prime ? !for_the_backup : for_the_backup || in_control_;

@@ -4,8 +4,8 @@
 namespace aeolis::flight {
 namespace {
 
-constexpr double answer_first_s = 2.0;      // ours: that ground hears of it before both computers start anew
-constexpr std::int64_t status_every_s = 5;  // ours: the backup's own telemetry takes a hundredth of the link
+constexpr double answer_first_s = 2.0;      // chosen: ground receives the answer before both computers restart
+constexpr std::int64_t status_every_s = 5;  // chosen: the backup's own telemetry takes a hundredth of the link
 
 void resume(const StateFrame& state, ResumeReason reason, Outbox& out) {
     state.in_parts([&](const StatePart& part) { out.send(ModuleId::edl, part); });
@@ -17,7 +17,7 @@ void resume(const StateFrame& state, ResumeReason reason, Outbox& out) {
 }  // namespace
 
 void CrossString::put(StateOctets& line, std::span<const std::uint8_t> state) {
-    line.clear();  // of two states within a cycle the later one counts
+    line.clear();  // of two states in one cycle, only the later is kept
     line.append(state);
 }
 
@@ -39,7 +39,7 @@ void CrossString::on(const StatePart& part, Outbox& out) {
     latest_ = *state;
     too_old_told_ = false;
     const StateHeader prime = latest_.header();
-    // The managers are to address the right units from the first command on.
+    // The managers must address the right units from the first command on.
     if (prime.units != told_units_) {
         told_units_ = prime.units;
         out.send(ModuleId::units, UnitsSelected{prime.units});

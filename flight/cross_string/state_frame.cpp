@@ -13,14 +13,14 @@ T number_at(std::span<const std::uint8_t> octets, std::size_t at) {
     return value;
 }
 
-/// FNV-1a over words of eight octets, the last one filled up with zeros, in four lanes that do not wait for each other;
-/// the last word of all is the lanes themselves. [fnv]
+/// FNV-1a over words of eight octets, the last padded with zeros, in four independent lanes; the lanes themselves are
+/// hashed last. [fnv]
 std::uint64_t checksum(std::span<const std::uint8_t> octets) {
     constexpr std::size_t lanes = 4;
     constexpr std::size_t row = lanes * sizeof(std::uint64_t);
     const auto add = [](std::uint64_t& sum, std::uint64_t word) {
         sum = (sum ^ word) * 0x100000001B3U;
-        sum ^= sum >> 29U;  // a multiplication alone never brings high bits down
+        sum ^= sum >> 29U;  // a multiplication alone never moves high bits down
     };
     std::array<std::uint64_t, lanes> sums{0xCBF29CE484222325U, 1, 2, 3};
     for (std::size_t at = 0; at < octets.size(); at += row) {

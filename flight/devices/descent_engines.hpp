@@ -6,8 +6,8 @@
 
 namespace aeolis::flight {
 
-/// Manager of the descent engines and the bridle's brake, on the 64 Hz bus. R5, R10, R22 In the rate group: it confirms
-/// every tick, idle or not.
+/// Manager of the descent engines and the bridle's brake, on the 64 Hz bus. R5, R10, R22
+/// In the rate group: it confirms every tick, idle or not.
 ///
 /// In      RunEngines, PayOutBridle, EngineReply and BridleReply (interrupts), Tick, UnitsSelected
 /// Out     engine commands at its tick; EngineReply and BridleReply forwarded to Edl; ActionReply when the engines

@@ -16,8 +16,7 @@
 //
 // Frames (docs/frames_and_units.md): M is fixed to rotating Mars, origin at its centre, z along the spin axis, x
 // through the prime meridian. B is fixed to the vehicle, z along the symmetry axis: towards the heatshield in entry,
-// down in powered descent. A quaternion q_MB is {w, x, y, z}, unit, and transforms components in B into components in
-// M.
+// down in powered descent. A quaternion q_MB is {w, x, y, z}, unit, and transforms components in B to M.
 namespace aeolis::flight {
 
 // ---- redundant units -------------------------------------------------------------------------------------------

@@ -48,8 +48,7 @@ constexpr std::array<Effector, thruster_count> entry_thrusters() {
     return all;
 }
 
-/// Descent engines: two at each of four corners, canted slightly along the rim so that they also turn the vehicle about
-/// z.
+/// Descent engines: two at each of four corners, canted along the rim so that they also turn the vehicle about z.
 /// Numbered so that every other one is used in the sky crane: one in each corner, balanced about z.
 constexpr std::array<Effector, engine_count> descent_engines() {
     constexpr double radius_m = 1.5, sine = 0.087, cosine = 0.9962082;  // 5°

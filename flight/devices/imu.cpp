@@ -27,7 +27,7 @@ void ImuManager::on(const Tick& tick, Outbox& out) {
     out.send(ModuleId::sync, Confirm{ModuleId::imu});
 }
 
-// The samples that come with a tick ended before it: those of a whole second's tick belong to the second that is over.
+// Samples delivered with a tick ended before it: at the tick of a whole second they belong to the past second.
 void ImuManager::watch_rate(Sclk now, Outbox& out) {
     samples_in_second_ = static_cast<std::uint16_t>(samples_in_second_ + latest_.samples.size());
     if (at_resolution(now, 1) != now) return;

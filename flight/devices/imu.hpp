@@ -6,8 +6,9 @@
 
 namespace aeolis::flight {
 
-/// Manager of the inertial measurement unit, which has its own link at 200 Hz. R2, R5, R10, R22 Samples received since
-/// the last tick reach GNC in the same cycle. In the rate group: it confirms every tick, with samples or without.
+/// Manager of the inertial measurement unit, which has its own link at 200 Hz. R2, R5, R10, R22
+/// Samples received since the last tick reach GNC in the same cycle. In the rate group: it confirms every tick, with
+/// samples or without.
 ///
 /// In      ImuReadings (interrupt; 3 or 4 samples a cycle), Tick, UnitsSelected
 /// Out     ImuReadings to Edl before Edl's turn, and to EdlComm; Confirm

@@ -28,7 +28,7 @@ void PyroManager::on(const UnitsSelected& selected, Outbox&) {
 
 void PyroManager::on(const Tick&, Outbox& out) {
     out.bus().units[Device::pyro] = unit_;
-    // What finds no room on the bus, after a second turn in one cycle, waits for the next.
+    // Pyros without room on the bus, after a second turn in one cycle, wait for the next cycle.
     while (!due_.empty() && out.bus().pyros.try_push_back(due_[0])) due_.erase_at(0);
     out.send(ModuleId::sync, Confirm{ModuleId::pyro});
 }

@@ -15,7 +15,7 @@ void SwitchReplies::reply(const SwitchReply& reply, Unit selected, Outbox& out) 
     const auto number = static_cast<std::size_t>(reply.id);
     if (number >= switch_count || !awaited_[number] || reply.unit != selected)
         return out.event(evr::REPLY_UNEXPECTED{.device_number = device});
-    // The answer to a command that a newer one has overtaken: the newer one's is still due.
+    // This reply answers an older command; the reply to the newer one is still due.
     if (!reply.refused && reply.on != *awaited_[number]) return;
     awaited_[number].reset();
     if (reply.refused) return out.event(evr::DEVICE_REFUSED{.device_number = device});

@@ -20,7 +20,7 @@ void Thrusters::on(const EnableThrusters& command, Outbox&) {
 
 void Thrusters::on(const ThrusterReply& reply, Outbox& out) {
     if (!awaited_ || reply.unit != unit_) return out.event(evr::REPLY_UNEXPECTED{.device_number = thrusters_device});
-    // The answer to a command that a newer one has overtaken: the newer one's is still due.
+    // This reply answers an older command; the reply to the newer one is still due.
     if (!reply.refused && reply.enabled != *awaited_) return;
     awaited_.reset();
     if (reply.refused) return out.event(evr::DEVICE_REFUSED{.device_number = thrusters_device});

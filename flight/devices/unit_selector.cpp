@@ -6,7 +6,7 @@ namespace {
 
 constexpr std::array told{ModuleId::radar,           ModuleId::imu,       ModuleId::edl,   ModuleId::pyro,
                           ModuleId::descent_engines, ModuleId::thrusters, ModuleId::power, ModuleId::telecom};
-constexpr std::int64_t report_period_s = 10;  // ours: what does not change need not be said often
+constexpr std::int64_t report_period_s = 10;  // chosen: constant values need not be sent often
 
 static_assert(static_cast<Unit>(SelectedUnit::a) == Unit::a && static_cast<Unit>(SelectedUnit::b) == Unit::b);
 static_assert(static_cast<Unit>(RedundantUnit::a) == Unit::a && static_cast<Unit>(RedundantUnit::b) == Unit::b);

@@ -23,7 +23,7 @@ EdlMain::EdlMain(const Load& load)
 // ---- the cycle -------------------------------------------------------------------------------------------------
 
 void EdlMain::on(const Tick& tick, Outbox& out) {
-    // GNC would fly to the tick's time, however far that is.
+    // GNC propagates to the tick's time, however far ahead it is.
     if (!(std::abs(tick.now - out.now()) <= parameters.tick_apart_max_s)) {
         out.event(evr::UNEXPECTED_MESSAGE{.module_number = static_cast<std::uint8_t>(ModuleId::edl),
                                           .message_type = static_cast<std::uint8_t>(Message{tick}.index())});
@@ -42,8 +42,8 @@ void EdlMain::on(const Tick& tick, Outbox& out) {
     explain_held(output_, held_, out);
     if (timeline_.begun() && !inhibited_) explain_held(timeline_, held_, out);
     update_phase(tick.now, out);
-    // After a restart it learns in its second cycle what it was about: until then it would speak of a vehicle that has
-    // not begun.
+    // After a restart, the stored state arrives only in the second cycle: channels recorded before would describe a
+    // vehicle that has not begun EDL.
     if (!after_restart) record_channels(tick.now, out);
     constraint_monitor_.report(out);
     tell_state(tick.now, out);
@@ -185,7 +185,7 @@ bool EdlMain::late_cruise(Sclk now) const {
     return now >= entry() + MaybeOffset{-parameters.late_cruise_before_entry_s};
 }
 
-// Until ground has said when entry is, EDL has not come near.
+// Until ground has sent the time of entry, EDL is still far off.
 bool EdlMain::pre_edl(Sclk now) const {
     return !(now >= timeline_.anchor_time(anchor::pre_edl_end));
 }
@@ -195,7 +195,7 @@ bool EdlMain::too_late(Sclk now) const {
 }
 
 void EdlMain::on(const ParametersUpdate& update, Outbox& out) {
-    // Once GNC navigates by itself, a solution from Earth is older than what it knows.
+    // Once GNC navigates by itself, a solution from Earth is older than its own.
     if (configuration_.enabled) return answer(out, update.tag, CommandRefusal::wrong_phase);
     if (!possible(update.parameters, out.now())) return answer(out, update.tag, CommandRefusal::bad_argument);
     ++revision_;

@@ -15,8 +15,9 @@
 
 namespace aeolis::flight {
 
-/// EdlMain: the one thread of EDL. R15, R17, R18, R47 Each 64 Hz cycle it runs the timeline, GNC exactly once, and the
-/// timeline again, so that GNC's decisions take effect in the same cycle.
+/// EdlMain: the one thread of EDL. R15, R17, R18, R47
+/// Each 64 Hz cycle it runs the timeline, GNC exactly once, and the timeline again, so that GNC's decisions take effect
+/// in the same cycle.
 ///
 /// In      StatePart and Resume: continue from the state of another computer, or from before a restart. R32, R33
 ///         Tick; ImuReadings, EngineReply, BridleReply, CruiseAttitude, RadarSolution; ActionReply;
@@ -24,8 +25,8 @@ namespace aeolis::flight {
 /// Out     actions to the device managers; tones; events, firings, explanations and channels to EdlComm; Confirm
 /// Gate    nothing runs before parameters and then "do edl" were received, the latter in late cruise and in time. R23
 /// Roles   prime flies, and sends its state each cycle; Second Chance keeps recent IMU readings until it must take
-///         over; a prime that was restarted after pre-EDL stands by. R33, R34 Until the end of pre-EDL, system fault
-///         protection can hold all of it; afterwards it cannot. R24
+///         over; a prime that was restarted after pre-EDL stands by. R33, R34
+/// Hold    system fault protection can hold EDL until the end of pre-EDL, not afterwards. R24
 class EdlMain {
   public:
     explicit EdlMain(const Load& load);

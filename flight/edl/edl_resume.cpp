@@ -4,7 +4,7 @@
 
 #include <utility>
 
-// How EdlMain goes on from a state that it did not reach itself: its own of before a restart, or prime's. R32, R33
+// EdlMain resumes from a state of another source: its own from before a restart, or prime's. R32, R33
 namespace aeolis::flight {
 
 void EdlMain::tell_state(Sclk now, Outbox& out) {
@@ -31,7 +31,7 @@ void EdlMain::on(const StatePart& part, Outbox&) {
 void EdlMain::on(const Resume& resume, Outbox& out) {
     const std::optional<StateFrame> state = std::exchange(state_of_another_, std::nullopt);
     if (!state || timeline_.begun()) return out.event(evr::STATE_UNREADABLE{});
-    // Of another build with the same dictionary: found by its size before anything of it is taken.
+    // A state of another build with the same dictionary is detected by its size, before any of it is used.
     const bool fits = StateFrame::of(state->header(), *this).octets().size() == state->octets().size();
     if (!fits || !state->restore(*this)) return out.event(evr::STATE_UNREADABLE{});
     revision_ = state->header().revision + 1;
@@ -43,7 +43,8 @@ void EdlMain::on(const Resume& resume, Outbox& out) {
 }
 
 void EdlMain::restart(Sclk now, Outbox& out) {
-    // By what the other computer was last told: it takes over from just that state on which this one stands by.
+    // Decided by the last state that the other computer received: it takes over from just the states for which this one
+    // stands by.
     if (timeline_.begun() && !pre_edl(load_.told_until.value_or(now))) {
         activity_ = Activity::stands_by;
         for (const ModuleId silent : {ModuleId::mfsk, ModuleId::units}) out.send(silent, StandBy{});
@@ -51,7 +52,7 @@ void EdlMain::restart(Sclk now, Outbox& out) {
     }
     out.send(ModuleId::mfsk, ToneRequest{tone::computer_started, now});
     out.send(ModuleId::edl_comm, PhaseChanged{phase()});
-    if (parameters_) gnc_.set_solution(solution_of(*parameters_), now);  // what was navigated then is old by now
+    if (parameters_) gnc_.set_solution(solution_of(*parameters_), now);  // the navigated state is out of date
     if (!timeline_.begun()) return;
     const TimepointId from = timeline_.current();
     if (timeline_.backtrack(now))
@@ -64,7 +65,7 @@ void EdlMain::take_over(const StateHeader& prime, Sclk now, Outbox& out) {
     timeline_.await_nothing();
     for (; !recent_readings_.empty(); recent_readings_.pop()) {
         const ImuReadings& readings = recent_readings_.front();
-        // The readings of this very cycle are in gnc_inputs_ and come with its turn.
+        // The readings of this cycle are in gnc_inputs_ and are used in this cycle's GNC run.
         if (readings.now > prime.time && readings.now < now) gnc_.catch_up(readings.samples.span(), readings.now);
     }
     out.event(evr::SECOND_CHANCE_TAKES_OVER{.silence_s = now - prime.time, .timepoint = timeline_.current().value});

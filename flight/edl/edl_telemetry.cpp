@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-// The channels that EdlMain records, and how often. What of them goes to ground is EdlComm's plan.
+// Channels that EdlMain records, and their rates. EdlComm's plan selects those sent to ground.
 namespace aeolis::flight {
 namespace {
 
@@ -86,7 +86,7 @@ packet::GncDescent descent(const gnc::Output& gnc, double bridle_m) {
             .bridle_m = single(bridle_m)};
 }
 
-/// A load for benchmarks and nothing else: thirty slow waves of known phase, no quantity of the vehicle.
+/// Synthetic load for benchmarks: thirty slow waves of known phase, no quantities of the vehicle.
 packet::Wideband wideband(Sclk now) {
     const auto wave = [&](int channel) {
         return single(std::sin(0.1 * channel * std::remainder(now.seconds, 20.0 * std::numbers::pi / channel)));
@@ -147,7 +147,7 @@ void EdlMain::record_channels(Sclk now, Outbox& out) {
                                           .backshell_anchor_sclk = seconds(timeline_.anchor_time(anchor::backshell)),
                                           .touchdown_anchor_sclk = seconds(timeline_.anchor_time(anchor::touchdown))});
     }
-    // Again and again while parameters may still come, so that a lost or early read-back is made good.
+    // Repeated while parameters may still arrive, so that a lost or early read-back is made up for.
     if (parameters_ && !configuration_.enabled && due(now, 1) && now.ticks() / 64 % held_every_s == 0)
         out.record(parameters_held());
     if (load_.telemetry_plan == Plan::wideband) out.record(wideband(now));

@@ -6,7 +6,7 @@
 namespace aeolis::flight {
 namespace {
 
-/// What a mode of GNC means for the phase; nothing while GNC is off.
+/// Phase event of a GNC mode; none while GNC is off.
 std::optional<EdlPhaseEvent> event_of(gnc::Mode mode) {
     using gnc::Mode;
     switch (mode) {

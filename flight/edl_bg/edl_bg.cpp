@@ -10,8 +10,8 @@ void EdlBg::on(const RadarReturns& returns, Outbox&) {
     latest_ = returns;
 }
 
-// Sent after GNC's cycle, so it is the attitude at the tick of the returns: one cycle of lag would be metres of
-// altitude while the vehicle turns in the powered approach.
+// The attitude is sent after GNC's cycle, so it is the one at the tick of the returns. A lag of one cycle would cost
+// metres of altitude while the vehicle turns in the powered approach.
 void EdlBg::on(const NavigatedAttitude& attitude, Outbox& out) {
     if (!navigated_) solved_at_ = out.now();
     navigated_ = true;
@@ -50,8 +50,8 @@ void EdlBg::on(const ClockTick& tick, Outbox& out) {
 void EdlBg::watch_radar(Sclk now, Outbox& out) {
     const bool wanted = now - attitude_at_ < 1.0;
     const double gap_s = now - solved_at_;
-    // While the vehicle still leans far over under the parachute its beams reach no ground: the first may take its
-    // time.
+    // Under the parachute the vehicle may first swing so far that its beams miss the ground: the first solution may
+    // take longer.
     const double most_s = solutions_ > 0 ? parameters.radar_gap_max_s : parameters.radar_patience_s;
     if (!wanted || radar_lost_ || gap_s < most_s) return;
     radar_lost_ = true;

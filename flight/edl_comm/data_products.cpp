@@ -56,7 +56,7 @@ void ImuBurst::begin() {
 void DataProducts::on(const Record& record) {
     if (record.apid != packet::TimepointFired::apid) return;
     as_flown_.on(record);
-    // The last firing of all: now the product is whole. It comes down with the recording.
+    // After the last firing the product is complete. It is delivered with the recording.
     if (read_bits(record.data, 0, 16) + 1 == timepoint_count) static_cast<void>(due_.try_push(ProductKind::as_flown));
 }
 
@@ -65,11 +65,11 @@ void DataProducts::on(const ImuReadings& readings) {
 }
 
 void DataProducts::on(const PhaseChanged& change) {
-    // Only who flew the entry saw the mortar: a computer that takes over under the parachute did not.
+    // Only a computer that flew the entry saw the mortar fire; one that takes over under the parachute did not.
     const bool in_entry = phase_ >= EdlPhase::range_control && phase_ < EdlPhase::parachute_descent;
     if (in_entry && change.phase == EdlPhase::parachute_descent) imu_burst_.begin();
     phase_ = change.phase;
-    // While UHF still has some seconds: what was flown up to touchdown.
+    // While UHF has some seconds left: the firings up to touchdown.
     if (change.phase == EdlPhase::landed) static_cast<void>(due_.try_push(ProductKind::as_flown));
 }
 
@@ -104,7 +104,7 @@ void DataProducts::cycle(Outbox& out) {
     const std::size_t begin = part.part * part_octets;
     const std::size_t size = std::min(part_octets, sending_->octets - begin);
     part.content.fill(0);
-    // Rows are only ever added: what was there when the product was begun is there still.
+    // Rows are only ever appended: the content at the start of the product is unchanged.
     std::ranges::copy(content(part.product_kind).subspan(begin, size), part.content.begin());
     ++part.part;
     out.record(part);

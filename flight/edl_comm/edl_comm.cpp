@@ -12,8 +12,8 @@ static_assert(packet::CommStatusB::octets == packet::CommStatus::octets &&
                   packet::SyncStatusB::octets == packet::SyncStatus::octets,
               "the same fields, under names of computer B");
 
-/// What both computers say of themselves at all times has names of its own for each; all else is the vehicle's, whoever
-/// flies it.
+/// APID of a packet on this computer. Status that both computers send at all times has a name for each; everything else
+/// belongs to the vehicle, whichever computer flies it.
 Apid apid_of(String string, Apid apid) {
     if (string == String::a) return apid;
     if (apid == packet::CommStatus::apid) return packet::CommStatusB::apid;
@@ -25,7 +25,7 @@ Apid apid_of(String string, Apid apid) {
 
 EdlComm::EdlComm(const Load& load)
     : octets_per_cycle_(load.uhf_rate_bps / 8.0 * seconds_per_tick), string_(load.string), plan_(load.telemetry_plan) {
-    // So that a unit of one computer never has the name of one of the other's.
+    // The computers count from different numbers, so that no packet of one has the identity of one of the other's.
     if (load.string == String::b)
         for (Stream& stream : streams_) stream.count = counts_of_string_b;
 }
@@ -44,7 +44,7 @@ void EdlComm::on(const Record& record, Outbox& out) {
     seal_tm_packet(std::span{packet.octets}.first(packet.size), apid, stream.count, record.time, dictionary_id);
     stream.count = (stream.count + 1) & 0x3FFF;
     const TelemetryPlanRow& plan = planned(plan_, apid);
-    // Only what is recorded may be sent: real time stays a subset of the recording.
+    // Only recorded packets may be sent: real time stays a subset of the recording.
     if (append_to_recording(plan.priority, packet, out)) offer_to_link(plan, stream, packet, out);
     products_.on(record);
 }
@@ -77,7 +77,7 @@ void EdlComm::offer_to_link(const TelemetryPlanRow& plan, Stream& stream, const 
 }
 
 void EdlComm::radiate(Outbox& out) {
-    // A link that was idle does not save up more than one frame.
+    // An idle link accumulates credit for one frame at most.
     constexpr std::size_t saved_octets =
         pltu_overhead_octets + std::max(frame_packets_octets, telemetry_packet_octets_max);
     credit_octets_ = std::min(credit_octets_, static_cast<double>(saved_octets)) + octets_per_cycle_;
@@ -88,7 +88,7 @@ void EdlComm::radiate(Outbox& out) {
             break;
         send_frame(out);
     }
-    // The episode is over when half of the room is free again; ours, so that it is not said at every packet.
+    // The episode ends when half of the room is free again (chosen, so that it is not reported for every packet).
     if (queue_.waiting() <= RealtimeQueue::packets_max / 2) queue_full_reported_ = false;
 }
 

@@ -12,8 +12,8 @@
 
 namespace aeolis::flight {
 
-/// All EDL telemetry: records every packet in non-volatile memory (NVM), and sends a subset in real time. R29, R30 The
-/// subset is bit-identical to the recording and limited by the rate of the link.
+/// All EDL telemetry: records every packet in non-volatile memory (NVM), and sends a subset in real time. R29, R30
+/// The subset is bit-identical to the recording and limited by the rate of the link.
 ///
 /// In      Record (any module), ImuReadings, PhaseChanged, NvmStatus, ToneStatus, UplinkStatus, ClockTick (64 Hz)
 /// Out     packets to NVM, in order; PLTUs with some of them to the UHF transmitter, within its rate; CommStatus at 1
@@ -22,7 +22,8 @@ namespace aeolis::flight {
 /// Faults  a full link queue is reported once per episode (UHF_QUEUE_FULL), and drops are counted by priority in
 ///         CommStatus
 ///         NVM nearly full is reported once (NVM_FULL, and by tone); the last 64 KiB are kept for packets of priority
-///         first A record that no packet can hold is refused as an unexpected message
+///         first
+///         A record that no packet can hold is refused as an unexpected message
 /// Frames  A Proximity-1 frame, expedited, on this computer's own physical channel, carries whole packets. While more
 ///         wait, a frame is sent only when it can hold 256 octets (chosen: a quarter of a second at 8 kb/s, 5 % frame
 ///         overhead)

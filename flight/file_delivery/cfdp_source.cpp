@@ -47,7 +47,7 @@ void CfdpSource::send_again(const cfdp::Range& asked) {
         metadata_due_ = true;
         return;
     }
-    // What was not sent yet comes anyway.
+    // Octets that were not sent yet will be sent anyway.
     const cfdp::Range range{asked.start, std::min(asked.end, sent_octets_)};
     const auto holds = [&](const cfdp::Range& each) { return each.start <= range.start && range.end <= each.end; };
     if (range.start >= range.end || std::any_of(again_.begin(), again_.end(), holds)) return;

@@ -11,44 +11,44 @@
 
 namespace aeolis::flight {
 
-/// Sends one file so that it arrives whole, by CFDP class 2. [ccsds-727.0-b-5]
+/// Sends one file by CFDP class 2, which guarantees complete delivery. [ccsds-727.0-b-5]
 ///
-/// In      PDUs from the receiver (any), repeat() when an answer has been waited for long enough; the file's octets at
-///         each call of next(), always the same
-/// Out     PDUs, one by one, as long as there is something to send: what was asked for again goes first
-/// Memory  this object: 512 ranges that are to be sent again. What finds no room is not kept: the receiver asks again
+/// In      PDUs from the receiver (any); repeat() when an answer is overdue; the file's octets at each call of next(),
+///         always the same
+/// Out     PDUs, one by one, as long as there is something to send: requested retransmissions first
+/// Memory  this object: 512 ranges to be retransmitted. Further requests are dropped: the receiver asks again
 /// Faults  PDUs of other transactions, or that a sender does not expect, change nothing. After a restart of the
-///         computer a source made anew with the same sequence number, or an older copy, goes on: what arrives twice is
-///         dropped by the receiver
+///         computer, a new source with the same sequence number, or an older copy, can continue: the receiver drops
+///         duplicates
 class CfdpSource {
   public:
     static constexpr std::size_t ranges_max = 512;
-    static constexpr std::size_t name_octets_max = 64;  ///< ours
+    static constexpr std::size_t name_octets_max = 64;  ///< chosen
 
     struct File {
         std::uint16_t source = 0;  ///< entity ids
         std::uint16_t destination = 0;
-        std::uint32_t sequence = 0;  ///< of the transaction
+        std::uint32_t sequence = 0;  ///< transaction sequence number
         std::uint32_t octets = 0;
-        std::uint16_t segment_octets = 900;  ///< of file data in one PDU
+        std::uint16_t segment_octets = 900;  ///< file data in one PDU
     };
-    /// The name is the same at both ends.
+    /// `name` is the file's name at both ends.
     CfdpSource(const File& file, std::string_view name);
 
     void on(const cfdp::Pdu& pdu);
 
-    /// Writes the next PDU into `into`, which has room for the largest, and returns its octets; 0: nothing to send.
+    /// Writes the next PDU into `into`, which must hold pdu_octets_max(), and returns its octets; 0: nothing to send.
     std::size_t next(std::span<const std::uint8_t> file, std::span<std::uint8_t> into);
 
-    /// No answer has come in the time that it takes: the end of the file is announced again.
+    /// Announces the end of the file again, because no answer arrived in the expected time.
     void repeat();
 
-    bool done() const { return finished_ && !finished_ack_due_; }  ///< the receiver has said how it ended
-    bool delivered() const { return delivered_; }                  ///< and it has the whole file
-    std::uint32_t sent_octets() const { return sent_octets_; }     ///< of the file, each counted once
+    bool done() const { return finished_ && !finished_ack_due_; }  ///< the receiver has reported how the transfer ended
+    bool delivered() const { return delivered_; }                  ///< the receiver has the whole file
+    std::uint32_t sent_octets() const { return sent_octets_; }     ///< of the file, each octet counted once
     std::uint32_t to_repeat_octets() const;
 
-    /// Room that every PDU of this file finds.
+    /// Octets of the largest PDU of this file.
     std::size_t pdu_octets_max() const;
 
   private:
@@ -61,7 +61,7 @@ class CfdpSource {
     FixedVector<char, name_octets_max> name_;
     FixedVector<cfdp::Range, ranges_max> again_;
     std::uint32_t sent_octets_ = 0;
-    std::uint32_t checksum_ = 0;  ///< of what was sent the first time
+    std::uint32_t checksum_ = 0;  ///< of octets sent for the first time
     bool metadata_due_ = true;
     bool eof_due_ = true;
     bool eof_acknowledged_ = false;

@@ -15,7 +15,7 @@ namespace {
 constexpr std::string_view name_of_files = "recording/";
 constexpr std::size_t pdu_octets_max = proximity_data_octets_max - primary_header_octets;
 
-/// "recording/17"
+/// Name of a file: "recording/17".
 FixedVector<char, CfdpSource::name_octets_max> file_name(std::uint32_t number) {
     FixedVector<char, CfdpSource::name_octets_max> name;
     name.append(name_of_files);
@@ -112,7 +112,7 @@ bool RecordingDelivery::begin_next(const Recording& recording) {
     return true;
 }
 
-// Marked as sequence controlled, so that ground counts these frames by themselves; what is lost CFDP repeats.
+// Marked as sequence controlled, so that ground counts these frames separately; CFDP retransmits lost data.
 std::size_t RecordingDelivery::wrapped(std::span<const std::uint8_t> pdu, std::span<std::uint8_t> into) {
     std::array<std::uint8_t, proximity_data_octets_max> packet{};
     const std::size_t size = primary_header_octets + pdu.size();

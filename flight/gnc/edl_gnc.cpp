@@ -30,7 +30,7 @@ EdlGnc::EdlGnc(const Load& load)
 void EdlGnc::set_solution(const Solution& solution, Sclk now) {
     solution_ = solution;
     target_M_ = direction_of(solution.target_latitude_rad, solution.target_longitude_rad);
-    // Once the air is felt, what is on board knows better than what ground knew hours ago: only bounds are taken.
+    // Once the air is felt, the navigated state is better than ground's from hours ago: only the bounds are taken.
     if (navigating_ && mode() >= Mode::range_control) return;
     NavigatedState state;
     state.p_MoB_M = to_vector(solution.p_MoB_M_m);
@@ -48,8 +48,8 @@ void EdlGnc::on(const CruiseAttitude& attitude) {
     take_cruise_attitude();
 }
 
-// It is as of its tick, and the vehicle still spins, 3 mrad a tick: taken when the increments have come there, and
-// brought up to them when it comes a little late.
+// The attitude is valid at its tick, and the vehicle still spins, 3 mrad a tick. It is taken when the increments have
+// reached that tick; if it arrives slightly late, it is rotated forward to them.
 void EdlGnc::take_cruise_attitude() {
     if (!cruise_attitude_ || (navigating_ && cruise_attitude_->at > navigated_to_)) return;
     const CruiseAttitude attitude = *std::exchange(cruise_attitude_, std::nullopt);
@@ -74,7 +74,7 @@ void EdlGnc::on(const RadarSolution& solution) {
 void EdlGnc::navigate(std::span<const ImuSample> imu, Sclk now) {
     if (!navigating_) return;
     const double passed_s = now - navigated_to_;
-    if (passed_s <= 0.0) return;  // a solution was just taken in, as of now: these increments lie before it
+    if (passed_s <= 0.0) return;  // a solution was just taken, valid now: these increments are older
     navigated_to_ = now;
     if (imu.empty()) strapdown_.coast(passed_s);
     const bool pushed = measured_.altitude_m < parameters.air_altitude_max_m || now <= pulses_felt_until_;
@@ -106,7 +106,7 @@ void EdlGnc::measure(Sclk now) {
     m.target = target_geometry(state.p_MoB_M, state.v_MB_M, target_M_, solution_.target_radius_m);
 }
 
-// The one place where the mode changes, and only as state_machines.csv says.
+// The only place where the mode changes, always by state_machines.csv.
 bool EdlGnc::take(GncModeEvent event, Sclk now) {
     if (!mode_machine_.take(event)) return false;
     mode_since_ = now;
@@ -158,7 +158,7 @@ void EdlGnc::cycle(const DeviceInputs& in, const Configuration& configuration, O
     report(out);
 }
 
-// Modes that follow what the timeline has done. What stays true is offered each cycle; the table knows when it counts.
+// Mode changes that follow the timeline. Conditions that stay true are offered in each cycle; the table selects.
 void EdlGnc::follow_configuration(const Configuration& configuration, Sclk now) {
     using Event = GncModeEvent;
     if (configuration.enabled) take(Event::enabled, now);
@@ -173,7 +173,7 @@ void EdlGnc::follow_configuration(const Configuration& configuration, Sclk now) 
         mass_kg_ -= load_.rover_mass_kg;  // the bridle is cut before fly-away starts
 }
 
-// Entry and parachute: decisions by what is navigated.
+// Entry and parachute: decisions from the navigated state.
 void EdlGnc::decide_in_air(const Configuration& configuration, Sclk now, Output& out) {
     const Measured& m = measured_;
     const triggers::InAir in_air{m.speed_mps, m.altitude_m, m.descent_rate_mps};
@@ -200,7 +200,7 @@ void EdlGnc::decide_in_air(const Configuration& configuration, Sclk now, Output&
         fire(Trigger::heatshield, triggers::heatshield(m.speed_mps, solution_.heatshield_speed_mps, since_parachute_s),
              out);
     if (!configuration.heatshield_gone) return;
-    // Inertial altitude alone may be kilometres off by now; it has to do only when the radar has had its time in vain.
+    // Inertial altitude alone may be kilometres off by now; it is used only after waiting for the radar in vain.
     const double since_heatshield_s = configuration.heatshield_time ? now - *configuration.heatshield_time : 0.0;
     auto priming = triggers::engine_priming(m.altitude_m, m.descent_rate_mps, solution_.backshell_altitude_m);
     if (radar_filter_.locked() || since_heatshield_s >= triggers::radar_patience_s) {
@@ -277,7 +277,7 @@ void EdlGnc::guide_entry(Sclk now, const Configuration& configuration, Output& o
         const RangeControlOutput wanted = range_control(load_.entry_reference, input);
         predicted_range_m_ = wanted.predicted_range_m;
         lift_to_drag_command_ = wanted.vertical_lift_to_drag;
-        // Near lift up the two sides are hardly apart: there a reversal need not have been flown out.
+        // Near full lift up the two sides hardly differ: a reversal then counts as settled.
         const bool settled = m.bank_rad * lateral_.sign() > 0.0 ||
                              wanted.bank_magnitude_rad < parameters.reversal_settled_below_deg * degree;
         if (lateral_.on(now, m.target.crossrange_m, m.speed_mps, wanted.saturated, settled))
@@ -298,7 +298,7 @@ void EdlGnc::guide_entry(Sclk now, const Configuration& configuration, Output& o
     attitude.bank_rad = bank_command_rad_;
 }
 
-// What the engines must do for the vehicle to accelerate by `acceleration_M`.
+// Commands the thrust that accelerates the vehicle by `acceleration_M`.
 void EdlGnc::push(const Vector3& acceleration_M, int engines, Output& out) {
     const powered_descent::Thrust thrust = powered_descent::allocate(
         acceleration_M - measured_.free_M_mps2, measured_.up_M, mass_kg_, engines, load_.engine_max_thrust_N);
@@ -319,7 +319,7 @@ void EdlGnc::guide_descent(Sclk now, const Configuration& configuration, Output&
 
     const Vector3& v_M = strapdown_.state().v_MB_M;
     const int engines = configuration.sky_crane_started ? 4 : 8;
-    // Once the divert is flown, what is left of drift is nulled.
+    // Once the divert has ended, the remaining drift is nulled.
     const Vector3 null_drift = -rate_gain_per_s * m.level_velocity_M;
     if (mode() == Mode::free_fall) {
         out.engines.throttle.fill(load_.engine_min_thrust_N / load_.engine_max_thrust_N);  // warm-up
@@ -374,7 +374,7 @@ void EdlGnc::steer(const Configuration& configuration, Output& out) {
 
 void EdlGnc::burn(const DeviceInputs& in, const Configuration& configuration) {
     if (mode() < Mode::free_fall || configuration.engines_off) return;
-    // What the engines say they gave; what was asked of them until they say something.
+    // Thrust reported by the engines; until they report any, the commanded thrust.
     const double thrust_N = in.engines ? in.engines->thrust_N : thrust_command_N_;
     mass_kg_ -= thrust_N / (load_.engine_isp_s * standard_gravity_mps2) * cycle_s;
 }

@@ -27,11 +27,12 @@
 #include <type_traits>
 
 // EdlGnc: the library that closes the loop from cruise-stage separation to touchdown. It has no thread; EdlMain runs it
-// exactly once in each 64 Hz cycle, between two passes of the timeline. It works from the navigated state and never
-// sees the truth. R17, R18, R27, R47
+// exactly once in each 64 Hz cycle, between two passes of the timeline. It uses the navigated state and never the
+// truth. R17, R18, R27, R47
 namespace aeolis::flight::gnc {
 
-/// What ground knows best, from EDL_SET_PARAMETERS. Position and velocity in M, relative to rotating Mars.
+/// Ground's navigation solution and targets, from EDL_SET_PARAMETERS. Position and velocity in M, relative to rotating
+/// Mars.
 struct Solution {
     Sclk epoch;
     std::array<double, 3> p_MoB_M_m{};
@@ -41,10 +42,10 @@ struct Solution {
     double target_longitude_rad = 0.0;  ///< east
     double target_radius_m = 0.0;
     double parachute_speed_mps = 405.0;
-    double parachute_altitude_min_m = 6000.0;  ///< down to here the parachute waits for its speed
+    double parachute_altitude_min_m = 6000.0;  ///< down to this altitude the parachute waits for its speed
     double heatshield_speed_mps = 142.0;
     double backshell_altitude_m = 1660.0;
-    double backshell_descent_rate_mps = 79.1;  ///< that the altitude belongs to
+    double backshell_descent_rate_mps = 79.1;  ///< to which the altitude belongs
 
     template <typename Exchange>
     void carry(Exchange& exchange) {
@@ -54,12 +55,12 @@ struct Solution {
     }
 };
 
-/// What the timeline has done, as GNC asks for it each cycle: the configuration that GNC must fly. R26
+/// Configuration that GNC must fly: the timeline's progress, read by GNC each cycle. R26
 struct Configuration {
-    bool enabled = false;  ///< GNC enable has fired
+    bool enabled = false;  ///< "GNC enable" has fired
     bool cruise_stage_gone = false;
     bool turning_to_entry = false;  ///< start_turn_to_entry has fired: trim attitude, bank held until guidance
-    bool guidance_armed = false;    ///< may start entry guidance when drag says so
+    bool guidance_armed = false;    ///< entry guidance may start when drag is high enough
     bool sufr_allowed = false;
     bool parachute_out = false;  ///< mortar fired
     std::optional<Sclk> parachute_time;
@@ -88,7 +89,7 @@ struct Configuration {
     }
 };
 
-/// "Now": GNC starts these; the timeline fires the timepoint in the second pass of the same cycle. R17
+/// GNC's "now": the timeline fires the timepoint in the second pass of the same cycle. R17
 enum class Trigger : std::uint8_t {
     guidance_start,
     heading_alignment,
@@ -107,28 +108,28 @@ enum class Trigger : std::uint8_t {
 };
 inline constexpr std::size_t trigger_count = static_cast<std::size_t>(Trigger::touchdown) + 1;
 
-using Mode = GncMode;  ///< in the order in which they come
+using Mode = GncMode;  ///< in the order in which they occur
 
-/// A trigger that is near, and what it still waits for. R38
+/// A trigger that is near, and the conditions that hold it. R38
 struct HeldTrigger {
     Trigger trigger{};
     Conditions conditions;
 };
 
-/// Everything that GNC tells the rest in one cycle.
+/// All outputs of GNC in one cycle.
 struct Output {
     Mode mode = Mode::off;
     FixedVector<Trigger, 4> triggers;  ///< fired in this cycle
     Conditions conditions;             ///< of the last trigger in `triggers`
     FixedVector<HeldTrigger, 4> held;  ///< near, and not fired in this cycle
     std::uint8_t bank_reversal = 0;    ///< number of the reversal that began in this cycle, 0: none
-    AttitudeCommand attitude;          ///< what guidance wants
-    ThrusterCommand thrusters;         ///< what attitude control makes of it
+    AttitudeCommand attitude;          ///< commanded by guidance
+    ThrusterCommand thrusters;         ///< computed by attitude control
     EngineCommand engines;
-    // Telemetry: the navigated state and what guidance wants. Frame M, SI, degrees where the name says so.
+    // Telemetry: the navigated state and guidance's commands. Frame M, SI, degrees where the name says so.
     std::array<double, 3> p_MoB_M_m{};
     std::array<double, 3> v_MB_M_mps{};
-    std::array<double, 4> q_MB{1, 0, 0, 0};  ///< navigated attitude, what EdlBg needs to use the radar's beams
+    std::array<double, 4> q_MB{1, 0, 0, 0};  ///< navigated attitude, used by EdlBg for the radar's beams
     double altitude_m = 0.0;                 ///< above the target's radius, or above ground once the radar locked
     double speed_mps = 0.0;
     double descent_rate_mps = 0.0;
@@ -154,17 +155,17 @@ struct Output {
     std::uint16_t radar_beams = 0;  ///< of the last radar solution
 };
 
-/// What steers in a mode: the engines once guidance throttles them; before that, and without them, the thrusters.
+/// Effectors that steer in a mode: the engines once guidance throttles them, otherwise the thrusters.
 Steers steers(Mode mode, const Configuration& configuration, const EngineCommand& engines);
-/// Of the rigid body that is steered: the vehicle, later the stage with or without the rover on it.
+/// Inertia of the rigid body that is steered: the vehicle, later the stage with or without the rover on it.
 Inertia inertia_of(Mode mode, const Configuration& configuration, double rigid_kg);
 
-/// All of GNC's state, a value of fixed size.
+/// The whole state of GNC, a value of fixed size.
 class EdlGnc {
   public:
     explicit EdlGnc(const Load& load);
 
-    /// Ground's solution, or a newer one: (re)initialises navigation, propagated to `now` when the epoch has passed.
+    /// Takes ground's solution and (re)initialises navigation, propagated to `now` when the epoch is past.
     void set_solution(const Solution& solution, Sclk now);
 
     /// Attitude from cruise attitude determination, accepted until the cruise stage is gone.
@@ -173,16 +174,16 @@ class EdlGnc {
     /// One radar solution, at 1 Hz.
     void on(const RadarSolution& solution);
 
-    /// Exactly once in each 64 Hz cycle.
+    /// Runs GNC; call exactly once in each 64 Hz cycle.
     void cycle(const DeviceInputs& in, const Configuration& configuration, Output& out);
 
-    /// What it believes, moved from outside (a case of a campaign).
+    /// Shifts the navigated state from outside (a case of a campaign).
     void shift_navigation(const NavigationShift& by) { strapdown_.shift(by); }
 
-    /// Navigation alone, over a cycle that another computer may have missed.
+    /// Runs navigation alone, over a cycle that another computer may have missed.
     void catch_up(std::span<const ImuSample> imu, Sclk now) { navigate(imu, now); }
 
-    /// What another computer must know to go on: all but our own past for the radar's filter.
+    /// State that another computer needs to continue; without the radar filter's history.
     template <typename Exchange>
     void carry(Exchange& exchange) {
         exchange(solution_, target_M_, navigating_, navigated_to_, pulses_felt_until_, strapdown_, smooth_force_B_mps2_,
@@ -196,15 +197,15 @@ class EdlGnc {
     bool navigating() const { return navigating_; }
 
   private:
-    /// What the rest of the cycle works with, measured once from the navigated state.
+    /// Quantities derived once per cycle from the navigated state.
     struct Measured {
         Vector3 up_M = Vector3::UnitX();
-        Vector3 free_M_mps2 = Vector3::Zero();  ///< acceleration without any force
+        Vector3 free_M_mps2 = Vector3::Zero();  ///< acceleration in free fall
         Vector3 level_velocity_M = Vector3::Zero();
         double altitude_m = 0.0;
         double speed_mps = 0.0;
         double descent_rate_mps = 0.0;
-        double deceleration_mps2 = 0.0;  ///< of the speed
+        double deceleration_mps2 = 0.0;  ///< of the planet-relative speed
         double bank_rad = 0.0;
         TargetGeometry target;
     };
@@ -231,10 +232,10 @@ class EdlGnc {
     Solution solution_;
     Vector3 target_M_ = Vector3::UnitX();
     bool navigating_ = false;
-    std::optional<CruiseAttitude> cruise_attitude_;  ///< to be taken when the increments have come to its tick
+    std::optional<CruiseAttitude> cruise_attitude_;  ///< taken when the increments have reached its tick
     bool cruise_stage_gone_ = false;
     Sclk navigated_to_;
-    Sclk pulses_felt_until_;  ///< of thrusters, in vacuum
+    Sclk pulses_felt_until_;  ///< in vacuum: until then thruster pulses are felt
     Strapdown strapdown_;
     Vector3 smooth_force_B_mps2_ = Vector3::Zero();
     ForceFilter force_filter_;
@@ -246,7 +247,7 @@ class EdlGnc {
     Sclk mode_since_;
     std::array<bool, trigger_count> fired_{};
     triggers::Persistence due_for_parachute_, low_for_backshell_;
-    bool radar_first_ = false;  ///< the first solution was accepted since the last cycle
+    bool radar_first_ = false;  ///< a radar solution has been accepted
 
     LateralLogic lateral_;
     double bank_command_rad_ = 0.0;
@@ -254,7 +255,7 @@ class EdlGnc {
     double predicted_range_m_ = 0.0;
     double lift_to_drag_command_ = 0.0;
 
-    double mass_kg_ = 0.0;  ///< on engines
+    double mass_kg_ = 0.0;  ///< estimate, while on engines
     double thrust_command_N_ = 0.0;
     Steering steering_;
     powered_descent::ApproachProfile approach_;

@@ -19,7 +19,7 @@ Vector3 gravity(const Vector3& p_MoB_M) {
 }
 
 Vector3 free_acceleration(const Vector3& p_MoB_M, const Vector3& v_MB_M) {
-    // With ω along z both cross products are two components each.
+    // With ω along z, both cross products have only two components.
     constexpr double w = mars_spin_rps;
     Vector3 a = gravity(p_MoB_M);
     a.x() += 2.0 * w * v_MB_M.y() + w * w * p_MoB_M.x();

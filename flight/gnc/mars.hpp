@@ -3,7 +3,7 @@
 
 #include "flight/gnc/vector.hpp"
 
-// Mars as GNC knows it: gravity, spin, and how fast sound is in its air. Frame M turns with Mars, z along the spin.
+// Mars model of GNC: gravity, spin and speed of sound. Frame M turns with Mars, z along the spin.
 namespace aeolis::flight::gnc {
 
 inline constexpr double mars_gm_m3ps2 = 42828.3737e9;       ///< [facts] Mars
@@ -11,7 +11,7 @@ inline constexpr double mars_j2 = 1.9566e-3;                ///< [facts] Mars
 inline constexpr double mars_equator_radius_m = 3396190.0;  ///< [facts] Mars
 inline constexpr double mars_spin_rps = 7.088218e-5;        ///< [facts] Mars
 inline constexpr double standard_gravity_mps2 = 9.80665;    ///< defines specific impulse
-inline constexpr double mars_weight_mps2 = 3.71;            ///< g at Gale, [facts] Mars: only where a bound needs it
+inline constexpr double mars_weight_mps2 = 3.71;            ///< g at Gale, [facts] Mars: only for bounds
 
 /// Gravitational acceleration at the vehicle: point mass and oblateness (J2).
 ///
@@ -20,16 +20,15 @@ inline constexpr double mars_weight_mps2 = 3.71;            ///< g at Gale, [fac
 /// Source: [facts] for the constants, [vallado-2013] for the form.
 Vector3 gravity(const Vector3& p_MoB_M);
 
-/// What a vehicle that feels no force does relative to rotating Mars:
-/// gravity(p) − 2 ω × v − ω × (ω × p), ω the spin of Mars.
+/// Acceleration in free fall relative to rotating Mars: gravity(p) − 2 ω × v − ω × (ω × p), ω the spin of Mars.
 ///
 /// @param p_MoB_M  [m] 3×1 in M.   @param v_MB_M  [m/s] 3×1, relative to rotating Mars, in M.
 /// @return         [m/s²] 3×1, in M.
 Vector3 free_acceleration(const Vector3& p_MoB_M, const Vector3& v_MB_M);
 
-/// Speed of sound [m/s] at a height above Gale's landing radius, −5 … 140 km; held outside. For the Mach number in
-/// telemetry only. From the temperature of [gale-atmosphere] with γ = 1.3 and R = 188.9 J/(kg K), straight pieces
-/// (ours).
+/// Speed of sound [m/s] at a height above Gale's landing radius, −5 … 140 km; held outside.
+/// For the Mach number in telemetry only. From the temperature of [gale-atmosphere] with γ = 1.3 and R = 188.9 J/(kg
+/// K); the piecewise linear form is our assumption.
 double speed_of_sound_mps(double altitude_m);
 
 }  // namespace aeolis::flight::gnc

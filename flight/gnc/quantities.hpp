@@ -4,12 +4,12 @@
 #include "common/fixed_vector.hpp"
 #include "generated/dictionary_flight.hpp"
 
-// What a decision of GNC looked at, so that it can explain itself. R38
+// Quantities and conditions behind a decision of GNC, for its explanation. R38
 namespace aeolis::flight::gnc {
 
 using flight::Quantity;
 
-/// One condition behind a decision, for its explanation. R38
+/// One condition behind a decision, with the value compared and its bound. R38
 struct Condition {
     Quantity quantity = Quantity::none;
     double value = 0.0;
@@ -31,7 +31,7 @@ constexpr Condition below(Quantity quantity, double value, double bound) {
 
 using Conditions = FixedVector<Condition, 4>;
 
-/// A decision is for "now" when every one of its conditions holds; with none it is never.
+/// Whether a decision is due: all of its conditions hold. False when there are none.
 inline bool all_hold(const Conditions& conditions) {
     for (const Condition& condition : conditions)
         if (!condition.holds) return false;

@@ -6,7 +6,7 @@
 
 #include <array>
 
-// The linear algebra of GNC, and the way between it and messages, which hold plain numbers.
+// Linear algebra types of GNC, and conversions from and to messages, which hold plain numbers.
 namespace aeolis::flight::gnc {
 
 using Vector3 = Eigen::Vector3d;

@@ -7,17 +7,17 @@ namespace aeolis::flight {
 
 struct ComputerState;
 
-/// How one 64 Hz cycle of a computer's modules is run: the deterministic executive when there is none, else the one
-/// that a venue brings (server/venue). Whatever runs them, the modules do the same. R36
+/// Runs one 64 Hz cycle of a computer's modules: a venue (server/venue) may replace the deterministic executive.
+/// Under every runner, the modules behave identically. R36
 ///
-/// Faults  throws CheckFailed when a module's check failed: the state is of no use then, and the caller makes it anew
+/// Faults  throws CheckFailed when a module's check failed: the state is then unusable, and the caller creates a new
+///         one
 class CycleRunner {
   public:
     virtual ~CycleRunner() = default;
     virtual void cycle(ComputerState& state, const DeviceInputs& in, DeviceOutputs& out) = 0;
 
-    /// Ticks of the clock that passed in cycles since the last call, beyond one a cycle: the world has gone on
-    /// meanwhile.
+    /// Clock ticks lost to long cycles since the last call: the world has advanced by these meanwhile.
     virtual int take_ticks_skipped() { return 0; }
 };
 

@@ -5,19 +5,19 @@
 
 #include <array>
 
-// Priorities follow deadlines: who must be done sooner runs first. R8
+// Deadline-monotonic priorities: the module with the shorter deadline runs first. R8
 namespace aeolis::flight {
 
-/// When a module must have handled what came with a tick, and how much processor time and stack that may take.
+/// Deadline of a module after the tick, and its limits of processor time and stack.
 struct TaskLimits {
     double deadline_s = 0.0;       ///< after the tick
-    double budget_us = 0.0;        ///< of processor time in one cycle
-    std::size_t stack_octets = 0;  ///< that it may have used, of all it has done so far
+    double budget_us = 0.0;        ///< processor time in one cycle
+    std::size_t stack_octets = 0;  ///< maximum stack used so far
 };
 
-/// Ours. The rate group shares the cycle of 1/64 s, sync's order giving the deadlines within it; who only feeds it or
-/// follows it has until the next tick, EdlBg and MFSK work at 1 Hz and slower. A stack is about twice what a landing
-/// uses.
+/// Limits of each module; our assumption.
+/// The rate group shares the cycle of 1/64 s, with deadlines in sync's order. Modules that only feed or follow it have
+/// until the next tick; EdlBg and MFSK work at 1 Hz and slower. A stack is about twice what a landing uses.
 constexpr TaskLimits limits_of(ModuleId id) {
     constexpr double tick_s = seconds_per_tick;
     constexpr std::size_t kilo = 1024;
@@ -43,7 +43,7 @@ constexpr TaskLimits limits_of(ModuleId id) {
     return {};
 }
 
-/// Modules are named in the order of their priority: no later one has a shorter deadline.
+/// Whether ModuleId lists the modules in the order of priority: no later one has a shorter deadline.
 constexpr bool deadline_monotonic() {
     for (std::size_t id = 1; id < module_count; ++id)
         if (limits_of(static_cast<ModuleId>(id)).deadline_s < limits_of(static_cast<ModuleId>(id - 1)).deadline_s)

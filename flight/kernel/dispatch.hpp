@@ -7,7 +7,7 @@
 
 namespace aeolis::flight {
 
-/// What every module is, whatever it does: made from the load alone, copied as a snapshot, spoken to by messages. R9
+/// Requirements on every module: constructed from the load alone, copied as a snapshot, used through messages. R9
 template <typename M>
 concept FlightModule =
     std::constructible_from<M, const Load&> && std::copy_constructible<M> && std::is_trivially_destructible_v<M>;
@@ -16,7 +16,7 @@ concept FlightModule =
 template <typename Module, typename Content>
 concept Handles = requires(Module& module, const Content& content, Outbox& out) { module.on(content, out); };
 
-/// Calls `visit(module)` with the module of that name: the one place where names become modules.
+/// Calls `visit(module)` with the module of that id; the one place that maps ids to modules.
 template <typename State, typename Visit>
 decltype(auto) with_module(State& state, ModuleId id, Visit&& visit) {
     const auto checked = [&](auto& module) -> decltype(auto) {
@@ -45,8 +45,8 @@ decltype(auto) with_module(State& state, ModuleId id, Visit&& visit) {
     AEOLIS_CHECK(false);
 }
 
-/// Has a module handle a message. Any module takes any message at any time: one that it does not know is reported. R4
-/// False when it was not expected.
+/// Passes a message to a module; false when the module has no handler for it.
+/// Any module accepts any message at any time: an unexpected one is reported. R4
 template <typename Module>
 bool handle(Module& module, const Message& message, Outbox& out) {
     return std::visit(

@@ -12,7 +12,7 @@ namespace {
 void put(Message& place, const Message& message) {
     copy_content(place, message);
 }
-/// What comes with the tick is written where it is read, and is a message only there.
+/// Constructs an input of the tick as a message directly in the mailbox.
 template <typename Content>
 void put(Message& place, const Content& content) {
     place.emplace<Content>(content);
@@ -38,7 +38,7 @@ void Executive::cycle(const DeviceInputs& in, DeviceOutputs& out) {
     state_.sync.set_executive_counts(state_.mailbox_overflows, state_.unexpected_messages);
     post_interrupts(in, [&](ModuleId to, const auto& content) { deliver(to, content); });
 
-    // The lowest bit is the module of highest priority; its messages may wake one of higher priority yet.
+    // The lowest bit is the module of highest priority; its messages may wake one of still higher priority.
     while (state_.ready != 0) run(static_cast<ModuleId>(std::countr_zero(state_.ready)), out);
 }
 

@@ -5,19 +5,21 @@
 
 namespace aeolis::flight {
 
-/// What the executive tells of each message that a module has handled; for reports only, never part of a computer.
+/// Receives each message that a module has handled; for reports only, never part of a computer.
 class MessageTap {
   public:
     virtual ~MessageTap() = default;
     virtual void sent(ModuleId from, ModuleId to, const Message& message) = 0;
 };
 
-/// The deterministic executive: runs the modules of a computer in one thread. First the rate group, each module in its
-/// turn, then every other module that has mail, in order of priority, until all mailboxes are empty.
+/// The deterministic executive: runs the modules of a computer in one thread.
+/// First the rate group, each module in its turn; then every other module that has messages, in order of priority,
+/// until all mailboxes are empty.
 ///
-/// A module of the rate group takes its mail in its turn, all of it and last the Tick. What a module outside the group
-/// sends is kept for the start of the next cycle. So neither the order in which tasks happen to run nor the number of
-/// processors can be seen, and the threaded executive gives the same. (docs/decisions/0003-deterministic-executive.md)
+/// A module of the rate group handles its whole mailbox in its turn, the Tick last. Messages from a module outside the
+/// group are held for the start of the next cycle. So results depend neither on the order in which tasks happen to run
+/// nor on the number of processors, and the threaded executive gives the same ones.
+/// (docs/decisions/0003-deterministic-executive.md)
 class Executive {
   public:
     explicit Executive(ComputerState& state, MessageTap* tap = nullptr) : state_(state), tap_(tap) {}

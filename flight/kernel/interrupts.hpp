@@ -9,11 +9,11 @@
 
 namespace aeolis::flight {
 
-/// Who asked for the clock's tick itself; the rate group gets its turn from sync.
+/// Modules that receive the clock's tick itself; those of the rate group get their turn from sync.
 inline constexpr std::array clock_subscribers{ModuleId::sync,   ModuleId::units, ModuleId::cross_string,
                                               ModuleId::edl_bg, ModuleId::mfsk,  ModuleId::edl_comm};
 
-/// Everything that came with one tick, as messages at once: each to the one module that manages its device. R10
+/// Delivers all inputs of one tick as messages, each to the one module that manages its device. R10
 template <typename Deliver>
 void post_interrupts(const DeviceInputs& in, Deliver&& deliver) {
     if (!in.imu.empty()) deliver(ModuleId::imu, ImuReadings{in.now, in.imu});

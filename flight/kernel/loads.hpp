@@ -8,14 +8,14 @@
 
 namespace aeolis::flight {
 
-/// Second Chance is a load of its own: what it can do without is not in it, so that what ended prime may be avoided.
-/// R33
+/// Second Chance has a reduced load of its own, to avoid the cause of prime's failure. R33
 ///
-/// Left out: cruise attitude control, which ends with the cruise stage and is no use to who takes over later; system
-/// fault protection, which after pre-EDL can do nothing any more. Science and surface modules of the mission are in
-/// neither load, because Aeolis flies EDL only. Modified by role: edl (essential actions only, starts from prime's
-/// state), mfsk (tones of its own), cross_string (listens instead of telling), command dispatcher (deaf but for its
-/// enabling until it is in control).
+/// Left out: cruise attitude control, which ends with the cruise stage and is of no use after a later take-over; system
+/// fault protection, which has no effect after pre-EDL. Science and surface modules of the mission are in neither load,
+/// because Aeolis flies EDL only.
+///
+/// Modified by role: edl (essential actions only, starts from prime's state), mfsk (its own tones), cross_string
+/// (listens instead of sending), command dispatcher (until it is in control, accepts only the command that enables it).
 inline constexpr std::array left_out_of_second_chance{ModuleId::cruise_attitude, ModuleId::system_fault_protection};
 
 constexpr std::uint32_t left_out_bits() {

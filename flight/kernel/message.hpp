@@ -14,8 +14,7 @@
 #include <type_traits>
 #include <variant>
 
-// Every message that one module sends another. Plain data, no pointers: a static_assert on the variant holds them to
-// it.
+// Every message between modules. Plain data, no pointers; a static_assert on the variant checks this.
 namespace aeolis::flight {
 
 /// Every module of the load, in order of priority. Up to `thrusters` they are the rate group, in sync's order. R8, R22
@@ -48,7 +47,7 @@ constexpr std::uint32_t bit_of(ModuleId id) {
 
 // ---- clock and rate group --------------------------------------------------------------------------------------
 
-struct ClockTick {  ///< from the clock interrupt: to sync, and to whoever asked for it
+struct ClockTick {  ///< from the clock interrupt: to sync and the other subscribers
     Sclk now;
 };
 struct Tick {  ///< from sync: your turn in this cycle
@@ -58,7 +57,7 @@ struct Confirm {  ///< to sync: done for this cycle
     ModuleId from{};
 };
 
-// ---- interrupts turned into messages (R10) ---------------------------------------------------------------------
+// ---- messages from interrupts (R10) ----------------------------------------------------------------------------
 
 struct ImuReadings {
     Sclk now;
@@ -68,9 +67,9 @@ struct RadarReturns {
     Sclk now;
     FixedVector<RadarBeam, 6> beams;
 };
-/// A piece of the state that one computer hands to another, or to itself over a restart; the pieces of one state come
-/// in order, within one cycle. R33
-inline constexpr std::size_t state_part_octets_max = 240;  ///< ours: no larger than the largest other message
+/// Part of a state that one computer sends to another, or to itself over a restart. R33
+/// The parts of one state arrive in order, within one cycle.
+inline constexpr std::size_t state_part_octets_max = 240;  ///< chosen: no larger than the largest other message
 struct StatePart {
     Sclk time;               ///< of the state
     std::uint8_t index = 0;  ///< 0 … count − 1
@@ -82,16 +81,16 @@ struct StoredStatePart {  ///< from non-volatile memory, once, after a restart
     StatePart part;
 };
 enum class ResumeReason : std::uint8_t { restart, take_over };
-/// To Edl, after the parts: go on from there. R32, R33
+/// To Edl, after the parts: continue from that state. R32, R33
 struct Resume {
     ResumeReason reason{};
 };
 
 inline constexpr std::size_t uplink_octets_max =
-    256;  ///< ours: the longest command of the dictionary makes a CLTU of 194
+    256;  ///< chosen: the longest command of the dictionary makes a CLTU of 194
 struct UplinkReceived {
     std::array<std::uint8_t, uplink_octets_max> octets{};
-    std::uint16_t size = 0;  ///< as received; more than fits means that the rest is lost and the unit is refused
+    std::uint16_t size = 0;  ///< as received; above uplink_octets_max the rest is lost and the CLTU is refused
 };
 struct UplinkStatus {  ///< from the command dispatcher to EdlComm, for its status channel
     std::uint32_t clcw = 0;
@@ -104,7 +103,7 @@ struct NvmStatus {
 // ---- timeline's actions and the devices' answers ---------------------------------------------------------------
 
 enum class ReplyKind : std::uint8_t { none, pyro, device_switch, thrusters, engines, bridle };
-/// What a timepoint waits for, and what a device manager answers. R14
+/// The reply that a timepoint waits for, and that a device manager sends. R14
 struct ActionReply {
     ReplyKind kind = ReplyKind::none;
     std::uint8_t id = 0;
@@ -127,23 +126,23 @@ struct RunEngines {
     EngineCommand engines;
 };
 struct PayOutBridle {};
-struct UnitsSelected {  ///< to the managers of devices: address these from now on. R2
+struct UnitsSelected {  ///< to the device managers: address these units from now on. R2
     UnitSelection units;
 };
-struct EdlBegun {};         ///< "do edl" was accepted: what is chosen before EDL is chosen
-struct NavigatedAttitude {  ///< what EdlBg needs to turn the radar's beams into Mars's frame
+struct EdlBegun {};         ///< "do edl" was accepted: choices made before EDL are now fixed
+struct NavigatedAttitude {  ///< used by EdlBg to transform the radar's beams to Mars's frame
     std::array<double, 4> q_MB{1, 0, 0, 0};
     std::array<double, 3> up_M{};
     bool radar_locked = false;
 };
 
-struct InhibitEdl {  ///< from system fault protection: EDL shall make no progress, or may again. R24
+struct InhibitEdl {  ///< from system fault protection: EDL must stop its progress, or may continue. R24
     bool inhibited = false;
 };
 
 // ---- commands --------------------------------------------------------------------------------------------------
 
-/// Names one uplinked command, so that its outcome finds the way back.
+/// Identifies one uplinked command, so that its outcome can be matched to it.
 struct CommandTag {
     Opcode opcode;
     std::uint16_t count = 0;
@@ -152,7 +151,7 @@ struct SetParametersCommand {
     CommandTag tag;
     command::EDL_SET_PARAMETERS arguments;
 };
-struct ParametersUpdate {  ///< EdlBg hands checked parameters to Edl
+struct ParametersUpdate {  ///< checked parameters, from EdlBg to Edl
     CommandTag tag;
     command::EDL_SET_PARAMETERS parameters;
 };
@@ -201,7 +200,7 @@ struct ToneRequest {
 struct PhaseChanged {
     EdlPhase phase{};
 };
-struct StandBy {};      ///< from Edl of a prime that was restarted too late: the other computer flies and speaks
+struct StandBy {};      ///< from Edl of a prime restarted too late: the other computer flies and transmits
 struct EdlFinished {};  ///< from Edl: the last timepoint has fired
 struct ToneStatus {     ///< from MFSK to EdlComm, for its status channels
     std::uint8_t tone = 0;
@@ -218,12 +217,12 @@ using Message =
                  CommandOutcome, Record, ToneRequest, PhaseChanged, StandBy, EdlFinished, ToneStatus, UplinkStatus>;
 static_assert(std::is_trivially_copyable_v<Message>, "messages hold only data");
 
-/// Copies what a message holds, not the room that the largest one takes.
+/// Copies only the content of a message, not the space of the largest alternative.
 inline void copy_content(Message& to, const Message& from) {
     std::visit([&](const auto& content) { to.emplace<std::remove_cvref_t<decltype(content)>>(content); }, from);
 }
 
-/// Whether a message makes its module run. In the rate group that is the turn alone: other mail waits for it. R22
+/// Whether a message makes its module run. In the rate group only the Tick does: other messages wait for it. R22
 inline bool wakes(ModuleId to, const Message& message) {
     return to == ModuleId::sync || !in_rate_group(to) || std::holds_alternative<Tick>(message);
 }

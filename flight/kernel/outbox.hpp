@@ -10,16 +10,16 @@
 
 namespace aeolis::flight {
 
-/// As packets and events hold it.
+/// Converts to the precision of packets and events.
 constexpr float single(double value) {
     return static_cast<float>(value);
 }
 
-/// Where a module puts what it sends while it handles one message. Sending returns nothing (R6): an outbox or a mailbox
-/// that is full is counted and reported by the executive.
+/// Collects the messages that a module sends while it handles one message.
+/// Sending returns nothing (R6): the executive counts and reports messages lost to a full outbox or mailbox.
 class Outbox {
   public:
-    /// Empties it for the next message that `from` handles.
+    /// Empties the outbox for the next message that `from` handles.
     void begin(ModuleId from, Sclk now, DeviceOutputs& bus) {
         from_ = from;
         now_ = now;
@@ -40,17 +40,17 @@ class Outbox {
         place->message.emplace<M>(message);
     }
 
-    /// An event report: recorded, and sent to ground by the telemetry plan. R29, R30
+    /// Sends an event report: recorded, and sent to ground by the telemetry plan. R29, R30
     template <typename Evr>
     void event(const Evr& evr) {
         record(evr);
     }
 
-    /// One telemetry packet of the dictionary.
+    /// Sends one telemetry packet of the dictionary to EdlComm.
     template <typename Packet>
     void record(const Packet& packet) {
         static_assert(Packet::octets - tm_overhead_octets <= record_octets_max);
-        // A decision is explained by the one module that may make it. R5
+        // Only the one module that may make a decision explains it. R5
         if constexpr (std::is_same_v<Packet, packet::Explanation>) AEOLIS_CHECK(owner_of(packet.decision) == from_);
         Record record{Packet::apid, now_, static_cast<std::uint16_t>(Packet::octets - tm_overhead_octets), {}};
         BitWriter writer{std::span{record.data}.first(record.size)};
@@ -61,7 +61,7 @@ class Outbox {
     Sclk now() const { return now_; }
     ModuleId from() const { return from_; }
 
-    /// The lines to the hardware. Only the module that manages a device writes its part. R5
+    /// Outputs to the hardware. Only the module that manages a device writes its part. R5
     DeviceOutputs& bus() { return *bus_; }
 
     std::span<const Envelope> sent() const { return sent_.span(); }
@@ -73,7 +73,7 @@ class Outbox {
 
     ModuleId from_{};
     Sclk now_;
-    DeviceOutputs* bus_ = nullptr;  // of the caller, for the length of one step
+    DeviceOutputs* bus_ = nullptr;  // the caller's, valid for one step
     FixedVector<Envelope, capacity> sent_;
     std::uint32_t dropped_ = 0;
 };

@@ -8,7 +8,7 @@
 
 namespace aeolis::flight {
 
-/// Octets of a state in pieces that fit a message. R33
+/// Sends the octets of a state in parts that fit a message. R33
 template <typename Send>
 void state_parts(std::span<const std::uint8_t> octets, Sclk time, Send&& send) {
     const std::size_t count = (octets.size() + state_part_octets_max - 1) / state_part_octets_max;

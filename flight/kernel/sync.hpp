@@ -8,13 +8,14 @@
 
 namespace aeolis::flight {
 
-/// Drives the hard real-time rate group: at each clock tick it gives every module of the group its turn, in a fixed
-/// order whatever their state, and the next only when the one before has confirmed. R22
+/// Drives the hard real-time rate group: at each clock tick, every module of the group in a fixed order. R22
+///
+/// Each module gets its turn whatever its state, and only after the previous one has confirmed.
 ///
 /// In       ClockTick (64 Hz), Confirm           Out   Tick to each module in order; SyncStatus at 1 Hz
-/// Faults   a tick that comes before the last module confirmed is an overrun: counted and reported (CYCLE_OVERRUN),
-///          that cycle skipped; SCLK goes on, because the tick carries it. Messages that found no room in a mailbox in
-///          the cycle before are told by their number (MAILBOX_OVERFLOW)
+/// Faults   a tick before the last module has confirmed is an overrun: counted and reported (CYCLE_OVERRUN), and that
+///          cycle is skipped. SCLK continues, because the tick carries it. Messages lost to full mailboxes are reported
+///          with their number in the next cycle (MAILBOX_OVERFLOW)
 class Sync {
   public:
     explicit Sync(const Load&) {}
@@ -24,7 +25,7 @@ class Sync {
 
     std::uint64_t cycles() const { return cycles_; }
     std::uint64_t overruns() const { return overruns_; }
-    /// What the executive counts, for the status packet.
+    /// Takes the executive's counts, for the status packet.
     void set_executive_counts(std::uint32_t mailbox_overflows, std::uint32_t unexpected_messages) {
         mailbox_overflows_ = mailbox_overflows;
         unexpected_messages_ = unexpected_messages;

@@ -18,7 +18,7 @@ void ToneSelector::on(const ToneRequest& asked, Outbox& out) {
     ToneRequest request = asked;
     if (role_ == Role::second_chance) {
         const auto& counterpart = tones_[asked.tone.value].second_chance;
-        if (!counterpart) return;  // no tone of prime's is ever sent, whoever asks
+        if (!counterpart) return;  // prime's tones are never sent by Second Chance
         request.tone = *counterpart;
     }
     const auto& spec = tones_[request.tone.value];
@@ -43,7 +43,7 @@ void ToneSelector::drop_overtaken(ToneId overtaken, ToneId by, Outbox& out) {
     }
 }
 
-// The less important of the two goes: the newcomer, or the least important of those that wait.
+// The less important of the two is dropped: the new request, or the least important outstanding one.
 void ToneSelector::refuse_or_make_room(const ToneRequest& request, Outbox& out) {
     out.event(evr::MFSK_REQUESTS_FULL{.tone = request.tone.value});
     const auto no_room = below(Quantity::tone_requests, static_cast<double>(outstanding_.size()),
@@ -103,7 +103,7 @@ void ToneSelector::drop_expired(Sclk now, Outbox& out) {
     }
 }
 
-// A choice between several is worth an explanation; a lone request explains itself.
+// A choice between several requests is explained; a single request needs no explanation.
 void ToneSelector::explain_choice(const ToneRequest& chosen, Outbox& out) const {
     if (outstanding_.empty()) return;
     const ToneRequest& next = outstanding_[most_important()];
@@ -113,7 +113,7 @@ void ToneSelector::explain_choice(const ToneRequest& chosen, Outbox& out) const 
         {is_tone(Quantity::next_tone, next.tone),
          at_least(Quantity::tone_priority, priority(chosen.tone), priority(next.tone)),
          at_most(Quantity::request_age_s, age_s,
-                 // Of equals the newest goes first: then that is what decided.
+                 // Among requests of equal priority, the newest goes first: the age was then decisive.
                  priority(chosen.tone) == priority(next.tone) ? out.now() - next.requested : expires_s(chosen.tone))});
 }
 

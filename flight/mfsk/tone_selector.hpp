@@ -15,12 +15,12 @@ namespace aeolis::flight {
 /// In      ToneRequest, StandBy, ClockTick (64 Hz)           Out   the transmitter's tone; ToneSelected; Explanation;
 ///         ToneStatus
 /// Memory  64 outstanding requests; when full the least important is dropped and reported (MFSK_REQUESTS_FULL)
-/// Rule    the most important request first, of equals the newest; a request older than its tone's age limit is
-///         dropped, and so is one that a newer event has overtaken (tones.csv: supersedes). R31
-/// Each drop and each choice between several is explained by the values that led to it: age and limit, the tone that
-/// overtook it, or its priority against the other's when there is no more room. R38
-/// In Second Chance each request is for the tone of its own set that means the same. R35
-/// With no request outstanding the carrier goes out without a tone.
+/// Rule    the most important request first; among equals, the newest. A request older than its tone's age limit is
+///         dropped, and so is one that a newer event supersedes (tones.csv: supersedes). R31
+/// Why     each drop, and each choice between several requests, is explained by its values: age and limit, the tone
+///         that superseded it, or, without room, both priorities. R38
+/// Backup  in Second Chance each request is for the tone with the same meaning in its own set. R35
+/// With no request outstanding, the carrier is sent without a tone.
 class ToneSelector {
   public:
     explicit ToneSelector(const Load& load, std::span<const ToneSpec> tones = tone_specs)

@@ -29,7 +29,7 @@ void ActionContext::request_tone(ToneId tone) {
 
 namespace {
 
-/// An action that is repeated after a hand-over happened when it happened first.
+/// Keeps the first time of an action that is repeated after a hand-over.
 void keep_first(std::optional<Sclk>& time, Sclk now) {
     if (!time) time = now;
 }

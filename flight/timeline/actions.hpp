@@ -7,7 +7,7 @@
 
 namespace aeolis::flight {
 
-/// What an action may touch: messages to the managers of devices, and the configuration that GNC asks for. R5, R17, R26
+/// Everything that an action may use: messages to device managers, and the configuration that GNC reads. R5, R17, R26
 class ActionContext {
   public:
     ActionContext(Outbox& out, gnc::Configuration& configuration) : out_(out), configuration_(configuration) {}
@@ -26,13 +26,13 @@ class ActionContext {
     Outbox& out() { return out_; }
     gnc::Configuration& configuration() { return configuration_; }
     Sclk now() const { return out_.now(); }
-    /// The reply that the action just run asked for.
+    /// The reply that the last action run asked for.
     const ActionReply& awaited() const { return awaited_; }
 
   private:
     Outbox& out_;
     gnc::Configuration& configuration_;
-    /// To the manager of a device, which is the one that owns the action. R5
+    /// Sends to a device manager, which must be the owner of the action. R5
     template <typename M>
     void command(ModuleId manager, const M& message) {
         AEOLIS_CHECK(!owner_ || *owner_ == manager);
@@ -40,16 +40,16 @@ class ActionContext {
     }
 
     ActionReply awaited_;
-    std::optional<ModuleId> owner_;  // of the action that runs
+    std::optional<ModuleId> owner_;  // of the current action
 };
 
-/// Announces that a timepoint fires; the event column of the timeline names these.
+/// Announces that a timepoint fires; the event column of the timeline names the events.
 template <typename Evr>
 void announce(ActionContext& context) {
     context.out().event(Evr{});
 }
 
-/// The actions that timeline.csv names. One a line: what the spacecraft does, and what GNC is told.
+/// The actions that timeline.csv names. One per line: the spacecraft's action, and the change of GNC's configuration.
 namespace actions {
 void no_operation(ActionContext& context);
 

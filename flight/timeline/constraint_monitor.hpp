@@ -20,36 +20,36 @@ struct ConstraintSpec {
 };
 extern const std::array<ConstraintSpec, constraint_count> constraint_specs;
 
-inline constexpr std::size_t constraint_rows_max = 256;  ///< ours: three times the shipped sheet
+inline constexpr std::size_t constraint_rows_max = 256;  ///< chosen: three times the shipped sheet
 static_assert(constraint_count <= constraint_rows_max, "constraints.csv has more rows than flight keeps room for");
 
-/// Checks in flight the sub-constraints behind the timeline's rolled-up offsets, and what GNC and ground were held to
-/// when the timeline was proven. A second opinion: it only tells, and nothing in flight asks it. R39
+/// Checks constraints.csv in flight: the sub-constraints behind the timeline's rolled-up offsets, and the given rows.
+/// R39 The given rows are bounds on GNC and ground, assumed when the timeline was proven. A second opinion: it only
+/// reports, and nothing in flight depends on it.
 ///
-/// In      do edl, the anchors, the firings, as the timeline has them after a pass
+/// In      do edl, anchors and firings, as the timeline has them after a pass
 /// Out     for each row that does not hold SUB_CONSTRAINT_VIOLATED and an Explanation; SUB_CONSTRAINTS_JUDGED at the
 ///         end
-/// Rule    a row is judged when its `to` comes, and again when that moves (an anchor set anew); when `from` was not
-///         known by then, as soon as it is. A row whose `from` or `to` never comes is never judged
-/// Rate    each cycle; at most four reports a cycle, so that the outbox always has room for what EDL itself must send
-/// Reset   what a computer saw before a restart or a hand-over is not handed on: rows that reach back over it are not
-///         judged
-/// Memory  fixed; the rows are read where the autocoder put them
-/// Faults  with 64 reports waiting the next are dropped; each report tells how many violations there were in all
+/// Rule    a row is judged when its `to` occurs, and again when that moves (an anchor set again). If `from` is unknown
+///         then, the row is judged as soon as `from` is known. A row whose `from` or `to` never occurs is never judged
+/// Rate    each cycle; at most four reports a cycle, so that the outbox always has room for EDL's own messages
+/// Reset   times before a restart or a hand-over are not carried over: rows that reach back over it are not judged
+/// Memory  fixed; the rows stay in the autocoder's table
+/// Faults  with 64 reports waiting, further ones are dropped; each report gives the total number of violations
 class ConstraintMonitor {
   public:
     explicit ConstraintMonitor(std::span<const ConstraintSpec> rows);
 
-    /// What the timeline did in a pass: its anchors first, for what hangs on one is judged by it.
+    /// Takes the results of a timeline pass: anchors first, since moments relative to an anchor are judged by it.
     void watch(const Timeline& timeline, std::span<const Firing> firings);
 
-    /// A moment has come, or stands at another time than before. Undefined: it is not known any more.
+    /// Records that a moment has occurred, or changed its time. Undefined: its time is no longer known.
     void note(const Moment& moment, MaybeTime time);
 
-    /// Tells what was found, some a cycle.
+    /// Reports violations found, a few per cycle.
     void report(Outbox& out);
 
-    /// How many rows were judged, and how many violations there were: said when the timeline is complete.
+    /// Reports how many rows were judged and how many violations there were; called when the timeline is complete.
     void summarise(Outbox& out) const;
 
     std::uint32_t violations() const { return violations_; }

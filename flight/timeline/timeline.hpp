@@ -10,8 +10,8 @@
 
 namespace aeolis::flight {
 
-inline constexpr std::size_t timeline_rows_max = 160;  ///< ours: twice the shipped timeline
-inline constexpr std::size_t anchors_max = 32;         ///< ours
+inline constexpr std::size_t timeline_rows_max = 160;  ///< chosen: twice the shipped timeline
+inline constexpr std::size_t anchors_max = 32;         ///< chosen
 
 using FiringVerdict = TimepointVerdict;  // completed, replied, timed_out, no_operation, failed
 
@@ -22,63 +22,65 @@ struct Firing {
     FiringVerdict verdict{};
 };
 
-/// What one pass completes: the reply that was waited for, and what fires after it.
+/// Completions of one pass: the timepoint whose reply was awaited, and the timepoints that fire after it.
 using Firings = FixedVector<Firing, timeline::triggered_per_cycle_max + 1>;
 
 /// The engine that interprets the timeline, by dictionaries/timeline_rule.hpp. R11–R18
 ///
 /// In       the clock, replies, changed offsets, anchors that GNC sets "now"
-/// Out      actions through ActionContext; Firing for each timepoint that completed
-/// Memory   fixed; the rows are read where the autocoder put them
-/// Before the first timepoint stands the acceptance of "do edl" (R16): nothing happens before `begin`. Actions may be
-/// repeated: after a restart in pre-EDL, and when Second Chance finds one whose reply prime still awaited.
+/// Out      actions through ActionContext; a Firing for each completed timepoint
+/// Memory   fixed; the rows stay in the autocoder's table
+/// The acceptance of "do edl" precedes the first timepoint (R16): nothing happens before begin(). Actions may be
+/// repeated: after a restart in pre-EDL, and when Second Chance takes over while prime still awaited a reply.
 class Timeline {
   public:
-    /// `essential_only`: Second Chance, where the other rows' actions are no operation. R33
+    /// `essential_only`: for Second Chance, in which the actions of non-essential rows do nothing. R33
     Timeline(std::span<const TimepointSpec> rows, std::span<const AnchorSpec> anchors, bool essential_only = false);
 
     void begin(Sclk do_edl_accepted);
     bool begun() const { return begun_; }
     bool finished() const { return current_ == rows_.size(); }
 
-    /// A new 64 Hz cycle: the limit of firings starts anew, both passes together count.
+    /// Starts a new 64 Hz cycle: resets the limit of triggerings, which counts both passes together.
     void begin_cycle() { fired_in_cycle_ = 0; }
 
-    /// One pass: anchors first, then the current timepoint, and the next while no reply is awaited. R15, R16
+    /// One pass: anchors first, then the current timepoint, and the next ones while no reply is awaited. R15, R16
     void pass(Sclk now, ActionContext& context, Firings& firings);
 
-    /// Whether only the limit of firings keeps the current timepoint from firing in this cycle. R15
+    /// Whether only the limit per cycle keeps the current timepoint from being triggered now. R15
     bool limited(Sclk now) const;
 
-    /// The answer that the current timepoint may be waiting for. It counts at the next pass. R14
+    /// Takes a reply, for which the current timepoint may be waiting. It takes effect in the next pass. R14
     void reply(const ActionReply& reply);
 
-    // Offsets may be changed between cycles and propagate fully in the next pass. False: no such row. R16
+    // Offsets may be changed between cycles; the next pass uses them everywhere. False: no such row. R16
     [[nodiscard]] bool set_timepoint_offsets(TimepointId id, MaybeOffset desired_s, MaybeOffset minimum_s);
     [[nodiscard]] bool set_anchor_offset(AnchorId id, MaybeOffset offset_s);
-    /// GNC's "now": from this moment the anchor is defined, and what is relative to it. R17
+    /// GNC's "now": defines the anchor at `now`, and with it all times relative to it. R17
     void set_anchor_now(AnchorId id, Sclk now);
 
     MaybeTime anchor_time(AnchorId id) const { return anchor_times_[id.value]; }
     TimepointId current() const { return {static_cast<std::uint16_t>(current_)}; }
     TimepointState state() const;
-    /// The current timepoint's action was triggered, and its reply is due.
+    /// The current timepoint's action was triggered, and its reply is pending.
     struct Waiting {
         Sclk triggered;
         double timeout_s = 0.0;
     };
     std::optional<Waiting> waiting() const;
-    /// Times from which the current timepoint may fire; undefined when it is not known yet.
+    /// Times from which the current timepoint may fire; undefined while unknown.
     MaybeTime next_desired() const;
     MaybeTime next_minimum() const;
-    /// Latest time at which the timeline may begin without anything being overdue. Undefined before the parameters came.
+    /// Latest time at which the timeline may begin without anything being overdue. Undefined until parameters are
+    /// received.
     MaybeTime first_desired() const;
     void compute_anchors();
 
-    /// After a restart: back to the timepoint that the current one names, with nothing awaited. False when it names
-    /// none and goes on where it was. R32
+    /// After a restart: returns to the current timepoint's backtrack row, with no reply awaited and `now` as previous
+    /// firing.
+    /// False when there is none: the timeline continues at the current timepoint. R32
     bool backtrack(Sclk now);
-    /// The action whose reply another computer awaited is run again at the next pass. R33
+    /// Forgets an awaited reply: the action runs again in the next pass. R33
     void await_nothing() { waiting_ = replied_ = false; }
 
     template <typename Exchange>

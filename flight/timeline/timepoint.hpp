@@ -10,13 +10,13 @@
 #include <cstdint>
 #include <optional>
 
-// What the autocoder makes of timeline.csv, anchors.csv and tones.csv, and the timeline interprets. R11, R12, R20
+// Tables that the autocoder makes of timeline.csv, anchors.csv and tones.csv for the timeline. R11, R12, R20
 namespace aeolis::flight {
 
 class ActionContext;
 using Action = void (*)(ActionContext&);
 
-/// A row of the timeline as the engineers wrote it. Commands change copies of the offsets, never this.
+/// A row of the timeline as written in the sheet. Commands change copies of the offsets, never this row.
 struct TimepointSpec {
     const char* name = "";
     std::optional<AnchorId> anchor;  ///< none: the desired offset is from the previous timepoint
@@ -27,11 +27,11 @@ struct TimepointSpec {
     std::optional<TimepointId> backtrack;
     bool essential = false;
     std::optional<ToneId> tone;
-    Action event = nullptr;           ///< announces the row's event; nullptr: none
-    std::optional<ModuleId> owner{};  ///< that the action may command; none: not said, as in tests. R5
+    Action event = nullptr;           ///< function that announces the row's event; nullptr: none
+    std::optional<ModuleId> owner{};  ///< the module that the action may command; none: unspecified, as in tests. R5
 };
 
-/// Parents stand before their children: one sweep computes all times.
+/// A row of the anchors. Parents precede their children: one sweep computes all times.
 struct AnchorSpec {
     const char* name = "";
     std::optional<AnchorId> parent;  ///< none: the root, at zero
@@ -43,7 +43,7 @@ struct ToneSpec {
     std::int16_t priority = 0;
     double expires_s = 0.0;
     std::optional<ToneId> supersedes;
-    std::optional<ToneId> second_chance;  ///< of a tone of prime's: the one that means the same on the backup. R35
+    std::optional<ToneId> second_chance;  ///< of a prime tone: the Second Chance tone with the same meaning. R35
 };
 
 extern const std::array<TimepointSpec, timepoint_count> timeline_specs;

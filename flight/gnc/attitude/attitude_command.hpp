@@ -6,13 +6,13 @@
 
 namespace aeolis::flight::gnc {
 
-/// What guidance wants of the vehicle's attitude; attitude control makes thrusters and engines do it.
+/// Attitude that guidance commands; attitude control realises it with thrusters and engines.
 struct AttitudeCommand {
     enum class Mode : std::uint8_t {
-        idle,        ///< nothing is steered: before GNC starts the vehicle is spin-stabilised
+        idle,        ///< no control: before GNC starts the vehicle is spin-stabilised
         detumble,    ///< no rotation relative to inertial space
         entry_bank,  ///< trim attitude in the wind with the lift vector at `bank_rad`
-        suspended,   ///< under the parachute: hangs as it will, swinging is damped
+        suspended,   ///< under the parachute: only swinging is damped
         thrust,      ///< z of B opposes `thrust_direction_M`
     };
     Mode mode = Mode::idle;

@@ -16,19 +16,19 @@ constexpr TurnLimits turn_limits{parameters.turn_rate_max_dps * degree, paramete
 constexpr TurnLimits tilt_limits{parameters.tilt_rate_max_dps * degree, parameters.tilt_acceleration_max_dps2* degree,
                                  0.0, parameters.tilt_gain_per_s};
 
-/// Shortened to a largest length.
+/// `v`, shortened to length `most` if longer.
 Vector3 limited(const Vector3& v, double most) {
     const double norm = v.norm();
     return norm > most ? Vector3{v * (most / norm)} : v;
 }
 
-/// The acceleration that brings `error` of rate to nothing, none within the deadband.
+/// Acceleration that reduces the rate error to zero; zero within the deadband.
 Vector3 towards(const Vector3& error_rps, double deadband_rps, double response_s, double most_rps2) {
     if (error_rps.norm() <= deadband_rps) return Vector3::Zero();
     return limited(error_rps / response_s, most_rps2);
 }
 
-/// The rotation vector of `q`, at most π long.
+/// Rotation vector of `q`, of length at most π.
 Vector3 rotation_of(const Quaternion& q) {
     const double sign = q.w() < 0.0 ? -1.0 : 1.0;
     const double sine = q.vec().norm();
@@ -41,7 +41,7 @@ Vector3 lift_direction(double bank_rad, const Vector3& forward, const Vector3& p
     return std::cos(bank_rad) * right.cross(forward) + std::sin(bank_rad) * right;
 }
 
-/// Attitude at the nominal trim angle, the lift vector at `bank_rad`.
+/// Attitude at the nominal trim angle with the lift vector at `bank_rad`.
 Quaternion trimmed(double bank_rad, const AttitudeState& state) {
     constexpr double trim_rad = parameters.entry_trim_angle_deg * degree;
     const Vector3 forward = state.v_MB_M.normalized();

@@ -4,16 +4,16 @@
 #include <algorithm>
 #include <cmath>
 
-// The phase plane of one axis: from how far it is to turn to how fast it should be turning now.
+// The phase plane of one axis: from the angle still to turn to the wanted rate.
 //
 //   |ω| = min( ω_max, √(2 · 0.7 · a · (|θ| − δ)), k · (|θ| − δ) ),   0 inside the deadband |θ| ≤ δ
 //
-// The parabola is the line on which seven tenths of the deceleration still stop it in time; near the end the rate falls
-// off in proportion, so that a thruster's least impulse does not make it hunt.
+// On the parabola, 0.7 of the available deceleration suffices to stop in time. Near the end the rate decreases
+// proportionally, so that a thruster's minimum impulse does not cause a limit cycle.
 //
 // In       θ [rad] still to turn, signed                    Out   rate [rad/s], towards θ
-// Source   [wie-1998] (switching curve of a double integrator); the reserve of three tenths and the shape at its end
-//          are ours
+// Source   [wie-1998] (switching curve of a double integrator); the reserve of three tenths and the proportional end
+//          are our assumption
 namespace aeolis::flight::gnc {
 
 struct TurnLimits {

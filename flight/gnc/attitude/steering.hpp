@@ -8,14 +8,14 @@
 
 namespace aeolis::flight::gnc {
 
-/// Which effectors turn the vehicle: eight thrusters, or the engines by throttling apart from each other.
+/// Effectors that turn the vehicle: the eight thrusters, or the engines by differential throttling.
 enum class Steers : std::uint8_t { thrusters, eight_engines, four_engines };
 
 /// Attitude control down to its effectors: wanted attitude → torque → on-times of thrusters or throttles of engines.
 ///
-/// In       what guidance wants, the navigated attitude, the inertia that is flown
-/// Out      on-times; or throttles, changed about those that guidance asked for
-/// Rate     64 Hz: each cycle, in order            Memory   what thrusters are owed
+/// In       guidance's command, the navigated attitude, the inertia of the present configuration
+/// Out      on-times; or throttles, varied about those that guidance commanded
+/// Rate     64 Hz: each cycle, in order            Memory   on-time still owed by the thrusters
 class Steering {
   public:
     explicit Steering(double engine_max_thrust_N) : engine_max_thrust_N_(engine_max_thrust_N) {}

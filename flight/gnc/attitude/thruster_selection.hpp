@@ -6,22 +6,22 @@
 
 #include <Eigen/Core>
 
-// Which thrusters burn how long for a wanted torque.
+// Thruster on-times for a wanted torque.
 //
-//   The two thrusters of a mount push exactly against each other: four signed forces a = J⁺ T, of least Σa², each given
-//   by the one thruster of its mount that has its sign; on-time = |a| / F · cycle
+//   The two thrusters of a mount push in exactly opposite directions: four signed forces a = J⁺ T, of least Σa². Each
+//   is given by the thruster of its mount with that sign; on-time = |a| / F · cycle
 //
 // Frame    B          In   torque T [N m], mean over the cycle        Out   on-times [s] within one cycle of 1/64 s
-// Limits   what four full thrusters cannot give is cut in proportion, so that the axis stays. What is too short for a
-//          valve is owed to the mount and given once there is enough: small torques become rare pulses
-// Source   [wie-1998] (pseudo-inverse selection); the mounts are flight/devices/effectors.hpp's
+// Limits   a torque beyond four full thrusters is scaled down, keeping its axis. An on-time too short for a valve is
+//          owed to the mount and given once enough has accumulated: small torques become rare pulses
+// Source   [wie-1998] (pseudo-inverse selection); the mounts are those of flight/devices/effectors.hpp
 namespace aeolis::flight::gnc {
 
 class ThrusterSelection {
   public:
     ThrusterSelection();
 
-    /// For each cycle, in order.
+    /// Call in each cycle, in order.
     ThrusterCommand select(const Vector3& torque_B_Nm);
 
   private:

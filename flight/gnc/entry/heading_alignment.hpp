@@ -4,7 +4,7 @@
 #include "flight/gnc/entry/target_geometry.hpp"
 #include "generated/dictionary_flight.hpp"
 
-// Below about 1100 m/s range is left as it is, and bank points the velocity at the target.
+// Heading alignment: below about 1100 m/s range is no longer controlled; bank turns the velocity towards the target.
 //
 //   bank = 100 · atan2(crossrange, downrange), within ±30°
 //

@@ -6,16 +6,16 @@
 #include <cstdint>
 #include <optional>
 
-// Which side the lift points to: bank reverses when the target has left a deadband on the side away from the lift.
+// Lateral logic: reverses bank when the target leaves a deadband on the side away from the lift.
 //
 //   reverse when  sign · crossrange < −deadband(V);  deadband = b0 + b2 V², halved when lift is saturated
 //   and not sooner than a least time after the last reversal
 //
 // In       crossrange of the target, positive to the right; V            Out   sign of bank, number of reversals
 // Source   [apollo-entry-guidance] for a deadband that shrinks with velocity and is halved at saturation. Its numbers
-//          are ours, read off [od137]: it began its first reversal at 4 km of crossrange, its third at 2.4 km (tuned
-//          from there to its times); the second came only at 10 km, and the least time is what was between the first
-//          and it
+//          are our assumption, read off [od137]: its first reversal began at 4 km of crossrange, its third at 2.4 km
+//          (tuned from there to its times). The second began only at 10 km; the least time is the interval from the
+//          first to the second
 namespace aeolis::flight::gnc {
 
 /// Half width of the deadband [m] at a velocity.
@@ -23,7 +23,7 @@ double crossrange_deadband_m(double velocity_mps, bool saturated);
 
 class LateralLogic {
   public:
-    /// True in the cycle in which a reversal begins. `settled`: the vehicle has reached the side commanded before.
+    /// Updates the logic; true in the cycle in which a reversal begins. `settled`: the commanded side has been reached.
     bool on(Sclk now, double crossrange_m, double velocity_mps, bool saturated, bool settled);
 
     void start(int sign) { sign_ = sign; }

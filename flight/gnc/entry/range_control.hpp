@@ -6,9 +6,9 @@
 
 #include <cstdint>
 
-// Entry guidance of Apollo's final phase: how much of the lift to point up so as to reach the target's range.
+// Range control by Apollo's final-phase guidance: the part of the lift to point up to reach the target's range.
 //
-//   R_p   = R_ref + ∂R/∂D (D − D_ref) + ∂R/∂ḣ (ḣ − ḣ_ref)                        all of V, from the reference
+//   R_p   = R_ref + ∂R/∂D (D − D_ref) + ∂R/∂ḣ (ḣ − ḣ_ref)                        all functions of V, from the reference
 //   (L/D)v = (L/D)_ref + K (R − R_p) / (∂R/∂(L/D))
 //   |bank| = acos( (L/D)v / (L/D) )
 //
@@ -33,9 +33,9 @@ struct RangeControlInput {
 
 struct RangeControlOutput {
     double predicted_range_m = 0.0;
-    double vertical_lift_to_drag = 0.0;  ///< wanted, before what lift can give
+    double vertical_lift_to_drag = 0.0;  ///< wanted, before the limit of the available lift
     double bank_magnitude_rad = 0.0;     ///< 0 … π
-    bool saturated = false;              ///< lift nearly full up or down: nothing left to steer range with
+    bool saturated = false;              ///< lift nearly full up or down: no margin left to control range
 };
 
 RangeControlOutput range_control(const EntryReference& reference, const RangeControlInput& input);

@@ -9,11 +9,11 @@ namespace aeolis::flight::gnc {
 TargetGeometry target_geometry(const Vector3& p_MoB_M, const Vector3& v_MB_M, const Vector3& target_M,
                                double target_radius_m) {
     const Vector3 up = p_MoB_M.normalized();
-    const Vector3 left = up.cross(v_MB_M).normalized();  // of the plane of flight
+    const Vector3 left = up.cross(v_MB_M).normalized();  // unit normal of the plane of flight, to the left
     const Vector3 ahead = left.cross(up);
     const double above = target_M.dot(up);
     TargetGeometry geometry;
-    // atan2 of sine and cosine: exact near nil and near π, unlike acos.
+    // atan2 of sine and cosine: accurate near zero and near π, unlike acos.
     geometry.range_to_go_m = target_radius_m * std::atan2(up.cross(target_M).norm(), above);
     geometry.crossrange_m = -target_radius_m * std::asin(std::clamp(target_M.dot(left), -1.0, 1.0));
     geometry.downrange_m = target_radius_m * std::atan2(target_M.dot(ahead), above);

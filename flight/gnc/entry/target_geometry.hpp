@@ -3,12 +3,11 @@
 
 #include "flight/gnc/vector.hpp"
 
-// Where the vehicle flies relative to its target, and how its lift is turned: geometry on a sphere that turns with
-// Mars.
+// Geometry of the vehicle's flight relative to its target, and of its lift, on a sphere that turns with Mars.
 //
 // Frame    M. Crossrange and bank are positive to the right of the velocity, downrange ahead.
 // Source   [apollo-entry-guidance] for the quantities; sign of bank as in [od137]
-// Valid    away from straight up or down (horizontal speed ≥ 1 m/s), not over the target's antipode
+// Valid    away from vertical flight (horizontal speed ≥ 1 m/s), not over the target's antipode
 namespace aeolis::flight::gnc {
 
 struct TargetGeometry {
@@ -24,8 +23,8 @@ TargetGeometry target_geometry(const Vector3& p_MoB_M, const Vector3& v_MB_M, co
 /// Unit vector from Mars's centre to areocentric latitude, east longitude.
 Vector3 direction_of(double latitude_rad, double longitude_rad);
 
-/// Angle of the lift vector about the velocity, 0 up, positive to the right, −π … π. Lift of a blunt body points away
-/// from where its heatshield (z of B) leans off the velocity.
+/// Angle of the lift vector about the velocity: 0 up, positive to the right, −π … π.
+/// A blunt body's lift points away from the side to which its heatshield (z of B) is tilted from the velocity.
 double bank_of(const Quaternion& q_MB, const Vector3& p_MoB_M, const Vector3& v_MB_M);
 
 /// Angle between z of B and the velocity [rad], 0 … π.

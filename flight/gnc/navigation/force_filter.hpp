@@ -6,14 +6,14 @@
 
 #include <algorithm>
 
-// Drag and lift as the accelerometers feel them, smoothed.
+// Drag and lift as sensed by the accelerometers, smoothed.
 //
 //   D = −f·v̂        L = |f − (f·v̂) v̂|        τ ẋ + x = D, L
 //
 // Frame    any; f and v̂ in the same          In   specific force [m/s²], 64 Hz      Out   [m/s²]
-// Source   [apollo-entry-guidance] flies on sensed drag; the time constants are ours: small against the 6 s in which
-//          drag grows e-fold on MSL's way in [od137], large against the IMU's noise
-// Valid    where air moves with Mars: wind of 20 m/s against 400 m/s turns v̂ by 3°
+// Source   [apollo-entry-guidance] flies on sensed drag; the time constants are our assumption: small against the 6 s
+//          in which drag grows e-fold on MSL's trajectory in [od137], large against the IMU's noise
+// Valid    where the air moves with Mars: wind of 20 m/s against 400 m/s turns v̂ by 3°
 namespace aeolis::flight::gnc {
 
 class ForceFilter {
@@ -28,7 +28,7 @@ class ForceFilter {
 
     double drag_mps2() const { return drag_mps2_; }
 
-    /// Lift over drag; `otherwise` while drag is too weak to tell. Held within bounds wider than all flown.
+    /// Lift over drag; `otherwise` while drag is too weak to measure it. Limited to bounds wider than any value flown.
     double lift_to_drag(double otherwise) const {
         if (slow_drag_mps2_ < enough_drag_mps2) return otherwise;
         const double ratio = lift_mps2_ / slow_drag_mps2_;
@@ -47,7 +47,7 @@ class ForceFilter {
   private:
     double drag_mps2_ = 0.0;
     double lift_mps2_ = 0.0;
-    double slow_drag_mps2_ = 0.0;  ///< as slow as lift, so that their ratio does not lag
+    double slow_drag_mps2_ = 0.0;  ///< smoothed as slowly as lift, so that their ratio does not lag
 };
 
 }  // namespace aeolis::flight::gnc

@@ -37,7 +37,7 @@ void RadarBatch::on(Sclk now, std::span<const RadarBeam> beams, const Quaternion
 }
 
 std::optional<RadarSolution> RadarBatch::solve(Sclk now) const {
-    const std::int64_t newest = quarter_of(now);  // it is not complete yet
+    const std::int64_t newest = quarter_of(now);  // not complete yet
     const auto oldest = newest - static_cast<std::int64_t>(bins_.size()) + 1;
     RadarSolution solution;
     Vector3 v_sum = Vector3::Zero();
@@ -46,12 +46,12 @@ std::optional<RadarSolution> RadarBatch::solve(Sclk now) const {
     for (const Bin& bin : bins_) {
         if (bin.beams < parameters.radar_beams_min || bin.quarter < oldest || bin.quarter >= newest) continue;
         const double count = bin.beams;
-        // Directions that span space: the determinant of their mean square is far from nil (0.004 with MSL's beams).
+        // The directions span space: the determinant of their mean square is far from zero (0.004 with MSL's beams).
         if (!((bin.normal / count).determinant() > 1.0e-4)) continue;
-        // Each quarter is solved by itself, for while the vehicle turns and brakes the sum of all would mix the two.
+        // Each quarter is solved separately: a common sum would mix velocities while the vehicle turns and brakes.
         v_sum += bin.normal.inverse() * bin.right;
         altitude_sum_m += bin.altitude_sum_m / count;
-        // Times relative to `newest` keep the sum small and so exact enough.
+        // Times relative to `newest` keep the sum small and therefore precise.
         time_sum_s += bin.time_sum_s / count + static_cast<double>(bin.quarter - newest) / radar_bins_per_second;
         solution.beams = static_cast<std::uint16_t>(solution.beams + bin.beams);
         first = std::min(first, bin.first);

@@ -11,21 +11,21 @@
 #include <optional>
 #include <span>
 
-// Landing radar beams of the last 5 s made into one altitude and one velocity. EdlBg runs it. R25
+// Averages the landing radar's beams of the last 5 s into one altitude and one velocity. Run by EdlBg. R25
 //
 //   in each quarter of a second   altitude = mean of −range · (d_M · up)
 //                                 velocity = least squares of d_M · v = −range rate
 //   then the mean over the quarters
 //
-// Frame    beams in B, turned into M by the navigated attitude at the measurement; up is the local vertical
-// In       beams as they come (six at 20 Hz)        Out   one solution when asked, about once a second
+// Frame    beams in B, transformed to M by the navigated attitude at the measurement; up is the local vertical
+// In       beams as received (six at 20 Hz)        Out   one solution on request, about once a second
 // Memory   sums of twenty quarters of a second
 // Valid    flat ground below; beams within 75° of the vertical, others are left out
-// Source   [facts] Vehicle: six beams at 20 Hz, averages over 5 s [msl-edl-fsw-paper]; the form is ours
+// Source   [facts] Vehicle: six beams at 20 Hz, averages over 5 s [msl-edl-fsw-paper]; the form is our assumption
 namespace aeolis::flight::gnc {
 
-/// Averages that EdlBg made of the radar's beams over 5 s, sent to the filter at 1 Hz. Made by
-/// navigation/radar_batch.hpp; the filter averages its own past over the same span, so the delay does no harm. R25
+/// Average of the radar's beams over 5 s, sent to the filter at 1 Hz. R25
+/// The filter averages its own history over the same span, so the delay does no harm.
 struct RadarSolution {
     Sclk time;                ///< middle of the measurements averaged
     double span_s = 0.0;      ///< from the first measurement averaged to the last
@@ -38,11 +38,11 @@ inline constexpr double radar_bins_per_second = 4.0;  ///< a quarter of a second
 
 class RadarBatch {
   public:
-    /// The beams of one cycle, with the navigated attitude of that cycle and the local vertical in M.
+    /// Adds the beams of one cycle, with the navigated attitude of that cycle and the local vertical in M.
     void on(Sclk now, std::span<const RadarBeam> beams, const Quaternion& q_MB, const Vector3& up_M);
 
-    /// The average over the last whole quarters, 4.75 s; a quarter with too few measurements or all in one plane is
-    /// left out. None when all are.
+    /// Averages over the last whole quarters of a second, 4.75 s. None when every quarter is left out.
+    /// A quarter with too few measurements, or with all in one plane, is left out.
     std::optional<RadarSolution> solve(Sclk now) const;
 
     void clear() { bins_ = {}; }

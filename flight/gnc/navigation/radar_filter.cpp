@@ -36,10 +36,10 @@ std::optional<RadarCorrection> RadarFilter::on(const RadarSolution& solution, Sc
         if (newest == nullptr || past_[i].time > newest->time) newest = &past_[i];
         samples += 1.0;
     }
-    // At least half of the span must be covered, else averages of different times would be compared.
+    // At least half of the span must be covered, otherwise averages over different times would be compared.
     if (samples < std::max(1.0, 8.0 * solution.span_s)) return std::nullopt;
 
-    // What is left between the middle of our samples and that of the radar's is taken off by the mean rates.
+    // The remaining difference between the mean times of the history and of the radar is removed by the mean rates.
     const double late_s = time_sum_s / samples;
     const Vector3 a_mean = (newest->v_MB_M - oldest->v_MB_M) / std::max(newest->time - oldest->time, 0.0625);
     const Vector3 v_mean = v_sum / samples - late_s * a_mean;
@@ -61,7 +61,7 @@ std::optional<RadarCorrection> RadarFilter::on(const RadarSolution& solution, Sc
 
     RadarCorrection correction;
     correction.v_M_mps = gain * residual_v;
-    // An error of velocity has also grown into one of altitude since the middle of the span.
+    // A velocity error has also become an altitude error since the middle of the span.
     const double since_middle_s = now - solution.time;
     correction.altitude_m = gain * residual_h_m + correction.v_M_mps.dot(up_M) * since_middle_s;
     for (std::uint32_t i = 0; i < count_; ++i) {

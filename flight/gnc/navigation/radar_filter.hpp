@@ -9,16 +9,17 @@
 #include <cstdint>
 #include <optional>
 
-// Takes radar solutions into the navigated state: what is above the ground, and how fast.
+// Corrects the navigated altitude and velocity by radar solutions.
 //
-//   residual = radar's average − average of our own past over the same span
-//   Δh = k_h · residual_h,  Δv = k_v · residual_v ;  the past is shifted by what was corrected
+//   residual = radar's average − average of the navigated history over the same span
+//   Δh = k_h · residual_h,  Δv = k_v · residual_v ;  the history is shifted by the correction
 //
 // Frame    M; altitude along the local vertical     In   RadarSolution, 1 Hz     Out   RadarCorrection
-// Memory   9 s of our own past at 16 Hz
-// Faults   a solution whose residual is beyond the gate is refused and counted; five refused in a row are believed
-// Source   R25; the gains are ours: first solution taken whole, later ones by a third, so that noise of a solution
-//          is halved and an error dies out in 3 s
+// Memory   9 s of navigated history at 16 Hz
+// Faults   a solution whose residual is beyond the gate is refused and counted; after five refusals in a row, the
+//          next solution is taken whole
+// Source   R25; the gains are our assumption: the first solution is taken whole, later ones by a third. A solution's
+//          noise is halved, and an error decays in 3 s
 namespace aeolis::flight::gnc {
 
 struct RadarCorrection {
@@ -28,17 +29,17 @@ struct RadarCorrection {
 
 class RadarFilter {
   public:
-    /// Our own past, each cycle; every fourth is kept.
+    /// Adds the navigated state to the history; call each cycle, every fourth is kept.
     void remember(Sclk now, double altitude_m, const Vector3& v_MB_M);
 
-    /// None when the solution is refused or our past does not cover it.
+    /// None when the solution is refused or the history does not cover it.
     std::optional<RadarCorrection> on(const RadarSolution& solution, Sclk now, const Vector3& up_M);
 
     bool locked() const { return accepted_ > 0; }
     std::uint32_t accepted() const { return accepted_; }
     std::uint32_t refused() const { return refused_; }
 
-    /// Without our own past: five seconds after a hand-over it is there again.
+    /// Without the history: it is complete again five seconds after a hand-over.
     template <typename Exchange>
     void carry(Exchange& exchange) {
         exchange(accepted_, refused_, refused_in_a_row_);

@@ -13,7 +13,7 @@ namespace {
 
 constexpr auto bias_samples_max = static_cast<std::uint32_t>(parameters.imu_bias_samples_max);
 
-/// The rotation by a small vector, to third order; its caller keeps the angle below 0.1 rad.
+/// The rotation by a small vector, to third order; the caller keeps the angle below 0.1 rad.
 Quaternion small_rotation(const Vector3& angle) {
     const double half_squared = 0.25 * angle.squaredNorm();
     const double s = 0.5 * (1.0 - half_squared / 6.0);
@@ -30,14 +30,14 @@ void Strapdown::shift(const NavigationShift& by) {
 
 void Strapdown::step(const Vector3& delta_angle_B, const Vector3& delta_v_B) {
     constexpr double dt = imu_period_s;
-    // Over the step the frame turns by Δθ; half of it is there on average when Δv is felt.
+    // Over the step the frame turns by Δθ; on average half of it applies while Δv is sensed.
     const Vector3 delta_v_M = state_.q_MB * (delta_v_B + 0.5 * delta_angle_B.cross(delta_v_B));
     const Vector3 v_before = state_.v_MB_M;
     state_.v_MB_M += delta_v_M + dt * free_acceleration(state_.p_MoB_M + 0.5 * dt * v_before, v_before);
     state_.p_MoB_M += 0.5 * dt * (v_before + state_.v_MB_M);
     const Quaternion mars_turns = small_rotation({0.0, 0.0, -mars_spin_rps * dt});
     state_.q_MB = mars_turns * state_.q_MB * small_rotation(delta_angle_B);
-    // One step of Newton towards unit norm: exact to 1e-16 for norms this near to one, and no square root.
+    // One Newton step towards unit norm: exact to 1e-16 for norms this close to one, without a square root.
     state_.q_MB.coeffs() *= 1.5 - 0.5 * state_.q_MB.squaredNorm();
 }
 
@@ -65,7 +65,7 @@ void Strapdown::on(const ImuSample& sample, bool force_felt) {
 
 void Strapdown::coast(double dt_s) {
     state_ = propagate(state_, dt_s);
-    counting_ = false;  // increments of this time, should they still come, were coasted over
+    counting_ = false;  // increments of this time, if they still arrive, were coasted over
 }
 
 NavigatedState propagate(const NavigatedState& state, double seconds) {

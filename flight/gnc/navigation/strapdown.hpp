@@ -8,16 +8,16 @@
 
 #include <cstdint>
 
-// Inertial navigation, strapped down: the IMU's increments become attitude, velocity and position.
+// Strapdown inertial navigation: integrates the IMU's increments to attitude, velocity and position.
 //
 //   R_MB ← Exp(−ω Δt) · R_MB · Exp(Δθ)
 //   v    ← v + R_MB½ · Δv + (g(p) − 2 ω×v − ω×(ω×p)) Δt
 //   p    ← p + (v before + v after)/2 · Δt
 //
-// Frame    M (rotating Mars) for p and v; q_MB turns components in B into M
+// Frame    M (rotating Mars) for p and v; q_MB transforms components in B into M
 // In       IMU increments, 200 Hz        Out   the navigated state at the time of the last increment
-// Faults   lost increments are filled with the last one that came, up to `gap_max`; a longer gap coasts without force
-// Source   [savage-1998] (attitude, then velocity with the rotation half taken); [titterton-2004] for M's rates
+// Faults   lost increments are replaced by the last one received, up to `gap_max`; a longer gap coasts without force
+// Source   [savage-1998] (attitude, then velocity with half of the rotation); [titterton-2004] for M's rates
 // Valid    rates below 1 rad/s (Δθ below 5e-3 rad a step: error of the step below 1e-8 rad)
 namespace aeolis::flight::gnc {
 
@@ -40,11 +40,12 @@ class Strapdown {
     }
     void shift(const NavigationShift& by);
 
-    /// One increment. With `force_felt` false the specific force is taken as nil (in vacuum, where what the
-    /// accelerometers tell is their bias), and the bias is learnt from it.
+    /// Integrates one increment.
+    /// With `force_felt` false the specific force is taken as zero, and the bias is learnt from the measurement: in
+    /// vacuum the accelerometers measure only their bias.
     void on(const ImuSample& sample, bool force_felt);
 
-    /// Moves on for `dt_s` ≤ 1 s without the IMU: no force, no rotation relative to inertial space.
+    /// Advances by `dt_s` ≤ 1 s without the IMU: no force, no rotation relative to inertial space.
     void coast(double dt_s);
 
     const NavigatedState& state() const { return state_; }
@@ -72,7 +73,7 @@ class Strapdown {
     bool counting_ = false;
 };
 
-/// `state` at a time `seconds` later (or earlier) under gravity alone; its attitude stays inertially fixed.
+/// `state` after `seconds` (may be negative) under gravity alone; its attitude stays inertially fixed.
 /// Runge–Kutta 4 at steps of at most 1 s. Error below 1 m over two hours outside the atmosphere.
 NavigatedState propagate(const NavigatedState& state, double seconds);
 

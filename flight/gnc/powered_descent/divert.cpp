@@ -19,7 +19,7 @@ void Divert::start(const Vector3& displacement_M, const Vector3& v0_M, double du
     duration_s_ = std::max(duration_s, 1.0);
     const double T = duration_s_;
     v0_ = v0_M;
-    // The cubic, quartic and quintic that meet the three conditions at T, once v0 T is taken off.
+    // The cubic, quartic and quintic terms that meet the three conditions at T, after v0 T is subtracted.
     const Vector3 left = displacement_M - v0_M * T;
     const Vector3 speed = -v0_M * T;
     c3_ = (10.0 * left - 4.0 * speed) / (T * T * T);

@@ -3,28 +3,28 @@
 
 #include "flight/gnc/vector.hpp"
 
-// The sidestep of the powered approach, away from the backshell: from where and how fast it begins to rest.
+// The divert of the powered approach, away from the backshell: a sidestep that ends at rest.
 //
 //   s(t) = v0 t + c3 t³ + c4 t⁴ + c5 t⁵,  with s(T) = Δ, ṡ(T) = 0, s̈(0) = s̈(T) = 0
 //   a_cmd = s̈ + k_v (ṡ − v) + k_p (s − x)
 //
 // Frame    the local horizontal plane at the start, as vectors in M        Units   m, s
 // Source   [facts] Timeline: rest-to-rest quintic, 304 m, azimuth 112°; the term v0 t for a start that is not at rest,
-//          and the gains, are ours
+//          and the gains, are our assumption
 // Valid    T > 1 s; a rest-to-rest sidestep of 304 m in 18.6 s peaks at 1.875 Δ/T = 30.6 m/s
 namespace aeolis::flight::gnc::powered_descent {
 
 class Divert {
   public:
-    /// @param displacement_M  [m] horizontal, where to come to rest, from the start
+    /// @param displacement_M  [m] horizontal, from the start to the point of rest
     /// @param v0_M            [m/s] horizontal velocity at the start
     void start(const Vector3& displacement_M, const Vector3& v0_M, double duration_s);
 
     Vector3 position_M(double t_s) const;  ///< from the start
     Vector3 velocity_M(double t_s) const;
-    Vector3 acceleration_M(double t_s) const;  ///< nil after the end
+    Vector3 acceleration_M(double t_s) const;  ///< zero after the end
 
-    /// Horizontal acceleration to command at t, x and v being measured from the start.
+    /// Horizontal acceleration to command at t; x and v are measured from the start.
     Vector3 command_M(double t_s, const Vector3& x_M, const Vector3& v_M) const;
 
     double duration_s() const { return duration_s_; }

@@ -10,8 +10,7 @@
 namespace aeolis::flight::gnc::powered_descent {
 namespace {
 
-/// Thrust changes by torque: the pseudo-inverse of torques and sum of the engines that run, its columns for the
-/// torques.
+/// Thrust changes per torque: the torque columns of the pseudo-inverse of the running engines' torques and sum.
 template <int n>
 Eigen::Matrix<double, n, 3> changes_by_torque() {
     constexpr auto engines = descent_engines();
@@ -36,8 +35,9 @@ void TorqueAllocation::add(const Vector3& torque_B_Nm, int engines, double engin
         for (Eigen::Index i = 0; i < 4; ++i) change_N[2 * i] = of_four_.row(i).dot(torque_B_Nm);
     else
         change_N = of_eight_ * torque_B_Nm;
-    // Attitude comes before thrust: without the one the other pushes the wrong way. Where an engine would leave its
-    // range, all are throttled back or up until the torque has room; only a torque beyond the whole range is cut.
+    // Attitude has priority over thrust: with a wrong attitude, thrust pushes the wrong way. Where an engine would
+    // leave its range, the common throttle moves until the torque has room; only a torque beyond the whole range is
+    // reduced.
     const double most_N = change_N.maxCoeff(), least_N = change_N.minCoeff();
     const double part = std::min(1.0, (engine_used_max_N - engine_used_min_N) / std::max(most_N - least_N, 1.0));
     double each_N = throttle[0] * engine_max_thrust_N;
@@ -60,7 +60,7 @@ Thrust allocate(const Vector3& specific_force_M, const Vector3& up_M, double mas
                 double engine_max_thrust_N) {
     const double up = std::max(specific_force_M.dot(up_M), 0.0);
     const Vector3 level = specific_force_M - specific_force_M.dot(up_M) * up_M;
-    // Lift comes before sidestep: beyond the tilt limit, or of thrust, it is the level part that gives way.
+    // Lift has priority over sidestep: beyond the limit of tilt or thrust, the level part is reduced.
     const double most_level =
         std::min(std::tan(tilt_max_rad) * up,
                  std::sqrt(std::max(std::pow(engines * engine_used_max_N / mass_kg, 2) - up * up, 0.0)));

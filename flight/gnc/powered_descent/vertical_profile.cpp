@@ -66,7 +66,7 @@ void DecelerationProfile::aim(double altitude_m) {
 }
 
 void DecelerationProfile::advance(double altitude_m, double dt_s) {
-    // The radar brings something new once a second (R25): in the last one nothing comes that could still be flown out.
+    // The radar brings a correction once a second (R25): in the last second it can no longer be flown out.
     const double left_s = (rate_mps_ - sky_crane_mps) / deceleration_mps2_;
     if (left_s > 1.0) aim(altitude_m);
     rate_mps_ = std::max(rate_mps_ - deceleration_mps2_ * dt_s, sky_crane_mps);

@@ -3,19 +3,20 @@
 
 #include "generated/dictionary_flight.hpp"
 
-// The vertical part of powered descent: which descent rate belongs to which altitude, and what acceleration keeps it.
+// Vertical profile of powered descent: the descent rate at each altitude, and the acceleration that keeps it.
 //
-//   approach         v_ref(h)² = 32² + 2 a (h − h_end), a fixed at the start from what altitude is left constant rate
-//    32 m/s until h = h_sky_crane + (32² − 0.75²) / (2 · 4.26): takes up the radar's altitude error constant decel.
-//   v_ref(t) = v_start − ∫ a, down to 0.75 m/s, a such as to end at h_sky_crane from the altitude now: constant but for
-//   what the radar still corrects command          a_up = a_ref + k (v − v_ref)
+//   approach         v_ref(h)² = 32² + 2 a (h − h_end), a fixed at the start by the altitude left
+//   constant rate    32 m/s until h = h_sky_crane + (32² − 0.75²) / (2 · 4.26): absorbs the radar's altitude error
+//   constant decel.  v_ref(t) = v_start − ∫ a, down to 0.75 m/s. a is chosen to end at h_sky_crane from the present
+//                    altitude: constant except for the radar's corrections
+//   command          a_up = a_ref + k (v − v_ref), with 2 k in constant deceleration
 //
 // Frame    h [m] of the descent stage above ground, v [m/s] and a [m/s²]: v positive down, a positive up
-// Source   [facts] Timeline (32 and 0.75 m/s; net 3.19 and 4.26 m/s²; heights); gain k ours
-// Valid    90 … 0.75 m/s; net decelerations are kept within 1 … 6 m/s², what thrust of [facts] Vehicle can give
+// Source   [facts] Timeline (32 and 0.75 m/s; net 3.19 and 4.26 m/s²; heights); gain k is our assumption
+// Valid    90 … 0.75 m/s; net decelerations are limited to 1 … 6 m/s², which the thrust of [facts] Vehicle allows
 namespace aeolis::flight::gnc::powered_descent {
 
-/// The bridle, and from its end to the wheels.
+/// Height of the stage when the wheels touch the ground: the bridle, and the stage above the bridle.
 inline constexpr double stage_height_at_touchdown_m = parameters.bridle_length_m + parameters.stage_above_bridle_m;
 inline constexpr double constant_velocity_mps = parameters.constant_velocity_mps;
 inline constexpr double sky_crane_mps = parameters.sky_crane_descent_rate_mps;
@@ -24,11 +25,11 @@ inline constexpr double approach_end_altitude_m =
 inline constexpr double sky_crane_altitude_m = parameters.sky_crane_altitude_m + stage_height_at_touchdown_m;
 inline constexpr double approach_deceleration_mps2 = parameters.approach_deceleration_mps2;
 inline constexpr double constant_deceleration_mps2 = parameters.constant_deceleration_mps2;
-/// From backshell separation to powered approach.
+/// Time from backshell separation to powered approach.
 inline constexpr double free_fall_s = parameters.powered_approach_delay_s;
 inline constexpr double rate_gain_per_s = parameters.descent_rate_gain_per_s;
 
-/// Altitude that free fall and the approach use up by design, from a descent rate at backshell separation.
+/// Altitude used by design in free fall and approach, for a descent rate at backshell separation.
 double altitude_used_until_constant_velocity_m(double descent_rate_mps);
 
 class ApproachProfile {

@@ -3,20 +3,20 @@
 
 #include "flight/gnc/vector.hpp"
 
-// Holds the descent rate and nulls the drift while four engines carry the stage, the rover below it on the bridle.
+// Holds the descent rate and nulls the drift on four engines, with the rover below the stage on the bridle.
 //
 //   a_up = k_p e + k_i ∫e,  e = rate − wanted;   a_level = −k v_level;   both within limits
 //
 // Frame    M; rate positive down, a positive up         Units   m/s, m/s²
-// The integral takes up what the mass is not known: when the rover stands, thrust settles at the stage's own weight.
-// Source   [facts] Timeline: 0.75 m/s; gains ours
+// The integral compensates for the error of the mass: once the rover stands, thrust settles at the stage's own weight.
+// Source   [facts] Timeline: 0.75 m/s; gains are our assumption
 namespace aeolis::flight::gnc::sky_crane {
 
 class RateControl {
   public:
     void start() { integral_mps2_ = 0.0; }
 
-    /// Acceleration to command, in M, relative to free fall being taken off elsewhere.
+    /// Acceleration to command, in M, in addition to the compensation of free fall, which is applied elsewhere.
     Vector3 command_M(const Vector3& v_MB_M, const Vector3& up_M, double wanted_descent_rate_mps, double dt_s);
 
     template <typename Exchange>

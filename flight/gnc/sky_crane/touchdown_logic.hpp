@@ -7,13 +7,13 @@
 
 #include <cstdint>
 
-// Says that the rover stands: the thrust that the stage needs has settled at the weight of the stage alone.
+// Detects touchdown: the thrust that the stage needs has settled at the weight of the stage alone.
 //
 //   |T − W| ≤ 0.12 W in each cycle of the last 1.25 s,   W = (mass − rover) · g
 //
 // In       commanded thrust [N], estimated mass of stage and rover [kg], 64 Hz       Out   conditions of the decision
-// Source   [facts] Timeline: "settles at the weight of the descent stage alone for 1–1.5 s"; tolerance ours: stage
-//          with rover weighs 1.8 times as much, drift of the mass estimate is below 2 %
+// Source   [facts] Timeline: "settles at the weight of the descent stage alone for 1–1.5 s"; the tolerance is our
+//          assumption: stage with rover weighs 1.8 times as much, drift of the mass estimate is below 2 %
 // Valid    while the stage hovers upright at a steady rate
 namespace aeolis::flight::gnc::sky_crane {
 
@@ -22,7 +22,7 @@ inline constexpr double thrust_tolerance = parameters.touchdown_thrust_tolerance
 
 class TouchdownLogic {
   public:
-    /// Conditions of this cycle; all hold: touchdown.
+    /// Conditions of this cycle; touchdown when all hold.
     Conditions on(double thrust_command_N, double mass_kg, double rover_kg);
 
     template <typename Exchange>

@@ -4,12 +4,13 @@
 #include "flight/gnc/vector.hpp"
 #include "generated/dictionary_flight.hpp"
 
-// Straighten up and fly right: the balance masses go, the angle of attack with them, and bank turns to lift up.
+// Straighten up and fly right (SUFR): balance masses go, and with them the angle of attack; bank turns to lift up.
 //
-//   bank(t) = bank at start, brought to nil at 10°/s;  done after 14.00 s
+//   bank(t) = bank at start, reduced to zero at 10°/s;  done after 14.00 s
 //
 // In       time since its start [s], bank when it started [rad]         Out   bank to command [rad]
-// Source   [facts] Timeline: lasts 14.00 s; the rate is ours, half of what the thrusters can [facts] Vehicle
+// Source   [facts] Timeline: lasts 14.00 s; the rate is our assumption: half of the thrusters' capability [facts]
+//          Vehicle
 namespace aeolis::flight::gnc::sufr {
 
 inline constexpr double duration_s = parameters.sufr_duration_s;

@@ -27,14 +27,14 @@ Conditions list(const Condition& a, const Condition& b, const Condition& c) {
     return conditions;
 }
 
-constexpr double near_fraction = parameters.held_near_fraction;  // of the bound
+constexpr double near_fraction = parameters.held_near_fraction;  // fraction of the bound
 
 }  // namespace
 
 bool near(const Conditions& conditions) {
     if (conditions.empty()) return false;
     const Condition& first = conditions[0];
-    if (first.quantity == Quantity::time_in_mode_s) return false;  // a timer decides nothing
+    if (first.quantity == Quantity::time_in_mode_s) return false;  // a timer alone is not a decision
     return first.holds || std::abs(first.value - first.bound) <= near_fraction * std::abs(first.bound);
 }
 

@@ -6,12 +6,12 @@
 
 #include <cstdint>
 
-// When GNC says "now": each trigger is a short list of conditions on navigated quantities, all of which must hold.
-// The list itself is what explains the decision afterwards. R17, R38
+// GNC's triggers ("now"): each is a short list of conditions on navigated quantities, all of which must hold.
+// The same list explains the decision afterwards. R17, R38
 //
 // In       navigated speed (relative to Mars), altitude (above ground once the radar locked), descent rate, and times
-// Rate     64 Hz        Memory   none; whoever asks keeps count of cycles held
-// Source   [facts] Timeline; bounds that ground may change come with its solution
+// Rate     64 Hz        Memory   none; the caller counts the cycles for which a condition has held
+// Source   [facts] Timeline; bounds that ground may change are part of its solution
 namespace aeolis::flight::gnc::triggers {
 
 inline constexpr double guidance_start_drag_mps2 = parameters.guidance_start_drag_mps2;
@@ -23,7 +23,7 @@ inline constexpr double priming_lead_s = parameters.priming_lead_s;             
 inline constexpr double radar_patience_s = parameters.radar_patience_s;          ///< after heatshield separation
 inline constexpr double sky_crane_settling_s = parameters.sky_crane_settle_s;    ///< to rover separation
 
-/// Counts how long a condition has held without a break.
+/// Counts the consecutive cycles for which a condition has held.
 class Persistence {
   public:
     std::uint32_t on(bool holds) { return cycles_ = holds ? cycles_ + 1 : 0; }
@@ -37,49 +37,52 @@ class Persistence {
     std::uint32_t cycles_ = 0;
 };
 
-/// Whether a decision that does not fire is near enough to tell ground what holds it: its first condition, which is its
-/// subject, holds or is within a twentieth of its bound. A mere timer never is. Ours.
+/// Whether a decision that is held is near enough to be reported with the conditions that hold it.
+/// Its first condition, the subject, must hold or be within a twentieth of its bound. A timer alone is never near. The
+/// fraction is our assumption.
 bool near(const Conditions& conditions);
 
-/// Without a count of cycles that has not begun: it says no more than the condition that it counts.
+/// Conditions without a cycle count of zero: that repeats the condition it counts.
 Conditions worth_telling(const Conditions& conditions);
 
 Conditions guidance_start(double filtered_drag_mps2);
 Conditions heading_alignment(double speed_mps);
 
-/// What the triggers of the entry look at.
+/// Quantities that the triggers of the entry use.
 struct InAir {
     double speed_mps = 0.0;
     double altitude_m = 0.0;
     double descent_rate_mps = 0.0;
 };
-/// From ground's solution: the speed to wait for, and the altitude down to which that is allowed.
+/// From ground's solution: the speed to wait for, and the lowest altitude at which to wait.
 struct ParachuteBounds {
     double speed_mps = 0.0;
     double altitude_min_m = 0.0;
 };
 
-/// `deceleration_mps2`: of the speed, drag less what gravity adds; nil or less tells nothing and never fires.
-///
-/// Two ways: the parachute's speed is near, or its lowest altitude is. The second leaves time for the balance masses.
+/// Conditions for straighten-up (SUFR): the parachute's speed is near, or its lowest altitude is.
+/// The second way leaves time for the balance masses. `deceleration_mps2`: of the speed, drag less the effect of
+/// gravity; at zero or less the trigger never fires.
 Conditions sufr_start(const InAir& at, double deceleration_mps2, const ParachuteBounds& bounds);
 
-/// Slow enough; or so low that waiting to be slower is over: better too fast than too low.
+/// Slow enough, or too low to wait any longer: better too fast than too low.
 bool parachute_due(const InAir& at, const ParachuteBounds& bounds);
 Conditions parachute(const InAir& at, const ParachuteBounds& bounds, std::uint32_t cycles_held);
 Conditions heatshield(double speed_mps, double heatshield_speed_mps, double since_parachute_s);
 
-/// From ground's solution: an altitude, and the descent rate that it belongs to.
+/// From ground's solution: an altitude, and the descent rate to which it belongs.
 struct BackshellBounds {
     double altitude_m = 0.0;
     double descent_rate_mps = 0.0;
 };
 
-/// Altitude at which the backshell must go at a descent rate so that the same powered approach fits below: at the rate
-/// of ground's solution its altitude; faster, higher by what free fall and the approach then need more.
+/// Altitude at which the backshell must be released, at a descent rate, for the same powered approach to fit below.
+/// At the descent rate of ground's solution, that solution's altitude; at a higher rate, higher by the additional
+/// altitude that free fall and approach need.
 double backshell_altitude_needed_m(const BackshellBounds& bounds, double descent_rate_mps);
 
-/// Time is counted to the altitude of ground's solution: by then the descent rate is near its design value.
+/// Conditions for priming. The time is measured to the solution's altitude: by then the descent rate is near its
+/// design.
 Conditions engine_priming(double altitude_m, double descent_rate_mps, double backshell_altitude_m);
 Conditions backshell(double altitude_m, double descent_rate_mps, const BackshellBounds& bounds,
                      std::uint32_t cycles_held);
