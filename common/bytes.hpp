@@ -10,7 +10,7 @@
 
 namespace aeolis {
 
-/// Writes bit fields, most significant bit first, into octets that the caller owns and that start at zero.
+/// Writes bit fields, most significant bit first, into the caller's octets, which must be zero.
 class BitWriter {
   public:
     explicit constexpr BitWriter(std::span<std::uint8_t> octets) : octets_(octets) {}
@@ -42,7 +42,8 @@ class BitWriter {
     std::size_t position_ = 0;
 };
 
-/// Reads the `bits` (1…64) bits at bit `position`, most significant first, zero-extended. The caller checks the range.
+/// Reads the `bits` (1…64) bits at bit `position`, most significant first, zero-extended.
+/// The caller checks the range.
 constexpr std::uint64_t read_bits(std::span<const std::uint8_t> octets, std::size_t position, unsigned bits) {
     AEOLIS_CHECK(bits >= 1 && bits <= 64 && position + bits <= octets.size() * 8);
     std::uint64_t value = 0;

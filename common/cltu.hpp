@@ -10,7 +10,7 @@
 
 namespace aeolis {
 
-/// Communications link transmission unit (CLTU): carries telecommand frames over the uplink. [ccsds-231.0-b-4]
+/// Communications link transmission unit (CLTU) for telecommand frames on the uplink. [ccsds-231.0-b-4]
 ///
 ///   EB90 | code blocks | C5C5C5C5C5C5C579
 ///   code block 8 octets: 56 bits of information | their 7 bits of BCH parity, inverted | 0
@@ -34,7 +34,8 @@ inline constexpr std::size_t cltu_information_octets_max =
 /// The last octet of the code block that holds these 7 octets of information.
 std::uint8_t bch_parity_octet(std::span<const std::uint8_t, cltu_block_information_octets> information);
 
-/// Writes the CLTU and returns the number of octets written. `into` must have room for cltu_octets(information.size()).
+/// Writes the CLTU and returns the number of octets written.
+/// `into` must have room for cltu_octets(information.size()).
 std::size_t write_cltu(std::span<const std::uint8_t> information, std::span<std::uint8_t> into);
 
 /// Extracts the information of a CLTU into `into` and returns its number of octets, including the fill.

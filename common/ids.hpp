@@ -8,7 +8,8 @@
 
 namespace aeolis {
 
-/// Number that identifies one kind of thing. Two kinds do not mix, and none converts to a plain number implicitly.
+/// Number that identifies one kind of thing.
+/// Two kinds do not mix, and none converts to a plain number implicitly.
 template <typename Tag, typename Rep>
 struct Id {
     Rep value{};
@@ -23,7 +24,7 @@ using ToneId = Id<struct ToneTag, std::uint8_t>;             ///< one of the 256
 using TimepointId = Id<struct TimepointTag, std::uint16_t>;  ///< row of the timeline, from 0
 using AnchorId = Id<struct AnchorTag, std::uint16_t>;        ///< row of the anchors in topological order, 0 the root
 
-/// The vehicle's spacecraft id on every link (10 bits), and its only telecommand virtual channel (6 bits).
+/// The vehicle's spacecraft id (10 bits), and its only telecommand virtual channel (6 bits).
 /// The number is chosen and has no further meaning.
 inline constexpr std::uint16_t spacecraft_id = 76;
 inline constexpr std::uint8_t telecommand_channel = 0;

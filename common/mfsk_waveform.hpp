@@ -7,7 +7,7 @@
 
 namespace aeolis {
 
-/// X-band waveform: a square wave at the tone's frequency swings the carrier's phase by ± the modulation index.
+/// X-band waveform: a square wave at the tone's frequency modulates the carrier's phase.
 ///
 ///   s(t) = A exp j(φ(t) + m sq(2π f_k t)),   f_k = first + k · spacing,   sq = ±1; without a tone m sq is 0.
 ///

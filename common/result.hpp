@@ -10,7 +10,8 @@
 
 namespace aeolis {
 
-/// An expected failure, in words for the person who must act on it: names the thing and says what is wrong with it.
+/// An expected failure, in words for the person who must act on it.
+/// The message names the thing and says what is wrong with it.
 struct Error {
     std::string message;
     bool internal = false;  ///< the request is not at fault: a disk or a library failed, or too much is queued already

@@ -52,8 +52,8 @@ struct TmHeader {
 /// Reads the primary header. None when `octets` are too short, of another version, or segmented.
 std::optional<PrimaryHeader> read_primary_header(std::span<const std::uint8_t> octets);
 
-/// Reads the headers of a whole telemetry packet. None when the length field disagrees with the octets or the CRC is
-/// wrong.
+/// Reads the headers of a whole telemetry packet.
+/// None when the length field disagrees with the octets or the CRC is wrong.
 std::optional<TmHeader> read_tm_packet(std::span<const std::uint8_t> packet);
 
 /// Writes both headers and the CRC around data that is already in place at `tm_data_offset_octets`.
@@ -64,7 +64,7 @@ void seal_tm_packet(std::span<std::uint8_t> packet, Apid apid, std::uint16_t cou
 /// Offset of a telecommand packet's arguments: after the primary header and the opcode.
 inline constexpr std::size_t tc_arguments_offset_octets = primary_header_octets + 2;
 inline constexpr std::size_t tc_overhead_octets = tc_arguments_offset_octets + packet_crc_octets;
-/// Writes header, opcode and CRC around arguments that are already in place at `tc_arguments_offset_octets`.
+/// Writes header, opcode and CRC around arguments already in place at `tc_arguments_offset_octets`.
 void seal_tc_packet(std::span<std::uint8_t> packet, Apid apid, std::uint16_t count, Opcode opcode);
 
 struct TcPacket {

@@ -9,7 +9,7 @@
 
 namespace aeolis {
 
-/// Telecommand transfer frame, and the CLCW by which the vehicle reports what it accepted. [ccsds-232.0-b-4]
+/// Telecommand transfer frame, and the CLCW with the vehicle's report on it. [ccsds-232.0-b-4]
 ///
 ///   header 40 bits: version 2 (00) | bypass 1 | control 1 | spare 2 | spacecraft 10 | virtual channel 6 |
 ///                   octets of the frame less one 10 | frame sequence 8;   data | CRC-16 over all that precedes it
@@ -34,10 +34,11 @@ struct TcFrame {
     std::span<const std::uint8_t> data;
 };
 
-/// Parses the frame at the beginning of `octets`; octets after it, such as the fill of a CLTU, are ignored.
+/// Parses the frame that begins `octets`; octets after it, such as the fill of a CLTU, are ignored.
 Parsed<TcFrame> read_tc_frame(std::span<const std::uint8_t> octets);
 
-/// Writes the frame and returns the number of octets written. `data`: 1 … 1017 octets. `into` must have room.
+/// Writes the frame and returns the number of octets written.
+/// `data`: 1 … 1017 octets. `into` must have room.
 std::size_t write_tc_frame(const TcFrameHeader& header, std::span<const std::uint8_t> data,
                            std::span<std::uint8_t> into);
 

@@ -12,7 +12,7 @@ namespace aeolis {
 
 inline constexpr double seconds_per_tick = 1.0 / 64.0;
 
-/// Spacecraft clock [s], an exact multiple of 1/64 s: arithmetic with offsets that are such multiples is exact. R21
+/// Spacecraft clock [s], a multiple of 1/64 s: arithmetic with offsets of such multiples is exact. R21
 struct Sclk {
     double seconds = 0.0;
 
@@ -30,7 +30,7 @@ constexpr Sclk operator-(Sclk t, double offset_s) {
     return {t.seconds - offset_s};
 }
 
-/// UTC at the spacecraft: microseconds since 2000-01-01T12:00:00 UTC, not counting leap seconds (as in POSIX).
+/// UTC at the spacecraft: microseconds since 2000-01-01T12:00:00 UTC, without leap seconds (as in POSIX).
 struct Scet {
     std::int64_t microseconds = 0;
     constexpr auto operator<=>(const Scet&) const = default;
@@ -44,11 +44,12 @@ struct Ert {
 /// Day-of-year text with milliseconds: 2012-219T05:10:47.400.
 std::string day_of_year_text(Scet time);
 std::string day_of_year_text(Ert time);
-/// Parses that form; the fraction of a second is optional. None for any other text, or for a day that does not exist.
+/// Parses that form; the fraction of a second is optional.
+/// None for any other text, or for a day that does not exist.
 std::optional<Ert> ert_from_day_of_year(std::string_view text);
 std::optional<Scet> scet_from_day_of_year(std::string_view text);
 
-/// Correlation of SCLK and SCET: equal instants `sclk` and `scet`, and the rate of UTC against the onboard clock.
+/// Correlation of SCLK and SCET: one instant in both, and the rate of UTC against the onboard clock.
 /// From a row of the dictionary's clock_correlation.csv; version 0 for a clock that only its scenario defines.
 struct ClockCorrelation {
     Sclk sclk;
@@ -66,7 +67,8 @@ struct ClockCorrelation {
     }
 };
 
-/// `t` truncated to the resolution of a clock of `hz` (a power of two up to 64), as `clk_1_hz` … `clk_64_hz` return it.
+/// `t` truncated to the ticks of a clock of `hz`, as `clk_1_hz` … `clk_64_hz` return it.
+/// `hz` is a power of two up to 64.
 /// R21
 constexpr Sclk at_resolution(Sclk t, std::int64_t hz) {
     const std::int64_t ticks_per_step = 64 / hz;

@@ -11,7 +11,7 @@
 
 namespace aeolis {
 
-/// Transfer frames of fixed length from a spacecraft to a station: TM and AOS, as other missions send them.
+/// TM and AOS transfer frames of fixed length, as other missions send them to their stations.
 ///
 ///   TM   48 bits: version 2 (00) | spacecraft 10 | virtual channel 3 | control field 1 | master count 8 |
 ///        virtual count 8 | secondary header 1 | synchronised 1 | packet order 1 | segment length 2 | pointer 11
@@ -42,11 +42,12 @@ struct TransferFrame {
     std::optional<std::uint32_t> control_field;  ///< usually a CLCW
 };
 
-/// Parse a whole frame. bad_field when its data are not packets (synchronised flag) or a field leaves no room for data.
+/// Parse a whole frame.
+/// Fail with bad_field when the data are not packets (synchronised flag) or a field leaves no room for data.
 Parsed<TransferFrame> read_tm_frame(std::span<const std::uint8_t> frame, const FrameAgreement& agreed);
 Parsed<TransferFrame> read_aos_frame(std::span<const std::uint8_t> frame, const FrameAgreement& agreed);
 
-/// Write a whole frame: `frame.data`, pointer, counts and control field; no secondary header, no insert zone.
+/// Write a whole frame, without secondary header and insert zone.
 /// `into` must be exactly as long as the frame.
 void write_tm_frame(const TransferFrame& frame, std::uint8_t master_count, bool crc, std::span<std::uint8_t> into);
 void write_aos_frame(const TransferFrame& frame, bool crc, std::span<std::uint8_t> into);

@@ -15,8 +15,9 @@
 #include <string_view>
 #include <vector>
 
-// A mission's dictionary, loaded and checked. XTCE: commands, channels, packets and events. CSV: timeline, anchors,
-// tones and parameters. Plain values, shared by the autocoder and every part of the ground.
+// A mission's dictionary, loaded and checked.
+// XTCE: commands, channels, packets and events. CSV: timeline, anchors, tones and parameters. Plain values, shared by
+// the autocoder and every part of the ground.
 namespace aeolis::dictionary {
 
 // ---- types -----------------------------------------------------------------------------------------------------
@@ -262,7 +263,7 @@ struct ConstraintRow {
     unsigned line = 0;  ///< in constraints.csv
 };
 
-/// A row of clock_correlation.csv: the correlation of SCLK and SCET from `valid_from` until the next row's.
+/// A row of clock_correlation.csv: correlation of SCLK and SCET from `valid_from` to the next row's.
 struct ClockRow {
     Sclk valid_from;
     ClockCorrelation correlation;  ///< with the row's version
@@ -310,13 +311,13 @@ struct Finding {
     std::string text() const;
 };
 
-/// The whole dictionary of a mission's folder, or every rule that the folder breaks; never a part of a dictionary.
+/// The whole dictionary of a mission's folder, or every rule that the folder breaks.
 struct Loaded {
     std::optional<Dictionary> dictionary;  ///< none when there are findings
     std::vector<Finding> findings;
 };
 
-/// Loads and checks the dictionary in `directory`: one XTCE file (*.xml with one SpaceSystem) and the sheets.
+/// Loads and checks a mission's dictionary: one XTCE file (*.xml with one SpaceSystem) and the sheets.
 ///
 /// Used on board   timeline.csv, anchors.csv, tones.csv, mfsk.csv, parameters.csv, constraints.csv, state_machines.csv,
 ///                 owners.csv, telemetry_plan.csv and the XTCE file. `id` changes with each of them, `timeline_version`

@@ -33,7 +33,7 @@ struct MissionFiles {
     bool operator==(const MissionFiles&) const = default;
 };
 
-/// Reads the files of a folder (one *.xml and the sheets), or those inside one file made by one_file_of().
+/// Reads a folder's files (one *.xml and the sheets), or those inside one file made by one_file_of().
 MissionFiles read_mission_files(const std::filesystem::path& path, std::vector<Finding>& all);
 
 /// Combines all files into one XTCE file.

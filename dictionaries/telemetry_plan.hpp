@@ -9,7 +9,7 @@
 #include <string_view>
 #include <utility>
 
-// telemetry_plan.csv: the part of the recording that is sent in real time, by the state of the vehicle. R30
+// telemetry_plan.csv: the part of the recording sent in real time, by the state of the vehicle. R30
 namespace aeolis::dictionary {
 
 /// Priority of a packet, least important first; the words used in the sheet.

@@ -52,10 +52,10 @@ class Predictor {
   private:
     /// Time of an anchor as derived from firings.
     struct Told {
-        MaybeOffset e_s;                    ///< by the earliest firing: a timepoint may fire later than due
-        std::optional<TimepointId> firing;  ///< the earliest
-        double at_e_s = never_s;            ///< when it fired
-        double passed_e_s = never_s;        ///< when a timepoint fired that follows all timepoints with this anchor
+        MaybeOffset e_s;                    ///< the earliest that a firing implies: a timepoint may fire later than due
+        std::optional<TimepointId> firing;  ///< the one that implies it
+        double at_e_s = never_s;            ///< when the first timepoint with this anchor was triggered
+        double passed_e_s = never_s;        ///< when the first timepoint after one with this anchor was triggered
     };
 
     std::optional<TimelineKnowledge::Heard> heard(std::size_t timepoint) const {

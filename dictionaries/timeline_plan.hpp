@@ -8,8 +8,8 @@
 #include <variant>
 #include <vector>
 
-// Ground's plan and prediction of a timeline, by timeline_rule.hpp. All times are seconds from the entry time predicted
-// when the run began. Replies are assumed to be immediate.
+// Ground's plan and prediction of a timeline, by timeline_rule.hpp.
+// All times are seconds from the entry time predicted when the run began. Replies are assumed to be immediate.
 namespace aeolis::dictionary {
 
 /// A change of offsets that a command makes on board.

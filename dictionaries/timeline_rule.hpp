@@ -86,7 +86,7 @@ constexpr DueTimes due_times(const Offsets& offsets, MaybeTime previous_fired, M
     return {time_of(conditions.desired), time_of(conditions.minimum)};
 }
 
-/// The latest time at which a timepoint fires: its time-out, or the instant of its triggering when it awaits no reply.
+/// The latest time at which a timepoint fires: its time-out, or without a reply its triggering.
 constexpr Sclk latest_firing(Sclk triggered, const std::optional<double>& reply_timeout_s) {
     return reply_timeout_s ? triggered + *reply_timeout_s : triggered;
 }

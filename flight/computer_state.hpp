@@ -29,7 +29,7 @@ namespace aeolis::flight {
 
 inline constexpr std::size_t mailbox_messages_max = 64;  ///< chosen: twice a burst of IMU, radar and replies
 
-/// The whole state of a flight computer: its modules, their mailboxes, and messages held for the next cycle.
+/// The whole state of a flight computer: modules, mailboxes, and messages held for the next cycle.
 struct ComputerState {
     ComputerState(const Load& its_load, Sclk start)
         : load(its_load), now(start), sync(load), radar(load), imu(load), edl(load), pyro(load), descent_engines(load),
@@ -60,7 +60,7 @@ struct ComputerState {
 
     std::array<FixedQueue<Message, mailbox_messages_max>, module_count> mailboxes;
     std::uint32_t ready = 0;  // a bit for each module that has work
-    // Messages from modules outside the rate group, delivered at the start of the next cycle under every executive.
+    // Messages from modules outside the rate group, for the start of the next cycle under every executive.
     FixedVector<Envelope, 128> next_cycle;
     Outbox outbox;
 

@@ -11,7 +11,7 @@
 // sets them; ground's navigation solution arrives by EDL_SET_PARAMETERS.
 namespace aeolis::flight {
 
-/// Reference trajectory of entry guidance, tabulated against planet-relative velocity; rows ascend in velocity.
+/// Reference trajectory of entry guidance, by planet-relative velocity; rows ascend in velocity.
 /// Generated from a scenario by simulation/entry_reference, never written by hand. [apollo-entry-guidance]
 struct EntryReferenceRow {
     double velocity_mps = 0.0;
@@ -30,7 +30,8 @@ struct EntryReference {
 
 enum class Plan : std::uint8_t { mission, wideband };
 
-/// Role in which a computer was started. Ground designates prime by command before EDL; the other is its backup. R1
+/// Role in which a computer was started.
+/// Ground designates prime by command before EDL; the other is its backup. R1
 enum class Role : std::uint8_t { prime, second_chance };
 /// One of the two computers, by its place in the vehicle.
 enum class String : std::uint8_t { a, b };
@@ -56,7 +57,7 @@ struct Load {
     EntryReference entry_reference;
 };
 
-/// Shift of the navigation state for a campaign case, as if navigation had had these errors from the start.
+/// Shift of the navigation state for a campaign case, as if its errors had existed from the start.
 /// Applied from outside; nothing on board requests it.
 struct NavigationShift {
     std::array<double, 3> p_MoB_M_m{};

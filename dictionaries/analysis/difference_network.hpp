@@ -8,7 +8,7 @@
 
 namespace aeolis::dictionary {
 
-/// Moments and the least differences between them, in ticks of 1/64 s: a system of difference constraints.
+/// Difference constraints: moments and the least differences between them, in ticks of 1/64 s.
 /// Solved exactly by longest paths (Bellman-Ford). An upper bound is a least difference in the opposite direction.
 class DifferenceNetwork {
   public:
@@ -30,7 +30,7 @@ class DifferenceNetwork {
     const std::vector<Edge>& edges() const { return edges_; }
     std::size_t moments() const { return moments_; }
 
-    /// The solution in which every moment is earliest and none is negative; or the reason why there is no solution.
+    /// The solution with every moment at its earliest and none negative, or why there is no solution.
     struct Earliest {
         std::vector<std::int64_t> ticks;       ///< a time for each moment; empty when the edges contradict each other
         std::vector<EdgeIndex> contradiction;  ///< a cycle of edges whose least differences add up to more than zero

@@ -50,7 +50,8 @@ struct BoundProof {
     std::size_t constraint = 0;  ///< index in Dictionary::constraints
     bool is_minimum = true;      ///< of minimum_s; else of maximum_s
     Proof proof = Proof::undecided;
-    /// Margin between the bound and the worst schedule; undefined: the worst case is unbounded. Proven: not negative.
+    /// Margin between the bound and the worst schedule; undefined: the worst case is unbounded.
+    /// Proven: not negative.
     MaybeOffset slack_s;
     std::vector<ChainStep> chain;  ///< critical chain: the constraints that limit the worst case; empty when nothing
                                    ///< limits it
@@ -58,14 +59,15 @@ struct BoundProof {
     std::vector<Instant> schedule;
 };
 
-/// The least time, in the worst case, from when a timepoint is free to fire until its anchor makes it due.
+/// The least time from when a timepoint is free to fire until its anchor makes it due.
 struct DueMargin {
     TimepointId timepoint;
     MaybeOffset slack_s;  ///< negative: it may fire that late; undefined: unbounded, the anchor may be set at any time
 };
 
 struct TimelineAnalysis {
-    /// The cycle of constraints by which the timeline and the given rows admit no schedule. If set, the rest is empty.
+    /// The cycle of constraints by which the timeline and the given rows admit no schedule.
+    /// If set, the rest is empty.
     std::vector<ChainStep> contradiction;
     bool stopped = false;  ///< stopped on request before it was done: the results are incomplete
     /// False, with no contradiction: no schedule has a cause for every firing.
@@ -76,7 +78,8 @@ struct TimelineAnalysis {
     bool all_proven() const;
 };
 
-/// Analyses the timeline. `stop` is called at each step, some thousand times a second; null: runs to the end.
+/// Analyses the timeline.
+/// `stop` is called at each step, some thousand times a second; null: runs to the end.
 TimelineAnalysis analyse_timeline(const Dictionary& dictionary, const std::function<bool()>& stop = {});
 /// The same without the margins, which do not affect the proofs.
 TimelineAnalysis analyse_bounds(const Dictionary& dictionary, const std::function<bool()>& stop = {});

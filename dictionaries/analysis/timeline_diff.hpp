@@ -16,16 +16,16 @@ struct CellChange {
 };
 
 /// A row that differs between the two versions, or is in only one of them.
-struct RowChange {                             ///< identifies the row: timepoint, anchor, or "required a -> b"
-    std::string name;                          ///< what identifies the row: timepoint, anchor, or "required a -> b"
+struct RowChange {
+    std::string name;                          ///< identifies the row: timepoint, anchor, or "required a -> b"
     std::optional<std::size_t> before, after;  ///< place in the sheet, from 1; none: the row is not in that version
     bool moved = false;                        ///< its order among the rows common to both has changed
     std::vector<CellChange> cells;
 };
 
 struct SheetDiff {
-    std::string file;             ///< in the later version's order, removed rows first
-    std::vector<RowChange> rows;  ///< removed ones first, then as in the later version
+    std::string file;
+    std::vector<RowChange> rows;  ///< removed rows first, then in the later version's order
 };
 
 struct TimelineDiff {

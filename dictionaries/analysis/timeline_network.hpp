@@ -21,8 +21,8 @@ class TimelineNetwork {
     /// `stop` is called during the search; when it returns true, the search is cut short.
     TimelineNetwork(const Dictionary& dictionary, std::function<bool()> stop);
 
-    /// Why nothing satisfies the constraints; empty: a solution exists, perhaps with timepoints later than they could
-    /// be.
+    /// Why nothing satisfies the constraints; empty when a solution exists.
+    /// In that solution, timepoints may fire later than the rule has them.
     std::vector<ChainStep> contradiction() const;
 
     /// The least difference of two moments, and how it was found.
@@ -36,7 +36,8 @@ class TimelineNetwork {
         bool exhausted = false;  ///< the search was cut short
         MaybeTicks open_ticks;   ///< if exhausted: lower bound of the part not searched, if any
     };
-    /// Finds the least possible t(to) - t(from). If it is unbounded, returns a schedule with `enough_ticks`.
+    /// Finds the least possible t(to) - t(from).
+    /// If it is unbounded, returns a schedule with `enough_ticks`.
     Worst least_difference(const Moment& from, const Moment& to, std::int64_t enough_ticks);
 
   private:

@@ -7,8 +7,9 @@
 #include <string_view>
 #include <vector>
 
-// Readers of the mission's spreadsheets, each with the rules of its rows. None when a sheet cannot be read at all.
-// Otherwise every row is returned, even with findings, so that a reference to it is not reported as dangling too.
+// Readers of the mission's spreadsheets, each with the rules of its rows.
+// None when a sheet cannot be read at all. Otherwise every row is returned, even with findings, so that a reference to
+// it is not reported as dangling too.
 namespace aeolis::dictionary {
 
 inline constexpr std::size_t timepoints_max = 1000;   ///< chosen: ten times the landing's; numbers fit the command's
@@ -40,7 +41,8 @@ std::optional<std::vector<ClockRow>> read_clock_correlation(std::string_view tex
 std::optional<std::vector<std::optional<double>>>
 read_predicted_anchors(std::string_view text, const std::vector<AnchorRow>* anchors, Findings& findings);
 
-/// Everything that a timeline may refer to. A null pointer: its own file could not be read, so it is not checked.
+/// Everything that a timeline may refer to.
+/// A null pointer: its own file could not be read, so it is not checked.
 struct TimelineContext {
     struct DeclaredEvent {
         std::string name;
@@ -55,7 +57,8 @@ struct TimelineContext {
 std::optional<std::vector<TimelineRow>> read_timeline(std::string_view text, const TimelineContext& context,
                                                       Findings& findings);
 
-/// Everything that a constraint may refer to. A null pointer: its own file could not be read, so it is not checked.
+/// Everything that a constraint may refer to.
+/// A null pointer: its own file could not be read, so it is not checked.
 struct ConstraintContext {
     const std::vector<TimelineRow>* timeline = nullptr;
     const std::vector<AnchorRow>* anchors = nullptr;

@@ -37,7 +37,7 @@ class Reporter {
 
     void fault(pugi::xml_node element, const std::string& message) { findings_.add(document_.line(element), message); }
 
-    /// Reports every child element and attribute that is not named here: unread content is never ignored silently.
+    /// Reports each child and attribute not named here: unread content is never ignored silently.
     void expect(pugi::xml_node element, std::initializer_list<std::string_view> children,
                 std::initializer_list<std::string_view> attributes);
 

@@ -10,7 +10,8 @@
 #include <utility>
 #include <vector>
 
-/// Packets of any mission, as its XTCE file describes them. telemetry/container_decoder.hpp decodes by this model.
+/// Packets of any mission, as its XTCE file describes them.
+/// Used by telemetry/container_decoder.hpp to decode.
 /// Our own dictionary is read through space_system.hpp, whose rules are strict. Here, unreadable content is a finding,
 /// and everything else is kept. [xtce-1.2], and files of 1.0 and 1.1
 namespace aeolis::dictionary::xtce {
@@ -166,7 +167,8 @@ struct PacketModel {
     std::vector<PacketContainer> containers;
 };
 
-/// Reads the model. None when the text is not XTCE; unsupported or wrong content becomes findings with lines.
+/// Reads the model.
+/// None when the text is not XTCE; unsupported or wrong content becomes findings with lines.
 std::optional<PacketModel> read_packet_model(const std::string& text, Findings& findings);
 
 }  // namespace aeolis::dictionary::xtce

@@ -11,7 +11,8 @@
 
 namespace aeolis::dictionary::xtce {
 
-/// Reads the parts of types and containers: references, conditions, amounts. Unsupported content is a finding.
+/// Reads the parts of types and containers: references, conditions, amounts.
+/// Unsupported content is a finding.
 class ModelParts {
   public:
     ModelParts(const Symbols& symbols, Reporter& report);

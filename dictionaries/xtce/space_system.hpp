@@ -24,7 +24,8 @@ struct SpaceSystem {
     std::vector<DeclaredEvent> declared_events;  ///< including those with findings
 };
 
-/// Reads the subset of [xtce-1.2] that docs/decisions/0002 names. None, with a finding, when the text is not XTCE.
+/// Reads the subset of [xtce-1.2] that docs/decisions/0002 names.
+/// None, with a finding, when the text is not XTCE.
 std::optional<SpaceSystem> read_space_system(const std::string& text, Findings& findings);
 
 }  // namespace aeolis::dictionary::xtce

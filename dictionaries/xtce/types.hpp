@@ -14,7 +14,8 @@ class Types {
   public:
     Types(const Symbols& symbols, Reporter& report);
 
-    /// None when the reference is dangling, which is a finding at `element`, or when the type itself has findings.
+    /// The referenced type; none when the type has findings.
+    /// None, with a finding at `element`, when the reference is dangling.
     std::optional<Type> of(Kind kind, const std::string& scope, pugi::xml_node element, const char* attribute,
                            Reporter& report) const;
 

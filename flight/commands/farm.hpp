@@ -21,8 +21,8 @@ class Farm {
         std::uint16_t spacecraft = 0;
         std::uint8_t virtual_channel = 0;
         std::uint8_t window = 128;
-        /// Refuses sequenced frames until ground unlocks the channel. After losing the expected sequence number, FARM-1
-        /// could otherwise accept an old frame as new.
+        /// Refuses sequenced frames until ground unlocks the channel.
+        /// After losing the expected sequence number, FARM-1 could otherwise accept an old frame as new.
         bool locked_at_start = false;
     };
 

@@ -7,13 +7,14 @@
 
 namespace aeolis::flight {
 
+/// Silence after which prime counts as failed.
 /// Chosen: well above the one or two cycles of an overrun, well below the second in which Second Chance must fly.
 inline constexpr double prime_silent_s = 0.25;
 
 /// Oldest state from which Second Chance takes over: Edl keeps one second of IMU readings.
 inline constexpr double state_age_max_s = 0.9;
 
-/// The line between the two computers: prime sends its state, Second Chance listens and decides to take over.
+/// The line between the computers: prime sends its state, Second Chance listens and may take over.
 ///
 /// In      StatePart from edl (prime) or from the line (Second Chance), StoredStatePart, ClockTick,
 ///         EnableSecondChanceCommand, SelectPrimeCommand, EdlFinished

@@ -10,8 +10,9 @@
 #include <span>
 #include <type_traits>
 
-// Transfer of a module's state between computers. Each class lists in `carry(exchange)` the values that the other
-// computer needs; the same line writes and reads them. R33
+// Transfer of a module's state between computers.
+// Each class lists in `carry(exchange)` the values that the other computer needs; the same line writes and reads them.
+// R33
 namespace aeolis::flight {
 
 /// Writes or reads values one after another, in the processor's representation.

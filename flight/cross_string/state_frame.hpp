@@ -85,7 +85,7 @@ class StateAssembly {
     /// The frame that this part completes, if it does.
     std::optional<StateFrame> on(const StatePart& part);
 
-    /// For forwarding without reading: true when this part is the last and octets() holds the whole frame, unchecked.
+    /// For forwarding: true when this part is the last, and octets() holds the whole frame, unchecked.
     bool take(const StatePart& part);
     std::span<const std::uint8_t> octets() const { return octets_.span(); }
 

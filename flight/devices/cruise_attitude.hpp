@@ -6,7 +6,7 @@
 
 namespace aeolis::flight {
 
-/// Cruise attitude control, reduced to what EDL needs: the star scanner's attitude, from which navigation starts.
+/// Cruise attitude control, reduced to the star scanner's attitude, from which navigation starts.
 /// It ends with the cruise stage, and Second Chance's load does not contain it. R10, R33
 ///
 /// In      CruiseAttitude (interrupt), once a second until the cruise stage goes

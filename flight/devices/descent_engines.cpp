@@ -4,7 +4,7 @@
 namespace aeolis::flight {
 namespace {
 
-constexpr double bridle_tolerance_m = 0.01;  // chosen for the pay-out sensor
+constexpr double bridle_tolerance_m = 0.01;  // chosen: tolerance of the pay-out sensor
 
 }  // namespace
 

@@ -11,8 +11,9 @@
 #include <cstdint>
 #include <optional>
 
-// Inputs and outputs of a flight computer, at its border with the vehicle. The simulation knows this folder and the
-// computer's one step, and nothing else of flight. Plain numbers in SI; no Eigen types, no pointers.
+// Inputs and outputs of a flight computer, at its border with the vehicle.
+// The simulation knows this folder and the computer's one step, and nothing else of flight. Plain numbers in SI; no
+// Eigen types, no pointers.
 //
 // Frames (docs/frames_and_units.md): M is fixed to rotating Mars, origin at its centre, z along the spin axis, x
 // through the prime meridian. B is fixed to the vehicle, z along the symmetry axis: towards the heatshield in entry,
@@ -53,7 +54,7 @@ struct ImuSample {
     std::array<double, 3> delta_angle_rad{};  ///< rate relative to inertial space × time
 };
 
-/// Initial attitude from cruise attitude determination (star scanner), sent once a second until separation.
+/// Initial attitude from cruise attitude determination (star scanner), once a second until separation.
 struct CruiseAttitude {
     std::array<double, 4> q_MB{1, 0, 0, 0};
     Sclk at{};  ///< the tick at which it is valid
@@ -134,7 +135,8 @@ struct UplinkPacket {
     std::uint16_t size = 0;
 };
 
-/// A computer's EDL state on the line between computers or in non-volatile memory: a frame that only flight reads.
+/// A computer's EDL state, framed for the line between computers and for non-volatile memory.
+/// Only flight reads it.
 /// See flight/cross_string. The size is chosen: one and a half times what the state takes.
 inline constexpr std::size_t state_octets_max = 2560;
 using StateOctets = FixedVector<std::uint8_t, state_octets_max>;
@@ -161,8 +163,8 @@ struct DeviceInputs {
 
 // ---- from the computer -----------------------------------------------------------------------------------------
 
-/// Burn time of each entry thruster in the cycle that begins when this arrives. Without a command the valves close.
-/// flight/devices/effectors.hpp gives the thrusters' positions.
+/// Burn time of each entry thruster in the cycle that begins when this arrives.
+/// Without a command the valves close. flight/devices/effectors.hpp gives the thrusters' positions.
 struct ThrusterCommand {
     std::array<double, 8> on_s{};  ///< 0 … 1/64 s
     bool operator==(const ThrusterCommand&) const = default;

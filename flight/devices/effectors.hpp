@@ -34,7 +34,7 @@ constexpr Mount mount(std::size_t number) {
 
 }  // namespace effector_detail
 
-/// Entry thrusters: two at each of four mounts on the backshell, pushing in opposite directions along the rim.
+/// Entry thrusters: two at each of four mounts on the backshell, pushing opposite ways along the rim.
 /// Even: towards increasing azimuth (right-handed about z); odd: towards decreasing.
 constexpr std::array<Effector, thruster_count> entry_thrusters() {
     constexpr double radius_m = 1.6, behind_m = 1.5;
@@ -48,7 +48,7 @@ constexpr std::array<Effector, thruster_count> entry_thrusters() {
     return all;
 }
 
-/// Descent engines: two at each of four corners, canted along the rim so that they also turn the vehicle about z.
+/// Descent engines: two at each of four corners, canted along the rim to turn the vehicle about z too.
 /// Numbered so that every other one is used in the sky crane: one in each corner, balanced about z.
 constexpr std::array<Effector, engine_count> descent_engines() {
     constexpr double radius_m = 1.5, sine = 0.087, cosine = 0.9962082;  // 5°

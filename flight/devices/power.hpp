@@ -6,7 +6,8 @@
 
 namespace aeolis::flight {
 
-/// Manager of power switching, on the 8 Hz bus: radar, IMU, thruster heaters. Outside the rate group. R5, R10, R28
+/// Manager of power switching, on the 8 Hz bus: radar, IMU, thruster heaters.
+/// Outside the rate group. R5, R10, R28
 ///
 /// In      SetSwitch, SwitchReply (interrupt), UnitsSelected
 /// Out     switch commands; ActionReply to Edl when the switch is as commanded

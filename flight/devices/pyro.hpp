@@ -6,8 +6,8 @@
 
 namespace aeolis::flight {
 
-/// Manager of the pyro controllers, on the 64 Hz bus. In the rate group: it confirms every tick, idle or not. R5, R10,
-/// R22
+/// Manager of the pyro controllers, on the 64 Hz bus.
+/// In the rate group: it confirms every tick, idle or not. R5, R10, R22
 ///
 /// In      FirePyro, PyroReply (interrupt), Tick, UnitsSelected
 /// Out     pyros to fire, at its tick; ActionReply to Edl once the controller reports that the pyro fired; Confirm

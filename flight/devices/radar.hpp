@@ -6,7 +6,8 @@
 
 namespace aeolis::flight {
 
-/// Manager of the landing radar, on the 64 Hz bus. In the rate group: it confirms every tick, idle or not. R5, R10, R22
+/// Manager of the landing radar, on the 64 Hz bus.
+/// In the rate group: it confirms every tick, idle or not. R5, R10, R22
 ///
 /// In      RadarReturns (interrupt), Tick, UnitsSelected
 /// Out     RadarReturns to EdlBg, once a cycle when there are any; Confirm

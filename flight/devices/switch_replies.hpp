@@ -11,7 +11,7 @@ class SwitchReplies {
   public:
     /// Puts `command` on its owner's part of the bus, or reports that there is no room (SWITCH_QUEUE_FULL).
     void command(const SetSwitch& command, SwitchCommands& bus, Outbox& out);
-    /// Turns a reply into an answer for the timeline, or into a report: refused, not due, or from the other unit.
+    /// Turns a reply into an answer for the timeline, or reports it: refused, not due, or from the other unit.
     void reply(const SwitchReply& reply, Unit selected, Outbox& out);
 
   private:

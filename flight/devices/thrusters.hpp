@@ -6,8 +6,8 @@
 
 namespace aeolis::flight {
 
-/// Manager of the thruster drivers, on the 64 Hz bus. In the rate group: it confirms every tick, idle or not. R5, R10,
-/// R22
+/// Manager of the thruster drivers, on the 64 Hz bus.
+/// In the rate group: it confirms every tick, idle or not. R5, R10, R22
 ///
 /// In      FireThrusters, EnableThrusters, ThrusterReply (interrupt), Tick, UnitsSelected
 /// Out     on-times and enable commands, at its tick, once; ActionReply to Edl when the driver is as commanded; Confirm

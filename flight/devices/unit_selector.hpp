@@ -6,8 +6,9 @@
 
 namespace aeolis::flight {
 
-/// Selects between redundant units; the only module that may. Each device manager addresses the unit selected here.
-/// No manager changes over by itself. From "do edl" on the choice is fixed: EDL has no time to switch. R2, R5
+/// Selects between redundant units; the only module that may.
+/// Each device manager addresses the unit selected here. No manager changes over by itself. From "do edl" on the choice
+/// is fixed: EDL has no time to switch. R2, R5
 ///
 /// In      SelectUnitsCommand; EdlBegun and StandBy from Edl; ClockTick; UnitsSelected (prime's choice, for a computer
 ///         that takes over)

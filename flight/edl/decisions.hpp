@@ -19,7 +19,8 @@ std::optional<AnchorId> anchor_of(gnc::Trigger trigger);
 void announce(gnc::Trigger trigger, const gnc::Output& gnc, Outbox& out);
 void announce_bank_reversal(const gnc::Output& gnc, Outbox& out);
 
-/// Explains the decision by its conditions, with values and bounds, and counts the held explanations not sent before.
+/// Explains a decision by its conditions, with values and bounds.
+/// `suppressed`: number of held explanations that were not sent before it.
 void explain(gnc::Trigger trigger, const gnc::Output& gnc, std::uint16_t suppressed, Outbox& out);
 
 /// Explains triggers that are near, and which of their conditions are missing.

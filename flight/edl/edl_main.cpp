@@ -127,7 +127,7 @@ void EdlMain::update_phase(Sclk now, Outbox& out) {
     out.event(evr::EDL_PHASE_CHANGED{.phase = phase()});
 }
 
-// ---- what the device managers send -----------------------------------------------------------------------------
+// ---- inputs from the device managers ---------------------------------------------------------------------------
 
 void EdlMain::on(const ImuReadings& readings, Outbox&) {
     if (activity_ == Activity::tracks) {

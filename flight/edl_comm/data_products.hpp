@@ -10,9 +10,9 @@
 #include <cstdint>
 #include <span>
 
-// Data products: tables too large for one packet. Each row is the data field of a packet of the dictionary, so that
-// ground decodes it by the same definition. A product is sent in parts of equal size, each with its number and the CRC
-// of the whole product. R30
+// Data products: tables too large for one packet.
+// Each row is the data field of a packet of the dictionary, so that ground decodes it by the same definition. A product
+// is sent in parts of equal size, each with its number and the CRC of the whole product. R30
 namespace aeolis::flight {
 
 /// Every firing of the timeline so far, as reported.

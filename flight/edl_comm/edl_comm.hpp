@@ -12,7 +12,7 @@
 
 namespace aeolis::flight {
 
-/// All EDL telemetry: records every packet in non-volatile memory (NVM), and sends a subset in real time. R29, R30
+/// Records all EDL telemetry in non-volatile memory (NVM), and sends a subset in real time. R29, R30
 /// The subset is bit-identical to the recording and limited by the rate of the link.
 ///
 /// In      Record (any module), ImuReadings, PhaseChanged, NvmStatus, ToneStatus, UplinkStatus, ClockTick (64 Hz)

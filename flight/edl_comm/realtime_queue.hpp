@@ -22,7 +22,8 @@ struct TelemetryPacket {
     std::span<const std::uint8_t> span() const { return std::span{octets}.first(size); }
 };
 
-/// Packets selected for the link and waiting for it. The most important go first; among equals, the oldest. R30
+/// Packets selected for the link and waiting for it.
+/// The most important go first; among equals, the oldest. R30
 ///
 /// Memory   192 packets (chosen: about 20 s of the link at 8 kb/s). When full, the least important is dropped, among
 ///          equals the oldest, because old real-time data is worth least. A packet less important than all that wait is

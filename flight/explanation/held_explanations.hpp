@@ -8,7 +8,8 @@
 
 namespace aeolis::flight {
 
-/// Reports decisions that are near but held, without flooding the link: they are held in every cycle. R38
+/// Reports decisions that are near but held, without flooding the link: they are held in every cycle.
+/// R38
 ///
 /// In       a decision that is held in this cycle, with its conditions          Out   Explanation, verdict held
 /// Limit    once in 4 s for a decision (chosen: the console shows one for 5 s), two a second over all decisions
@@ -20,11 +21,11 @@ class HeldExplanations {
     static constexpr double again_after_s = 4.0;
     static constexpr std::uint32_t each_second_max = 2;
 
-    /// Reports a held decision. `subject` tells apart subjects of one kind of decision: a new subject is reported at
-    /// once.
+    /// Reports a held decision.
+    /// `subject` tells apart subjects of one kind of decision: a new subject is reported at once.
     void held(Decision decision, std::uint16_t subject, std::span<const gnc::Condition> conditions, Outbox& out);
 
-    /// The decision was made: returns the number of suppressed explanations since the last one, and clears it.
+    /// The decision was made: returns and clears the number of explanations suppressed since the last.
     std::uint16_t take_suppressed(Decision decision);
 
   private:

@@ -6,7 +6,8 @@
 
 namespace aeolis::flight {
 
-/// Holds EDL while the spacecraft has a fault that must be repaired first, so that neither disturbs the other.
+/// Asks EDL to hold while the spacecraft has a fault that must be repaired first.
+/// The repair and EDL must not disturb each other.
 /// Edl itself decides whether it may still be inhibited: only until the end of pre-EDL. R24
 ///
 /// In      SystemFaultReport, each second during a fault, and once when it is over

@@ -37,7 +37,7 @@ class CfdpSource {
 
     void on(const cfdp::Pdu& pdu);
 
-    /// Writes the next PDU into `into`, which must hold pdu_octets_max(), and returns its octets; 0: nothing to send.
+    /// Writes the next PDU and returns its octets; 0: nothing to send. `into` must hold pdu_octets_max().
     std::size_t next(std::span<const std::uint8_t> file, std::span<std::uint8_t> into);
 
     /// Announces the end of the file again, because no answer arrived in the expected time.

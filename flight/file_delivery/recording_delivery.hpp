@@ -36,7 +36,7 @@ class RecordingDelivery {
     /// Handles a PLTU that holds a packet with a PDU from the receiver.
     void on(std::span<const std::uint8_t> pltu);
 
-    /// Writes the next PLTU into `into`, which must hold the largest, and returns its octets; 0: nothing to send.
+    /// Writes the next PLTU and returns its octets; 0: nothing to send. `into` must hold the largest PLTU.
     std::size_t next(const Recording& recording, std::span<std::uint8_t> into);
 
     /// Announces the ends of the open files again, because answers are overdue.

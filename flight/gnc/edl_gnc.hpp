@@ -26,13 +26,13 @@
 #include <span>
 #include <type_traits>
 
-// EdlGnc: the library that closes the loop from cruise-stage separation to touchdown. It has no thread; EdlMain runs it
-// exactly once in each 64 Hz cycle, between two passes of the timeline. It uses the navigated state and never the
-// truth. R17, R18, R27, R47
+// EdlGnc: the library that closes the loop from cruise-stage separation to touchdown.
+// It has no thread; EdlMain runs it exactly once in each 64 Hz cycle, between two passes of the timeline. It uses the
+// navigated state and never the truth. R17, R18, R27, R47
 namespace aeolis::flight::gnc {
 
-/// Ground's navigation solution and targets, from EDL_SET_PARAMETERS. Position and velocity in M, relative to rotating
-/// Mars.
+/// Ground's navigation solution and targets, from EDL_SET_PARAMETERS.
+/// Position and velocity in M, relative to rotating Mars.
 struct Solution {
     Sclk epoch;
     std::array<double, 3> p_MoB_M_m{};
@@ -157,7 +157,7 @@ struct Output {
 
 /// Effectors that steer in a mode: the engines once guidance throttles them, otherwise the thrusters.
 Steers steers(Mode mode, const Configuration& configuration, const EngineCommand& engines);
-/// Inertia of the rigid body that is steered: the vehicle, later the stage with or without the rover on it.
+/// Inertia of the body that is steered: the vehicle, later the stage with or without the rover.
 Inertia inertia_of(Mode mode, const Configuration& configuration, double rigid_kg);
 
 /// The whole state of GNC, a value of fixed size.

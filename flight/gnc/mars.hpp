@@ -20,7 +20,8 @@ inline constexpr double mars_weight_mps2 = 3.71;            ///< g at Gale, [fac
 /// Source: [facts] for the constants, [vallado-2013] for the form.
 Vector3 gravity(const Vector3& p_MoB_M);
 
-/// Acceleration in free fall relative to rotating Mars: gravity(p) − 2 ω × v − ω × (ω × p), ω the spin of Mars.
+/// Acceleration in free fall relative to rotating Mars.
+/// gravity(p) − 2 ω × v − ω × (ω × p), ω the spin of Mars.
 ///
 /// @param p_MoB_M  [m] 3×1 in M.   @param v_MB_M  [m/s] 3×1, relative to rotating Mars, in M.
 /// @return         [m/s²] 3×1, in M.

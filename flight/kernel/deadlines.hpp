@@ -12,7 +12,7 @@ namespace aeolis::flight {
 struct TaskLimits {
     double deadline_s = 0.0;       ///< after the tick
     double budget_us = 0.0;        ///< processor time in one cycle
-    std::size_t stack_octets = 0;  ///< maximum stack used so far
+    std::size_t stack_octets = 0;  ///< largest stack used so far
 };
 
 /// Limits of each module; our assumption.

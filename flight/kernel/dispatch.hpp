@@ -7,7 +7,7 @@
 
 namespace aeolis::flight {
 
-/// Requirements on every module: constructed from the load alone, copied as a snapshot, used through messages. R9
+/// Requirements on a module: constructed from the load alone, copied as a snapshot. R9
 template <typename M>
 concept FlightModule =
     std::constructible_from<M, const Load&> && std::copy_constructible<M> && std::is_trivially_destructible_v<M>;

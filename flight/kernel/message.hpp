@@ -17,7 +17,8 @@
 // Every message between modules. Plain data, no pointers; a static_assert on the variant checks this.
 namespace aeolis::flight {
 
-/// Every module of the load, in order of priority. Up to `thrusters` they are the rate group, in sync's order. R8, R22
+/// Every module of the load, in order of priority.
+/// Up to `thrusters` they are the rate group, in sync's order. R8, R22
 enum class ModuleId : std::uint8_t {
     sync,
     radar,
@@ -222,7 +223,8 @@ inline void copy_content(Message& to, const Message& from) {
     std::visit([&](const auto& content) { to.emplace<std::remove_cvref_t<decltype(content)>>(content); }, from);
 }
 
-/// Whether a message makes its module run. In the rate group only the Tick does: other messages wait for it. R22
+/// Whether a message makes its module run.
+/// In the rate group only the Tick does: other messages wait for it. R22
 inline bool wakes(ModuleId to, const Message& message) {
     return to == ModuleId::sync || !in_rate_group(to) || std::holds_alternative<Tick>(message);
 }

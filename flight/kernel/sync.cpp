@@ -24,7 +24,7 @@ void Sync::on(const ClockTick& tick, Outbox& out) {
 }
 
 void Sync::on(const Confirm& confirm, Outbox& out) {
-    if (running_ == idle || confirm.from != order[running_]) return;  // late, or not the module whose turn it is
+    if (running_ == idle || confirm.from != order[running_]) return;  // not the confirmation awaited
     if (++running_ == idle)
         ++cycles_;
     else

@@ -8,7 +8,7 @@
 
 namespace aeolis::flight {
 
-/// Drives the hard real-time rate group: at each clock tick, every module of the group in a fixed order. R22
+/// Drives the hard real-time rate group: runs its modules in a fixed order at each clock tick. R22
 ///
 /// Each module gets its turn whatever its state, and only after the previous one has confirmed.
 ///

@@ -7,7 +7,7 @@
 
 namespace aeolis::flight {
 
-/// Everything that an action may use: messages to device managers, and the configuration that GNC reads. R5, R17, R26
+/// What an action may use: messages to device managers, and the configuration for GNC. R5, R17, R26
 class ActionContext {
   public:
     ActionContext(Outbox& out, gnc::Configuration& configuration) : out_(out), configuration_(configuration) {}
@@ -49,7 +49,8 @@ void announce(ActionContext& context) {
     context.out().event(Evr{});
 }
 
-/// The actions that timeline.csv names. One per line: the spacecraft's action, and the change of GNC's configuration.
+/// The actions that timeline.csv names.
+/// One per line: the spacecraft's action, and the change of GNC's configuration.
 namespace actions {
 void no_operation(ActionContext& context);
 

@@ -13,7 +13,7 @@ namespace aeolis::flight {
 
 using timeline::Moment;
 
-/// A row of constraints.csv, as the autocoder writes it: minimum_s <= to - from <= maximum_s; undefined: no bound.
+/// A row of constraints.csv: minimum_s <= to - from <= maximum_s; undefined: no bound.
 struct ConstraintSpec {
     Moment from, to;
     MaybeOffset minimum_s, maximum_s;
@@ -40,7 +40,7 @@ class ConstraintMonitor {
   public:
     explicit ConstraintMonitor(std::span<const ConstraintSpec> rows);
 
-    /// Takes the results of a timeline pass: anchors first, since moments relative to an anchor are judged by it.
+    /// Takes the results of a timeline pass; anchors first, since other moments are judged by them.
     void watch(const Timeline& timeline, std::span<const Firing> firings);
 
     /// Records that a moment has occurred, or changed its time. Undefined: its time is no longer known.
@@ -49,7 +49,7 @@ class ConstraintMonitor {
     /// Reports violations found, a few per cycle.
     void report(Outbox& out);
 
-    /// Reports how many rows were judged and how many violations there were; called when the timeline is complete.
+    /// Reports the numbers of rows judged and of violations; called when the timeline is complete.
     void summarise(Outbox& out) const;
 
     std::uint32_t violations() const { return violations_; }

@@ -22,7 +22,7 @@ struct Firing {
     FiringVerdict verdict{};
 };
 
-/// Completions of one pass: the timepoint whose reply was awaited, and the timepoints that fire after it.
+/// Firings of one pass: the timepoint whose reply was awaited, and those that fire after it.
 using Firings = FixedVector<Firing, timeline::triggered_per_cycle_max + 1>;
 
 /// The engine that interprets the timeline, by dictionaries/timeline_rule.hpp. R11–R18
@@ -44,7 +44,7 @@ class Timeline {
     /// Starts a new 64 Hz cycle: resets the limit of triggerings, which counts both passes together.
     void begin_cycle() { fired_in_cycle_ = 0; }
 
-    /// One pass: anchors first, then the current timepoint, and the next ones while no reply is awaited. R15, R16
+    /// One pass: anchors, the current timepoint, and the next ones while no reply is awaited. R15, R16
     void pass(Sclk now, ActionContext& context, Firings& firings);
 
     /// Whether only the limit per cycle keeps the current timepoint from being triggered now. R15
@@ -71,8 +71,8 @@ class Timeline {
     /// Times from which the current timepoint may fire; undefined while unknown.
     MaybeTime next_desired() const;
     MaybeTime next_minimum() const;
-    /// Latest time at which the timeline may begin without anything being overdue. Undefined until parameters are
-    /// received.
+    /// Latest time at which the timeline may begin without anything being overdue.
+    /// Undefined until parameters are received.
     MaybeTime first_desired() const;
     void compute_anchors();
 

@@ -11,7 +11,7 @@ namespace aeolis::flight::gnc {
 /// Effectors that turn the vehicle: the eight thrusters, or the engines by differential throttling.
 enum class Steers : std::uint8_t { thrusters, eight_engines, four_engines };
 
-/// Attitude control down to its effectors: wanted attitude → torque → on-times of thrusters or throttles of engines.
+/// Attitude control down to its effectors: wanted attitude → torque → thruster on-times or throttles.
 ///
 /// In       guidance's command, the navigated attitude, the inertia of the present configuration
 /// Out      on-times; or throttles, varied about those that guidance commanded

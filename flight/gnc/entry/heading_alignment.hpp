@@ -4,7 +4,8 @@
 #include "flight/gnc/entry/target_geometry.hpp"
 #include "generated/dictionary_flight.hpp"
 
-// Heading alignment: below about 1100 m/s range is no longer controlled; bank turns the velocity towards the target.
+// Heading alignment: below about 1100 m/s, bank turns the velocity towards the target.
+// Range is no longer controlled.
 //
 //   bank = 100 · atan2(crossrange, downrange), within ±30°
 //

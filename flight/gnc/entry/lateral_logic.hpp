@@ -23,7 +23,8 @@ double crossrange_deadband_m(double velocity_mps, bool saturated);
 
 class LateralLogic {
   public:
-    /// Updates the logic; true in the cycle in which a reversal begins. `settled`: the commanded side has been reached.
+    /// Updates the logic; true in the cycle in which a reversal begins.
+    /// `settled`: the commanded side has been reached.
     bool on(Sclk now, double crossrange_m, double velocity_mps, bool saturated, bool settled);
 
     void start(int sign) { sign_ = sign; }

@@ -6,7 +6,7 @@
 
 #include <cstdint>
 
-// Range control by Apollo's final-phase guidance: the part of the lift to point up to reach the target's range.
+// Range control by Apollo's final-phase guidance: the part of lift to point up to reach the target.
 //
 //   R_p   = R_ref + ∂R/∂D (D − D_ref) + ∂R/∂ḣ (ḣ − ḣ_ref)                        all functions of V, from the reference
 //   (L/D)v = (L/D)_ref + K (R − R_p) / (∂R/∂(L/D))
@@ -20,7 +20,8 @@ namespace aeolis::flight::gnc {
 
 inline constexpr double overcontrol_gain = parameters.guidance_gain;  ///< K
 
-/// The reference at a velocity, linear between its rows, held at its ends. An empty reference gives a row of zeros.
+/// The reference at a velocity, linear between its rows, held at its ends.
+/// An empty reference gives a row of zeros.
 EntryReferenceRow reference_at(const EntryReference& reference, double velocity_mps);
 
 struct RangeControlInput {

@@ -3,7 +3,7 @@
 
 #include "flight/gnc/vector.hpp"
 
-// Geometry of the vehicle's flight relative to its target, and of its lift, on a sphere that turns with Mars.
+// Geometry of the flight relative to its target, and of the lift, on a sphere that turns with Mars.
 //
 // Frame    M. Crossrange and bank are positive to the right of the velocity, downrange ahead.
 // Source   [apollo-entry-guidance] for the quantities; sign of bank as in [od137]

@@ -28,7 +28,8 @@ class ForceFilter {
 
     double drag_mps2() const { return drag_mps2_; }
 
-    /// Lift over drag; `otherwise` while drag is too weak to measure it. Limited to bounds wider than any value flown.
+    /// Lift over drag; `otherwise` while drag is too weak to measure it.
+    /// Limited to bounds wider than any value flown.
     double lift_to_drag(double otherwise) const {
         if (slow_drag_mps2_ < enough_drag_mps2) return otherwise;
         const double ratio = lift_mps2_ / slow_drag_mps2_;

@@ -11,7 +11,8 @@
 #include <optional>
 #include <span>
 
-// Averages the landing radar's beams of the last 5 s into one altitude and one velocity. Run by EdlBg. R25
+// Averages the landing radar's beams of the last 5 s into one altitude and one velocity.
+// Run by EdlBg. R25
 //
 //   in each quarter of a second   altitude = mean of −range · (d_M · up)
 //                                 velocity = least squares of d_M · v = −range rate

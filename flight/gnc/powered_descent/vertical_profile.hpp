@@ -3,7 +3,7 @@
 
 #include "generated/dictionary_flight.hpp"
 
-// Vertical profile of powered descent: the descent rate at each altitude, and the acceleration that keeps it.
+// Vertical profile of powered descent: descent rate at each altitude, and acceleration to keep it.
 //
 //   approach         v_ref(h)² = 32² + 2 a (h − h_end), a fixed at the start by the altitude left
 //   constant rate    32 m/s until h = h_sky_crane + (32² − 0.75²) / (2 · 4.26): absorbs the radar's altitude error

@@ -3,7 +3,7 @@
 
 #include "flight/gnc/vector.hpp"
 
-// Holds the descent rate and nulls the drift on four engines, with the rover below the stage on the bridle.
+// Holds the descent rate and nulls the drift on four engines, with the rover on the bridle.
 //
 //   a_up = k_p e + k_i ∫e,  e = rate − wanted;   a_level = −k v_level;   both within limits
 //
@@ -16,7 +16,7 @@ class RateControl {
   public:
     void start() { integral_mps2_ = 0.0; }
 
-    /// Acceleration to command, in M, in addition to the compensation of free fall, which is applied elsewhere.
+    /// Acceleration to command, in M. Free fall is compensated elsewhere.
     Vector3 command_M(const Vector3& v_MB_M, const Vector3& up_M, double wanted_descent_rate_mps, double dt_s);
 
     template <typename Exchange>

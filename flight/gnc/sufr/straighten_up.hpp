@@ -4,7 +4,7 @@
 #include "flight/gnc/vector.hpp"
 #include "generated/dictionary_flight.hpp"
 
-// Straighten up and fly right (SUFR): balance masses go, and with them the angle of attack; bank turns to lift up.
+// Straighten up and fly right (SUFR): bank turns to lift up while balance masses are jettisoned.
 //
 //   bank(t) = bank at start, reduced to zero at 10°/s;  done after 14.00 s
 //

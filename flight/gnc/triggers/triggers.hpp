@@ -6,7 +6,7 @@
 
 #include <cstdint>
 
-// GNC's triggers ("now"): each is a short list of conditions on navigated quantities, all of which must hold.
+// GNC's triggers ("now"): each a short list of conditions on navigated quantities that must all hold.
 // The same list explains the decision afterwards. R17, R38
 //
 // In       navigated speed (relative to Mars), altitude (above ground once the radar locked), descent rate, and times
@@ -76,13 +76,13 @@ struct BackshellBounds {
     double descent_rate_mps = 0.0;
 };
 
-/// Altitude at which the backshell must be released, at a descent rate, for the same powered approach to fit below.
+/// Altitude at which the backshell must go for the same powered approach to fit below it.
 /// At the descent rate of ground's solution, that solution's altitude; at a higher rate, higher by the additional
 /// altitude that free fall and approach need.
 double backshell_altitude_needed_m(const BackshellBounds& bounds, double descent_rate_mps);
 
-/// Conditions for priming. The time is measured to the solution's altitude: by then the descent rate is near its
-/// design.
+/// Conditions for priming.
+/// The time is measured to the solution's altitude: by then the descent rate is near its design.
 Conditions engine_priming(double altitude_m, double descent_rate_mps, double backshell_altitude_m);
 Conditions backshell(double altitude_m, double descent_rate_mps, const BackshellBounds& bounds,
                      std::uint32_t cycles_held);
