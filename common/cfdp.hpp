@@ -10,7 +10,7 @@
 #include <string_view>
 #include <variant>
 
-/// Protocol data units (PDUs) of CFDP class 2: reliable file delivery over lossy links. [ccsds-727.0-b-5]
+/// Protocol data units (PDUs) of CFDP class 2, for file delivery over lossy links. [ccsds-727.0-b-5]
 ///
 ///   header: version 3 (001) | file data 1 | toward sender 1 | unacknowledged 1 | CRC 1 | large file 1 |
 ///           octets after the header, with the CRC 16 | segmentation control 1 | octets of an entity id less one 3 |

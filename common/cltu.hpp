@@ -40,9 +40,8 @@ std::size_t write_cltu(std::span<const std::uint8_t> information, std::span<std:
 
 /// Extracts the information of a CLTU into `into` and returns its number of octets, including the fill.
 /// As the standard requires, the first block with wrong parity ends the CLTU; the tail sequence is such a block. The
-/// CRC of the frame inside tells whether the frame is whole.
-/// Fails with no_start; too_short when the octets end before a block with wrong parity; bad_checksum when the first
-/// block is one; too_long when `into` is full.
+/// CRC of the frame inside tells whether the frame is whole. Fails with no_start; too_short when the octets end before
+/// a block with wrong parity; bad_checksum when the first block is one; too_long when `into` is full.
 Parsed<std::size_t> read_cltu(std::span<const std::uint8_t> cltu, std::span<std::uint8_t> into);
 
 }  // namespace aeolis

@@ -11,7 +11,7 @@ namespace aeolis {
 ///
 ///   s(t) = A exp j(φ(t) + m sq(2π f_k t)),   f_k = first + k · spacing,   sq = ±1; without a tone m sq is 0.
 ///
-/// The values come from the dictionary (mfsk.csv, docs/tones.md).
+/// m is the modulation index. The values come from the dictionary (mfsk.csv, docs/tones.md).
 struct MfskWaveform {
     static constexpr int tones = 256;  ///< R31
 

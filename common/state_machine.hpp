@@ -40,7 +40,7 @@ class StateMachine {
         return true;
     }
 
-    /// Continues from a state reached by another computer, or by this one before a restart.
+    /// Continues from a state reached under the same table elsewhere, or here before a restart.
     template <typename Exchange>
     void carry(Exchange& exchange) {
         exchange(state_);

@@ -30,7 +30,7 @@ constexpr Sclk operator-(Sclk t, double offset_s) {
     return {t.seconds - offset_s};
 }
 
-/// UTC at the spacecraft: microseconds since 2000-01-01T12:00:00 UTC, without leap seconds (as in POSIX).
+/// UTC at the spacecraft: microseconds since 2000-01-01T12:00:00 UTC, without leap seconds as in POSIX.
 struct Scet {
     std::int64_t microseconds = 0;
     constexpr auto operator<=>(const Scet&) const = default;
@@ -68,8 +68,7 @@ struct ClockCorrelation {
 };
 
 /// `t` truncated to the ticks of a clock of `hz`, as `clk_1_hz` … `clk_64_hz` return it.
-/// `hz` is a power of two up to 64.
-/// R21
+/// `hz` is a power of two up to 64. R21
 constexpr Sclk at_resolution(Sclk t, std::int64_t hz) {
     const std::int64_t ticks_per_step = 64 / hz;
     const std::int64_t ticks = t.ticks();

@@ -48,7 +48,7 @@ Parsed<TransferFrame> read_tm_frame(std::span<const std::uint8_t> frame, const F
 Parsed<TransferFrame> read_aos_frame(std::span<const std::uint8_t> frame, const FrameAgreement& agreed);
 
 /// Write a whole frame, without secondary header and insert zone.
-/// `into` must be exactly as long as the frame.
+/// Taken from `frame`: data, pointer, counts and control field. `into` must be exactly as long as the frame.
 void write_tm_frame(const TransferFrame& frame, std::uint8_t master_count, bool crc, std::span<std::uint8_t> into);
 void write_aos_frame(const TransferFrame& frame, bool crc, std::span<std::uint8_t> into);
 

@@ -59,7 +59,7 @@ struct BoundProof {
     std::vector<Instant> schedule;
 };
 
-/// The least time from when a timepoint is free to fire until its anchor makes it due.
+/// Worst case of the time from when a timepoint is free to fire until its anchor makes it due.
 struct DueMargin {
     TimepointId timepoint;
     MaybeOffset slack_s;  ///< negative: it may fire that late; undefined: unbounded, the anchor may be set at any time

@@ -11,9 +11,8 @@
 #include <vector>
 
 /// Packets of any mission, as its XTCE file describes them.
-/// Used by telemetry/container_decoder.hpp to decode.
-/// Our own dictionary is read through space_system.hpp, whose rules are strict. Here, unreadable content is a finding,
-/// and everything else is kept. [xtce-1.2], and files of 1.0 and 1.1
+/// Used by telemetry/container_decoder.hpp to decode. Our own dictionary is read through space_system.hpp, whose rules
+/// are strict. Here, unreadable content is a finding, and everything else is kept. [xtce-1.2], and files of 1.0 and 1.1
 namespace aeolis::dictionary::xtce {
 
 /// A comparison, or a combination of several.

@@ -7,7 +7,7 @@
 
 namespace aeolis::flight {
 
-/// FARM-1: accepts telecommand frames of one virtual channel and reports its state to ground. [ccsds-232.1-b-2]
+/// FARM-1: accepts telecommand frames of one virtual channel, and reports its state. [ccsds-232.1-b-2]
 ///
 /// In      frames with a correct CRC                           Out   a verdict on each; the CLCW at any time
 /// Rule    A frames are accepted in sequence only, none twice; B frames always. A frame whose sequence number is far

@@ -136,8 +136,7 @@ struct UplinkPacket {
 };
 
 /// A computer's EDL state, framed for the line between computers and for non-volatile memory.
-/// Only flight reads it.
-/// See flight/cross_string. The size is chosen: one and a half times what the state takes.
+/// Only flight reads it. See flight/cross_string. The size is chosen: one and a half times what the state takes.
 inline constexpr std::size_t state_octets_max = 2560;
 using StateOctets = FixedVector<std::uint8_t, state_octets_max>;
 

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <numbers>
 
-// Positions and directions of thrusters and descent engines, shared by the flight software and the simulated vehicle.
+// Positions and directions of thrusters and descent engines, for flight software and simulation.
 // Frame B, from the centre of mass [m]. Only the numbers of effectors and their forces are published; everything else
 // is our assumption. [facts] Vehicle
 namespace aeolis::flight {

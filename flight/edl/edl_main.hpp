@@ -60,7 +60,7 @@ class EdlMain {
     /// Whether this computer leaves the landing to the other one.
     bool stands_by() const { return activity_ != Activity::flies; }
 
-    /// State for another computer; without a present fault, which is reported again, and without the monitor.
+    /// State for another computer. Left out: a present fault, which is reported again, and the monitor.
     template <typename Exchange>
     void carry(Exchange& exchange) {
         exchange(parameters_, timeline_, configuration_, gnc_, peak_deceleration_, mode_, phase_, bridle_m_,

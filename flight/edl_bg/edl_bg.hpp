@@ -9,7 +9,7 @@
 
 namespace aeolis::flight {
 
-/// EdlBg: averages radar data over 5 s for the navigation filter, and checks parameter updates for all of EDL. R25, R47
+/// EdlBg: averages radar data over 5 s for the navigation filter, and checks parameters. R25, R47
 /// Outside the rate group: its messages arrive at the start of the next cycle.
 ///
 /// In      RadarReturns (64 Hz while the radar is on), NavigatedAttitude, SetParametersCommand, ClockTick

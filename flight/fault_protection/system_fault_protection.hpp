@@ -7,8 +7,8 @@
 namespace aeolis::flight {
 
 /// Asks EDL to hold while the spacecraft has a fault that must be repaired first.
-/// The repair and EDL must not disturb each other.
-/// Edl itself decides whether it may still be inhibited: only until the end of pre-EDL. R24
+/// The repair and EDL must not disturb each other. Edl itself decides whether it may still be inhibited: only until the
+/// end of pre-EDL. R24
 ///
 /// In      SystemFaultReport, each second during a fault, and once when it is over
 /// Out     InhibitEdl with each report, so that the next one makes up for a lost one

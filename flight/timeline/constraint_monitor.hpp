@@ -23,9 +23,10 @@ extern const std::array<ConstraintSpec, constraint_count> constraint_specs;
 inline constexpr std::size_t constraint_rows_max = 256;  ///< chosen: three times the shipped sheet
 static_assert(constraint_count <= constraint_rows_max, "constraints.csv has more rows than flight keeps room for");
 
-/// Checks constraints.csv in flight: the sub-constraints behind the timeline's rolled-up offsets, and the given rows.
-/// R39 The given rows are bounds on GNC and ground, assumed when the timeline was proven. A second opinion: it only
-/// reports, and nothing in flight depends on it.
+/// Checks constraints.csv in flight. R39
+/// Its required rows are the sub-constraints behind the timeline's rolled-up offsets. The given rows are bounds on GNC
+/// and ground, assumed when the timeline was proven. A second opinion: it only reports, and nothing in flight depends
+/// on it.
 ///
 /// In      do edl, anchors and firings, as the timeline has them after a pass
 /// Out     for each row that does not hold SUB_CONSTRAINT_VIOLATED and an Explanation; SUB_CONSTRAINTS_JUDGED at the

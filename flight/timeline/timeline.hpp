@@ -76,9 +76,8 @@ class Timeline {
     MaybeTime first_desired() const;
     void compute_anchors();
 
-    /// After a restart: returns to the current timepoint's backtrack row, with no reply awaited and `now` as previous
-    /// firing.
-    /// False when there is none: the timeline continues at the current timepoint. R32
+    /// After a restart: returns to the current timepoint's backtrack row, with no reply awaited. R32
+    /// `now` becomes the previous firing. False when there is no such row: the timeline continues where it was.
     bool backtrack(Sclk now);
     /// Forgets an awaited reply: the action runs again in the next pass. R33
     void await_nothing() { waiting_ = replied_ = false; }

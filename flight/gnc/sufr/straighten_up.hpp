@@ -4,7 +4,8 @@
 #include "flight/gnc/vector.hpp"
 #include "generated/dictionary_flight.hpp"
 
-// Straighten up and fly right (SUFR): bank turns to lift up while balance masses are jettisoned.
+// Straighten up and fly right (SUFR): bank turns to lift up while the angle of attack goes to zero.
+// The balance masses are jettisoned, and the angle of attack goes with them.
 //
 //   bank(t) = bank at start, reduced to zero at 10°/s;  done after 14.00 s
 //
