@@ -23,8 +23,7 @@ inline constexpr double restart_s = 30.0;
 /// In       DeviceInputs, one for each 1/64 s            Out   DeviceOutputs of that cycle
 /// Memory   allocated on construction and copying, never in step()
 /// Faults   a failed check inside step() is a FATAL event and a reset of this computer; step() itself never throws
-/// Roles    prime, or Second Chance as its backup, as the vehicle's latch selects; a change of the latch restarts it.
-///          R1
+/// Roles    R1: prime, or Second Chance as backup, as the vehicle's latch selects; a change of the latch restarts it
 /// Harm     outputs of a computer that is not in command reach no device. R34
 /// Copying a computer is a snapshot: two copies given the same inputs stay bit-identical.
 class Computer {

@@ -21,8 +21,7 @@ namespace aeolis::flight {
 /// Memory  192 packets wait for the link; RealtimeQueue decides which are dropped. Neither recording nor cycle suffers
 /// Faults  a full link queue is reported once per episode (UHF_QUEUE_FULL), and drops are counted by priority in
 ///         CommStatus
-///         NVM nearly full is reported once (NVM_FULL, and by tone); the last 64 KiB are kept for packets of priority
-///         first
+///         NVM nearly full is reported once (NVM_FULL, and by tone); the last 64 KiB are kept for priority `first`
 ///         A record that no packet can hold is refused as an unexpected message
 /// Frames  A Proximity-1 frame, expedited, on this computer's own physical channel, carries whole packets. While more
 ///         wait, a frame is sent only when it can hold 256 octets (chosen: a quarter of a second at 8 kb/s, 5 % frame
@@ -77,8 +76,7 @@ class EdlComm {
     bool nvm_full_reported_ = false;
     bool queue_full_reported_ = false;
     ToneStatus tone_;
-    UplinkStatus uplink_{word_of({.lockout = true})};  // initial value: the status of a dispatcher that has received
-                                                       // nothing
+    UplinkStatus uplink_{word_of({.lockout = true})};  // initially as of a dispatcher without uplink
 };
 
 }  // namespace aeolis::flight

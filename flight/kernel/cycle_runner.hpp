@@ -10,8 +10,7 @@ struct ComputerState;
 /// Runs one 64 Hz cycle of a computer's modules, in place of the deterministic executive.
 /// Implemented by a venue (server/venue). Under every runner, the modules behave identically. R36
 ///
-/// Faults  throws CheckFailed when a module's check failed: the state is then unusable, and the caller creates a new
-///         one
+/// Faults  throws CheckFailed when a module's check failed: the state is then unusable, and the caller makes it anew
 class CycleRunner {
   public:
     virtual ~CycleRunner() = default;

@@ -10,10 +10,9 @@
 //   T = I · clamp((ω_wanted − ω) / τ) + ω × Iω,   zero while |ω_wanted − ω| is within its deadband
 //
 //   detumble     ω_wanted = 0, approached gently
-//   entry_bank   in vacuum: the rotation to the trim attitude at the wanted bank, about its own axis, by the phase
-//   plane;
-//                in the air, which holds the vehicle at its own trim angle: the bank error about the velocity by the
-//                phase plane, and damping of the rates across it
+//   entry_bank   in vacuum: the rotation to the trim attitude at the wanted bank, by the phase plane about its own
+//                axis. In the air, which holds the vehicle at its own trim angle: the bank error about the velocity by
+//                the phase plane, and damping of the rates across it
 //   suspended    ω_wanted = 0 with a wide deadband: only swinging is damped
 //   thrust       the shortest turn that puts −z of B along the wanted thrust, no roll
 //
