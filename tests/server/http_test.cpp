@@ -611,12 +611,14 @@ TEST_CASE(
     };
     const auto approve = [&](int number, const std::string& name, const Headers& from) {
         return web_request(port, "POST", "/api/v1/runs/latest/commands",
-                           fmt::format(R"({{"action":"approve","number":{},"controller":"{}","browser":"made up"}})",
-                                       number, name),
-                           from)
+                           fmt::format(R"({{"action":"approve","number":{},"controller":"{}"}})", number, name), from)
             .body;
     };
     REQUIRE(ask("ann", first) == 202);
+    CHECK_THAT(web_request(port, "POST", "/api/v1/runs/latest/commands",
+                           R"({"action":"approve","number":1,"controller":"ben","browser":"made up"})", second)
+                   .body,
+               Catch::Contains("browser: Cannot find field"));  // it is not for a client to say
     CHECK_THAT(approve(1, "ben", first), Catch::Contains("a second person approves it in a browser of their own"));
     CHECK_THAT(approve(1, "ben", second), Catch::Contains(R"("accepted":true)"));
     REQUIRE(ask("ann", none) == 202);

@@ -233,11 +233,13 @@ void kill_and_continue(archive::Sequence published, archive::Sequence further) {
         REQUIRE(found);
         cut = *found;
         CHECK(cut->last_seq >= acknowledged);
-        const auto count_of = [&](const char* kind) {
-            return std::ranges::count_if(cut->requests,
-                                         [&](const auto& taken) { return taken.request.starts_with(kind); });
+        const auto count_of = [&](bool (v1::Intervention::*is_one)() const) {
+            return std::ranges::count_if(cut->requests, [&](const auto& taken) {
+                return (archive::kept_request(taken.request).intervention().*is_one)();
+            });
         };
-        if (published > 1) CHECK((count_of("fault {") == 1 && count_of("note {") == 1));
+        if (published > 1)
+            CHECK((count_of(&v1::Intervention::has_fault) == 1 && count_of(&v1::Intervention::has_note) == 1));
         auto scenario = scenario_from_text(cut->scenario_text, "its row");
         REQUIRE(scenario);
         PipelineThread pipeline{std::move(*archive), dictionary, PipelineThread::Faults::give_up, [](const auto&) {}};
