@@ -39,9 +39,9 @@ using bench::must;
 
 namespace {
 
-constexpr std::size_t unit_octets = 256;
-constexpr std::size_t batch_units = 4096;  // as `aeolis rehearse` commits
-constexpr std::size_t units = 49 * batch_units;
+constexpr std::size_t packet_octets = 256;
+constexpr std::size_t batch_packets = 4096;  // as `aeolis rehearse` commits
+constexpr std::size_t stored_packets = 49 * batch_packets;
 constexpr std::size_t fields = 30;
 constexpr Apid apid{0x40};
 
@@ -100,8 +100,8 @@ Cost raw_append(const std::filesystem::path& file, const std::vector<std::uint8_
     must(sqlite3_prepare_v2(database, "INSERT INTO units VALUES (?,?,?,?,?,?,?,?,?,?,?,?)", -1, &insert, nullptr) == 0,
          "prepare");
     const Cost cost = cost_of([&] {
-        for (std::size_t i = 0; i < units; ++i) {
-            if (i % batch_units == 0) run("BEGIN IMMEDIATE");
+        for (std::size_t i = 0; i < stored_packets; ++i) {
+            if (i % batch_packets == 0) run("BEGIN IMMEDIATE");
             sqlite3_bind_int64(insert, 1, static_cast<std::int64_t>((1ULL << 40U) + i + 1));
             for (const auto& [column, value] : {std::pair{2, 1}, {3, 64}, {4, 0}, {7, 1}, {8, 1}, {9, 0}, {10, 0}})
                 sqlite3_bind_int64(insert, column, value);
@@ -110,7 +110,7 @@ Cost raw_append(const std::filesystem::path& file, const std::vector<std::uint8_
             sqlite3_bind_blob(insert, 12, octets.data(), static_cast<int>(octets.size()), SQLITE_STATIC);
             must(sqlite3_step(insert) == SQLITE_DONE, "insert");
             sqlite3_reset(insert);
-            if (i % batch_units == batch_units - 1) run("COMMIT");
+            if (i % batch_packets == batch_packets - 1) run("COMMIT");
         }
     });
     sqlite3_finalize(insert);
@@ -125,32 +125,32 @@ Cost archive_append(const std::filesystem::path& file, const std::vector<std::ui
     must(run.ok(), "begin_run");
     return cost_of([&] {
         archive::Batch batch;
-        for (std::size_t i = 0; i < units; ++i) {
-            archive::UnitRecord unit;
-            unit.seq = i + 1;
-            unit.apid = apid;
-            unit.packet = std::uint16_t{0};
-            unit.sclk = Sclk{static_cast<double>(i) / 64.0};
-            unit.ert = Ert{static_cast<std::int64_t>(i) * 15'625};
-            unit.link = "uhf_live";
-            unit.source = archive::Source::realtime;
-            unit.octets = {batch.octets.size(), octets.size()};
+        for (std::size_t i = 0; i < stored_packets; ++i) {
+            archive::PacketRecord record;
+            record.seq = i + 1;
+            record.apid = apid;
+            record.packet = std::uint16_t{0};
+            record.sclk = Sclk{static_cast<double>(i) / 64.0};
+            record.ert = Ert{static_cast<std::int64_t>(i) * 15'625};
+            record.link = "uhf_live";
+            record.source = archive::Source::realtime;
+            record.octets = {batch.octets.size(), octets.size()};
             batch.octets.insert(batch.octets.end(), octets.begin(), octets.end());
-            batch.units.push_back(std::move(unit));
+            batch.packets.push_back(std::move(record));
             batch.last_seq = i + 1;
-            if (i % batch_units != batch_units - 1) continue;
+            if (i % batch_packets != batch_packets - 1) continue;
             must(opened->append(*run, batch).ok(), "append");
             batch.clear();
         }
     });
 }
 
-constexpr std::size_t landing_units = 100'000;
+constexpr std::size_t landing_packets = 100'000;
 
 /// Packets made beforehand, so that only the ground's work is measured.
 std::vector<telemetry::ReceivedPacket> landing() {
-    std::vector<telemetry::ReceivedPacket> packets(landing_units);
-    for (std::size_t i = 0; i < landing_units; ++i) {
+    std::vector<telemetry::ReceivedPacket> packets(landing_packets);
+    for (std::size_t i = 0; i < landing_packets; ++i) {
         std::vector<std::uint8_t> octets(tm_overhead_octets + 4 * fields);
         BitWriter bits{std::span<std::uint8_t>(octets).subspan(tm_data_offset_octets)};
         for (std::size_t f = 0; f < fields; ++f)
@@ -296,7 +296,7 @@ double first_touch_ms(const std::filesystem::path& file, const dictionary::Dicti
 
 int main() {
     const test::TemporaryFolder folder;
-    const std::vector<std::uint8_t> octets(unit_octets, 0x5A);
+    const std::vector<std::uint8_t> octets(packet_octets, 0x5A);
     // By turns, the best of each, because the disk is shared.
     Cost raw{1e9, 1e9}, ours{1e9, 1e9};
     for (int i = 0; i < 4; ++i) {
@@ -305,10 +305,11 @@ int main() {
         ours = better(ours, archive_append(folder.path() / ("ours" + std::to_string(i)), octets));
     }
     const double ratio = raw.wall / ours.wall;
-    std::printf("append of 256-octet units, %zu a commit, FULL\n", batch_units);
-    std::printf("  limit, raw SQLite  %9.0f rows/s  %5.2f us of CPU a row\n", units / raw.wall, 1e6 * raw.cpu / units);
-    std::printf("  archive            %9.0f rows/s  %5.2f us of CPU a row\n", units / ours.wall,
-                1e6 * ours.cpu / units);
+    std::printf("append of 256-octet units, %zu a commit, FULL\n", batch_packets);
+    std::printf("  limit, raw SQLite  %9.0f rows/s  %5.2f us of CPU a row\n", stored_packets / raw.wall,
+                1e6 * raw.cpu / stored_packets);
+    std::printf("  archive            %9.0f rows/s  %5.2f us of CPU a row\n", stored_packets / ours.wall,
+                1e6 * ours.cpu / stored_packets);
     std::printf("  ratio %.2f of the rate (goal 0.8), %.2f of the CPU (goal 1.25)\n", ratio, ours.cpu / raw.cpu);
 
     const auto dictionary = wideband();
@@ -316,18 +317,18 @@ int main() {
     const auto quiet = store_landing(folder / "landing", dictionary, packets, false);
     const auto watched = store_landing(folder / "watched", dictionary, packets, true);
     const auto size = std::filesystem::file_size(folder / "landing");
-    std::printf("%zu packets of %zu channels, from octets to durable rows and segments\n", landing_units, fields);
+    std::printf("%zu packets of %zu channels, from octets to durable rows and segments\n", landing_packets, fields);
     std::printf(
         "  nobody follows     %9.0f packets/s  %.2f s (goal 3 s for the landing), %.1f octets a sample in all\n",
-        landing_units / quiet.wall, quiet.wall,
-        static_cast<double>(size) / static_cast<double>(landing_units * fields));
-    std::printf("  items published    %9.0f packets/s  %.2f s\n", landing_units / watched.wall, watched.wall);
+        landing_packets / quiet.wall, quiet.wall,
+        static_cast<double>(size) / static_cast<double>(landing_packets * fields));
+    std::printf("  items published    %9.0f packets/s  %.2f s\n", landing_packets / watched.wall, watched.wall);
 
     (void)store_landing(folder / "open", dictionary, packets, false, false);
     auto open = archive::Reader::open(folder / "open", dictionary);
     must(open.ok(), "Reader::open");
     const archive::SeriesQuery all{{"wideband_7"}, {}, 2000},
-        newest{{"wideband_7"}, {(landing_units - 3840) / 64.0, {}}, 2000};
+        newest{{"wideband_7"}, {(landing_packets - 3840) / 64.0, {}}, 2000};
     std::printf("  of a run that goes on, its open end from raw units: all %.2f ms, the last minute %.2f ms of CPU\n",
                 median_ms([&] { must(open->series(RunId{1}, all).ok(), "open thinned"); }),
                 median_ms([&] { must(open->series(RunId{1}, newest).ok(), "open newest"); }));

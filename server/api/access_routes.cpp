@@ -55,22 +55,22 @@ std::string outcome_of(bool done, const std::string& why) {
 
 }  // namespace
 
-void Api::session(const ApiRequest& asked) {
-    auto response = json_response(session_of(asked.who));
+void Api::session(const ApiRequest& call) {
+    auto response = json_response(session_of(call.who));
     // Set here, since only the console's page requests this. Set with the page, it would be replaced for every visitor
     // who follows a link from elsewhere: such a request carries no SameSite=Strict cookie.
-    if (asked.who.browser == no_browser)
+    if (call.who.browser == no_browser)
         response.set_cookie = cookie(browser_cookie, new_secret(), browser_length, parts_.secure);
-    asked.respond(std::move(response));
+    call.respond(std::move(response));
 }
 
-void Api::log_in(const ApiRequest& asked) {
+void Api::log_in(const ApiRequest& call) {
     v1::LogIn wanted;
-    if (const auto parsed = from_json(asked.request.body, wanted); !parsed)
-        return asked.respond(error_response(400, parsed.error()));
-    aside(
-        asked.respond,
-        [this, wanted, who = asked.who](archive::Reader&) {
+    if (const auto parsed = from_json(call.request.body, wanted); !parsed)
+        return call.respond(error_response(400, parsed.error()));
+    answer_on_query_thread(
+        call.respond,
+        [this, wanted, who = call.who](archive::Reader&) {
             const auto done = parts_.access.log_in(wanted, who.from);
             // Lock-outs and impossible user names are not audited: somebody not logged in must not be able to fill the
             // audit.
@@ -85,27 +85,27 @@ void Api::log_in(const ApiRequest& asked) {
         JobPriority::soon);
 }
 
-void Api::log_out(const ApiRequest& asked) {
-    parts_.access.log_out(asked.who);
-    if (!asked.who.session.empty()) note(asked.who, "log-out", "", "done");
+void Api::log_out(const ApiRequest& call) {
+    parts_.access.log_out(call.who);
+    if (!call.who.session.empty()) note(call.who, "log-out", "", "done");
     HttpResponse response{204, "application/json", "no-store", ""};
     response.set_cookie = cookie(session_cookie, "", std::chrono::seconds{0}, parts_.secure);
-    asked.respond(std::move(response));
+    call.respond(std::move(response));
 }
 
-void Api::list_users(const ApiRequest& asked) {
-    asked.respond(json_response(parts_.access.users()));
+void Api::list_users(const ApiRequest& call) {
+    call.respond(json_response(parts_.access.users()));
 }
 
-void Api::add_user(const ApiRequest& asked) {
+void Api::add_user(const ApiRequest& call) {
     v1::NewUser wanted;
-    if (const auto parsed = from_json(asked.request.body, wanted); !parsed)
-        return asked.respond(error_response(400, parsed.error()));
+    if (const auto parsed = from_json(call.request.body, wanted); !parsed)
+        return call.respond(error_response(400, parsed.error()));
     if (const auto known = check_commands(parts_.dictionary, wanted.commands()); !known)
-        return asked.respond(error_response(422, known.error()));
-    aside(
-        asked.respond,
-        [this, wanted, who = asked.who](archive::Reader&) {
+        return call.respond(error_response(422, known.error()));
+    answer_on_query_thread(
+        call.respond,
+        [this, wanted, who = call.who](archive::Reader&) {
             const auto done = parts_.access.add_user(wanted);
             note(who, "user", fmt::format("add '{}' as {}", wanted.user().substr(0, 64), wanted.role().substr(0, 64)),
                  outcome_of(done.ok(), done ? "" : done.error().message));
@@ -114,23 +114,23 @@ void Api::add_user(const ApiRequest& asked) {
         JobPriority::soon);
 }
 
-void Api::change_user(const ApiRequest& asked) {
-    if (!asked.who.role) return asked.respond(refusal_of(asked.who, Right::watch));
-    if (!asked.who.accounts) return asked.respond(refusal_of(asked.who, Right::administer));
-    const auto& user = asked.parts[0];
-    if (user != asked.who.user)
-        if (auto refused = refusal_of(asked.who, Right::administer); refused.status != 200) {
-            note(asked.who, "user", fmt::format("change '{}'", user.substr(0, 64)), outcome_of(false, refused.body));
-            return asked.respond(std::move(refused));
+void Api::change_user(const ApiRequest& call) {
+    if (!call.who.role) return call.respond(refusal_of(call.who, Right::watch));
+    if (!call.who.accounts) return call.respond(refusal_of(call.who, Right::administer));
+    const auto& user = call.parts[0];
+    if (user != call.who.user)
+        if (auto refused = refusal_of(call.who, Right::administer); refused.status != 200) {
+            note(call.who, "user", fmt::format("change '{}'", user.substr(0, 64)), outcome_of(false, refused.body));
+            return call.respond(std::move(refused));
         }
     v1::UserChange change;
-    if (const auto parsed = from_json(asked.request.body, change); !parsed)
-        return asked.respond(error_response(400, parsed.error()));
+    if (const auto parsed = from_json(call.request.body, change); !parsed)
+        return call.respond(error_response(400, parsed.error()));
     if (const auto known = check_commands(parts_.dictionary, change.commands()); !known)
-        return asked.respond(error_response(422, known.error()));
-    aside(
-        asked.respond,
-        [this, change, user, who = asked.who](archive::Reader&) {
+        return call.respond(error_response(422, known.error()));
+    answer_on_query_thread(
+        call.respond,
+        [this, change, user, who = call.who](archive::Reader&) {
             const auto done = parts_.access.change_user(who, user, change);
             note(who, "user",
                  fmt::format("change '{}'{}{}{}", user.substr(0, 64),
@@ -146,60 +146,60 @@ void Api::change_user(const ApiRequest& asked) {
         JobPriority::soon);
 }
 
-void Api::remove_user(const ApiRequest& asked) {
-    aside(
-        asked.respond,
-        [this, user = asked.parts[0]](archive::Reader&) { return response_of(parts_.access.remove_user(user)); },
+void Api::remove_user(const ApiRequest& call) {
+    answer_on_query_thread(
+        call.respond,
+        [this, user = call.parts[0]](archive::Reader&) { return response_of(parts_.access.remove_user(user)); },
         JobPriority::soon);
 }
 
-void Api::list_tokens(const ApiRequest& asked) {
-    asked.respond(json_response(parts_.access.tokens()));
+void Api::list_tokens(const ApiRequest& call) {
+    call.respond(json_response(parts_.access.tokens()));
 }
 
-void Api::add_token(const ApiRequest& asked) {
+void Api::add_token(const ApiRequest& call) {
     v1::NewToken wanted;
-    if (const auto parsed = from_json(asked.request.body, wanted); !parsed)
-        return asked.respond(error_response(400, parsed.error()));
+    if (const auto parsed = from_json(call.request.body, wanted); !parsed)
+        return call.respond(error_response(400, parsed.error()));
     if (const auto known = check_commands(parts_.dictionary, wanted.commands()); !known)
-        return asked.respond(error_response(422, known.error()));
-    aside(
-        asked.respond, [this, wanted](archive::Reader&) { return response_of(parts_.access.add_token(wanted), 201); },
+        return call.respond(error_response(422, known.error()));
+    answer_on_query_thread(
+        call.respond, [this, wanted](archive::Reader&) { return response_of(parts_.access.add_token(wanted), 201); },
         JobPriority::soon);
 }
 
-void Api::remove_token(const ApiRequest& asked) {
-    aside(
-        asked.respond,
-        [this, name = asked.parts[0]](archive::Reader&) { return response_of(parts_.access.remove_token(name)); },
+void Api::remove_token(const ApiRequest& call) {
+    answer_on_query_thread(
+        call.respond,
+        [this, name = call.parts[0]](archive::Reader&) { return response_of(parts_.access.remove_token(name)); },
         JobPriority::soon);
 }
 
-void Api::audit(const ApiRequest& asked) {
-    const auto query = QueryText::parse(asked.request.query, {"after", "limit"});
-    if (!query) return asked.respond(error_response(400, query.error()));
+void Api::audit(const ApiRequest& call) {
+    const auto query = QueryText::parse(call.request.query, {"after", "limit"});
+    if (!query) return call.respond(error_response(400, query.error()));
     const auto after = query->count("after", UINT32_MAX), limit = query->amount("limit", audit_page_max);
-    if (!after) return asked.respond(error_response(400, after.error()));
-    if (!limit) return asked.respond(error_response(400, limit.error()));
-    aside(asked.respond,
-          [after = after->value_or(0), limit = limit->value_or(audit_page_max)](archive::Reader& reader) {
-              const auto entries = reader.audit(after, limit);
-              if (!entries) return error_response(500, entries.error());
-              v1::AuditList list;
-              for (const auto& entry : *entries) {
-                  auto& shown = *list.add_entries();
-                  shown.set_entry(entry.entry);
-                  shown.set_at(entry.at);
-                  shown.set_who(entry.who);
-                  shown.set_from(entry.from);
-                  shown.set_action(entry.action);
-                  shown.set_detail(entry.detail);
-                  shown.set_outcome(entry.outcome);
-                  shown.set_hash(entry.hash);
-              }
-              if (entries->size() == limit) list.set_next_after(entries->back().entry);
-              return json_response(list);
-          });
+    if (!after) return call.respond(error_response(400, after.error()));
+    if (!limit) return call.respond(error_response(400, limit.error()));
+    answer_on_query_thread(
+        call.respond, [after = after->value_or(0), limit = limit->value_or(audit_page_max)](archive::Reader& reader) {
+            const auto entries = reader.audit(after, limit);
+            if (!entries) return error_response(500, entries.error());
+            v1::AuditList list;
+            for (const auto& entry : *entries) {
+                auto& shown = *list.add_entries();
+                shown.set_entry(entry.entry);
+                shown.set_at(entry.at);
+                shown.set_who(entry.who);
+                shown.set_from(entry.from);
+                shown.set_action(entry.action);
+                shown.set_detail(entry.detail);
+                shown.set_outcome(entry.outcome);
+                shown.set_hash(entry.hash);
+            }
+            if (entries->size() == limit) list.set_next_after(entries->back().entry);
+            return json_response(list);
+        });
 }
 
 }  // namespace aeolis::server

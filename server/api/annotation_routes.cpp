@@ -22,19 +22,19 @@ std::function<void(Result<archive::Annotation>)> added(const Respond& respond) {
 
 /// The message in the request's body, signed: with accounts, nobody can write in another's name.
 template <typename Request>
-Result<Request> request_of(const ApiRequest& asked) {
+Result<Request> request_of(const ApiRequest& call) {
     Request wanted;
-    if (const auto parsed = from_json(asked.request.body, wanted); !parsed) return parsed.error();
-    if (asked.who.accounts) wanted.set_by(asked.who.user);
+    if (const auto parsed = from_json(call.request.body, wanted); !parsed) return parsed.error();
+    if (call.who.accounts) wanted.set_by(call.who.user);
     return wanted;
 }
 
 }  // namespace
 
-void Api::annotate(const ApiRequest& asked, Annotating annotating) {
+void Api::annotate(const ApiRequest& call, Annotating annotating) {
     const auto question = [this, annotating = std::move(annotating), clock = clock(),
-                           respond = asked.respond](archive::Reader& reader, archive::RunId id,
-                                                    const QueryText&) -> std::optional<HttpResponse> {
+                           respond = call.respond](archive::Reader& reader, archive::RunId id,
+                                                   const QueryText&) -> std::optional<HttpResponse> {
         const auto newest = reader.newest_ert(id);
         if (!newest) return error_response(500, newest.error());
         auto made = annotating(reader, id, clock(id).value_or(*newest));
@@ -42,23 +42,23 @@ void Api::annotate(const ApiRequest& asked, Annotating annotating) {
         if (parts_.pipeline.annotate(id, std::get<archive::Annotation>(std::move(made)), added(respond))) return {};
         return error_response(503, "too much waits to be stored: try again");
     };
-    ask(asked, {}, question, JobPriority::at_once);
+    ask(call, {}, question, JobPriority::at_once);
 }
 
-void Api::post_note(const ApiRequest& asked) {
-    const auto wanted = request_of<v1::NoteRequest>(asked);
-    if (!wanted) return asked.respond(error_response(400, wanted.error()));
-    annotate(asked, [wanted = *wanted](archive::Reader&, archive::RunId, Ert now) -> Annotated {
+void Api::post_note(const ApiRequest& call) {
+    const auto wanted = request_of<v1::NoteRequest>(call);
+    if (!wanted) return call.respond(error_response(400, wanted.error()));
+    annotate(call, [wanted = *wanted](archive::Reader&, archive::RunId, Ert now) -> Annotated {
         auto note = note_of(wanted, wanted.by(), now);
         if (!note) return error_response(422, note.error());
         return std::move(*note);
     });
 }
 
-void Api::post_alarm(const ApiRequest& asked) {
-    const auto wanted = request_of<v1::AlarmRequest>(asked);
-    if (!wanted) return asked.respond(error_response(400, wanted.error()));
-    annotate(asked, [this, wanted = *wanted](archive::Reader& reader, archive::RunId id, Ert now) -> Annotated {
+void Api::post_alarm(const ApiRequest& call) {
+    const auto wanted = request_of<v1::AlarmRequest>(call);
+    if (!wanted) return call.respond(error_response(400, wanted.error()));
+    annotate(call, [this, wanted = *wanted](archive::Reader& reader, archive::RunId id, Ert now) -> Annotated {
         const auto links = reader.links();
         if (!links) return error_response(500, links.error());
         auto action = alarm_action_of(wanted, parts_.dictionary, *links, wanted.by(), now);

@@ -192,7 +192,8 @@ void Api::handle(HttpRequest request, const Respond& respond) {
         return respond(
             error_response(404, fmt::format("{}: there is no such route; /api/v1/openapi.yaml lists them", path)));
     if (method != "GET") return respond(error_response(405, fmt::format("{} {}: only GET here", request.method, path)));
-    aside(respond, [this, path](archive::Reader&) { return parts_.console.file(path); }, JobPriority::at_once);
+    answer_on_query_thread(
+        respond, [this, path](archive::Reader&) { return parts_.console.file(path); }, JobPriority::at_once);
 }
 
 std::size_t Api::body_octets(const Credentials& credentials, std::string_view method, std::string_view path) const {
@@ -203,42 +204,42 @@ std::size_t Api::body_octets(const Credentials& credentials, std::string_view me
     return route->body == Body::whole ? HttpRequest::body_octets_max : brief_body_octets_max;
 }
 
-void Api::answer(const Route& route, ApiRequest asked) {
+void Api::answer(const Route& route, ApiRequest call) {
     const bool changes = route.method != "GET";
-    auto refused = refusal_of(asked.who, route.right);
+    auto refused = refusal_of(call.who, route.right);
     if (refused.status == 200 && !changes && route.query == Query::none && route.path.starts_with(api_prefix))
-        if (const auto none = QueryText::parse(asked.request.query, {}); !none)
+        if (const auto none = QueryText::parse(call.request.query, {}); !none)
             refused = error_response(400, none.error());
     const bool of_run = route.path.starts_with("/api/v1/runs/{run}");
-    if (refused.status == 200 && of_run && asked.parts[0] != "latest" && !run_id(asked.parts[0]))
+    if (refused.status == 200 && of_run && call.parts[0] != "latest" && !run_id(call.parts[0]))
         refused =
-            error_response(404, fmt::format("run '{}': there is none; a number or 'latest' is wanted", asked.parts[0]));
+            error_response(404, fmt::format("run '{}': there is none; a number or 'latest' is wanted", call.parts[0]));
     if (refused.status == 200 && changes && !parts_.pipeline.audit_has_room())
-        return asked.respond(
+        return call.respond(
             error_response(503, "nothing is done that the audit cannot take: " + parts_.pipeline.fault()));
     const bool refuses = refused.status != 200;
-    if (of_run && asked.parts[0] == "latest") name_latest(asked);
-    if (!route.audit.empty() && (refuses || route.audited == Audited::all)) asked.respond = audited(asked, route.audit);
-    if (refuses) return asked.respond(std::move(refused));
-    (this->*route.answer)(asked);
+    if (of_run && call.parts[0] == "latest") name_latest(call);
+    if (!route.audit.empty() && (refuses || route.audited == Audited::all)) call.respond = audited(call, route.audit);
+    if (refuses) return call.respond(std::move(refused));
+    (this->*route.answer)(call);
 }
 
-void Api::name_latest(ApiRequest& asked) const {
+void Api::name_latest(ApiRequest& call) const {
     const auto run = parts_.desk.current().run();
     if (run == 0) return;
-    asked.parts[0] = std::to_string(run);
+    call.parts[0] = std::to_string(run);
     const std::string_view latest = "latest";
-    asked.request.path.replace(asked.request.path.find(latest), latest.size(),
-                               asked.parts[0]);  // the audit records it too
+    call.request.path.replace(call.request.path.find(latest), latest.size(),
+                              call.parts[0]);  // the audit records it too
 }
 
-Respond Api::audited(const ApiRequest& asked, std::string_view action) {
-    if (!asked.who.role) return asked.respond;  // not logged in: anybody could fill the audit
-    const bool has_password = asked.request.path.starts_with("/api/v1/users");
-    return [this, who = asked.who, action,
-            detail = fmt::format("{} {} {}", asked.request.method, asked.request.path,
-                                 has_password ? "" : asked.request.body),
-            respond = asked.respond](HttpResponse response) {
+Respond Api::audited(const ApiRequest& call, std::string_view action) {
+    if (!call.who.role) return call.respond;  // not logged in: anybody could fill the audit
+    const bool has_password = call.request.path.starts_with("/api/v1/users");
+    return [this, who = call.who, action,
+            detail =
+                fmt::format("{} {} {}", call.request.method, call.request.path, has_password ? "" : call.request.body),
+            respond = call.respond](HttpResponse response) {
         const std::string outcome =
             response.status < 400 ? "done" : fmt::format("refused ({}): {}", response.status, response.body);
         parts_.pipeline.audit(audit_record(who, action, detail, outcome),
@@ -250,22 +251,23 @@ void Api::note(const Operator& who, std::string_view action, std::string detail,
     parts_.pipeline.audit(audit_record(who, action, std::move(detail), outcome));
 }
 
-void Api::aside(const Respond& respond, std::function<HttpResponse(archive::Reader&)> answer, JobPriority priority) {
+void Api::answer_on_query_thread(const Respond& respond, std::function<HttpResponse(archive::Reader&)> answer,
+                                 JobPriority priority) {
     const auto job = [answer = std::move(answer), respond](archive::Reader& reader) {
         respond(answered([&] { return answer(reader); }));
     };
     if (!parts_.queries.ask(job, {}, priority)) respond(error_response(503, QueryThreads::busy));
 }
 
-void Api::run_question(const ApiRequest& asked) {
-    const auto& run = asked.parts[0];
-    const std::string what = asked.parts.size() == 2 ? asked.parts[1] : "";
-    const auto& respond = asked.respond;
+void Api::run_question(const ApiRequest& call) {
+    const auto& run = call.parts[0];
+    const std::string what = call.parts.size() == 2 ? call.parts[1] : "";
+    const auto& respond = call.respond;
     const auto* question = server::run_question(what);
     if (question == nullptr)
         return respond(error_response(
             404, fmt::format("'{}' cannot be asked of a run; these can: {}", what, run_question_names())));
-    auto query = QueryText::parse(asked.request.query, question->parameters);
+    auto query = QueryText::parse(call.request.query, question->parameters);
     if (!query) return respond(error_response(400, query.error()));
     if (!question->formats.empty())  // before the archive is queried for nothing
         if (const auto format = query->one_of("format", question->formats); !format)
@@ -276,8 +278,8 @@ void Api::run_question(const ApiRequest& asked) {
     if (const auto id = run_id(run); what.empty() && id && id->value == current.run())
         return respond(json_response(current));
     ask(
-        asked, std::move(*query),
-        [&dictionary, clock = clock(), instructor = may(asked.who, Right::rehearse),
+        call, std::move(*query),
+        [&dictionary, clock = clock(), instructor = may(call.who, Right::rehearse),
          answer = question->answer](archive::Reader& reader, archive::RunId id, const QueryText& asked_of) {
             return answer({dictionary, clock(id), instructor}, reader, id, asked_of);
         },
@@ -289,9 +291,9 @@ std::function<std::optional<Ert>(archive::RunId)> Api::clock() const {
                archive::RunId run) { return run.value == current ? now : std::nullopt; };
 }
 
-void Api::ask(const ApiRequest& asked, QueryText query, RunQuestion question, JobPriority priority) {
-    const auto job = [run = asked.parts[0], query = std::move(query), question = std::move(question),
-                      respond = asked.respond](archive::Reader& reader) {
+void Api::ask(const ApiRequest& call, QueryText query, RunQuestion question, JobPriority priority) {
+    const auto job = [run = call.parts[0], query = std::move(query), question = std::move(question),
+                      respond = call.respond](archive::Reader& reader) {
         auto id = run_id(run);
         if (!id) {  // no run since the server started
             const auto runs = reader.runs();
@@ -311,16 +313,16 @@ void Api::ask(const ApiRequest& asked, QueryText query, RunQuestion question, Jo
         if (reader.stopped()) response = stopped_response("ask for less, by from and to, points or limit");
         respond(std::move(*response));
     };
-    if (!parts_.queries.ask(job, asked.request.gone, priority)) asked.respond(error_response(503, QueryThreads::busy));
+    if (!parts_.queries.ask(job, call.request.gone, priority)) call.respond(error_response(503, QueryThreads::busy));
 }
 
-void Api::list_runs(const ApiRequest& asked) {
-    const auto query = QueryText::parse(asked.request.query, {"format"});
-    if (!query) return asked.respond(error_response(400, query.error()));
+void Api::list_runs(const ApiRequest& call) {
+    const auto query = QueryText::parse(call.request.query, {"format"});
+    if (!query) return call.respond(error_response(400, query.error()));
     auto format = query->one_of("format", list_formats);
-    if (!format) return asked.respond(error_response(400, format.error()));
-    aside(
-        asked.respond,
+    if (!format) return call.respond(error_response(400, format.error()));
+    answer_on_query_thread(
+        call.respond,
         [current = current_run(), format = std::move(*format)](archive::Reader& reader) {
             auto runs = reader.runs();
             if (!runs) return error_response(500, runs.error());
@@ -331,31 +333,31 @@ void Api::list_runs(const ApiRequest& asked) {
         JobPriority::soon);
 }
 
-void Api::list_scenarios(const ApiRequest& asked) {
-    aside(
-        asked.respond, [this](archive::Reader&) { return json_response(parts_.scenarios.list()); }, JobPriority::soon);
+void Api::list_scenarios(const ApiRequest& call) {
+    answer_on_query_thread(
+        call.respond, [this](archive::Reader&) { return json_response(parts_.scenarios.list()); }, JobPriority::soon);
 }
 
-void Api::dictionary(const ApiRequest& asked) {
-    asked.respond({200, "application/json", "no-store", dictionary_json_});
+void Api::dictionary(const ApiRequest& call) {
+    call.respond({200, "application/json", "no-store", dictionary_json_});
 }
 
-void Api::openapi(const ApiRequest& asked) {
-    asked.respond({200, "application/yaml", "no-cache", std::string{openapi_text}});
+void Api::openapi(const ApiRequest& call) {
+    call.respond({200, "application/yaml", "no-cache", std::string{openapi_text}});
 }
 
-void Api::stream(const ApiRequest& asked) {
-    asked.respond(error_response(426, "the stream is a WebSocket: ask for an upgrade, with one of the "
-                                      "subprotocols aeolis.v1.protobuf, aeolis.v1.json"));
+void Api::stream(const ApiRequest& call) {
+    call.respond(error_response(426, "the stream is a WebSocket: ask for an upgrade, with one of the "
+                                     "subprotocols aeolis.v1.protobuf, aeolis.v1.json"));
 }
 
-void Api::health(const ApiRequest& asked) {
+void Api::health(const ApiRequest& call) {
     const std::string fault = parts_.pipeline.fault();
     // File names are shown only to those with the right to watch.
-    const std::string text = fault.empty()                  ? "ok"
-                             : may(asked.who, Right::watch) ? fault
-                                                            : "the archive cannot be written";
-    asked.respond({fault.empty() ? 200U : 503U, "text/plain; charset=utf-8", "no-store", text + "\n"});
+    const std::string text = fault.empty()                 ? "ok"
+                             : may(call.who, Right::watch) ? fault
+                                                           : "the archive cannot be written";
+    call.respond({fault.empty() ? 200U : 503U, "text/plain; charset=utf-8", "no-store", text + "\n"});
 }
 
 v1::RunState Api::current_run() const {

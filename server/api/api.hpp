@@ -77,64 +77,64 @@ class Api {
     static std::span<const Route> routes();
 
   private:
-    void run_question(const ApiRequest& asked);
-    void list_runs(const ApiRequest& asked);
-    void list_scenarios(const ApiRequest& asked);
-    void dictionary(const ApiRequest& asked);
-    void openapi(const ApiRequest& asked);
-    void stream(const ApiRequest& asked);
-    void health(const ApiRequest& asked);
+    void run_question(const ApiRequest& call);
+    void list_runs(const ApiRequest& call);
+    void list_scenarios(const ApiRequest& call);
+    void dictionary(const ApiRequest& call);
+    void openapi(const ApiRequest& call);
+    void stream(const ApiRequest& call);
+    void health(const ApiRequest& call);
     // sample_export.cpp
-    void export_samples(const ApiRequest& asked);
+    void export_samples(const ApiRequest& call);
     // metrics.cpp
-    void metrics(const ApiRequest& asked);
+    void metrics(const ApiRequest& call);
     // rehearsal_routes.cpp
-    void list_rehearsals(const ApiRequest& asked);
-    void current_rehearsal(const ApiRequest& asked);
-    void start_rehearsal(const ApiRequest& asked);
-    void control_rehearsal(const ApiRequest& asked);
+    void list_rehearsals(const ApiRequest& call);
+    void current_rehearsal(const ApiRequest& call);
+    void start_rehearsal(const ApiRequest& call);
+    void control_rehearsal(const ApiRequest& call);
     // command_routes.cpp
-    void post_command(const ApiRequest& asked);
-    void post_sequence(const ApiRequest& asked);
+    void post_command(const ApiRequest& call);
+    void post_sequence(const ApiRequest& call);
     // annotation_routes.cpp
-    void post_alarm(const ApiRequest& asked);
-    void post_note(const ApiRequest& asked);
+    void post_alarm(const ApiRequest& call);
+    void post_note(const ApiRequest& call);
     using Annotated = std::variant<archive::Annotation, HttpResponse>;  ///< the latter says why not
     using Annotating = std::function<Annotated(archive::Reader&, archive::RunId, Ert now)>;
-    void annotate(const ApiRequest& asked, Annotating annotating);
+    void annotate(const ApiRequest& call, Annotating annotating);
     // campaign_routes.cpp
-    void list_campaigns(const ApiRequest& asked);
-    void start_campaign(const ApiRequest& asked);
-    void campaign_report(const ApiRequest& asked);
-    void campaign_touchdowns(const ApiRequest& asked);
-    void cancel_campaign(const ApiRequest& asked);
+    void list_campaigns(const ApiRequest& call);
+    void start_campaign(const ApiRequest& call);
+    void campaign_report(const ApiRequest& call);
+    void campaign_touchdowns(const ApiRequest& call);
+    void cancel_campaign(const ApiRequest& call);
     using CampaignQuestion =
         std::function<HttpResponse(const std::filesystem::path& file, const std::function<bool()>& stop)>;
-    void ask_campaign(const ApiRequest& asked, CampaignQuestion question);
+    void ask_campaign(const ApiRequest& call, CampaignQuestion question);
     // access_routes.cpp
-    void session(const ApiRequest& asked);
-    void log_in(const ApiRequest& asked);
-    void log_out(const ApiRequest& asked);
-    void list_users(const ApiRequest& asked);
-    void add_user(const ApiRequest& asked);
-    void change_user(const ApiRequest& asked);
-    void remove_user(const ApiRequest& asked);
-    void list_tokens(const ApiRequest& asked);
-    void add_token(const ApiRequest& asked);
-    void remove_token(const ApiRequest& asked);
-    void audit(const ApiRequest& asked);
+    void session(const ApiRequest& call);
+    void log_in(const ApiRequest& call);
+    void log_out(const ApiRequest& call);
+    void list_users(const ApiRequest& call);
+    void add_user(const ApiRequest& call);
+    void change_user(const ApiRequest& call);
+    void remove_user(const ApiRequest& call);
+    void list_tokens(const ApiRequest& call);
+    void add_token(const ApiRequest& call);
+    void remove_token(const ApiRequest& call);
+    void audit(const ApiRequest& call);
 
-    void answer(const Route& route, ApiRequest asked);
+    void answer(const Route& route, ApiRequest call);
     /// Wraps the response callback so that the outcome is written to the audit.
-    Respond audited(const ApiRequest& asked, std::string_view action);
+    Respond audited(const ApiRequest& call, std::string_view action);
     /// Replaces `latest` by a run number: the server's current or last run, else the newest of the archive. The same
     /// for every route.
-    void name_latest(ApiRequest& asked) const;
+    void name_latest(ApiRequest& call) const;
     void note(const Operator& who, std::string_view action, std::string detail, const std::string& outcome);
     /// Answers on a query thread; 503 when too many jobs wait.
-    void aside(const Respond& respond, std::function<HttpResponse(archive::Reader&)> answer,
-               JobPriority priority = JobPriority::in_turn);
-    void ask(const ApiRequest& asked, QueryText query, RunQuestion question,
+    void answer_on_query_thread(const Respond& respond, std::function<HttpResponse(archive::Reader&)> answer,
+                                JobPriority priority = JobPriority::in_turn);
+    void ask(const ApiRequest& call, QueryText query, RunQuestion question,
              JobPriority priority = JobPriority::in_turn);
     /// A function that gives the time on Earth in the current run; none for other runs.
     std::function<std::optional<Ert>(archive::RunId)> clock() const;

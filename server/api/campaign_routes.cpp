@@ -16,9 +16,9 @@ HttpResponse response_or_conflict(const Result<Message>& done, unsigned status =
 
 }  // namespace
 
-void Api::ask_campaign(const ApiRequest& asked, CampaignQuestion question) {
-    aside(asked.respond, [this, name = asked.parts[0], gone = asked.request.gone,
-                          question = std::move(question)](archive::Reader&) {
+void Api::ask_campaign(const ApiRequest& call, CampaignQuestion question) {
+    answer_on_query_thread(call.respond, [this, name = call.parts[0], gone = call.request.gone,
+                                          question = std::move(question)](archive::Reader&) {
         const auto file = parts_.campaigns.file_of(name);
         if (!file)
             return error_response(404,
@@ -30,42 +30,42 @@ void Api::ask_campaign(const ApiRequest& asked, CampaignQuestion question) {
     });
 }
 
-void Api::list_campaigns(const ApiRequest& asked) {
-    aside(asked.respond, [this](archive::Reader&) { return json_response(parts_.campaigns.list()); });
+void Api::list_campaigns(const ApiRequest& call) {
+    answer_on_query_thread(call.respond, [this](archive::Reader&) { return json_response(parts_.campaigns.list()); });
 }
 
-void Api::start_campaign(const ApiRequest& asked) {
+void Api::start_campaign(const ApiRequest& call) {
     v1::StartCampaign wanted;
-    if (const auto parsed = from_json(asked.request.body, wanted); !parsed)
-        return asked.respond(error_response(400, parsed.error()));
-    aside(asked.respond, [this, wanted](archive::Reader&) {
+    if (const auto parsed = from_json(call.request.body, wanted); !parsed)
+        return call.respond(error_response(400, parsed.error()));
+    answer_on_query_thread(call.respond, [this, wanted](archive::Reader&) {
         auto order = parts_.campaigns.order_of(wanted);
         if (!order) return error_response(422, order.error());
         return response_or_conflict(parts_.campaigns.start(std::move(*order)), 202);
     });
 }
 
-void Api::campaign_report(const ApiRequest& asked) {
-    ask_campaign(asked, [this](const std::filesystem::path& file, const std::function<bool()>& stop) {
+void Api::campaign_report(const ApiRequest& call) {
+    ask_campaign(call, [this](const std::filesystem::path& file, const std::function<bool()>& stop) {
         return response_or_conflict(parts_.campaigns.report(file, stop));
     });
 }
 
-void Api::campaign_touchdowns(const ApiRequest& asked) {
-    const auto query = QueryText::parse(asked.request.query, {"after", "limit"});
-    if (!query) return asked.respond(error_response(400, query.error()));
+void Api::campaign_touchdowns(const ApiRequest& call) {
+    const auto query = QueryText::parse(call.request.query, {"after", "limit"});
+    if (!query) return call.respond(error_response(400, query.error()));
     constexpr auto most = campaign::CampaignDesk::touchdowns_max;
     const auto after = query->count("after", UINT32_MAX), limit = query->amount("limit", most);
-    if (!after) return asked.respond(error_response(400, after.error()));
-    if (!limit) return asked.respond(error_response(400, limit.error()));
-    ask_campaign(asked, [this, place = after->value_or(0), limit = limit->value_or(most)](
-                            const std::filesystem::path& file, const std::function<bool()>& stop) {
+    if (!after) return call.respond(error_response(400, after.error()));
+    if (!limit) return call.respond(error_response(400, limit.error()));
+    ask_campaign(call, [this, place = after->value_or(0), limit = limit->value_or(most)](
+                           const std::filesystem::path& file, const std::function<bool()>& stop) {
         return response_or_conflict(parts_.campaigns.touchdowns(file, place, limit, stop));
     });
 }
 
-void Api::cancel_campaign(const ApiRequest& asked) {
-    ask_campaign(asked, [this, name = asked.parts[0]](const std::filesystem::path&, const std::function<bool()>&) {
+void Api::cancel_campaign(const ApiRequest& call) {
+    ask_campaign(call, [this, name = call.parts[0]](const std::filesystem::path&, const std::function<bool()>&) {
         return response_or_conflict(parts_.campaigns.cancel(name), 202);
     });
 }

@@ -54,13 +54,13 @@ Result<void> may_act(const Operator& who, const dictionary::Dictionary& dictiona
 }
 
 /// Sets the run from the path and the operator's identity. Fails when the body names another run.
-Result<void> complete(const ApiRequest& asked, v1::CommandRequest& command) {
-    const auto& run = asked.parts[0];
+Result<void> complete(const ApiRequest& call, v1::CommandRequest& command) {
+    const auto& run = call.parts[0];
     const auto id = run_id(run);
     if (id && command.run() != 0 && command.run() != id->value)
         return Error{fmt::format("run: the path says {}, the body {}", run, command.run())};
     if (id) command.set_run(id->value);
-    name_asker(asked.who, command);
+    name_asker(call.who, command);
     return {};
 }
 
@@ -95,27 +95,27 @@ Result<void> may_start(const Operator& who, const dictionary::Dictionary& dictio
     return {};
 }
 
-void Api::post_command(const ApiRequest& asked) {
+void Api::post_command(const ApiRequest& call) {
     v1::CommandRequest command;
-    if (const auto parsed = from_json(asked.request.body, command); !parsed)
-        return asked.respond(error_response(400, parsed.error()));
-    const auto respond = command.dry_run() ? asked.respond : audited(asked, "command");
-    if (const auto right = complete(asked, command); !right) return respond(error_response(400, right.error()));
-    if (const auto allowed = may_send(asked.who, parts_.dictionary, parts_.desk, command); !allowed)
+    if (const auto parsed = from_json(call.request.body, command); !parsed)
+        return call.respond(error_response(400, parsed.error()));
+    const auto respond = command.dry_run() ? call.respond : audited(call, "command");
+    if (const auto right = complete(call, command); !right) return respond(error_response(400, right.error()));
+    if (const auto allowed = may_send(call.who, parts_.dictionary, parts_.desk, command); !allowed)
         return respond(error_response(403, allowed.error()));
     const unsigned refused = parts_.dictionary.command(command.command()) == nullptr ? 422 : 409;
-    const auto still = may_still_send(parts_.access, asked.request.credentials, parts_.dictionary, parts_.desk);
-    parts_.desk.command(std::move(command), {still, asked.who.browser},
+    const auto still = may_still_send(parts_.access, call.request.credentials, parts_.dictionary, parts_.desk);
+    parts_.desk.command(std::move(command), {still, call.who.browser},
                         [respond, refused](const v1::CommandReply& reply) {
                             respond(json_response(reply, reply.accepted() ? 202 : refused));
                         });
 }
 
-void Api::post_sequence(const ApiRequest& asked) {
+void Api::post_sequence(const ApiRequest& call) {
     v1::CommandSequence sequence;
-    if (const auto parsed = from_json(asked.request.body, sequence); !parsed)
-        return asked.respond(error_response(400, parsed.error()));
-    const auto respond = sequence.dry_run() ? asked.respond : audited(asked, "command");
+    if (const auto parsed = from_json(call.request.body, sequence); !parsed)
+        return call.respond(error_response(400, parsed.error()));
+    const auto respond = sequence.dry_run() ? call.respond : audited(call, "command");
     if (sequence.commands().empty() || sequence.commands_size() > sequence_max)
         return respond(error_response(
             400, fmt::format("commands: 1 to {} are wanted, here are {}", sequence_max, sequence.commands_size())));
@@ -124,15 +124,15 @@ void Api::post_sequence(const ApiRequest& asked) {
         const auto at = [i](const std::string& error) { return fmt::format("commands[{}]: {}", i, error); };
         if (command.dry_run() || !command.action().empty())
             return respond(error_response(400, at("dry_run and action are not for a command of a sequence")));
-        if (const auto right = complete(asked, command); !right)
+        if (const auto right = complete(call, command); !right)
             return respond(error_response(400, at(right.error().message)));
         command.set_dry_run(sequence.dry_run());
-        if (const auto allowed = may_send(asked.who, parts_.dictionary, parts_.desk, command); !allowed)
+        if (const auto allowed = may_send(call.who, parts_.dictionary, parts_.desk, command); !allowed)
             return respond(error_response(403, at(allowed.error().message)));
     }
-    const auto still = may_still_send(parts_.access, asked.request.credentials, parts_.dictionary, parts_.desk);
+    const auto still = may_still_send(parts_.access, call.request.credentials, parts_.dictionary, parts_.desk);
     parts_.desk.sequence(
-        {sequence.commands().begin(), sequence.commands().end()}, sequence.dry_run(), {still, asked.who.browser},
+        {sequence.commands().begin(), sequence.commands().end()}, sequence.dry_run(), {still, call.who.browser},
         [respond](std::vector<v1::CommandReply> replies) {
             v1::SequenceReply reply;
             reply.set_accepted(true);

@@ -66,7 +66,7 @@ void write(MetricsText& text, const PipelineThread::Figures& pipeline) {
     text.counter("items_published_total", "items made durable and published", pipeline.published_items);
     text.begin("link_units_total", "counter", "packets, or decoded tones, received over a link");
     for (const auto& [link, received] : pipeline.links)
-        text.line("link_units_total", fmt::format("{{link=\"{}\"}}", link), received.units);
+        text.line("link_units_total", fmt::format("{{link=\"{}\"}}", link), received.items);
     text.begin("link_octets_total", "counter", "octets of packets received over a link");
     for (const auto& [link, received] : pipeline.links)
         text.line("link_octets_total", fmt::format("{{link=\"{}\"}}", link), received.octets);
@@ -87,7 +87,7 @@ void write(MetricsText& text, const StreamHub& hub) {
 
 }  // namespace
 
-void Api::metrics(const ApiRequest& asked) {
+void Api::metrics(const ApiRequest& call) {
     MetricsText text;
     text.begin("build_info", "gauge", "1, labelled with the version of the program");
     text.line("build_info", fmt::format("{{version=\"{}\"}}", version), 1);
@@ -100,7 +100,7 @@ void Api::metrics(const ApiRequest& asked) {
     text.gauge("commands_waiting", "commands and command files that wait for the run's next cycle",
                parts_.desk.commands_waiting());
     text.gauge("commands_put_off", "commands and command files that wait until a change of the timeline is decided",
-               parts_.desk.commands_put_off());
+               parts_.desk.commands_deferred());
     text.gauge("commands_queued", "commands that wait for their time, a controller, a pass or an analysis",
                parts_.desk.commands_queued());
     text.gauge("commands_at_uplink", "commands that have left the queue and are not radiated",
@@ -109,7 +109,7 @@ void Api::metrics(const ApiRequest& asked) {
     text.gauge("run_attained_pace", "seconds of the vehicle a second", run.attained_pace());
     text.counter("process_cpu_seconds_total", "CPU time of the process", cpu_s());
     text.gauge("resident_memory_bytes", "resident memory of the process", resident_octets());
-    asked.respond({200, "text/plain; version=0.0.4; charset=utf-8", "no-store", std::move(text.text)});
+    call.respond({200, "text/plain; version=0.0.4; charset=utf-8", "no-store", std::move(text.text)});
 }
 
 }  // namespace aeolis::server

@@ -19,39 +19,39 @@ void sign(const Operator& who, v1::RehearsalControl& control) {
     if (who.accounts && control.has_note()) control.mutable_note()->set_by(who.user);
 }
 
-void Api::list_rehearsals(const ApiRequest& asked) {
+void Api::list_rehearsals(const ApiRequest& call) {
     v1::RunList list;
     if (const auto state = current_run(); state.run() != 0) *list.add_runs() = state;
-    asked.respond(json_response(list));
+    call.respond(json_response(list));
 }
 
-void Api::current_rehearsal(const ApiRequest& asked) {
+void Api::current_rehearsal(const ApiRequest& call) {
     const auto state = current_run();
-    asked.respond(state.run() == 0 ? error_response(404, "no rehearsal was started since the server came up")
-                                   : json_response(state));
+    call.respond(state.run() == 0 ? error_response(404, "no rehearsal was started since the server came up")
+                                  : json_response(state));
 }
 
-void Api::start_rehearsal(const ApiRequest& asked) {
+void Api::start_rehearsal(const ApiRequest& call) {
     v1::StartRehearsal start;
-    if (const auto parsed = from_json(asked.request.body, start); !parsed)
-        return asked.respond(error_response(400, parsed.error()));
-    if (const auto allowed = may_start(asked.who, parts_.dictionary, start); !allowed)
-        return asked.respond(error_response(403, allowed.error()));
-    parts_.desk.start(start, tell_begun(asked.respond, parts_.desk.going_on()));
+    if (const auto parsed = from_json(call.request.body, start); !parsed)
+        return call.respond(error_response(400, parsed.error()));
+    if (const auto allowed = may_start(call.who, parts_.dictionary, start); !allowed)
+        return call.respond(error_response(403, allowed.error()));
+    parts_.desk.start(start, tell_begun(call.respond, parts_.desk.going_on()));
 }
 
-void Api::control_rehearsal(const ApiRequest& asked) {
+void Api::control_rehearsal(const ApiRequest& call) {
     v1::RehearsalControl control;
-    if (const auto parsed = from_json(asked.request.body, control); !parsed)
-        return asked.respond(error_response(400, parsed.error()));
-    if (const auto allowed = may_start(asked.who, parts_.dictionary, control.start()); !allowed)
-        return asked.respond(error_response(403, allowed.error()));
-    sign(asked.who, control);
+    if (const auto parsed = from_json(call.request.body, control); !parsed)
+        return call.respond(error_response(400, parsed.error()));
+    if (const auto allowed = may_start(call.who, parts_.dictionary, control.start()); !allowed)
+        return call.respond(error_response(403, allowed.error()));
+    sign(call.who, control);
     const bool going_on = parts_.desk.going_on();
     const bool starts = control.action_case() == v1::RehearsalControl::kStart;
-    const auto done = parts_.desk.control(control, tell_begun(asked.respond, going_on));
-    if (!done) return asked.respond(error_response(going_on ? 422 : 409, done.error()));
-    if (!starts) asked.respond(json_response(current_run(), 202));
+    const auto done = parts_.desk.control(control, tell_begun(call.respond, going_on));
+    if (!done) return call.respond(error_response(going_on ? 422 : 409, done.error()));
+    if (!starts) call.respond(json_response(current_run(), 202));
 }
 
 }  // namespace aeolis::server

@@ -82,7 +82,7 @@ Result<bool> flag_of(const QueryText& query, std::string_view name) {
     return Error{fmt::format("{}: '{}' is neither true nor false", name, text)};
 }
 
-HttpResponse run_itself(const Ground&, archive::Reader& reader, archive::RunId run, const QueryText&) {
+HttpResponse run_itself(const AnswerContext&, archive::Reader& reader, archive::RunId run, const QueryText&) {
     return answer(reader.run(run));
 }
 
@@ -95,7 +95,7 @@ Result<v1::ChannelSeriesList> derived(archive::Reader& reader, archive::RunId ru
     return list;
 }
 
-HttpResponse channels(const Ground&, archive::Reader& reader, archive::RunId run, const QueryText& query) {
+HttpResponse channels(const AnswerContext&, archive::Reader& reader, archive::RunId run, const QueryText& query) {
     archive::SeriesQuery series;
     series.channels = query.list("names");
     const auto expression = query.text("expression");
@@ -131,7 +131,8 @@ HttpResponse channels(const Ground&, archive::Reader& reader, archive::RunId run
     return {200, "application/x-protobuf", "no-store", result->SerializeAsString()};
 }
 
-HttpResponse packets(const Ground& ground, archive::Reader& reader, archive::RunId run, const QueryText& query) {
+HttpResponse packets(const AnswerContext& context, archive::Reader& reader, archive::RunId run,
+                     const QueryText& query) {
     archive::PacketQuery packets;
     packets.name = query.text("name");
     const auto apid = query.count("apid", 0x7FF);
@@ -139,7 +140,7 @@ HttpResponse packets(const Ground& ground, archive::Reader& reader, archive::Run
     if (*apid) {
         if (packets.name) return error_response(400, "apid and name: one of them, not both");
         std::vector<std::string> names;
-        for (const auto& packet : ground.dictionary.packets)
+        for (const auto& packet : context.dictionary.packets)
             if (packet.apid.value == **apid) names.push_back(packet.name);
         if (names.empty()) return error_response(400, fmt::format("apid: no packet has APID {}", **apid));
         if (names.size() > 1)
@@ -162,7 +163,7 @@ HttpResponse packets(const Ground& ground, archive::Reader& reader, archive::Run
     return answer_rows({reader, run, query}, reader.packets(run, packets), {"packets"});
 }
 
-HttpResponse events(const Ground&, archive::Reader& reader, archive::RunId run, const QueryText& query) {
+HttpResponse events(const AnswerContext&, archive::Reader& reader, archive::RunId run, const QueryText& query) {
     archive::EventQuery events;
     events.levels = query.list("level");
     using dictionary::EventLevel;
@@ -194,10 +195,11 @@ bool is_decision(const dictionary::Dictionary& dictionary, std::string_view name
                                         [&](const dictionary::EnumValue& value) { return value.label == name; });
 }
 
-HttpResponse explanations(const Ground& ground, archive::Reader& reader, archive::RunId run, const QueryText& query) {
+HttpResponse explanations(const AnswerContext& context, archive::Reader& reader, archive::RunId run,
+                          const QueryText& query) {
     archive::ExplanationQuery explanations;
     explanations.decision = query.text("decision").value_or("");
-    if (!explanations.decision.empty() && !is_decision(ground.dictionary, explanations.decision))
+    if (!explanations.decision.empty() && !is_decision(context.dictionary, explanations.decision))
         return error_response(400, fmt::format("decision: flight explains none called '{}'", explanations.decision));
     const auto range = range_of(query, reader, run);
     if (!range) return error_response(400, range.error());
@@ -213,7 +215,7 @@ HttpResponse explanations(const Ground& ground, archive::Reader& reader, archive
     return answer_rows({reader, run, query}, reader.explanations(run, explanations), {"explanations", {"explanation"}});
 }
 
-HttpResponse tones(const Ground&, archive::Reader& reader, archive::RunId run, const QueryText& query) {
+HttpResponse tones(const AnswerContext&, archive::Reader& reader, archive::RunId run, const QueryText& query) {
     const auto range = range_of(query, reader, run);
     if (!range) return error_response(400, range.error());
     const auto page = page_of(query, archive::rows_page_max, archive::rows_page_max);
@@ -223,7 +225,7 @@ HttpResponse tones(const Ground&, archive::Reader& reader, archive::RunId run, c
                        {"tones", {"tone"}});
 }
 
-HttpResponse commands(const Ground&, archive::Reader& reader, archive::RunId run, const QueryText& query) {
+HttpResponse commands(const AnswerContext&, archive::Reader& reader, archive::RunId run, const QueryText& query) {
     const auto range = range_of(query, reader, run);
     if (!range) return error_response(400, range.error());
     return answer_rows({reader, run, query}, reader.commands(run, {*range, query.text("text").value_or("")}),
@@ -231,7 +233,7 @@ HttpResponse commands(const Ground&, archive::Reader& reader, archive::RunId run
 }
 
 /// Changes of alarms, or their present states.
-HttpResponse alarms(const Ground& ground, archive::Reader& reader, archive::RunId run, const QueryText& query) {
+HttpResponse alarms(const AnswerContext& context, archive::Reader& reader, archive::RunId run, const QueryText& query) {
     const auto page = page_of(query, 1'000, archive::rows_page_max);
     if (!page) return error_response(400, page.error());
     const auto state = query.text("state");
@@ -241,10 +243,10 @@ HttpResponse alarms(const Ground& ground, archive::Reader& reader, archive::RunI
     if (*state != "current")
         return error_response(
             400, fmt::format("state: '{}' is not known; state=current gives all that are not normal", *state));
-    return answer_rows({reader, run, query}, reader.alarm_states(run, ground.now), {"alarms"});
+    return answer_rows({reader, run, query}, reader.alarm_states(run, context.now), {"alarms"});
 }
 
-HttpResponse notes(const Ground&, archive::Reader& reader, archive::RunId run, const QueryText& query) {
+HttpResponse notes(const AnswerContext&, archive::Reader& reader, archive::RunId run, const QueryText& query) {
     const auto page = page_of(query, 1'000, archive::rows_page_max);
     if (!page) return error_response(400, page.error());
     return answer_rows({reader, run, query},
@@ -252,8 +254,9 @@ HttpResponse notes(const Ground&, archive::Reader& reader, archive::RunId run, c
                        {"notes", {"note"}});
 }
 
-HttpResponse interventions(const Ground& ground, archive::Reader& reader, archive::RunId run, const QueryText& query) {
-    if (!ground.instructor) {
+HttpResponse interventions(const AnswerContext& context, archive::Reader& reader, archive::RunId run,
+                           const QueryText& query) {
+    if (!context.instructor) {
         const auto state = reader.run(run);
         if (!state) return error_response(400, state.error());
         if (state->state() == "running")
@@ -292,24 +295,26 @@ Result<std::optional<dictionary::OffsetChange>> change_of(const dictionary::Dict
     return commands::offset_change(dictionary, *name, arguments);
 }
 
-HttpResponse timepoints(const Ground& ground, archive::Reader& reader, archive::RunId run, const QueryText& query) {
+HttpResponse timepoints(const AnswerContext& context, archive::Reader& reader, archive::RunId run,
+                        const QueryText& query) {
     const auto at = instant_of(query, "at", reader, run);
     if (!at) return error_response(400, at.error());
     static constexpr std::array<std::string_view, 2> recorded_words{"true", "false"};
     const auto recorded = query.one_of("recorded", recorded_words);
     if (!recorded) return error_response(400, recorded.error());
-    const auto change = change_of(ground.dictionary, query);
+    const auto change = change_of(context.dictionary, query);
     if (!change) return error_response(400, change.error());
     return answer_rows(
         {reader, run, query},
-        reader.timepoints(run, {.at = *at, .now = ground.now, .recorded = *recorded == "true", .change = *change}),
+        reader.timepoints(run, {.at = *at, .now = context.now, .recorded = *recorded == "true", .change = *change}),
         {"timepoints"});
 }
 
 /// The preconditions of a command, evaluated with the newest known values.
-HttpResponse preconditions(const Ground& ground, archive::Reader& reader, archive::RunId run, const QueryText& query) {
+HttpResponse preconditions(const AnswerContext& context, archive::Reader& reader, archive::RunId run,
+                           const QueryText& query) {
     const auto name = query.text("command").value_or("");
-    const auto* command = ground.dictionary.command(name);
+    const auto* command = context.dictionary.command(name);
     if (command == nullptr) return error_response(400, fmt::format("command: there is no '{}'", name));
     const auto at = instant_of(query, "at", reader, run);
     if (!at) return error_response(400, at.error());
@@ -320,13 +325,13 @@ HttpResponse preconditions(const Ground& ground, archive::Reader& reader, archiv
     double now_s = 0.0;  // when unknown, no value counts as old
     if (*at)
         now_s = (*at)->seconds;
-    else if (ground.now)
-        now_s = archive::seen_at(*state, *ground.now).seconds;
-    std::vector<commands::LatestValue> latest(ground.dictionary.channels.size());
+    else if (context.now)
+        now_s = archive::sclk_at_ert(*state, *context.now).seconds;
+    std::vector<commands::LatestValue> latest(context.dictionary.channels.size());
     for (const auto& value : *values)
         latest[value.channel.value] = {value.value, std::max(0.0, now_s - value.sclk.seconds)};
     v1::PreconditionList list;
-    for (const auto& condition : commands::check(ground.dictionary, *command, latest)) {
+    for (const auto& condition : commands::check(context.dictionary, *command, latest)) {
         auto& told = *list.add_preconditions();
         told.set_text(condition.text);
         told.set_state(commands::name_of(condition.state));
@@ -334,7 +339,7 @@ HttpResponse preconditions(const Ground& ground, archive::Reader& reader, archiv
     return answer(Result<v1::PreconditionList>{std::move(list)});
 }
 
-HttpResponse recording(const Ground&, archive::Reader& reader, archive::RunId run, const QueryText&) {
+HttpResponse recording(const AnswerContext&, archive::Reader& reader, archive::RunId run, const QueryText&) {
     return answer(reader.recording(run));
 }
 
@@ -361,46 +366,44 @@ HttpResponse answer_in_format(const QueryText& query, const std::function<Result
     return {200, "text/csv; charset=utf-8", "no-store", as_csv(*report)};
 }
 
-HttpResponse proof(const Ground&, archive::Reader& reader, archive::RunId run, const QueryText& query) {
+HttpResponse proof(const AnswerContext&, archive::Reader& reader, archive::RunId run, const QueryText& query) {
     return answer_in_format<v1::ProofReport>(query, [&] { return reader.proof(run); }, csv_of);
 }
 
 /// The as-flown report; as CSV, its timepoints and events.
-HttpResponse report(const Ground&, archive::Reader& reader, archive::RunId run, const QueryText& query) {
+HttpResponse report(const AnswerContext&, archive::Reader& reader, archive::RunId run, const QueryText& query) {
     return answer_in_format<v1::AsFlownReport>(query, [&] { return reader.as_flown(run); }, as_flown_csv);
 }
 
-HttpResponse state(const Ground& ground, archive::Reader& reader, archive::RunId run, const QueryText& query) {
+HttpResponse state(const AnswerContext& context, archive::Reader& reader, archive::RunId run, const QueryText& query) {
     const auto at = instant_of(query, "at", reader, run);
     if (!at) return error_response(400, at.error());
-    return answer(state_at(reader, run, ground.dictionary, *at));
+    return answer(state_at(reader, run, context.dictionary, *at));
 }
 
 const std::array questions{
-    RunQuestionEntry{"", {}, {}, run_itself},
-    RunQuestionEntry{"channels",
-                     {"names", "expression", "from", "to", "points", "source", "provenance", "format"},
-                     series_formats,
-                     channels},
-    RunQuestionEntry{
-        "packets", {"apid", "name", "from", "to", "verdict", "after", "limit", "format"}, list_formats, packets},
-    RunQuestionEntry{"tones", {"text", "from", "to", "after", "limit", "format"}, list_formats, tones},
-    RunQuestionEntry{
-        "events", {"level", "text", "from", "to", "after", "limit", "duplicates", "format"}, list_formats, events},
-    RunQuestionEntry{"commands", {"text", "from", "to", "format"}, list_formats, commands},
-    RunQuestionEntry{"alarms", {"state", "after", "limit", "format"}, list_formats, alarms},
-    RunQuestionEntry{"notes", {"text", "after", "limit", "format"}, list_formats, notes},
-    RunQuestionEntry{"interventions", {"format"}, list_formats, interventions},
-    RunQuestionEntry{"preconditions", {"command", "at"}, {}, preconditions},
-    RunQuestionEntry{"timepoints", {"at", "recorded", "command", "arguments", "format"}, list_formats, timepoints},
-    RunQuestionEntry{"explanations",
-                     {"decision", "text", "from", "to", "after", "limit", "duplicates", "format"},
-                     list_formats,
-                     explanations},
-    RunQuestionEntry{"recording", {}, {}, recording},
-    RunQuestionEntry{"proof", {"format"}, report_formats, proof},
-    RunQuestionEntry{"report", {"format"}, report_formats, report},
-    RunQuestionEntry{"state", {"at"}, {}, state},
+    RunRoute{"", {}, {}, run_itself},
+    RunRoute{"channels",
+             {"names", "expression", "from", "to", "points", "source", "provenance", "format"},
+             series_formats,
+             channels},
+    RunRoute{"packets", {"apid", "name", "from", "to", "verdict", "after", "limit", "format"}, list_formats, packets},
+    RunRoute{"tones", {"text", "from", "to", "after", "limit", "format"}, list_formats, tones},
+    RunRoute{"events", {"level", "text", "from", "to", "after", "limit", "duplicates", "format"}, list_formats, events},
+    RunRoute{"commands", {"text", "from", "to", "format"}, list_formats, commands},
+    RunRoute{"alarms", {"state", "after", "limit", "format"}, list_formats, alarms},
+    RunRoute{"notes", {"text", "after", "limit", "format"}, list_formats, notes},
+    RunRoute{"interventions", {"format"}, list_formats, interventions},
+    RunRoute{"preconditions", {"command", "at"}, {}, preconditions},
+    RunRoute{"timepoints", {"at", "recorded", "command", "arguments", "format"}, list_formats, timepoints},
+    RunRoute{"explanations",
+             {"decision", "text", "from", "to", "after", "limit", "duplicates", "format"},
+             list_formats,
+             explanations},
+    RunRoute{"recording", {}, {}, recording},
+    RunRoute{"proof", {"format"}, report_formats, proof},
+    RunRoute{"report", {"format"}, report_formats, report},
+    RunRoute{"state", {"at"}, {}, state},
 };
 
 }  // namespace
@@ -454,8 +457,8 @@ Result<archive::SclkRange> range_of(const QueryText& query, archive::Reader& rea
     return archive::SclkRange{seconds(*from), seconds(*to)};
 }
 
-const RunQuestionEntry* run_question(std::string_view name) {
-    const auto* const found = std::ranges::find(questions, name, &RunQuestionEntry::name);
+const RunRoute* run_question(std::string_view name) {
+    const auto* const found = std::ranges::find(questions, name, &RunRoute::name);
     return found == questions.end() ? nullptr : found;
 }
 

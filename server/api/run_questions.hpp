@@ -10,18 +10,19 @@
 namespace aeolis::server {
 
 /// What an answer may need besides the archive.
-struct Ground {
+struct AnswerContext {
     const dictionary::Dictionary& dictionary;
     std::optional<Ert> now;  ///< only of the current run
     bool instructor;         ///< the operator may rehearse
 };
 
-/// A question about one run: the last part of its path, its parameters, the formats of its answer, and its handler.
-struct RunQuestionEntry {
+/// A route to a question about one run: the last part of its path, its parameters, the formats of its answer, and its
+/// handler.
+struct RunRoute {
     std::string_view name;  ///< "events" in /api/v1/runs/{run}/events; "" for the run itself
     std::vector<std::string_view> parameters;
     std::span<const std::string_view> formats;  ///< allowed values of the parameter "format"; empty: JSON only
-    HttpResponse (*answer)(const Ground&, archive::Reader&, archive::RunId, const QueryText&);
+    HttpResponse (*answer)(const AnswerContext&, archive::Reader&, archive::RunId, const QueryText&);
 };
 
 /// Reads a parameter that names an instant: seconds of SCLK, or SCET as day_of_year_text() writes it, converted by the
@@ -35,7 +36,7 @@ Result<archive::SclkRange> range_of(const QueryText& query, archive::Reader& rea
 std::string as_flown_csv(const v1::AsFlownReport& report);
 
 /// Finds a question by name. Null when there is none.
-const RunQuestionEntry* run_question(std::string_view name);
+const RunRoute* run_question(std::string_view name);
 std::string run_question_names();
 
 }  // namespace aeolis::server

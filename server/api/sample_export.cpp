@@ -52,17 +52,17 @@ struct SampleExport : std::enable_shared_from_this<SampleExport> {
 
 }  // namespace
 
-void Api::export_samples(const ApiRequest& asked) {
-    auto query = QueryText::parse(asked.request.query, {"names", "from", "to", "format", "align"});
-    if (!query) return asked.respond(error_response(400, query.error()));
+void Api::export_samples(const ApiRequest& call) {
+    auto query = QueryText::parse(call.request.query, {"names", "from", "to", "format", "align"});
+    if (!query) return call.respond(error_response(400, query.error()));
     auto channels = query->list("names");
     auto text = SampleText::make(parts_.dictionary, channels,
                                  {query->text("format").value_or("csv"), query->text("align").value_or("")});
-    if (!text) return asked.respond(error_response(400, text.error()));
+    if (!text) return call.respond(error_response(400, text.error()));
     auto wanted = std::make_shared<SampleExport>(parts_.queries, std::move(*text));
     wanted->channels = std::move(channels);
-    wanted->gone = asked.request.gone;
-    ask(asked, std::move(*query),
+    wanted->gone = call.request.gone;
+    ask(call, std::move(*query),
         [wanted](archive::Reader& reader, archive::RunId run, const QueryText& of) -> std::optional<HttpResponse> {
             const auto range = range_of(of, reader, run);
             if (!range) return error_response(400, range.error());

@@ -64,10 +64,10 @@ Result<v1::StateAt> state_at(archive::Reader& reader, archive::RunId run, const 
     if (!values) return values.error();
     const auto state = reader.run(run);
     if (!state) return state.error();
-    const auto cut = at ? Cut{at, archive::heard_at(*state, *at)} : Cut{};
+    const auto cut = at ? Cut{at, archive::ert_of(*state, *at)} : Cut{};
     Stand stand;
     for (archive::Sequence after = 0;;) {
-        auto page = reader.items(run, after, archive::items_page_max, {.samples = false, .units = false});
+        auto page = reader.items(run, after, archive::items_page_max, {.samples = false, .packets = false});
         if (!page) return page.error();
         for (const auto& item : page->items) stand.take(item, cut);
         if (!page->more) break;

@@ -18,9 +18,9 @@ constexpr double pace_without_further_thinning = 8.0;
 
 constexpr std::size_t sessions_ahead = 4;  // chosen
 
-double thinning_interval_s(const StreamShape& shape, const v1::RunState& state) {
-    if (shape.max_rate_hz <= 0.0) return 0.0;
-    return std::max(1.0, state.attained_pace() / pace_without_further_thinning) / shape.max_rate_hz;
+double thinning_interval_s(const StreamSelection& selection, const v1::RunState& state) {
+    if (selection.max_rate_hz <= 0.0) return 0.0;
+    return std::max(1.0, state.attained_pace() / pace_without_further_thinning) / selection.max_rate_hz;
 }
 
 /// Whether a sample at `sclk` begins a new interval after the previous sample.
@@ -50,29 +50,29 @@ v1::Samples some_of(const v1::Samples& samples, const std::vector<std::uint32_t>
     return chosen;
 }
 
-std::vector<DueItem> due_of(std::span<const ItemBefore> items, double interval_s, bool units) {
+std::vector<DueItem> due_of(std::span<const ItemWithFacts> items, double interval_s, bool packets) {
     std::vector<DueItem> due;
-    for (const auto& [item, before] : items) {
-        if (item->has_unit() && (!units || item->unit().source() == v1::SOURCE_RECORDED)) continue;
+    for (const auto& [item, facts] : items) {
+        if (item->has_unit() && (!packets || item->unit().source() == v1::SOURCE_RECORDED)) continue;
         if (!item->has_samples()) {
             due.push_back({item});
             continue;
         }
         const double sclk = item->samples().sclk();
-        if (interval_s > 0.0 && !begins_interval(sclk, before.previous_sclk, interval_s)) continue;
-        due.push_back({item, interval_s > 0.0 && before.previous_sclk && sclk - *before.previous_sclk < interval_s,
-                       before.ascend});
+        if (interval_s > 0.0 && !begins_interval(sclk, facts.previous_sclk, interval_s)) continue;
+        due.push_back(
+            {item, interval_s > 0.0 && facts.previous_sclk && sclk - *facts.previous_sclk < interval_s, facts.ascend});
     }
     return due;
 }
 
-void add_items(const StreamShape& shape, std::span<const DueItem> due, v1::Batch& batch) {
+void add_items(const StreamSelection& selection, std::span<const DueItem> due, v1::Batch& batch) {
     for (const auto& [item, thinned, ascend] : due) {
-        if (!item->has_samples() || shape.all_channels) {
+        if (!item->has_samples() || selection.all_channels) {
             *batch.add_items() = *item;
         } else {
             const auto& samples = item->samples();
-            auto chosen = some_of(samples, shape.channels, ascend);
+            auto chosen = some_of(samples, selection.channels, ascend);
             if (chosen.ids_size() == 0) continue;
             chosen.set_sclk(samples.sclk());
             chosen.set_source(samples.source());
@@ -92,11 +92,12 @@ Encoded encode(const v1::ServerMessage& message, StreamFormat format) {
                                                                             : message.SerializeAsString());
 }
 
-void select_items(const StreamShape& shape, double interval_s, std::span<const ItemBefore> items, v1::Batch& batch) {
-    add_items(shape, due_of(items, interval_s, shape.units), batch);
+void select_items(const StreamSelection& selection, double interval_s, std::span<const ItemWithFacts> items,
+                  v1::Batch& batch) {
+    add_items(selection, due_of(items, interval_s, selection.packets), batch);
 }
 
-SamplesBefore SampleSpacing::next(const v1::Item& item) {
+SampleFacts SampleSpacing::next(const v1::Item& item) {
     if (!item.has_samples() || item.samples().ids_size() == 0) return {};
     return {previous(item.samples()), std::ranges::is_sorted(item.samples().ids())};
 }
@@ -121,8 +122,8 @@ void StreamHub::published(std::shared_ptr<const pipeline::PublishedBatch> batch)
         forget_items();
     } else {
         Held held{std::move(batch), {}};
-        held.samples.reserve(held.batch->items.size());
-        for (const auto& item : held.batch->items) held.samples.push_back(spacing_.next(item));
+        held.facts.reserve(held.batch->items.size());
+        for (const auto& item : held.batch->items) held.facts.push_back(spacing_.next(item));
         held_items_ += held.batch->items.size();
         held_.push_back(std::move(held));
         while (held_items_ > items_max) {
@@ -142,9 +143,9 @@ void StreamHub::forget_items() {
 
 void StreamHub::run_state(v1::RunState state) {
     if (state.run() != state_.run()) {
-        before_ = std::move(state_);
-        before_.set_last_seq(last_seq_);
-        before_version_ = state_version_;
+        previous_run_state_ = std::move(state_);
+        previous_run_state_.set_last_seq(last_seq_);
+        previous_run_state_version_ = state_version_;
         last_seq_ = state.last_seq();  // of a finished run, from the archive; of a new one 0
         forget_items();
         cache_.clear();
@@ -201,46 +202,47 @@ bool StreamHub::holds(archive::Sequence after) const {
     return !held_.empty() && held_.front().batch->first_seq <= after + 1;
 }
 
-const StreamHub::Range& StreamHub::range_after(archive::Sequence after, double interval_s, bool units) {
+const StreamHub::Range& StreamHub::range_after(archive::Sequence after, double interval_s, bool packets) {
     if (range_ && range_->after == after && range_->last_seq == last_seq_ && range_->interval_s == interval_s &&
-        range_->units == units)
+        range_->packets == packets)
         return *range_;
-    std::vector<ItemBefore> items;
+    std::vector<ItemWithFacts> items;
     const auto last_of = [](const Held& held) { return held.batch->last_seq; };
     for (auto held = std::ranges::upper_bound(held_, after, {}, last_of);
          held != held_.end() && items.size() < message_items_max; ++held) {
         for (std::size_t i = 0; i < held->batch->items.size() && items.size() < message_items_max; ++i)
-            if (held->batch->items[i].seq() > after) items.push_back({&held->batch->items[i], held->samples[i]});
+            if (held->batch->items[i].seq() > after) items.push_back({&held->batch->items[i], held->facts[i]});
     }
     return range_.emplace(Range{after, last_seq_, items.empty() ? last_seq_ : items.back().item->seq(), interval_s,
-                                units, due_of(items, interval_s, units)});
+                                packets, due_of(items, interval_s, packets)});
 }
 
-StreamHub::Fresh StreamHub::fresh(const StreamShape& shape, archive::Sequence after, archive::Sequence sent_through) {
+StreamHub::EncodedRange StreamHub::encoded_range(const StreamSelection& selection, archive::Sequence after,
+                                                 archive::Sequence sent_through) {
     for (const auto& cached : cache_ | std::views::reverse) {  // the newest is requested most
         if (cached.after == after && cached.sent_through == sent_through && cached.last_seq == last_seq_ &&
-            cached.clocks_version == clocks_version_ && cached.shape == shape) {
+            cached.clocks_version == clocks_version_ && cached.selection == selection) {
             ++figures.shared;
-            return cached.fresh;
+            return cached.encoded;
         }
     }
-    const auto& range = range_after(after, thinning_interval_s(shape, state_), shape.units);
-    Fresh fresh;
-    fresh.through = range.through;
+    const auto& range = range_after(after, thinning_interval_s(selection, state_), selection.packets);
+    EncodedRange encoded;
+    encoded.through = range.through;
     v1::ServerMessage message;
     auto& batch = *message.mutable_batch();
-    add_items(shape, range.items, batch);
+    add_items(selection, range.items, batch);
     if (batch.items_size() > 0) {
         batch.set_run(state_.run());
         batch.set_after_seq(sent_through);
-        batch.set_complete_through(fresh.through);
+        batch.set_complete_through(encoded.through);
         *batch.mutable_clocks() = clocks_;
-        fresh.message = encode(message, shape.format);
+        encoded.message = encode(message, selection.format);
     }
     ++figures.encodings;
-    cache_.push_back({shape, after, sent_through, last_seq_, clocks_version_, fresh});
+    cache_.push_back({selection, after, sent_through, last_seq_, clocks_version_, encoded});
     if (cache_.size() > shared_encodings) cache_.pop_front();
-    return fresh;
+    return encoded;
 }
 
 Encoded StreamHub::encoded_state(StreamFormat format) {

@@ -26,25 +26,25 @@ enum class StreamFormat : std::uint8_t { protobuf, json };
 using Encoded = std::shared_ptr<const std::string>;
 Encoded encode(const v1::ServerMessage& message, StreamFormat format);
 
-/// What a subscription selects and how it is encoded. Clients with equal shapes receive the same octets.
-struct StreamShape {
+/// What a subscription selects and how it is encoded. Clients with equal selections receive the same octets.
+struct StreamSelection {
     StreamFormat format{};
     bool all_channels = false;
     std::vector<std::uint32_t> channels;  ///< ascending
     double max_rate_hz = 0.0;
-    bool units = true;
-    bool operator==(const StreamShape&) const = default;
+    bool packets = true;
+    bool operator==(const StreamSelection&) const = default;
 };
 
 /// Facts about an item's samples, computed once for all clients.
-struct SamplesBefore {
+struct SampleFacts {
     std::optional<double> previous_sclk;  ///< of the same packet; makes thinning stateless per client
     bool ascend = false;                  ///< their channel ids ascend: allows binary search
 };
 /// A published item with the facts about its samples.
-struct ItemBefore {
+struct ItemWithFacts {
     const v1::Item* item = nullptr;
-    SamplesBefore samples;
+    SampleFacts facts;
 };
 
 /// An item due at some client rate; each client receives those of its samples that it subscribed to.
@@ -53,15 +53,16 @@ struct DueItem {
     bool thinned = false, ascend = false;
 };
 
-/// Selects what goes into a Batch for this shape. Commands, events, alarms, tones, firings, explanations, links: all.
+/// Adds the selected items to a Batch. Commands, events, alarms, tones, firings, explanations, links: all.
 /// Samples: the subscribed channels; with `interval_s` > 0 at least that far apart (vehicle time) and marked thinned.
-/// Packets: those received live, if the shape includes packets; the recording's are at /packets.
-void select_items(const StreamShape& shape, double interval_s, std::span<const ItemBefore> items, v1::Batch& batch);
+/// Packets: those received live, if the selection includes packets; the recording's are at /packets.
+void select_items(const StreamSelection& selection, double interval_s, std::span<const ItemWithFacts> items,
+                  v1::Batch& batch);
 
 /// Finds the sample before each item's samples. Call in item order.
 class SampleSpacing {
   public:
-    SamplesBefore next(const v1::Item& item);
+    SampleFacts next(const v1::Item& item);
 
   private:
     std::optional<double> previous(const v1::Samples& samples);
@@ -112,19 +113,21 @@ class StreamHub {
     const v1::RunState& state() const { return state_; }
     std::uint64_t state_version() const { return state_version_; }
     /// The run before the current one, in its last state; run 0: none since the server started.
-    const v1::RunState& before() const { return before_; }
-    std::uint64_t before_version() const { return before_version_; }  ///< the state_version() of before()
+    const v1::RunState& previous_run_state() const { return previous_run_state_; }
+    /// The state_version() of previous_run_state().
+    std::uint64_t previous_run_state_version() const { return previous_run_state_version_; }
     const v1::Clocks& latest_clocks() const { return clocks_; }
     std::uint64_t clocks_version() const { return clocks_version_; }
     archive::Sequence last_seq() const { return last_seq_; }  ///< last item published of the current run
     bool holds(archive::Sequence after) const;                ///< whether every item after `after` is still in memory
 
-    struct Fresh {
-        Encoded message;  ///< null: nothing in this range matches the shape
+    struct EncodedRange {
+        Encoded message;  ///< null: nothing in this range matches the selection
         archive::Sequence through = 0;
     };
-    /// The items after `after`, at most message_items_max, encoded for `shape`. Requires holds(after).
-    Fresh fresh(const StreamShape& shape, archive::Sequence after, archive::Sequence sent_through);
+    /// The items after `after`, at most message_items_max, encoded for `selection`. Requires holds(after).
+    EncodedRange encoded_range(const StreamSelection& selection, archive::Sequence after,
+                               archive::Sequence sent_through);
     Encoded encoded_state(StreamFormat format);
 
     struct Figures {
@@ -136,31 +139,31 @@ class StreamHub {
   private:
     struct Held {
         std::shared_ptr<const pipeline::PublishedBatch> batch;
-        std::vector<SamplesBefore> samples;  ///< per item
+        std::vector<SampleFacts> facts;  ///< per item
     };
     struct Cached {
-        StreamShape shape;
+        StreamSelection selection;
         archive::Sequence after = 0, sent_through = 0, last_seq = 0;
         std::uint64_t clocks_version = 0;
-        Fresh fresh;
+        EncodedRange encoded;
     };
     /// The items that go out after `after` at one rate. Most clients are equally far, whatever their channels, so that
     /// this is shared.
     struct Range {
         archive::Sequence after = 0, last_seq = 0, through = 0;
         double interval_s = 0.0;
-        bool units = false;
+        bool packets = false;
         std::vector<DueItem> items;
     };
     void wake_all();
-    const Range& range_after(archive::Sequence after, double interval_s, bool units);
+    const Range& range_after(archive::Sequence after, double interval_s, bool packets);
     void forget_items();
 
     std::uint16_t dictionary_id_;
     Services services_;
     std::vector<StreamSession*> sessions_;
-    v1::RunState state_, before_;
-    std::uint64_t before_version_ = 0;
+    v1::RunState state_, previous_run_state_;
+    std::uint64_t previous_run_state_version_ = 0;
     v1::Clocks clocks_;
     std::uint64_t state_version_ = 0, clocks_version_ = 0;
     archive::Sequence last_seq_ = 0;

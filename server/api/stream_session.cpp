@@ -32,7 +32,7 @@ StreamSession::Client StreamSession::follower() {
 
 StreamSession::StreamSession(StreamHub& hub, StreamFormat format, std::function<void()> wake, Client client)
     : hub_(hub), wake_(std::move(wake)), client_(std::move(client)) {
-    shape_.format = format;
+    selection_.format = format;
     hub_.add(*this);
 }
 
@@ -48,7 +48,7 @@ std::string StreamSession::closing() const {
 void StreamSession::check() {
     look_at_rights();
     if (!refusal_.empty()) return;
-    if (const auto again = std::exchange(again_, nullptr)) again();
+    if (const auto retry = std::exchange(retry_, nullptr)) retry();
 }
 
 void StreamSession::look_at_rights() {
@@ -59,7 +59,7 @@ void StreamSession::look_at_rights() {
 
 void StreamSession::on_message(std::string_view payload) {
     v1::ClientMessage message;
-    if (shape_.format == StreamFormat::json) {
+    if (selection_.format == StreamFormat::json) {
         if (const auto parsed = from_json(payload, message); !parsed) return refuse(parsed.error().message);
     } else if (!message.ParseFromArray(payload.data(), static_cast<int>(payload.size()))) {
         return refuse(fmt::format("these {} octets are not a ClientMessage of aeolis.v1", payload.size()));
@@ -95,7 +95,7 @@ void StreamSession::refuse(std::string reason) {
 }
 
 void StreamSession::reply(const v1::ServerMessage& message) {
-    replies_.push_back(encode(message, shape_.format));
+    replies_.push_back(encode(message, selection_.format));
     wake_();
 }
 
@@ -106,14 +106,14 @@ void StreamSession::subscribe(const v1::Subscribe& subscribe) {
     const std::uint64_t run = subscribe.run() == 0 ? hub_.current_run() : subscribe.run();
     if (auto refusal = refusal_of_pace(subscribe.pace(), run); !refusal.empty()) return refuse(std::move(refusal));
     ++subscription_;
-    again_ = next_question_ = nullptr;
+    retry_ = next_question_ = nullptr;
     waiting_for_run_ = stall_told_ = false;
     due_.reset();
-    shape_.all_channels = subscribe.all_channels();
-    shape_.channels.assign(subscribe.channels().begin(), subscribe.channels().end());
-    std::ranges::sort(shape_.channels);
-    shape_.max_rate_hz = subscribe.max_rate_hz();
-    shape_.units = !subscribe.without_units();
+    selection_.all_channels = subscribe.all_channels();
+    selection_.channels.assign(subscribe.channels().begin(), subscribe.channels().end());
+    std::ranges::sort(selection_.channels);
+    selection_.max_rate_hz = subscribe.max_rate_hz();
+    selection_.packets = !subscribe.without_units();
     pace_ = subscribe.pace();
     newest_run_ = subscribe.run() == 0 && pace_ == 0.0;  // a replay goes to its end, even if another run begins
     if (run == 0 || run == hub_.current_run()) {
@@ -131,9 +131,9 @@ void StreamSession::subscribe(const v1::Subscribe& subscribe) {
 }
 
 std::string StreamSession::refusal_of_pace(double pace, std::uint64_t run) const {
-    if (!std::isfinite(pace) || pace < 0.0 || pace > ReplayPace::pace_max)
+    if (!std::isfinite(pace) || pace < 0.0 || pace > ReplaySchedule::pace_max)
         return fmt::format("pace: {} is none: above 0 and up to {} is wanted, or 0 for as fast as it goes", pace,
-                           ReplayPace::pace_max);
+                           ReplaySchedule::pace_max);
     if (pace == 0.0) return {};
     if (run == 0) return "pace: it is for a run that is over, and there is none yet";
     if (run == hub_.current_run() && !is_over(hub_.state()))
@@ -182,14 +182,14 @@ void StreamSession::answered() {
     if (auto next = std::exchange(next_question_, nullptr)) ask(std::move(next));
 }
 
-void StreamSession::stall(const std::string& why, std::function<void()> again) {
-    again_ = std::move(again);
+void StreamSession::stall(const std::string& why, std::function<void()> retry) {
+    retry_ = std::move(retry);
     if (!std::exchange(stall_told_, true)) refuse("the archive could not be read, it is tried again: " + why);
 }
 
 void StreamSession::follow(std::uint64_t run, archive::Sequence after) {
     run_ = run;
-    replay_ = pace_ > 0.0 ? std::optional{ReplayPace{pace_}} : std::nullopt;
+    replay_ = pace_ > 0.0 ? std::optional{ReplaySchedule{pace_}} : std::nullopt;
     due_.reset();
     next_batch_ = {};
     // A position beyond the end means another run: start at the end.
@@ -198,7 +198,7 @@ void StreamSession::follow(std::uint64_t run, archive::Sequence after) {
     page_.reset();
     page_spacing_ = {};
     reading_ = exhausted_ = was_live_ = stall_told_ = false;
-    again_ = nullptr;
+    retry_ = nullptr;
     welcome_due_ = true;
 }
 
@@ -217,7 +217,7 @@ Encoded StreamSession::welcome() {
         welcome.set_last_seq(last);
     }
     if (follows_current()) state_sent_ = hub_.state_version();
-    return encode(message, shape_.format);
+    return encode(message, selection_.format);
 }
 
 bool StreamSession::behind() const {
@@ -261,10 +261,10 @@ Encoded StreamSession::next_due() {
     if (follows_current() && state_sent_ != hub_.state_version()) {
         state_sent_ = hub_.state_version();
         tell_through_ = true;
-        return hub_.encoded_state(shape_.format);
+        return hub_.encoded_state(selection_.format);
     }
     if (auto message = next_items()) return message;
-    if (!follows_current() || reading_ || again_) return nullptr;
+    if (!follows_current() || reading_ || retry_) return nullptr;
     const bool through_due = std::exchange(tell_through_, false) && sent_through_ < cursor_;
     if (through_due || clocks_sent_ != hub_.clocks_version()) {
         clocks_sent_ = hub_.clocks_version();
@@ -275,7 +275,7 @@ Encoded StreamSession::next_due() {
         batch.set_complete_through(cursor_);
         *batch.mutable_clocks() = hub_.latest_clocks();
         sent_through_ = cursor_;
-        return encode(message, shape_.format);
+        return encode(message, selection_.format);
     }
     return nullptr;
 }
@@ -283,16 +283,17 @@ Encoded StreamSession::next_due() {
 bool StreamSession::gave_all_of_run() const {
     if (run_ == 0) return true;
     if (older_run_.run() == run_) return exhausted_ && !page_;
-    return hub_.before().run() == run_ && cursor_ >= hub_.before().last_seq();
+    return hub_.previous_run_state().run() == run_ && cursor_ >= hub_.previous_run_state().last_seq();
 }
 
 Encoded StreamSession::last_state_of_run() {
-    if (hub_.before().run() != run_ || cursor_ < hub_.before().last_seq() || state_sent_ >= hub_.before_version())
+    if (hub_.previous_run_state().run() != run_ || cursor_ < hub_.previous_run_state().last_seq() ||
+        state_sent_ >= hub_.previous_run_state_version())
         return nullptr;
-    state_sent_ = hub_.before_version();
+    state_sent_ = hub_.previous_run_state_version();
     v1::ServerMessage message;
-    *message.mutable_run_state() = hub_.before();
-    return encode(message, shape_.format);
+    *message.mutable_run_state() = hub_.previous_run_state();
+    return encode(message, selection_.format);
 }
 
 Encoded StreamSession::next_items() {
@@ -302,7 +303,7 @@ Encoded StreamSession::next_items() {
             if (due_) return nullptr;
             continue;
         }
-        if (reading_ || again_) return nullptr;
+        if (reading_ || retry_) return nullptr;
         if (!follows_current()) {
             if (!exhausted_) ask_archive();
             return nullptr;
@@ -315,12 +316,12 @@ Encoded StreamSession::next_items() {
             ask_archive();
             return nullptr;
         }
-        auto fresh = hub_.fresh(shape_, cursor_, sent_through_);
-        cursor_ = fresh.through;
-        if (!fresh.message) continue;
-        sent_through_ = fresh.through;
+        auto encoded = hub_.encoded_range(selection_, cursor_, sent_through_);
+        cursor_ = encoded.through;
+        if (!encoded.message) continue;
+        sent_through_ = encoded.through;
         clocks_sent_ = hub_.clocks_version();
-        return fresh.message;
+        return encoded.message;
     }
 }
 
@@ -333,7 +334,7 @@ std::optional<archive::ItemPage> StreamSession::take_page() {
     }
     archive::ItemPage part;
     auto& items = page_->items;
-    const auto items_max = shape_.format == StreamFormat::json ? json_items : items.size();
+    const auto items_max = selection_.format == StreamFormat::json ? json_items : items.size();
     while (page_taken_ < items.size() && part.items.size() < items_max) {
         if (const auto due = replay_ ? replay_->due(items[page_taken_], now) : now; due > now) {
             due_ = due;
@@ -354,14 +355,14 @@ Encoded StreamSession::from_page() {
     const auto taken = take_page();
     if (!taken) return nullptr;
     const auto& page = *taken;
-    std::vector<ItemBefore> items;
+    std::vector<ItemWithFacts> items;
     items.reserve(page.items.size());
     for (const auto& item : page.items) items.push_back({&item, page_spacing_.next(item)});
-    double interval_s = shape_.max_rate_hz > 0.0 ? 1.0 / shape_.max_rate_hz : 0.0;
+    double interval_s = selection_.max_rate_hz > 0.0 ? 1.0 / selection_.max_rate_hz : 0.0;
     if (was_live_ && follows_current()) interval_s = std::max(interval_s, catching_up_interval_s);
     v1::ServerMessage message;
     auto& batch = *message.mutable_batch();
-    select_items(shape_, interval_s, items, batch);
+    select_items(selection_, interval_s, items, batch);
     cursor_ = std::max(cursor_, page.complete_through);
     exhausted_ = !page.more;
     const bool last = exhausted_ || (follows_current() && cursor_ >= hub_.last_seq());
@@ -373,7 +374,7 @@ Encoded StreamSession::from_page() {
     batch.set_complete_through(cursor_);
     if (follows_current()) *batch.mutable_clocks() = hub_.latest_clocks();
     sent_through_ = cursor_;
-    return encode(message, shape_.format);
+    return encode(message, selection_.format);
 }
 
 void StreamSession::ask_archive() {
@@ -384,8 +385,8 @@ void StreamSession::ask_archive() {
 void StreamSession::read_page() {
     ++hub_.figures.archive_pages;
     archive::Reader::ItemKinds kinds;
-    kinds.samples = shape_.all_channels || !shape_.channels.empty();
-    kinds.units = shape_.units || replay_;  // a replay needs packets for their times on Earth
+    kinds.samples = selection_.all_channels || !selection_.channels.empty();
+    kinds.packets = selection_.packets || replay_;  // a replay needs packets for their times on Earth
     hub_.services().read_items(archive::RunId{static_cast<std::uint32_t>(run_)}, cursor_, page_items, kinds,
                                [self = weak_from_this(), subscription = subscription_](Result<archive::ItemPage> page) {
                                    const auto session = self.lock();
@@ -393,11 +394,11 @@ void StreamSession::read_page() {
                                    session->answered();
                                    if (session->subscription_ != subscription) return;
                                    session->reading_ = false;
-                                   const auto again = [session = session.get()] { session->ask_archive(); };
-                                   if (!page) return session->stall(page.error().message, again);
+                                   const auto retry = [session = session.get()] { session->ask_archive(); };
+                                   if (!page) return session->stall(page.error().message, retry);
                                    if (page->complete_through <= session->cursor_ && session->follows_current())
                                        return session->stall(fmt::format("it holds nothing after {}", session->cursor_),
-                                                             again);
+                                                             retry);
                                    session->stall_told_ = false;
                                    session->page_ = std::move(*page);
                                    session->page_taken_ = 0;

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "aeolis/v1/stream.pb.h"
-#include "server/api/replay_pace.hpp"
+#include "server/api/replay_schedule.hpp"
 #include "server/api/stream_hub.hpp"
 
 #include <deque>
@@ -47,13 +47,13 @@ class StreamSession : public std::enable_shared_from_this<StreamSession> {
     StreamSession(const StreamSession&) = delete;
     StreamSession& operator=(const StreamSession&) = delete;
 
-    StreamFormat format() const { return shape_.format; }
+    StreamFormat format() const { return selection_.format; }
     /// Handles one message from the client. A request that cannot be served is answered with a Refusal.
     void on_message(std::string_view payload);
     /// The next message to write; null when there is none now: then wake() is called, or due() says when.
     Encoded next_message();
     /// When next_message() will have something without further input; none: never. Only in a replay at a pace.
-    std::optional<ReplayPace::Clock::time_point> due() const { return due_; }
+    std::optional<ReplaySchedule::Clock::time_point> due() const { return due_; }
     /// Whether the client has not yet received everything for it. Items not yet due do not count.
     bool behind() const;
     /// Why the connection should close; empty: it should not.
@@ -68,7 +68,7 @@ class StreamSession : public std::enable_shared_from_this<StreamSession> {
     /// Why no run, or not this one, can be replayed at that pace; empty: it can.
     std::string refusal_of_pace(double pace, std::uint64_t run) const;
     void read_run(std::uint64_t run, archive::Sequence after);
-    void stall(const std::string& why, std::function<void()> again);
+    void stall(const std::string& why, std::function<void()> retry);
     void refuse(std::string reason);
     void reply(const v1::ServerMessage& message);
     void follow(std::uint64_t run, archive::Sequence after);
@@ -92,24 +92,24 @@ class StreamSession : public std::enable_shared_from_this<StreamSession> {
     std::function<void()> wake_;
     Client client_;
     std::string refusal_;
-    StreamShape shape_;
+    StreamSelection selection_;
     std::deque<Encoded> replies_;
 
     bool subscribed_ = false, newest_run_ = false;  ///< newest_run_: subscribed to run 0
     bool welcome_due_ = false, waiting_for_run_ = false;
     std::uint64_t run_ = 0;
-    std::uint64_t subscription_ = 0;                    ///< answers to an older subscription are dropped
-    v1::RunState older_run_;                            ///< state of a run that is not current, or is replayed
-    double pace_ = 0.0;                                 ///< of the subscription; 0: none
-    std::optional<ReplayPace> replay_;                  ///< none: as fast as it is read
-    std::optional<ReplayPace::Clock::time_point> due_;  ///< when the next item is due; none: nothing waits
-    ReplayPace::Clock::time_point next_batch_{};        ///< earliest time of the next batch
-    archive::Sequence cursor_ = 0;                      ///< served up to here
-    archive::Sequence sent_through_ = 0;                ///< last complete_through sent to the client
-    bool asking_ = false;                               ///< an archive query is in progress
-    std::function<void()> next_question_;               ///< null: none waits
+    std::uint64_t subscription_ = 0;                        ///< answers to an older subscription are dropped
+    v1::RunState older_run_;                                ///< state of a run that is not current, or is replayed
+    double pace_ = 0.0;                                     ///< of the subscription; 0: none
+    std::optional<ReplaySchedule> replay_;                  ///< none: as fast as it is read
+    std::optional<ReplaySchedule::Clock::time_point> due_;  ///< when the next item is due; none: nothing waits
+    ReplaySchedule::Clock::time_point next_batch_{};        ///< earliest time of the next batch
+    archive::Sequence cursor_ = 0;                          ///< served up to here
+    archive::Sequence sent_through_ = 0;                    ///< last complete_through sent to the client
+    bool asking_ = false;                                   ///< an archive query is in progress
+    std::function<void()> next_question_;                   ///< null: none waits
     bool reading_ = false, exhausted_ = false, was_live_ = false;
-    std::function<void()> again_;  ///< retries the failed archive read; null: none failed
+    std::function<void()> retry_;  ///< retries the failed archive read; null: none failed
     bool stall_told_ = false;      ///< reported, and nothing read since
     std::optional<archive::ItemPage> page_;
     std::size_t page_taken_ = 0;  ///< number of its items

@@ -9,8 +9,8 @@ std::string joined(const std::vector<ColumnText>& columns, std::string ColumnTex
     return all;
 }
 
-std::span<const std::uint8_t> octets_of_unit(const sqlite::Statement& row) {
-    static const auto columns = columns_of<ItemTable, UnitRecord>();
+std::span<const std::uint8_t> octets_of_packet(const sqlite::Statement& row) {
+    static const auto columns = columns_of<ItemTable, PacketRecord>();
     static const auto octets = std::ranges::find(columns, "octets", &ColumnText::name) - columns.begin();
     return row.octets(2 + static_cast<int>(octets));
 }

@@ -15,11 +15,11 @@ namespace aeolis::archive {
 
 /// How a value is stored in a column: SQL type, whether it may be NULL, binding and reading.
 template <typename Value>
-struct Stored;
+struct ColumnType;
 
 template <typename Value>
-    requires std::is_integral_v<Value> || (std::is_enum_v<Value> && !requires { Spelling<Value>::count; })
-struct Stored<Value> {
+    requires std::is_integral_v<Value> || (std::is_enum_v<Value> && !requires { EnumWords<Value>::count; })
+struct ColumnType<Value> {
     static constexpr char type[] = "INTEGER";
     static constexpr bool nullable = false;
     static void bind(sqlite::Statement& row, int parameter, Value value) {
@@ -29,47 +29,48 @@ struct Stored<Value> {
 };
 
 template <typename Value>
-    requires requires { Spelling<Value>::count; }
-struct Stored<Value> {
+    requires requires { EnumWords<Value>::count; }
+struct ColumnType<Value> {
     static constexpr char type[] = "TEXT";
     static constexpr bool nullable = false;
     static void bind(sqlite::Statement& row, int parameter, Value value) {
-        row.bind(parameter, std::string_view(Spelling<Value>::of(value)));
+        row.bind(parameter, std::string_view(EnumWords<Value>::of(value)));
     }
     static Value read(const sqlite::Statement& row, int column) {
         std::size_t value = 0;
-        while (value + 1 < Spelling<Value>::count && row.text(column) != Spelling<Value>::of(static_cast<Value>(value)))
+        while (value + 1 < EnumWords<Value>::count &&
+               row.text(column) != EnumWords<Value>::of(static_cast<Value>(value)))
             ++value;
         return static_cast<Value>(value);
     }
     /// A constraint that admits only these words.
     static std::string check(const char* name) {
         std::string words;
-        for (std::size_t value = 0; value < Spelling<Value>::count; ++value)
-            words += (value == 0 ? "'" : ", '") + std::string(Spelling<Value>::of(static_cast<Value>(value))) + "'";
+        for (std::size_t value = 0; value < EnumWords<Value>::count; ++value)
+            words += (value == 0 ? "'" : ", '") + std::string(EnumWords<Value>::of(static_cast<Value>(value))) + "'";
         return std::string(" CHECK (") + name + " IN (" + words + "))";
     }
 };
 
 template <typename Tag, typename Number>
-struct Stored<Id<Tag, Number>> : Stored<Number> {
+struct ColumnType<Id<Tag, Number>> : ColumnType<Number> {
     static void bind(sqlite::Statement& row, int parameter, Id<Tag, Number> id) {
-        Stored<Number>::bind(row, parameter, id.value);
+        ColumnType<Number>::bind(row, parameter, id.value);
     }
     static Id<Tag, Number> read(const sqlite::Statement& row, int column) {
-        return {Stored<Number>::read(row, column)};
+        return {ColumnType<Number>::read(row, column)};
     }
 };
 
 template <>
-struct Stored<Ert> : Stored<std::int64_t> {
+struct ColumnType<Ert> : ColumnType<std::int64_t> {
     static void bind(sqlite::Statement& row, int parameter, Ert ert) { row.bind(parameter, ert.microseconds); }
     static Ert read(const sqlite::Statement& row, int column) { return {row.integer(column)}; }
 };
 
 /// A double. SQLite stores NaN as NULL.
 template <>
-struct Stored<double> {
+struct ColumnType<double> {
     static constexpr char type[] = "REAL";
     static constexpr bool nullable = false;
     static void bind(sqlite::Statement& row, int parameter, double value) { row.bind(parameter, value); }
@@ -79,13 +80,13 @@ struct Stored<double> {
 };
 
 template <>
-struct Stored<Sclk> : Stored<double> {
+struct ColumnType<Sclk> : ColumnType<double> {
     static void bind(sqlite::Statement& row, int parameter, Sclk sclk) { row.bind(parameter, sclk.seconds); }
     static Sclk read(const sqlite::Statement& row, int column) { return {row.real(column)}; }
 };
 
 template <>
-struct Stored<std::string> {
+struct ColumnType<std::string> {
     static constexpr char type[] = "TEXT";
     static constexpr bool nullable = false;
     static void bind(sqlite::Statement& row, int parameter, const std::string& text) {
@@ -95,7 +96,7 @@ struct Stored<std::string> {
 };
 
 template <>
-struct Stored<std::vector<std::uint8_t>> {
+struct ColumnType<std::vector<std::uint8_t>> {
     static constexpr char type[] = "BLOB";
     static constexpr bool nullable = false;
     static void bind(sqlite::Statement& row, int parameter, std::span<const std::uint8_t> octets) {
@@ -108,7 +109,7 @@ struct Stored<std::vector<std::uint8_t>> {
 };
 
 template <std::size_t count>
-struct Stored<std::array<std::uint8_t, count>> : Stored<std::vector<std::uint8_t>> {
+struct ColumnType<std::array<std::uint8_t, count>> : ColumnType<std::vector<std::uint8_t>> {
     static std::array<std::uint8_t, count> read(const sqlite::Statement& row, int column) {
         std::array<std::uint8_t, count> octets{};
         const auto stored = row.octets(column);
@@ -121,17 +122,17 @@ struct Stored<std::array<std::uint8_t, count>> : Stored<std::vector<std::uint8_t
 };
 
 template <typename Value>
-struct Stored<std::optional<Value>> : Stored<Value> {
+struct ColumnType<std::optional<Value>> : ColumnType<Value> {
     static constexpr bool nullable = true;
     static void bind(sqlite::Statement& row, int parameter, const std::optional<Value>& value) {
         if (value)
-            Stored<Value>::bind(row, parameter, *value);
+            ColumnType<Value>::bind(row, parameter, *value);
         else
             row.bind_null(parameter);
     }
     static std::optional<Value> read(const sqlite::Statement& row, int column) {
         if (row.is_null(column)) return {};
-        return Stored<Value>::read(row, column);
+        return ColumnType<Value>::read(row, column);
     }
 };
 
@@ -151,9 +152,10 @@ struct DescribeColumns {
     }
     template <typename Value>
     void operator()(const char* name, const Value&, Column column = Column::plain) {
-        add(name, Stored<Value>::type, Stored<Value>::nullable || column == Column::optional,
+        add(name, ColumnType<Value>::type, ColumnType<Value>::nullable || column == Column::optional,
             column == Column::searched);
-        if constexpr (requires { Stored<Value>::check(name); }) columns.back().declared += Stored<Value>::check(name);
+        if constexpr (requires { ColumnType<Value>::check(name); })
+            columns.back().declared += ColumnType<Value>::check(name);
     }
     void operator()(const char* name, OfRun) { add(name, "INTEGER", false); }
     void operator()(const char* name, const Slice&) { add(name, "BLOB", false); }
@@ -179,7 +181,7 @@ struct BindColumns {
                 row.bind_null(parameter++);
                 return;
             }
-        Stored<Value>::bind(row, parameter++, value);
+        ColumnType<Value>::bind(row, parameter++, value);
     }
     void operator()(const char*, OfRun) { row.bind(parameter++, std::int64_t{run.value}); }
     void operator()(const char*, const Slice& octets) {
@@ -198,7 +200,7 @@ struct ReadColumns {
 
     template <typename Value>
     void operator()(const char*, Value& value, Column = Column::plain) {
-        value = Stored<Value>::read(row, column++);
+        value = ColumnType<Value>::read(row, column++);
     }
     void operator()(const char*, OfRun) { ++column; }
     void operator()(const char*, Slice& octets) { octets = {0, row.octets(column++).size()}; }
@@ -254,7 +256,7 @@ template <typename Record>
 Record read_row(const sqlite::Statement& row) {
     Record record;
     record.seq = sequence_of(row.integer(0));
-    record.ert = Stored<Ert>::read(row, 1);
+    record.ert = ColumnType<Ert>::read(row, 1);
     ItemTable<Record>::columns(record, ReadColumns{row, 2});
     return record;
 }
@@ -265,6 +267,6 @@ Part read_part(const sqlite::Statement& row) {
     return part;
 }
 /// The octets of the packet in the current row.
-std::span<const std::uint8_t> octets_of_unit(const sqlite::Statement& row);
+std::span<const std::uint8_t> octets_of_packet(const sqlite::Statement& row);
 
 }  // namespace aeolis::archive

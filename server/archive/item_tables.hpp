@@ -33,34 +33,34 @@ LinkName(Text&) -> LinkName<Text>;
 /// The words of an enumeration stored as text, for people who open the file with other tools: the number of its values,
 /// from 0, and the word of each.
 template <typename Enum>
-struct Spelling;
+struct EnumWords;
 template <>
-struct Spelling<commands::Stage> {
+struct EnumWords<commands::Stage> {
     static constexpr std::size_t count = commands::stage_count;
     static const char* of(commands::Stage stage) { return commands::name_of(stage); }
 };
 template <>
-struct Spelling<commands::Status> {
+struct EnumWords<commands::Status> {
     static constexpr std::size_t count = 4;
     static const char* of(commands::Status status) { return commands::name_of(status); }
 };
 template <>
-struct Spelling<dictionary::EventLevel> {
+struct EnumWords<dictionary::EventLevel> {
     static constexpr std::size_t count = 7;
     static const char* of(dictionary::EventLevel level) { return telemetry::name_of(level); }
 };
 template <>
-struct Spelling<dictionary::Severity> {
+struct EnumWords<dictionary::Severity> {
     static constexpr std::size_t count = 6;
     static const char* of(dictionary::Severity severity) { return telemetry::name_of(severity); }
 };
 template <>
-struct Spelling<telemetry::AlarmAct> {
+struct EnumWords<telemetry::AlarmAct> {
     static constexpr std::size_t count = 4;
     static const char* of(telemetry::AlarmAct act) { return telemetry::name_of(act); }
 };
 template <>
-struct Spelling<CarrierLock> {
+struct EnumWords<CarrierLock> {
     static constexpr std::size_t count = 4;
     static const char* of(CarrierLock lock) { return to_text(lock); }
 };
@@ -74,10 +74,10 @@ template <typename Part>
 struct PartTable;
 
 template <>
-struct ItemTable<UnitRecord> {
+struct ItemTable<PacketRecord> {
     static constexpr char name[] = "units";
     static constexpr bool derived = true;
-    static constexpr auto of_batch = &Batch::units;
+    static constexpr auto of_batch = &Batch::packets;
     static void columns(auto& record, auto&& visit) {
         visit("run", OfRun{});
         visit("apid", record.apid);
@@ -98,7 +98,7 @@ struct ItemTable<EventRecord> {
     static constexpr bool derived = true;
     static constexpr auto of_batch = &Batch::events;
     static void columns(auto& record, auto&& visit) {
-        visit("unit", record.unit);
+        visit("unit", record.packet_seq);
         visit("event", record.id);
         visit("name", record.name, Column::searched);
         visit("level", record.level);
@@ -166,7 +166,7 @@ struct ItemTable<FiringRecord> {
     static constexpr bool derived = true;
     static constexpr auto of_batch = &Batch::firings;
     static void columns(auto& record, auto&& visit) {
-        visit("unit", record.unit);
+        visit("unit", record.packet_seq);
         visit("timepoint", record.timepoint);
         visit("name", record.name);
         visit("triggered_sclk", record.triggered);
@@ -184,7 +184,7 @@ struct ItemTable<ExplanationRecord> {
     static constexpr auto of_batch = &Batch::explanations;
     static auto& parts(auto& record) { return record.explanation.conditions; }
     static void columns(auto& record, auto&& visit) {
-        visit("unit", record.unit);
+        visit("unit", record.packet_seq);
         visit("sclk", record.sclk);
         visit("decision", record.explanation.decision, Column::searched);
         visit("verdict", record.explanation.verdict, Column::searched);
@@ -225,7 +225,7 @@ struct ItemTable<AlarmRecord> {
     static constexpr bool derived = true;
     static constexpr auto of_batch = &Batch::alarms;
     static void columns(auto& record, auto&& visit) {
-        visit("unit", record.unit);
+        visit("unit", record.packet_seq);
         visit("channel", record.channel);
         visit("severity", record.severity);
         visit("value", record.value, Column::optional);
@@ -288,7 +288,7 @@ struct ItemKind {
 
 /// All kinds that have a table. Samples have none: they are decommutated again from their packets.
 template <template <typename> typename Of>
-using OfItemKinds = std::tuple<Of<UnitRecord>, Of<EventRecord>, Of<ToneRecord>, Of<StageRecord>, Of<FiringRecord>,
+using OfItemKinds = std::tuple<Of<PacketRecord>, Of<EventRecord>, Of<ToneRecord>, Of<StageRecord>, Of<FiringRecord>,
                                Of<ExplanationRecord>, Of<LinkRecord>, Of<AlarmRecord>, Of<StalenessRecord>,
                                Of<AlarmActionRecord>, Of<NoteRecord>>;
 

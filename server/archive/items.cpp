@@ -27,23 +27,23 @@ v1::Item item_with(const ItemRecord& record) {
     return item;
 }
 
-constexpr double heard_span_s = 8.0e12;  ///< chosen: 250 000 years; in microseconds still an int64
+constexpr double ert_span_s = 8.0e12;  ///< chosen: 250 000 years; in microseconds still an int64
 }  // namespace
 
-v1::Item to_item(const UnitRecord& record, const dictionary::Dictionary* dictionary) {
+v1::Item to_item(const PacketRecord& record, const dictionary::Dictionary* dictionary) {
     v1::Item item = item_with(record);
-    auto& unit = *item.mutable_unit();
-    unit.set_unit(record.seq);
-    unit.set_apid(record.apid.value);
+    auto& packet = *item.mutable_unit();
+    packet.set_unit(record.seq);
+    packet.set_apid(record.apid.value);
     if (!record.packet)
-        unit.set_name("not decoded: " + record.refusal);
+        packet.set_name("not decoded: " + record.refusal);
     else if (dictionary != nullptr)
-        unit.set_name(dictionary->packets[*record.packet].name);
-    unit.set_sclk(record.sclk.seconds);
-    unit.set_octets(static_cast<std::uint32_t>(record.octets.count));
-    unit.set_link(record.link);
-    unit.set_source(source_of(record.source));
-    unit.set_duplicate(record.duplicate());
+        packet.set_name(dictionary->packets[*record.packet].name);
+    packet.set_sclk(record.sclk.seconds);
+    packet.set_octets(static_cast<std::uint32_t>(record.octets.count));
+    packet.set_link(record.link);
+    packet.set_source(source_of(record.source));
+    packet.set_duplicate(record.duplicate());
     return item;
 }
 
@@ -226,15 +226,15 @@ ClockCorrelation correlation_of(const v1::RunState& run) {
             clock.leap_seconds(), clock.version()};
 }
 
-Ert heard_at(const v1::RunState& run, Sclk at) {
+Ert ert_of(const v1::RunState& run, Sclk at) {
     const auto clock = correlation_of(run);
     const double since_s = (at - clock.sclk) * clock.rate + run.light_time_s();
-    if (since_s > heard_span_s) return {std::numeric_limits<std::int64_t>::max()};
-    if (since_s < -heard_span_s) return {std::numeric_limits<std::int64_t>::min()};
+    if (since_s > ert_span_s) return {std::numeric_limits<std::int64_t>::max()};
+    if (since_s < -ert_span_s) return {std::numeric_limits<std::int64_t>::min()};
     return {clock.scet_of(at).microseconds + static_cast<std::int64_t>(run.light_time_s() * 1.0e6)};
 }
 
-Sclk seen_at(const v1::RunState& run, Ert ert) {
+Sclk sclk_at_ert(const v1::RunState& run, Ert ert) {
     return correlation_of(run).sclk_of(Scet{ert.microseconds - static_cast<std::int64_t>(run.light_time_s() * 1.0e6)});
 }
 

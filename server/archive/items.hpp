@@ -17,7 +17,7 @@ namespace aeolis::archive {
 
 /// The name of an undecoded packet is the reason. Without a dictionary (another was used to record the run) it is
 /// empty.
-v1::Item to_item(const UnitRecord& record, const dictionary::Dictionary* dictionary);
+v1::Item to_item(const PacketRecord& record, const dictionary::Dictionary* dictionary);
 /// @param values  one per channel; NaN is left out
 v1::Item to_item(const SampleRecord& record, std::span<const ChannelId> channels, std::span<const double> values);
 v1::Item to_item(const EventRecord& record);
@@ -47,9 +47,9 @@ v1::ClockReply to_reply(const ClockCorrelation& clock);
 ClockCorrelation correlation_of(const v1::RunState& run);
 /// When on Earth the event on board at `at` is received, by the run's clock correlation and light time. A time too far
 /// away for a date compares as before or after everything.
-Ert heard_at(const v1::RunState& run, Sclk at);
-/// The inverse of heard_at(): the time on board that is received at `ert`. Not rounded to a tick.
-Sclk seen_at(const v1::RunState& run, Ert ert);
+Ert ert_of(const v1::RunState& run, Sclk at);
+/// The inverse of ert_of(): the time on board that is received at `ert`. Not rounded to a tick.
+Sclk sclk_at_ert(const v1::RunState& run, Ert ert);
 
 inline v1::Item to_item(const Annotation& annotation) {
     return std::visit([](const auto& record) { return to_item(record); }, annotation);

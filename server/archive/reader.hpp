@@ -154,7 +154,7 @@ class Reader {
     /// The kinds of items to include. complete_through counts excluded ones as given.
     struct ItemKinds {
         bool samples = true;
-        bool units = true;
+        bool packets = true;
     };
     /// The items after `after`, in order, of all kinds, as they were published.
     Result<ItemPage> items(RunId run, Sequence after, std::size_t limit);

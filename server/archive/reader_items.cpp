@@ -66,8 +66,8 @@ Result<void> collect_alarms(Reader::State& reader, const RunInfo& info, Page& pa
 }
 
 /// Collects packets and their samples. A row gives one item or, if sampled, two; the page may begin between them.
-Result<void> collect_units(Reader::State& reader, const RunInfo& info, Page& page, Reader::ItemKinds kinds) {
-    auto rows = reader.query(rows_sql<UnitRecord>());
+Result<void> collect_packets(Reader::State& reader, const RunInfo& info, Page& page, Reader::ItemKinds kinds) {
+    auto rows = reader.query(rows_sql<PacketRecord>());
     if (!rows) return rows.error();
     (*rows)
         ->bind(1, item_key(page.run, page.after))
@@ -81,14 +81,15 @@ Result<void> collect_units(Reader::State& reader, const RunInfo& info, Page& pag
         auto found = (*rows)->step();
         if (!found) return found.error();
         if (!*found) break;
-        const auto unit = read_row<UnitRecord>(**rows);
-        last = unit.sampled ? unit.seq + 1 : unit.seq;
-        if (kinds.units && unit.seq > page.after) page.items.push_back(to_item(unit, words));
-        if (!kinds.samples || !unit.sampled) continue;
+        const auto record = read_row<PacketRecord>(**rows);
+        last = record.sampled ? record.seq + 1 : record.seq;
+        if (kinds.packets && record.seq > page.after) page.items.push_back(to_item(record, words));
+        if (!kinds.samples || !record.sampled) continue;
         // With another dictionary the values are unknown; the item still keeps its number.
-        const SampleRecord sample{{unit.seq + 1, unit.ert}, unit.packet.value_or(0), unit.sclk, unit.source, {}};
+        const SampleRecord sample{
+            {record.seq + 1, record.ert}, record.packet.value_or(0), record.sclk, record.source, {}};
         values.clear();
-        if (words != nullptr && reader.decode(octets_of_unit(**rows))) {
+        if (words != nullptr && reader.decode(octets_of_packet(**rows))) {
             reader.columns.append_values(reader.decoded, values);
             page.items.push_back(to_item(sample, reader.columns.channels(reader.decoded.packet), values));
         } else {
@@ -115,8 +116,9 @@ Result<ItemPage> Reader::items(RunId run, Sequence after, std::size_t limit, Ite
 
     Page page{run, after, *last, limit, {}};
     const auto done = try_item_kinds([&]<typename Record>(ItemKind<Record>) {
-        if constexpr (std::is_same_v<Record, UnitRecord>)
-            return kinds.units || kinds.samples ? collect_units(*state_, instant->run, page, kinds) : Result<void>{};
+        if constexpr (std::is_same_v<Record, PacketRecord>)
+            return kinds.packets || kinds.samples ? collect_packets(*state_, instant->run, page, kinds)
+                                                  : Result<void>{};
         else
             return collect<Record>(*state_, instant->run, page);
     });

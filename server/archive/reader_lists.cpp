@@ -92,8 +92,8 @@ Result<HeardRange> heard_range(Reader& reader, RunId run, const SclkRange& asked
     if (!asked.from_s && !asked.to_s) return heard;
     const auto state = reader.run(run);
     if (!state) return state.error();
-    if (asked.from_s) heard.from = heard_at(*state, Sclk{*asked.from_s});
-    if (asked.to_s) heard.to = heard_at(*state, Sclk{*asked.to_s});
+    if (asked.from_s) heard.from = ert_of(*state, Sclk{*asked.from_s});
+    if (asked.to_s) heard.to = ert_of(*state, Sclk{*asked.to_s});
     return heard;
 }
 
@@ -138,22 +138,22 @@ Result<v1::PacketList> Reader::packets(RunId run, const PacketQuery& query) {
     if (!complete) return complete.error();
     const auto* words = state_->words_of(instant->run);
     v1::PacketList list;
-    const auto next = scan(*state_, rows_sql<UnitRecord>(), run, query.after, [&](const auto& row) -> Result<bool> {
-        const auto unit = read_row<UnitRecord>(row);
-        if ((wanted && unit.packet != wanted) || !range->holds(unit.sclk.seconds)) return false;
-        const auto verdict = state_->verdict_on(run, unit, *complete);
+    const auto next = scan(*state_, rows_sql<PacketRecord>(), run, query.after, [&](const auto& row) -> Result<bool> {
+        const auto record = read_row<PacketRecord>(row);
+        if ((wanted && record.packet != wanted) || !range->holds(record.sclk.seconds)) return false;
+        const auto verdict = state_->verdict_on(run, record, *complete);
         if (!verdict) return verdict.error();
         if (!query.verdict.empty() && query.verdict != verdict->name) return false;
         auto& written = *list.add_packets();
         written.set_verdict(verdict->name);
         written.set_other_hex(hex(verdict->other_octets));
-        *written.mutable_unit() = std::move(*to_item(unit, words).mutable_unit());
-        written.set_ert_us(unit.ert.microseconds);
-        const auto octets = octets_of_unit(row);
+        *written.mutable_unit() = std::move(*to_item(record, words).mutable_unit());
+        written.set_ert_us(record.ert.microseconds);
+        const auto octets = octets_of_packet(row);
         written.set_hex(hex(octets));
         if (query.fields && words != nullptr && state_->other != nullptr)
             add_contents(written, state_->other->contents(octets));
-        else if (query.fields && words != nullptr && unit.packet && state_->decode(octets))
+        else if (query.fields && words != nullptr && record.packet && state_->decode(octets))
             add_fields(written, words->packets[state_->decoded.packet], state_->decoded);
         return static_cast<std::size_t>(list.packets_size()) == query.limit;
     });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/archive/item_rows.hpp"
-#include "server/archive/other_path.hpp"
+#include "server/archive/path_comparison.hpp"
 #include "server/archive/reader.hpp"
 #include "server/archive/reader_state.hpp"
 #include "server/archive/schema.hpp"
@@ -13,12 +13,12 @@
 // Compares live packets and tones with the recording.
 namespace aeolis::archive {
 
-const char* name_of(OnOtherPath found, Source source, bool recording_complete) {
+const char* name_of(PathComparison found, Source source, bool recording_complete) {
     switch (found) {
-    case OnOtherPath::identical: return "identical";
-    case OnOtherPath::differs: return "differs";
-    case OnOtherPath::not_decoded: return "not_decoded";
-    case OnOtherPath::absent: break;
+    case PathComparison::identical: return "identical";
+    case PathComparison::differs: return "differs";
+    case PathComparison::not_decoded: return "not_decoded";
+    case PathComparison::absent: break;
     }
     if (source == Source::recorded) return "never_seen_live";
     return recording_complete ? "missing_in_recording" : "pending";
@@ -33,7 +33,7 @@ constexpr char other_sql[] =
 
 const std::string totals_sql = std::string("SELECT (SELECT word FROM words WHERE kind = 'link' AND number = u.link), "
                                            "u.packet, u.apid, u.source, u.standing = 1, ") +
-                               on_other_path_sql +
+                               path_comparison_sql +
                                ", count(*) FROM units u WHERE u.key BETWEEN ?1 AND ?2 GROUP BY 1, 2, 3, 4, 5, 6";
 
 constexpr char selections_sql[] =
@@ -45,19 +45,19 @@ constexpr char counters_sql[] =
 
 constexpr double half_a_symbol_s = 5.0;  // a tone lasts 10 s; no two begin within less
 
-void add(v1::ProofRow& row, Source source, OnOtherPath found, bool recording_complete, std::uint64_t units) {
-    if (found == OnOtherPath::not_decoded) {
-        row.set_not_decoded(row.not_decoded() + units);
+void add(v1::ProofRow& row, Source source, PathComparison found, bool recording_complete, std::uint64_t packets) {
+    if (found == PathComparison::not_decoded) {
+        row.set_not_decoded(row.not_decoded() + packets);
     } else if (source == Source::recorded) {
-        row.set_recorded(row.recorded() + units);
-        if (found == OnOtherPath::absent) row.set_never_seen_live(row.never_seen_live() + units);
+        row.set_recorded(row.recorded() + packets);
+        if (found == PathComparison::absent) row.set_never_seen_live(row.never_seen_live() + packets);
     } else {
-        row.set_realtime(row.realtime() + units);
-        if (found == OnOtherPath::identical) row.set_identical(row.identical() + units);
-        if (found == OnOtherPath::differs) row.set_differs(row.differs() + units);
-        if (found == OnOtherPath::absent && recording_complete)
-            row.set_missing_in_recording(row.missing_in_recording() + units);
-        if (found == OnOtherPath::absent && !recording_complete) row.set_pending(row.pending() + units);
+        row.set_realtime(row.realtime() + packets);
+        if (found == PathComparison::identical) row.set_identical(row.identical() + packets);
+        if (found == PathComparison::differs) row.set_differs(row.differs() + packets);
+        if (found == PathComparison::absent && recording_complete)
+            row.set_missing_in_recording(row.missing_in_recording() + packets);
+        if (found == PathComparison::absent && !recording_complete) row.set_pending(row.pending() + packets);
     }
 }
 
@@ -121,17 +121,18 @@ Result<bool> Reader::State::recording_complete(RunId run) {
     return *found && (*rows)->integer(0) != 0;
 }
 
-Result<Reader::State::Verdict> Reader::State::verdict_on(RunId run, const UnitRecord& unit, bool recording_complete) {
-    if (!unit.packet) return Verdict{name_of(OnOtherPath::not_decoded, unit.source, recording_complete)};
+Result<Reader::State::Verdict> Reader::State::verdict_on(RunId run, const PacketRecord& record,
+                                                         bool recording_complete) {
+    if (!record.packet) return Verdict{name_of(PathComparison::not_decoded, record.source, recording_complete)};
     auto rows = query(other_sql);
     if (!rows) return rows.error();
-    (*rows)->bind(1, item_key(run, unit.seq));
+    (*rows)->bind(1, item_key(run, record.seq));
     auto found = (*rows)->step();
     if (!found) return found.error();
-    if (!*found) return Verdict{name_of(OnOtherPath::absent, unit.source, recording_complete)};
-    if ((*rows)->integer(0) == 0) return Verdict{name_of(OnOtherPath::identical, unit.source, recording_complete)};
+    if (!*found) return Verdict{name_of(PathComparison::absent, record.source, recording_complete)};
+    if ((*rows)->integer(0) == 0) return Verdict{name_of(PathComparison::identical, record.source, recording_complete)};
     const auto octets = (*rows)->octets(1);
-    return Verdict{name_of(OnOtherPath::differs, unit.source, recording_complete), {octets.begin(), octets.end()}};
+    return Verdict{name_of(PathComparison::differs, record.source, recording_complete), {octets.begin(), octets.end()}};
 }
 
 Result<v1::ProofReport> Reader::proof(RunId run) {
@@ -151,15 +152,15 @@ Result<v1::ProofReport> Reader::proof(RunId run) {
         if (!*found) break;
         const auto& row = **rows;
         const auto source = static_cast<Source>(row.integer(3));
-        const auto on_other_path = static_cast<OnOtherPath>(row.integer(5));
-        const auto units = static_cast<std::uint64_t>(row.integer(6));
+        const auto comparison = static_cast<PathComparison>(row.integer(5));
+        const auto packets = static_cast<std::uint64_t>(row.integer(6));
         const auto packet = static_cast<std::size_t>(row.integer(1));
         const bool named = words != nullptr && !row.is_null(1) && packet < words->packets.size();
-        add(links[std::string{row.text(0)}], source, on_other_path, *complete, units);
+        add(links[std::string{row.text(0)}], source, comparison, *complete, packets);
         const bool again = row.integer(4) != 0;
         if (!again)
             add(streams[named ? words->packets[packet].name : "APID " + std::to_string(row.integer(2))], source,
-                on_other_path, *complete, units);
+                comparison, *complete, packets);
     }
     v1::ProofReport report;
     report.set_recording_complete(*complete);

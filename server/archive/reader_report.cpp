@@ -48,7 +48,7 @@ bool executed_by(const v1::CommandHistory& command, Ert by) {
 void add_predictions(const dictionary::Dictionary& dictionary, const v1::TimepointList& timeline,
                      const v1::CommandList& commands, const v1::RunState& run, v1::AsFlownReport& report) {
     std::optional<dictionary::Dictionary> changed;
-    const Ert at_entry = heard_at(run, Sclk{run.entry_sclk()});  // when entry interface was due on Earth
+    const Ert at_entry = ert_of(run, Sclk{run.entry_sclk()});  // when entry interface was due on Earth
     for (const auto& command : commands.commands()) {
         const auto* known = dictionary.command(command.name());
         if (known == nullptr || !commands::changes_offsets(command.name()) || !executed_by(command, at_entry)) continue;

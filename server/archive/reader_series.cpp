@@ -18,7 +18,7 @@ constexpr std::size_t window_samples = 100'000;              ///< chosen: read a
 constexpr std::size_t page_samples = 10'000;                 ///< chosen: likewise for one page, a megabyte of text
 
 constexpr char sealed_span_sql[] = "SELECT min(first_sclk), max(last_sclk), sum(samples) FROM segments WHERE run = ?1";
-constexpr char unit_span_sql[] =
+constexpr char packet_span_sql[] =
     "SELECT min(sclk), max(sclk), count(*) FROM units WHERE key BETWEEN ?1 AND ?2 AND sampled = 1";
 constexpr char newest_sql[] = "SELECT octets FROM units WHERE run = ?1 AND apid = ?2 AND source = ?5 AND sclk <= ?3"
                               " AND packet = ?4 AND sampled = 1 ORDER BY sclk DESC LIMIT 1";
@@ -71,11 +71,11 @@ Result<v1::ChannelSeries> one_series(Reader::State& reader, const RunInfo& run, 
     series.set_id(channel.id.value);
     series.set_name(channel.name);
     series.set_unit(channel.type.unit);
-    const auto coverage = cover(reader, run, channel.id, range, query.source);
-    if (!coverage) return coverage.error();
-    const std::size_t count = coverage->samples_at_most;
+    const auto sources = find_sample_sources(reader, run, channel.id, range, query.source);
+    if (!sources) return sources.error();
+    const std::size_t count = sources->samples_at_most;
     if (points && count > *points) {
-        const auto thinned = thinned_samples(reader, *coverage, *points);
+        const auto thinned = thinned_samples(reader, *sources, *points);
         if (!thinned) return thinned.error();
         series.set_samples(thinned->samples);
         series.set_thinned(thinned->points.size() < thinned->samples);
@@ -85,7 +85,7 @@ Result<v1::ChannelSeries> one_series(Reader::State& reader, const RunInfo& run, 
     if (count > exact_samples_max)
         return Error{"the range holds some " + std::to_string(count) + " samples of '" + channel.name + "'; at most " +
                      std::to_string(exact_samples_max) + " are given exactly: ask for points, or less"};
-    const auto samples = exact_samples(reader, *coverage);
+    const auto samples = exact_samples(reader, *sources);
     if (!samples) return samples.error();
     series.set_samples(samples->size());
     write(series, *samples);
@@ -94,9 +94,9 @@ Result<v1::ChannelSeries> one_series(Reader::State& reader, const RunInfo& run, 
 
 Result<std::span<const Sample>> samples_of(Reader::State& reader, const RunInfo& run, ChannelId channel,
                                            const ClosedRange& range) {
-    const auto coverage = cover(reader, run, channel, range);
-    if (!coverage) return coverage.error();
-    return exact_samples(reader, *coverage);
+    const auto sources = find_sample_sources(reader, run, channel, range);
+    if (!sources) return sources.error();
+    return exact_samples(reader, *sources);
 }
 
 /// First to last sample of a run, and the number of packets with samples. A reversed range: none.
@@ -119,11 +119,11 @@ Result<SampleSpan> sample_span(Reader::State& reader, const RunInfo& run) {
     if (auto found = (*sealed)->step(); !found) return found.error();
     add(**sealed);
     if (run.finished) return span;
-    auto units = reader.query(unit_span_sql);
-    if (!units) return units.error();
-    (*units)->bind(1, item_key(run.run, 0)).bind(2, item_key(run.run, sequence_max));
-    if (auto found = (*units)->step(); !found) return found.error();
-    add(**units);
+    auto packets = reader.query(packet_span_sql);
+    if (!packets) return packets.error();
+    (*packets)->bind(1, item_key(run.run, 0)).bind(2, item_key(run.run, sequence_max));
+    if (auto found = (*packets)->step(); !found) return found.error();
+    add(**packets);
     return span;
 }
 

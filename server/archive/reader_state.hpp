@@ -96,7 +96,7 @@ struct Reader::State {
         const char* name = "";
         std::vector<std::uint8_t> other_octets{};
     };
-    Result<Verdict> verdict_on(RunId run, const UnitRecord& unit, bool recording_complete);
+    Result<Verdict> verdict_on(RunId run, const PacketRecord& record, bool recording_complete);
     /// The dictionary when the run was recorded with it; else null.
     const dictionary::Dictionary* words_of(const RunInfo& run) const {
         return run.dictionary == dictionary.id ? &dictionary : nullptr;

@@ -21,7 +21,7 @@ constexpr std::string_view anchor_report_end = "_anchor_sclk";
 // Parameter: how long before the start of EDL flight begins to refuse "do edl" [s].
 constexpr std::string_view begin_margin = "do_edl_margin_s";
 
-constexpr char units_before_sql[] = "SELECT ert_us FROM units WHERE key BETWEEN ?1 AND ?2 ORDER BY key DESC LIMIT 1";
+constexpr char packets_before_sql[] = "SELECT ert_us FROM units WHERE key BETWEEN ?1 AND ?2 ORDER BY key DESC LIMIT 1";
 constexpr char newest_report_sql[] =
     "SELECT octets FROM units WHERE run = ?1 AND apid = ?2 AND source = ?3 AND sclk <= ?4 AND packet = ?5"
     " AND sampled = 1 AND ert_us <= ?6 ORDER BY sclk DESC LIMIT 1";
@@ -39,11 +39,11 @@ struct Cut {
 };
 
 /// A firing as first known: UHF reports it before the recording, and both before a tone.
-struct HeardFiring {
+struct KnownFiring {
     const char* by = "";
     Sclk triggered, fired;
 };
-using HeardFirings = std::vector<std::optional<HeardFiring>>;  // by timepoint
+using KnownFirings = std::vector<std::optional<KnownFiring>>;  // by timepoint
 
 template <typename Record>
 Result<void> each_row(Reader::State& reader, RunId run, auto take) {
@@ -88,11 +88,11 @@ v1::TimepointList plan_of(const dictionary::Dictionary& dictionary) {
     return list;
 }
 
-Result<void> hear_firings(Reader::State& reader, RunId run, const Cut& cut, v1::TimepointList& list,
-                          HeardFirings& heard) {
+Result<void> read_firings(Reader::State& reader, RunId run, const Cut& cut, v1::TimepointList& list,
+                          KnownFirings& firings) {
     return each_row<FiringRecord>(reader, run, [&](const auto& row) -> Result<void> {
         const auto firing = read_row<FiringRecord>(row);
-        if (firing.timepoint.value >= heard.size() || !cut.holds(firing)) return {};
+        if (firing.timepoint.value >= firings.size() || !cut.holds(firing)) return {};
         auto& written = *list.mutable_timepoints(firing.timepoint.value);
         const bool is_live = firing.source == Source::realtime;
         if (is_live)
@@ -100,15 +100,15 @@ Result<void> hear_firings(Reader::State& reader, RunId run, const Cut& cut, v1::
         else
             written.set_recorded_sclk(firing.fired.seconds);
         written.set_verdict(firing.verdict);
-        if (auto& known = heard[firing.timepoint.value]; !known || (is_live && std::string_view(known->by) != "uhf"))
-            known = HeardFiring{is_live ? "uhf" : "recording", firing.triggered, firing.fired};
+        if (auto& known = firings[firing.timepoint.value]; !known || (is_live && std::string_view(known->by) != "uhf"))
+            known = KnownFiring{is_live ? "uhf" : "recording", firing.triggered, firing.fired};
         return {};
     });
 }
 
 /// When a tone was decided: after its end, and not before the packets received earlier.
 Result<Ert> decided_at(Reader::State& reader, RunId run, std::int64_t key, Ert end) {
-    auto rows = reader.query(units_before_sql);
+    auto rows = reader.query(packets_before_sql);
     if (!rows) return rows.error();
     (*rows)->bind(1, item_key(run, 0)).bind(2, key);
     auto found = (*rows)->step();
@@ -117,18 +117,18 @@ Result<Ert> decided_at(Reader::State& reader, RunId run, std::int64_t key, Ert e
 }
 
 /// Adds firings without packets: by the first tone that only one timepoint requests.
-Result<void> hear_tones(Reader::State& reader, RunId run, const Cut& cut, HeardFirings& heard) {
+Result<void> add_firings_by_tone(Reader::State& reader, RunId run, const Cut& cut, KnownFirings& firings) {
     std::map<ToneId, std::vector<std::size_t>> askers;
-    for (std::size_t i = 0; i < heard.size(); ++i)
+    for (std::size_t i = 0; i < firings.size(); ++i)
         if (const auto& tone = reader.dictionary.timeline[i].tone) askers[*tone].push_back(i);
     return each_row<ToneRecord>(reader, run, [&](const auto& row) -> Result<void> {
         const auto tone = read_row<ToneRecord>(row);
         if (!tone.tone || tone.likelihood < believed_likelihood || tone.sclk.seconds > cut.on_board_s) return {};
         const auto asked = askers.find(*tone.tone);
-        if (asked == askers.end() || asked->second.size() != 1 || heard[asked->second.front()]) return {};
+        if (asked == askers.end() || asked->second.size() != 1 || firings[asked->second.front()]) return {};
         const auto decided = decided_at(reader, run, row.integer(0), tone.ert);
         if (!decided) return decided.error();
-        if (*decided <= cut.on_earth) heard[asked->second.front()] = HeardFiring{"tone", tone.sclk, tone.sclk};
+        if (*decided <= cut.on_earth) firings[asked->second.front()] = KnownFiring{"tone", tone.sclk, tone.sclk};
         return {};
     });
 }
@@ -180,7 +180,7 @@ std::vector<dictionary::OffsetChange> changes_made(const dictionary::Dictionary&
         if (!arguments) continue;
         auto change = commands::offset_change(dictionary, command.name(), *arguments);
         if (!change) continue;
-        change->since_e_s = seen_at(run, Ert{executed->ert_us()}).seconds - run.entry_sclk();
+        change->since_e_s = sclk_at_ert(run, Ert{executed->ert_us()}).seconds - run.entry_sclk();
         changes.push_back(*change);
     }
     std::ranges::stable_sort(changes, {}, &dictionary::OffsetChange::since_e_s);
@@ -247,12 +247,12 @@ void write(const dictionary::TimelinePrediction& prediction, const dictionary::D
 }
 
 /// Writes the timepoints whose times differ with the change.
-void write_moved(const dictionary::TimelinePrediction& with_change, const HeardFirings& heard,
+void write_moved(const dictionary::TimelinePrediction& with_change, const KnownFirings& firings,
                  v1::TimepointList& list) {
-    for (std::size_t i = 0; i < heard.size(); ++i) {
+    for (std::size_t i = 0; i < firings.size(); ++i) {
         auto& row = *list.mutable_timepoints(static_cast<int>(i));
         const auto& e_s = with_change.timepoints[i].e_s;
-        if (heard[i] || !e_s || !row.has_predicted_e_s()) continue;
+        if (firings[i] || !e_s || !row.has_predicted_e_s()) continue;
         if (std::abs(*e_s - row.predicted_e_s()) >= seconds_per_tick) row.set_moved_e_s(*e_s);
     }
 }
@@ -287,23 +287,23 @@ Result<v1::TimepointList> Reader::timepoints(RunId run, const TimepointQuery& qu
     Cut cut{.recorded = query.recorded};
     if (query.at) {
         cut.on_board_s = query.at->seconds;
-        if (has_clock) cut.on_earth = heard_at(*state, *query.at);
+        if (has_clock) cut.on_earth = ert_of(*state, *query.at);
     }
 
     auto list = plan_of(dictionary);
     if (auto done = state_->add_predicted_anchors(run, list); !done) return done.error();
-    HeardFirings heard(dictionary.timeline.size());
-    if (auto done = hear_firings(*state_, run, cut, list, heard); !done) return done.error();
-    if (auto done = hear_tones(*state_, run, cut, heard); !done) return done.error();
+    KnownFirings firings(dictionary.timeline.size());
+    if (auto done = read_firings(*state_, run, cut, list, firings); !done) return done.error();
+    if (auto done = add_firings_by_tone(*state_, run, cut, firings); !done) return done.error();
     const double entry_s = state->entry_sclk();
     dictionary::TimelineKnowledge known;
-    for (std::size_t i = 0; i < heard.size(); ++i) {
+    for (std::size_t i = 0; i < firings.size(); ++i) {
         auto& fired = known.heard.emplace_back();
-        if (!heard[i]) continue;
+        if (!firings[i]) continue;
         auto& row = *list.mutable_timepoints(static_cast<int>(i));
-        row.set_heard_by(heard[i]->by);
-        row.set_triggered_sclk(heard[i]->triggered.seconds);
-        fired = {heard[i]->triggered.seconds - entry_s, heard[i]->fired.seconds - entry_s};
+        row.set_heard_by(firings[i]->by);
+        row.set_triggered_sclk(firings[i]->triggered.seconds);
+        fired = {firings[i]->triggered.seconds - entry_s, firings[i]->fired.seconds - entry_s};
     }
     if (entry_s == 0.0) {  // another mission, which is followed
         for (auto& row : *list.mutable_timepoints()) row.set_not_predicted("nobody knows when it enters");
@@ -321,13 +321,13 @@ Result<v1::TimepointList> Reader::timepoints(RunId run, const TimepointQuery& qu
     if (query.at)
         known.now_e_s = query.at->seconds - entry_s;
     else if (query.now && has_clock)
-        known.now_e_s = seen_at(*state, *query.now).seconds - entry_s;
+        known.now_e_s = sclk_at_ert(*state, *query.now).seconds - entry_s;
     if (known.now_e_s) list.set_known_at_e_s(*known.now_e_s);
     write(predict(dictionary, known), dictionary, list);
     if (query.change) {
         known.changes.push_back(*query.change);
         list.set_command_moves(true);
-        write_moved(predict(dictionary, known), heard, list);
+        write_moved(predict(dictionary, known), firings, list);
     }
     return list;
 }

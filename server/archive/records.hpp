@@ -42,7 +42,7 @@ struct ItemRecord {
 };
 
 /// A packet as received. Its samples, if any, are the item seq + 1: they are decommutated again from the octets.
-struct UnitRecord : ItemRecord {
+struct PacketRecord : ItemRecord {
     Apid apid;
     std::optional<std::uint16_t> packet;  ///< index of its definition in the dictionary; none: not decoded
     std::string refusal;                  ///< why not decoded
@@ -69,7 +69,7 @@ struct SampleRecord : ItemRecord {
 };
 
 struct EventRecord : ItemRecord {
-    Sequence unit = 0;
+    Sequence packet_seq = 0;
     EvrId id;
     std::string name;
     dictionary::EventLevel level{};
@@ -110,7 +110,7 @@ struct StageRecord : ItemRecord {
 };
 
 struct FiringRecord : ItemRecord {
-    Sequence unit = 0;
+    Sequence packet_seq = 0;
     TimepointId timepoint;
     std::string name, verdict;
     Sclk triggered, fired;
@@ -119,7 +119,7 @@ struct FiringRecord : ItemRecord {
 };
 
 struct ExplanationRecord : ItemRecord {
-    Sequence unit = 0;
+    Sequence packet_seq = 0;
     Sclk sclk;
     telemetry::Explanation explanation;
     Source source{};
@@ -134,7 +134,7 @@ struct LinkRecord : ItemRecord {
 };
 
 struct AlarmRecord : ItemRecord {
-    Sequence unit = 0;
+    Sequence packet_seq = 0;
     ChannelId channel;
     dictionary::Severity severity{};  ///< none: cleared
     double value = 0.0;
@@ -172,9 +172,9 @@ inline constexpr std::size_t segment_samples = 1024;  ///< samples in a full seg
 struct SegmentRecord {
     std::uint16_t packet = 0;
     Source source{};
-    std::uint64_t position = 0;              ///< number within its series, from 0
-    Sequence first_unit = 0, last_unit = 0;  ///< sequence numbers of its first and last sampled packet
-    std::vector<double> sclk_s;              ///< in the order of receipt
+    std::uint64_t position = 0;                          ///< number within its series, from 0
+    Sequence first_packet_seq = 0, last_packet_seq = 0;  ///< sequence numbers of its first and last sampled packet
+    std::vector<double> sclk_s;                          ///< in the order of receipt
     std::vector<ChannelId> channels;
     std::vector<double> values;  ///< channel by channel, sclk_s.size() each; NaN: undefined
 };
@@ -262,7 +262,7 @@ struct Batch {
     Sequence first_seq = 0, last_seq = 0;  ///< of all items in it; both 0 when it has none
     std::vector<std::uint8_t> octets;
     std::vector<double> values;
-    std::vector<UnitRecord> units;
+    std::vector<PacketRecord> packets;
     std::vector<SampleRecord> samples;
     std::vector<EventRecord> events;
     std::vector<ToneRecord> tones;

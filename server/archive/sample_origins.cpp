@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/archive/sample_origins.hpp"
 
-#include "server/archive/other_path.hpp"
+#include "server/archive/path_comparison.hpp"
 #include "telemetry/staleness.hpp"
 
 #include <algorithm>
@@ -20,28 +20,28 @@ constexpr char of_packet_sql[] =
 constexpr char of_container_sql[] =
     " FROM units u WHERE u.run = ?1 AND ?2 IS NOT NULL AND u.source = ?3 AND u.sclk BETWEEN ?4 AND ?5"
     " AND u.packet = ?6 AND u.sampled = 1 ORDER BY u.sclk";
-const std::string told_columns = std::string("SELECT u.sclk, u.link, u.octets, ") + on_other_path_sql;
-const std::string units_of_packet = told_columns + of_packet_sql;
-const std::string units_of_container = told_columns + of_container_sql;
+const std::string presence_columns = std::string("SELECT u.sclk, u.link, u.octets, ") + path_comparison_sql;
+const std::string presences_of_packet_sql = presence_columns + of_packet_sql;
+const std::string presences_of_container_sql = presence_columns + of_container_sql;
 
 /// A packet with the channel, whether or not its value is defined.
-struct Told {
+struct PacketPresence {
     double sclk_s = 0.0;
     std::int64_t link = 0;
     Source source{};
-    OnOtherPath on_other_path{};
+    PathComparison comparison{};
     bool defined = false;
 
-    bool of_one_origin_with(const Told& other) const {
-        return link == other.link && source == other.source && on_other_path == other.on_other_path;
+    bool of_one_origin_with(const PacketPresence& other) const {
+        return link == other.link && source == other.source && comparison == other.comparison;
     }
 };
 
-Result<void> read_told(Reader::State& reader, const RunInfo& run, PacketColumns::Place place, Source source,
-                       const ClosedRange& range, std::vector<Told>& told) {
+Result<void> read_presences(Reader::State& reader, const RunInfo& run, PacketColumns::Place place, Source source,
+                            const ClosedRange& range, std::vector<PacketPresence>& presences) {
     const Apid apid = reader.dictionary.packets[place.packet].apid;
-    auto rows =
-        reader.query((apid == telemetry::OtherMission::any_apid ? units_of_container : units_of_packet).c_str());
+    auto rows = reader.query(
+        (apid == telemetry::OtherMission::any_apid ? presences_of_container_sql : presences_of_packet_sql).c_str());
     if (!rows) return rows.error();
     auto& row = **rows;
     row.bind(1, std::int64_t{run.run.value})
@@ -54,12 +54,13 @@ Result<void> read_told(Reader::State& reader, const RunInfo& run, PacketColumns:
         auto found = row.step();
         if (!found) return found.error();
         if (!*found) return {};
-        if (told.size() == exact_samples_max)
+        if (presences.size() == exact_samples_max)
             return Error{"the range holds more than " + std::to_string(exact_samples_max) +
                          " packets of the channel: ask for less, or without provenance"};
         if (!reader.decode(row.octets(2))) continue;
         const bool defined = !std::isnan(reader.columns.value(reader.decoded, place.column));
-        told.push_back({row.real(0), row.integer(1), source, static_cast<OnOtherPath>(row.integer(3)), defined});
+        presences.push_back(
+            {row.real(0), row.integer(1), source, static_cast<PathComparison>(row.integer(3)), defined});
     }
 }
 
@@ -125,12 +126,12 @@ std::string reason_of(const std::vector<Outage>& outages, double from_s, double 
 Result<void> add_origins(Reader::State& reader, const RunInfo& run, ChannelId channel, const SclkRange& asked,
                          const ClosedRange& range, std::optional<Source> only, v1::ChannelSeries& series) {
     const auto& places = reader.columns.places(channel);
-    std::vector<Told> told;
+    std::vector<PacketPresence> presences;
     for (const auto place : places)
         for (const Source source : {Source::realtime, Source::recorded})  // the series' order within one instant
             if (!only || *only == source)
-                if (auto done = read_told(reader, run, place, source, range, told); !done) return done;
-    std::ranges::stable_sort(told, {}, &Told::sclk_s);
+                if (auto done = read_presences(reader, run, place, source, range, presences); !done) return done;
+    std::ranges::stable_sort(presences, {}, &PacketPresence::sclk_s);
     const auto names = link_names(reader);
     if (!names) return names.error();
     const auto complete = reader.recording_complete(run.run);
@@ -153,8 +154,8 @@ Result<void> add_origins(Reader::State& reader, const RunInfo& run, ChannelId ch
         last_s = sclk_s;
         undefined = false;
     };
-    const Told* before = nullptr;
-    for (const Told& each : told) {
+    const PacketPresence* before = nullptr;
+    for (const PacketPresence& each : presences) {
         if (!each.defined) {
             undefined = true;
             continue;
@@ -165,7 +166,7 @@ Result<void> add_origins(Reader::State& reader, const RunInfo& run, ChannelId ch
             origin.set_from_sclk(each.sclk_s);
             origin.set_source(static_cast<v1::Source>(each.source));
             if (const auto name = names->find(each.link); name != names->end()) origin.set_link(name->second);
-            origin.set_verdict(name_of(each.on_other_path, each.source, *complete));
+            origin.set_verdict(name_of(each.comparison, each.source, *complete));
         }
         auto& origin = *series.mutable_origins(series.origins_size() - 1);
         origin.set_to_sclk(each.sclk_s);

@@ -45,7 +45,7 @@ Result<void> read_column(Reader::State& reader, const sqlite::Statement& row, in
 }
 
 /// Appends to `into` the defined samples within the range among first … last - 1 of a series.
-Result<void> read_samples(Reader::State& reader, const SealedSeries& series, const Coverage& coverage,
+Result<void> read_samples(Reader::State& reader, const SealedSeries& series, const SampleSources& sources,
                           std::uint64_t first, std::uint64_t last, std::vector<Sample>& into) {
     auto rows = reader.query(columns_sql);
     if (!rows) return rows.error();
@@ -53,7 +53,7 @@ Result<void> read_samples(Reader::State& reader, const SealedSeries& series, con
     series.bind(row);
     row.bind(4, static_cast<std::int64_t>(first / segment_samples))
         .bind(5, static_cast<std::int64_t>((last - 1) / segment_samples))
-        .bind(6, std::int64_t{coverage.channel.value});
+        .bind(6, std::int64_t{sources.channel.value});
     for (;;) {
         auto found = row.step();
         if (!found) return found.error();
@@ -65,9 +65,9 @@ Result<void> read_samples(Reader::State& reader, const SealedSeries& series, con
             return wrong("its number of samples", std::to_string(row.integer(2)));
         if (auto done = read_column(reader, row, 3, reader.segment_sclk_s); !done)
             return wrong("its times", done.error().message);
-        if (row.is_null(4)) return wrong("channel " + std::to_string(coverage.channel.value), "it is missing");
+        if (row.is_null(4)) return wrong("channel " + std::to_string(sources.channel.value), "it is missing");
         if (auto done = read_column(reader, row, 4, reader.segment_values); !done)
-            return wrong("channel " + std::to_string(coverage.channel.value), done.error().message);
+            return wrong("channel " + std::to_string(sources.channel.value), done.error().message);
         const std::uint64_t base = static_cast<std::uint64_t>(row.integer(1)) * segment_samples;
         const auto from = static_cast<std::size_t>(std::max(first, base) - base);
         const std::size_t to = std::min<std::size_t>(reader.segment_values.size(), last - base);
@@ -75,7 +75,7 @@ Result<void> read_samples(Reader::State& reader, const SealedSeries& series, con
         into.resize(end + (to > from ? to - from : 0));
         for (std::size_t i = from; i < to; ++i)
             if (const double sclk_s = reader.segment_sclk_s[i];
-                !std::isnan(reader.segment_values[i]) && coverage.range.holds(sclk_s))
+                !std::isnan(reader.segment_values[i]) && sources.range.holds(sclk_s))
                 into[end++] = {sclk_s, reader.segment_values[i], series.source};
         into.resize(end);
     }
@@ -119,9 +119,9 @@ Result<void> read_tail(Reader::State& reader, const SealedSeries& series, std::s
     if (!last) return last.error();
 
     const Apid apid = reader.dictionary.packets[series.packet].apid;
-    const char* const sql = apid == telemetry::OtherMission::any_apid    ? tail_of_any_apid_sql
-                            : series.nodes[0] < *last - series.last_unit ? tail_by_time_sql
-                                                                         : tail_by_key_sql;
+    const char* const sql = apid == telemetry::OtherMission::any_apid          ? tail_of_any_apid_sql
+                            : series.nodes[0] < *last - series.last_packet_seq ? tail_by_time_sql
+                                                                               : tail_by_key_sql;
     auto rows = reader.query(sql);
     if (!rows) return rows.error();
     (*rows)
@@ -129,7 +129,7 @@ Result<void> read_tail(Reader::State& reader, const SealedSeries& series, std::s
         .bind(2, std::int64_t{apid.value})
         .bind(3, range.from_s)
         .bind(4, range.to_s)
-        .bind(5, item_key(series.run, series.last_unit))
+        .bind(5, item_key(series.run, series.last_packet_seq))
         .bind(6, static_cast<std::int64_t>(series.source))
         .bind(7, std::int64_t{series.packet})
         .bind(8, item_key(series.run, *last));
@@ -209,72 +209,72 @@ unsigned level_for(std::size_t samples, std::size_t intervals) {
 
 }  // namespace
 
-Result<Coverage> cover(Reader::State& reader, const RunInfo& run, ChannelId channel, const ClosedRange& range,
-                       std::optional<Source> only) {
-    Coverage coverage{channel, range, {}, {}, 0};
+Result<SampleSources> find_sample_sources(Reader::State& reader, const RunInfo& run, ChannelId channel,
+                                          const ClosedRange& range, std::optional<Source> only) {
+    SampleSources sources{channel, range, {}, {}, 0};
     for (const auto place : reader.columns.places(channel)) {
         for (const Source source : {Source::realtime, Source::recorded}) {
             if (only && *only != source) continue;
             const auto series = sealed_series(reader, run.run, place.packet, source);
             if (!series) return series.error();
-            auto found = stretches(reader, *series, range);
+            auto found = node_ranges(reader, *series, range);
             if (!found) return found.error();
-            for (const Stretch& each : *found)
-                coverage.samples_at_most +=
+            for (const NodeRange& each : *found)
+                sources.samples_at_most +=
                     static_cast<std::size_t>((each.last - each.first) * pyramid::samples_of_node(each.level));
-            if (!found->empty()) coverage.parts.push_back({*series, std::move(found).value()});
+            if (!found->empty()) sources.parts.push_back({*series, std::move(found).value()});
             if (run.finished) continue;
             auto done = read_tail(reader, *series, place.column, range,
-                                  [&](const Sample& sample) { coverage.tail.push_back(sample); });
+                                  [&](const Sample& sample) { sources.tail.push_back(sample); });
             if (!done) return done.error();
         }
     }
-    coverage.samples_at_most += coverage.tail.size();
-    return coverage;
+    sources.samples_at_most += sources.tail.size();
+    return sources;
 }
 
-Result<std::span<const Sample>> exact_samples(Reader::State& reader, const Coverage& coverage) {
+Result<std::span<const Sample>> exact_samples(Reader::State& reader, const SampleSources& sources) {
     reader.realtime.clear();
     reader.recorded.clear();
     const auto of = [&](Source source) -> std::vector<Sample>& {
         return source == Source::realtime ? reader.realtime : reader.recorded;
     };
-    for (const auto& [series, parts] : coverage.parts) {
+    for (const auto& [series, parts] : sources.parts) {
         for (std::size_t i = 0; i < parts.size();) {
-            // Reads adjacent stretches of any level together, so that no segment is unpacked twice.
+            // Reads adjacent ranges of any level together, so that no segment is unpacked twice.
             const std::uint64_t first = parts[i].first * pyramid::samples_of_node(parts[i].level);
             std::uint64_t last = first;
             for (; i < parts.size() && parts[i].first * pyramid::samples_of_node(parts[i].level) == last; ++i)
                 last = parts[i].last * pyramid::samples_of_node(parts[i].level);
-            if (auto done = read_samples(reader, series, coverage, first, last, of(series.source)); !done)
+            if (auto done = read_samples(reader, series, sources, first, last, of(series.source)); !done)
                 return done.error();
         }
     }
-    for (const Sample& sample : coverage.tail) of(sample.source).push_back(sample);
+    for (const Sample& sample : sources.tail) of(sample.source).push_back(sample);
     return merged(reader);
 }
 
-Result<Thinned> thinned_samples(Reader::State& reader, const Coverage& coverage, std::size_t points) {
+Result<Thinned> thinned_samples(Reader::State& reader, const SampleSources& sources, std::size_t points) {
     const std::size_t count = std::max<std::size_t>(1, points / 2);
-    const unsigned wanted = level_for(coverage.samples_at_most, count);
+    const unsigned wanted = level_for(sources.samples_at_most, count);
     Thinned thinned;
     std::vector<Sample> found;
-    found.reserve(coverage.tail.size() + 2 * coverage.samples_at_most / pyramid::samples_of_node(wanted) +
+    found.reserve(sources.tail.size() + 2 * sources.samples_at_most / pyramid::samples_of_node(wanted) +
                   segment_samples);
-    found.assign(coverage.tail.begin(), coverage.tail.end());
+    found.assign(sources.tail.begin(), sources.tail.end());
     thinned.samples = found.size();
-    for (const auto& [series, parts] : coverage.parts) {
-        for (const Stretch& each : parts) {
+    for (const auto& [series, parts] : sources.parts) {
+        for (const NodeRange& each : parts) {
             const unsigned level = std::min(wanted, each.level);
             const std::uint64_t share = pyramid::samples_of_node(each.level) / pyramid::samples_of_node(level);
             const std::uint64_t first = each.first * share, last = std::min(each.last * share, series.nodes[level]);
             if (level == 0) {
                 const std::size_t before = found.size();
-                if (auto done = read_samples(reader, series, coverage, first, last, found); !done) return done.error();
+                if (auto done = read_samples(reader, series, sources, first, last, found); !done) return done.error();
                 thinned.samples += found.size() - before;
                 continue;
             }
-            auto done = read_nodes(reader, series, coverage.channel, level, first, last, [&](const Extremes& node) {
+            auto done = read_nodes(reader, series, sources.channel, level, first, last, [&](const Extremes& node) {
                 if (node.defined == 0) return;
                 found.push_back({node.least_sclk_s, node.least, series.source});
                 found.push_back({node.largest_sclk_s, node.largest, series.source});

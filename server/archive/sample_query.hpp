@@ -10,10 +10,10 @@
 namespace aeolis::archive {
 
 /// The data to read for a question about one channel and range of time.
-struct Coverage {
+struct SampleSources {
     struct Part {
         SealedSeries series;
-        std::vector<Stretch> stretches;
+        std::vector<NodeRange> node_ranges;
     };
     ChannelId channel;
     ClosedRange range;
@@ -25,12 +25,12 @@ struct Coverage {
 /// packets, so that the answer holds everything durable without the writer's help. Call within a read transaction, and
 /// use the result within the same.
 /// @param only  only samples of this source; none: both
-Result<Coverage> cover(Reader::State& reader, const RunInfo& run, ChannelId channel, const ClosedRange& range,
-                       std::optional<Source> only = std::nullopt);
+Result<SampleSources> find_sample_sources(Reader::State& reader, const RunInfo& run, ChannelId channel,
+                                          const ClosedRange& range, std::optional<Source> only = std::nullopt);
 
 /// The defined samples of one channel in a range, in order of SCLK, live and recorded as one series. Valid until the
 /// next call: they stand in a buffer that the reader keeps, so that its memory is not allocated anew each time.
-Result<std::span<const Sample>> exact_samples(Reader::State& reader, const Coverage& coverage);
+Result<std::span<const Sample>> exact_samples(Reader::State& reader, const SampleSources& sources);
 
 struct Thinned {
     std::vector<Sample> points;
@@ -39,6 +39,6 @@ struct Thinned {
 /// Thins to the minimum and maximum, each at its own time, of each of `points` / 2 equal intervals. Reads nodes of the
 /// pyramid (at least half as many as intervals) or, where those are too few, samples. The extremes of the whole range
 /// are always among the points; one node may serve both intervals at whose border it lies.
-Result<Thinned> thinned_samples(Reader::State& reader, const Coverage& coverage, std::size_t points);
+Result<Thinned> thinned_samples(Reader::State& reader, const SampleSources& sources, std::size_t points);
 
 }  // namespace aeolis::archive

@@ -59,11 +59,13 @@ class Walk {
         }
     }
 
-    std::vector<Stretch> result() && {
-        const auto first_sample = [](const Stretch& each) { return each.first * pyramid::samples_of_node(each.level); };
-        std::ranges::sort(stretches_, {}, first_sample);
-        std::vector<Stretch> joined;
-        for (const Stretch& each : stretches_) {
+    std::vector<NodeRange> result() && {
+        const auto first_sample = [](const NodeRange& each) {
+            return each.first * pyramid::samples_of_node(each.level);
+        };
+        std::ranges::sort(node_ranges_, {}, first_sample);
+        std::vector<NodeRange> joined;
+        for (const NodeRange& each : node_ranges_) {
             if (!joined.empty() && joined.back().level == each.level && joined.back().last == each.first)
                 joined.back().last = each.last;
             else
@@ -73,7 +75,7 @@ class Walk {
     }
 
   private:
-    void take(unsigned level, std::uint64_t first, std::uint64_t last) { stretches_.push_back({level, first, last}); }
+    void take(unsigned level, std::uint64_t first, std::uint64_t last) { node_ranges_.push_back({level, first, last}); }
 
     Result<void> visit_blocks(unsigned level, std::uint64_t first, std::uint64_t last,
                               std::vector<std::uint64_t>& cut) {
@@ -116,7 +118,7 @@ class Walk {
     Reader::State& reader_;
     const SealedSeries& series_;
     const ClosedRange& range_;
-    std::vector<Stretch> stretches_;
+    std::vector<NodeRange> node_ranges_;
     std::vector<double> spans_s_;
 };
 
@@ -138,7 +140,7 @@ Result<SealedSeries> sealed_series(Reader::State& reader, RunId run, std::uint16
     if (!found) return found.error();
     if (!*found) return series;
     series.nodes[0] = count(**segment, 0) * segment_samples + count(**segment, 1);
-    series.last_unit = count(**segment, 2);
+    series.last_packet_seq = count(**segment, 2);
     for (unsigned level = 1; level <= pyramid::levels; ++level) {
         auto block = reader.query(last_block_sql);
         if (!block) return block.error();
@@ -152,8 +154,9 @@ Result<SealedSeries> sealed_series(Reader::State& reader, RunId run, std::uint16
     return series;
 }
 
-Result<std::vector<Stretch>> stretches(Reader::State& reader, const SealedSeries& series, const ClosedRange& range) {
-    if (series.nodes[0] == 0) return std::vector<Stretch>{};
+Result<std::vector<NodeRange>> node_ranges(Reader::State& reader, const SealedSeries& series,
+                                           const ClosedRange& range) {
+    if (series.nodes[0] == 0) return std::vector<NodeRange>{};
     Walk walk(reader, series, range);
     std::uint64_t reached = 0;  // in samples
     for (unsigned level = pyramid::levels; level >= 1; --level) {

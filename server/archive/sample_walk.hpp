@@ -15,7 +15,7 @@ struct SealedSeries {
     RunId run;
     std::uint16_t packet = 0;
     Source source{};
-    Sequence last_unit = 0;  ///< 0: no segment yet
+    Sequence last_packet_seq = 0;  ///< 0: no segment yet
     /// Number of stored nodes by level; level 0: samples. Samples beyond the last node of a level are in the level
     /// below.
     std::array<std::uint64_t, pyramid::levels + 1> nodes{};
@@ -26,11 +26,11 @@ struct SealedSeries {
 Result<SealedSeries> sealed_series(Reader::State& reader, RunId run, std::uint16_t packet, Source source);
 
 /// Nodes first … last - 1 of a level, with all their samples in the range; at level 0 samples, some perhaps outside.
-struct Stretch {
+struct NodeRange {
     unsigned level = 0;
     std::uint64_t first = 0, last = 0;
 };
-/// The stretches, in order, of a series in a range. They hold each sample once, at the highest level possible.
-Result<std::vector<Stretch>> stretches(Reader::State& reader, const SealedSeries& series, const ClosedRange& range);
+/// The node ranges of a series in a range of time, in order. They hold each sample once, at the highest possible level.
+Result<std::vector<NodeRange>> node_ranges(Reader::State& reader, const SealedSeries& series, const ClosedRange& range);
 
 }  // namespace aeolis::archive

@@ -34,7 +34,7 @@ class Maintenance {
 struct RunLine {
     RunId run;
     std::string scenario, state, outcome, started;
-    std::uint64_t units = 0;
+    std::uint64_t packets = 0;
 };
 /// All runs, oldest first.
 Result<std::vector<RunLine>> run_lines(sqlite::Database& database);

@@ -35,9 +35,9 @@ std::optional<CaseResult> flown(const Fly& fly, std::uint64_t number) {
 }
 
 /// Threads that fly the numbers in `wanted`. The owner closes `wanted` and reads `done` to its end.
-class Pilots {
+class CaseThreads {
   public:
-    Pilots(unsigned jobs, const Fly& fly, const std::atomic<bool>& stop)
+    CaseThreads(unsigned jobs, const Fly& fly, const std::atomic<bool>& stop)
         : wanted(jobs * waiting_per_job), done(jobs * waiting_per_job), flying_(jobs) {
         for (unsigned i = 0; i < jobs; ++i)
             threads_.emplace_back([this, &fly, &stop] {
@@ -49,9 +49,9 @@ class Pilots {
                 if (--flying_ == 0) done.close();
             });
     }
-    Pilots(const Pilots&) = delete;
-    Pilots& operator=(const Pilots&) = delete;
-    ~Pilots() {
+    CaseThreads(const CaseThreads&) = delete;
+    CaseThreads& operator=(const CaseThreads&) = delete;
+    ~CaseThreads() {
         wanted.close();
         done.close();
         for (auto& thread : threads_) thread.join();
@@ -76,7 +76,7 @@ Result<Progress> run_campaign(CampaignStore& store, std::uint64_t cases, unsigne
     auto pending_since = began;
     auto told = began;
     std::uint64_t next = 1;
-    Pilots pilots{jobs, fly, stop};
+    CaseThreads threads{jobs, fly, stop};
 
     const auto keep = [&]() -> Result<void> {
         const auto kept = store.add(pending);
@@ -87,14 +87,14 @@ Result<Progress> run_campaign(CampaignStore& store, std::uint64_t cases, unsigne
         while (next <= cases && !stop) {
             const auto had = store.has(next);
             if (!had) return had.error();
-            if (!*had && !pilots.wanted.try_push(next)) break;
+            if (!*had && !threads.wanted.try_push(next)) break;
             if (*had) ++progress.done;
             ++next;
         }
-        if (next > cases || stop) pilots.wanted.close();
-        auto result = pilots.done.pop_until(Clock::now() + tell_every);
+        if (next > cases || stop) threads.wanted.close();
+        auto result = threads.done.pop_until(Clock::now() + tell_every);
         const auto now = Clock::now();
-        const bool over = !result && pilots.done.closed();
+        const bool over = !result && threads.done.closed();
         if (result) {
             if (pending.empty()) pending_since = now;
             pending.push_back(std::move(*result));

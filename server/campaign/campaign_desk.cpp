@@ -42,17 +42,17 @@ std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder)
 v1::CampaignState kept_in(const std::filesystem::path& file) {
     v1::CampaignState state;
     state.set_campaign(name_of_file(file));
-    const auto heading = heading_of(file);
-    if (!heading) {
+    const auto header = results_header(file);
+    if (!header) {
         state.set_state("unreadable");
-        state.set_fault(heading.error().message);
+        state.set_fault(header.error().message);
         return state;
     }
-    state.set_scenario(heading->scenario);
-    state.set_seed(heading->seed);
-    state.set_cases(static_cast<std::uint32_t>(heading->cases));
-    state.set_kept(static_cast<std::uint32_t>(heading->kept));
-    state.set_state(heading->kept >= heading->cases ? "complete" : "incomplete");
+    state.set_scenario(header->scenario);
+    state.set_seed(header->seed);
+    state.set_cases(static_cast<std::uint32_t>(header->cases));
+    state.set_kept(static_cast<std::uint32_t>(header->kept));
+    state.set_state(header->kept >= header->cases ? "complete" : "incomplete");
     return state;
 }
 
@@ -271,9 +271,9 @@ Result<v1::CampaignReport> CampaignDesk::report(const std::filesystem::path& fil
 
 Result<v1::CampaignTouchdowns> CampaignDesk::touchdowns(const std::filesystem::path& file, std::uint64_t place,
                                                         std::uint64_t limit, std::function<bool()> stop) {
-    const auto heading = heading_of(file);
-    if (!heading) return heading.error();
-    auto results = CampaignResults::open(file, heading->cases);
+    const auto header = results_header(file);
+    if (!header) return header.error();
+    auto results = CampaignResults::open(file, header->cases);
     if (!results) return results.error();
     results->stop_when(std::move(stop));
     const auto found = results->arrivals(place, limit);

@@ -15,7 +15,7 @@ namespace aeolis::server::campaign {
 namespace {
 
 /// Gives the calling thread the lowest priority from now on.
-void give_way() {
+void use_idle_priority() {
     const sched_param none{};
     if (sched_setscheduler(0, SCHED_IDLE, &none) != 0) setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), 19);
 }
@@ -47,11 +47,11 @@ Result<Progress> fly(CampaignStore& store, const Order& order, const dictionary:
     // Not on the storing thread: that shares SQLite's locks with the server's writer and must not be descheduled while
     // it holds one.
     const auto flights = std::async(std::launch::async, [&] {
-                             if (order.gives_way) give_way();
+                             if (order.idle_priority) use_idle_priority();
                              return std::make_unique<const CaseFlights>(order.scenario, order.seed, dictionary, stop);
                          }).get();
     const auto fly_case = [&](std::uint64_t number) {
-        if (order.gives_way) give_way();
+        if (order.idle_priority) use_idle_priority();
         return flights->fly(number);
     };
     return run_campaign(store, order.cases, order.jobs, fly_case, stop, tell);

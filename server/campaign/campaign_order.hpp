@@ -16,7 +16,7 @@ struct Order {
     std::uint64_t cases = 1;
     unsigned jobs = 1;  ///< cases flown at a time
     std::filesystem::path file;
-    bool gives_way = false;  ///< cases fly only while the processor is idle; the storing thread excepted
+    bool idle_priority = false;  ///< cases fly only while the processor is idle; the storing thread excepted
 };
 
 /// The file in a folder for the results of this scenario and seed.

@@ -28,7 +28,7 @@ Result<void> each_row(Statement& statement, const std::function<void(const State
 
 }  // namespace
 
-Result<Heading> heading_of(const std::filesystem::path& file) {
+Result<ResultsHeader> results_header(const std::filesystem::path& file) {
     auto database = Database::open(file.string(), Mode::read_only);
     if (!database) return database.error();
     const auto id = database->integer_of("PRAGMA application_id");
@@ -47,8 +47,9 @@ Result<Heading> heading_of(const std::filesystem::path& file) {
     const auto row = select->step();
     if (!row) return row.error();
     if (!*row) return Error{file.string() + ": says of no campaign that it is its own"};
-    return Heading{std::string{select->text(0)}, static_cast<std::uint64_t>(select->integer(1)),
-                   static_cast<std::uint64_t>(select->integer(2)), static_cast<std::uint64_t>(select->integer(3))};
+    return ResultsHeader{std::string{select->text(0)}, static_cast<std::uint64_t>(select->integer(1)),
+                         static_cast<std::uint64_t>(select->integer(2)),
+                         static_cast<std::uint64_t>(select->integer(3))};
 }
 
 double Summary::touchdown_fraction() const {

@@ -68,15 +68,15 @@ struct Summary {
     double touchdown_fraction() const;
 };
 
-/// The present heading of a results file.
-struct Heading {
+/// What a results file says of its campaign.
+struct ResultsHeader {
     std::string scenario;
     std::uint64_t seed = 0;
     std::uint64_t cases = 0;  ///< requested by the last call
     std::uint64_t kept = 0;   ///< stored in the file
 };
-/// Reads the heading. The Error names the file and, if it is no campaign file of this version, says what it is.
-Result<Heading> heading_of(const std::filesystem::path& file);
+/// Reads the header. The Error names the file and, if it is no campaign file of this version, says what it is.
+Result<ResultsHeader> results_header(const std::filesystem::path& file);
 
 /// The touchdown of a case.
 struct Touchdown {

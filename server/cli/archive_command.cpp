@@ -5,7 +5,7 @@
 #include "server/cli/commands.hpp"
 #include "server/cli/long_work.hpp"
 #include "server/cli/options.hpp"
-#include "server/cli/recorded_words.hpp"
+#include "server/cli/recorded_dictionary.hpp"
 #include "server/cli/shipped_paths.hpp"
 #include "server/pipeline/derivation.hpp"
 
@@ -36,10 +36,10 @@ std::optional<archive::RunId> asked(const ArchiveOptions& options) {
 }
 
 /// Prints the progress; ends at the first Ctrl-C.
-pipeline::GoesOn until_interrupted(ProgressLine& line) {
+pipeline::ProgressCallback until_interrupted(ProgressLine& line) {
     stop_at_interrupt();
-    return [&line](const pipeline::Work& work) {
-        line.draw(fmt::format("run {}: {} of {} packets", work.run.value, work.units, work.of_units));
+    return [&line](const pipeline::Progress& progress) {
+        line.draw(fmt::format("run {}: {} of {} packets", progress.run.value, progress.packets, progress.of_packets));
         return !stop_asked();
     };
 }
@@ -72,18 +72,18 @@ Result<std::vector<archive::RunLine>> chosen(const PruneOptions& options, const 
 /// Returns 0 when there is no fault.
 int archive_verify(const ArchiveOptions& options) {
     int exit_code = 0;
-    const auto words = recorded_words(options.shared.dictionary, options.xtce, exit_code);
-    if (!words) return exit_code;
+    const auto recorded = recorded_dictionary(options.shared.dictionary, options.xtce, exit_code);
+    if (!recorded) return exit_code;
     const auto found = [&] {
         ProgressLine line;
-        return pipeline::verify(options.archive, asked(options), words->dictionary, words->other.get(),
+        return pipeline::verify(options.archive, asked(options), recorded->dictionary, recorded->other.get(),
                                 std::filesystem::temp_directory_path(), until_interrupted(line));
     }();
     if (!found) return failed_at("verify", found.error());
     if (found->stopped) return failed("archive verify: stopped before everything was compared");
     for (const auto& fault : found->faults) fmt::print("{}\n", fault);
     for (const auto& note : found->notes) fmt::print("note: {}\n", note);
-    fmt::print("{}: {} runs, {} packets compared, {}\n", options.archive.string(), found->runs, found->units,
+    fmt::print("{}: {} runs, {} packets compared, {}\n", options.archive.string(), found->runs, found->packets,
                found->faults.empty() ? "nothing wrong" : fmt::format("{} faults", found->faults.size()));
     return found->faults.empty() ? 0 : 1;
 }
@@ -91,12 +91,12 @@ int archive_verify(const ArchiveOptions& options) {
 /// Returns 0 when every run was rebuilt.
 int archive_rebuild(const ArchiveOptions& options) {
     int exit_code = 0;
-    const auto words = recorded_words(options.shared.dictionary, options.xtce, exit_code);
-    if (!words) return exit_code;
+    const auto recorded = recorded_dictionary(options.shared.dictionary, options.xtce, exit_code);
+    if (!recorded) return exit_code;
     const auto rebuilt = [&] {
         ProgressLine line;
-        return pipeline::rebuild(options.archive, asked(options), words->dictionary, words->other.get(), by_this_user(),
-                                 until_interrupted(line));
+        return pipeline::rebuild(options.archive, asked(options), recorded->dictionary, recorded->other.get(),
+                                 by_this_user(), until_interrupted(line));
     }();
     if (!rebuilt) return failed_at("rebuild", rebuilt.error());
     for (const auto& run : rebuilt->runs) fmt::print("run {}: rebuilt from its packets\n", run.value);
@@ -118,7 +118,7 @@ int archive_prune(const PruneOptions& options) {
     for (const auto& run : *runs) {
         numbers.push_back(run.run);
         fmt::print("run {:>4}  {}  {}  {} ({}), {} packets\n", run.run.value, run.started, run.scenario, run.state,
-                   run.outcome, run.units);
+                   run.outcome, run.packets);
     }
     if (!options.yes || runs->empty()) {
         fmt::print("{} of {} runs would be removed; {}\n", runs->size(), all->size(),
@@ -154,7 +154,7 @@ void add_archive_verify(CLI::App& archive, int& exit_code) {
     auto& command =
         *archive.add_subcommand("verify", "checks the file's structure, its sequence numbers, and every derived "
                                           "row against the packets; a line a fault; exit code 1 when there is one");
-    add_archive_and_words(command, *options);
+    add_archive_and_dictionary(command, *options);
     command.add_option("--run", options->run, "only this run")->check(whole_number());
     command.callback([options, &exit_code] { exit_code = archive_verify(*options); });
 }
@@ -164,7 +164,7 @@ void add_archive_rebuild(CLI::App& archive, int& exit_code) {
     auto& command =
         *archive.add_subcommand("rebuild", "derives everything again from the packets, in place of what is there; "
                                            "not while another program writes");
-    add_archive_and_words(command, *options);
+    add_archive_and_dictionary(command, *options);
     command.add_option("--run", options->run, "only this run")->check(whole_number());
     command.callback([options, &exit_code] { exit_code = archive_rebuild(*options); });
 }

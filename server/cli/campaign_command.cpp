@@ -47,7 +47,7 @@ Result<campaign::Call> flown(const CampaignOptions& options, const campaign::Ord
 
 /// Returns 0 when all cases are flown and each ended in touchdown.
 int run_campaign(const CampaignOptions& options) {
-    const auto ready = flyable(options.shared, options.scenario);
+    const auto ready = flight_inputs(options.shared, options.scenario);
     if (!ready) return failed(ready.error().message);
     const auto& [dictionary, scenario] = *ready;
     if (const auto many = campaign::check(scenario); !many)

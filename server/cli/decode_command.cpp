@@ -23,7 +23,7 @@ namespace {
 
 struct DecodeOptions {
     std::filesystem::path xtce, packets;
-    DownlinkForm format{};
+    PacketStreamFormat format{};
     std::optional<std::filesystem::path> clock_kernel,
         leap_seconds;                      ///< SPICE text kernels: both, or the leap seconds alone
     std::optional<std::size_t> partition;  ///< of the clock

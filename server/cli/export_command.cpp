@@ -4,7 +4,7 @@
 #include "server/archive/sample_table.hpp"
 #include "server/cli/commands.hpp"
 #include "server/cli/options.hpp"
-#include "server/cli/recorded_words.hpp"
+#include "server/cli/recorded_dictionary.hpp"
 #include "server/cli/shipped_paths.hpp"
 
 #include <cstdio>
@@ -33,14 +33,14 @@ int each_row(const ExportOptions& options, const char* command, const Begin& beg
              const archive::Reader::TakeSamples& take) {
     const auto said = [&](const Error& error) { return failed(fmt::format("{}: {}", command, error.message)); };
     int exit_code = 0;
-    const auto words = recorded_words(options.of.shared.dictionary, options.of.xtce, exit_code);
-    if (!words) return exit_code;
-    auto reader = archive::Reader::open(options.of.archive, words->dictionary, words->other.get());
+    const auto recorded = recorded_dictionary(options.of.shared.dictionary, options.of.xtce, exit_code);
+    if (!recorded) return exit_code;
+    auto reader = archive::Reader::open(options.of.archive, recorded->dictionary, recorded->other.get());
     if (!reader) return said(reader.error());
     const archive::RunId run{options.of.run.value_or(0)};
     const auto state = reader->run(run);
     if (!state) return said(state.error());
-    if (auto begun = begin(*state, words->dictionary); !begun) return said(begun.error());
+    if (auto begun = begin(*state, recorded->dictionary); !begun) return said(begun.error());
     const auto done = reader->each_sample(run, options.channels, {options.from_s, options.to_s}, take);
     return done ? 0 : said(done.error());
 }
@@ -112,7 +112,7 @@ int archive_samples(const ExportOptions& options) {
 
 /// Adds the options that select samples of a run.
 void add_selection(CLI::App& command, ExportOptions& options) {
-    add_archive_and_words(command, options.of);
+    add_archive_and_dictionary(command, options.of);
     command.add_option("--run", options.of.run, "number of the run")->required()->check(whole_number());
     command
         .add_option("--channel,--channels", options.channels,

@@ -19,7 +19,7 @@ struct ModulesOptions {
 
 /// Prints the flight software's modules, messages, rates and priorities as a document.
 int modules(const ModulesOptions& options) {
-    const auto ready = flyable(options.shared, options.scenario);
+    const auto ready = flight_inputs(options.shared, options.scenario);
     if (!ready) return failed(ready.error().message);
     const auto& [dictionary, scenario] = *ready;
     const auto flow = std::make_shared<MessageFlow>();

@@ -24,7 +24,7 @@ CLI::Validator whole_number() {
             "NUMBER"};
 }
 
-std::array<CLI::Option*, 3> add_stream_format(CLI::App& command, DownlinkForm& format) {
+std::array<CLI::Option*, 3> add_stream_format(CLI::App& command, PacketStreamFormat& format) {
     return {command.add_option("--format", format.name, "packets, tm, aos, cadu or pltu")->capture_default_str(),
             command.add_option("--skip", format.skip, "octets to skip before each packet, TM or AOS frame")
                 ->check(whole_number())
@@ -41,7 +41,7 @@ void add_archive_file(CLI::App& command, std::filesystem::path& archive) {
     command.add_option("--archive", archive, "the SQLite file that serve or rehearse wrote")->capture_default_str();
 }
 
-void add_archive_and_words(CLI::App& command, ArchiveOptions& options) {
+void add_archive_and_dictionary(CLI::App& command, ArchiveOptions& options) {
     add_archive_file(command, options.archive);
     command.add_option("--dictionary", options.shared.dictionary, "directory of the mission's dictionary")
         ->capture_default_str();

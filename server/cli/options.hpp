@@ -20,7 +20,7 @@ void add_shared(CLI::App& command, SharedOptions& shared);
 CLI::Validator whole_number();
 
 /// Adds the options for how a file or link carries packets. @return the options, each of which may need another
-std::array<CLI::Option*, 3> add_stream_format(CLI::App& command, DownlinkForm& format);
+std::array<CLI::Option*, 3> add_stream_format(CLI::App& command, PacketStreamFormat& format);
 
 inline constexpr const char* default_archive = "run-data/aeolis.db";
 
@@ -33,6 +33,6 @@ struct ArchiveOptions {
 };
 void add_archive_file(CLI::App& command, std::filesystem::path& archive);
 /// Adds --archive, --dictionary and --xtce.
-void add_archive_and_words(CLI::App& command, ArchiveOptions& options);
+void add_archive_and_dictionary(CLI::App& command, ArchiveOptions& options);
 
 }  // namespace aeolis::server

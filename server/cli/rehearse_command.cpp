@@ -104,7 +104,7 @@ Result<void> fly_archived(Rehearsal& rehearsal, TruthFile& truth, PipelineThread
 }
 
 int rehearse(const RehearseOptions& options) {
-    const auto ready = flyable(options.shared, options.scenario);
+    const auto ready = flight_inputs(options.shared, options.scenario);
     if (!ready) return failed(ready.error().message);
     const auto& [dictionary, scenario] = *ready;
     std::unique_ptr<PipelineThread> pipeline;

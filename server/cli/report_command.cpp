@@ -5,7 +5,7 @@
 #include "server/base/json.hpp"
 #include "server/cli/commands.hpp"
 #include "server/cli/options.hpp"
-#include "server/cli/recorded_words.hpp"
+#include "server/cli/recorded_dictionary.hpp"
 #include "server/cli/shipped_paths.hpp"
 
 #include <algorithm>
@@ -95,9 +95,9 @@ void print_notes(const v1::AsFlownReport& report) {
 /// Prints the as-flown report of a run.
 int report(const ReportOptions& options) {
     int exit_code = 0;
-    const auto words = recorded_words(options.of.shared.dictionary, {}, exit_code);
-    if (!words) return exit_code;
-    auto reader = archive::Reader::open(options.of.archive, words->dictionary);
+    const auto recorded = recorded_dictionary(options.of.shared.dictionary, {}, exit_code);
+    if (!recorded) return exit_code;
+    auto reader = archive::Reader::open(options.of.archive, recorded->dictionary);
     if (!reader) return failed(reader.error().message);
     auto report = reader->as_flown(archive::RunId{options.of.run.value_or(0)});
     if (!report) return failed(fmt::format("{}: {}", options.of.archive.string(), report.error().message));

@@ -34,7 +34,7 @@ struct ServeOptions {
     double pace = 1.0;
     std::optional<std::string> downlink;  ///< "tcp://HOST:PORT", "udp://HOST:PORT": follow another mission
     std::filesystem::path xtce;           ///< of the followed mission
-    DownlinkForm format{};
+    PacketStreamFormat format{};
     std::string log_level = "info", log_format = "text";
 };
 

@@ -42,14 +42,14 @@ Result<simulation::Scenario> scenario_given(const std::string& given, const std:
     return is_name ? ScenarioLibrary{scenarios}.scenario(given) : scenario_from_file(given);
 }
 
-Result<Flyable> flyable(const SharedOptions& shared, const std::string& scenario) {
+Result<FlightInputs> flight_inputs(const SharedOptions& shared, const std::string& scenario) {
     auto dictionary = dictionary_of_flight(shared.dictionary);
     if (!dictionary) return dictionary.error();
     auto read = scenario_given(scenario, shared.scenarios);
     if (!read) return read.error();
     if (const auto script = check_script(*read, *dictionary); !script)
         return Error{scenario + ": " + script.error().message};
-    return Flyable{std::move(*dictionary), std::move(*read)};
+    return FlightInputs{std::move(*dictionary), std::move(*read)};
 }
 
 int failed(const std::string& message, int exit_code) {

@@ -12,7 +12,8 @@
 namespace aeolis::server {
 
 /// The path of a shipped folder ("dictionaries/msl"): the first that exists of: beside the program, two folders above
-/// it (build/release/aeolis in a checkout), the source tree of the build.
+/// it (build/release/aeolis in a checkout), ../share/aeolis from there (where the package installs it), the source tree
+/// of the build. If none exists, the last.
 std::filesystem::path shipped(const std::string& folder);
 
 /// The dictionary and scenarios of a subcommand; by default those that ship.
@@ -30,11 +31,11 @@ Result<dictionary::Dictionary> dictionary_of_flight(const std::filesystem::path&
 Result<simulation::Scenario> scenario_given(const std::string& given, const std::filesystem::path& scenarios);
 
 /// The inputs of a flight: flight's own dictionary, and a scenario whose commands are in it.
-struct Flyable {
+struct FlightInputs {
     dictionary::Dictionary dictionary;
     simulation::Scenario scenario;
 };
-Result<Flyable> flyable(const SharedOptions& shared, const std::string& scenario);
+Result<FlightInputs> flight_inputs(const SharedOptions& shared, const std::string& scenario);
 
 /// Prints one line to stderr, "aeolis: …"; returns the exit code.
 int failed(const std::string& message, int exit_code = 1);

@@ -81,9 +81,9 @@ struct Sending {
 };
 
 Result<Sending> sending_of_flight(const TonesSimulateOptions& options, const dictionary::Dictionary& dictionary) {
-    const auto flyable_landing = flyable(options.shared, *options.scenario);
-    if (!flyable_landing) return flyable_landing.error();
-    const FlownSignal flown = fly_signal(flyable_landing->scenario, options.seed, options.case_number, dictionary);
+    const auto inputs = flight_inputs(options.shared, *options.scenario);
+    if (!inputs) return inputs.error();
+    const FlownSignal flown = fly_signal(inputs->scenario, options.seed, options.case_number, dictionary);
     if (flown.doppler_hz.empty()) return Error{"the landing did not come within 900 s of entry"};
     Sending sending;
     sending.tones = flown.tones;
@@ -91,7 +91,7 @@ Result<Sending> sending_of_flight(const TonesSimulateOptions& options, const dic
     sending.path.gain_db = flown.gain_db;
     sending.path.start_s = options.from_s.value_or(flown.doppler_hz.first_s());
     sending.path.set_s = flown.earth_set_s;
-    sending.expected_hz = predicted_doppler_hz(flyable_landing->scenario, dictionary.mfsk);
+    sending.expected_hz = predicted_doppler_hz(inputs->scenario, dictionary.mfsk);
     sending.length_s = options.length_s.value_or(flown.earth_set_s + 20.0 - sending.path.start_s);
     return sending;
 }
@@ -212,7 +212,7 @@ int tones_simulate(const TonesSimulateOptions& options) {
 
 /// Prints the receiver's figures with their goals; returns 1 when one is missed.
 int tones_bench(const TonesBenchOptions& options) {
-    const auto landing = flyable(options.shared, "od137");
+    const auto landing = flight_inputs(options.shared, "od137");
     if (!landing) return failed(landing.error().message);
     simulation::Scenario dispersed = landing->scenario;
     const auto errors = scenario_given("nominal_auto", options.shared.scenarios);

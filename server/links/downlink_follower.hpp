@@ -32,7 +32,7 @@ class DownlinkFollower {
 
     struct Settings {
         DownlinkAddress address;
-        DownlinkForm format;
+        PacketStreamFormat format;
         std::string xtce;  ///< name of the XTCE file
         std::chrono::milliseconds retry_first{250}, retry_max{30'000};
     };

@@ -7,7 +7,7 @@ namespace {
 using telemetry::DownlinkFormat;
 
 /// The frame layout, from the user's options and the first octets.
-Result<telemetry::FrameStream> frame_stream(const DownlinkForm& format, DownlinkFormat kind,
+Result<telemetry::FrameStream> frame_stream(const PacketStreamFormat& format, DownlinkFormat kind,
                                             std::span<const std::uint8_t> beginning) {
     telemetry::FrameStream stream;
     if (kind == DownlinkFormat::cadu) {
@@ -33,7 +33,8 @@ Result<telemetry::FrameStream> frame_stream(const DownlinkForm& format, Downlink
 
 }  // namespace
 
-Result<telemetry::PacketSource> packet_source(const DownlinkForm& format, std::span<const std::uint8_t> beginning) {
+Result<telemetry::PacketSource> packet_source(const PacketStreamFormat& format,
+                                              std::span<const std::uint8_t> beginning) {
     const auto kind = telemetry::downlink_format(format.name);
     if (!kind) return Error{"there is no format '" + format.name + "': packets, tm, aos, cadu or pltu"};
     if (*kind == DownlinkFormat::packets) return telemetry::PacketSource::of_packets(format.skip);
@@ -43,7 +44,7 @@ Result<telemetry::PacketSource> packet_source(const DownlinkForm& format, std::s
     return telemetry::PacketSource::of_frames(*frames);
 }
 
-bool needs_beginning(const DownlinkForm& format) {
+bool needs_beginning(const PacketStreamFormat& format) {
     const auto kind = telemetry::downlink_format(format.name);
     return kind && *kind != DownlinkFormat::packets && *kind != DownlinkFormat::pltu;
 }

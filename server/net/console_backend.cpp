@@ -15,7 +15,7 @@ namespace {
 constexpr unsigned stream_check_ms = 1'000;  // chosen: longest time that a client follows after its session ended
 
 /// The identity of the user who started the program.
-Operator by_command_line() {
+Operator command_line_operator() {
     Operator who;
     who.user = this_user();
     who.from = command_line;
@@ -213,13 +213,13 @@ RehearsalDesk::TimelineQuestions ConsoleBackend::timeline_questions() {
             {}, JobPriority::soon);
         if (!taken) done(Error{.message = QueryThreads::busy, .internal = true});
     };
-    questions.look_again = [this](archive::RunId run, const auto& done) {
-        using Look = TimelineCheck::Look;
+    questions.reanalyse = [this](archive::RunId run, const auto& done) {
+        using Reanalysis = TimelineCheck::Reanalysis;
         const bool taken = queries_->ask(
             [this, run, done](archive::Reader& reader) {
                 const auto before = reader.commands(run);
-                done(before ? Result<Look>{timeline_check_.look_again(*before, queries_->stop_of_question({}))}
-                            : Result<Look>{before.error()});
+                done(before ? Result<Reanalysis>{timeline_check_.reanalyse(*before, queries_->stop_of_question({}))}
+                            : Result<Reanalysis>{before.error()});
             },
             {}, JobPriority::soon);
         if (!taken) done(Error{.message = QueryThreads::busy, .internal = true});
@@ -279,8 +279,8 @@ void ConsoleBackend::start(RehearsalDesk::Flight flight) {
     const auto detail =
         fmt::format("serve --scenario {} --seed {} --pace {}", flight.scenario.name, flight.seed, flight.pace);
     desk_->start(std::move(flight), [this, detail](const Result<v1::RunState>& began) {
-        pipeline_->audit(
-            audit_record(by_command_line(), "rehearsal", detail, began ? "done" : "refused: " + began.error().message));
+        pipeline_->audit(audit_record(command_line_operator(), "rehearsal", detail,
+                                      began ? "done" : "refused: " + began.error().message));
         if (!began) spdlog::error("the rehearsal could not be started: {}", began.error().message);
     });
 }
@@ -293,7 +293,7 @@ Result<void> ConsoleBackend::follow(DownlinkFollower::Settings settings) {
     auto follower = DownlinkFollower::start(std::move(settings), *pipeline_, [this](v1::RunState state) {
         server_->post([this, state = std::move(state)]() mutable { hub_->run_state(std::move(state)); });
     });
-    pipeline_->audit(audit_record(by_command_line(), "downlink", detail,
+    pipeline_->audit(audit_record(command_line_operator(), "downlink", detail,
                                   follower ? "done" : "refused: " + follower.error().message));
     if (!follower) return follower.error();
     downlink_ = std::move(*follower);

@@ -271,7 +271,8 @@ std::optional<Response> HttpConnection<AnyStream>::refusal_of_stream(const Excha
 template <typename AnyStream>
 Task<> HttpConnection<AnyStream>::become_stream(Exchange& exchange) {
     const auto* subprotocol = chosen_subprotocol(exchange.request);
-    StreamService stream_service{service_.turn, service_.streams, WebServer::message_octets_max, service_.silence_max,
+    StreamService stream_service{service_.scheduler, service_.streams, WebServer::message_octets_max,
+                                 service_.silence_max,
                                  [&handlers = service_.handlers,
                                   credentials = exchange.credentials](StreamFormat format, std::function<void()> wake) {
                                      return handlers.open_stream(credentials, format, std::move(wake));

@@ -28,7 +28,7 @@ struct HttpService {
     BodyBudget answers;
     OpenStreams streams;
     asio::io_context io{1};
-    WriteTurn turn{io.get_executor()};
+    WriteScheduler scheduler{io.get_executor()};
 };
 
 /// Reads requests and answers each, until either side closes the connection or it becomes a stream.

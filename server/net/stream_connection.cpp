@@ -41,7 +41,7 @@ void fetch_octets(const void* object, std::size_t octets) {
 /// A client's connection. It takes messages from its session as fast as the kernel accepts them; all else waits in the
 /// session.
 template <typename AnyStream>
-class Connection final : public WriteTurn::Writer,
+class Connection final : public WriteScheduler::Writer,
                          public OpenStreams::Member,
                          public std::enable_shared_from_this<Connection<AnyStream>> {
   public:
@@ -148,7 +148,7 @@ void Connection<AnyStream>::end() {
 
 template <typename AnyStream>
 void Connection<AnyStream>::due() {
-    if (auto alive = this->weak_from_this().lock()) service_.turn.add(std::move(alive));
+    if (auto alive = this->weak_from_this().lock()) service_.scheduler.add(std::move(alive));
 }
 
 template <typename AnyStream>
@@ -176,14 +176,14 @@ bool Connection<AnyStream>::gather(std::string& frames) {
 
 template <typename AnyStream>
 void Connection<AnyStream>::write() {
-    auto& frames = service_.turn.frames();
+    auto& frames = service_.scheduler.frames();
     const bool more = open_ && !frames_.busy() && gather(frames);
     if (auto why = session_->closing(); open_ && !why.empty()) {
         asio::co_spawn(socket_.get_executor(), close({websocket::close_code::policy_error, why}), asio::detached);
         return;
     }
     if (!frames.empty()) frames_.send(frames);
-    if (more) return service_.turn.add(this->shared_from_this());
+    if (more) return service_.scheduler.add(this->shared_from_this());
     if (open_ && !frames_.busy()) wait_for_due();
 }
 
@@ -212,17 +212,17 @@ void OpenStreams::end(std::function<void()> gone) {
     for (auto* member : members_) member->end();
 }
 
-void WriteTurn::add(std::shared_ptr<Writer> writer) {
+void WriteScheduler::add(std::shared_ptr<Writer> writer) {
     if (std::exchange(writer->due_, true)) return;
     due_.push_back(std::move(writer));
     post();
 }
 
-void WriteTurn::post() {
+void WriteScheduler::post() {
     if (!std::exchange(posted_, true)) asio::post(executor_, [this] { write_all(); });
 }
 
-void WriteTurn::write_all() {
+void WriteScheduler::write_all() {
     posted_ = false;
     const auto end = std::chrono::steady_clock::now() + turn_max;
     for (auto left = due_.size(); left > 0; --left) {

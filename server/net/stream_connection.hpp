@@ -19,7 +19,7 @@ namespace aeolis::server::net {
 
 /// The connections with something to write. Each writes once after the network thread's present work: a client gets all
 /// batches of that work in one message and one system call, not one each.
-class WriteTurn {
+class WriteScheduler {
   public:
     class Writer {
       public:
@@ -29,10 +29,10 @@ class WriteTurn {
         virtual void fetch() const = 0;
 
       private:
-        friend class WriteTurn;
+        friend class WriteScheduler;
         bool due_ = false;
     };
-    explicit WriteTurn(Executor executor) : executor_(std::move(executor)) {}
+    explicit WriteScheduler(Executor executor) : executor_(std::move(executor)) {}
     void add(std::shared_ptr<Writer> writer);
     /// The shared buffer for the current writer, emptied. One for all, so that it stays in the cache.
     std::string& frames() {
@@ -93,7 +93,7 @@ class OpenStreams {
 
 /// What a stream connection needs from the server.
 struct StreamService {
-    WriteTurn& turn;
+    WriteScheduler& scheduler;
     OpenStreams& streams;
     std::size_t message_octets_max = 0;       ///< of one client message
     std::chrono::milliseconds silence_max{};  ///< a peer that answers no ping for this long is dead

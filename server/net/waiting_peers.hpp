@@ -11,8 +11,8 @@ namespace aeolis::server::net {
 
 /// The connections whose request is being answered, so that work can stop when the client disconnects.
 ///
-/// Rule     look() asks each socket whether the peer has closed its side; the peer's last octets, even TLS's close, may
-///          be unread
+/// Rule     poll_peers() asks each socket whether the peer has closed its side; the peer's last octets, even TLS's
+///          close, may be unread
 /// Faults   a silent network goes unnoticed; a query's own time-out bounds that
 /// Thread   the network thread, except for the function that gone() returns
 class WaitingPeers {
@@ -41,7 +41,7 @@ class WaitingPeers {
         std::list<Peer>::iterator place_;
     };
 
-    void look() {
+    void poll_peers() {
         for (const auto& peer : peers_) {
             pollfd polled{peer.descriptor, POLLRDHUP, 0};
             // POLLERR and POLLHUP are reported without being requested.

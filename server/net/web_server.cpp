@@ -20,7 +20,7 @@ namespace {
 
 using namespace net;
 
-constexpr unsigned peers_looked_at_ms = 250;  // chosen: longest work on an answer after its client left
+constexpr unsigned peers_poll_ms = 250;  // chosen: longest work on an answer after its client left
 
 /// Maps an IPv4 address on an IPv6 socket to plain IPv4.
 asio::ip::address plain_address(const asio::ip::address& address) {
@@ -57,7 +57,7 @@ struct WebServer::State {
     Acceptor acceptor{io.get_executor()};
     std::optional<asio::ssl::context> tls;
     std::deque<Timer> timers;  ///< for every()
-    Timer farewell{io.get_executor()};
+    Timer close_timer{io.get_executor()};
 
     void end();
     Task<> accept();
@@ -108,8 +108,8 @@ Task<> WebServer::State::serve_tls(Stream stream, std::string from) {
 void WebServer::State::end() {
     error_code ignored;
     acceptor.close(ignored);
-    farewell.expires_after(farewell_max);
-    farewell.async_wait([this](error_code asked_again) {
+    close_timer.expires_after(close_timeout);
+    close_timer.async_wait([this](error_code asked_again) {
         if (asked_again) return;
         service.streams.forget();  // io stops without the remaining clients
         io.stop();
@@ -172,7 +172,7 @@ Result<std::unique_ptr<WebServer>> WebServer::open(const Settings& settings, Han
     if (error) return Error{fmt::format("--listen {}:{}: {}", address, port, error.message())};
     asio::co_spawn(state->io, state->accept(), asio::detached);
     auto server = std::unique_ptr<WebServer>{new WebServer{std::move(state)}};
-    server->every(peers_looked_at_ms, [waiting = &server->state_->service.waiting] { waiting->look(); });
+    server->every(peers_poll_ms, [waiting = &server->state_->service.waiting] { waiting->poll_peers(); });
     return server;
 }
 

@@ -43,7 +43,8 @@ class WebServer {
         std::function<std::shared_ptr<StreamSession>(const Credentials&, StreamFormat, std::function<void()> wake)>
             open_stream;
     };
-    static constexpr std::chrono::milliseconds farewell_max{1'000};  ///< chosen: to close streams when the server stops
+    /// Chosen: to close streams when the server stops.
+    static constexpr std::chrono::milliseconds close_timeout{1'000};
     struct Settings {
         std::string address = "127.0.0.1";
         std::uint16_t port = 0;             ///< 0: any free port

@@ -20,8 +20,8 @@ namespace sqlite = archive::sqlite;
 
 namespace {
 
-constexpr std::size_t batch_units = 4096;   ///< chosen: some MB of memory
-constexpr std::size_t faults_a_table = 20;  ///< chosen: nobody reads more
+constexpr std::size_t batch_packets = 4096;  ///< chosen: some MB of memory
+constexpr std::size_t faults_a_table = 20;   ///< chosen: nobody reads more
 
 struct RunToDerive {
     RunId run;
@@ -99,37 +99,39 @@ std::string other_words(const RunToDerive& run, const dictionary::Dictionary& di
 /// Derives the rows of a run from "archive" into "main". @return the number of packets; none: stopped
 Result<std::optional<std::size_t>> derive(sqlite::Database& database, const RunToDerive& run,
                                           const dictionary::Dictionary& dictionary,
-                                          const telemetry::OtherMission* other, const GoesOn& goes_on) {
-    const auto of_units = database.integer_of(
+                                          const telemetry::OtherMission* other, const ProgressCallback& on_progress) {
+    const auto of_packets = database.integer_of(
         ("SELECT count(*) FROM archive.units WHERE run = " + std::to_string(run.run.value)).c_str());
-    if (!of_units) return of_units.error();
+    if (!of_packets) return of_packets.error();
     auto writer = archive::RowWriter::open(database);
     if (!writer) return writer.error();
-    const auto units_sql = archive::select_sql<archive::UnitRecord>("key BETWEEN ?1 AND ?2", "archive.");
-    auto units = database.prepare(units_sql.c_str());
-    if (!units) return units.error();
-    units->bind(1, archive::item_key(run.run, 0))
+    const auto packets_sql = archive::select_sql<archive::PacketRecord>("key BETWEEN ?1 AND ?2", "archive.");
+    auto packets = database.prepare(packets_sql.c_str());
+    if (!packets) return packets.error();
+    packets->bind(1, archive::item_key(run.run, 0))
         .bind(2, archive::item_key(run.run, archive::sequence_max))
         .bind(3, std::int64_t{-1});
     const archive::PacketColumns columns(dictionary);
     PacketIntake intake(dictionary, columns, other);
     archive::Batch batch;
     std::size_t count = 0;
-    const auto stopped = [&] { return goes_on && !goes_on({run.run, count, static_cast<std::size_t>(*of_units)}); };
+    const auto stopped = [&] {
+        return on_progress && !on_progress({run.run, count, static_cast<std::size_t>(*of_packets)});
+    };
     if (stopped()) return std::optional<std::size_t>{};
     for (;;) {
-        auto found = units->step();
+        auto found = packets->step();
         if (!found) return found.error();
         if (!*found) break;
-        const auto stored = archive::read_row<archive::UnitRecord>(*units);
-        const auto octets = archive::octets_of_unit(*units);
+        const auto stored = archive::read_row<archive::PacketRecord>(*packets);
+        const auto octets = archive::octets_of_packet(*packets);
         Numbering numbering(stored.seq);
         intake.take(telemetry::ReceivedPacket{{stored.link, stored.source == archive::Source::recorded},
                                               stored.ert,
                                               {octets.begin(), octets.end()}},
                     numbering, batch, {});
         ++count;
-        if (batch.units.size() < batch_units) continue;
+        if (batch.packets.size() < batch_packets) continue;
         if (stopped()) return std::optional<std::size_t>{};
         if (auto done = writer->write(run.run, batch); !done) return done.error();
         batch.clear();
@@ -276,7 +278,7 @@ Result<void> compare(sqlite::Database& database, const RunToDerive& run, const d
 
 Result<Verification> verify(const std::filesystem::path& file, std::optional<RunId> only,
                             const dictionary::Dictionary& dictionary, const telemetry::OtherMission* other,
-                            const std::filesystem::path& scratch_folder, const GoesOn& goes_on) {
+                            const std::filesystem::path& scratch_folder, const ProgressCallback& on_progress) {
     Verification found;
     {
         auto database = sqlite::Database::open(file.string(), sqlite::Mode::read_only);
@@ -309,13 +311,13 @@ Result<Verification> verify(const std::filesystem::path& file, std::optional<Run
             found.notes.push_back(other_words(run, dictionary) + ": its derived rows were not compared");
             continue;
         }
-        auto units = derive(database, run, dictionary, other, goes_on);
-        if (!units)
+        auto packets = derive(database, run, dictionary, other, on_progress);
+        if (!packets)
             return Error{"run " + std::to_string(run.run.value) +
-                         ": its units cannot be told again: " + units.error().message};
-        found.stopped = !*units;
+                         ": its units cannot be told again: " + packets.error().message};
+        found.stopped = !*packets;
         if (found.stopped) return found;
-        found.units += **units;
+        found.packets += **packets;
         if (auto done = compare(database, run, dictionary, found); !done) return done.error();
         for (const archive::RunTable& table : archive::run_tables())
             if (auto done = database.execute((std::string("DELETE FROM main.") + table.name).c_str()); !done)
@@ -326,7 +328,7 @@ Result<Verification> verify(const std::filesystem::path& file, std::optional<Run
 
 Result<Rebuilt> rebuild(const std::filesystem::path& file, std::optional<RunId> only,
                         const dictionary::Dictionary& dictionary, const telemetry::OtherMission* other,
-                        archive::AuditRecord by, const GoesOn& goes_on) {
+                        archive::AuditRecord by, const ProgressCallback& on_progress) {
     by.action = "rebuild";
     by.outcome = "done";
     auto archive = archive::Maintenance::open(file);
@@ -354,12 +356,12 @@ Result<Rebuilt> rebuild(const std::filesystem::path& file, std::optional<RunId> 
         {
             auto transaction = sqlite::Transaction::begin_write(scratch->database());
             if (!transaction) return transaction.error();
-            const auto units = derive(scratch->database(), run, dictionary, other, goes_on);
-            if (!units) {
-                rebuilt.left.push_back(of_run + ": its units cannot be told again: " + units.error().message);
+            const auto packets = derive(scratch->database(), run, dictionary, other, on_progress);
+            if (!packets) {
+                rebuilt.left.push_back(of_run + ": its units cannot be told again: " + packets.error().message);
                 continue;
             }
-            rebuilt.stopped = !*units;
+            rebuilt.stopped = !*packets;
             if (rebuilt.stopped) break;
             if (auto done = transaction->commit(); !done) return done.error();
         }

@@ -19,14 +19,14 @@
 namespace aeolis::pipeline {
 
 /// Progress, reported every few thousand packets. A callback that returns false ends the work; completed runs stay.
-struct Work {
+struct Progress {
     archive::RunId run;
-    std::size_t units = 0, of_units = 0;  ///< of this run
+    std::size_t packets = 0, of_packets = 0;  ///< of this run
 };
-using GoesOn = std::function<bool(const Work&)>;
+using ProgressCallback = std::function<bool(const Progress&)>;
 
 struct Verification {
-    std::size_t runs = 0, units = 0;
+    std::size_t runs = 0, packets = 0;
     std::vector<std::string> faults;  ///< one per line, naming run, table and item
     std::vector<std::string> notes;   ///< what could not be compared, and why
     bool stopped = false;             ///< before all was compared
@@ -37,10 +37,10 @@ struct Verification {
 /// @param run      none: all
 /// @param scratch  a folder with room for the derived rows of one run
 /// @param other    the mission of the dictionary; null: our own
-/// @param goes_on  empty: runs to the end
+/// @param on_progress  empty: runs to the end
 Result<Verification> verify(const std::filesystem::path& archive, std::optional<archive::RunId> run,
                             const dictionary::Dictionary& dictionary, const telemetry::OtherMission* other,
-                            const std::filesystem::path& scratch, const GoesOn& goes_on = {});
+                            const std::filesystem::path& scratch, const ProgressCallback& on_progress = {});
 
 struct Rebuilt {
     std::vector<archive::RunId> runs;
@@ -53,6 +53,6 @@ struct Rebuilt {
 /// @param by  time, user and address for each run's audit entry; the action is filled in here
 Result<Rebuilt> rebuild(const std::filesystem::path& archive, std::optional<archive::RunId> run,
                         const dictionary::Dictionary& dictionary, const telemetry::OtherMission* other,
-                        archive::AuditRecord by, const GoesOn& goes_on = {});
+                        archive::AuditRecord by, const ProgressCallback& on_progress = {});
 
 }  // namespace aeolis::pipeline

@@ -12,8 +12,8 @@
 namespace aeolis::pipeline {
 
 using archive::Batch;
+using archive::PacketRecord;
 using archive::Source;
-using archive::UnitRecord;
 using telemetry::Standing;
 
 PacketIntake::PacketIntake(const dictionary::Dictionary& dictionary, const archive::PacketColumns& columns,
@@ -34,11 +34,11 @@ PacketIntake::PacketIntake(const dictionary::Dictionary& dictionary, const archi
     }
 }
 
-void PacketIntake::note_phase(const UnitRecord& unit) {
-    const auto field = phase_field_[*unit.packet];
-    if (!field || unit.source != Source::realtime || unit.sclk < phase_sclk_ || !decoded_.value[*field]) return;
-    phase_ = telemetry::value_text(dictionary_.packets[*unit.packet].fields[*field].type, decoded_.value[*field]);
-    phase_sclk_ = unit.sclk;
+void PacketIntake::note_phase(const PacketRecord& record) {
+    const auto field = phase_field_[*record.packet];
+    if (!field || record.source != Source::realtime || record.sclk < phase_sclk_ || !decoded_.value[*field]) return;
+    phase_ = telemetry::value_text(dictionary_.packets[*record.packet].fields[*field].type, decoded_.value[*field]);
+    phase_sclk_ = record.sclk;
 }
 
 std::optional<PacketIntake::FiringFields> PacketIntake::find_firing_fields(const dictionary::Dictionary& dictionary) {
@@ -56,41 +56,42 @@ std::optional<PacketIntake::FiringFields> PacketIntake::find_firing_fields(const
 void PacketIntake::take(const telemetry::ReceivedPacket& packet, Numbering& numbering, Batch& batch,
                         const Observer& observer) {
     const bool recorded = packet.link.recorded;
-    UnitRecord unit;
-    unit.seq = numbering.next(batch);
-    unit.ert = packet.ert;
-    unit.link = packet.link.name;
-    unit.source = recorded ? Source::recorded : Source::realtime;
-    unit.octets = {batch.octets.size(), packet.octets.size()};
+    PacketRecord record;
+    record.seq = numbering.next(batch);
+    record.ert = packet.ert;
+    record.link = packet.link.name;
+    record.source = recorded ? Source::recorded : Source::realtime;
+    record.octets = {batch.octets.size(), packet.octets.size()};
     batch.octets.insert(batch.octets.end(), packet.octets.begin(), packet.octets.end());
     if (recorded) recorded_octets_ += packet.octets.size();
 
     const bool has_apid = other_ != nullptr ? packet.octets.size() >= primary_header_octets
                                             : read_primary_header(packet.octets).has_value();
-    if (has_apid) unit.apid = Apid{static_cast<std::uint16_t>((packet.octets[0] & 7U) << 8U | packet.octets[1])};
+    if (has_apid) record.apid = Apid{static_cast<std::uint16_t>((packet.octets[0] & 7U) << 8U | packet.octets[1])};
     if (other_ != nullptr) {
         ++of_others_;
-        unit.standing = Standing::unregistered;
+        record.standing = Standing::unregistered;
     }
     if (auto refusal = decode(packet.octets)) {
         ++not_decoded_;
-        unit.refusal = std::move(*refusal);
-        batch.units.push_back(std::move(unit));
+        record.refusal = std::move(*refusal);
+        batch.packets.push_back(std::move(record));
         return;
     }
-    unit.packet = static_cast<std::uint16_t>(decoded_.packet);
-    unit.sclk = decoded_.header.time;
+    record.packet = static_cast<std::uint16_t>(decoded_.packet);
+    record.sclk = decoded_.header.time;
     if (other_ == nullptr)
-        unit.standing = register_.add(packet.octets, recorded ? telemetry::Path::recorded : telemetry::Path::realtime);
-    const bool fresh = unit.standing == Standing::first || unit.standing == Standing::unregistered;
-    unit.sampled = fresh && !columns_.channels(decoded_.packet).empty();
-    batch.units.push_back(unit);
-    if (unit.standing == Standing::again) return;
-    note_phase(unit);
-    if (unit.sampled) sample(unit, numbering, batch);
+        record.standing =
+            register_.add(packet.octets, recorded ? telemetry::Path::recorded : telemetry::Path::realtime);
+    const bool fresh = record.standing == Standing::first || record.standing == Standing::unregistered;
+    record.sampled = fresh && !columns_.channels(decoded_.packet).empty();
+    batch.packets.push_back(record);
+    if (record.standing == Standing::again) return;
+    note_phase(record);
+    if (record.sampled) sample(record, numbering, batch);
     if (other_ != nullptr) return;
-    interpret(unit, numbering, batch);
-    if (observer) observer(decoded_, packet.octets, unit.source, unit.ert);
+    interpret(record, numbering, batch);
+    if (observer) observer(decoded_, packet.octets, record.source, record.ert);
 }
 
 std::optional<std::string> PacketIntake::decode(std::span<const std::uint8_t> packet) {
@@ -99,31 +100,32 @@ std::optional<std::string> PacketIntake::decode(std::span<const std::uint8_t> pa
     return refusal ? std::optional<std::string>{telemetry::name_of(*refusal)} : std::nullopt;
 }
 
-void PacketIntake::sample(const UnitRecord& unit, Numbering& numbering, Batch& batch) {
+void PacketIntake::sample(const PacketRecord& record, Numbering& numbering, Batch& batch) {
     const std::size_t first = batch.values.size();
     columns_.append_values(decoded_, batch.values);
     const auto values = std::span<const double>(batch.values).subspan(first);
-    batch.samples.push_back({{numbering.next(batch), unit.ert},
-                             *unit.packet,
-                             unit.sclk,
-                             unit.source,
+    batch.samples.push_back({{numbering.next(batch), record.ert},
+                             *record.packet,
+                             record.sclk,
+                             record.source,
                              {first, batch.values.size() - first}});
-    segments_.add(*unit.packet, unit.source, unit.seq, unit.sclk, values, batch);
-    if (unit.source == Source::realtime) judge(unit, values, numbering, batch);
+    segments_.add(*record.packet, record.source, record.seq, record.sclk, values, batch);
+    if (record.source == Source::realtime) judge(record, values, numbering, batch);
 }
 
-void PacketIntake::judge(const UnitRecord& unit, std::span<const double> values, Numbering& numbering, Batch& batch) {
-    const auto& channels = columns_.channels(*unit.packet);
+void PacketIntake::judge(const PacketRecord& record, std::span<const double> values, Numbering& numbering,
+                         Batch& batch) {
+    const auto& channels = columns_.channels(*record.packet);
     changes_.clear();
     for (std::size_t i = 0; i < channels.size(); ++i) {
         auto& latest = latest_[channels[i].value];
-        if (latest && latest->sclk > unit.sclk) continue;
-        latest = LatestValue{std::isnan(values[i]) ? std::nullopt : std::optional(values[i]), unit.sclk, unit.ert};
-        if (latest->value) alarms_.sample(channels[i], values[i], unit.sclk, changes_);
+        if (latest && latest->sclk > record.sclk) continue;
+        latest = LatestValue{std::isnan(values[i]) ? std::nullopt : std::optional(values[i]), record.sclk, record.ert};
+        if (latest->value) alarms_.sample(channels[i], values[i], record.sclk, changes_);
     }
     for (const auto& change : changes_)
-        batch.alarms.push_back({{numbering.next(batch), unit.ert},
-                                unit.seq,
+        batch.alarms.push_back({{numbering.next(batch), record.ert},
+                                record.seq,
                                 change.channel,
                                 change.severity,
                                 change.value,
@@ -131,39 +133,39 @@ void PacketIntake::judge(const UnitRecord& unit, std::span<const double> values,
                                 change.limit});
 }
 
-void PacketIntake::interpret(const UnitRecord& unit, Numbering& numbering, Batch& batch) const {
+void PacketIntake::interpret(const PacketRecord& record, Numbering& numbering, Batch& batch) const {
     if (const auto* event = telemetry::event_of(dictionary_, decoded_)) {
-        batch.events.push_back({{numbering.next(batch), unit.ert},
-                                unit.seq,
+        batch.events.push_back({{numbering.next(batch), record.ert},
+                                record.seq,
                                 event->id,
                                 event->name,
                                 event->level,
                                 telemetry::event_text(dictionary_, *event, decoded_),
-                                unit.sclk,
-                                unit.source,
-                                unit.duplicate()});
+                                record.sclk,
+                                record.source,
+                                record.duplicate()});
     }
     if (firing_ && firing_->packet == decoded_.packet) {
         const auto value = [this](std::size_t field) { return decoded_.value[field].value_or(0.0); };
         const auto& fields = dictionary_.packets[decoded_.packet].fields;
         const auto index = static_cast<std::size_t>(value(firing_->timepoint));
-        batch.firings.push_back({{numbering.next(batch), unit.ert},
-                                 unit.seq,
+        batch.firings.push_back({{numbering.next(batch), record.ert},
+                                 record.seq,
                                  TimepointId{static_cast<std::uint16_t>(index)},
                                  index < dictionary_.timeline.size() ? dictionary_.timeline[index].name : std::string(),
                                  telemetry::value_text(fields[firing_->verdict].type, decoded_.value[firing_->verdict]),
                                  Sclk{value(firing_->triggered)},
                                  Sclk{value(firing_->fired)},
-                                 unit.source,
-                                 unit.duplicate()});
+                                 record.source,
+                                 record.duplicate()});
     }
     if (auto explanation = telemetry::explain(dictionary_, decoded_))
-        batch.explanations.push_back({{numbering.next(batch), unit.ert},
-                                      unit.seq,
-                                      unit.sclk,
+        batch.explanations.push_back({{numbering.next(batch), record.ert},
+                                      record.seq,
+                                      record.sclk,
                                       std::move(*explanation),
-                                      unit.source,
-                                      unit.duplicate()});
+                                      record.source,
+                                      record.duplicate()});
 }
 
 archive::RecordingTotals PacketIntake::totals() const {

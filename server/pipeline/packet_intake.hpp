@@ -75,12 +75,12 @@ class PacketIntake {
 
     /// Decodes into decoded_. Returns the reason if it was not decoded.
     std::optional<std::string> decode(std::span<const std::uint8_t> packet);
-    void sample(const archive::UnitRecord& unit, Numbering& numbering, archive::Batch& batch);
-    void interpret(const archive::UnitRecord& unit, Numbering& numbering, archive::Batch& batch) const;
-    void judge(const archive::UnitRecord& unit, std::span<const double> values, Numbering& numbering,
+    void sample(const archive::PacketRecord& record, Numbering& numbering, archive::Batch& batch);
+    void interpret(const archive::PacketRecord& record, Numbering& numbering, archive::Batch& batch) const;
+    void judge(const archive::PacketRecord& record, std::span<const double> values, Numbering& numbering,
                archive::Batch& batch);
 
-    void note_phase(const archive::UnitRecord& unit);
+    void note_phase(const archive::PacketRecord& record);
 
     const dictionary::Dictionary& dictionary_;
     const archive::PacketColumns& columns_;

@@ -49,7 +49,7 @@ struct Pipeline::State {
     void add(std::span<const telemetry::StalenessChange> changes, Ert ert);
     void take(const telemetry::ReceivedTone& tone);
     void take(const telemetry::LinkState& link);
-    void hold_against_archive();
+    void compare_with_archive();
     Result<void> go_on_where_it_was_cut_off();
     std::shared_ptr<const PublishedBatch> published(RunId of, const archive::Batch& batch, bool built) const;
 
@@ -114,7 +114,7 @@ Result<void> Pipeline::resume(RunId run, const archive::RunStart& start, Sequenc
 }
 
 /// Compares the waiting items, which are already durable, with the archive, and drops them.
-void Pipeline::State::hold_against_archive() {
+void Pipeline::State::compare_with_archive() {
     if (!run->differs && run->pending.last_seq > run->repeat_until)
         run->differs =
             Error{"what came with item " + std::to_string(run->repeat_until) + ", the last that is stored, now has " +
@@ -127,7 +127,7 @@ void Pipeline::State::hold_against_archive() {
 /// Continues the run once its last durable item was repeated; does nothing before that or when not repeating.
 Result<void> Pipeline::State::go_on_where_it_was_cut_off() {
     if (!run->repeats() || run->numbering.last() < run->repeat_until) return {};
-    hold_against_archive();
+    compare_with_archive();
     if (run->differs) return {};
     if (auto done = archive.continue_run(run->id); !done) return done;
     run->compare = nullptr;
@@ -240,11 +240,11 @@ void Pipeline::State::take(const telemetry::ReceivedPacket& packet) {
 }
 
 void Pipeline::State::heard() {
-    const auto& unit = run->pending.units.back();
-    if (!unit.packet) return;
-    const Ert ert = unit.ert;
+    const auto& record = run->pending.packets.back();
+    if (!record.packet) return;
+    const Ert ert = record.ert;
     std::vector<telemetry::StalenessChange> changes;
-    run->staleness.heard(*unit.packet, ert, changes);
+    run->staleness.heard(*record.packet, ert, changes);
     if (!run->intake.phase().empty()) run->staleness.phase(run->intake.phase(), ert, changes);
     add(changes, ert);
 }
@@ -335,10 +335,10 @@ Result<void> Pipeline::commit() {
     if (!state_->run) return {};
     auto& run = *state_->run;
     if (run.repeats()) {
-        state_->hold_against_archive();
+        state_->compare_with_archive();
         return {};
     }
-    if (!run.pending.units.empty() || run.progress != run.durable_progress) run.pending.totals = run.totals();
+    if (!run.pending.packets.empty() || run.progress != run.durable_progress) run.pending.totals = run.totals();
     if (run.pending.empty()) return {};
     if (auto done = state_->archive.append(run.id, run.pending); !done) return done;
     run.durable_progress = run.progress;

@@ -202,7 +202,7 @@ void PipelineThread::note_received(const Delivery& delivery) {
     const std::scoped_lock lock{figures_mutex_};
     const auto add = [&](const std::string& link, std::size_t octets) {
         auto& received = links_[link];
-        ++received.units;
+        ++received.items;
         received.octets += octets;
     };
     for (const auto& entry : delivery.entries) {
@@ -268,7 +268,7 @@ void PipelineThread::run() {
         auto job =
             waits() ? jobs_.pop_until(std::chrono::steady_clock::now() + pipeline::commit_interval) : jobs_.pop();
         if (!job && jobs_.closed() && jobs_.size() == 0) {
-            if (waits()) insist([&] { return commit(std::nullopt); });
+            if (waits()) retry_until_stored([&] { return commit(std::nullopt); });
             return;
         }
         pipeline_.want_items(items_wanted_);
@@ -288,7 +288,7 @@ void PipelineThread::run() {
 }
 
 void PipelineThread::finish(Finish& finish) {
-    if (insist([&] { return pipeline_.finish(finish.end); }))
+    if (retry_until_stored([&] { return pipeline_.finish(finish.end); }))
         finish.done.set_value({});
     else
         finish.done.set_value(Error{fault()});
@@ -302,7 +302,7 @@ void PipelineThread::take(Delivery& delivery) {
     for (auto& entry : delivery.entries) {
         const auto accept = [&] { return std::visit([&](auto& each) { return pipeline_.accept(each); }, entry); };
         // accept() refuses only while too much waits for a failing disk: commit that first.
-        if (!accept() && !insist(accept)) return;
+        if (!accept() && !retry_until_stored(accept)) return;
     }
     pipeline_.relay_progress(delivery.relay_progress);
     if (!delivery.links.empty()) pipeline_.link_totals(std::move(delivery.links));
@@ -348,7 +348,7 @@ bool PipelineThread::noted(const Result<void>& result) {
     return result.ok();
 }
 
-bool PipelineThread::insist(const std::function<Result<void>()>& attempt) {
+bool PipelineThread::retry_until_stored(const std::function<Result<void>()>& attempt) {
     const std::shared_ptr<void> at_the_end{nullptr, [this](void*) { blocked_ = false; }};
     for (int tries_when_closing = 0; !given_up_;) {
         const auto result = attempt();

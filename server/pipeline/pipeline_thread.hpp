@@ -92,7 +92,7 @@ class PipelineThread {
     bool blocked() const { return blocked_; }
 
     struct Received {
-        std::uint64_t units = 0, octets = 0;
+        std::uint64_t items = 0, octets = 0;
     };
     struct Figures {
         std::uint64_t deliveries = 0, failed_commits = 0, published_batches = 0, published_items = 0;
@@ -123,7 +123,7 @@ class PipelineThread {
     void take(Delivery& delivery);
     void take_answers(Delivery& delivery);
     /// Repeats `attempt` until it succeeds; false when it is given up.
-    bool insist(const std::function<Result<void>()>& attempt);
+    bool retry_until_stored(const std::function<Result<void>()>& attempt);
     /// Attempts once to commit what is due; after a failure the next attempt is after retry_interval.
     void commit_what_is_due();
     void finish(Finish& finish);

@@ -18,7 +18,7 @@ std::size_t index_of(Source source) {
 
 SegmentBuilder::SegmentBuilder(const archive::PacketColumns& columns) : columns_(columns), open_(columns.packets()) {}
 
-void SegmentBuilder::add(std::uint16_t packet, Source source, archive::Sequence unit, Sclk sclk,
+void SegmentBuilder::add(std::uint16_t packet, Source source, archive::Sequence packet_seq, Sclk sclk,
                          std::span<const double> values, archive::Batch& batch) {
     AEOLIS_CHECK(source != Source::ground && values.size() == columns_.channels(packet).size());
     auto& open = open_[packet][index_of(source)];
@@ -26,8 +26,8 @@ void SegmentBuilder::add(std::uint16_t packet, Source source, archive::Sequence 
         open.values.resize(values.size() * segment_samples);
         open.sclk_s.reserve(segment_samples);
     }
-    if (open.sclk_s.empty()) open.first_unit = unit;
-    open.last_unit = unit;
+    if (open.sclk_s.empty()) open.first_packet_seq = packet_seq;
+    open.last_packet_seq = packet_seq;
     const std::size_t row = open.sclk_s.size();
     for (std::size_t c = 0; c < values.size(); ++c) open.values[c * segment_samples + row] = values[c];
     open.sclk_s.push_back(sclk.seconds);
@@ -46,8 +46,8 @@ void SegmentBuilder::close(std::size_t packet, Source source, Open& open, archiv
     segment.packet = static_cast<std::uint16_t>(packet);
     segment.source = source;
     segment.position = open.position++;
-    segment.first_unit = open.first_unit;
-    segment.last_unit = open.last_unit;
+    segment.first_packet_seq = open.first_packet_seq;
+    segment.last_packet_seq = open.last_packet_seq;
     segment.sclk_s = open.sclk_s;
     segment.channels = columns_.channels(packet);
     const std::size_t samples = open.sclk_s.size();

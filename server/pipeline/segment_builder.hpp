@@ -23,14 +23,14 @@ class SegmentBuilder {
     explicit SegmentBuilder(const archive::PacketColumns& columns);
 
     /// Adds a packet's samples; full segments and blocks go to the batch.
-    void add(std::uint16_t packet, archive::Source source, archive::Sequence unit, Sclk sclk,
+    void add(std::uint16_t packet, archive::Source source, archive::Sequence packet_seq, Sclk sclk,
              std::span<const double> values, archive::Batch& batch);
     /// Adds to the batch all samples not yet in a segment.
     void seal(archive::Batch& batch);
 
   private:
     struct Open {
-        archive::Sequence first_unit = 0, last_unit = 0;
+        archive::Sequence first_packet_seq = 0, last_packet_seq = 0;
         std::uint64_t position = 0;
         std::vector<double> sclk_s;
         std::vector<double> values;  ///< segment_samples per channel

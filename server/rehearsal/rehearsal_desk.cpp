@@ -126,7 +126,7 @@ RehearsalRunner::Callbacks RehearsalDesk::callbacks_for(Began began) {
         post_([this, state = std::move(state)]() mutable {
             state_ = state;
             callbacks_.on_state(std::move(state));
-            if (outlook_ == Outlook::unknown) look_again();
+            if (analysis_state_ == AnalysisState::unknown) reanalyse();
         });
     };
     callbacks.on_clocks = [this](v1::Clocks clocks) {
@@ -134,8 +134,8 @@ RehearsalRunner::Callbacks RehearsalDesk::callbacks_for(Began began) {
     };
     callbacks.on_timeline_moved = [this] {
         post_([this] {
-            ++moves_;
-            look_again();
+            ++timeline_undone_count_;
+            reanalyse();
         });
     };
     return callbacks;
@@ -146,7 +146,7 @@ void RehearsalDesk::begun(const Result<v1::RunState>& state, const Began& began)
         phase_ = Phase::under_way;
         state_ = *state;
         callbacks_.on_state(state_);
-        look_again();  // a crash may have preceded the analysis
+        reanalyse();  // a crash may have preceded the analysis
     }
     began(state);
 }
@@ -166,7 +166,7 @@ Result<void> RehearsalDesk::control(const v1::RehearsalControl& control, Began b
 Result<void> RehearsalDesk::order_of_run(const v1::RehearsalControl& control) {
     if (!going_on()) return Error{"no rehearsal goes on"};
     if (control.run() != 0 && control.run() != state_.run()) return Error{not_going_on(control.run())};
-    Intervene intervene;
+    InterveneRun intervene;
     switch (control.action_case()) {
     case v1::RehearsalControl::kPause: return runner_->order(PauseRun{control.pause()});
     case v1::RehearsalControl::kPace: {
@@ -242,18 +242,18 @@ void RehearsalDesk::analyse(SendCommands order) {
     }
     const auto run = state_.run();
     timeline_.check(archive::RunId{static_cast<std::uint32_t>(run)}, order.requests, order.only_check,
-                    [this, run, order, moves = moves_](Result<std::string> timeline) {
-                        post_([this, run, order, moves, timeline = std::move(timeline)] {
-                            hand_over(order, run, moves, timeline);
+                    [this, run, order, undone_count = timeline_undone_count_](Result<std::string> timeline) {
+                        post_([this, run, order, undone_count, timeline = std::move(timeline)] {
+                            hand_over(order, run, undone_count, timeline);
                         });
                     });
 }
 
-void RehearsalDesk::hand_over(SendCommands order, std::uint64_t run, std::uint64_t moves,
+void RehearsalDesk::hand_over(SendCommands order, std::uint64_t run, std::uint64_t undone_count,
                               const Result<std::string>& timeline) {
     if (!timeline) return order.refuse(timeline.error().message);
     if (phase() != Phase::under_way || state_.run() != run) return order.refuse(nobody_listens);
-    if (!order.only_check && !timeline->empty() && moves != moves_)
+    if (!order.only_check && !timeline->empty() && undone_count != timeline_undone_count_)
         return order.refuse("what it was analysed with has come to nothing meanwhile: look at the timeline, then send "
                             "it again");
     order.replies = [this, replies = std::move(order.replies),
@@ -276,33 +276,33 @@ void RehearsalDesk::change_decided() {
     }
 }
 
-void RehearsalDesk::look_again() {
+void RehearsalDesk::reanalyse() {
     if (phase() != Phase::under_way) return;
-    const bool asked = outlook_ == Outlook::looking || outlook_ == Outlook::outdated;
-    outlook_ = asked ? Outlook::outdated : Outlook::looking;
-    if (asked) return;
+    const bool in_progress = analysis_state_ == AnalysisState::analysing || analysis_state_ == AnalysisState::outdated;
+    analysis_state_ = in_progress ? AnalysisState::outdated : AnalysisState::analysing;
+    if (in_progress) return;
     const auto run = state_.run();
-    timeline_.look_again(archive::RunId{static_cast<std::uint32_t>(run)},
-                         [this, run](Result<TimelineCheck::Look> look) {
-                             post_([this, run, look = std::move(look)] { looked(run, look); });
-                         });
+    timeline_.reanalyse(archive::RunId{static_cast<std::uint32_t>(run)},
+                        [this, run](Result<TimelineCheck::Reanalysis> reanalysis) {
+                            post_([this, run, reanalysis = std::move(reanalysis)] { reanalysed(run, reanalysis); });
+                        });
 }
 
-void RehearsalDesk::looked(std::uint64_t run, const Result<TimelineCheck::Look>& look) {
-    if (std::exchange(outlook_, Outlook::settled) == Outlook::outdated) return look_again();
+void RehearsalDesk::reanalysed(std::uint64_t run, const Result<TimelineCheck::Reanalysis>& reanalysis) {
+    if (std::exchange(analysis_state_, AnalysisState::settled) == AnalysisState::outdated) return reanalyse();
     if (phase() != Phase::under_way || state_.run() != run) return;
-    const std::string not_known = look ? look->not_known : look.error().message;
+    const std::string not_known = reanalysis ? reanalysis->not_known : reanalysis.error().message;
     if (!not_known.empty()) {
-        outlook_ = Outlook::unknown;
+        analysis_state_ = AnalysisState::unknown;
         spdlog::warn("run {}: what becomes of the timeline by what waits is not known yet: {}", run, not_known);
     }
-    if (look) tell(*look);
+    if (reanalysis) tell(*reanalysis);
 }
 
-void RehearsalDesk::tell(const TimelineCheck::Look& look) {
-    for (const auto& each : look.known)
+void RehearsalDesk::tell(const TimelineCheck::Reanalysis& reanalysis) {
+    for (const auto& each : reanalysis.known)
         static_cast<void>(
-            runner_->order(commands::TimelineVerdict{each.number, look.undone, each.refuted, each.words}));
+            runner_->order(commands::TimelineVerdict{each.number, reanalysis.undone, each.refuted, each.words}));
 }
 
 }  // namespace aeolis::server

@@ -26,9 +26,9 @@ namespace aeolis::server {
 ///               ▼  │ decided, and still allowed
 ///            waiting, while an earlier order that changes the timeline is analysing or with the runner; never a hold,
 ///            which lets nothing leave, nor a dry run
-/// Outlook   settled ──timeline moved, run begun──► looking ──known──► settled
-///           looking ──moved again──► outdated ──answer──► looking
-///           looking ──not known──► unknown ──next state of the run──► looking
+/// Analysis  settled ──timeline moved, run begun──► analysing ──known──► settled
+///           analysing ──moved again──► outdated ──answer──► analysing
+///           analysing ──not known──► unknown ──next state of the run──► analysing
 /// Thread    the network thread only; `post` brings functions there, such as the Callbacks
 class RehearsalDesk {
   public:
@@ -45,10 +45,10 @@ class RehearsalDesk {
     using CheckTimeline = std::function<void(archive::RunId, const std::vector<v1::CommandRequest>&, bool only_check,
                                              std::function<void(Result<std::string>)>)>;
     /// Analyses, on any thread, the timeline again for each of the run's waiting commands that change it.
-    using LookAgain = std::function<void(archive::RunId, std::function<void(Result<TimelineCheck::Look>)>)>;
+    using Reanalyse = std::function<void(archive::RunId, std::function<void(Result<TimelineCheck::Reanalysis>)>)>;
     struct TimelineQuestions {
         CheckTimeline check;
-        LookAgain look_again;
+        Reanalyse reanalyse;
     };
     using Reply = std::function<void(v1::CommandReply)>;
     using Replies = SendCommands::Replies;
@@ -82,10 +82,10 @@ class RehearsalDesk {
     void close(std::string reason) { closed_ = std::move(reason); }
     const v1::RunState& current() const { return state_; }  ///< run 0: none since the server started
     bool going_on() const { return phase() == Phase::beginning || phase() == Phase::under_way; }
-    /// Commands and command files that the runner has not yet carried out; commands_put_off(): those waiting for a
+    /// Commands and command files that the runner has not yet carried out; commands_deferred(): those waiting for a
     /// change of the timeline.
     std::size_t commands_waiting() const { return runner_ ? runner_->waiting() : 0; }
-    std::size_t commands_put_off() const { return waiting_.size(); }
+    std::size_t commands_deferred() const { return waiting_.size(); }
     std::size_t commands_queued() const { return runner_ ? runner_->queued() : 0; }
     std::size_t commands_at_uplink() const { return runner_ ? runner_->at_uplink() : 0; }
     /// The name of a command of the current run, by its number; none: no such number yet.
@@ -96,7 +96,7 @@ class RehearsalDesk {
   private:
     enum class Phase : std::uint8_t { none, beginning, under_way, over };
     /// Whether the timeline's analysis is known for the commands that still wait in the run.
-    enum class Outlook : std::uint8_t { settled, looking, outdated, unknown };
+    enum class AnalysisState : std::uint8_t { settled, analysing, outdated, unknown };
     struct Waiting {
         SendCommands order;
         AuthorityCheck authority;
@@ -118,14 +118,15 @@ class RehearsalDesk {
     bool waits(const SendCommands& order) const;
     void wait(SendCommands order, const AuthorityCheck& authority);
     void analyse(SendCommands order);
-    void hand_over(SendCommands order, std::uint64_t run, std::uint64_t moves, const Result<std::string>& timeline);
+    void hand_over(SendCommands order, std::uint64_t run, std::uint64_t undone_count,
+                   const Result<std::string>& timeline);
     void change_decided();
 
     /// A command that changes the timeline was analysed together with those before it. When one of those has no effect,
     /// the command is released only once its history shows the new analysis, or never.
-    void look_again();
-    void looked(std::uint64_t run, const Result<TimelineCheck::Look>& look);
-    void tell(const TimelineCheck::Look& look);
+    void reanalyse();
+    void reanalysed(std::uint64_t run, const Result<TimelineCheck::Reanalysis>& reanalysis);
+    void tell(const TimelineCheck::Reanalysis& reanalysis);
 
     const ScenarioLibrary& scenarios_;
     const dictionary::Dictionary& dictionary_;
@@ -139,8 +140,8 @@ class RehearsalDesk {
     Phase phase_ = Phase::none;    ///< except `over`; under_way: the run is in the archive, and state_ is its state
     bool change_pending_ = false;  ///< an order that changes the timeline is analysing or with the runner
     std::deque<Waiting> waiting_;
-    Outlook outlook_ = Outlook::settled;
-    std::uint64_t moves_ = 0;  ///< of the timeline, by commands that had no effect
+    AnalysisState analysis_state_ = AnalysisState::settled;
+    std::uint64_t timeline_undone_count_ = 0;  ///< changes of the timeline that had no effect
     std::unique_ptr<RehearsalRunner> runner_;
 };
 

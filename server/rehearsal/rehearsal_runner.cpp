@@ -76,7 +76,7 @@ Result<void> RehearsalRunner::order(RunOrder order) {
     const auto refusal = [&]() -> std::string {
         const std::scoped_lock lock{mutex_};
         if (auto refused = refusal_of(order); !refused.empty()) return refused;
-        if (const auto* intervene = std::get_if<Intervene>(&order))
+        if (const auto* intervene = std::get_if<InterveneRun>(&order))
             ++(intervene->intervention.has_fault() ? faults_taken_ : notes_taken_);
         else if (last_counts(order))
             std::erase_if(orders_, [&](const RunOrder& before) { return before.index() == order.index(); });
@@ -97,7 +97,7 @@ std::string RehearsalRunner::refusal_of(const RunOrder& order) const {
         if (over_ || stop_) return over_reason;
         return commands_waiting() < requests_max ? "" : fmt::format("{} commands wait already", requests_max);
     }
-    const auto* intervene = std::get_if<Intervene>(&order);
+    const auto* intervene = std::get_if<InterveneRun>(&order);
     if (intervene == nullptr) return {};
     const auto& intervention = intervene->intervention;
     if (intervention.has_fault())
@@ -281,7 +281,7 @@ void RehearsalRunner::carry_out(Rehearsal& /*rehearsal*/, const StopRun& /*order
     stopped_ = true;
 }
 
-void RehearsalRunner::carry_out(Rehearsal& rehearsal, const Intervene& order) {
+void RehearsalRunner::carry_out(Rehearsal& rehearsal, const InterveneRun& order) {
     const auto& intervention = order.intervention;
     if (intervention.has_fault()) {
         if (const auto injected = rehearsal.inject(intervention.fault()); !injected) {  // already checked

@@ -98,7 +98,7 @@ class RehearsalRunner {
     void carry_out(Rehearsal& rehearsal, const PauseRun& order);
     void carry_out(Rehearsal& rehearsal, const PaceRun& order);
     void carry_out(Rehearsal& rehearsal, const StopRun& order);
-    void carry_out(Rehearsal& rehearsal, const Intervene& order);
+    void carry_out(Rehearsal& rehearsal, const InterveneRun& order);
     void carry_out(Rehearsal& rehearsal, const SendCommands& order);
     void carry_out(Rehearsal& rehearsal, const commands::TimelineVerdict& verdict);
     /// Keeps the request in the archive, with the cycle before which it was carried out.

@@ -23,7 +23,7 @@ struct StopRun {};
 
 /// A fault to inject, or an instructor's note, which neither vehicle nor ground receives. Stored with the cycle at
 /// which it was received.
-struct Intervene {
+struct InterveneRun {
     v1::Intervention intervention;
 };
 
@@ -41,6 +41,6 @@ struct SendCommands {
     void refuse(const std::string& reason) const;
 };
 
-using RunOrder = std::variant<PauseRun, PaceRun, StopRun, Intervene, SendCommands, commands::TimelineVerdict>;
+using RunOrder = std::variant<PauseRun, PaceRun, StopRun, InterveneRun, SendCommands, commands::TimelineVerdict>;
 
 }  // namespace aeolis::server

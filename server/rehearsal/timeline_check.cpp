@@ -55,24 +55,24 @@ Result<std::string> TimelineCheck::check(const v1::CommandList& before, std::spa
     return analysed(timeline.key(), timeline.dictionary(), only_check, stop);
 }
 
-TimelineCheck::Look TimelineCheck::look_again(const v1::CommandList& before, const Stop& stop) {
-    Look look;
+TimelineCheck::Reanalysis TimelineCheck::reanalyse(const v1::CommandList& before, const Stop& stop) {
+    Reanalysis reanalysis;
     commands::ChangedTimeline timeline{dictionary_};
     const auto changes = changes_of(before);
-    look.undone = changes.undone;
+    reanalysis.undone = changes.undone;
     for (const auto& command : changes.left) timeline.change(command);
     for (const auto& command : changes.waiting) {
         auto with = timeline;
         with.change(command);
         const auto says = analysed(with.key(), with.dictionary(), false, stop);
         if (!says && says.error().internal) {
-            look.not_known = says.error().message;
-            return look;
+            reanalysis.not_known = says.error().message;
+            return reanalysis;
         }
-        look.known.push_back({command.number, !says, says ? *says : says.error().message});
+        reanalysis.known.push_back({command.number, !says, says ? *says : says.error().message});
         if (says) timeline = std::move(with);
     }
-    return look;
+    return reanalysis;
 }
 
 Result<std::string> TimelineCheck::analysed(const std::string& key, const dictionary::Dictionary& changed,

@@ -47,14 +47,14 @@ class TimelineCheck {
         bool refuted = false;
         std::string words;
     };
-    struct Look {
+    struct Reanalysis {
         std::vector<Waiting> known;
         std::string not_known;   ///< why the rest is unknown, for the log; empty: all known
-        std::size_t undone = 0;  ///< changes without effect at that time; when more, the look is outdated
+        std::size_t undone = 0;  ///< changes without effect at that time; when more, this is outdated
     };
     /// Analyses the waiting commands of `before` that change the timeline. The changes of a refuted one do not count
     /// for those behind it.
-    Look look_again(const v1::CommandList& before, const Stop& stop);
+    Reanalysis reanalyse(const v1::CommandList& before, const Stop& stop);
 
   private:
     Result<std::string> analysed(const std::string& key, const dictionary::Dictionary& changed, bool only_check,

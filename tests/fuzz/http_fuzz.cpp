@@ -53,7 +53,7 @@ struct Server {
                        [](const auto& action) { action(); },
                        [](archive::RunId, const auto& done) { done(Error{"was not cut off"}); },
                        {[](archive::RunId, const auto&, bool, const auto& done) { done(std::string{}); },
-                        [](archive::RunId, const auto& done) { done(TimelineCheck::Look{}); }},
+                        [](archive::RunId, const auto& done) { done(TimelineCheck::Reanalysis{}); }},
                        {[](const auto&) {}, [](const auto&) {}}};
     campaign::CampaignDesk campaigns{recorded.folder / "campaigns", scenarios, recorded.dictionary};
     std::unique_ptr<Access> access = std::move(Access::open({})).value();

@@ -128,7 +128,7 @@ class Sender {
 /// `aeolis serve --downlink` in this process.
 class Follower {
   public:
-    Follower(const telemetry::OtherMission& mission, const std::string& address, DownlinkForm format) {
+    Follower(const telemetry::OtherMission& mission, const std::string& address, PacketStreamFormat format) {
         spdlog::set_level(spdlog::level::off);
         ConsoleBackend::Settings settings;
         settings.web_server.port = 0;

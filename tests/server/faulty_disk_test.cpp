@@ -214,7 +214,7 @@ class Life {
     void live() {
         const auto dictionary = small_dictionary();
         std::optional<Archive> archive;
-        insist([&]() -> Result<void> {
+        retry_on_mended_disk([&]() -> Result<void> {
             auto opened = Archive::open(file_);
             if (!opened) return opened.error();
             archive.emplace(std::move(*opened));
@@ -225,7 +225,7 @@ class Life {
             for (const auto& item : batch->items) published_.push_back(item.SerializeAsString());
         });
         archive::RunId run;
-        insist([&]() -> Result<void> {
+        retry_on_mended_disk([&]() -> Result<void> {
             auto begun = pipeline.begin({});
             if (!begun) return begun.error();
             run = *begun;
@@ -236,9 +236,9 @@ class Life {
             REQUIRE(pipeline.accept(live_packet(i)).ok());
             if (i % 400 == 17) REQUIRE(pipeline.accept(test::live(mortar_packet(i, 1000.0 + i, 405.0F))).ok());
             if (i % 300 != 299) continue;
-            insist([&] { return pipeline.commit(); });
+            retry_on_mended_disk([&] { return pipeline.commit(); });
             // Who asks meanwhile gets all that was published, or an error in words.
-            insist([&]() -> Result<void> {
+            retry_on_mended_disk([&]() -> Result<void> {
                 if (!reader) {
                     auto opened = Reader::open(file_, dictionary);
                     if (!opened) return opened.error();
@@ -247,8 +247,8 @@ class Life {
                 return read_back(*reader, run);
             });
         }
-        insist([&] { return pipeline.finish({"touchdown", "", "d", ""}); });
-        insist([&] { return read_back(*reader, run); });
+        retry_on_mended_disk([&] { return pipeline.finish({"touchdown", "", "d", ""}); });
+        retry_on_mended_disk([&] { return read_back(*reader, run); });
         reader.reset();
         archive.reset();  // folds the WAL into the file; what fails of that is made up for at the next start
         disk_.mend();
@@ -275,7 +275,7 @@ class Life {
     }
 
     template <typename Step>
-    void insist(Step step) {
+    void retry_on_mended_disk(Step step) {
         const std::size_t before = published_.size();
         auto done = step();
         if (!done) {

@@ -15,7 +15,7 @@ using server::QueryThreads;
 
 namespace {
 
-/// A run with enough units that a question over all of them is noticed.
+/// A run with enough packets that a question over all of them is noticed.
 struct Recorded {
     TemporaryFolder folder;
     dictionary::Dictionary dictionary = small_dictionary();
@@ -31,7 +31,7 @@ struct Recorded {
         REQUIRE(pipeline.commit().ok());
         threads = std::move(QueryThreads::open(file, dictionary, nullptr, question_max)).value();
     }
-    /// What a question over all units comes to.
+    /// What a question over all packets comes to.
     std::string ask(const std::function<bool()>& gone) const {
         std::promise<std::string> answered;
         REQUIRE(threads->ask(

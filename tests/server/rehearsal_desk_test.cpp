@@ -66,7 +66,7 @@ TEST_CASE(
         if (std::ranges::none_of(requests, changes_timeline)) return done(std::string{});
         analysed = std::move(done);
     };
-    questions.look_again = [](archive::RunId, const auto& done) { done(TimelineCheck::Look{}); };
+    questions.reanalyse = [](archive::RunId, const auto& done) { done(TimelineCheck::Reanalysis{}); };
     RehearsalDesk desk{scenarios,
                        tests::shipped_dictionary(),
                        pipeline,
@@ -96,14 +96,14 @@ TEST_CASE(
     REQUIRE(analysed);
     desk.command(request_of("NO_OP"), {may}, answer("loses rights"));
     desk.command(request_of("NO_OP"), {always}, answer("keeps them"));
-    CHECK(desk.commands_put_off() == 2);
+    CHECK(desk.commands_deferred() == 2);
     CHECK(answers.empty());
     has_rights = false;
     analysed(Error{"it breaks a constraint"});
     REQUIRE(network.until([&] { return answers.size() == 3; }));
     CHECK(answers == std::vector<std::string>{"change: it breaks a constraint", "loses rights: not any more",
                                               "keeps them: taken"});
-    CHECK(desk.commands_put_off() == 0);
+    CHECK(desk.commands_deferred() == 0);
 }
 
 }  // namespace server_rehearsal_desk_test

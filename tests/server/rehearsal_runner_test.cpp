@@ -134,7 +134,7 @@ simulation::Scenario short_landing() {
     callbacks.on_state = [](const auto&) {};
     callbacks.on_clocks = [](const auto&) {};
     RehearsalRunner runner{short_landing(), 7, 0.0, dictionary, pipeline, callbacks};
-    Intervene fault, note;
+    InterveneRun fault, note;
     auto& device_fault = *fault.intervention.mutable_fault()->mutable_device_fault();
     device_fault.set_device(v1::DEVICE_IMU);
     device_fault.set_unit(v1::REDUNDANT_UNIT_A);

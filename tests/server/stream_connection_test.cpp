@@ -239,7 +239,7 @@ TEST_CASE("when the server ends, each stream is closed as going away, with the r
         CHECK(client.close_code() == 1001);
         CHECK(client.close_words() == "the server ends");
     }
-    CHECK(took < server::WebServer::farewell_max);  // it does not wait longer than for the last of them
+    CHECK(took < server::WebServer::close_timeout);  // it does not wait longer than for the last of them
 }
 
 TEST_CASE("a server that ends waits a second at most for streams that do not answer", "[stream][bounds]") {
@@ -251,8 +251,8 @@ TEST_CASE("a server that ends waits a second at most for streams that do not ans
     const auto begun = std::chrono::steady_clock::now();
     events.end();
     const auto took = std::chrono::steady_clock::now() - begun;
-    CHECK(took >= server::WebServer::farewell_max);
-    CHECK(took < 5 * server::WebServer::farewell_max);  // a loaded machine is slow
+    CHECK(took >= server::WebServer::close_timeout);
+    CHECK(took < 5 * server::WebServer::close_timeout);  // a loaded machine is slow
 }
 
 TEST_CASE("one stream more than there are places is refused with 503, and who has none is answered",

@@ -68,7 +68,7 @@ struct Venue {
             if (!broken.empty()) return waiting.push_back([done, why = broken] { done(Error{why, true}); });
             archive::ItemPage page;
             for (const auto& item : stored)
-                if (item.seq() > after && page.items.size() < limit && (kinds.units || !item.has_unit()))
+                if (item.seq() > after && page.items.size() < limit && (kinds.packets || !item.has_unit()))
                     page.items.push_back(item);
             page.complete_through = page.items.size() < limit ? stored.size() : page.items.back().seq();
             page.more = page.complete_through < stored.size();
@@ -275,7 +275,7 @@ TEST_CASE("samples are thinned to the rate asked for and say so; nothing else is
 TEST_CASE("only the channels of the subscription are sent", "[stream]") {
     auto item = samples_item(1, 5.0);
     item.set_ert_us(7);
-    const std::vector<ItemBefore> items{{&item, {std::nullopt, true}}};
+    const std::vector<ItemWithFacts> items{{&item, {std::nullopt, true}}};
     v1::Batch batch;
     select_items({StreamFormat::json, false, {speed}, 0.0}, 0.0, items, batch);
     REQUIRE(batch.items_size() == 1);
@@ -304,7 +304,7 @@ TEST_CASE("channels that ascend are found as those that do not", "[stream]") {
         const auto chosen = [&](bool ascend) {
             v1::Batch batch;
             select_items({StreamFormat::json, false, wanted, 0.0}, 0.0,
-                         std::vector<ItemBefore>{{&item, {std::nullopt, ascend}}}, batch);
+                         std::vector<ItemWithFacts>{{&item, {std::nullopt, ascend}}}, batch);
             return batch.SerializeAsString();
         };
         CHECK(chosen(true) == chosen(false));
@@ -737,10 +737,10 @@ TEST_CASE("who replays and does not read gets all samples when it does, and is b
     for (int second = 0; second < 10;
          ++second) {  // samples come in a packet, whose receipt this client does not ask for
         const auto seq = venue.flown.size() + 1;
-        auto& unit = venue.flown.emplace_back();
-        unit.set_seq(seq);
-        unit.mutable_unit();
-        unit.set_ert_us(second * 1'000'000);
+        auto& packet = venue.flown.emplace_back();
+        packet.set_seq(seq);
+        packet.mutable_unit();
+        packet.set_ert_us(second * 1'000'000);
         for (archive::Sequence i = 1; i <= 8; ++i)
             venue.flown.push_back(samples_item(seq + i, second + 0.125 * static_cast<double>(i)));
     }
@@ -786,13 +786,13 @@ struct ArchivedStream {
     std::unique_ptr<StreamHub> hub;
     std::unique_ptr<QueryThreads> queries;  ///< ends first: until then it posts
 
-    explicit ArchivedStream(std::uint16_t units) {
+    explicit ArchivedStream(std::uint16_t packets) {
         {
             auto archive = std::move(archive::Archive::open(file)).value();
             pipeline::Pipeline pipeline{archive, dictionary};
             pipeline.on_publish([&](const auto& batch) { last = batch->last_seq; });
             REQUIRE(pipeline.begin({}).ok());
-            for (std::uint16_t i = 0; i < units; ++i)
+            for (std::uint16_t i = 0; i < packets; ++i)
                 REQUIRE(pipeline.accept(test::live(test::navigation_packet(i, 1000.0 + i, 9000.0F, 3.0F))).ok());
             REQUIRE(pipeline.commit().ok());
         }

@@ -121,20 +121,20 @@ TEST_CASE("what still waits is looked at again with what remains", "[gateway][R1
     v1::CommandList list;
     add(list, later_detumble(), {{v1::CommandStage::released, v1::CommandStage::pending}});
     add(list, later_separation(), {{v1::CommandStage::released, v1::CommandStage::pending}});
-    auto look = check.look_again(list, never);
-    REQUIRE(look.known.size() == 2);
-    CHECK_FALSE((look.known[0].refuted || look.known[1].refuted));
-    CHECK_THAT(look.known[1].words, Catch::Contains("bounds of constraints.csv hold"));
+    auto reanalysis = check.reanalyse(list, never);
+    REQUIRE(reanalysis.known.size() == 2);
+    CHECK_FALSE((reanalysis.known[0].refuted || reanalysis.known[1].refuted));
+    CHECK_THAT(reanalysis.known[1].words, Catch::Contains("bounds of constraints.csv hold"));
 
     list.mutable_commands(0)->mutable_stages(0)->mutable_command_stage()->set_status(
         v1::CommandStage::failed);  // cancelled
-    look = check.look_again(list, never);
-    REQUIRE(look.known.size() == 1);
-    CHECK(look.known[0].number == 2);
-    CHECK(look.known[0].refuted);
-    CHECK_THAT(look.known[0].words, Catch::Contains("breaks a constraint"));
-    CHECK(look.not_known.empty());
-    CHECK(look.undone == 1);
+    reanalysis = check.reanalyse(list, never);
+    REQUIRE(reanalysis.known.size() == 1);
+    CHECK(reanalysis.known[0].number == 2);
+    CHECK(reanalysis.known[0].refuted);
+    CHECK_THAT(reanalysis.known[0].words, Catch::Contains("breaks a constraint"));
+    CHECK(reanalysis.not_known.empty());
+    CHECK(reanalysis.undone == 1);
 }
 
 TEST_CASE("an analysis that does not end in its time is no answer, and nothing is said of what waits",
@@ -146,10 +146,10 @@ TEST_CASE("an analysis that does not end in its time is no answer, and nothing i
     CHECK_THAT(answer.error().message, Catch::Contains("did not end in its time"));
     v1::CommandList list;
     add(list, later_detumble(), {{v1::CommandStage::released, v1::CommandStage::pending}});
-    const auto look = check.look_again(list, at_once);
-    CHECK(look.known.empty());
-    CHECK_THAT(look.not_known, Catch::Contains("did not end"));
-    CHECK(check.look_again(list, never).known.size() == 1);  // asked again it is found
+    const auto reanalysis = check.reanalyse(list, at_once);
+    CHECK(reanalysis.known.empty());
+    CHECK_THAT(reanalysis.not_known, Catch::Contains("did not end"));
+    CHECK(check.reanalyse(list, never).known.size() == 1);  // asked again it is found
 }
 
 }  // namespace server_timeline_check_test

@@ -282,7 +282,7 @@ TEST_CASE("a run that is flown again keeps what people added, at its place, and 
     const auto caught_up = ground.pipeline->caught_up();
     REQUIRE(caught_up.ok());
     CHECK(*caught_up);
-    CHECK(compared == 9);  // four units, their samples, one alarm
+    CHECK(compared == 9);  // four packets, their samples, one alarm
     CHECK(ground.stored() == before);
     ground.add(note("and on"));
     ground.fly(4, 5, 6100.0F);

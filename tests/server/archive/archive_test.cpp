@@ -18,23 +18,23 @@ using test::TemporaryFolder;
 
 namespace {
 
-/// One unit a sequence number, from `first`.
-Batch units(Sequence first, std::size_t count) {
+/// One packet a sequence number, from `first`.
+Batch packets(Sequence first, std::size_t count) {
     Batch batch;
     batch.first_seq = first;
     batch.last_seq = first + count - 1;
     for (std::size_t i = 0; i < count; ++i) {
-        UnitRecord unit;
-        unit.seq = first + i;
-        unit.apid = test::status_apid;
-        unit.packet = std::uint16_t{1};
-        unit.link = "uhf_live";
-        unit.source = Source::realtime;
-        unit.sclk = Sclk{static_cast<double>(unit.seq)};
-        const auto octets = test::status_packet(static_cast<std::uint16_t>(unit.seq), unit.sclk.seconds, 1);
-        unit.octets = {batch.octets.size(), octets.size()};
+        PacketRecord record;
+        record.seq = first + i;
+        record.apid = test::status_apid;
+        record.packet = std::uint16_t{1};
+        record.link = "uhf_live";
+        record.source = Source::realtime;
+        record.sclk = Sclk{static_cast<double>(record.seq)};
+        const auto octets = test::status_packet(static_cast<std::uint16_t>(record.seq), record.sclk.seconds, 1);
+        record.octets = {batch.octets.size(), octets.size()};
         batch.octets.insert(batch.octets.end(), octets.begin(), octets.end());
-        batch.units.push_back(unit);
+        batch.packets.push_back(record);
     }
     return batch;
 }
@@ -174,14 +174,14 @@ TEST_CASE("a batch is stored whole or not at all, and may be given again", "[arc
     REQUIRE(archive.ok());
     const auto run = archive->begin_run({}, test::small_dictionary());
     REQUIRE(run.ok());
-    REQUIRE(archive->append(*run, units(1, 10)).ok());
+    REQUIRE(archive->append(*run, packets(1, 10)).ok());
 
-    auto batch = units(11, 10);
-    batch.units.back().seq = 5;  // taken: the ten before it must not be stored either
+    auto batch = packets(11, 10);
+    batch.packets.back().seq = 5;  // taken: the ten before it must not be stored either
     CHECK_FALSE(archive->append(*run, batch).ok());
     CHECK(ask(file, "SELECT count(*) FROM units") == 10);
 
-    batch.units.back().seq = 20;
+    batch.packets.back().seq = 20;
     CHECK(archive->append(*run, batch).ok());
     CHECK(ask(file, "SELECT count(*) FROM units") == 20);
     CHECK(ask(file, "SELECT max(seq) FROM packets") == 20);
@@ -193,13 +193,13 @@ TEST_CASE("runs are numbered in one file and keep their units apart", "[archive]
     auto archive = Archive::open(file);
     const auto dictionary = test::small_dictionary();
     const auto first = archive->begin_run({}, dictionary);
-    REQUIRE(archive->append(*first, units(1, 3)).ok());
+    REQUIRE(archive->append(*first, packets(1, 3)).ok());
     Batch end;
     end.end = RunEnd{"touchdown", "", "abc", "2026-01-01T00:00:00Z"};
     REQUIRE(archive->append(*first, end).ok());
     const auto second = archive->begin_run({}, dictionary);
     CHECK(second->value == first->value + 1);
-    REQUIRE(archive->append(*second, units(1, 4)).ok());
+    REQUIRE(archive->append(*second, packets(1, 4)).ok());
     CHECK(ask(file, "SELECT count(*) FROM packets WHERE run = 1") == 3);
     CHECK(ask(file, "SELECT count(*) FROM packets WHERE run = 2 AND name = 'Status'") == 4);
     CHECK(ask(file, "SELECT last_seq FROM runs WHERE run = 1 AND state = 'finished'") == 3);
@@ -232,8 +232,8 @@ TEST_CASE("a run that was cut off is marked interrupted, with its last sequence 
     {
         auto archive = Archive::open(file);
         const auto run = archive->begin_run({}, test::small_dictionary());
-        auto batch = units(1, 7);
-        batch.units.back().sampled = true;  // its samples are item 8
+        auto batch = packets(1, 7);
+        batch.packets.back().sampled = true;  // its samples are item 8
         batch.last_seq = 8;
         REQUIRE(archive->append(*run, batch).ok());
     }

@@ -118,10 +118,10 @@ TEST_CASE("a rebuild that is stopped says how far it was, and leaves each run as
     const auto before = recorded.derived_rows();
     std::vector<std::uint32_t> seen;
     const auto rebuilt =
-        pipeline::rebuild(recorded.file, {}, recorded.dictionary, nullptr, {}, [&](const pipeline::Work& work) {
-            CHECK((work.units <= work.of_units && work.of_units > 0));
-            seen.push_back(work.run.value);
-            return work.run == RunId{1};
+        pipeline::rebuild(recorded.file, {}, recorded.dictionary, nullptr, {}, [&](const pipeline::Progress& progress) {
+            CHECK((progress.packets <= progress.of_packets && progress.of_packets > 0));
+            seen.push_back(progress.run.value);
+            return progress.run == RunId{1};
         });
     REQUIRE(rebuilt.ok());
     CHECK(rebuilt->stopped);
@@ -131,7 +131,7 @@ TEST_CASE("a rebuild that is stopped says how far it was, and leaves each run as
     CHECK(recorded.faults().empty());
     CHECK_FALSE(std::filesystem::exists(recorded.folder / "a.db-rebuild"));
     const auto compared = pipeline::verify(recorded.file, {}, recorded.dictionary, nullptr, recorded.folder / "",
-                                           [](const pipeline::Work&) { return false; });
+                                           [](const pipeline::Progress&) { return false; });
     REQUIRE(compared.ok());
     CHECK(compared->stopped);
 }

@@ -14,8 +14,8 @@ namespace {
 template <typename Own>
 std::vector<std::string> kept() {
     std::vector<std::string> words;
-    for (std::size_t i = 0; i < archive::Spelling<Own>::count; ++i)
-        words.emplace_back(archive::Spelling<Own>::of(static_cast<Own>(i)));
+    for (std::size_t i = 0; i < archive::EnumWords<Own>::count; ++i)
+        words.emplace_back(archive::EnumWords<Own>::of(static_cast<Own>(i)));
     return words;
 }
 

@@ -93,7 +93,7 @@ TEST_CASE("when the recording is down every sample has its path and its verdict,
         landing.take(recorded(octets));
     }
     landing.pipeline.relay_progress(1.0);
-    const bool finished = GENERATE(false, true);  // samples from raw units, or from segments
+    const bool finished = GENERATE(false, true);  // samples from raw packets, or from segments
     if (finished) REQUIRE(landing.pipeline.finish({"touchdown", "", "", ""}).ok());
     auto reader = std::move(Reader::open(landing.folder / "a.db", landing.dictionary)).value();
     if (!finished) REQUIRE(landing.pipeline.commit().ok());

@@ -27,9 +27,9 @@ struct Fixture {
     SegmentBuilder builder{columns};
     Batch batch;
 
-    void add(Sequence unit, Source source, double altitude_m, double speed_mps) {
+    void add(Sequence packet_seq, Source source, double altitude_m, double speed_mps) {
         const std::array values{altitude_m, speed_mps};
-        builder.add(navigation, source, unit, Sclk{static_cast<double>(unit)}, values, batch);
+        builder.add(navigation, source, packet_seq, Sclk{static_cast<double>(packet_seq)}, values, batch);
     }
 };
 
@@ -45,13 +45,14 @@ TEST_CASE("a packet's channels are its columns, and a channel knows its packets"
 
 TEST_CASE("a segment is handed over when full, column by column, and the next one begins empty", "[segments]") {
     Fixture fixture;
-    for (Sequence unit = 10; unit < 11 + segment_samples; ++unit)
-        fixture.add(unit, Source::realtime, 100.0 * static_cast<double>(unit), static_cast<double>(unit));
+    for (Sequence packet_seq = 10; packet_seq < 11 + segment_samples; ++packet_seq)
+        fixture.add(packet_seq, Source::realtime, 100.0 * static_cast<double>(packet_seq),
+                    static_cast<double>(packet_seq));
     REQUIRE(fixture.batch.segments.size() == 1);
     const auto& segment = fixture.batch.segments.front();
     CHECK(segment.position == 0);
-    CHECK(segment.first_unit == 10);
-    CHECK(segment.last_unit == 9 + segment_samples);
+    CHECK(segment.first_packet_seq == 10);
+    CHECK(segment.last_packet_seq == 9 + segment_samples);
     REQUIRE(segment.sclk_s.size() == segment_samples);
     REQUIRE(segment.values.size() == 2 * segment_samples);
     bool in_place = true;
@@ -65,7 +66,7 @@ TEST_CASE("a segment is handed over when full, column by column, and the next on
     fixture.builder.seal(rest);
     REQUIRE(rest.segments.size() == 1);
     CHECK(rest.segments.front().position == 1);
-    CHECK(rest.segments.front().first_unit == 10 + segment_samples);
+    CHECK(rest.segments.front().first_packet_seq == 10 + segment_samples);
     CHECK(rest.segments.front().values == std::vector<double>{100.0 * (10 + segment_samples), 10 + segment_samples});
     rest.clear();
     fixture.builder.seal(rest);
@@ -74,8 +75,8 @@ TEST_CASE("a segment is handed over when full, column by column, and the next on
 
 TEST_CASE("real time and recording fill segments of their own", "[segments]") {
     Fixture fixture;
-    for (Sequence unit = 1; unit <= 2 * segment_samples; ++unit)
-        fixture.add(unit, unit % 2 == 0 ? Source::realtime : Source::recorded, 1.0, 2.0);
+    for (Sequence packet_seq = 1; packet_seq <= 2 * segment_samples; ++packet_seq)
+        fixture.add(packet_seq, packet_seq % 2 == 0 ? Source::realtime : Source::recorded, 1.0, 2.0);
     const auto& segments = fixture.batch.segments;
     REQUIRE(segments.size() == 2);
     CHECK(segments[0].source == Source::recorded);

@@ -58,7 +58,7 @@ TEST_CASE("pruned runs are gone from every table, are noted, and their numbers a
         REQUIRE(archive.ok());
         const auto lines = run_lines(archive->database());
         REQUIRE(lines->size() == 3);
-        CHECK(lines->back().units == 2500);
+        CHECK(lines->back().packets == 2500);
         archive::AuditRecord by;
         by.who = "nina";
         by.from = "command line";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/api/replay_pace.hpp"
+#include "server/api/replay_schedule.hpp"
 
 #include <algorithm>
 
@@ -10,7 +10,7 @@ constexpr double wait_max_s = 1.0e9;  // chosen: thirty years; fits a steady clo
 
 }  // namespace
 
-ReplayPace::Clock::time_point ReplayPace::due(const v1::Item& item, Clock::time_point now) {
+ReplaySchedule::Clock::time_point ReplaySchedule::due(const v1::Item& item, Clock::time_point now) {
     if (!begun_) begun_ = now;
     const Ert at{item.ert_us()};
     if (!first_) first_ = at;

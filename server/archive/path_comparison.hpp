@@ -8,13 +8,13 @@
 // A packet on the other path, real time or recording: found by APID, SCLK and packet count, compared by octets.
 namespace aeolis::archive {
 
-enum class OnOtherPath : std::uint8_t { identical = 0, differs = 1, absent = 2, not_decoded = 3 };
+enum class PathComparison : std::uint8_t { identical = 0, differs = 1, absent = 2, not_decoded = 3 };
 
 /// The verdict's name (one of `verdicts`). Until the whole recording is down, nothing counts as missing in it.
-const char* name_of(OnOtherPath found, Source source, bool recording_complete);
+const char* name_of(PathComparison found, Source source, bool recording_complete);
 
-/// SQL expression that gives an OnOtherPath for the row of `units` with alias u.
-inline constexpr char on_other_path_sql[] =
+/// SQL expression that gives a PathComparison for the row of `units` with alias u.
+inline constexpr char path_comparison_sql[] =
     "CASE WHEN u.packet IS NULL THEN 3 ELSE coalesce("
     "(SELECT o.octets <> u.octets FROM units o WHERE o.run = u.run AND o.apid = u.apid AND o.source = 3 - u.source"
     " AND o.sclk = u.sclk AND o.packet IS NOT NULL AND substr(o.octets, 3, 2) = substr(u.octets, 3, 2)"

@@ -11,12 +11,12 @@
 namespace aeolis::server {
 
 /// The dictionary that runs of an archive were recorded with.
-struct RecordedWords {
+struct RecordedDictionary {
     std::unique_ptr<telemetry::OtherMission> other;  ///< null: our own mission
     dictionary::Dictionary dictionary;
 };
 /// Loads the dictionary; with `xtce`, another mission's. None: the fault was printed; end with `exit_code`.
-std::optional<RecordedWords> recorded_words(const std::filesystem::path& dictionary, const std::filesystem::path& xtce,
-                                            int& exit_code);
+std::optional<RecordedDictionary> recorded_dictionary(const std::filesystem::path& dictionary,
+                                                      const std::filesystem::path& xtce, int& exit_code);
 
 }  // namespace aeolis::server

@@ -14,12 +14,12 @@ namespace aeolis::server {
 /// In       items in the order of their numbers, and the present time     Out   when each is due
 /// Rule     the first is due at once. An item without a time on Earth takes that of its predecessor; one that reached
 ///          Earth before its predecessor is due with it
-class ReplayPace {
+class ReplaySchedule {
   public:
     using Clock = std::chrono::steady_clock;
     static constexpr double pace_max = 10'000.0;  ///< chosen: six hours of cruise in two seconds
 
-    explicit ReplayPace(double pace) : pace_(pace) {}
+    explicit ReplaySchedule(double pace) : pace_(pace) {}
 
     /// When `item` is due. Repeated calls for one item give the same result.
     Clock::time_point due(const v1::Item& item, Clock::time_point now);
