@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Packets on Earth that decide what is known of commands: values for preconditions, answers, read-back reports.
+// How the gateway hears of commands: from a packet on Earth it takes values for preconditions, the CLCW, answers and
+// read-back reports.
 #include "commands/command_gateway.hpp"
 
 #include "commands/read_back.hpp"
@@ -9,7 +10,7 @@
 
 namespace aeolis::commands {
 void CommandGateway::receive(const Heard& packet, std::vector<StageReport>& stages) {
-    // A recording tells the past: it decides no precondition, but an answer that was lost live still counts.
+    // A recording is too old for preconditions and the CLCW, but it may hold an answer or a report that was lost live.
     const auto& decoded = packet.decoded;
     if (packet.live) note_channels(packet);
     if (packet.live)
@@ -84,8 +85,8 @@ void CommandGateway::note_read_back(const Underway& underway, const StageChange&
     if (told == sent.end()) return;
     if (change.stage == Stage::verified) {
         told->held = change.status;
-        if (change.status == Status::ok) sent.erase(sent.begin(), told);  // earlier values are no longer held
-    } else if (change.status == Status::failed) {  // it was not carried out, so the earlier values are still held
+        if (change.status == Status::ok) sent.erase(sent.begin(), told);  // the vehicle has replaced earlier values
+    } else if (change.status == Status::failed) {  // not carried out: the vehicle keeps earlier values
         sent.erase(told);
     }
 }

@@ -6,7 +6,7 @@
 namespace aeolis::commands {
 namespace {
 
-// The commands that flight's command dispatcher hands to the timeline.
+// The commands that move the timeline on board. The third one only moves the anchor "entry".
 constexpr std::string_view timepoint_offset = "EDL_SET_TIMEPOINT_OFFSET";
 constexpr std::string_view anchor_offset = "EDL_SET_ANCHOR_OFFSET";
 constexpr std::string_view parameters = "EDL_SET_PARAMETERS";

@@ -98,7 +98,7 @@ Result<void> RowWriter::write(RunId run, const Batch& batch) {
 }
 
 Result<std::int64_t> RowWriter::number_of_link(const std::string& name) {
-    // Nearly every packet is received over one of these.
+    // Nearly every packet came over one of these two links. The schema numbers them, so they need no query.
     if (name == "uhf_live") return std::int64_t{1};
     if (name == "relay") return std::int64_t{2};
     for (int attempt = 0;; ++attempt) {

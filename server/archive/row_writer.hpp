@@ -9,7 +9,8 @@
 
 namespace aeolis::archive {
 
-/// Adds rows within the transaction that its owner has begun. One prepared statement per table.
+/// Writes a batch into the archive's tables, with statements prepared once. Its owner begins and commits the
+/// transaction.
 class RowWriter {
   public:
     static Result<RowWriter> open(sqlite::Database& database);
@@ -17,11 +18,11 @@ class RowWriter {
     Result<void> write(RunId run, const Batch& batch);
 
   private:
-    /// The link's number among the archive's words; a new name is added to them.
+    /// The number that stands for a link's name in the table "words". A name that is not there yet is added.
     Result<std::int64_t> number_of_link(const std::string& name);
     template <typename Record>
     Result<void> item(RunId run, const Record& record, const Batch& batch);
-    /// The number of a run's next segment or block; the statement `largest` queries the largest so far.
+    /// The number for a run's next segment or block: one above that which the statement `largest` selects.
     static Result<std::int64_t> next_number(RunId run, sqlite::Statement& largest);
     Result<void> segment(RunId run, const SegmentRecord& record, std::int64_t number);
     Result<void> column(std::int64_t key, const SegmentRecord& record, std::size_t column);

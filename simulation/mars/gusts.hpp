@@ -10,11 +10,12 @@ namespace aeolis::simulation {
 
 /// Gusts along one vehicle's path: each component is a first-order Gauss–Markov process over the length of air flown.
 ///
-///   u ← a u + σ √(1 − a²) n,   a = exp(−V Δt / L),   n normal
+///   u ← a u + √(1 − a²) n,   a = exp(−V Δt / L),   n normal of deviation 1,   gust = σ u
 ///
-/// The deviation so does not depend on the step. All numbers are our assumptions: σ is the scenario's at the ground and
-/// falls to zero at 5 km, half of it vertically; L is half the height, within 25 … 500 m. The first component
-/// of the Dryden model for gusts near Earth's ground has this form.
+/// So the deviation of u is 1 for any step Δt. All numbers are our assumptions. σ is the scenario's value at the ground
+/// and falls linearly to zero at 5 km; for the vertical component it is half as large. L is half the altitude, but at
+/// least 25 m and at most 500 m. The longitudinal component of the Dryden model for gusts near Earth's ground has this
+/// form.
 class Gusts {
   public:
     Gusts(double deviation_mps, Random random) : deviation_mps_(deviation_mps), random_(random) {}
@@ -22,7 +23,7 @@ class Gusts {
     bool blow_at(double altitude_m) const { return deviation_mps_ > 0.0 && altitude_m < top_m; }
     /// Advances the gusts by `step_s` of flight at this speed through the air.
     void advance(double altitude_m, double airspeed_mps, double step_s);
-    /// [m/s] in M
+    /// The gust's velocity [m/s], along the axes of M. Only where gusts blow: above `top_m` its sign would be reversed.
     Vector3 at(double altitude_m, const Horizon& local) const;
 
     static constexpr double top_m = 5000.0;

@@ -42,7 +42,7 @@ void take(std::span<const std::uint8_t> octets, std::vector<Octets>& into) {
     REQUIRE(stream.unreadable_octets() == 0);
 }
 
-/// One landing for all tests of this file, and half a minute after it.
+/// One landing and the half minute after it, flown once for all tests of this file.
 const Flown& flown() {
     static const Flown once = [] {
         Flown flown;
@@ -114,14 +114,15 @@ TEST_CASE("all that a landing radiates is in its recording, bit for bit, and not
     double dropped = -1.0;
     for (const Octets& packet : flown().recorded)
         if (ground.name(packet) == "CommStatus") dropped = ground.value("uhf_dropped_packets");
-    CHECK(dropped == 0.0);  // the plan of the mission is within 8 kb/s
+    CHECK(dropped == 0.0);  // what the mission's telemetry plan selects fits into 8 kb/s
     CHECK(flown().counters.mailbox_overflows == 0);
     CHECK(flown().counters.unexpected_messages == 0);
 }
 
 TEST_CASE("UHF carries channels, events and products, chosen by the state of the vehicle", "[edl_comm][R30][release]") {
     Ground ground;
-    std::map<EdlPhase, std::map<std::string, int>> live;  // by the phase in which it was recorded
+    // Packets of each name, by the phase in which flight made them.
+    std::map<EdlPhase, std::map<std::string, int>> live;
     std::map<double, EdlPhase> phases{{0.0, EdlPhase::pre_edl}};
     for (const Octets& packet : flown().recorded)
         if (ground.name(packet) == "EDL_PHASE_CHANGED")
@@ -189,10 +190,10 @@ TEST_CASE("the products of a landing are what flight put in: every firing, and t
         }
     }
     CHECK(imu_seen);
-    CHECK(as_flown_rows == timepoint_count);  // products come in the order of their numbers: the last is whole
+    CHECK(as_flown_rows == timepoint_count);  // of the last product, which was made after the last firing
     CHECK(mortar_s > 0.0);
 
-    // Live, on a link without loss, the burst is whole before touchdown, and what was flown up to touchdown after it.
+    // UHF loses nothing here. Products 1 (the IMU burst) and 2 (the firings up to touchdown) come down whole over it.
     const auto live = ground.products(flown().radiated);
     REQUIRE(live.products().size() >= 2);
     for (const auto& [identity, product] : live.products())
@@ -221,7 +222,7 @@ TEST_CASE("a landing tells what holds its decisions, live and without flooding t
     CHECK(held["heatshield"] >= 1);
     int all = 0;
     for (const auto& [decision, count] : held) all += count;
-    CHECK(all < 60);  // of a whole landing: they are for what is near, not a log
+    CHECK(all < 60);  // in a whole landing: only decisions that are near are explained
 }
 
 }  // namespace flight_recorded_landing_test

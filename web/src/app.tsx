@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The whole console, or one panel of it at ?panel=NAME for further monitors.
+// The page: the whole console or, at ?panel=NAME, one panel of it for another monitor.
 import { access } from './access/model';
 import { ExpiredBar, LogIn } from './access/view';
 import { Alarms } from './alarms/view';
@@ -30,6 +30,7 @@ import { Timeline } from './timeline/view';
 import { Tones } from './tones/view';
 import { WaitingFor } from './waiting/view';
 
+/** The tabs of the data panel. */
 const DATA = {
   channels: Channels,
   alarms: Alarms,
@@ -107,6 +108,7 @@ const inPanel = (name: keyof typeof DATA, title: string) => {
   );
 };
 
+/** The panels and tabs that ?panel=NAME can show alone. */
 const ALONE = {
   timeline: Timeline,
   tones: Tones,
@@ -116,7 +118,7 @@ const ALONE = {
   commands: Commands,
   data: Data,
   waiting: WaitingFor,
-  phases: () => null, // a panel shown alone always has the strip above it
+  phases: () => null, // the strip at the top of every page shows the phases already
   ...Object.fromEntries(TABS.map(({ id, title }) => [id, inPanel(id, title)])),
 };
 

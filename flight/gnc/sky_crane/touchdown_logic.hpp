@@ -7,14 +7,17 @@
 
 #include <cstdint>
 
-// Detects touchdown: the thrust that the stage needs has settled at the weight of the stage alone.
+// Detects touchdown: the rover stands on the ground once the commanded thrust T has settled at the weight W of the
+// descent stage alone.
 //
-//   |T − W| ≤ 0.12 W in each cycle of the last 1.25 s,   W = (mass − rover) · g
+//   |T − W| ≤ 0.12 W in each cycle of the last 1.25 s,   W = (mass − rover's mass) · g
 //
-// In       commanded thrust [N], estimated mass of stage and rover [kg], 64 Hz       Out   conditions of the decision
-// Source   [facts] Timeline: "settles at the weight of the descent stage alone for 1–1.5 s"; the tolerance is our
-//          assumption: stage with rover weighs 1.8 times as much, drift of the mass estimate is below 2 %
-// Valid    while the stage hovers upright at a steady rate
+// In       at 64 Hz: commanded thrust [N], estimated mass of stage and rover [kg], the rover's mass [kg]
+// Out      conditions of the decision
+// Source   [facts] Timeline: "settles at the weight of the descent stage alone for 1–1.5 s". The tolerance is our
+//          assumption: far below the step at touchdown (with the rover the stage weighs 1.8 times as much), and well
+//          above the drift of the mass estimate (below 2 %)
+// Valid    while the stage is upright and its descent rate is steady
 namespace aeolis::flight::gnc::sky_crane {
 
 inline constexpr auto touchdown_cycles = static_cast<std::uint32_t>(parameters.touchdown_settle_s / seconds_per_tick);
@@ -22,7 +25,7 @@ inline constexpr double thrust_tolerance = parameters.touchdown_thrust_tolerance
 
 class TouchdownLogic {
   public:
-    /// Conditions of this cycle; touchdown when all hold.
+    /// Call once a cycle. Touchdown is detected in the cycle in which all conditions returned hold.
     Conditions on(double thrust_command_N, double mass_kg, double rover_kg);
 
     template <typename Exchange>

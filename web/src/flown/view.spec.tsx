@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// The words of the as-flown report (model.ts). tests/browser/panels_test.mjs sees them drawn.
 import { create } from '@bufbuild/protobuf';
 import { describe, expect, it } from 'vitest';
 import {
