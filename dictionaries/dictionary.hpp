@@ -171,6 +171,17 @@ struct Command {
 // ---- timeline, tones, parameters -------------------------------------------------------------------------------
 
 /// A row of timeline.csv. R11, R13
+/// Assumption about an action whose reply did not come in time. R50
+enum class IfUnverified { done, not_done, done_unless_imu };
+constexpr const char* name_of(IfUnverified taken) {
+    switch (taken) {
+    case IfUnverified::done: return "done";
+    case IfUnverified::not_done: return "not_done";
+    case IfUnverified::done_unless_imu: return "done_unless_imu";
+    }
+    return "done";
+}
+
 struct TimelineRow {
     TimepointId id;
     std::string name;
@@ -179,10 +190,12 @@ struct TimelineRow {
     MaybeOffset minimum_offset_s;           ///< from the previous timepoint
     std::string action;                     ///< name of a function in aeolis::flight::actions; empty: none
     std::optional<double> reply_timeout_s;  ///< set when the timeline waits for the action's reply
-    std::string backtrack;                  ///< timepoint to return to after a reboot in pre-EDL; empty: none
-    bool essential = true;                  ///< kept in Second Chance
+    IfUnverified if_unverified = IfUnverified::done;
+    std::optional<double> hold_repeat_s;  ///< set when the timeline is held: interval of repeating the action
+    std::string backtrack;                ///< timepoint to return to after a reboot in pre-EDL; empty: none
+    bool essential = true;                ///< kept in Second Chance
     std::optional<ToneId> tone;
-    std::string event;  ///< name of an event emitted on firing; empty: none
+    std::string event;  ///< name of an event emitted when the action is done; empty: none
     std::string note;
     unsigned line = 0;  ///< in timeline.csv
 };

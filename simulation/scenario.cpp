@@ -259,7 +259,8 @@ bool is_possible(flight::Device device, DeviceFault::Kind kind) {
     switch (kind) {
     case DeviceFault::Kind::silent: return true;
     case DeviceFault::Kind::refuses: return !sensor;
-    case DeviceFault::Kind::late: return !sensor && device != Device::descent_engines;
+    case DeviceFault::Kind::late:
+    case DeviceFault::Kind::doubled: return !sensor && device != Device::descent_engines;
     case DeviceFault::Kind::dropout: return sensor || device == Device::uhf;
     }
     return false;
@@ -271,7 +272,7 @@ void check_device_faults(const Scenario& scenario, std::vector<std::string>& fou
         const std::string name = "device_faults[" + std::to_string(i) + "]";
         if (!is_possible(fault.device, fault.kind))
             found.push_back(name + ".kind: is not possible for this device (sensors: silent, dropout; uhf: all; "
-                                   "descent_engines: silent, refuses; others: silent, refuses, late)");
+                                   "descent_engines: silent, refuses; others: silent, refuses, late, doubled)");
         if (!(fault.begin_before_entry_s <= scenario.start_before_entry_s &&
               fault.begin_before_entry_s >= -scenario.timeout_after_entry_s))
             found.push_back(name + ".begin_before_entry_s: " + number(fault.begin_before_entry_s) +

@@ -186,7 +186,7 @@ struct SystemFault {
 
 /// A temporary fault of one unit of a device; simulation/buses/device_faults.hpp gives the effects. R2
 struct DeviceFault {
-    enum class Kind : std::uint8_t { silent, refuses, late, dropout };
+    enum class Kind : std::uint8_t { silent, refuses, late, dropout, doubled };
     flight::Device device{};
     flight::Unit unit{};
     Kind kind{};

@@ -33,6 +33,8 @@ Rows timeline_rows(const Dictionary& d) {
                          {"minimum_offset_s", offset_text(row.minimum_offset_s)},
                          {"action", row.action},
                          {"reply_timeout_s", offset_text(row.reply_timeout_s)},
+                         {"if_unverified", row.reply_timeout_s ? name_of(row.if_unverified) : ""},
+                         {"hold_repeat_s", row.hold_repeat_s ? number_word(*row.hold_repeat_s) : ""},
                          {"backtrack_point", row.backtrack},
                          {"essential", row.essential ? "yes" : "no"},
                          {"tone", row.tone ? d.tones[row.tone->value].name : ""},

@@ -31,6 +31,31 @@ void read_action(RowReader& cells, TimelineRow& row) {
     if (row.action.empty()) cells.fault("waits for a reply, but has no action that could bring one");
 }
 
+/// Empty where no reply is waited for, and only there.
+void read_if_unverified(RowReader& cells, TimelineRow& row) {
+    const std::string& word = cells.text("if_unverified");
+    if (word.empty() != !row.reply_timeout_s)
+        return cells.fault(word.empty() ? "waits for a reply, but if_unverified does not say what holds without one"
+                                        : "if_unverified is set, but no reply is waited for");
+    if (word.empty()) return;
+    for (const auto taken : {IfUnverified::done, IfUnverified::not_done, IfUnverified::done_unless_imu}) {
+        row.if_unverified = taken;
+        if (word == name_of(taken)) return;
+    }
+    cells.fault("if_unverified " + in_quotes(word) + " is none of done, not_done, done_unless_imu");
+}
+
+/// The timeline may be held where it can also go back: before separation. R32, R50
+void read_hold(RowReader& cells, TimelineRow& row) {
+    if (cells.text("hold_repeat_s").empty()) return;
+    row.hold_repeat_s = cells.offset("hold_repeat_s");
+    if (!row.hold_repeat_s || *row.hold_repeat_s <= 0.0)
+        cells.fault("hold_repeat_s is not above 0");
+    else if (!row.reply_timeout_s || *row.hold_repeat_s >= *row.reply_timeout_s)
+        cells.fault("hold_repeat_s is not below reply_timeout_s, which ends it");
+    if (row.backtrack.empty()) cells.fault("hold_repeat_s without a backtrack_point: held before separation only");
+}
+
 void read_tone(RowReader& cells, const TimelineContext& context, TimelineRow& row) {
     const std::string& name = cells.text("tone");
     if (name.empty() || context.tones == nullptr) return;
@@ -65,10 +90,11 @@ void read_backtrack(RowReader& cells, const LinesByName& all, const LinesByName&
 
 std::optional<std::vector<TimelineRow>> read_timeline(std::string_view text, const TimelineContext& context,
                                                       Findings& findings) {
-    const auto table = Table::read(text,
-                                   {"name", "reference", "desired_offset_s", "minimum_offset_s", "action",
-                                    "reply_timeout_s", "backtrack_point", "essential", "tone", "event", "note"},
-                                   findings);
+    const auto table =
+        Table::read(text,
+                    {"name", "reference", "desired_offset_s", "minimum_offset_s", "action", "reply_timeout_s",
+                     "if_unverified", "hold_repeat_s", "backtrack_point", "essential", "tone", "event", "note"},
+                    findings);
     if (!table) return std::nullopt;
     if (table->rows().size() > timepoints_max) {
         findings.add(table->rows()[timepoints_max].line, "more than " + std::to_string(timepoints_max) + " timepoints");
@@ -92,11 +118,15 @@ std::optional<std::vector<TimelineRow>> read_timeline(std::string_view text, con
         row.desired_offset_s = cells.offset("desired_offset_s");
         row.minimum_offset_s = cells.offset("minimum_offset_s");
         read_action(cells, row);
+        read_if_unverified(cells, row);
         read_backtrack(cells, all, so_far, row);
+        read_hold(cells, row);
         row.essential = cells.yes_or_no("essential");
         read_tone(cells, context, row);
         read_event(cells, context, row);
         row.note = cells.text("note");
+        if (row.action.empty() && row.note.empty())
+            cells.fault("has no action, and its note does not say what it is for");
         rows.push_back(std::move(row));
     }
     return rows;

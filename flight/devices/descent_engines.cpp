@@ -4,7 +4,7 @@
 namespace aeolis::flight {
 namespace {
 
-constexpr double bridle_tolerance_m = 0.01;  // chosen: tolerance of the pay-out sensor
+constexpr double bridle_runs_m = 0.05;  // chosen: well above sensor noise, 0.2 s of pay-out
 
 }  // namespace
 
@@ -13,18 +13,19 @@ void DescentEngines::on(const RunEngines& command, Outbox&) {
 }
 
 void DescentEngines::on(const PayOutBridle&, Outbox&) {
-    pay_out_ = true;
+    pay_out_ = reply_due_ = true;
 }
 
 void DescentEngines::on(const EngineReply& reply, Outbox& out) {
-    if (reply.running && !running_) out.send(ModuleId::edl, ActionReply{ReplyKind::engines, 0});
+    if (reply.running != running_)
+        out.send(ModuleId::edl, ActionReply{ReplyKind::engines, static_cast<std::uint8_t>(reply.running)});
     running_ = reply.running;
     out.send(ModuleId::edl, reply);
 }
 
 void DescentEngines::on(const BridleReply& reply, Outbox& out) {
-    if (!payed_out_ && reply.payed_out_m >= parameters.bridle_length_m - bridle_tolerance_m) {
-        payed_out_ = true;
+    if (reply_due_ && reply.payed_out_m >= bridle_runs_m) {
+        reply_due_ = false;
         out.send(ModuleId::edl, ActionReply{ReplyKind::bridle, 0});
     }
     out.send(ModuleId::edl, reply);

@@ -11,8 +11,8 @@ namespace aeolis::flight {
 ///
 /// In      RunEngines, PayOutBridle, EngineReply and BridleReply (interrupts), Tick, UnitsSelected
 /// Out     engine commands at its tick; EngineReply and BridleReply forwarded to Edl; ActionReply when the engines
-///         start to run, and when the bridle is payed out; Confirm
-/// Faults  if the engines do not run or the bridle stops, no reply is sent: the timeline's time-out handles it
+///         start or stop, and when a released bridle begins to pay out; Confirm
+/// Faults  if the engines or the bridle do not react, no reply is sent: the timeline's time-out handles it
 class DescentEngines {
   public:
     explicit DescentEngines(const Load&) {}
@@ -29,7 +29,7 @@ class DescentEngines {
     Unit unit_ = Unit::a;
     bool pay_out_ = false;
     bool running_ = false;
-    bool payed_out_ = false;
+    bool reply_due_ = false;  // of the bridle
 };
 
 }  // namespace aeolis::flight

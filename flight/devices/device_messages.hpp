@@ -149,7 +149,7 @@ struct DeviceInputs {
     FixedVector<ImuSample, 4> imu;  ///< 3 or 4 per cycle
     std::optional<CruiseAttitude> cruise_attitude;
     FixedVector<RadarBeam, 6> radar;  ///< each beam at 20 Hz
-    FixedVector<PyroReply, 8> pyro_replies;
+    FixedVector<PyroReply, 16> pyro_replies;
     FixedVector<SwitchReply, 8> switch_replies;
     std::optional<EngineReply> engines;             ///< each cycle once the valves are open
     std::optional<ThrusterReply> thrusters;         ///< on change
@@ -183,6 +183,13 @@ struct PacketOut {
 template <std::size_t N>
 using OctetBuffer = FixedVector<std::uint8_t, N>;
 
+/// Firing of a pyro by one of the two controllers. Each pyro has two initiators, one per controller.
+struct PyroCommand {
+    PyroId id{};
+    Unit unit = Unit::a;
+    bool operator==(const PyroCommand&) const = default;
+};
+
 struct SwitchCommand {
     SwitchId id{};
     bool on = false;
@@ -192,10 +199,10 @@ using SwitchCommands = FixedVector<SwitchCommand, 8>;
 
 /// All outputs of the computer in one cycle.
 struct DeviceOutputs {
-    UnitSelection units;           ///< to which this cycle's commands are addressed
-    FixedVector<PyroId, 8> pyros;  ///< to fire
-    SwitchCommands switches;       ///< of the power unit
-    SwitchCommands telecom;        ///< of the telecom units
+    UnitSelection units;  ///< to which this cycle's commands are addressed, except pyros
+    FixedVector<PyroCommand, 16> pyros;
+    SwitchCommands switches;  ///< of the power unit
+    SwitchCommands telecom;   ///< of the telecom units
     std::optional<bool> thrusters_enabled;
     ThrusterCommand thrusters;
     EngineCommand engines;

@@ -10,9 +10,9 @@ namespace aeolis::flight {
 /// Outside the rate group. R5, R10, R28
 ///
 /// In      SetSwitch, SwitchReply (interrupt), UnitsSelected
-/// Out     switch commands; ActionReply to Edl when the switch is as commanded
-/// Faults  a refusal is reported (DEVICE_REFUSED) and no ActionReply is sent: the timeline's time-out handles it. A
-///         reply that was not due, or from the other unit, is reported (REPLY_UNEXPECTED)
+/// Out     switch commands; ActionReply to Edl, verified or refused
+/// Faults  reports a refusal (DEVICE_REFUSED), a state other than commanded (REPLY_CONTRADICTS), and a reply that was
+///         not due or from the other unit (REPLY_UNEXPECTED)
 class PowerManager {
   public:
     explicit PowerManager(const Load&) {}

@@ -1,36 +1,115 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "flight/devices/pyro.hpp"
 
+#include <algorithm>
+
 namespace aeolis::flight {
+namespace {
+
+constexpr std::array both_controllers{Unit::a, Unit::b};
+
+void answer(PyroId pyro, Evidence evidence, Outbox& out) {
+    out.send(ModuleId::edl, ActionReply{ReplyKind::pyro, static_cast<std::uint8_t>(pyro), evidence});
+}
+
+RedundantUnit reported(Unit unit) {
+    return static_cast<RedundantUnit>(unit);
+}
+PyroName reported(PyroId pyro) {
+    return static_cast<PyroName>(pyro);
+}
+// The dictionary numbers pyros as the devices do.
+static_assert(static_cast<PyroId>(PyroName::cruise_cable_cutter) == PyroId::cruise_cable_cutter);
+static_assert(static_cast<PyroId>(PyroName::parachute_mortar) == PyroId::parachute_mortar);
+static_assert(static_cast<PyroId>(PyroName::coolant_vent) == PyroId::coolant_vent &&
+              pyro_count == static_cast<std::size_t>(PyroName::coolant_vent) + 1);
+
+}  // namespace
+
+void PyroManager::on(const ArmPyros& command, Outbox& out) {
+    armed_ = command.armed;
+    out.send(ModuleId::edl, ActionReply{ReplyKind::arming, static_cast<std::uint8_t>(armed_)});
+}
 
 void PyroManager::on(const FirePyro& command, Outbox& out) {
     const auto number = static_cast<std::size_t>(command.pyro);
-    if (number >= pyro_count || !due_.try_push_back(command.pyro))
-        return out.event(evr::PYRO_QUEUE_FULL{.pyro = static_cast<std::uint8_t>(command.pyro)});
-    reply_due_[number] = true;
+    if (number >= pyro_count)
+        return out.event(evr::PYRO_UNKNOWN{.pyro_number = static_cast<std::uint8_t>(command.pyro)});
+    if (!armed_) {
+        out.event(evr::PYRO_NOT_ARMED{.pyro = reported(command.pyro)});
+        return answer(command.pyro, Evidence::refused, out);
+    }
+    Shot& shot = shots_[number];
+    shot.wanted = true;
+    shot.fired = false;
+    shot.until = command.until;
+    shot.next_try = {};
+    for (Controller& controller : shot.controllers) controller.refuses = controller.refusal_told = false;
 }
 
 void PyroManager::on(const PyroReply& reply, Outbox& out) {
     const auto number = static_cast<std::size_t>(reply.pyro);
-    if (number >= pyro_count || !reply_due_[number] || reply.unit != unit_)
+    const auto place = static_cast<std::size_t>(reply.unit);
+    if (number >= pyro_count || place >= both_controllers.size() || shots_[number].controllers[place].replies_due == 0)
         return out.event(evr::REPLY_UNEXPECTED{.device_number = static_cast<std::uint8_t>(Device::pyro)});
-    reply_due_[number] = false;
-    const auto pyro = static_cast<std::uint8_t>(reply.pyro);
-    if (reply.fired)
-        out.send(ModuleId::edl, ActionReply{ReplyKind::pyro, pyro});
-    else
-        out.event(evr::PYRO_NOT_FIRED{.pyro = pyro});
+    Shot& shot = shots_[number];
+    Controller& controller = shot.controllers[place];
+    --controller.replies_due;
+    controller.refuses = !reply.fired;
+    if (reply.fired) {
+        if (!shot.fired) answer(reply.pyro, Evidence::verified, out);
+        shot.fired = true;
+        return;
+    }
+    if (!controller.refusal_told)
+        out.event(evr::PYRO_CONTROLLER_REFUSED{.pyro = reported(reply.pyro), .controller = reported(reply.unit)});
+    controller.refusal_told = true;
+    if (!shot.fired && std::ranges::all_of(shot.controllers, &Controller::refuses))
+        answer(reply.pyro, Evidence::refused, out);
 }
 
 void PyroManager::on(const UnitsSelected& selected, Outbox&) {
     unit_ = selected.units[Device::pyro];
 }
 
-void PyroManager::on(const Tick&, Outbox& out) {
+void PyroManager::on(const Tick& tick, Outbox& out) {
     out.bus().units[Device::pyro] = unit_;
-    // Pyros without room on the bus, after a second turn in one cycle, wait for the next cycle.
-    while (!due_.empty() && out.bus().pyros.try_push_back(due_[0])) due_.erase_at(0);
+    for (std::size_t i = 0; i < pyro_count; ++i) {
+        Shot& shot = shots_[i];
+        if (!shot.wanted) continue;
+        const auto pyro = static_cast<PyroId>(i);
+        const bool first = !shot.next_try.defined();
+        if (armed_ && !shot.fired && (first || (tick.now >= shot.next_try && tick.now + retry_s <= shot.until)))
+            fire(pyro, shot, out);
+        else if (tick.now >= shot.until)
+            end(pyro, shot, out);
+    }
     out.send(ModuleId::sync, Confirm{ModuleId::pyro});
+}
+
+// A pyro without room on the bus waits for the next cycle.
+void PyroManager::fire(PyroId pyro, Shot& shot, Outbox& out) {
+    auto& bus = out.bus().pyros;
+    if (bus.size() + both_controllers.size() > bus.capacity()) return;
+    if (shot.next_try.defined()) answer(pyro, Evidence::none, out);
+    for (const Unit unit : {unit_, unit_ == Unit::a ? Unit::b : Unit::a}) {
+        Controller& controller = shot.controllers[static_cast<std::size_t>(unit)];
+        bus.push_back({pyro, unit});
+        ++controller.replies_due;
+        controller.refuses = false;
+    }
+    shot.next_try = out.now() + retry_s;
+}
+
+void PyroManager::end(PyroId pyro, Shot& shot, Outbox& out) {
+    shot.wanted = false;
+    for (const Unit unit : both_controllers) {
+        const Controller& controller = shot.controllers[static_cast<std::size_t>(unit)];
+        if (controller.replies_due != 0 && !controller.refusal_told)
+            out.event(evr::PYRO_CONTROLLER_SILENT{.pyro = reported(pyro), .controller = reported(unit)});
+    }
+    if (!shot.fired && std::ranges::all_of(shot.controllers, &Controller::refuses))
+        out.event(evr::PYRO_NOT_FIRED{.pyro = reported(pyro)});
 }
 
 }  // namespace aeolis::flight

@@ -7,19 +7,27 @@ void SwitchReplies::command(const SetSwitch& command, SwitchCommands& bus, Outbo
     const auto number = static_cast<std::size_t>(command.id);
     if (number >= switch_count || !bus.try_push_back({command.id, command.on}))
         return out.event(evr::SWITCH_QUEUE_FULL{.switch_number = static_cast<std::uint8_t>(command.id)});
-    awaited_[number] = command.on;
+    Awaited& awaited = awaited_[number];
+    awaited = {command.on, static_cast<std::uint8_t>(awaited.replies_due + 1)};
 }
 
 void SwitchReplies::reply(const SwitchReply& reply, Unit selected, Outbox& out) {
     const auto device = static_cast<std::uint8_t>(switched_by(reply.id));
     const auto number = static_cast<std::size_t>(reply.id);
-    if (number >= switch_count || !awaited_[number] || reply.unit != selected)
+    if (number >= switch_count || awaited_[number].replies_due == 0 || reply.unit != selected)
         return out.event(evr::REPLY_UNEXPECTED{.device_number = device});
+    Awaited& awaited = awaited_[number];
+    const bool as_commanded = !reply.refused && reply.on == awaited.on;
+    if (reply.refused)
+        out.event(evr::DEVICE_REFUSED{.device_number = device});
+    else if (!as_commanded && awaited.replies_due == 1)
+        out.event(evr::REPLY_CONTRADICTS{.device_number = device});
+    --awaited.replies_due;
     // This reply answers an older command; the reply to the newer one is still due.
-    if (!reply.refused && reply.on != *awaited_[number]) return;
-    awaited_[number].reset();
-    if (reply.refused) return out.event(evr::DEVICE_REFUSED{.device_number = device});
-    out.send(ModuleId::edl, ActionReply{ReplyKind::device_switch, static_cast<std::uint8_t>(reply.id)});
+    if (!as_commanded && awaited.replies_due > 0) return;
+    awaited.replies_due = 0;
+    out.send(ModuleId::edl, ActionReply{ReplyKind::device_switch, static_cast<std::uint8_t>(reply.id),
+                                        as_commanded ? Evidence::verified : Evidence::refused, awaited.on});
 }
 
 }  // namespace aeolis::flight

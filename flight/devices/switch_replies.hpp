@@ -11,11 +11,16 @@ class SwitchReplies {
   public:
     /// Puts `command` on its owner's part of the bus, or reports that there is no room (SWITCH_QUEUE_FULL).
     void command(const SetSwitch& command, SwitchCommands& bus, Outbox& out);
-    /// Turns a reply into an answer for the timeline, or reports it: refused, not due, or from the other unit.
+    /// Turns a reply into an answer for the timeline, verified or refused. Also reports a reply that refuses, contradicts
+    /// the command, was not due, or comes from the other unit.
     void reply(const SwitchReply& reply, Unit selected, Outbox& out);
 
   private:
-    std::array<std::optional<bool>, switch_count> awaited_{};
+    struct Awaited {
+        bool on = false;  // by the last command
+        std::uint8_t replies_due = 0;
+    };
+    std::array<Awaited, switch_count> awaited_{};
 };
 
 }  // namespace aeolis::flight

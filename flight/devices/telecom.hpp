@@ -11,8 +11,8 @@ namespace aeolis::flight {
 /// radio does with it. Outside the rate group. R5, R10, R28
 ///
 /// In      SetSwitch, SwitchReply (interrupt), UnitsSelected
-/// Out     switch commands; ActionReply to Edl when the radio is as commanded
-/// Faults  as for power: DEVICE_REFUSED, REPLY_UNEXPECTED
+/// Out     switch commands; ActionReply to Edl, verified or refused
+/// Faults  as for power: DEVICE_REFUSED, REPLY_CONTRADICTS, REPLY_UNEXPECTED
 class TelecomManager {
   public:
     explicit TelecomManager(const Load&) {}

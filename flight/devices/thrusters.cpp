@@ -15,16 +15,24 @@ void Thrusters::on(const FireThrusters& command, Outbox&) {
 }
 
 void Thrusters::on(const EnableThrusters& command, Outbox&) {
+    ++replies_due_;
     enable_ = awaited_ = command.enabled;
 }
 
 void Thrusters::on(const ThrusterReply& reply, Outbox& out) {
-    if (!awaited_ || reply.unit != unit_) return out.event(evr::REPLY_UNEXPECTED{.device_number = thrusters_device});
+    if (replies_due_ == 0 || reply.unit != unit_)
+        return out.event(evr::REPLY_UNEXPECTED{.device_number = thrusters_device});
+    const bool as_commanded = !reply.refused && reply.enabled == awaited_;
+    if (reply.refused)
+        out.event(evr::DEVICE_REFUSED{.device_number = thrusters_device});
+    else if (!as_commanded && replies_due_ == 1)
+        out.event(evr::REPLY_CONTRADICTS{.device_number = thrusters_device});
+    --replies_due_;
     // This reply answers an older command; the reply to the newer one is still due.
-    if (!reply.refused && reply.enabled != *awaited_) return;
-    awaited_.reset();
-    if (reply.refused) return out.event(evr::DEVICE_REFUSED{.device_number = thrusters_device});
-    out.send(ModuleId::edl, ActionReply{ReplyKind::thrusters, 0});
+    if (!as_commanded && replies_due_ > 0) return;
+    replies_due_ = 0;
+    out.send(ModuleId::edl,
+             ActionReply{ReplyKind::thrusters, 0, as_commanded ? Evidence::verified : Evidence::refused, awaited_});
 }
 
 void Thrusters::on(const UnitsSelected& selected, Outbox&) {

@@ -10,9 +10,9 @@ namespace aeolis::flight {
 /// In the rate group: it confirms every tick, idle or not. R5, R10, R22
 ///
 /// In      FireThrusters, EnableThrusters, ThrusterReply (interrupt), Tick, UnitsSelected
-/// Out     on-times and enable commands, at its tick, once; ActionReply to Edl when the driver is as commanded; Confirm
-/// Faults  a refusal is reported (DEVICE_REFUSED) and no ActionReply is sent: the timeline's time-out handles it. A
-///         reply that was not due, or from the other unit, is reported (REPLY_UNEXPECTED)
+/// Out     on-times and enable commands, at its tick, once; ActionReply to Edl, verified or refused; Confirm
+/// Faults  reports a refusal (DEVICE_REFUSED), a state other than commanded (REPLY_CONTRADICTS), and a reply that was
+///         not due or from the other unit (REPLY_UNEXPECTED)
 class Thrusters {
   public:
     explicit Thrusters(const Load&) {}
@@ -24,9 +24,10 @@ class Thrusters {
     void on(const Tick& tick, Outbox& out);
 
   private:
-    ThrusterCommand thrusters_;    // for the next tick only
-    std::optional<bool> enable_;   // to be commanded at the next tick
-    std::optional<bool> awaited_;  // the state that the pending reply should report
+    ThrusterCommand thrusters_;   // of the next tick, then none
+    std::optional<bool> enable_;  // to be commanded at the next tick
+    bool awaited_ = false;        // what the reply to the last command should say
+    std::uint8_t replies_due_ = 0;
     Unit unit_ = Unit::a;
 };
 

@@ -74,9 +74,8 @@ void EdlMain::run_timeline(Sclk now, Outbox& out) {
                                           .triggered_sclk = firing.triggered.seconds,
                                           .fired_sclk = firing.fired.seconds,
                                           .verdict = firing.verdict});
-        if (firing.verdict != FiringVerdict::timed_out) continue;
-        out.event(evr::TIMEPOINT_TIMED_OUT{.timepoint = firing.timepoint.value});
-        out.send(ModuleId::mfsk, ToneRequest{tone::timepoint_timed_out, now});
+        tell_reply(firing, timeline_specs[firing.timepoint.value], out);
+        if (firing.verdict == FiringVerdict::unverified) unverified_.add(firing);
     }
     if (firings.empty()) return;
     ++revision_;
@@ -119,6 +118,7 @@ void EdlMain::take_triggers(Sclk now, Outbox& out) {
     }
     if (output_.bank_reversal != 0) announce_bank_reversal(output_, out);
     peak_deceleration_.watch(output_, out);
+    unverified_.watch(output_, configuration_, out);
 }
 
 void EdlMain::update_phase(Sclk now, Outbox& out) {
@@ -154,8 +154,10 @@ void EdlMain::on(const gnc::RadarSolution& solution, Outbox&) {
     gnc_.on(solution);
 }
 
-void EdlMain::on(const ActionReply& reply, Outbox&) {
-    timeline_.reply(reply);
+void EdlMain::on(const ActionReply& reply, Outbox& out) {
+    if (timeline_.reply(reply)) return;
+    ActionContext context{out, configuration_};
+    if (unverified_.on(reply, context)) ++revision_;
 }
 
 // ---- system fault protection ------------------------------------------------------------------------------------

@@ -5,6 +5,7 @@
 #include "flight/cross_string/state_frame.hpp"
 #include "flight/edl/decisions.hpp"
 #include "flight/edl/phase.hpp"
+#include "flight/edl/unverified_actions.hpp"
 #include "flight/gnc/edl_gnc.hpp"
 #include "flight/kernel/outbox.hpp"
 #include "flight/timeline/constraint_monitor.hpp"
@@ -94,6 +95,7 @@ class EdlMain {
     Activity activity_;
     Timeline timeline_;
     ConstraintMonitor constraint_monitor_{constraint_specs};
+    UnverifiedActions unverified_;
     gnc::EdlGnc gnc_;
     gnc::Configuration configuration_;
     gnc::Output output_;

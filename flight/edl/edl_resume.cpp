@@ -47,12 +47,14 @@ void EdlMain::restart(Sclk now, Outbox& out) {
     // stands by.
     if (timeline_.begun() && !pre_edl(load_.told_until.value_or(now))) {
         activity_ = Activity::stands_by;
+        out.send(ModuleId::mfsk, ToneRequest{tone::stand_by, now});
         for (const ModuleId silent : {ModuleId::mfsk, ModuleId::units}) out.send(silent, StandBy{});
         return out.event(evr::PRIME_STANDS_BY{});
     }
     out.send(ModuleId::mfsk, ToneRequest{tone::computer_started, now});
     out.send(ModuleId::edl_comm, PhaseChanged{phase()});
     if (parameters_) gnc_.set_solution(solution_of(*parameters_), now);  // the navigated state is out of date
+    configuration_.pyros_armed = false;  // the pyro manager starts safe; the backtrack repeats the arming
     if (!timeline_.begun()) return;
     const TimepointId from = timeline_.current();
     if (timeline_.backtrack(now))
@@ -68,8 +70,9 @@ void EdlMain::take_over(const StateHeader& prime, Sclk now, Outbox& out) {
         // The readings of this cycle are in gnc_inputs_ and are used in this cycle's GNC run.
         if (readings.now > prime.time && readings.now < now) gnc_.catch_up(readings.samples.span(), readings.now);
     }
+    out.send(ModuleId::pyro, ArmPyros{configuration_.pyros_armed});
     out.event(evr::SECOND_CHANCE_TAKES_OVER{.silence_s = now - prime.time, .timepoint = timeline_.current().value});
-    out.send(ModuleId::mfsk, ToneRequest{tone::computer_started, now});
+    out.send(ModuleId::mfsk, ToneRequest{tone::taken_over, now});
     out.send(ModuleId::edl_comm, PhaseChanged{phase()});
     ++revision_;
 }

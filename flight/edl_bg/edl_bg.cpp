@@ -56,6 +56,7 @@ void EdlBg::watch_radar(Sclk now, Outbox& out) {
     if (!wanted || radar_lost_ || gap_s < most_s) return;
     radar_lost_ = true;
     out.event(evr::RADAR_LOST{.gap_s = gap_s});
+    out.send(ModuleId::mfsk, ToneRequest{tone::radar_lost, now});
 }
 
 }  // namespace aeolis::flight

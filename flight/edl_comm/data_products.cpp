@@ -57,7 +57,9 @@ void DataProducts::on(const Record& record) {
     if (record.apid != packet::TimepointFired::apid) return;
     as_flown_.on(record);
     // After the last firing the product is complete. It is delivered with the recording.
-    if (read_bits(record.data, 0, 16) + 1 == timepoint_count) static_cast<void>(due_.try_push(ProductKind::as_flown));
+    if (read_bits(record.data, 0, 16) + 1 != timepoint_count) return;
+    timeline_complete_ = true;
+    static_cast<void>(due_.try_push(ProductKind::as_flown));
 }
 
 void DataProducts::on(const ImuReadings& readings) {

@@ -62,6 +62,8 @@ class DataProducts {
     void cycle(Outbox& out);
 
     std::uint16_t made() const { return made_; }
+    /// The last timepoint has fired, and every product is out.
+    bool complete() const { return timeline_complete_ && !sending_ && due_.empty(); }
 
   private:
     struct Sending {
@@ -78,6 +80,7 @@ class DataProducts {
     FixedQueue<ProductKind, 4> due_;
     std::optional<Sending> sending_;
     std::uint16_t made_ = 0;
+    bool timeline_complete_ = false;
 };
 
 }  // namespace aeolis::flight

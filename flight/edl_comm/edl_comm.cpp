@@ -21,6 +21,12 @@ Apid apid_of(String string, Apid apid) {
     return apid;
 }
 
+/// What EdlComm says when it closes the recording.
+bool is_last(const Record& record) {
+    return record.apid == evr::RECORDING_CLOSED::apid &&
+           read_bits(record.data, 0, 16) == evr::RECORDING_CLOSED::id.value;
+}
+
 }  // namespace
 
 EdlComm::EdlComm(const Load& load)
@@ -46,10 +52,30 @@ void EdlComm::on(const Record& record, Outbox& out) {
     const TelemetryPlanRow& plan = planned(plan_, apid);
     // Only recorded packets may be sent: real time stays a subset of the recording.
     if (append_to_recording(plan.priority, packet, out)) offer_to_link(plan, stream, packet, out);
+    if (is_last(record)) closing_ = Closing::closed;
     products_.on(record);
 }
 
+void EdlComm::on(const CloseRecording&, Outbox& out) {
+    if (closing_ == Closing::open) closing_ = Closing::asked;
+    octets_before_closing_ = nvm_.used_octets + static_cast<std::uint32_t>(out.bus().nvm.size());
+}
+
+void EdlComm::close(Outbox& out) {
+    if (closing_ == Closing::asked && nvm_.used_octets >= octets_before_closing_) {
+        closing_ = Closing::closing;
+        const Evidence evidence = nvm_full_reported_ ? Evidence::refused : Evidence::verified;
+        out.send(ModuleId::edl, ActionReply{ReplyKind::recording, 0, evidence});
+    }
+    if (closing_ == Closing::closing && products_.complete()) {
+        closing_ = Closing::last_packet;
+        out.event(evr::RECORDING_CLOSED{.used_octets = nvm_.used_octets});
+        out.send(ModuleId::mfsk, ToneRequest{tone::recording_closed, out.now()});
+    }
+}
+
 bool EdlComm::append_to_recording(TelemetryPriority priority, const TelemetryPacket& packet, Outbox& out) {
+    if (closing_ == Closing::closed) return false;
     auto& nvm = out.bus().nvm;
     const std::uint64_t kept_free_octets = priority == TelemetryPriority::first ? 0 : nvm_reserve_octets;
     if (nvm_.used_octets + nvm.size() + packet.size + kept_free_octets > nvm_.capacity_octets ||
@@ -141,6 +167,7 @@ void EdlComm::on(const UplinkStatus& status, Outbox&) {
 void EdlComm::on(const ClockTick& tick, Outbox& out) {
     if (at_resolution(tick.now, 1) == tick.now) out.record(status());
     products_.cycle(out);
+    close(out);
     radiate(out);
 }
 

@@ -15,7 +15,8 @@ namespace aeolis::flight {
 /// Records all EDL telemetry in non-volatile memory (NVM), and sends a subset in real time. R29, R30
 /// The subset is bit-identical to the recording and limited by the rate of the link.
 ///
-/// In      Record (any module), ImuReadings, PhaseChanged, NvmStatus, ToneStatus, UplinkStatus, ClockTick (64 Hz)
+/// In      Record (any module), ImuReadings, PhaseChanged, NvmStatus, ToneStatus, UplinkStatus, CloseRecording,
+///         ClockTick (64 Hz)
 /// Out     packets to NVM, in order; PLTUs with some of them to the UHF transmitter, within its rate; CommStatus at 1
 ///         Hz; data products
 /// Memory  192 packets wait for the link; RealtimeQueue decides which are dropped. Neither recording nor cycle suffers
@@ -23,6 +24,8 @@ namespace aeolis::flight {
 ///         CommStatus
 ///         NVM nearly full is reported once (NVM_FULL, and by tone); the last 64 KiB are kept for priority `first`
 ///         A record that no packet can hold is refused as an unexpected message
+/// Closing CloseRecording is answered as verified once NVM holds all packets recorded before it, and as refused if some
+///         found no room. After the last timepoint and its data product, RECORDING_CLOSED is the last packet recorded
 /// Frames  A Proximity-1 frame, expedited, on this computer's own physical channel, carries whole packets. While more
 ///         wait, a frame is sent only when it can hold 256 octets (chosen: a quarter of a second at 8 kb/s, 5 % frame
 ///         overhead)
@@ -38,6 +41,7 @@ class EdlComm {
     void on(const NvmStatus& status, Outbox& out);
     void on(const ToneStatus& status, Outbox& out);
     void on(const UplinkStatus& status, Outbox& out);
+    void on(const CloseRecording& command, Outbox& out);
     void on(const ClockTick& tick, Outbox& out);
 
     std::uint32_t unrecorded_packets() const { return unrecorded_packets_; }
@@ -52,6 +56,7 @@ class EdlComm {
         std::uint32_t since_sent = 0;
     };
 
+    void close(Outbox& out);
     bool append_to_recording(TelemetryPriority priority, const TelemetryPacket& packet, Outbox& out);
     void offer_to_link(const TelemetryPlanRow& plan, Stream& stream, const TelemetryPacket& packet, Outbox& out);
     void radiate(Outbox& out);
@@ -74,6 +79,10 @@ class EdlComm {
     std::uint32_t unrecorded_packets_ = 0;
     NvmStatus nvm_;
     bool nvm_full_reported_ = false;
+    /// State of the recording. `asked`: awaits NVM's confirmation; `closing`: awaits the end of the timeline.
+    enum class Closing : std::uint8_t { open, asked, closing, last_packet, closed };
+    Closing closing_ = Closing::open;
+    std::uint32_t octets_before_closing_ = 0;
     bool queue_full_reported_ = false;
     ToneStatus tone_;
     UplinkStatus uplink_{word_of({.lockout = true})};  // initially as of a dispatcher without uplink

@@ -20,7 +20,47 @@ namespace {
 constexpr double cycle_s = seconds_per_tick;
 constexpr double bank_before_guidance_rad = parameters.bank_before_guidance_deg * degree;
 
+/// Of a fact that has a time: both are known, or neither.
+void set(bool& known, std::optional<Sclk>& when, Sclk since) {
+    known = true;
+    if (!when) when = since;
+}
+void clear(bool& known, std::optional<Sclk>& when) {
+    known = false;
+    when.reset();
+}
+
 }  // namespace
+
+void Configuration::learn(Fact fact, Sclk since) {
+    switch (fact) {
+    case Fact::none: return;
+    case Fact::pyros_armed: pyros_armed = true; return;
+    case Fact::pyros_safe: pyros_armed = false; return;
+    case Fact::cruise_stage_gone: cruise_stage_gone = true; return;
+    case Fact::parachute_out: return set(parachute_out, parachute_time, since);
+    case Fact::heatshield_gone: return set(heatshield_gone, heatshield_time, since);
+    case Fact::engines_primed: engines_primed = true; return;
+    case Fact::backshell_gone: return set(backshell_gone, backshell_time, since);
+    case Fact::rover_separated: return set(rover_separated, rover_separation_time, since);
+    case Fact::bridle_cut: bridle_cut = true; return;
+    }
+}
+
+void Configuration::forget(Fact fact) {
+    switch (fact) {
+    case Fact::none: return;
+    case Fact::pyros_armed: pyros_armed = false; return;
+    case Fact::pyros_safe: pyros_armed = true; return;
+    case Fact::cruise_stage_gone: cruise_stage_gone = false; return;
+    case Fact::parachute_out: return clear(parachute_out, parachute_time);
+    case Fact::heatshield_gone: return clear(heatshield_gone, heatshield_time);
+    case Fact::engines_primed: engines_primed = false; return;
+    case Fact::backshell_gone: return clear(backshell_gone, backshell_time);
+    case Fact::rover_separated: return clear(rover_separated, rover_separation_time);
+    case Fact::bridle_cut: bridle_cut = false; return;
+    }
+}
 
 EdlGnc::EdlGnc(const Load& load)
     : load_(load), mass_kg_(load.powered_descent_mass_kg), steering_(load.engine_max_thrust_N) {
@@ -164,7 +204,10 @@ void EdlGnc::follow_configuration(const Configuration& configuration, Sclk now) 
     if (configuration.enabled) take(Event::enabled, now);
     if (configuration.guidance_armed) take(Event::guidance_armed, now);
     if (since(mode_since_) >= sufr::duration_s) take(Event::straightened_up, now);
-    if (configuration.parachute_out) take(Event::parachute_out, now);
+    if (configuration.parachute_out)
+        take(Event::parachute_out, now);
+    else
+        take(Event::parachute_missing, now);
     if (configuration.backshell_gone && take(Event::backshell_gone, configuration.backshell_time.value_or(now)))
         mass_kg_ = load_.powered_descent_mass_kg;
     if (configuration.sky_crane_started && take(Event::throttled_down, now)) rate_control_.start();

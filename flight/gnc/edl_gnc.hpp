@@ -55,9 +55,25 @@ struct Solution {
     }
 };
 
-/// Configuration that GNC must fly: the timeline's progress, read by GNC each cycle. R26
+/// Change of the configuration by a device's action, known once its reply verifies it. R50
+enum class Fact : std::uint8_t {
+    none,
+    pyros_armed,
+    pyros_safe,
+    cruise_stage_gone,
+    parachute_out,
+    heatshield_gone,
+    engines_primed,
+    backshell_gone,
+    rover_separated,
+    bridle_cut,
+};
+
+/// Configuration that GNC must fly: the timeline's progress, read by GNC each cycle. R26, R50
+/// A device's action counts from its reply on (Fact); an order to GNC counts from its timepoint on.
 struct Configuration {
     bool enabled = false;  ///< "GNC enable" has fired
+    bool pyros_armed = false;
     bool cruise_stage_gone = false;
     bool turning_to_entry = false;  ///< start_turn_to_entry has fired: trim attitude, bank held until guidance
     bool guidance_armed = false;    ///< entry guidance may start when drag is high enough
@@ -70,7 +86,7 @@ struct Configuration {
     bool engines_primed = false;
     bool backshell_gone = false;
     std::optional<Sclk> backshell_time;
-    bool engines_ignited = false;
+    bool engines_ignited = false;    ///< order to GNC; the engines' reply tells whether they run
     bool sky_crane_started = false;  ///< throttle-down has fired: four engines
     bool rover_separated = false;
     std::optional<Sclk> rover_separation_time;
@@ -78,11 +94,16 @@ struct Configuration {
     bool touchdown_declared = false;
     bool bridle_cut = false;
     bool flyaway_started = false;
-    bool engines_off = false;
+    bool engines_off = false;  ///< order to GNC
+
+    /// Takes in an action, commanded at `since`, that is done or taken as done. A repeated action keeps its first time.
+    void learn(Fact fact, Sclk since);
+    /// Takes back an action that was not done after all.
+    void forget(Fact fact);
 
     template <typename Exchange>
     void carry(Exchange& exchange) {
-        exchange(enabled, cruise_stage_gone, turning_to_entry, guidance_armed, sufr_allowed, parachute_out,
+        exchange(enabled, pyros_armed, cruise_stage_gone, turning_to_entry, guidance_armed, sufr_allowed, parachute_out,
                  parachute_time, heatshield_gone, heatshield_time, radar_on, engines_primed, backshell_gone,
                  backshell_time, engines_ignited, sky_crane_started, rover_separated, rover_separation_time,
                  touchdown_logic_ready, touchdown_declared, bridle_cut, flyaway_started, engines_off);

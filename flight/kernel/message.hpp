@@ -103,16 +103,34 @@ struct NvmStatus {
 
 // ---- timeline's actions and the devices' answers ---------------------------------------------------------------
 
-enum class ReplyKind : std::uint8_t { none, pyro, device_switch, thrusters, engines, bridle };
-/// The reply that a timepoint waits for, and that a device manager sends. R14
+enum class ReplyKind : std::uint8_t { none, pyro, arming, device_switch, thrusters, engines, bridle, recording };
+/// A device's word on its command. None: commanded again, so that an earlier word no longer counts. R50
+enum class Evidence : std::uint8_t { none, verified, refused };
+/// The reply that a timepoint waits for, and that a device manager sends. R14, R50
 struct ActionReply {
     ReplyKind kind = ReplyKind::none;
     std::uint8_t id = 0;
+    Evidence evidence = Evidence::verified;
+    bool on = true;  ///< of a switch or the thrusters: the commanded state
     bool operator==(const ActionReply&) const = default;
+
+    constexpr bool answers(const ActionReply& asked) const {
+        return kind == asked.kind && id == asked.id && on == asked.on;
+    }
+
+    template <typename Exchange>
+    void carry(Exchange& exchange) {
+        exchange(kind, id, evidence, on);
+    }
 };
 struct FirePyro {
     PyroId pyro{};
+    Sclk until;  ///< time-out of the timepoint, and end of retries
 };
+struct ArmPyros {
+    bool armed = false;
+};
+struct CloseRecording {};
 struct SetSwitch {
     SwitchId id{};
     bool on = false;
@@ -208,14 +226,14 @@ struct ToneStatus {     ///< from MFSK to EdlComm, for its status channels
     std::uint8_t outstanding = 0;
 };
 
-using Message =
-    std::variant<ClockTick, Tick, Confirm, ImuReadings, RadarReturns, StatePart, StoredStatePart, Resume,
-                 UplinkReceived, NvmStatus, PyroReply, SwitchReply, EngineReply, ThrusterReply, BridleReply,
-                 CruiseAttitude, gnc::RadarSolution, ActionReply, FirePyro, SetSwitch, EnableThrusters, FireThrusters,
-                 RunEngines, PayOutBridle, UnitsSelected, EdlBegun, NavigatedAttitude, SystemFaultReport, InhibitEdl,
-                 SetParametersCommand, ParametersUpdate, DoEdlCommand, SetTimepointOffsetCommand,
-                 SetAnchorOffsetCommand, SelectUnitsCommand, EnableSecondChanceCommand, SelectPrimeCommand,
-                 CommandOutcome, Record, ToneRequest, PhaseChanged, StandBy, EdlFinished, ToneStatus, UplinkStatus>;
+using Message = std::variant<ClockTick, Tick, Confirm, ImuReadings, RadarReturns, StatePart, StoredStatePart, Resume,
+                             UplinkReceived, NvmStatus, PyroReply, SwitchReply, EngineReply, ThrusterReply, BridleReply,
+                             CruiseAttitude, gnc::RadarSolution, ActionReply, FirePyro, ArmPyros, SetSwitch,
+                             EnableThrusters, FireThrusters, RunEngines, PayOutBridle, UnitsSelected, EdlBegun,
+                             NavigatedAttitude, SystemFaultReport, InhibitEdl, SetParametersCommand, ParametersUpdate,
+                             DoEdlCommand, SetTimepointOffsetCommand, SetAnchorOffsetCommand, SelectUnitsCommand,
+                             EnableSecondChanceCommand, SelectPrimeCommand, CommandOutcome, Record, ToneRequest,
+                             PhaseChanged, StandBy, EdlFinished, ToneStatus, UplinkStatus, CloseRecording>;
 static_assert(std::is_trivially_copyable_v<Message>, "messages hold only data");
 
 /// Copies only the content of a message, not the space of the largest alternative.

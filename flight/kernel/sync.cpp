@@ -16,6 +16,7 @@ void Sync::on(const ClockTick& tick, Outbox& out) {
     if (running_ != idle) {
         ++overruns_;
         out.event(evr::CYCLE_OVERRUN{.overruns = static_cast<std::uint32_t>(overruns_)});
+        out.send(ModuleId::mfsk, ToneRequest{tone::overrun, tick.now});
         return;
     }
     now_ = tick.now;

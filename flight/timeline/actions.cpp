@@ -3,19 +3,26 @@
 
 namespace aeolis::flight {
 
-void ActionContext::fire(PyroId pyro) {
-    command(ModuleId::pyro, FirePyro{pyro});
+void ActionContext::fire(PyroId pyro, gnc::Fact fact) {
+    command(ModuleId::pyro, FirePyro{pyro, now() + reply_timeout_s_});
     await({ReplyKind::pyro, static_cast<std::uint8_t>(pyro)});
+    fact_ = fact;
+}
+
+void ActionContext::arm_pyros(bool armed) {
+    command(ModuleId::pyro, ArmPyros{armed});
+    await({ReplyKind::arming, static_cast<std::uint8_t>(armed)});
+    fact_ = armed ? gnc::Fact::pyros_armed : gnc::Fact::pyros_safe;
 }
 
 void ActionContext::set_switch(SwitchId id, bool on) {
     command(is_telecom(id) ? ModuleId::telecom : ModuleId::power, SetSwitch{id, on});
-    await({ReplyKind::device_switch, static_cast<std::uint8_t>(id)});
+    await({ReplyKind::device_switch, static_cast<std::uint8_t>(id), Evidence::none, on});
 }
 
 void ActionContext::enable_thrusters(bool enabled) {
     command(ModuleId::thrusters, EnableThrusters{enabled});
-    await({ReplyKind::thrusters, 0});
+    await({ReplyKind::thrusters, 0, Evidence::none, enabled});
 }
 
 void ActionContext::pay_out_bridle() {
@@ -23,22 +30,21 @@ void ActionContext::pay_out_bridle() {
     await({ReplyKind::bridle, 0});
 }
 
+void ActionContext::close_recording() {
+    command(ModuleId::edl_comm, CloseRecording{});
+    await({ReplyKind::recording, 0});
+}
+
 void ActionContext::request_tone(ToneId tone) {
     out_.send(ModuleId::mfsk, ToneRequest{tone, now()});
 }
 
-namespace {
-
-/// Keeps the first time of an action that is repeated after a hand-over.
-void keep_first(std::optional<Sclk>& time, Sclk now) {
-    if (!time) time = now;
+void ActionContext::announce(const TimepointSpec& row) {
+    if (row.event) row.event(*this);
+    if (row.tone) request_tone(*row.tone);
 }
 
-}  // namespace
-
 namespace actions {
-
-void no_operation(ActionContext&) {}
 
 void power_on_descent_imu(ActionContext& context) {
     context.set_switch(SwitchId::descent_imu, true);
@@ -62,7 +68,9 @@ void start_uhf(ActionContext& context) {
 void stop_uhf(ActionContext& context) {
     context.set_switch(SwitchId::uhf, false);
 }
-void close_recording(ActionContext&) {}
+void close_recording(ActionContext& context) {
+    context.close_recording();
+}
 
 void vent_coolant(ActionContext& context) {
     context.fire(PyroId::coolant_vent);
@@ -71,8 +79,7 @@ void cut_cruise_cables(ActionContext& context) {
     context.fire(PyroId::cruise_cable_cutter);
 }
 void fire_cruise_stage_separation(ActionContext& context) {
-    context.configuration().cruise_stage_gone = true;
-    context.fire(PyroId::cruise_stage_separation);
+    context.fire(PyroId::cruise_stage_separation, gnc::Fact::cruise_stage_gone);
 }
 void enable_gnc(ActionContext& context) {
     context.configuration().enabled = true;
@@ -99,7 +106,6 @@ void start_guidance_wait(ActionContext& context) {
 void start_entry_guidance(ActionContext& context) {
     context.configuration().sufr_allowed = true;
 }
-void start_sufr(ActionContext&) {}
 void jettison_balance_1(ActionContext& context) {
     context.fire(PyroId::entry_balance_1);
 }
@@ -109,13 +115,15 @@ void jettison_balance_2(ActionContext& context) {
 void jettison_balance_3(ActionContext& context) {
     context.fire(PyroId::entry_balance_3);
 }
-void arm_pyros(ActionContext&) {}
-void safe_pyros(ActionContext&) {}
+void arm_pyros(ActionContext& context) {
+    context.arm_pyros(true);
+}
+void safe_pyros(ActionContext& context) {
+    context.arm_pyros(false);
+}
 
 void fire_parachute_mortar(ActionContext& context) {
-    context.configuration().parachute_out = true;
-    keep_first(context.configuration().parachute_time, context.now());
-    context.fire(PyroId::parachute_mortar);
+    context.fire(PyroId::parachute_mortar, gnc::Fact::parachute_out);
 }
 void disable_thrusters(ActionContext& context) {
     context.enable_thrusters(false);
@@ -124,35 +132,27 @@ void enable_thrusters(ActionContext& context) {
     context.enable_thrusters(true);
 }
 void fire_heatshield_separation(ActionContext& context) {
-    context.configuration().heatshield_gone = true;
-    keep_first(context.configuration().heatshield_time, context.now());
-    context.fire(PyroId::heatshield_separation);
+    context.fire(PyroId::heatshield_separation, gnc::Fact::heatshield_gone);
 }
 void start_radar_processing(ActionContext& context) {
     context.configuration().radar_on = true;
 }
 void open_engine_valves(ActionContext& context) {
-    context.configuration().engines_primed = true;
-    context.fire(PyroId::engine_valves);
+    context.fire(PyroId::engine_valves, gnc::Fact::engines_primed);
 }
 
 void fire_backshell_separation(ActionContext& context) {
-    context.configuration().backshell_gone = true;
-    keep_first(context.configuration().backshell_time, context.now());
-    context.fire(PyroId::backshell_separation);
+    context.fire(PyroId::backshell_separation, gnc::Fact::backshell_gone);
 }
 void ignite_engines(ActionContext& context) {
     context.configuration().engines_ignited = true;
-    context.await({ReplyKind::engines, 0});
+    context.await({ReplyKind::engines, 1});
 }
-void start_powered_approach(ActionContext&) {}  // GNC started it; the row exists for its tone and event
 void start_sky_crane(ActionContext& context) {
     context.configuration().sky_crane_started = true;
 }
 void fire_rover_separation(ActionContext& context) {
-    context.configuration().rover_separated = true;
-    keep_first(context.configuration().rover_separation_time, context.now());
-    context.fire(PyroId::rover_separation);
+    context.fire(PyroId::rover_separation, gnc::Fact::rover_separated);
 }
 void release_bridle(ActionContext& context) {
     context.pay_out_bridle();
@@ -164,14 +164,14 @@ void declare_touchdown(ActionContext& context) {
     context.configuration().touchdown_declared = true;
 }
 void fire_bridle_cutters(ActionContext& context) {
-    context.configuration().bridle_cut = true;
-    context.fire(PyroId::bridle_cutter);
+    context.fire(PyroId::bridle_cutter, gnc::Fact::bridle_cut);
 }
 void start_flyaway(ActionContext& context) {
     context.configuration().flyaway_started = true;
 }
 void stop_engines(ActionContext& context) {
     context.configuration().engines_off = true;
+    context.await({ReplyKind::engines, 0});
 }
 
 }  // namespace actions

@@ -14,20 +14,28 @@ class ActionContext {
 
     void begin(const TimepointSpec& row) {
         awaited_ = {};
+        fact_ = {};
         owner_ = row.owner;
+        reply_timeout_s_ = row.reply_timeout_s.value_or(0.0);
     }
+    /// Fires a pyro; `fact` is the change of the configuration once it has fired.
+    void fire(PyroId pyro, gnc::Fact fact = {});
+    void arm_pyros(bool armed);
     void pay_out_bridle();
-    void fire(PyroId pyro);
     void set_switch(SwitchId id, bool on);
     void enable_thrusters(bool enabled);
+    void close_recording();
     void await(const ActionReply& reply) { awaited_ = reply; }
     void request_tone(ToneId tone);
+    /// Sends the event and the tone of a row whose action is done.
+    void announce(const TimepointSpec& row);
 
     Outbox& out() { return out_; }
     gnc::Configuration& configuration() { return configuration_; }
     Sclk now() const { return out_.now(); }
     /// The reply that the last action run asked for.
     const ActionReply& awaited() const { return awaited_; }
+    gnc::Fact fact() const { return fact_; }
 
   private:
     Outbox& out_;
@@ -40,20 +48,20 @@ class ActionContext {
     }
 
     ActionReply awaited_;
+    gnc::Fact fact_{};
     std::optional<ModuleId> owner_;  // of the current action
+    double reply_timeout_s_ = 0.0;   // of its row
 };
 
-/// Announces that a timepoint fires; the event column of the timeline names the events.
+/// Announces a timepoint's action as done; the event column of the timeline names the events.
 template <typename Evr>
 void announce(ActionContext& context) {
     context.out().event(Evr{});
 }
 
 /// The actions that timeline.csv names.
-/// One per line: the spacecraft's action, and the change of GNC's configuration.
+/// One per line: the spacecraft's action, and the change of GNC's configuration, at once or when the action is done.
 namespace actions {
-void no_operation(ActionContext& context);
-
 // power and telecom
 void power_on_descent_imu(ActionContext& context);
 void power_on_radar(ActionContext& context);
@@ -78,7 +86,6 @@ void jettison_cruise_balance_2(ActionContext& context);
 // entry
 void start_guidance_wait(ActionContext& context);
 void start_entry_guidance(ActionContext& context);
-void start_sufr(ActionContext& context);
 void jettison_balance_1(ActionContext& context);
 void jettison_balance_2(ActionContext& context);
 void jettison_balance_3(ActionContext& context);
@@ -96,7 +103,6 @@ void open_engine_valves(ActionContext& context);
 // powered descent and sky crane
 void fire_backshell_separation(ActionContext& context);
 void ignite_engines(ActionContext& context);
-void start_powered_approach(ActionContext& context);
 void start_sky_crane(ActionContext& context);
 void fire_rover_separation(ActionContext& context);
 void release_bridle(ActionContext& context);

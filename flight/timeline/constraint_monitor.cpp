@@ -4,7 +4,7 @@
 namespace aeolis::flight {
 namespace {
 
-constexpr std::size_t reports_per_cycle_max = 4;  // two records each, of the 48 messages that an outbox holds
+constexpr std::size_t reports_per_cycle_max = 4;  // three messages each, of the 48 that an outbox holds
 
 packet::Explanation explanation(std::uint16_t number, const ConstraintSpec& row, double elapsed_s) {
     packet::Explanation e{
@@ -86,6 +86,7 @@ void ConstraintMonitor::report(Outbox& out) {
                                                .bound_s = too_soon ? *row.minimum_s : *row.maximum_s,
                                                .violations = violations_});
         out.record(explanation(number, row, elapsed_s));
+        out.send(ModuleId::mfsk, ToneRequest{tone::constraint_violated, out.now()});
     }
 }
 

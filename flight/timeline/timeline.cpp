@@ -34,9 +34,8 @@ void Timeline::pass(Sclk now, ActionContext& context, Firings& firings) {
     if (!begun_) return;
     while (!finished()) {
         if (waiting_) {
-            const bool timed_out = now >= timeline::latest_firing(triggered_, rows_[current_].reply_timeout_s);
-            if (!replied_ && !timed_out) return;
-            complete(now, replied_ ? FiringVerdict::replied : FiringVerdict::timed_out, firings);
+            await_reply(now, context, firings);
+            if (waiting_) return;
             continue;
         }
         if (fired_in_cycle_ == timeline::triggered_per_cycle_max || !current_due().have_come(now)) return;
@@ -45,19 +44,47 @@ void Timeline::pass(Sclk now, ActionContext& context, Firings& firings) {
         ++fired_in_cycle_;
         triggered_ = now;
         if (!runs(row)) {
-            complete(now, FiringVerdict::no_operation, firings);
+            awaited_ = {};
+            fact_ = gnc::Fact::none;
+            complete(now, FiringVerdict::no_operation, context, firings);
             continue;
         }
-        context.begin(row);
-        if (row.event) row.event(context);
-        if (row.action) row.action(context);
-        if (row.tone) context.request_tone(*row.tone);
+        command(now, context);
         if (row.reply_timeout_s) {
-            awaited_ = context.awaited();
             waiting_ = true;
+            context.out().event(evr::TIMEPOINT_COMMANDED{.timepoint = current().value});
             return;
         }
-        complete(now, row.action ? FiringVerdict::completed : FiringVerdict::no_operation, firings);
+        context.announce(row);
+        complete(now, row.action ? FiringVerdict::completed : FiringVerdict::no_operation, context, firings);
+    }
+}
+
+void Timeline::command(Sclk now, ActionContext& context) {
+    const auto& row = rows_[current_];
+    commanded_ = now;
+    context.begin(row);
+    if (row.action) row.action(context);
+    awaited_ = context.awaited();
+    awaited_.evidence = Evidence::none;
+    fact_ = context.fact();
+}
+
+// A verified timepoint fires at once. Any other is judged at its time-out: until then the device may still act.
+void Timeline::await_reply(Sclk now, ActionContext& context, Firings& firings) {
+    const auto& row = rows_[current_];
+    if (awaited_.evidence == Evidence::verified) {
+        context.announce(row);
+        return complete(now, FiringVerdict::verified, context, firings);
+    }
+    if (now >= timeline::latest_firing(triggered_, row.reply_timeout_s)) {
+        const bool refused = awaited_.evidence == Evidence::refused;
+        return complete(now, refused ? FiringVerdict::refused : FiringVerdict::unverified, context, firings);
+    }
+    if (row.hold_repeat_s && now >= commanded_ + *row.hold_repeat_s) {
+        command(now, context);
+        context.out().event(evr::TIMEPOINT_HELD{.timepoint = current().value});
+        context.request_tone(tone::action_held);
     }
 }
 
@@ -75,15 +102,21 @@ bool Timeline::limited(Sclk now) const {
            current_due().have_come(now);
 }
 
-void Timeline::complete(Sclk now, FiringVerdict verdict, Firings& firings) {
-    firings.push_back({current(), triggered_, now, verdict});
+void Timeline::complete(Sclk now, FiringVerdict verdict, ActionContext& context, Firings& firings) {
+    const bool done = verdict == FiringVerdict::verified || verdict == FiringVerdict::completed;
+    const bool taken_as_done =
+        verdict == FiringVerdict::unverified && rows_[current_].if_unverified != IfUnverified::not_done;
+    if (done || taken_as_done) context.configuration().learn(fact_, triggered_);
+    firings.push_back({current(), triggered_, now, verdict, awaited_, fact_});
     previous_fired_ = now;
-    waiting_ = replied_ = false;
+    waiting_ = false;
     ++current_;
 }
 
-void Timeline::reply(const ActionReply& reply) {
-    if (waiting_ && reply == awaited_) replied_ = true;
+bool Timeline::reply(const ActionReply& reply) {
+    if (!waiting_ || !reply.answers(awaited_)) return false;
+    if (awaited_.evidence != Evidence::verified) awaited_.evidence = reply.evidence;
+    return true;
 }
 
 bool Timeline::set_timepoint_offsets(TimepointId id, MaybeOffset desired_s, MaybeOffset minimum_s) {

@@ -13,13 +13,15 @@ namespace aeolis::flight {
 inline constexpr std::size_t timeline_rows_max = 160;  ///< chosen: twice the shipped timeline
 inline constexpr std::size_t anchors_max = 32;         ///< chosen
 
-using FiringVerdict = TimepointVerdict;  // completed, replied, timed_out, no_operation, failed
+using FiringVerdict = TimepointVerdict;  // completed, verified, unverified, no_operation, refused
 
 struct Firing {
     TimepointId timepoint;
     Sclk triggered;
     Sclk fired;
     FiringVerdict verdict{};
+    ActionReply asked;  ///< the awaited reply
+    gnc::Fact fact{};   ///< the action's change of the configuration
 };
 
 /// Firings of one pass: the timepoint whose reply was awaited, and those that fire after it.
@@ -28,7 +30,8 @@ using Firings = FixedVector<Firing, timeline::triggered_per_cycle_max + 1>;
 /// The engine that interprets the timeline, by dictionaries/timeline_rule.hpp. R11–R18
 ///
 /// In       the clock, replies, changed offsets, anchors that GNC sets "now"
-/// Out      actions through ActionContext; a Firing for each completed timepoint
+/// Out      actions through ActionContext; a Firing for each completed timepoint. A row's event, its tone and its change
+///          of the configuration follow the reply, not the triggering. R50
 /// Memory   fixed; the rows stay in the autocoder's table
 /// The acceptance of "do edl" precedes the first timepoint (R16): nothing happens before begin(). Actions may be
 /// repeated: after a restart in pre-EDL, and when Second Chance takes over while prime still awaited a reply.
@@ -51,7 +54,8 @@ class Timeline {
     bool limited(Sclk now) const;
 
     /// Takes a reply, for which the current timepoint may be waiting. It takes effect in the next pass. R14
-    void reply(const ActionReply& reply);
+    /// False: it is not waiting for this reply.
+    bool reply(const ActionReply& reply);
 
     // Offsets may be changed between cycles; the next pass uses them everywhere. False: no such row. R16
     [[nodiscard]] bool set_timepoint_offsets(TimepointId id, MaybeOffset desired_s, MaybeOffset minimum_s);
@@ -80,7 +84,7 @@ class Timeline {
     /// `now` becomes the previous firing. False when there is no such row: the timeline continues where it was.
     bool backtrack(Sclk now);
     /// Forgets an awaited reply: the action runs again in the next pass. R33
-    void await_nothing() { waiting_ = replied_ = false; }
+    void await_nothing() { waiting_ = false; }
 
     template <typename Exchange>
     void carry(Exchange& exchange) {
@@ -91,7 +95,9 @@ class Timeline {
     }
 
   private:
-    void complete(Sclk now, FiringVerdict verdict, Firings& firings);
+    void command(Sclk now, ActionContext& context);
+    void await_reply(Sclk now, ActionContext& context, Firings& firings);
+    void complete(Sclk now, FiringVerdict verdict, ActionContext& context, Firings& firings);
     timeline::Offsets offsets(std::size_t row) const;
     timeline::DueTimes current_due() const;
     bool runs(const TimepointSpec& row) const { return !essential_only_ || row.essential || !row.action; }
@@ -108,9 +114,10 @@ class Timeline {
     std::size_t fired_in_cycle_ = 0;
     bool begun_ = false;
     bool waiting_ = false;  // for the reply of the current timepoint
-    bool replied_ = false;
-    ActionReply awaited_;
+    ActionReply awaited_;   // with its latest evidence
+    gnc::Fact fact_{};
     Sclk triggered_;
+    Sclk commanded_;  // last time, by which a held timeline repeats the action
 };
 
 }  // namespace aeolis::flight

@@ -45,17 +45,18 @@ class Bus {
     /// Sends the frame's commands; `execute(command)` says whether the terminal answered.
     template <typename Execute>
     void send(const Execute& execute) {
-        unsigned held_up = 0;  // devices whose earlier command has to come first
+        unsigned held_up = 0;  // units whose earlier command has to come first
         std::size_t kept = 0;
         for (std::size_t i = 0; i < waiting_.size(); ++i) {
             BusCommand command = waiting_[i];
-            const unsigned device = 1U << static_cast<unsigned>(command.device);
-            if ((held_up & device) == 0 && i < messages_per_frame_max && exchange() && execute(command)) continue;
-            if ((held_up & device) == 0 && i < messages_per_frame_max && ++command.tries == tries_max) {
+            const unsigned unit =
+                1U << (2 * static_cast<unsigned>(command.device) + static_cast<unsigned>(command.unit));
+            if ((held_up & unit) == 0 && i < messages_per_frame_max && exchange() && execute(command)) continue;
+            if ((held_up & unit) == 0 && i < messages_per_frame_max && ++command.tries == tries_max) {
                 ++counters_.given_up;
                 continue;
             }
-            held_up |= device;
+            held_up |= unit;
             waiting_[kept++] = command;
         }
         while (waiting_.size() > kept) waiting_.erase_at(waiting_.size() - 1);

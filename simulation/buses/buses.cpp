@@ -36,12 +36,12 @@ void Buses::take(const flight::DeviceOutputs& out) {
     thrusters_due_ = out.thrusters;
     engines_due_ = out.engines;
     pay_out_bridle_due_ = out.pay_out_bridle;
-    for (const flight::PyroId pyro : out.pyros) {
-        if (static_cast<std::size_t>(pyro) >= flight::pyro_count) continue;
+    for (const flight::PyroCommand& command : out.pyros) {
+        if (static_cast<std::size_t>(command.id) >= flight::pyro_count) continue;
         bus_64_hz_.queue({.device = Device::pyro,
-                          .unit = addressed_[Device::pyro],
+                          .unit = command.unit,
                           .kind = BusCommand::Kind::pyro,
-                          .pyro = pyro,
+                          .pyro = command.id,
                           .on = true});
     }
     if (out.thrusters_enabled)

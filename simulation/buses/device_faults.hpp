@@ -13,6 +13,7 @@ namespace aeolis::simulation {
 /// silent   the terminal does not answer on the bus; the device keeps its last command
 /// refuses  the terminal answers, and the device does not act
 /// late     replies come later than they should
+/// doubled  each reply comes twice, a tick apart
 /// dropout  the device's data fail: the radar has no valid measurement, the IMU loses every other sample, UHF radiates
 ///          nothing
 class DeviceFaults {

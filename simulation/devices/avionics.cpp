@@ -41,6 +41,10 @@ bool Avionics::execute(const BusCommand& command, std::int64_t tick, const Devic
                        faults.late_ticks(command.device, command.unit);
     // A flooded terminal loses replies; flight's time-outs cover that.
     (void)replies_.try_push_back(reply);
+    if (faults.has(DeviceFault::Kind::doubled, command.device, command.unit)) {
+        ++reply.ready_tick;
+        (void)replies_.try_push_back(reply);
+    }
     return first_firing;
 }
 

@@ -79,7 +79,7 @@ void GncStandIn::follow(const flight::gnc::Configuration& configuration) {
     if (configuration.enabled) take(GncModeEvent::enabled);
     if (configuration.guidance_armed) take(GncModeEvent::guidance_armed);
     if (now_ - mode_since_ >= parameters.sufr_duration_s) take(GncModeEvent::straightened_up);
-    if (configuration.parachute_out) take(GncModeEvent::parachute_out);
+    take(configuration.parachute_out ? GncModeEvent::parachute_out : GncModeEvent::parachute_missing);
     if (configuration.backshell_gone) take(GncModeEvent::backshell_gone);
     if (configuration.sky_crane_started) take(GncModeEvent::throttled_down);
     if (configuration.touchdown_declared) take(GncModeEvent::touchdown_declared);

@@ -23,7 +23,7 @@ struct Row {
 
 template <PyroId pyro>
 void fire(Touched& t) {
-    t.out.pyros.push_back(pyro);
+    t.out.pyros.push_back({pyro, flight::Unit::a});
 }
 
 constexpr std::array rows{

@@ -35,14 +35,14 @@ TEST_CASE("a command must leave a light time before the next timepoint that is p
     const auto& words = tests::shipped_dictionary();
     const PlannedDeadlines deadlines{words, entry, light_time_s};
     const auto& command = *words.command("NO_OP");
-    const Ert vent = before_entry(826.0 + light_time_s);  // coolant_vent, E-826 s, is planned by the clock
-    const auto in_time = deadlines.of(command, {}, Ert{vent.microseconds - 1});
+    const Ert armed = before_entry(828.0 + light_time_s);  // pyros_armed_vent, E-828 s, is planned by the clock
+    const auto in_time = deadlines.of(command, {}, Ert{armed.microseconds - 1});
     REQUIRE(in_time);
-    CHECK(in_time->timepoint == "coolant_vent");
-    CHECK(in_time->latest == vent);
-    CHECK(deadlines.of(command, {}, vent)->timepoint ==
-          "uhf_start");  // at that instant it is there together with it: too late
-    CHECK(deadlines.next(vent)->timepoint == "uhf_start");
+    CHECK(in_time->timepoint == "pyros_armed_vent");
+    CHECK(in_time->latest == armed);
+    CHECK(deadlines.of(command, {}, armed)->timepoint ==
+          "coolant_vent");  // at that instant it is there together with it: too late
+    CHECK(deadlines.next(armed)->timepoint == "coolant_vent");
     CHECK_FALSE(deadlines.next(before_entry(0.0)));  // what is after entry is decided in flight
 }
 
@@ -74,7 +74,8 @@ TEST_CASE("a command that changes an offset must be there before what it moves, 
 TEST_CASE("what is planned while a command waits and is on its way is what it is too late for", "[gateway][R44]") {
     const PlannedDeadlines deadlines{tests::shipped_dictionary(), entry, light_time_s};
     const auto missed = deadlines.missed(before_entry(830.0), before_entry(720.0 + light_time_s));
-    CHECK(missed == std::vector<std::string>{"coolant_vent", "uhf_start", "heartbeat_e_minus_12_min"});
+    CHECK(missed == std::vector<std::string>{"pyros_armed_vent", "coolant_vent", "pyros_safe_vent", "uhf_start",
+                                             "heartbeat_e_minus_12_min"});
     CHECK(deadlines.missed(before_entry(2000.0), before_entry(2000.0)).empty());
 }
 

@@ -17,13 +17,21 @@ struct Fixture {
 };
 }  // namespace
 
-TEST_CASE("the mortar's action fires the mortar and tells GNC of the parachute and its time", "[timeline][R17][R26]") {
+TEST_CASE("the mortar's action fires the mortar; GNC has a parachute only once that is done, since it was commanded",
+          "[timeline][R17][R26][R50]") {
     Fixture f;
     actions::fire_parachute_mortar(f.context);
     REQUIRE(f.recorder.sent<FirePyro>().size() == 1);
     CHECK(f.recorder.sent<FirePyro>()[0].pyro == PyroId::parachute_mortar);
+    CHECK_FALSE(f.configuration.parachute_out);
+    f.configuration.learn(f.context.fact(), f.context.now());
     CHECK(f.configuration.parachute_out);
     CHECK(f.configuration.parachute_time == f.context.now());
+    f.configuration.learn(f.context.fact(), f.context.now() + 5.0);
+    CHECK(f.configuration.parachute_time == f.context.now());  // repeated, it happened when it happened first
+    f.configuration.forget(f.context.fact());
+    CHECK_FALSE(f.configuration.parachute_out);
+    CHECK_FALSE(f.configuration.parachute_time);
 }
 
 TEST_CASE("leaving the cruise stage is a process of several actions, and GNC learns when it is gone",
@@ -31,9 +39,9 @@ TEST_CASE("leaving the cruise stage is a process of several actions, and GNC lea
     Fixture f;
     actions::vent_coolant(f.context);
     actions::cut_cruise_cables(f.context);
-    CHECK_FALSE(f.configuration.cruise_stage_gone);
+    CHECK(f.context.fact() == gnc::Fact::none);
     actions::fire_cruise_stage_separation(f.context);
-    CHECK(f.configuration.cruise_stage_gone);
+    CHECK(f.context.fact() == gnc::Fact::cruise_stage_gone);
     CHECK(f.recorder.sent<FirePyro>().size() == 3);
 }
 
@@ -48,7 +56,7 @@ TEST_CASE("the timeline powers devices and sets telecom", "[timeline][R28]") {
     CHECK(switches[1].id == SwitchId::uhf);
     CHECK(switches[2].id == SwitchId::entry_antenna);
     CHECK(f.context.awaited() ==
-          ActionReply{ReplyKind::device_switch, static_cast<std::uint8_t>(SwitchId::entry_antenna)});
+          ActionReply{ReplyKind::device_switch, static_cast<std::uint8_t>(SwitchId::entry_antenna), Evidence::none});
 }
 
 }  // namespace flight_actions_test

@@ -91,7 +91,8 @@ TEST_CASE("a cycle is timeline, GNC, timeline: each acts on the other in the sam
             gnc_saw_the_timeline = reported(evr::GNC_MODE_CHANGED::apid, evr::GNC_MODE_CHANGED::id);
         // Second pass after GNC: the mortar fires in the cycle in which GNC says now.
         if (reported(evr::PARACHUTE_DEPLOY::apid, evr::PARACHUTE_DEPLOY::id))
-            timeline_saw_gnc = std::ranges::count(flight.out->pyros.span(), PyroId::parachute_mortar) == 1;
+            timeline_saw_gnc =
+                std::ranges::count(flight.out->pyros.span(), PyroId::parachute_mortar, &PyroCommand::id) == 2;
     }
     CHECK(gnc_saw_the_timeline);
     CHECK(timeline_saw_gnc);

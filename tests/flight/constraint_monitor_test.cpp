@@ -40,8 +40,13 @@ struct Fixture {
     int report() {
         recorder.begin(ModuleId::edl, Sclk{5000.0});
         monitor.report(recorder.out);
-        CHECK(recorder.sent<Record>().size() == recorder.out.sent().size());  // it tells, and does nothing else
-        CHECK(std::ranges::all_of(recorder.out.sent(), [](const Envelope& e) { return e.to == ModuleId::edl_comm; }));
+        // It tells, by packets and a tone, and does nothing else.
+        for (const Envelope& envelope : recorder.out.sent())
+            CHECK(envelope.to ==
+                  (std::holds_alternative<Record>(envelope.message) ? ModuleId::edl_comm : ModuleId::mfsk));
+        for (const ToneRequest& request : recorder.sent<ToneRequest>())
+            CHECK(request.tone == tone::constraint_violated);
+        CHECK(recorder.sent<Record>().size() + recorder.sent<ToneRequest>().size() == recorder.out.sent().size());
         return recorder.events<evr::SUB_CONSTRAINT_VIOLATED>();
     }
 };
@@ -69,7 +74,7 @@ struct Flight {
     simulation::World world;
     Computer computer;
     std::unique_ptr<DeviceOutputs> out = std::make_unique<DeviceOutputs>();
-    std::vector<std::pair<std::int64_t, PyroId>> pyros;
+    std::vector<std::pair<std::int64_t, PyroCommand>> pyros;
     std::vector<std::uint64_t> violated;
     std::size_t explained = 0, judged = 0;
 
@@ -87,7 +92,7 @@ struct Flight {
     void step() {
         const DeviceInputs& in = world.sense();
         computer.step(in, *out);
-        for (const PyroId pyro : out->pyros) pyros.emplace_back(in.now.ticks(), pyro);
+        for (const PyroCommand& pyro : out->pyros) pyros.emplace_back(in.now.ticks(), pyro);
         telemetry::PacketStream packets{out->nvm.span()};
         while (const auto packet = packets.next()) {
             const Apid apid = read_primary_header(*packet)->apid;
@@ -176,7 +181,7 @@ TEST_CASE("the monitor takes its moments from the timeline: anchors, the trigger
     const std::vector<AnchorSpec> anchors{{"root", {}, {}}, {"entry", root, MaybeOffset{1000.0}}};
     const Action wait = [](ActionContext& context) { context.fire(PyroId::coolant_vent); };
     const std::vector<TimepointSpec> timepoints{
-        {"first", entry, MaybeOffset{2.0}, MaybeOffset{0.0}, wait, 4.0, {}, true, {}, nullptr}};
+        {"first", entry, MaybeOffset{2.0}, MaybeOffset{0.0}, wait, 4.0, {}, {}, {}, true, {}, nullptr}};
     Timeline timeline{timepoints, anchors};
     timeline.begin(Sclk{990.0});
     Fixture f{{{Moment::of_anchor(entry), Moment::of_triggered(first), 3.0, {}},

@@ -9,21 +9,25 @@ namespace flight_descent_engines_test {
 using namespace aeolis;
 using namespace aeolis::flight;
 
-TEST_CASE("engines answer the timeline when they start to run, once", "[devices][R14]") {
+TEST_CASE("engines answer the timeline when they start to run and when they stop, once", "[devices][R14][R50]") {
     test::Spoken<DescentEngines> engines{ModuleId::descent_engines};
     CHECK(engines.on(EngineReply{false, 0.0}).sent<ActionReply>().empty());
-    CHECK(engines.on(EngineReply{true, 9000.0}).sent<ActionReply>().size() == 1);
+    const ActionReply runs{ReplyKind::engines, 1}, stopped{ReplyKind::engines, 0};
+    CHECK(engines.on(EngineReply{true, 9000.0}).sent<ActionReply>() == std::vector{runs});
     CHECK(engines.on(EngineReply{true, 9000.0}).sent<ActionReply>().empty());
     CHECK(engines.recorder.sent<EngineReply>().size() == 1);
+    CHECK(engines.on(EngineReply{false, 0.0}).sent<ActionReply>() == std::vector{stopped});
 }
 
-TEST_CASE("the bridle answers the timeline when it is payed out, once", "[devices][R14]") {
+TEST_CASE("a bridle that was released answers the timeline when it begins to pay out, once", "[devices][R14][R50]") {
     test::Spoken<DescentEngines> engines{ModuleId::descent_engines};
-    CHECK(engines.on(BridleReply{7.4}).sent<ActionReply>().empty());
-    const auto replies = engines.on(BridleReply{7.5}).sent<ActionReply>();
+    CHECK(engines.on(BridleReply{0.2}).sent<ActionReply>().empty());
+    engines.on(PayOutBridle{});
+    CHECK(engines.on(BridleReply{0.04}).sent<ActionReply>().empty());
+    const auto replies = engines.on(BridleReply{0.06}).sent<ActionReply>();
     REQUIRE(replies.size() == 1);
     CHECK(replies[0] == ActionReply{ReplyKind::bridle, 0});
-    CHECK(engines.on(BridleReply{7.5}).sent<ActionReply>().empty());
+    CHECK(engines.on(BridleReply{0.1}).sent<ActionReply>().empty());
     CHECK(engines.recorder.sent<BridleReply>().size() == 1);
 }
 

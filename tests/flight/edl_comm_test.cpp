@@ -317,6 +317,89 @@ TEST_CASE("the recording outlives a reset of the computer: what comes after stan
     CHECK(after.recorder.events<evr::NVM_FULL>() == 1);
 }
 
+namespace {
+
+Record firing(std::uint16_t timepoint) {
+    Record r{packet::TimepointFired::apid, Sclk{7.5}, packet::TimepointFired::octets - tm_overhead_octets, {}};
+    BitWriter writer{std::span{r.data}.first(r.size)};
+    packet::TimepointFired{.timepoint = timepoint}.encode(writer);
+    return r;
+}
+
+/// The recording's end, in a memory that keeps what it is given.
+struct Closing : Fixture {
+    std::vector<std::uint8_t> nvm;
+    std::vector<ActionReply> answers;
+    std::vector<ToneRequest> tones;
+
+    /// A cycle: what is recorded in it is in NVM with the next.
+    void cycle(const std::vector<Record>& records, std::uint32_t lag_octets = 0) {
+        recorder.bus->begin_cycle();
+        now_s += seconds_per_tick;
+        handle(NvmStatus{static_cast<std::uint32_t>(nvm.size()) - lag_octets, 100'000'000});
+        for (const Record& r : own_) handle(r);
+        own_.clear();
+        handle(ClockTick{Sclk{now_s}});
+        for (const auto& reply : recorder.sent<ActionReply>()) answers.push_back(reply);
+        for (const auto& tone : recorder.sent<ToneRequest>()) tones.push_back(tone);
+        own_ = recorder.sent<Record>();
+        for (const Record& r : records) handle(r);
+        const auto octets = recorder.bus->nvm.span();
+        nvm.insert(nvm.end(), octets.begin(), octets.end());
+    }
+
+  private:
+    std::vector<Record> own_;  // a module outside the rate group hears itself in the next cycle
+};
+
+}  // namespace
+
+TEST_CASE("the recording is closed when NVM holds it and the timeline is complete, and RECORDING_CLOSED is its end",
+          "[edl_comm][R29][R50]") {
+    Closing f;
+    f.cycle({record(packet::GncImu::apid)});
+    f.handle(CloseRecording{});
+    f.cycle({record(packet::GncImu::apid)}, 5);  // NVM lags behind
+    CHECK(f.answers.empty());
+    f.cycle({record(packet::GncImu::apid)});
+    REQUIRE(f.answers.size() == 1);
+    CHECK(f.answers[0] == ActionReply{ReplyKind::recording, 0});
+    for (int i = 0; i < 64; ++i) f.cycle({record(packet::GncImu::apid)});
+    CHECK(f.tones.empty());  // the last timepoint has not fired
+
+    f.cycle({firing(timepoint_count - 1)});
+    for (int i = 0; i < 64; ++i) f.cycle({record(packet::GncImu::apid)});
+    REQUIRE(f.tones.size() == 1);
+    CHECK(f.tones[0].tone == tone::recording_closed);
+    const std::size_t closed_octets = f.nvm.size();
+    for (int i = 0; i < 64; ++i) f.cycle({record(packet::GncImu::apid), record(evr::TOUCHDOWN::apid)});
+    CHECK(f.nvm.size() == closed_octets);
+    CHECK(f.comm.unrecorded_packets() == 0);
+
+    std::span<const std::uint8_t> last;
+    bool as_flown = false;
+    telemetry::PacketStream packets{f.nvm};
+    while (const auto packet = packets.next()) {
+        last = *packet;
+        as_flown |= read_primary_header(last)->apid == packet::DataProduct::apid;
+    }
+    CHECK(as_flown);
+    CHECK(read_primary_header(last)->apid == evr::RECORDING_CLOSED::apid);
+    CHECK(read_bits(last, tm_data_offset_octets * 8, 16) == evr::RECORDING_CLOSED::id.value);
+}
+
+TEST_CASE("a recording that lost packets for want of room says that it is not closed as commanded", "[edl_comm][R50]") {
+    Closing f;
+    f.handle(NvmStatus{99'990'000, 100'000'000});
+    f.handle(record(packet::GncImu::apid));
+    f.handle(CloseRecording{});
+    f.recorder.begin(ModuleId::edl_comm, Sclk{8.0});
+    f.comm.on(NvmStatus{99'999'000, 100'000'000}, f.recorder.out);
+    f.comm.on(ClockTick{Sclk{8.0}}, f.recorder.out);
+    REQUIRE(f.recorder.sent<ActionReply>().size() == 1);
+    CHECK(f.recorder.sent<ActionReply>()[0].evidence == Evidence::refused);
+}
+
 TEST_CASE("a record that no packet can hold is refused and reported", "[edl_comm][R4]") {
     Fixture f;
     Record impossible{packet::GncImu::apid, Sclk{7.5}, record_octets_max + 1, {}};

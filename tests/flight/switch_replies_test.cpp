@@ -4,6 +4,8 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/outbox.hpp"
 
+#include <algorithm>
+
 namespace flight_switch_replies_test {
 
 using namespace aeolis;
@@ -18,10 +20,11 @@ struct Fixture {
         recorder.begin(ModuleId::power, Sclk{1.0});
         replies.command({id, on}, recorder.bus->switches, recorder.out);
     }
-    std::size_t answers(const SwitchReply& reply) {
+    std::size_t answers(const SwitchReply& reply, Evidence evidence = Evidence::verified) {
         recorder.begin(ModuleId::power, Sclk{1.0});
         replies.reply(reply, Unit::a, recorder.out);
-        return recorder.sent<ActionReply>().size();
+        const auto sent = recorder.sent<ActionReply>();
+        return static_cast<std::size_t>(std::ranges::count(sent, evidence, &ActionReply::evidence));
     }
 };
 
@@ -35,12 +38,19 @@ TEST_CASE("a switch answers the timeline once, when it is as it was told to be",
     CHECK(f.recorder.events<evr::REPLY_UNEXPECTED>() == 1);
 }
 
-TEST_CASE("a switch that refuses is reported and does not answer the timeline, even when it is on already",
-          "[devices][R14]") {
+TEST_CASE("a switch that refuses is reported and verifies nothing, even when it is on already", "[devices][R14][R50]") {
     Fixture f;
     f.command(SwitchId::uhf, true);
-    CHECK(f.answers({SwitchId::uhf, true, Unit::a, true}) == 0);
+    CHECK(f.answers({SwitchId::uhf, true, Unit::a, true}, Evidence::refused) == 1);
+    CHECK(f.recorder.sent<ActionReply>().size() == 1);
     CHECK(f.recorder.events<evr::DEVICE_REFUSED>() == 1);
+}
+
+TEST_CASE("a switch that says it is not as it was told to be is reported and counts as refused", "[devices][R50]") {
+    Fixture f;
+    f.command(SwitchId::uhf, true);
+    CHECK(f.answers({SwitchId::uhf, false}, Evidence::refused) == 1);
+    CHECK(f.recorder.events<evr::REPLY_CONTRADICTS>() == 1);
 }
 
 TEST_CASE("the answer to an overtaken switch command is not taken for the newer one's", "[devices][R14]") {

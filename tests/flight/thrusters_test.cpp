@@ -21,14 +21,18 @@ TEST_CASE("thrusters are enabled at their turn, and the driver's answer goes to 
     CHECK(thrusters.on(ThrusterReply{true}).sent<ActionReply>().size() == 1);
 }
 
-TEST_CASE("an answer that is not due, from the other driver or a refusal does not answer the timeline",
-          "[devices][R2][R4][R14]") {
+TEST_CASE("an answer that is not due, from the other driver, a refusal or a contradiction verifies nothing",
+          "[devices][R2][R4][R14][R50]") {
     test::Spoken<Thrusters> thrusters{ModuleId::thrusters};
     CHECK(thrusters.on(ThrusterReply{true}).events<evr::REPLY_UNEXPECTED>() == 1);
     thrusters.on(EnableThrusters{false});
     CHECK(thrusters.on(ThrusterReply{false, Unit::b}).events<evr::REPLY_UNEXPECTED>() == 1);
     CHECK(thrusters.on(ThrusterReply{true, Unit::a, true}).events<evr::DEVICE_REFUSED>() == 1);
-    CHECK(thrusters.recorder.sent<ActionReply>().empty());
+    const std::vector refused{ActionReply{ReplyKind::thrusters, 0, Evidence::refused, false}};
+    CHECK(thrusters.recorder.sent<ActionReply>() == refused);
+    thrusters.on(EnableThrusters{false});
+    CHECK(thrusters.on(ThrusterReply{true}).events<evr::REPLY_CONTRADICTS>() == 1);
+    CHECK(thrusters.recorder.sent<ActionReply>() == refused);
 }
 
 TEST_CASE("the answer to an overtaken thruster command is not taken for the newer one's", "[devices][R14]") {

@@ -30,7 +30,7 @@ const std::vector<AnchorSpec> anchors{
 
 TimepointSpec row(std::optional<AnchorId> anchor, MaybeOffset desired_s, MaybeOffset minimum_s, Action action = nothing,
                   std::optional<double> reply_timeout_s = {}) {
-    return {"row", anchor, desired_s, minimum_s, action, reply_timeout_s, {}, true, {}, nullptr};
+    return {"row", anchor, desired_s, minimum_s, action, reply_timeout_s, {}, {}, {}, true, {}, nullptr};
 }
 
 struct Fixture {
@@ -125,7 +125,7 @@ TEST_CASE("a timepoint that waits for a reply is done when the reply comes, and 
     f.timeline.reply({ReplyKind::pyro, static_cast<std::uint8_t>(PyroId::coolant_vent)});
     const auto done = f.cycle(at(0.5));
     REQUIRE(done.size() == 2);
-    CHECK(done[0].verdict == FiringVerdict::replied);
+    CHECK(done[0].verdict == FiringVerdict::verified);
     CHECK(done[0].triggered == at(0));
     CHECK(done[0].fired == at(0.5));
     CHECK(done[1].fired == at(0.5));
@@ -138,7 +138,130 @@ TEST_CASE("a reply that does not come ends the wait at its time-out, not a tick 
     CHECK(f.cycle(at(1.0 - 1.0 / 64)).empty());
     const auto done = f.cycle(at(1));
     REQUIRE(done.size() == 1);
-    CHECK(done[0].verdict == FiringVerdict::timed_out);
+    CHECK(done[0].verdict == FiringVerdict::unverified);
+}
+
+namespace {
+
+constexpr auto vent = static_cast<std::uint8_t>(PyroId::coolant_vent);
+
+void announced(ActionContext& context) {
+    context.out().event(evr::COOLANT_VENT{});
+}
+void fires_the_mortar(ActionContext& context) {
+    context.fire(PyroId::parachute_mortar, gnc::Fact::parachute_out);
+}
+
+/// Fires the mortar, waits a second for the reply, and announces it by an event and a tone.
+TimepointSpec mortar(IfUnverified taken = IfUnverified::done) {
+    TimepointSpec spec = row({}, 0.0, 0.0, fires_the_mortar, 1.0);
+    spec.if_unverified = taken;
+    spec.event = announced;
+    spec.tone = tone::parachute_deploy;
+    return spec;
+}
+ActionReply said(Evidence evidence) {
+    return {ReplyKind::pyro, static_cast<std::uint8_t>(PyroId::parachute_mortar), evidence};
+}
+
+}  // namespace
+
+TEST_CASE("event, tone and GNC's configuration of an action follow its reply, not its triggering",
+          "[timeline][R14][R50]") {
+    Fixture f{{mortar()}};
+    const auto told = [&] {
+        return std::pair{f.recorder.events<evr::COOLANT_VENT>(), f.recorder.sent<ToneRequest>().size()};
+    };
+    f.timeline.begin(at(0));
+    f.cycle(at(0));
+    CHECK(f.recorder.events<evr::TIMEPOINT_COMMANDED>() == 1);
+    CHECK(told() == std::pair{0, std::size_t{0}});
+    CHECK_FALSE(f.configuration.parachute_out);
+    CHECK(f.timeline.reply(said(Evidence::verified)));
+    f.cycle(at(0.25));
+    CHECK(told() == std::pair{1, std::size_t{1}});
+    CHECK(f.configuration.parachute_out);
+    CHECK(f.configuration.parachute_time == at(0));
+}
+
+TEST_CASE("a refusal is no end: until the time-out the device may yet do it; then it was refused and not done",
+          "[timeline][R14][R50]") {
+    for (const bool comes_round : {false, true}) {
+        Fixture f{{mortar()}};
+        f.timeline.begin(at(0));
+        f.cycle(at(0));
+        f.timeline.reply(said(Evidence::refused));
+        CHECK(f.cycle(at(0.5)).empty());
+        if (comes_round) f.timeline.reply(said(Evidence::verified));
+        const auto done = f.cycle(at(1));
+        REQUIRE(done.size() == 1);
+        CHECK(done[0].verdict == (comes_round ? FiringVerdict::verified : FiringVerdict::refused));
+        CHECK(f.configuration.parachute_out == comes_round);
+        CHECK(f.recorder.events<evr::COOLANT_VENT>() == comes_round);
+    }
+}
+
+TEST_CASE("refused, commanded anew and then silent is unverified: nobody knows", "[timeline][R50]") {
+    Fixture f{{mortar()}};
+    f.timeline.begin(at(0));
+    f.cycle(at(0));
+    f.timeline.reply(said(Evidence::refused));
+    f.timeline.reply(said(Evidence::none));
+    const auto done = f.cycle(at(1));
+    REQUIRE(done.size() == 1);
+    CHECK(done[0].verdict == FiringVerdict::unverified);
+}
+
+TEST_CASE("unverified, the configuration has what the row says, and nothing is announced", "[timeline][R50]") {
+    for (const auto& [taken, done] : {std::pair{IfUnverified::done, true}, std::pair{IfUnverified::not_done, false},
+                                      std::pair{IfUnverified::done_unless_imu, true}}) {
+        Fixture f{{mortar(taken)}};
+        f.timeline.begin(at(0));
+        f.cycle(at(0));
+        CHECK(f.cycle(at(1)).size() == 1);
+        CHECK(f.configuration.parachute_out == done);
+        CHECK(f.recorder.events<evr::COOLANT_VENT>() == 0);
+        CHECK(f.recorder.sent<ToneRequest>().empty());
+    }
+}
+
+TEST_CASE("a row that holds the timeline is commanded again until it is verified or its time-out is over",
+          "[timeline][R50]") {
+    TimepointSpec held = row({}, 0.0, 0.0, fire_a_pyro, 10.0);
+    held.hold_repeat_s = 4.0;
+    Fixture f{{held}};
+    f.timeline.begin(at(0));
+    std::vector<double> commanded_s;
+    for (int tick = 0; tick < 64 * 11; ++tick) {
+        const auto done = f.cycle(at(tick / 64.0));
+        if (!f.recorder.sent<FirePyro>().empty()) commanded_s.push_back(tick / 64.0);
+        CHECK(f.recorder.events<evr::TIMEPOINT_HELD>() == (tick == 64 * 4 || tick == 64 * 8));
+        for (const Firing& firing : done) CHECK(firing.fired == at(10));
+    }
+    CHECK(commanded_s == std::vector{0.0, 4.0, 8.0});
+    CHECK(f.timeline.finished());
+
+    Fixture answered{{held}};
+    answered.timeline.begin(at(0));
+    answered.cycle(at(0));
+    answered.cycle(at(4));
+    answered.timeline.reply({ReplyKind::pyro, vent});
+    CHECK(answered.cycle(at(4.25)).size() == 1);
+}
+
+TEST_CASE("the shipped timeline is held before separation only, and asks the IMU only of the mortar",
+          "[timeline][R20][R50]") {
+    bool held = false;
+    for (const TimepointSpec& spec : timeline_specs) {
+        INFO(spec.name);
+        if (spec.hold_repeat_s) {
+            held = true;
+            CHECK(&spec < &timeline_specs[timepoint::cruise_stage_separation.value]);
+        }
+        CHECK((spec.if_unverified == IfUnverified::done_unless_imu) ==
+              (spec.action == &actions::fire_parachute_mortar));
+    }
+    CHECK(held);
 }
 
 TEST_CASE("an action runs once, however long its reply takes", "[timeline][R14]") {

@@ -573,7 +573,7 @@ TEST_CASE("when a change of the timeline is cancelled, what waits is looked at a
     const auto later = hold("cruise_stage_separation", -594.0, 2.0);  // as late only because the detumble is
     INFO(later.body);
     REQUIRE(later.status == 202);
-    const auto other = hold("coolant_vent", -827.0, 0.0);  // for which neither matters
+    const auto other = hold("coolant_vent", -825.0, 0.0);  // for which neither matters
     INFO(other.body);
     REQUIRE(other.status == 202);
     CHECK_THAT(act("timeline refuted", 2).body, Catch::Contains("unknown action 'timeline refuted'"));

@@ -48,9 +48,9 @@ struct Bench {
     }
 };
 
-flight::DeviceOutputs fire(PyroId pyro) {
+flight::DeviceOutputs fire(PyroId pyro, Unit controller = Unit::a) {
     flight::DeviceOutputs out;
-    out.pyros.push_back(pyro);
+    out.pyros.push_back({pyro, controller});
     return out;
 }
 
@@ -72,7 +72,7 @@ TEST_CASE("a command goes out with the next frame of its bus: 1/64 s, or the nex
         Bench bench{without_errors()};
         bench.tick += phase;
         flight::DeviceOutputs out = set(SwitchId::radar, true);
-        out.pyros.push_back(PyroId::coolant_vent);
+        out.pyros.push_back({PyroId::coolant_vent});
         bench.cycle(out);
         CHECK(bench.buses.fired().size() == 1);
         while (!bench.buses.devices().on(SwitchId::radar)) bench.cycle({});
@@ -84,7 +84,7 @@ TEST_CASE("replies come in later frames of the same bus, by device and seed", "[
     const auto ticks_to_reply = [](std::uint64_t seed) {
         Bench bench{without_errors(), seed};
         flight::DeviceOutputs out = set(SwitchId::uhf, true);
-        out.pyros.push_back(PyroId::coolant_vent);
+        out.pyros.push_back({PyroId::coolant_vent});
         out.thrusters_enabled = true;
         std::array<std::int64_t, 3> ticks{};
         bench.tick += 3;
@@ -160,8 +160,7 @@ TEST_CASE("only the addressed unit answers, and says which it is", "[buses][R2]"
     Scenario scenario = entry_at_tick(64000);
     scenario.device_faults = {fault(Device::pyro, DeviceFault::Kind::silent, 10.0, 100.0)};
     Bench bench{scenario};
-    flight::DeviceOutputs out = fire(PyroId::coolant_vent);
-    out.units[Device::pyro] = Unit::b;
+    flight::DeviceOutputs out = fire(PyroId::coolant_vent, Unit::b);
     std::vector<flight::PyroReply> replies;
     for (int i = 0; i < 16; ++i) {
         for (const auto& reply : bench.cycle(out).pyro_replies) replies.push_back(reply);
@@ -169,6 +168,30 @@ TEST_CASE("only the addressed unit answers, and says which it is", "[buses][R2]"
     }
     REQUIRE(replies.size() == 1);
     CHECK((replies[0].fired && replies[0].unit == Unit::b));
+}
+
+TEST_CASE("a silent unit holds up its own commands, not those of the other unit of its device", "[buses][R2][R50]") {
+    Scenario scenario = entry_at_tick(64000);
+    scenario.device_faults = {fault(Device::pyro, DeviceFault::Kind::silent, 10.0, 100.0)};
+    Bench bench{scenario};
+    flight::DeviceOutputs out = fire(PyroId::parachute_mortar);
+    out.pyros.push_back({PyroId::parachute_mortar, Unit::b});
+    bench.cycle(out);
+    CHECK(bench.buses.fired().size() == 1);
+}
+
+TEST_CASE("a device whose replies are doubled says all twice, a tick apart", "[buses][R50]") {
+    Scenario scenario = entry_at_tick(64000);
+    scenario.device_faults = {fault(Device::pyro, DeviceFault::Kind::doubled, 10.0, 100.0)};
+    Bench bench{scenario};
+    std::vector<std::int64_t> at;
+    flight::DeviceOutputs out = fire(PyroId::coolant_vent);
+    for (int i = 0; i < 16; ++i) {
+        for (const auto& reply : bench.cycle(out).pyro_replies) at.push_back(reply.fired ? bench.tick : 0);
+        out = {};
+    }
+    REQUIRE(at.size() == 2);
+    CHECK(at[1] == at[0] + 1);
 }
 
 TEST_CASE("a device that refuses says so and does nothing; one that is late does it and says so later",

@@ -45,10 +45,12 @@ struct Landed {
         const auto found = events.find(id.value);
         return found == events.end() ? 0 : found->second;
     }
-    std::vector<std::uint16_t> timed_out() const {
+    /// Timepoints whose reply did not say that they were done.
+    std::vector<std::uint16_t> not_verified() const {
         std::vector<std::uint16_t> rows;
         for (const auto& [row, verdict] : verdicts)
-            if (verdict == flight::TimepointVerdict::timed_out) rows.push_back(row);
+            if (verdict == flight::TimepointVerdict::unverified || verdict == flight::TimepointVerdict::refused)
+                rows.push_back(row);
         return rows;
     }
 };
@@ -100,39 +102,49 @@ TEST_CASE("a landing without faults has every reply in time, and no device modul
           "[simulation][faults][R2][R14]") {
     const Landed landed = land({});
     CHECK(landed.outcome == Outcome::touchdown);
-    CHECK(landed.timed_out().empty());
+    CHECK(landed.not_verified().empty());
     for (const EvrId id :
          {flight::evr::REPLY_UNEXPECTED::id, flight::evr::DEVICE_REFUSED::id, flight::evr::PYRO_NOT_FIRED::id,
+          flight::evr::PYRO_NOT_ARMED::id, flight::evr::PYRO_CONTROLLER_REFUSED::id,
+          flight::evr::PYRO_CONTROLLER_SILENT::id, flight::evr::REPLY_CONTRADICTS::id, flight::evr::TIMEPOINT_HELD::id,
           flight::evr::IMU_SAMPLES_MISSING::id, flight::evr::RADAR_LOST::id, flight::evr::CRUISE_ATTITUDE_UNUSABLE::id})
         CHECK(landed.count(id) == 0);
 }
 
-TEST_CASE("a UHF unit that does not answer ends uhf_start in its time-out, and the landing goes on",
-          "[simulation][faults][R2][R14]") {
+TEST_CASE("the timeline is held for a UHF unit that does not answer, commanding it again, and goes on unverified",
+          "[simulation][faults][R2][R14][R50]") {
     const Landed landed = land({at_its_start(Kind::silent)});
     CHECK(landed.outcome == Outcome::touchdown);
-    CHECK(landed.timed_out() == std::vector<std::uint16_t>{flight::timepoint::uhf_start.value});
-    CHECK(landed.count(flight::evr::TIMEPOINT_TIMED_OUT::id) == 1);
+    CHECK(landed.verdict(flight::timepoint::uhf_start) == flight::TimepointVerdict::unverified);
+    CHECK(landed.not_verified() == std::vector<std::uint16_t>{flight::timepoint::uhf_start.value});
+    CHECK(landed.count(flight::evr::TIMEPOINT_UNVERIFIED::id) == 1);
+    CHECK(landed.count(flight::evr::TIMEPOINT_HELD::id) == 2);
+    CHECK(landed.count(flight::evr::UHF_STARTED::id) == 0);
 }
 
-TEST_CASE("a UHF unit that refuses or answers too late ends uhf_start in its time-out too, and says why",
-          "[simulation][faults][R2][R14]") {
+TEST_CASE("a UHF unit that refuses ends uhf_start as refused; one that answers within the hold verifies it",
+          "[simulation][faults][R2][R14][R50]") {
     const Landed refused = land({at_its_start(Kind::refuses)});
     CHECK(refused.outcome == Outcome::touchdown);
-    CHECK(refused.verdict(flight::timepoint::uhf_start) == flight::TimepointVerdict::timed_out);
-    CHECK(refused.count(flight::evr::DEVICE_REFUSED::id) == 1);
+    CHECK(refused.verdict(flight::timepoint::uhf_start) == flight::TimepointVerdict::refused);
+    CHECK(refused.count(flight::evr::DEVICE_REFUSED::id) == 3);  // commanded, and twice again
+    CHECK(refused.count(flight::evr::TIMEPOINT_REFUSED::id) == 1);
+    CHECK(refused.count(flight::evr::UHF_STARTED::id) == 0);
 
     const Landed late = land({at_its_start(Kind::late)});
     CHECK(late.outcome == Outcome::touchdown);
-    CHECK(late.verdict(flight::timepoint::uhf_start) == flight::TimepointVerdict::timed_out);
+    CHECK(late.verdict(flight::timepoint::uhf_start) == flight::TimepointVerdict::verified);
     CHECK(late.count(flight::evr::DEVICE_REFUSED::id) == 0);
+    CHECK(late.count(flight::evr::UHF_STARTED::id) == 1);
 }
 
-TEST_CASE("faults of units that are not selected change nothing, to the last bit", "[simulation][faults][R2]") {
+TEST_CASE("faults of units that are not selected change nothing, to the last bit; both pyro controllers are used",
+          "[simulation][faults][R2][R50]") {
     const Landed sound = land({});
     std::vector<DeviceFault> faults;
     for (std::size_t device = 0; device < flight::device_count; ++device)
-        faults.push_back(all_the_time(static_cast<Device>(device), Kind::silent, Unit::b));
+        if (static_cast<Device>(device) != Device::pyro)
+            faults.push_back(all_the_time(static_cast<Device>(device), Kind::silent, Unit::b));
     CHECK(land(faults).recording == sound.recording);
 }
 
@@ -143,18 +155,33 @@ TEST_CASE("with all B units selected the vehicle lands as well, by other sensors
     const Landed landed = land(faults, all_b);
     INFO(landed.reason);
     CHECK(landed.outcome == Outcome::touchdown);
-    CHECK(landed.timed_out().empty());
+    CHECK(landed.not_verified().empty());
     CHECK(landed.count(flight::evr::UNITS_SELECTED::id) == 1);
     CHECK(landed.recording != land({}).recording);
 }
 
-TEST_CASE("a pyro controller that is silent loses the landing, unless the other is selected before EDL",
-          "[simulation][faults][R2]") {
-    const std::vector<DeviceFault> faults{all_the_time(Device::pyro, Kind::silent)};
-    CHECK(land(faults, only(Device::pyro)).outcome == Outcome::touchdown);
-    const Landed lost = land(faults);
+TEST_CASE("a pyro controller that is silent or refuses costs nothing and is told of each pyro, whichever is selected",
+          "[simulation][faults][R2][R50]") {
+    const Landed sound = land({});
+    for (const auto& [kind, told] : {std::pair{Kind::silent, flight::evr::PYRO_CONTROLLER_SILENT::id},
+                                     std::pair{Kind::refuses, flight::evr::PYRO_CONTROLLER_REFUSED::id}})
+        for (const Selection& units : {all_a, only(Device::pyro)}) {
+            const Landed landed = land({all_the_time(Device::pyro, kind)}, units);
+            INFO(landed.reason);
+            CHECK(landed.outcome == Outcome::touchdown);
+            CHECK(landed.verdicts == sound.verdicts);
+            CHECK(landed.count(told) == flight::pyro_count);
+            CHECK(landed.count(flight::evr::PYRO_NOT_FIRED::id) == 0);
+        }
+}
+
+TEST_CASE("both pyro controllers silent: separation is unverified, nothing says that it happened, and it is lost",
+          "[simulation][faults][R2][R50]") {
+    const Landed lost =
+        land({all_the_time(Device::pyro, Kind::silent), all_the_time(Device::pyro, Kind::silent, Unit::b)});
     CHECK(lost.outcome == Outcome::not_commanded);
-    CHECK(lost.verdict(flight::timepoint::cruise_stage_separation) == flight::TimepointVerdict::timed_out);
+    CHECK(lost.verdict(flight::timepoint::cruise_stage_separation) == flight::TimepointVerdict::unverified);
+    CHECK(lost.count(flight::evr::CRUISE_STAGE_SEPARATION::id) == 0);
 }
 
 TEST_CASE("EDL does not switch units over: a selection after do edl is refused and changes nothing",
@@ -199,7 +226,7 @@ TEST_CASE("with one message in twenty garbled on both buses the vehicle still la
     const Landed landed = land({}, all_a, 0.05);
     INFO(landed.reason);
     CHECK(landed.outcome == Outcome::touchdown);
-    CHECK(landed.timed_out().empty());
+    CHECK(landed.not_verified().empty());
 }
 
 TEST_CASE("a fault holds from its beginning for its duration, and only for its unit", "[simulation][faults]") {

@@ -63,7 +63,8 @@ TEST_CASE("in the venue all but GNC the whole timeline fires around a stand-in t
     CHECK(tests::count_recorded<flight::evr::TIMELINE_COMPLETE>(landing.recording()) == 1);
     CHECK(tests::count_recorded<flight::evr::PARACHUTE_DEPLOY>(landing.recording()) == 1);
     CHECK(tests::count_recorded<flight::evr::BANK_REVERSAL>(landing.recording()) == 3);
-    CHECK(tests::count_recorded<flight::evr::TIMEPOINT_TIMED_OUT>(landing.recording()) == 0);
+    CHECK(tests::count_recorded<flight::evr::TIMEPOINT_UNVERIFIED>(landing.recording()) == 0);
+    CHECK(tests::count_recorded<flight::evr::TIMEPOINT_REFUSED>(landing.recording()) == 0);
 }
 
 TEST_CASE("venues are dispersed alike: another case is another landing, the same one the same bits",
@@ -201,7 +202,7 @@ TEST_CASE("each line in place of the timeline happens once, at its time, and wai
         CHECK(out.pyros.empty());
         at(e_s);
         REQUIRE(out.pyros.size() == 1);
-        CHECK(out.pyros[0] == pyro);
+        CHECK(out.pyros[0].id == pyro);
     }
     at(-300.0 - seconds_per_tick);
     CHECK_FALSE(timeline.configuration().guidance_armed);
@@ -216,7 +217,7 @@ TEST_CASE("each line in place of the timeline happens once, at its time, and wai
     at(100.0);
     CHECK(timeline.configuration().parachute_out);
     REQUIRE(out.pyros.size() == 1);
-    CHECK(out.pyros[0] == flight::PyroId::parachute_mortar);
+    CHECK(out.pyros[0].id == flight::PyroId::parachute_mortar);
     at(100.0 + seconds_per_tick);
     CHECK(out.pyros.empty());
 }

@@ -72,7 +72,7 @@ TEST_CASE("nobody who commands nothing lands", "[simulation][world]") {
 TEST_CASE("without a parachute the vehicle ends in an impact", "[simulation][world]") {
     World world{tests::undisturbed_scenario(60.0), 1};
     flight::DeviceOutputs out;
-    out.pyros.push_back(flight::PyroId::cruise_stage_separation);
+    out.pyros.push_back({flight::PyroId::cruise_stage_separation});
     while (world.outcome() == Outcome::running) {
         world.sense();
         world.advance(out);
@@ -84,7 +84,7 @@ TEST_CASE("without a parachute the vehicle ends in an impact", "[simulation][wor
 TEST_CASE("devices answer a little after they are asked, and once", "[simulation][devices]") {
     World world{tests::gale_scenario(620.0), 1};
     flight::DeviceOutputs out;
-    out.pyros.push_back(flight::PyroId::coolant_vent);
+    out.pyros.push_back({flight::PyroId::coolant_vent});
     out.switches.push_back({flight::SwitchId::radar, true});
     out.thrusters_enabled = false;
     int pyro_tick = 0, radar_tick = 0, thruster_tick = 0, replies = 0;

@@ -30,7 +30,7 @@ export interface Mark {
   id: number;
   name: string;
   important: boolean;
-  /** Whether it timed out or failed, which has another shape. */
+  /** Whether it was refused or is unverified, which has another shape. */
   bad: boolean;
 }
 export interface Outage {
@@ -50,7 +50,7 @@ export interface Lanes {
   relay: number;
 }
 
-const GOOD = new Set(['', 'completed', 'replied', 'no_operation', 'fired', 'pending']);
+const GOOD = new Set(['', 'completed', 'verified', 'no_operation', 'fired', 'pending']);
 
 export function isImportant(name: string): boolean {
   return (LAYOUT.labelled as readonly string[]).includes(name);
@@ -144,10 +144,10 @@ export function firedCount(
 
 const VERDICTS = {
   completed: 'fired',
-  replied: 'fired',
+  verified: 'fired',
   no_operation: 'fired',
-  timed_out: 'timed out',
-  failed: 'failed',
+  unverified: 'unverified',
+  refused: 'refused',
 } as const;
 
 /** "passed": nothing reported it, and a later timepoint has fired. */

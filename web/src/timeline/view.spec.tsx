@@ -54,9 +54,9 @@ describe('the timeline', () => {
     const states = (...items: Parameters<typeof aStore>[0] & object) =>
       [0, 1, 2].map((id) => pointDetail(aStore(items), aDictionary, aPlan, id, Infinity)?.state);
     const vent = (verdict: string) => firing({ timepoint: 0, name: 'coolant_vent', firedSclk: 500, verdict });
-    expect(states(vent('timed_out'))).toEqual(['timed out', 'next', 'undefined']);
-    expect([states(vent('failed'))[0], states(vent('replied'))[0], states(vent('no_operation'))[0]]).toEqual([
-      'failed',
+    expect(states(vent('unverified'))).toEqual(['unverified', 'next', 'undefined']);
+    expect([states(vent('refused'))[0], states(vent('verified'))[0], states(vent('no_operation'))[0]]).toEqual([
+      'refused',
       'fired',
       'fired',
     ]);

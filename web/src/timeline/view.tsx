@@ -525,10 +525,10 @@ function Detail() {
 /** Flight's verdicts in words. */
 const ENDS: Record<string, string> = {
   completed: 'done; no reply was asked for',
-  replied: 'the reply came',
-  timed_out: 'the reply did not come in time',
+  verified: 'the reply says that it is done',
+  unverified: 'no reply in time: done or not, nobody knows yet',
   no_operation: 'nothing was to be done',
-  failed: 'its action could not be done',
+  refused: 'the reply says that it is not done',
 };
 
 const ANCHOR_SHAPES = { defined: '✓', predicted: '◌', undefined: '?' } as const;
