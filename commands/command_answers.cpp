@@ -13,6 +13,7 @@ void CommandGateway::receive(const Heard& packet, std::vector<StageReport>& stag
     // A recording is too old for preconditions and the CLCW, but it may hold an answer or a report that was lost live.
     const auto& decoded = packet.decoded;
     if (packet.live) note_channels(packet);
+    if (packet.live) judge_.hear(decoded);
     if (packet.live)
         for (const FieldPlace& clcw : clcw_)
             if (decoded.packet == clcw.packet && decoded.value[clcw.field])

@@ -17,6 +17,8 @@ constexpr const char* of_script =
 constexpr const char* parameters_received =
     "parameters_received";  // the vehicle has some; whether they are right, ground must decide
 
+constexpr std::string_view begin_command = "EDL_DO_EDL";  // before its first timepoint stands its acceptance. R16
+
 /// The service of that name; an empty name leaves the choice to the link.
 Result<std::optional<Fop::Service>> service_named(const std::string& name) {
     using Service = Fop::Service;
@@ -47,10 +49,12 @@ std::string same_person(std::string_view name) {
 
 CommandGateway::CommandGateway(const dictionary::Dictionary& dictionary, double light_time_s,
                                std::vector<NamedValue> solution, std::vector<std::string> second_person,
-                               TrackingSchedule stations, std::optional<Scet> entry)
+                               TrackingSchedule stations, std::optional<Scet> entry,
+                               std::optional<ClockCorrelation> clock)
     : dictionary_(dictionary), light_time_s_(light_time_s), clcw_(clcw_places(dictionary)), link_(light_time_s),
       solution_(std::move(solution)), second_person_(std::move(second_person)), stations_(std::move(stations)),
-      deadlines_(dictionary, entry, light_time_s), heard_(dictionary.channels.size()) {}
+      deadlines_(dictionary, entry, light_time_s), judge_(dictionary), clock_(clock),
+      heard_(dictionary.channels.size()) {}
 
 std::vector<CommandGateway::FieldPlace> CommandGateway::clcw_places(const dictionary::Dictionary& dictionary) {
     std::vector<FieldPlace> places;
@@ -141,6 +145,9 @@ Reply CommandGateway::submit(const Request& request, Ert now, std::vector<StageR
     const auto authorised = authorise(*prepared->command, {request.armed, request.confirmation},
                                       waits ? std::span<const PreconditionState>{} : prepared->preconditions);
     if (!authorised) return refuse(authorised.error().message);
+    if (!waits)
+        if (auto unsafe = unsafe_on_timeline(*prepared->command, prepared->packet, leaves); !unsafe.empty())
+            return refuse(std::move(unsafe));
     const auto approval = needs_approval(request);
     if (!approval) return refuse(approval.error().message);
     reply.needs_approval = *approval;
@@ -204,6 +211,7 @@ std::vector<Reply> CommandGateway::look(std::span<const Request> file, Ert now) 
     std::vector<Reply> replies;
     std::vector<StageReport> none;
     const auto kept = read_backs_;
+    const TimelineJudge kept_judge = judge_;
     std::size_t more = 0;  // each needs room
     for (Request request : file) {
         request.dry_run = true;
@@ -215,11 +223,15 @@ std::vector<Reply> CommandGateway::look(std::span<const Request> file, Ert now) 
             continue;
         }
         const bool leaves = !request.hold && request.release_at.empty() && !reply.needs_approval;
+        if (leaves)
+            if (const auto change = timeline_change(*dictionary_.command(request.command), reply.octets))
+                judge_.make(*change);
         if (!leaves || read_back_packet(dictionary_, *dictionary_.command(request.command)) == nullptr) continue;
         auto& sent = read_backs_[request.command];  // for later commands of the file
         sent.push_back({commands_ + more, Status::pending, !sent.empty()});
     }
     read_backs_ = kept;
+    judge_ = kept_judge;
     return replies;
 }
 
@@ -245,8 +257,9 @@ const CommandQueue::Entry* CommandGateway::waiting(std::uint64_t number) const {
     return entry == all.end() ? nullptr : &*entry;
 }
 
-std::string CommandGateway::failing_now(const dictionary::Command& command, Ert now) const {
-    std::string failing;
+std::string CommandGateway::failing_now(const Underway& underway, Ert now) const {
+    const auto& command = underway.lifecycle.command();
+    std::string failing = unsafe_on_timeline(command, underway.packet, now, underway.number);
     for (const auto& condition : preconditions(command, now))
         if (condition.state == PreconditionState::State::fails)
             failing += (failing.empty() ? "" : "; ") + condition.text;
@@ -256,6 +269,38 @@ std::string CommandGateway::failing_now(const dictionary::Command& command, Ert 
 std::string CommandGateway::does_not_wait(std::uint64_t number, Ert now) const {
     return fmt::format("command {} does not wait: it has left, was cancelled, could not leave, or there is none{}",
                        number, stations_.over(now) ? "; " + stations_.refusal(now) : "");
+}
+
+std::optional<timeline::Change> CommandGateway::timeline_change(const dictionary::Command& command,
+                                                                std::span<const std::uint8_t> packet) const {
+    const auto arguments = decode(command, packet);
+    if (!arguments) return std::nullopt;
+    const auto change = offset_change(dictionary_, command.name, *arguments);
+    return change ? std::optional{change->what} : std::nullopt;
+}
+
+std::string CommandGateway::unsafe_on_timeline(const dictionary::Command& command, std::span<const std::uint8_t> packet,
+                                               Ert leaves, std::uint64_t number) const {
+    const auto change = timeline_change(command, packet);
+    if (!change && command.name != begin_command) return {};
+    TimelineJudge judge = judge_;
+    for (const auto& each : underway_) {
+        const auto status = [&](Stage stage) { return each.lifecycle.status(stage); };
+        const bool on_its_way = each.number != number && status(Stage::released) == Status::ok &&
+                                status(Stage::executed) != Status::ok && status(Stage::executed) != Status::failed;
+        if (const auto before = on_its_way ? timeline_change(each.lifecycle.command(), each.packet) : std::nullopt)
+            judge.make(*before);
+    }
+    const auto known = std::ranges::find(solution_, "entry_sclk", &NamedValue::name);
+    const auto entry = known == solution_.end() ? std::nullopt : std::optional{Sclk{known->value}};
+    const Scet there{leaves.microseconds + static_cast<std::int64_t>(light_time_s_ * 1.0e6)};
+    const auto arrives = clock_ ? std::optional{clock_->sclk_of(there)} : std::nullopt;
+    if (!change) {
+        const auto late_s = judge.begins_late_s(entry, arrives);
+        return late_s ? fmt::format("it would come {:.1f} s too late: timepoints would be overdue", *late_s) : "";
+    }
+    const auto unsafe = judge.judge(*change, entry, arrives);
+    return unsafe ? "the change is not safe on the timeline as it stands: " + judge.text(*unsafe) : "";
 }
 
 std::string CommandGateway::perform(const Request& asked, const Underway* command, Ert now) {
@@ -354,8 +399,11 @@ void CommandGateway::append(const Underway& underway, const std::vector<StageCha
     for (const auto& change : changes) {
         note_read_back(underway, change);
         if (change.stage == Stage::executed && change.status == Status::ok)
-            if (const auto arguments = decode(underway.lifecycle.command(), underway.packet))
+            if (const auto arguments = decode(underway.lifecycle.command(), underway.packet)) {
                 deadlines_.executed(underway.lifecycle.command(), *arguments);
+                if (const auto made = offset_change(dictionary_, underway.lifecycle.command().name, *arguments))
+                    judge_.make(made->what);
+            }
         undone = undone || undoes(change);
         auto& stage = stages.emplace_back();
         stage.command = underway.number;

@@ -9,6 +9,7 @@
 #include "commands/port.hpp"
 #include "commands/preconditions.hpp"
 #include "commands/request.hpp"
+#include "commands/timeline_judge.hpp"
 #include "commands/tracking_schedule.hpp"
 #include "common/time.hpp"
 #include "dictionaries/decoded.hpp"
@@ -35,7 +36,8 @@ namespace aeolis::commands {
 /// Memory   at most `commands_max` commands a run, a few kilooctets each; the latest value of each channel
 /// Faults   a refused request has no number, changes nothing, and the reply names the check and its values
 /// Timeline commands that change the timeline leave in the order of their numbers, as they were analysed. When one
-///          fails, those behind it wait until the server has analysed the timeline without it
+///          fails, those behind it wait until the server has analysed the timeline without it. Each is judged when it is
+///          asked for and whenever it leaves, on the timeline as it will stand on arrival: commands/timeline_judge
 ///
 /// The run's thread owns it: a decision depends on what has reached Earth by this cycle and never on another thread's
 /// progress, so the digest of a run does not change with its pace.
@@ -45,10 +47,10 @@ class CommandGateway {
 
     /// `second_person`: names of commands that need the approval of a controller other than the one who asked.
     /// `stations`: nothing leaves while none of them sees the vehicle. `entry`: predicted when the run begins; without
-    /// it no deadlines are reported.
+    /// it no deadlines are reported. `clock`: the vehicle's; without it nobody knows when by it a command arrives.
     CommandGateway(const dictionary::Dictionary& dictionary, double light_time_s, std::vector<NamedValue> solution,
                    std::vector<std::string> second_person = {}, TrackingSchedule stations = {},
-                   std::optional<Scet> entry = {});
+                   std::optional<Scet> entry = {}, std::optional<ClockCorrelation> clock = {});
 
     /// Replaces ground's navigation solution.
     void renew_solution(std::vector<NamedValue> solution) { solution_ = std::move(solution); }
@@ -164,8 +166,14 @@ class CommandGateway {
     void tell_wait(Underway& underway, Ert now, std::vector<StageReport>& stages);
     /// Text: when the command leaves and by which station, as queued.
     std::string leaving_text(const CommandQueue::Entry& entry) const;
-    /// The preconditions that are known not to hold now; empty: none.
-    std::string failing_now(const dictionary::Command& command, Ert now) const;
+    /// The preconditions that are known not to hold now, and what the command would do to the timeline; empty: none.
+    std::string failing_now(const Underway& underway, Ert now) const;
+    /// Why the command must not leave then, for what it does to the timeline; empty: it may, or does nothing there.
+    /// @param number  of the command, where it has one
+    std::string unsafe_on_timeline(const dictionary::Command& command, std::span<const std::uint8_t> packet, Ert leaves,
+                                   std::uint64_t number = 0) const;
+    std::optional<timeline::Change> timeline_change(const dictionary::Command& command,
+                                                    std::span<const std::uint8_t> packet) const;
     /// Hands due commands to the uplink after checking their preconditions again with the latest values.
     void release_due(Ert now, std::vector<StageReport>& stages);
     /// Applies the rule for times when no station sees the vehicle. Due commands, and those that the uplink has not
@@ -201,6 +209,8 @@ class CommandGateway {
     std::vector<std::string> second_person_;
     TrackingSchedule stations_;
     PlannedDeadlines deadlines_;
+    TimelineJudge judge_;
+    std::optional<ClockCorrelation> clock_;
     std::set<std::uint64_t> undone_;      ///< timeline changes that failed
     std::vector<std::uint64_t> doubted_;  ///< by the latest failure; their histories do not say so yet
     bool unseen_ = false;                 ///< no station saw the vehicle at the last check

@@ -21,7 +21,7 @@ void CommandGateway::release_due(Ert now, std::vector<StageReport>& stages) {
     while (const auto number = queue_.take_next(now)) {
         auto* command = underway(*number);
         if (command == nullptr) continue;
-        const std::string failing = failing_now(command->lifecycle.command(), now);
+        const std::string failing = failing_now(*command, now);
         const auto service = command->wanted.value_or(link_.suitable(now));
         const auto taken = failing.empty() ? link_.send(*number, command->packet, service)
                                            : Result<void>{Error{"it must not be sent now: " + failing}};
@@ -100,7 +100,7 @@ void CommandGateway::begin_pass(Ert now, std::vector<StageReport>& stages) {
     bool any = false;
     for (const std::uint64_t number : link_.unacknowledged()) {
         auto* command = underway(number);
-        const std::string failing = command == nullptr ? "" : failing_now(command->lifecycle.command(), now);
+        const std::string failing = command == nullptr ? "" : failing_now(*command, now);
         if (failing.empty()) continue;
         any = true;
         changes_.clear();

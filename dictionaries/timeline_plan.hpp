@@ -2,10 +2,10 @@
 #pragma once
 
 #include "dictionaries/dictionary.hpp"
+#include "dictionaries/timeline_change_rule.hpp"
 
 #include <limits>
 #include <optional>
-#include <variant>
 #include <vector>
 
 // Ground's plan and prediction of a timeline, by timeline_rule.hpp.
@@ -14,15 +14,9 @@ namespace aeolis::dictionary {
 
 /// A change of offsets that a command makes on board.
 struct OffsetChange {
-    struct OfTimepoint {
-        TimepointId id;
-        MaybeOffset desired_s, minimum_s;
-    };
-    struct OfAnchor {
-        AnchorId id;
-        MaybeOffset offset_s;  ///< from its parent
-    };
-    std::variant<OfTimepoint, OfAnchor> what;
+    using OfTimepoint = timeline::TimepointChange;
+    using OfAnchor = timeline::AnchorChange;
+    timeline::Change what;
     double since_e_s = std::numeric_limits<double>::infinity();  ///< when flight made it; infinite: not yet
 };
 

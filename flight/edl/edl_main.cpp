@@ -14,6 +14,15 @@ void answer(Outbox& out, const CommandTag& tag, std::optional<CommandRefusal> re
     out.send(ModuleId::command_dispatcher, CommandOutcome{tag, refused});
 }
 
+// The event's enumeration has the values of the rule's.
+static_assert(static_cast<UnsafeChange>(timeline::Unsafe::Why::decided_in_flight) == UnsafeChange::decided_in_flight);
+static_assert(static_cast<UnsafeChange>(timeline::Unsafe::Why::not_navigated) == UnsafeChange::not_navigated);
+static_assert(static_cast<UnsafeChange>(timeline::Unsafe::Why::triggered_already) == UnsafeChange::triggered_already);
+static_assert(static_cast<UnsafeChange>(timeline::Unsafe::Why::overdue) == UnsafeChange::overdue);
+static_assert(static_cast<UnsafeChange>(timeline::Unsafe::Why::burst) == UnsafeChange::burst);
+static_assert(static_cast<UnsafeChange>(timeline::Unsafe::Why::too_soon) == UnsafeChange::too_soon);
+static_assert(static_cast<UnsafeChange>(timeline::Unsafe::Why::too_late) == UnsafeChange::too_late);
+
 }  // namespace
 
 EdlMain::EdlMain(const Load& load)
@@ -69,6 +78,7 @@ void EdlMain::run_timeline(Sclk now, Outbox& out) {
     Firings firings;
     timeline_.pass(now, context, firings);
     constraint_monitor_.watch(timeline_, firings.span());
+    change_guard_.watch(timeline_, firings.span());
     for (const Firing& firing : firings) {
         out.record(packet::TimepointFired{.timepoint = firing.timepoint.value,
                                           .triggered_sclk = firing.triggered.seconds,
@@ -200,10 +210,12 @@ void EdlMain::on(const ParametersUpdate& update, Outbox& out) {
     // Once GNC navigates by itself, a solution from Earth is older than its own.
     if (configuration_.enabled) return answer(out, update.tag, CommandRefusal::wrong_phase);
     if (!possible(update.parameters, out.now())) return answer(out, update.tag, CommandRefusal::bad_argument);
+    const Sclk entry = Sclk::from_ticks(std::llround(update.parameters.entry_sclk * 64.0));
+    if (const auto unsafe = unsafe_entry(entry, navigated_entry(update.parameters), out.now()))
+        return refuse(*unsafe, update.tag, out);
     ++revision_;
     parameters_ = update.parameters;
     gnc_.set_solution(solution_of(*parameters_), out.now());
-    const Sclk entry = Sclk::from_ticks(std::llround(parameters_->entry_sclk * 64.0));
     AEOLIS_CHECK(timeline_.set_anchor_offset(anchor::entry, entry.seconds));
     timeline_.compute_anchors();
     out.record(parameters_held());
@@ -230,6 +242,7 @@ void EdlMain::on(const DoEdlCommand& command, Outbox& out) {
     if (!refused) {
         timeline_.begin(out.now());
         constraint_monitor_.note(Moment::of_do_edl(), out.now());
+        change_guard_.begin(out.now());
         ++revision_;
         out.event(evr::EDL_BEGUN{});
         out.send(ModuleId::units, EdlBegun{});
@@ -240,28 +253,54 @@ void EdlMain::on(const DoEdlCommand& command, Outbox& out) {
 
 void EdlMain::on(const SetTimepointOffsetCommand& command, Outbox& out) {
     const auto& arguments = command.arguments;
-    const bool possible = is_multiple_of_tick(arguments.desired_offset_s) &&
-                          is_multiple_of_tick(arguments.minimum_offset_s) &&
-                          timeline_.set_timepoint_offsets(TimepointId{arguments.timepoint}, arguments.desired_offset_s,
-                                                          arguments.minimum_offset_s);
-    if (possible) {
-        ++revision_;
-        out.event(evr::TIMEPOINT_OFFSET_CHANGED{.timepoint = arguments.timepoint,
-                                                .desired_offset_s = arguments.desired_offset_s,
-                                                .minimum_offset_s = arguments.minimum_offset_s});
-    }
-    answer(out, command.tag, possible ? std::nullopt : std::optional{CommandRefusal::bad_argument});
+    const TimepointId id{arguments.timepoint};
+    if (!is_multiple_of_tick(arguments.desired_offset_s) || !is_multiple_of_tick(arguments.minimum_offset_s) ||
+        id.value >= timeline_.rows().size())
+        return answer(out, command.tag, CommandRefusal::bad_argument);
+    const timeline::TimepointChange change{id, arguments.desired_offset_s, arguments.minimum_offset_s};
+    if (const auto unsafe = change_guard_.judge(timeline_, change, out.now())) return refuse(*unsafe, command.tag, out);
+    AEOLIS_CHECK(timeline_.set_timepoint_offsets(id, change.desired_s, change.minimum_s));
+    ++revision_;
+    out.event(evr::TIMEPOINT_OFFSET_CHANGED{.timepoint = arguments.timepoint,
+                                            .desired_offset_s = arguments.desired_offset_s,
+                                            .minimum_offset_s = arguments.minimum_offset_s});
+    answer(out, command.tag, std::nullopt);
 }
 
 void EdlMain::on(const SetAnchorOffsetCommand& command, Outbox& out) {
     const auto& arguments = command.arguments;
-    const bool possible = is_multiple_of_tick(arguments.offset_s) &&
-                          timeline_.set_anchor_offset(AnchorId{arguments.anchor}, arguments.offset_s);
-    if (possible) {
-        ++revision_;
-        out.event(evr::ANCHOR_OFFSET_CHANGED{.anchor = arguments.anchor, .offset_s = arguments.offset_s});
-    }
-    answer(out, command.tag, possible ? std::nullopt : std::optional{CommandRefusal::bad_argument});
+    const AnchorId id{arguments.anchor};
+    const auto anchors = timeline_.anchors();
+    if (!is_multiple_of_tick(arguments.offset_s) || id.value >= anchors.size() || !anchors[id.value].parent)
+        return answer(out, command.tag, CommandRefusal::bad_argument);
+    const MaybeTime held = parameters_ ? MaybeTime{Sclk{parameters_->entry_sclk}} : MaybeTime{};
+    const auto unsafe = id == anchor::entry
+                            ? unsafe_entry(Sclk{arguments.offset_s}, held, out.now())
+                            : change_guard_.judge(timeline_, timeline::AnchorChange{id, arguments.offset_s}, out.now());
+    if (unsafe) return refuse(*unsafe, command.tag, out);
+    AEOLIS_CHECK(timeline_.set_anchor_offset(id, arguments.offset_s));
+    ++revision_;
+    out.event(evr::ANCHOR_OFFSET_CHANGED{.anchor = arguments.anchor, .offset_s = arguments.offset_s});
+    answer(out, command.tag, std::nullopt);
+}
+
+std::optional<timeline::Unsafe> EdlMain::unsafe_entry(Sclk said, MaybeTime navigated, Sclk now) {
+    if (auto unsafe = timeline::unsafe_entry(anchor::entry, said, navigated, parameters.entry_moved_max_s))
+        return unsafe;
+    // The first parameters move nothing: "do edl" comes later.
+    if (!entry().defined()) return std::nullopt;
+    return change_guard_.judge(timeline_, timeline::AnchorChange{anchor::entry, said.seconds}, now);
+}
+
+void EdlMain::refuse(const timeline::Unsafe& unsafe, const CommandTag& tag, Outbox& out) {
+    const auto why = static_cast<UnsafeChange>(unsafe.why);
+    if (unsafe.what.kind == Moment::Kind::anchor)
+        out.event(
+            evr::ANCHOR_CHANGE_REFUSED{.anchor = unsafe.what.index, .unsafe_change = why, .unsafe_by_s = unsafe.by_s});
+    else
+        out.event(evr::TIMELINE_CHANGE_REFUSED{
+            .timepoint = unsafe.what.index, .unsafe_change = why, .unsafe_by_s = unsafe.by_s});
+    answer(out, tag, CommandRefusal::unsafe_change);
 }
 
 }  // namespace aeolis::flight

@@ -8,6 +8,7 @@
 #include "flight/edl/unverified_actions.hpp"
 #include "flight/gnc/edl_gnc.hpp"
 #include "flight/kernel/outbox.hpp"
+#include "flight/timeline/change_guard.hpp"
 #include "flight/timeline/constraint_monitor.hpp"
 #include "flight/timeline/timeline.hpp"
 
@@ -25,6 +26,7 @@ namespace aeolis::flight {
 ///         ParametersUpdate, DoEdlCommand, SetTimepointOffsetCommand, SetAnchorOffsetCommand; InhibitEdl
 /// Out     actions to the device managers; tones; events, firings, explanations and channels to EdlComm; Confirm
 /// Gate    nothing runs before parameters and then "do edl" were received, the latter in late cruise and in time. R23
+/// Changes of the timeline are judged on arrival, and refused where they are unsafe. R51
 /// Roles   prime flies, and sends its state each cycle; Second Chance keeps recent IMU readings until it must take
 ///         over; a prime that was restarted after pre-EDL stands by. R33, R34
 /// Hold    system fault protection can hold EDL until the end of pre-EDL, not afterwards. R24
@@ -61,7 +63,7 @@ class EdlMain {
     /// Whether this computer leaves the landing to the other one.
     bool stands_by() const { return activity_ != Activity::flies; }
 
-    /// State for another computer. Left out: a present fault, which is reported again, and the monitor.
+    /// State for another computer. Left out: a present fault, which is reported again, the monitor and the guard.
     template <typename Exchange>
     void carry(Exchange& exchange) {
         exchange(parameters_, timeline_, configuration_, gnc_, peak_deceleration_, mode_, phase_, bridle_m_,
@@ -79,6 +81,9 @@ class EdlMain {
     void take_over(const StateHeader& prime, Sclk now, Outbox& out);
     void watch_approach(Sclk now, Outbox& out);
     void set_inhibited(bool inhibited, Outbox& out);
+    /// The reason why entry cannot be set to `said`; `navigated`: where navigation has it.
+    std::optional<timeline::Unsafe> unsafe_entry(Sclk said, MaybeTime navigated, Sclk now);
+    static void refuse(const timeline::Unsafe& unsafe, const CommandTag& tag, Outbox& out);
     void run_timeline(Sclk now, Outbox& out);
     void run_gnc(Sclk now, Outbox& out);
     void take_triggers(Sclk now, Outbox& out);
@@ -96,6 +101,7 @@ class EdlMain {
     Timeline timeline_;
     ConstraintMonitor constraint_monitor_{constraint_specs};
     UnverifiedActions unverified_;
+    ChangeGuard change_guard_{constraint_specs};
     gnc::EdlGnc gnc_;
     gnc::Configuration configuration_;
     gnc::Output output_;

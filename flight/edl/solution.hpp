@@ -41,4 +41,9 @@ inline bool possible(const command::EDL_SET_PARAMETERS& p, Sclk now) {
            std::abs(p.epoch_sclk - now.seconds) <= parameters.solution_age_max_s;
 }
 
+/// The time at which the position and velocity reach entry interface, close to `entry_sclk` if that is sound. R51
+/// The state is propagated to `entry_sclk`; the remaining height counts at the descent rate there. Undefined where the
+/// vehicle does not descend then.
+MaybeTime navigated_entry(const command::EDL_SET_PARAMETERS& p);
+
 }  // namespace aeolis::flight

@@ -27,6 +27,16 @@ Vector3 free_acceleration(const Vector3& p_MoB_M, const Vector3& v_MB_M) {
     return a;
 }
 
+void fall(Vector3& p_MoB_M, Vector3& v_MB_M, double dt_s) {
+    const Vector3 p = p_MoB_M, v = v_MB_M;
+    const Vector3 a1 = free_acceleration(p, v);
+    const Vector3 v2 = v + 0.5 * dt_s * a1, a2 = free_acceleration(p + 0.5 * dt_s * v, v2);
+    const Vector3 v3 = v + 0.5 * dt_s * a2, a3 = free_acceleration(p + 0.5 * dt_s * v2, v3);
+    const Vector3 v4 = v + dt_s * a3, a4 = free_acceleration(p + dt_s * v3, v4);
+    p_MoB_M = p + dt_s / 6.0 * (v + 2.0 * v2 + 2.0 * v3 + v4);
+    v_MB_M = v + dt_s / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4);
+}
+
 double speed_of_sound_mps(double altitude_m) {
     struct Point {
         double altitude_m, temperature_K;

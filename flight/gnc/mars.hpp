@@ -27,6 +27,12 @@ Vector3 gravity(const Vector3& p_MoB_M);
 /// @return         [m/s²] 3×1, in M.
 Vector3 free_acceleration(const Vector3& p_MoB_M, const Vector3& v_MB_M);
 
+/// Moves a vehicle that feels no force by one Runge-Kutta step of fourth order.
+///
+/// @param p_MoB_M  [m] 3×1 in M.   @param v_MB_M  [m/s] 3×1, relative to rotating Mars, in M.
+/// @param dt_s     [s] of either sign, small against the radius over the speed.
+void fall(Vector3& p_MoB_M, Vector3& v_MB_M, double dt_s);
+
 /// Speed of sound [m/s] at a height above Gale's landing radius, −5 … 140 km; held outside.
 /// For the Mach number in telemetry only. From the temperature of [gale-atmosphere] with γ = 1.3 and R = 188.9 J/(kg
 /// K); the piecewise linear form is our assumption.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "common/fixed_vector.hpp"
+#include "dictionaries/timeline_change_rule.hpp"
 #include "dictionaries/timeline_rule.hpp"
 #include "flight/kernel/message.hpp"
 #include "flight/timeline/timepoint.hpp"
@@ -10,8 +11,8 @@
 
 namespace aeolis::flight {
 
-inline constexpr std::size_t timeline_rows_max = 160;  ///< chosen: twice the shipped timeline
-inline constexpr std::size_t anchors_max = 32;         ///< chosen
+using timeline::anchors_max;
+inline constexpr std::size_t timeline_rows_max = timeline::rows_max;
 
 using FiringVerdict = TimepointVerdict;  // completed, verified, unverified, no_operation, refused
 
@@ -80,6 +81,13 @@ class Timeline {
     MaybeTime first_desired() const;
     void compute_anchors();
 
+    // The plan as it stands, for judges of a change.
+    std::span<const TimepointSpec> rows() const { return rows_; }
+    std::span<const AnchorSpec> anchors() const { return anchors_; }
+    timeline::Offsets offsets(std::size_t row) const;
+    MaybeOffset anchor_offset_s(std::size_t anchor) const { return anchor_offset_s_[anchor]; }
+    MaybeTime previous_fired() const { return previous_fired_; }
+
     /// After a restart: returns to the current timepoint's backtrack row, with no reply awaited. R32
     /// `now` becomes the previous firing. False when there is no such row: the timeline continues where it was.
     bool backtrack(Sclk now);
@@ -98,7 +106,6 @@ class Timeline {
     void command(Sclk now, ActionContext& context);
     void await_reply(Sclk now, ActionContext& context, Firings& firings);
     void complete(Sclk now, FiringVerdict verdict, ActionContext& context, Firings& firings);
-    timeline::Offsets offsets(std::size_t row) const;
     timeline::DueTimes current_due() const;
     bool runs(const TimepointSpec& row) const { return !essential_only_ || row.essential || !row.action; }
 

@@ -80,7 +80,7 @@ ScriptedLanding::ScriptedLanding(const simulation::Scenario& scenario, std::uint
       landing_(scenario, seed, case_number, event_reports(dictionary), clock ? *clock : clock_of(scenario, dictionary)),
       station_(landing_.light_time_s()),
       gateway_(dictionary, landing_.light_time_s(), solution_arguments(landing_.solution()), scenario.second_person,
-               stations_of(scenario), landing_.correlation().scet_of(scenario.entry_sclk)),
+               stations_of(scenario), landing_.correlation().scet_of(scenario.entry_sclk), landing_.correlation()),
       script_(scenario.commands), dispersed_(landing_.dispersed()), decommutator_(dictionary) {}
 
 void ScriptedLanding::equip_station(const simulation::Scenario& scenario, std::uint64_t seed, std::uint64_t case_number,

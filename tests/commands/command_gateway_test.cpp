@@ -9,6 +9,8 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/shipped_dictionary.hpp"
 
+#include <bit>
+
 namespace commands_command_gateway_test {
 
 using namespace aeolis;
@@ -48,7 +50,8 @@ Request request(const std::string& command) {
 struct Station {
     std::vector<std::string> second_person{};
     TrackingSchedule passes{};
-    CommandGateway gateway{tests::shipped_dictionary(), 0.0, solution(), second_person, passes};
+    std::optional<ClockCorrelation> clock{};
+    CommandGateway gateway{tests::shipped_dictionary(), 0.0, solution(), second_person, passes, {}, clock};
     std::vector<StageReport> stages{};
 
     telemetry::Decommutator decommutator{tests::shipped_dictionary()};
@@ -105,8 +108,12 @@ std::vector<std::uint8_t> packet_of(const std::string& name,
             }
     };
     for (const auto& field : packet->fields)
-        for (const auto& [wanted, value] : values)
-            if (field.name == wanted) put(field, value);
+        for (const auto& [wanted, value] : values) {
+            if (field.name != wanted) continue;
+            put(field, value);
+            if (const auto defined = field.validity_bit)
+                octets[*defined / 8] = static_cast<std::uint8_t>(octets[*defined / 8] | (0x80U >> (*defined % 8)));
+        }
     if (packet->event)  // the event's id stands first behind the secondary header
         BitWriter{std::span{octets}.subspan(tm_data_offset_octets)}.put(packet->event->value, 16);
     seal_tm_packet(octets, packet->apid, 0, Sclk{397500600.0}, dictionary.id);
@@ -551,6 +558,88 @@ TEST_CASE("a change of the timeline leaves after those that it was analysed with
     undone = 2;
     CHECK_FALSE(judge(3, false, "all bounds hold"));  // it waits no more
     CHECK(station.gateway.take_uplinks().empty());
+}
+
+namespace {
+
+/// The vehicle's clock is at E-1000 s when Earth's is at `now`.
+ClockCorrelation a_thousand_seconds_before_entry() {
+    ClockCorrelation clock;
+    clock.sclk = Sclk{397501715.0 - 1000.0};
+    clock.scet = Scet{now.microseconds};
+    return clock;
+}
+
+Request moved_entry(double by_s) {
+    auto asked = request("EDL_SET_ANCHOR_OFFSET");
+    asked.arguments = {{"anchor", 1.0}, {"offset_s", 397501715.0 + by_s}};
+    return asked;
+}
+
+Request timepoint_at(const char* name, double desired_s) {
+    const auto& timeline = tests::shipped_dictionary().timeline;
+    const auto row = std::ranges::find(timeline, name, &dictionary::TimelineRow::name);
+    auto asked = request("EDL_SET_TIMEPOINT_OFFSET");
+    asked.arguments = {{"timepoint", static_cast<double>(row - timeline.begin())}, {"desired_offset_s", desired_s}};
+    return asked;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "a change that is unsafe on the timeline as it stands is refused, with the reason, by anchor as by parameters",
+    "[gateway][R19][R51]") {
+    Station station{.clock = a_thousand_seconds_before_entry()};
+    const auto says = Catch::Contains("not safe on the timeline as it stands: entry would be 300.000 s later");
+    CHECK_THAT(station.refusal(moved_entry(300.0)), says);
+    auto parameters = request("EDL_SET_PARAMETERS");
+    parameters.from_solution = true;
+    parameters.arguments = {{"entry_sclk", 397501715.0 + 300.0}};
+    CHECK_THAT(station.refusal(parameters), says);
+    parameters.dry_run = true;
+    CHECK_THAT(station.send(parameters).reason, says);
+    CHECK_THAT(station.refusal(timepoint_at("uhf_start", -1001.0)), Catch::Contains("uhf_start would be overdue by 1"));
+    CHECK(station.send(moved_entry(2.0)).accepted);
+}
+
+TEST_CASE("do edl is refused on ground when its first timepoint on the clock would be overdue", "[gateway][R23][R51]") {
+    auto go = request("EDL_DO_EDL");
+    go.armed = true;
+    go.confirmation = "EDL_DO_EDL";
+    auto clock = a_thousand_seconds_before_entry();
+    CHECK(Station{.clock = clock}.send(go).accepted);
+    clock.sclk = clock.sclk + 200.0;
+    CHECK_THAT(Station{.clock = clock}.refusal(go), Catch::Contains("s too late: timepoints would be overdue"));
+}
+
+TEST_CASE("a file is judged change by change: each with those before it", "[gateway][R51]") {
+    Station station{.clock = a_thousand_seconds_before_entry()};
+    const auto separation = timepoint_at("cruise_stage_separation", -594.0),
+               detumble = timepoint_at("detumble", -516.0);
+    const auto alone = station.gateway.look(std::vector{separation}, now);
+    CHECK_FALSE(alone.front().accepted);  // no plume on the cruise stage
+    const auto both = station.gateway.look(std::vector{detumble, separation}, now);
+    CHECK((both[0].accepted && both[1].accepted));
+    CHECK_FALSE(station.gateway.look(std::vector{separation}, now).front().accepted);  // nothing of it stays
+}
+
+TEST_CASE("a change that waits is judged when it leaves: what has become unsafe by then does not",
+          "[gateway][R19][R51]") {
+    Station station{.clock = a_thousand_seconds_before_entry()};
+    const auto sclk = std::bit_cast<std::uint64_t>(397501715.0 - 1160.0);
+    station.hear(packet_of("TimelineStatus", {{"timepoint_index", 3}, {"next_minimum_sclk", sclk}}), true, now);
+    auto held = timepoint_at("uhf_start", -801.0);
+    held.hold = true;
+    REQUIRE(station.send(held).command == 1);
+    const Ert later{now.microseconds + 210'000'000};  // E-790 s: the transmitter is on
+    Request release;
+    release.action = "release";
+    release.number = 1;
+    CHECK(station.gateway.submit(release, later, station.stages).accepted);
+    CHECK(station.gateway.take_uplinks().empty());
+    CHECK(station.latest("released")->status == Status::failed);
+    CHECK_THAT(station.latest("released")->evidence,
+               Catch::Contains("must not be sent now") && Catch::Contains("uhf_start will have been triggered"));
 }
 
 TEST_CASE("a reply says until when a command is of use, and what it comes too late for", "[gateway][R44]") {

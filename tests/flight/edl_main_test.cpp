@@ -2,6 +2,8 @@
 #include "flight/edl/edl_main.hpp"
 
 #include "common/space_packet.hpp"
+#include "flight/edl/solution.hpp"
+#include "flight/gnc/navigation/strapdown.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/mission_copy.hpp"
 #include "tests/support/outbox.hpp"
@@ -17,13 +19,17 @@ namespace {
 
 constexpr double entry_s = 100'000.0;
 
+/// A state that comes to entry interface at `entry_s`.
 command::EDL_SET_PARAMETERS possible_parameters() {
+    const auto at_epoch =
+        gnc::propagate({.p_MoB_M = {parameters.entry_radius_m, 0.0, 0.0}, .v_MB_M = {-1625.0, 5615.0, 0.0}}, -1200.0);
     command::EDL_SET_PARAMETERS p;
     p.solution_id = 7;
     p.epoch_sclk = entry_s - 1200.0;
-    p.position_x_m = 9.0e6;
-    p.velocity_x_mps = -5000.0;
-    p.velocity_y_mps = 500.0;
+    p.position_x_m = at_epoch.p_MoB_M.x();
+    p.position_y_m = at_epoch.p_MoB_M.y();
+    p.velocity_x_mps = at_epoch.v_MB_M.x();
+    p.velocity_y_mps = at_epoch.v_MB_M.y();
     p.entry_sclk = entry_s;
     p.target_radius_m = 3391148.0;
     p.parachute_speed_mps = 405.0F;
@@ -80,6 +86,54 @@ TEST_CASE("parameters that cannot be flown are refused by who flies them, too", 
     REQUIRE(f.recorder.sent<CommandOutcome>().size() == 1);
     CHECK(f.recorder.sent<CommandOutcome>()[0].refused == CommandRefusal::bad_argument);
     CHECK(f.do_edl(entry_s - 1189) == CommandRefusal::no_parameters);
+}
+
+TEST_CASE("entry is where the position and velocity of the parameters have it, or the parameters are refused",
+          "[edl][R23][R51]") {
+    CHECK(std::abs(*navigated_entry(possible_parameters()).get() - Sclk{entry_s}) < 1.0e-3);
+    for (const double off_s : {-300.0, -10.5, -9.5, 0.0, 9.5, 10.5, 300.0}) {
+        INFO(off_s);
+        Fixture f;
+        auto said = possible_parameters();
+        said.entry_sclk += off_s;
+        f.handle(ParametersUpdate{{}, said}, entry_s - 1190);
+        const bool refused = std::abs(off_s) > parameters.entry_moved_max_s;
+        REQUIRE(f.recorder.sent<CommandOutcome>().size() == 1);
+        CHECK(f.recorder.sent<CommandOutcome>()[0].refused ==
+              (refused ? std::optional{CommandRefusal::unsafe_change} : std::nullopt));
+        CHECK(f.recorder.events<evr::ANCHOR_CHANGE_REFUSED>() == int{refused});
+        CHECK(f.edl.timeline().anchor_time(anchor::entry).defined() != refused);
+    }
+}
+
+TEST_CASE(
+    "entry is navigated from a week before as from twenty minutes, and not at all from a state that never comes there",
+    "[edl][R51]") {
+    auto week = possible_parameters();
+    const auto before = gnc::propagate({.p_MoB_M = {week.position_x_m, week.position_y_m, week.position_z_m},
+                                        .v_MB_M = {week.velocity_x_mps, week.velocity_y_mps, week.velocity_z_mps}},
+                                       -600'000.0);
+    week.epoch_sclk = 1.0e6;
+    week.entry_sclk = week.epoch_sclk + 601'200.0;
+    week.position_x_m = before.p_MoB_M.x();
+    week.position_y_m = before.p_MoB_M.y();
+    week.velocity_x_mps = before.v_MB_M.x();
+    week.velocity_y_mps = before.v_MB_M.y();
+    const auto navigated = navigated_entry(week);
+    REQUIRE(navigated.defined());
+    CHECK(std::abs(*navigated.get() - Sclk{week.entry_sclk}) < 0.05);
+
+    auto rising = possible_parameters();
+    rising.velocity_x_mps = 5000.0;
+    CHECK_FALSE(navigated_entry(rising).defined());
+    auto endless = possible_parameters();
+    endless.entry_sclk = 4.0e9;
+    CHECK_FALSE(navigated_entry(endless).defined());
+    for (const auto& never : {rising, endless}) {
+        Fixture f;
+        f.handle(ParametersUpdate{{}, never}, entry_s - 1190);
+        CHECK(f.recorder.sent<CommandOutcome>()[0].refused == CommandRefusal::unsafe_change);
+    }
 }
 
 TEST_CASE("do edl is possible in late cruise only", "[edl][R23]") {
@@ -184,6 +238,72 @@ TEST_CASE("an offset that is no multiple of 1/64 s, or of a row that is not ther
     f.handle(SetTimepointOffsetCommand{{}, {.timepoint = 0, .desired_offset_s = -800.0, .minimum_offset_s = 0.0}}, 5.0);
     CHECK_FALSE(f.recorder.sent<CommandOutcome>()[0].refused.has_value());
     CHECK(f.recorder.events<evr::TIMEPOINT_OFFSET_CHANGED>() == 1);
+}
+
+TEST_CASE("an unsafe change is refused on board when it comes, with an event that says why, and changes nothing",
+          "[edl][timeline][R51]") {
+    const auto begun = [] {
+        Fixture f;
+        f.set_parameters(entry_s - 1190);
+        CHECK_FALSE(f.do_edl(entry_s - 1170).has_value());
+        for (double at_s = entry_s - 1170; at_s < entry_s - 1000; at_s += 1.0 / 64) f.handle(Tick{Sclk{at_s}}, at_s);
+        return f;
+    };
+    const auto outcome = [](Fixture& f, const auto& command) {
+        f.handle(command, entry_s - 1000);
+        REQUIRE(f.recorder.sent<CommandOutcome>().size() == 1);
+        return f.recorder.sent<CommandOutcome>()[0].refused;
+    };
+    const auto anchor_at = [](AnchorId id, double offset_s) {
+        return SetAnchorOffsetCommand{{}, {.anchor = id.value, .offset_s = offset_s}};
+    };
+    const auto timepoint_at = [](TimepointId id, double desired_s) {
+        return SetTimepointOffsetCommand{
+            {}, {.timepoint = id.value, .desired_offset_s = desired_s, .minimum_offset_s = 0.0}};
+    };
+    for (const double off_s : {-900.0, -11.0, 11.0, 300.0}) {  // among them that of cases/flight/anchor_entry
+        Fixture f = begun();
+        CHECK(outcome(f, anchor_at(anchor::entry, entry_s + off_s)) == CommandRefusal::unsafe_change);
+        CHECK(f.recorder.events<evr::ANCHOR_CHANGE_REFUSED>() == 1);
+        CHECK(f.recorder.events<evr::ANCHOR_OFFSET_CHANGED>() == 0);
+        CHECK(f.edl.timeline().anchor_time(anchor::entry).get() == Sclk{entry_s});
+    }
+    for (const double off_s : {-5.0, 5.0}) {
+        Fixture f = begun();
+        CHECK_FALSE(outcome(f, anchor_at(anchor::entry, entry_s + off_s)).has_value());
+        CHECK(f.recorder.events<evr::ANCHOR_OFFSET_CHANGED>() == 1);
+    }
+    for (const AnchorId id : {anchor::parachute, anchor::touchdown}) {
+        Fixture f = begun();
+        CHECK(outcome(f, anchor_at(id, entry_s + 425)) == CommandRefusal::unsafe_change);
+        CHECK(f.recorder.events<evr::ANCHOR_CHANGE_REFUSED>() == 1);
+    }
+    {
+        Fixture f = begun();
+        CHECK(outcome(f, timepoint_at(timepoint::coolant_vent, -1001.0)) == CommandRefusal::unsafe_change);
+        CHECK(f.recorder.events<evr::TIMELINE_CHANGE_REFUSED>() == 1);
+        CHECK(f.recorder.events<evr::TIMEPOINT_OFFSET_CHANGED>() == 0);
+    }
+    {
+        Fixture f = begun();
+        CHECK(outcome(f, timepoint_at(timepoint::cruise_stage_separation, -300.0)) == CommandRefusal::unsafe_change);
+        CHECK(f.recorder.events<evr::TIMELINE_CHANGE_REFUSED>() == 1);
+    }
+    {
+        Fixture f = begun();
+        CHECK_FALSE(outcome(f, timepoint_at(timepoint::coolant_vent, -827.0)).has_value());
+        CHECK(f.recorder.events<evr::TIMEPOINT_OFFSET_CHANGED>() == 1);
+    }
+}
+
+TEST_CASE("entry is not set by its anchor while nobody has navigated it", "[edl][timeline][R51]") {
+    Fixture f;
+    f.handle(SetAnchorOffsetCommand{{}, {.anchor = anchor::entry.value, .offset_s = entry_s}}, entry_s - 1200);
+    CHECK(f.recorder.sent<CommandOutcome>()[0].refused == CommandRefusal::unsafe_change);
+    f.handle(SetAnchorOffsetCommand{{}, {.anchor = 0, .offset_s = 5.0}}, entry_s - 1200);
+    CHECK(f.recorder.sent<CommandOutcome>()[0].refused == CommandRefusal::bad_argument);
+    f.handle(SetAnchorOffsetCommand{{}, {.anchor = 9999, .offset_s = 5.0}}, entry_s - 1200);
+    CHECK(f.recorder.sent<CommandOutcome>()[0].refused == CommandRefusal::bad_argument);
 }
 
 TEST_CASE("every cycle ends with one confirmation to sync", "[edl][R18][R22]") {

@@ -72,15 +72,7 @@ NavigatedState propagate(const NavigatedState& state, double seconds) {
     NavigatedState now = state;
     const auto steps = static_cast<std::int64_t>(std::max(1.0, std::ceil(std::abs(seconds))));
     const double dt = seconds / static_cast<double>(steps);
-    for (std::int64_t i = 0; i < steps; ++i) {
-        const Vector3 p = now.p_MoB_M, v = now.v_MB_M;
-        const Vector3 a1 = free_acceleration(p, v);
-        const Vector3 v2 = v + 0.5 * dt * a1, a2 = free_acceleration(p + 0.5 * dt * v, v2);
-        const Vector3 v3 = v + 0.5 * dt * a2, a3 = free_acceleration(p + 0.5 * dt * v2, v3);
-        const Vector3 v4 = v + dt * a3, a4 = free_acceleration(p + dt * v3, v4);
-        now.p_MoB_M = p + dt / 6.0 * (v + 2.0 * v2 + 2.0 * v3 + v4);
-        now.v_MB_M = v + dt / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4);
-    }
+    for (std::int64_t i = 0; i < steps; ++i) fall(now.p_MoB_M, now.v_MB_M, dt);
     const double half = -0.5 * mars_spin_rps * seconds;
     now.q_MB = (Quaternion(std::cos(half), 0.0, 0.0, std::sin(half)) * state.q_MB).normalized();
     return now;

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "flight/edl/solution.hpp"
+
+#include "flight/gnc/mars.hpp"
+
+#include <algorithm>
+
+namespace aeolis::flight {
+MaybeTime navigated_entry(const command::EDL_SET_PARAMETERS& sent) {
+    gnc::Vector3 p_MoB_M{sent.position_x_m, sent.position_y_m, sent.position_z_m};
+    gnc::Vector3 v_MB_M{sent.velocity_x_mps, sent.velocity_y_mps, sent.velocity_z_mps};
+    double left_s = sent.entry_sclk - sent.epoch_sclk;
+    for (int step = 0; left_s > 0.0; ++step) {
+        const double radius_m = p_MoB_M.norm();
+        const double falls_in_s = std::sqrt(radius_m * radius_m * radius_m / gnc::mars_gm_m3ps2);
+        const double dt_s =
+            std::min(left_s, parameters.entry_step_fraction * std::min(falls_in_s, radius_m / v_MB_M.norm()));
+        if (step >= parameters.entry_steps_max || !(dt_s > 0.0)) return {};
+        gnc::fall(p_MoB_M, v_MB_M, dt_s);
+        left_s -= dt_s;
+    }
+    const double radius_m = p_MoB_M.norm();
+    const double descent_rate_mps = -v_MB_M.dot(p_MoB_M) / radius_m;
+    if (!(descent_rate_mps > 0.0)) return {};
+    return Sclk{sent.entry_sclk} + (radius_m - parameters.entry_radius_m) / descent_rate_mps;
+}
+
+}  // namespace aeolis::flight

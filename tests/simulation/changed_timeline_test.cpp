@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "commands/encoder.hpp"
+#include "server/rehearsal/scripted_landing.hpp"
+#include "telemetry/packet_stream.hpp"
+#include "tests/simulation/gale.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/shipped_dictionary.hpp"
+#include "tests/support/telecommands.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+namespace simulation_changed_timeline_test {
+
+// Changes of the timeline at any moment, judged on ground and on board, and flown where they were accepted. R51
+using namespace aeolis;
+using namespace aeolis::simulation;
+using server::ScriptedLanding;
+
+namespace {
+
+constexpr double start_before_entry_s = 1200.0;
+
+/// As nominal_auto: parameters, and "do edl" twenty seconds later.
+Scenario commanded() {
+    Scenario scenario = tests::gale_scenario(start_before_entry_s);
+    scenario.commands.push_back({1190.0, "EDL_SET_PARAMETERS", {}, true});
+    scenario.commands.push_back({1170.0, "EDL_DO_EDL", {}, false});
+    return scenario;
+}
+
+/// A landing with what ground knows of it, to be forked.
+struct Trunk {
+    explicit Trunk(const Scenario& scenario) : landing(scenario, 1, 0, tests::shipped_dictionary()) {}
+
+    bool flying() const { return landing.landing().outcome() == Outcome::running; }
+    double e_s() const { return landing.landing().sclk() - entry; }
+    void fly_until(double then_e_s) {
+        while (flying() && e_s() < then_e_s) {
+            landing.hear(landing.step());
+            telemetry::PacketStream packets{landing.landing().report().recorded};
+            while (const auto packet = packets.next())
+                if (read_tm_packet(*packet)->primary.apid == flight::packet::TimepointFired::apid)
+                    next = 1 + static_cast<std::size_t>(read_bits(*packet, tm_data_offset_octets * 8, 16));
+        }
+    }
+
+    ScriptedLanding landing;
+    Sclk entry = commanded().entry_sclk;
+    std::size_t next = 0;  ///< timepoint that has not fired
+};
+
+/// What makes a landing unsafe: no touchdown, a hard one, a parachute beyond what it was qualified for, a collision.
+std::string unsafe(const Landing& landing) {
+    if (landing.outcome() != Outcome::touchdown)
+        return std::string{name_of(landing.outcome())} + ": " + landing.outcome_reason();
+    const auto touchdown = landing.touchdown();
+    if (!touchdown || touchdown->vertical_mps > 1.0 || touchdown->horizontal_mps > 0.5) return "a hard touchdown";
+    if (const auto air = landing.parachute(); !air || air->mach > 2.2 || air->dynamic_pressure_Pa > 750.0)
+        return "the parachute opened beyond its limits";
+    if (landing.separation().struck != nullptr) return std::string{"struck "} + landing.separation().struck;
+    return {};
+}
+
+/// The command sent past ground, and what the vehicle made of it.
+struct OnBoard {
+    Landing landing;
+    bool executed = false, refused = false;
+    int said_why = 0;  ///< events that name the reason
+
+    OnBoard(const Landing& fork, const commands::Request& request) : landing(fork) {
+        const auto& command = *tests::shipped_dictionary().command(request.command);
+        const auto packet = commands::encode(command, request.arguments, 7);
+        REQUIRE(packet);
+        landing.uplink(test::cltu_of(*packet));
+        for (int cycle = 0; cycle < 64 && !executed && !refused; ++cycle) {
+            telemetry::PacketStream packets{landing.step().recorded};
+            while (const auto recorded = packets.next()) read(*recorded, command.opcode);
+        }
+        REQUIRE(executed != refused);
+    }
+    void land() {
+        while (landing.outcome() == Outcome::running) landing.step();
+    }
+
+  private:
+    void read(std::span<const std::uint8_t> packet, Opcode opcode) {
+        using namespace flight;
+        if (read_tm_packet(packet)->primary.apid != evr::COMMAND_EXECUTED::apid) return;
+        const auto word = [&](unsigned at) { return read_bits(packet, tm_data_offset_octets * 8 + at, 16); };
+        const bool ours = word(16) == opcode.value && word(32) == 7;
+        executed = executed || (word(0) == evr::COMMAND_EXECUTED::id.value && ours);
+        refused = refused || (word(0) == evr::COMMAND_REFUSED::id.value && ours);
+        said_why +=
+            word(0) == evr::ANCHOR_CHANGE_REFUSED::id.value || word(0) == evr::TIMELINE_CHANGE_REFUSED::id.value;
+    }
+};
+
+double to_tick(double seconds) {
+    return std::round(seconds * 64.0) / 64.0;
+}
+
+/// Draws changes of every kind: of timepoints, anchors and parameters, from a tick to a thousand seconds.
+class Changes {
+  public:
+    explicit Changes(std::uint32_t seed) : random_(seed) {}
+
+    double part() { return static_cast<double>(random_()) / 4294967296.0; }
+    /// Somewhere from after "do edl" until fly-away.
+    double moment_e_s() { return -1165.0 + 1605.0 * part(); }
+
+    commands::Request draw(const Trunk& trunk) {
+        const double kind = part();
+        if (kind < 0.5) return of_timepoint(part() < 0.15 ? 0 : trunk.next);
+        if (kind < 0.7) return of_anchor(flight::anchor::entry, trunk.entry.seconds + difference_s());
+        if (kind < 0.8) return of_other_anchor(trunk);
+        return of_parameters(trunk);
+    }
+
+  private:
+    double difference_s() {
+        constexpr std::array scales_s{0.05, 1.0, 8.0, 60.0, 1000.0};
+        return to_tick(scales_s[random_() % scales_s.size()] * (2.0 * part() - 1.0));
+    }
+    commands::Request of_timepoint(std::size_t from) {
+        const std::size_t first = std::min(from, flight::timepoint_count - 1);
+        const auto& row = tests::shipped_dictionary().timeline[first + random_() % (flight::timepoint_count - first)];
+        const double minimum_s = *row.minimum_offset_s + (random_() % 4 == 0 ? difference_s() : 0.0);
+        commands::Request request;
+        request.command = "EDL_SET_TIMEPOINT_OFFSET";
+        request.arguments = {{"timepoint", static_cast<double>(row.id.value)},
+                             {"desired_offset_s", *row.desired_offset_s + difference_s()},
+                             {"minimum_offset_s", minimum_s}};
+        return request;
+    }
+    static commands::Request of_anchor(AnchorId id, double offset_s) {
+        commands::Request request;
+        request.command = "EDL_SET_ANCHOR_OFFSET";
+        request.arguments = {{"anchor", static_cast<double>(id.value)}, {"offset_s", offset_s}};
+        return request;
+    }
+    commands::Request of_other_anchor(const Trunk& trunk) {
+        const auto& anchors = tests::shipped_dictionary().anchors;
+        const auto& row = anchors[1 + random_() % (anchors.size() - 1)];
+        const double base_s = row.offset_s ? *row.offset_s : trunk.landing.landing().sclk().seconds;
+        return of_anchor(row.id, base_s + difference_s());
+    }
+    commands::Request of_parameters(const Trunk& trunk) {
+        const auto known = server::solution_arguments(trunk.landing.landing().solution());
+        commands::Request request;
+        request.command = "EDL_SET_PARAMETERS";
+        request.arguments = known;
+        for (auto& [name, value] : request.arguments)
+            if (name == "entry_sclk") value += difference_s();
+        return request;
+    }
+
+    std::mt19937 random_;
+};
+
+std::string text_of(const commands::Request& request, double e_s) {
+    return request.command + " " + commands::arguments_text(request.arguments) + " at E" + std::to_string(e_s);
+}
+
+/// Flies each of `count` changes that the board accepts, whatever ground says of it.
+void try_changes(std::uint32_t seed, std::size_t count) {
+    Changes changes{seed};
+    std::vector<double> moments(count);
+    for (double& moment : moments) moment = changes.moment_e_s();
+    std::sort(moments.begin(), moments.end());
+    Trunk trunk{commanded()};
+    std::size_t by_both = 0, by_ground_alone = 0;
+    for (const double moment : moments) {
+        trunk.fly_until(moment);
+        if (!trunk.flying()) continue;
+        auto request = changes.draw(trunk);
+        INFO("seed " << seed << ": " << text_of(request, trunk.e_s()));
+        request.armed = true;
+        request.dry_run = true;
+        const bool ground_accepts = trunk.landing.submit(request).accepted;
+        OnBoard board{trunk.landing.landing(), request};
+        by_both += ground_accepts && board.executed;
+        by_ground_alone += ground_accepts && !board.executed;
+        if (!board.executed) continue;
+        board.land();
+        CHECK(unsafe(board.landing) == "");
+    }
+    trunk.fly_until(1.0e6);
+    CHECK(unsafe(trunk.landing.landing()) == "");
+    INFO(by_both << " of " << count << " were accepted on ground and on board, " << by_ground_alone
+                 << " more on ground alone");
+    CHECK(by_both >= count / 4);
+}
+
+commands::Request entry_at(double sclk) {
+    commands::Request request;
+    request.command = "EDL_SET_ANCHOR_OFFSET";
+    request.arguments = {{"anchor", 1.0}, {"offset_s", sclk}};
+    return request;
+}
+
+}  // namespace
+
+TEST_CASE("no change that is accepted makes an unsafe landing of a safe one: 40 of any kind at any time",
+          "[timeline][R19][R51][release]") {
+    try_changes(24, 40);
+}
+
+TEST_CASE("no change that is accepted makes an unsafe landing of a safe one: 2000 of any kind at any time",
+          "[.long][timeline][R51]") {
+    try_changes(2012, 2000);
+}
+
+TEST_CASE("entry moved by 300 s is refused on ground, by a script as by a person, and past ground on board",
+          "[timeline][R51]") {
+    Scenario scenario = commanded();
+    const Sclk late = scenario.entry_sclk + 300.0;
+    scenario.commands.push_back(
+        {1000.0, "EDL_SET_ANCHOR_OFFSET", {{"anchor", 1.0}, {"offset_s", late.seconds}}, false});
+    scenario.commands.push_back({990.0, "EDL_SET_PARAMETERS", {{"entry_sclk", late.seconds}}, true});
+    Trunk trunk{scenario};
+    trunk.fly_until(-1001.0);
+    CHECK(trunk.landing.script_refusals().empty());
+    trunk.fly_until(-985.0);
+    REQUIRE(trunk.landing.script_refusals().size() == 2);
+    for (const auto& refusal : trunk.landing.script_refusals())
+        CHECK_THAT(refusal, Catch::Contains("not safe on the timeline as it stands: entry would be 300"));
+    const auto by_a_person = trunk.landing.submit(entry_at(late.seconds));
+    CHECK_FALSE(by_a_person.accepted);
+    CHECK(by_a_person.reason == trunk.landing.script_refusals().front());
+    const auto in_a_file = trunk.landing.look(std::vector{entry_at(late.seconds)});
+    CHECK(in_a_file.front().reason == by_a_person.reason);
+
+    const OnBoard board{trunk.landing.landing(), entry_at(late.seconds)};
+    CHECK(board.refused);
+    CHECK(board.said_why == 1);
+}
+
+TEST_CASE("entry moved to a time past fires no burst of timepoints: refused, and the timeline goes on by the plan",
+          "[timeline][R51]") {
+    Trunk trunk{commanded()};
+    trunk.fly_until(-1000.0);
+    const double past = trunk.entry.seconds - 1100.0;
+    CHECK_FALSE(trunk.landing.submit(entry_at(past)).accepted);
+    OnBoard board{trunk.landing.landing(), entry_at(past)};
+    CHECK(board.refused);
+    int fired = 0;
+    for (int cycle = 0; cycle < 64 * 30; ++cycle) {
+        telemetry::PacketStream packets{board.landing.step().recorded};
+        while (const auto packet = packets.next())
+            fired += read_tm_packet(*packet)->primary.apid == flight::packet::TimepointFired::apid;
+    }
+    CHECK(fired == 0);
+}
+
+TEST_CASE("the touchdown anchor moved under the parachute or on the bridle is refused on ground and on board",
+          "[timeline][R51]") {
+    Trunk trunk{commanded()};
+    for (const double e_s : {300.0, 425.0}) {
+        trunk.fly_until(e_s);
+        REQUIRE(trunk.flying());
+        commands::Request request;
+        request.command = "EDL_SET_ANCHOR_OFFSET";
+        request.arguments = {{"anchor", static_cast<double>(flight::anchor::touchdown.value)},
+                             {"offset_s", trunk.landing.landing().sclk().seconds}};
+        request.armed = true;
+        request.confirmation = request.command;
+        CHECK_THAT(trunk.landing.submit(request).reason, Catch::Contains("touchdown is decided in flight"));
+        const OnBoard board{trunk.landing.landing(), request};
+        CHECK(board.refused);
+        CHECK(board.said_why == 1);
+    }
+}
+
+}  // namespace simulation_changed_timeline_test
