@@ -4,8 +4,10 @@
 #include "flight/gnc/mars.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace aeolis::flight {
+
 MaybeTime navigated_entry(const command::EDL_SET_PARAMETERS& sent) {
     gnc::Vector3 p_MoB_M{sent.position_x_m, sent.position_y_m, sent.position_z_m};
     gnc::Vector3 v_MB_M{sent.velocity_x_mps, sent.velocity_y_mps, sent.velocity_z_mps};
