@@ -104,7 +104,7 @@ TEST_CASE("two versions are compared row by row: added, removed, moved, and each
     CHECK_FALSE(change_of(timeline, "heartbeat_entry_2").after);
     CHECK_FALSE(change_of(timeline, "quiet").before);
     REQUIRE(change_of(timeline, "quiet").after);
-    CHECK(*change_of(timeline, "quiet").after == 71);
+    CHECK(*change_of(timeline, "quiet").after == 72);
     CHECK(change_of(timeline, "radar_off").moved);
     CHECK(change_of(timeline, "radar_off").cells.empty());
     const RowChange& changed = change_of(timeline, "gnc_enable");
