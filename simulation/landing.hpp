@@ -88,6 +88,7 @@ const char* name_of(Outcome outcome);
 
 struct TouchdownReport {
     double vertical_mps = 0.0, horizontal_mps = 0.0, miss_m = 0.0, latitude_deg = 0.0, longitude_deg = 0.0;
+    double tilt_deg = 0.0;  ///< of the descent stage off the vertical
 };
 
 /// Results of one 64 Hz cycle. Valid until the next step; the vectors keep their capacity.

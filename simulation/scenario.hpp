@@ -209,6 +209,18 @@ struct StationOutage {
 /// The faults that an instructor may inject during a landing.
 using Fault = std::variant<SystemFault, DeviceFault, ComputerReset, StationOutage>;
 
+/// What a landing has to keep: outside of it the rover stands all the same, and it is told by how much (limits.hpp).
+struct Limits {
+    double propellant_left_min_kg = 4.0;        ///< after fly-away: 1 % of what is loaded cannot be drawn. Ours
+    double touchdown_vertical_max_mps = 0.85;   ///< [facts] Dispersed landings (M)
+    double touchdown_horizontal_max_mps = 0.5;  ///< [facts] (M)
+    double touchdown_tilt_max_deg = 10.0;       ///< of the descent stage off the vertical. Ours
+    double recontact_min_m = 25.0;              ///< to what was let go, once that was clear: a parachute's width. Ours
+    double parachute_mach_max = 2.2;            ///< [sengupta-2009], at the mortar
+    double parachute_pressure_max_Pa = 750.0;   ///< the same
+    double timeline_margin_min_s = 0.5;         ///< that a decision of GNC finds the timeline ready earlier. Ours
+};
+
 /// The part of the flight software that flies, and what stands in for the rest. The software is the same in each. R36
 enum class TestVenue : std::uint8_t {
     flight_software,  ///< all of it
@@ -237,6 +249,7 @@ struct Scenario {
     Gyration gyration;
     Stations stations;
     Dispersions dispersions;
+    Limits limits;
     std::vector<DensityScale> density_scale;
     double parachute_drag_area_m2 = 205.0;  ///< CD·S at terminal speed
     double steady_wind_east_mps = 0.0;

@@ -238,8 +238,13 @@ void World::State::touch_ground(const std::optional<PointMass>& rover) {
             scenario.target.radius_m * std::atan2(target.cross(local.up).norm(), target.dot(local.up));
         contact = sclk() + seconds_per_tick;
         p_MoRover_M = p;
-        touchdown = TouchdownReport{vertical_mps, horizontal_mps, miss_m, latitude_rad(p) / degree_rad,
-                                    longitude_rad(p) / degree_rad};
+        const Vector3 stage_down_M = vehicle.q_MB() * Vector3::UnitZ();
+        touchdown = TouchdownReport{vertical_mps,
+                                    horizontal_mps,
+                                    miss_m,
+                                    latitude_rad(p) / degree_rad,
+                                    longitude_rad(p) / degree_rad,
+                                    std::acos(std::clamp(-stage_down_M.dot(local.up), -1.0, 1.0)) / degree_rad};
         if (vertical_mps > wheels_break_vertical_mps || horizontal_mps > wheels_break_horizontal_mps)
             end(Outcome::impact, "the rover touched the ground too fast");
     }

@@ -129,6 +129,7 @@ void EdlMain::take_triggers(Sclk now, Outbox& out) {
     if (output_.bank_reversal != 0) announce_bank_reversal(output_, out);
     peak_deceleration_.watch(output_, out);
     unverified_.watch(output_, configuration_, out);
+    gnc_health_.watch(output_, out);
 }
 
 void EdlMain::update_phase(Sclk now, Outbox& out) {

@@ -4,6 +4,7 @@
 #include "common/fixed_queue.hpp"
 #include "flight/cross_string/state_frame.hpp"
 #include "flight/edl/decisions.hpp"
+#include "flight/edl/gnc_health.hpp"
 #include "flight/edl/phase.hpp"
 #include "flight/edl/unverified_actions.hpp"
 #include "flight/gnc/edl_gnc.hpp"
@@ -66,7 +67,7 @@ class EdlMain {
     /// State for another computer. Left out: a present fault, which is reported again, the monitor and the guard.
     template <typename Exchange>
     void carry(Exchange& exchange) {
-        exchange(parameters_, timeline_, configuration_, gnc_, peak_deceleration_, mode_, phase_, bridle_m_,
+        exchange(parameters_, timeline_, configuration_, gnc_, peak_deceleration_, gnc_health_, mode_, phase_, bridle_m_,
                  was_pre_edl_, was_late_cruise_);
     }
 
@@ -114,6 +115,7 @@ class EdlMain {
     double bridle_m_ = 0.0;
     std::optional<command::EDL_SET_PARAMETERS> parameters_;
     PeakDeceleration peak_deceleration_;
+    GncHealth gnc_health_;
     HeldExplanations held_;
     gnc::Mode mode_ = gnc::Mode::off;
     Phase phase_;

@@ -86,6 +86,14 @@ packet::GncDescent descent(const gnc::Output& gnc, double bridle_m) {
             .bridle_m = single(bridle_m)};
 }
 
+packet::GncBelief belief(const gnc::Output& gnc) {
+    return {.dead_reckoned_s = single(gnc.dead_reckoned_s),
+            .attitude_uncertainty_deg = single(gnc.attitude_uncertainty_deg),
+            .velocity_uncertainty_mps = single(gnc.velocity_uncertainty_mps),
+            .altitude_uncertainty_m = single(gnc.altitude_uncertainty_m),
+            .propellant_low = gnc.propellant_low};
+}
+
 /// Synthetic load for benchmarks: thirty slow waves of known phase, no quantities of the vehicle.
 packet::Wideband wideband(Sclk now) {
     const auto wave = [&](int channel) {
@@ -156,6 +164,7 @@ void EdlMain::record_channels(Sclk now, Outbox& out) {
     const bool in_atmosphere = phase() >= EdlPhase::wait_for_guidance;
     if (due(now, in_atmosphere ? 64 : 8)) out.record(navigation(output_));
     if (due(now, in_atmosphere ? 16 : 8)) out.record(imu(output_));
+    if (due(now, 1)) out.record(belief(output_));
     if (in_atmosphere && phase() < EdlPhase::parachute_descent && due(now, 8)) out.record(entry_guidance(output_));
     if (phase() >= EdlPhase::powered_descent && due(now, 8)) out.record(descent(output_, bridle_m_));
 }

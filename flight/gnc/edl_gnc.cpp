@@ -3,6 +3,7 @@
 
 #include "flight/devices/effectors.hpp"
 #include "flight/gnc/entry/heading_alignment.hpp"
+#include "flight/gnc/entry/height_guard.hpp"
 #include "flight/gnc/entry/range_control.hpp"
 #include "flight/gnc/flyaway/flyaway.hpp"
 #include "flight/gnc/mars.hpp"
@@ -78,6 +79,7 @@ void EdlGnc::set_solution(const Solution& solution, Sclk now) {
     state = propagate(state, now - solution.epoch);
     state.q_MB = strapdown_.state().q_MB;
     strapdown_.start(state);
+    belief_ = {};
     navigating_ = true;
     navigated_to_ = now;
     measure(now);
@@ -105,10 +107,22 @@ void EdlGnc::take_cruise_attitude() {
 void EdlGnc::on(const RadarSolution& solution) {
     if (!navigating_ || solution.altitude_m > parameters.radar_altitude_max_m) return;
     last_radar_beams_ = solution.beams;
-    const auto correction = radar_filter_.on(solution, measured_at_, measured_.up_M);
+    const auto correction = radar_filter_.on(solution, measured_at_, measured_.up_M, belief_);
     if (!correction) return;
     if (radar_filter_.accepted() == 1) radar_first_ = true;
     strapdown_.correct(correction->altitude_m * measured_.up_M, correction->v_M_mps);
+    level_by(*correction);
+}
+
+// Where attitude is off by a tilt, gravity is taken off in a wrong direction, and the radar sees navigation drift away
+// across it: r grows by tilt × g. Only after a silence of the IMU: else attitude is better than radar is quiet.
+void EdlGnc::level_by(const RadarCorrection& correction) {
+    if (belief_.attitude_rad() > 0.0 && correction.gain < 1.0) {
+        const Vector3 residual_mps = correction.v_M_mps / correction.gain;
+        strapdown_.turn(-parameters.level_gain_per_s / mars_weight_mps2 * residual_mps.cross(measured_.up_M));
+        belief_.narrow_attitude();
+    }
+    belief_.hear_radar(correction.gain);
 }
 
 void EdlGnc::navigate(std::span<const ImuSample> imu, Sclk now) {
@@ -116,7 +130,12 @@ void EdlGnc::navigate(std::span<const ImuSample> imu, Sclk now) {
     const double passed_s = now - navigated_to_;
     if (passed_s <= 0.0) return;  // a solution was just taken, valid now: these increments are older
     navigated_to_ = now;
-    if (imu.empty()) strapdown_.coast(passed_s);
+    if (imu.empty())
+        reckon(passed_s);
+    else
+        reckoning_.end();
+    belief_.pass(reckoning_.silent_s() >= parameters.imu_silence_told_s, surroundings_.held_by,
+                 strapdown_.specific_force_B_mps2().norm(), passed_s);
     const bool pushed = measured_.altitude_m < parameters.air_altitude_max_m || now <= pulses_felt_until_;
     for (const ImuSample& sample : imu) {
         const Vector3 force_B = to_vector(sample.delta_v_mps) / imu_period_s;
@@ -124,6 +143,17 @@ void EdlGnc::navigate(std::span<const ImuSample> imu, Sclk now) {
             imu_period_s / (parameters.push_filter_time_s + imu_period_s) * (force_B - smooth_force_B_mps2_);
         strapdown_.on(sample, pushed || smooth_force_B_mps2_.squaredNorm() >
                                             parameters.push_felt_mps2 * parameters.push_felt_mps2);
+    }
+}
+
+void EdlGnc::reckon(double passed_s) {
+    if (passed_s > parameters.tick_apart_max_s) return strapdown_.coast(passed_s);
+    surroundings_.altitude_m = measured_.altitude_m;
+    surroundings_.free_M_mps2 = measured_.free_M_mps2;
+    const Felt last{strapdown_.specific_force_B_mps2(), strapdown_.rate_B_rps()};
+    for (double passed = 0.0; passed < passed_s; passed += seconds_per_tick) {
+        const Felt felt = reckoning_.feel(surroundings_, strapdown_.state(), last, seconds_per_tick);
+        strapdown_.reckon(felt.force_B_mps2, felt.rate_B_rps, seconds_per_tick);
     }
 }
 
@@ -142,6 +172,14 @@ void EdlGnc::measure(Sclk now) {
     const Vector3 ahead = state.v_MB_M / std::max(m.speed_mps, 1.0e-3);
     force_filter_.on(state.q_MB * strapdown_.specific_force_B_mps2(), ahead, cycle_s);
     m.deceleration_mps2 = force_filter_.drag_mps2() - m.free_M_mps2.dot(ahead);
+    if (mode() < Mode::free_fall) {
+        const double area_m2 =
+            mode() == Mode::parachute_descent ? parameters.parachute_drag_area_m2 : parameters.entry_drag_area_m2;
+        m.dynamic_pressure_Pa = std::max(load_.entry_mass_kg * force_filter_.drag_mps2() / area_m2, 0.0);
+    } else {
+        m.dynamic_pressure_Pa = 0.0;
+    }
+    m.mach = m.speed_mps / speed_of_sound_mps(m.altitude_m);
     m.bank_rad = bank_of(state.q_MB, state.p_MoB_M, state.v_MB_M);
     m.target = target_geometry(state.p_MoB_M, state.v_MB_M, target_M_, solution_.target_radius_m);
 }
@@ -219,7 +257,7 @@ void EdlGnc::follow_configuration(const Configuration& configuration, Sclk now) 
 // Entry and parachute: decisions from the navigated state.
 void EdlGnc::decide_in_air(const Configuration& configuration, Sclk now, Output& out) {
     const Measured& m = measured_;
-    const triggers::InAir in_air{m.speed_mps, m.altitude_m, m.descent_rate_mps};
+    const triggers::InAir in_air{m.speed_mps, m.altitude_m, m.descent_rate_mps, m.dynamic_pressure_Pa, m.mach};
     const triggers::ParachuteBounds parachute{solution_.parachute_speed_mps, solution_.parachute_altitude_min_m};
     const GncModeMachine& machine = mode_machine_;
     if (machine.can(GncModeEvent::drag_felt) &&
@@ -240,8 +278,7 @@ void EdlGnc::decide_in_air(const Configuration& configuration, Sclk now, Output&
     if (mode() != Mode::parachute_descent) return;
     const double since_parachute_s = configuration.parachute_time ? now - *configuration.parachute_time : 0.0;
     if (!configuration.heatshield_gone)
-        fire(Trigger::heatshield, triggers::heatshield(m.speed_mps, solution_.heatshield_speed_mps, since_parachute_s),
-             out);
+        fire(Trigger::heatshield, triggers::heatshield(in_air, solution_.heatshield_speed_mps, since_parachute_s), out);
     if (!configuration.heatshield_gone) return;
     // Inertial altitude alone may be kilometres off by now; it is used only after waiting for the radar in vain.
     const double since_heatshield_s = configuration.heatshield_time ? now - *configuration.heatshield_time : 0.0;
@@ -325,7 +362,11 @@ void EdlGnc::guide_entry(Sclk now, const Configuration& configuration, Output& o
                              wanted.bank_magnitude_rad < parameters.reversal_settled_below_deg * degree;
         if (lateral_.on(now, m.target.crossrange_m, m.speed_mps, wanted.saturated, settled))
             out.bank_reversal = lateral_.reversals();
-        bank_command_rad_ = lateral_.sign() * wanted.bank_magnitude_rad;
+        if (now.ticks() % static_cast<std::int64_t>(parameters.height_guard_every_ticks) == 0)
+            bank_allowed_rad_ = bank_allowed_rad(altitude_when_slow_m(
+                {m.altitude_m, m.speed_mps, m.descent_rate_mps, input.drag_mps2, input.lift_to_drag},
+                solution_.parachute_speed_mps));
+        bank_command_rad_ = lateral_.sign() * std::min(wanted.bank_magnitude_rad, bank_allowed_rad_);
     } else if (mode() == Mode::heading_alignment) {
         attitude.mode = AttitudeCommand::Mode::entry_bank;
         bank_command_rad_ = heading_alignment_bank_rad(m.target);
@@ -402,6 +443,13 @@ Inertia inertia_of(Mode mode, const Configuration& configuration, double rigid_k
     return {rigid_kg * radii.across_m * radii.across_m, rigid_kg * radii.along_z_m * radii.along_z_m};
 }
 
+HeldBy held_by(Mode mode, const EngineCommand& engines) {
+    if (mode >= Mode::free_fall) return engines.ignited ? HeldBy::engines : HeldBy::nothing;
+    if (mode == Mode::parachute_descent) return HeldBy::parachute;
+    if (mode == Mode::straighten_up) return HeldBy::new_trim;
+    return mode >= Mode::range_control ? HeldBy::air : HeldBy::nothing;
+}
+
 void EdlGnc::steer(const Configuration& configuration, Output& out) {
     const NavigatedState& state = strapdown_.state();
     const bool in_air = mode() >= Mode::range_control;
@@ -409,8 +457,16 @@ void EdlGnc::steer(const Configuration& configuration, Output& out) {
     const bool rover_hangs = configuration.rover_separated && mode() != Mode::flyaway;
     const double rigid_kg =
         mode() < Mode::free_fall ? load_.entry_mass_kg : mass_kg_ - (rover_hangs ? load_.rover_mass_kg : 0.0);
-    steering_.cycle(out.attitude, attitude, inertia_of(mode(), configuration, rigid_kg),
-                    steers(mode(), configuration, out.engines), out.thrusters, out.engines);
+    const Inertia inertia = inertia_of(mode(), configuration, rigid_kg);
+    steering_.cycle(out.attitude, attitude, inertia, steers(mode(), configuration, out.engines), out.thrusters,
+                    out.engines);
+    surroundings_.held_by = held_by(mode(), out.engines);
+    surroundings_.inertia = inertia;
+    surroundings_.mass_kg = rigid_kg;
+    surroundings_.thrust_N = thrust_felt_N_;
+    // Thrusters rest while the parachute opens, until the heatshield is gone.
+    const bool turned = mode() != Mode::parachute_descent || configuration.heatshield_gone;
+    surroundings_.torque_B_Nm = turned ? steering_.torque_B_Nm() : Vector3(Vector3::Zero());
     if (out.thrusters != ThrusterCommand{})
         pulses_felt_until_ = measured_at_ + parameters.pulse_felt_ticks * seconds_per_tick;
 }
@@ -418,8 +474,8 @@ void EdlGnc::steer(const Configuration& configuration, Output& out) {
 void EdlGnc::burn(const DeviceInputs& in, const Configuration& configuration) {
     if (mode() < Mode::free_fall || configuration.engines_off) return;
     // Thrust reported by the engines; until they report any, the commanded thrust.
-    const double thrust_N = in.engines ? in.engines->thrust_N : thrust_command_N_;
-    mass_kg_ -= thrust_N / (load_.engine_isp_s * standard_gravity_mps2) * cycle_s;
+    thrust_felt_N_ = in.engines ? in.engines->thrust_N : thrust_command_N_;
+    mass_kg_ -= thrust_felt_N_ / (load_.engine_isp_s * standard_gravity_mps2) * cycle_s;
 }
 
 void EdlGnc::report(Output& out) const {
@@ -442,12 +498,8 @@ void EdlGnc::report(Output& out) const {
     out.predicted_range_m = predicted_range_m_;
     out.bank_command_deg = bank_command_rad_ / degree;
     out.lift_to_drag_command = lift_to_drag_command_;
-    if (mode() < Mode::free_fall) {
-        const double area_m2 =
-            mode() == Mode::parachute_descent ? parameters.parachute_drag_area_m2 : parameters.entry_drag_area_m2;
-        out.dynamic_pressure_Pa = std::max(load_.entry_mass_kg * force_filter_.drag_mps2() / area_m2, 0.0);
-    }
-    out.mach = m.speed_mps / speed_of_sound_mps(m.altitude_m);
+    out.dynamic_pressure_Pa = m.dynamic_pressure_Pa;
+    out.mach = m.mach;
     out.reversals = lateral_.reversals();
     out.acceleration_B_mps2 = to_array(strapdown_.specific_force_B_mps2());
     out.rate_B_rps = to_array(strapdown_.rate_B_rps());
@@ -456,6 +508,11 @@ void EdlGnc::report(Output& out) const {
     out.mass_kg = on_engines ? mass_kg_ : load_.entry_mass_kg;
     const double carried_kg = load_.descent_stage_dry_kg + (mode() == Mode::flyaway ? 0.0 : load_.rover_mass_kg);
     out.propellant_kg = (on_engines ? mass_kg_ : load_.powered_descent_mass_kg) - carried_kg;
+    out.propellant_low = mode() < Mode::flyaway && out.propellant_kg < parameters.propellant_low_kg;
+    out.dead_reckoned_s = reckoning_.silent_s();
+    out.attitude_uncertainty_deg = belief_.attitude_rad() / degree;
+    out.velocity_uncertainty_mps = belief_.velocity_mps();
+    out.altitude_uncertainty_m = belief_.altitude_m();
     out.radar_locked = radar_filter_.locked();
     out.radar_beams = last_radar_beams_;
 }

@@ -7,6 +7,7 @@
 #include "flight/gnc/attitude/steering.hpp"
 #include "flight/gnc/entry/lateral_logic.hpp"
 #include "flight/gnc/entry/target_geometry.hpp"
+#include "flight/gnc/navigation/dead_reckoning.hpp"
 #include "flight/gnc/navigation/force_filter.hpp"
 #include "flight/gnc/navigation/radar_batch.hpp"
 #include "flight/gnc/navigation/radar_filter.hpp"
@@ -174,12 +175,17 @@ struct Output {
     double propellant_kg = 0.0;
     bool radar_locked = false;
     std::uint16_t radar_beams = 0;  ///< of the last radar solution
+    double dead_reckoned_s = 0.0;   ///< the IMU has been silent for so long; 0 while it speaks
+    double attitude_uncertainty_deg = 0.0, velocity_uncertainty_mps = 0.0, altitude_uncertainty_m = 0.0;
+    bool propellant_low = false;  ///< before fly-away
 };
 
 /// Effectors that steer in a mode: the engines once guidance throttles them, otherwise the thrusters.
 Steers steers(Mode mode, const Configuration& configuration, const EngineCommand& engines);
 /// Inertia of the body that is steered: the vehicle, later the stage with or without the rover.
 Inertia inertia_of(Mode mode, const Configuration& configuration, double rigid_kg);
+/// What holds the vehicle in a mode, and so what it feels while the IMU is silent.
+HeldBy held_by(Mode mode, const EngineCommand& engines);
 
 /// The whole state of GNC, a value of fixed size.
 class EdlGnc {
@@ -207,11 +213,12 @@ class EdlGnc {
     /// State that another computer needs to continue; without the radar filter's history.
     template <typename Exchange>
     void carry(Exchange& exchange) {
-        exchange(solution_, target_M_, navigating_, navigated_to_, pulses_felt_until_, strapdown_, smooth_force_B_mps2_,
-                 force_filter_, radar_filter_, measured_.altitude_m, mode_machine_, mode_since_, fired_,
-                 due_for_parachute_, low_for_backshell_, radar_first_, lateral_, bank_command_rad_, bank_at_sufr_rad_,
-                 predicted_range_m_, lift_to_drag_command_, mass_kg_, thrust_command_N_, approach_, divert_,
-                 divert_from_M_, deceleration_, rate_control_, touchdown_logic_, last_radar_beams_);
+        exchange(solution_, target_M_, navigating_, navigated_to_, pulses_felt_until_, strapdown_, reckoning_, belief_,
+                 smooth_force_B_mps2_, force_filter_, radar_filter_, measured_.altitude_m, mode_machine_, mode_since_,
+                 fired_, due_for_parachute_, low_for_backshell_, radar_first_, lateral_, bank_command_rad_,
+                 bank_at_sufr_rad_, bank_allowed_rad_, predicted_range_m_, lift_to_drag_command_, mass_kg_,
+                 thrust_command_N_, approach_, divert_, divert_from_M_, deceleration_, rate_control_, touchdown_logic_,
+                 last_radar_beams_);
     }
 
     Mode mode() const { return mode_machine_.state(); }
@@ -227,12 +234,15 @@ class EdlGnc {
         double speed_mps = 0.0;
         double descent_rate_mps = 0.0;
         double deceleration_mps2 = 0.0;  ///< of the planet-relative speed
+        double dynamic_pressure_Pa = 0.0, mach = 0.0;
         double bank_rad = 0.0;
         TargetGeometry target;
     };
 
     void navigate(std::span<const ImuSample> imu, Sclk now);
+    void reckon(double passed_s);
     void take_cruise_attitude();
+    void level_by(const RadarCorrection& correction);
     void measure(Sclk now);
     bool take(GncModeEvent event, Sclk now);
     bool fire(Trigger trigger, const Conditions& conditions, Output& out);
@@ -258,6 +268,9 @@ class EdlGnc {
     Sclk navigated_to_;
     Sclk pulses_felt_until_;  ///< in vacuum: until then thruster pulses are felt
     Strapdown strapdown_;
+    DeadReckoning reckoning_;
+    Belief belief_;
+    Surroundings surroundings_;  ///< as of the last cycle
     Vector3 smooth_force_B_mps2_ = Vector3::Zero();
     ForceFilter force_filter_;
     RadarFilter radar_filter_;
@@ -273,11 +286,13 @@ class EdlGnc {
     LateralLogic lateral_;
     double bank_command_rad_ = 0.0;
     double bank_at_sufr_rad_ = 0.0;
+    double bank_allowed_rad_ = pi;  ///< by the height guard
     double predicted_range_m_ = 0.0;
     double lift_to_drag_command_ = 0.0;
 
     double mass_kg_ = 0.0;  ///< estimate, while on engines
     double thrust_command_N_ = 0.0;
+    double thrust_felt_N_ = 0.0;  ///< as engines told last; what was asked for until they do
     Steering steering_;
     powered_descent::ApproachProfile approach_;
     powered_descent::Divert divert_;

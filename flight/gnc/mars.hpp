@@ -34,7 +34,7 @@ Vector3 free_acceleration(const Vector3& p_MoB_M, const Vector3& v_MB_M);
 void fall(Vector3& p_MoB_M, Vector3& v_MB_M, double dt_s);
 
 /// Speed of sound [m/s] at a height above Gale's landing radius, −5 … 140 km; held outside.
-/// For the Mach number in telemetry only. From the temperature of [gale-atmosphere] with γ = 1.3 and R = 188.9 J/(kg
+/// For an estimate of the Mach number. From the temperature of [gale-atmosphere] with γ = 1.3 and R = 188.9 J/(kg
 /// K); the piecewise linear form is our assumption.
 double speed_of_sound_mps(double altitude_m);
 

@@ -103,12 +103,14 @@ void add(const Summary& summary, v1::CampaignReport& report) {
     }
     report.set_recontacts(static_cast<std::uint32_t>(summary.recontacts));
     report.set_failed(static_cast<std::uint32_t>(summary.failed));
-    for (const auto& failure : summary.failures) {
-        auto& row = *report.add_failures();
+    const auto fill = [](const Failure& failure, v1::CampaignFailure& row) {
         row.set_case_(static_cast<std::uint32_t>(failure.number));
         row.set_outcome(failure.outcome);
         row.set_reason(failure.reason);
-    }
+    };
+    for (const auto& failure : summary.failures) fill(failure, *report.add_failures());
+    report.set_outside_limits(static_cast<std::uint32_t>(summary.outside_limits));
+    for (const auto& outside : summary.outside) fill(outside, *report.add_outside());
 }
 
 }  // namespace

@@ -69,13 +69,13 @@ std::string margin_rows(const Summary& summary) {
     return text;
 }
 
-std::string failure_rows(const Summary& summary, const Call& call) {
+std::string failure_rows(const Summary& summary, const Call& call, const std::vector<Failure>& failures,
+                         std::uint64_t count) {
     std::string text;
-    for (const Failure& failure : summary.failures)
+    for (const Failure& failure : failures)
         text += fmt::format("case {}: {} at cycle {}: {}\n    {}\n", failure.number, failure.outcome, failure.end_cycle,
                             failure.reason, again(summary, call, failure.number));
-    if (summary.failed > summary.failures.size())
-        text += fmt::format("and {} more in the results\n", summary.failed - summary.failures.size());
+    if (count > failures.size()) text += fmt::format("and {} more in the results\n", count - failures.size());
     return text;
 }
 
@@ -139,6 +139,8 @@ std::string campaign_json(const Summary& summary, const Call& call) {
         .count("recontacts", summary.recontacts)
         .count("failed", summary.failed)
         .raw("failures", json_array(summary.failures, failure_json))
+        .count("outside_limits", summary.outside_limits)
+        .raw("outside", json_array(summary.outside, failure_json))
         .count("jobs", call.jobs)
         .count("flown", call.progress.flown)
         .number("wall_s", call.progress.wall_s)
@@ -179,7 +181,9 @@ std::string campaign_table(const Summary& summary, const Call& call) {
         text += fmt::format("{} recontacts; backshell never nearer than {:.1f} m\n", summary.recontacts,
                             summary.backshell_least_m.least);
     text += summary.failed == 0 ? "no case failed\n" : fmt::format("\n{} failed\n", summary.failed);
-    text += failure_rows(summary, call);
+    text += failure_rows(summary, call, summary.failures, summary.failed);
+    if (summary.outside_limits > 0) text += fmt::format("\n{} landed outside limits\n", summary.outside_limits);
+    text += failure_rows(summary, call, summary.outside, summary.outside_limits);
     text += fmt::format("{} cases flown now in {:.1f} s, {} jobs, {:.2f} cases/s; results in {}\n", call.progress.flown,
                         call.progress.wall_s, call.jobs, call.progress.rate_per_s(), call.results);
     return text;

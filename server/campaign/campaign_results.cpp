@@ -143,13 +143,23 @@ Result<void> CampaignResults::read_outcomes(Summary& into) {
         if (row.text(0) != "touchdown") into.failed += count;
     });
     if (!counted) return counted;
-    auto failures = database_.prepare("SELECT number, outcome, reason, end_cycle FROM flown"
-                                      " WHERE outcome <> 'touchdown' ORDER BY number LIMIT ?");
+    auto outside = database_.integer_of("SELECT count(*) FROM flown WHERE limits_exceeded > 0");
+    if (!outside) return outside.error();
+    into.outside_limits = static_cast<std::uint64_t>(*outside);
+    if (const auto read = read_failures("outcome <> 'touchdown'", into.failures); !read) return read;
+    return read_failures("limits_exceeded > 0", into.outside);
+}
+
+Result<void> CampaignResults::read_failures(const char* condition, std::vector<Failure>& into) {
+    auto failures = database_.prepare(fmt::format("SELECT number, outcome, reason, end_cycle FROM flown"
+                                                  " WHERE {} ORDER BY number LIMIT ?",
+                                                  condition)
+                                          .c_str());
     if (!failures) return failures.error();
     failures->bind(1, static_cast<std::int64_t>(Summary::failures_max));
     return each_row(*failures, [&](const Statement& row) {
-        into.failures.push_back({static_cast<std::uint64_t>(row.integer(0)), std::string{row.text(1)},
-                                 std::string{row.text(2)}, static_cast<std::uint64_t>(row.integer(3))});
+        into.push_back({static_cast<std::uint64_t>(row.integer(0)), std::string{row.text(1)}, std::string{row.text(2)},
+                        static_cast<std::uint64_t>(row.integer(3))});
     });
 }
 

@@ -27,6 +27,7 @@ struct EventSpread {
     Spread e_s, altitude_m, speed_mps;
 };
 
+/// A case that was lost, or that landed outside the scenario's limits.
 struct Failure {
     std::uint64_t number = 0;
     std::string outcome, reason;
@@ -62,6 +63,8 @@ struct Summary {
     std::optional<LeastMargin> least_margin;
     std::vector<Failure> failures;  ///< the first `failures_max`
     std::uint64_t failed = 0;
+    std::vector<Failure> outside;  ///< that landed, and not within the scenario's limits; the first `failures_max`
+    std::uint64_t outside_limits = 0;
 
     static constexpr std::size_t failures_max = 20;  ///< chosen: a screenful; the file has them all
 
@@ -115,6 +118,7 @@ class CampaignResults {
     Result<void> each(const char* sql, const std::function<void(Point)>& take);
     Result<Summary> read(bool with_events);
     Result<void> read_outcomes(Summary& into);
+    Result<void> read_failures(const char* condition, std::vector<Failure>& into);
     Result<void> read_events(Summary& into);
     Result<void> read_spreads(Summary& into);
     Result<void> read_margins(Summary& into);

@@ -21,7 +21,8 @@ const char* const schema =
     " end_cycle INTEGER NOT NULL, vertical_mps REAL, horizontal_mps REAL, miss_m REAL, latitude_deg REAL,"
     " longitude_deg REAL, east_m REAL, north_m REAL, peak_deceleration_mps2 REAL, parachute_mach REAL,"
     " parachute_pressure_Pa REAL, propellant_kg REAL,"
-    " heatshield_least_m REAL, backshell_least_m REAL, struck_by TEXT) STRICT;"
+    " heatshield_least_m REAL, backshell_least_m REAL, struck_by TEXT,"
+    " tilt_deg REAL, limits_exceeded INTEGER NOT NULL) STRICT;"
     "CREATE TABLE arrivals (place INTEGER PRIMARY KEY, case_number INTEGER NOT NULL REFERENCES cases(number)) STRICT;"
     "CREATE TABLE events (case_number INTEGER NOT NULL REFERENCES cases(number), place INTEGER NOT NULL,"
     " name TEXT NOT NULL, e_s REAL, altitude_m REAL, speed_mps REAL,"
@@ -116,7 +117,7 @@ Result<void> CampaignStore::prepare() {
     auto has = database_.prepare("SELECT 1 FROM cases WHERE number = ?");
     if (!has) return has.error();
     auto add_case =
-        database_.prepare("INSERT INTO cases VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+        database_.prepare("INSERT INTO cases VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
     if (!add_case) return add_case.error();
     auto add_arrival = database_.prepare("INSERT INTO arrivals (case_number) VALUES (?)");
     if (!add_arrival) return add_arrival.error();
@@ -170,6 +171,8 @@ Result<void> CampaignStore::add(std::span<const CaseResult> results) {
         if (heatshield_least_m) add_case_.bind(16, *heatshield_least_m);
         if (backshell_least_m) add_case_.bind(17, *backshell_least_m);
         if (struck != nullptr) add_case_.bind(18, std::string_view{struck});
+        add_case_.bind_null(19).bind(20, static_cast<std::int64_t>(result.limits_exceeded));
+        if (result.touchdown) add_case_.bind(19, result.touchdown->tilt_deg);
         if (const auto added = add_case_.run(); !added) return added.error();
         if (const auto added = add_arrival_.bind(1, number).run(); !added) return added.error();
         std::int64_t place = 0;

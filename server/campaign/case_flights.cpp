@@ -2,6 +2,7 @@
 #include "server/campaign/case_flights.hpp"
 
 #include "common/check.hpp"
+#include "simulation/limits.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,15 +15,6 @@ namespace {
 const std::atomic<bool> never{false};
 
 constexpr double degree_rad = std::numbers::pi / 180.0;
-
-/// Whether the sequence passes from one anchor to another at this row.
-bool begins_after_another_anchor(const dictionary::Dictionary& dictionary, std::size_t row) {
-    const auto& timeline = dictionary.timeline;
-    if (!timeline[row].anchor) return false;
-    for (std::size_t before = row; before-- > 0;)
-        if (timeline[before].anchor) return *timeline[before].anchor != *timeline[row].anchor;
-    return true;
-}
 
 /// SCLK from which the case differs from the others.
 double dispersion_sclk(const simulation::Scenario& scenario) {
@@ -98,7 +90,10 @@ std::optional<CaseResult> CaseFlights::fly(std::uint64_t case_number) const {
 void CaseFlights::summarise(const Flight& flight, CaseResult& result) const {
     const auto& landing = flight.landing.landing();
     result.outcome = simulation::name_of(landing.outcome());
-    result.reason = landing.outcome_reason();
+    const auto least_margin_s = least_timeline_margin_s(flight.firings.all(), dictionary_);
+    const auto judgement = simulation::judge(scenario_.limits, simulation::figures_of(landing, least_margin_s));
+    result.reason = simulation::reason_of(landing, judgement);
+    result.limits_exceeded = judgement.exceeded.size();
     result.end_cycle = flight.cycles;
     result.touchdown = landing.touchdown();
     if (result.touchdown) {
@@ -114,19 +109,6 @@ void CaseFlights::summarise(const Flight& flight, CaseResult& result) const {
     result.margins = timeline_margins(flight.firings.all(), dictionary_, dispersion_sclk(scenario_));
     result.events = flight.events;
     std::ranges::sort(result.events, {}, [](const CaseEvent& event) { return std::tie(event.e_s, event.name); });
-}
-
-std::vector<TimelineMargin> timeline_margins(const std::vector<RecordedFiring>& firings,
-                                             const dictionary::Dictionary& dictionary, double after_sclk) {
-    std::vector<TimelineMargin> margins;
-    for (std::size_t i = 1; i < firings.size(); ++i) {
-        const RecordedFiring& firing = firings[i];
-        if (firing.row >= dictionary.timeline.size() || firing.triggered_sclk < after_sclk) continue;
-        const auto& row = dictionary.timeline[firing.row];
-        if (!row.minimum_offset_s || !begins_after_another_anchor(dictionary, firing.row)) continue;
-        margins.push_back({firing.name, firing.triggered_sclk - (firings[i - 1].fired_sclk + *row.minimum_offset_s)});
-    }
-    return margins;
 }
 
 }  // namespace aeolis::server::campaign

@@ -53,11 +53,4 @@ class CaseFlights {
     std::unique_ptr<const Flight> common_;  ///< null: each case is flown from its start
 };
 
-/// The margins of a case: for each timepoint that passes from one anchor to the next and fired after `after_sclk`, how
-/// long after its minimum offset permitted it was it triggered. Zero: the timeline held it up. Margins within an
-/// anchor's own sequence are the timeline's design and say nothing about the case. Minimum offsets are the
-/// dictionary's.
-std::vector<TimelineMargin> timeline_margins(const std::vector<RecordedFiring>& firings,
-                                             const dictionary::Dictionary& dictionary, double after_sclk);
-
 }  // namespace aeolis::server::campaign

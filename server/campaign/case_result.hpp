@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "server/rehearsal/timeline_margins.hpp"
 #include "simulation/landing.hpp"
 
 #include <cstdint>
@@ -15,18 +16,12 @@ struct CaseEvent {
     double e_s = 0.0, altitude_m = 0.0, speed_mps = 0.0;
 };
 
-/// How long a timepoint was triggered after its earliest permitted time. That time is its minimum offset after the
-/// previous firing.
-struct TimelineMargin {
-    std::string timepoint;
-    double margin_s = 0.0;
-};
-
 /// The stored result of one case.
 struct CaseResult {
     std::uint64_t number = 0;
     std::string outcome, reason;  ///< the same words as of a rehearsal: touchdown, impact, lost, not_commanded, timeout
-    std::uint64_t end_cycle = 0;  ///< 64 Hz cycles from the landing's start to its end
+    std::uint64_t limits_exceeded = 0;  ///< of the scenario's: a landing outside limits; `reason` names them
+    std::uint64_t end_cycle = 0;        ///< 64 Hz cycles from the landing's start to its end
     std::optional<simulation::TouchdownReport> touchdown;
     double east_m = 0.0, north_m = 0.0;  ///< relative to the target, when there was a touchdown
     std::optional<simulation::ParachuteReport> parachute;

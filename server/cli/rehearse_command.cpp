@@ -136,7 +136,7 @@ int rehearse(const RehearseOptions& options) {
         fmt::print("{}\n", landing_json(rehearsal, wall_s));
     else
         fmt::print("{}", landing_table(rehearsal, wall_s));
-    return rehearsal.outcome() == "touchdown" ? 0 : 1;
+    return rehearsal.judgement().verdict == simulation::Verdict::landed ? 0 : 1;
 }
 
 }  // namespace

@@ -61,12 +61,19 @@ std::string landing_json(const Rehearsal& rehearsal, double wall_s) {
                                                  .number("miss_m", touchdown->miss_m)
                                                  .number("latitude_deg", touchdown->latitude_deg)
                                                  .number("longitude_deg", touchdown->longitude_deg)
+                                                 .number("tilt_deg", touchdown->tilt_deg)
                                                  .str();
+    const auto judgement = rehearsal.judgement();
+    const auto exceeded_json = [](const simulation::ExceededLimit& one) {
+        return JsonObject{}.text("limit", one.name).number("value", one.value).number("bound", one.limit).str();
+    };
     JsonObject report;
     report.text("scenario", rehearsal.scenario().name)
         .text("test_venue", name_of(rehearsal.scenario().test_venue))
         .count("seed", rehearsal.seed())
         .text("outcome", rehearsal.outcome())
+        .text("verdict", name_of(judgement.verdict))
+        .raw("limits_exceeded", json_array(judgement.exceeded, exceeded_json))
         .text("digest", rehearsal.digest())
         .raw("events", json_array(sorted_events(rehearsal), event_json))
         .number("peak_deceleration_mps2", landing.peak_deceleration_mps2())
@@ -97,8 +104,9 @@ std::string landing_json(const Rehearsal& rehearsal, double wall_s) {
 
 std::string landing_table(const Rehearsal& rehearsal, double wall_s) {
     const auto& landing = rehearsal.landing();
-    std::string text = fmt::format("{} (seed {}, {}): {}", rehearsal.scenario().name, rehearsal.seed(),
-                                   name_of(rehearsal.scenario().test_venue), rehearsal.outcome());
+    std::string text = fmt::format("{} (seed {}, {}): {}, {}", rehearsal.scenario().name, rehearsal.seed(),
+                                   name_of(rehearsal.scenario().test_venue), rehearsal.outcome(),
+                                   name_of(rehearsal.judgement().verdict));
     if (const auto reason = rehearsal.outcome_reason(); !reason.empty()) text += " - " + reason;
     text += fmt::format("\n\n{:<28}{:>10}{:>14}{:>12}\n", "event", "E+s", "altitude m", "speed m/s");
     for (const auto& event : sorted_events(rehearsal))
@@ -107,9 +115,10 @@ std::string landing_table(const Rehearsal& rehearsal, double wall_s) {
     text += fmt::format("\npeak deceleration {:.2f} m/s2\n", landing.peak_deceleration_mps2());
     if (const auto touchdown = landing.touchdown())
         text +=
-            fmt::format("touchdown {:.2f} m/s down, {:.2f} m/s across, {:.0f} m from the target, at {:.4f}, {:.4f}\n",
-                        touchdown->vertical_mps, touchdown->horizontal_mps, touchdown->miss_m, touchdown->latitude_deg,
-                        touchdown->longitude_deg);
+            fmt::format("touchdown {:.2f} m/s down, {:.2f} m/s across, the stage {:.1f} deg off the vertical, {:.0f} m "
+                        "from the target, at {:.4f}, {:.4f}\n",
+                        touchdown->vertical_mps, touchdown->horizontal_mps, touchdown->tilt_deg, touchdown->miss_m,
+                        touchdown->latitude_deg, touchdown->longitude_deg);
     const auto separation = landing.separation();
     text += nearest_text("heatshield", separation.heatshield_least_m) +
             nearest_text("backshell", separation.backshell_least_m);

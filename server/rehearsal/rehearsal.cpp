@@ -4,6 +4,7 @@
 #include "generated/dictionary_flight.hpp"
 #include "server/base/wall_clock.hpp"
 #include "server/rehearsal/command_messages.hpp"
+#include "server/rehearsal/timeline_margins.hpp"
 #include "server/scenario/scenario_text.hpp"
 #include "telemetry/packet_stream.hpp"
 #include "telemetry/text.hpp"
@@ -124,7 +125,13 @@ std::string Rehearsal::outcome() const {
 }
 
 std::string Rehearsal::outcome_reason() const {
-    return broken_.empty() ? landing().outcome_reason() : broken_;
+    return broken_.empty() ? simulation::reason_of(landing(), judgement()) : broken_;
+}
+
+simulation::Judgement Rehearsal::judgement() const {
+    if (!broken_.empty()) return {simulation::Verdict::lost, {}};
+    const auto least_margin_s = least_timeline_margin_s(firings(), dictionary_);
+    return simulation::judge(scenario_.limits, simulation::figures_of(landing(), least_margin_s));
 }
 
 std::vector<archive::LinkTotals> Rehearsal::link_totals() const {

@@ -10,6 +10,7 @@
 #include "server/rehearsal/tone_score.hpp"
 #include "server/venue/threaded_executive.hpp"
 #include "simulation/landing.hpp"
+#include "simulation/limits.hpp"
 #include "telemetry/product_assembler.hpp"
 #include "telemetry/proof.hpp"
 
@@ -54,8 +55,10 @@ class Rehearsal {
     const std::vector<std::string>& script_refusals() const { return flight_.script_refusals(); }
 
     bool finished() const { return !broken_.empty() || landing().finished(); }
-    std::string outcome() const;  ///< running, touchdown, impact, lost, not_commanded, timeout
-    std::string outcome_reason() const;
+    std::string outcome() const;         ///< running, touchdown, impact, lost, not_commanded, timeout
+    std::string outcome_reason() const;  ///< with the limits that a landing did not keep
+    /// By the scenario's limits.
+    simulation::Judgement judgement() const;
     std::string digest() const { return digest_.text(); }
 
     archive::RunStart run_start(double pace) const;

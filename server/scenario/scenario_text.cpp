@@ -97,6 +97,16 @@ const Bindings<simulation::Dispersions> dispersion_fields = {
     AEOLIS_BIND(Dispersions, imu_noise_mps),
     AEOLIS_BIND(Dispersions, gyro_noise_rad),
 };
+const Bindings<simulation::Limits> limit_fields = {
+    AEOLIS_BIND(Limits, propellant_left_min_kg),
+    AEOLIS_BIND(Limits, touchdown_vertical_max_mps),
+    AEOLIS_BIND(Limits, touchdown_horizontal_max_mps),
+    AEOLIS_BIND(Limits, touchdown_tilt_max_deg),
+    AEOLIS_BIND(Limits, recontact_min_m),
+    AEOLIS_BIND(Limits, parachute_mach_max),
+    AEOLIS_BIND(Limits, parachute_pressure_max_Pa),
+    AEOLIS_BIND(Limits, timeline_margin_min_s),
+};
 const Bindings<simulation::Radio> radio_fields = {
     AEOLIS_BIND(Radio, light_time_s),
     AEOLIS_BIND(Radio, uhf_rate_bps),
@@ -371,6 +381,7 @@ Result<Scenario> scenario_from_message(const v1::Scenario& message) {
     read(message.gyration(), gyration_fields, scenario.gyration);
     read(message.stations(), station_fields, scenario.stations);
     read(message.dispersions(), dispersion_fields, scenario.dispersions);
+    read(message.limits(), limit_fields, scenario.limits);
     read_links(message.radio(), scenario.radio);
     read(message.triggers(), trigger_fields, scenario);
     for (const auto& row : message.density_scale()) {
@@ -438,6 +449,7 @@ v1::Scenario scenario_to_message(const Scenario& scenario) {
     write(scenario.gyration, gyration_fields, *message.mutable_gyration());
     write(scenario.stations, station_fields, *message.mutable_stations());
     write(scenario.dispersions, dispersion_fields, *message.mutable_dispersions());
+    write(scenario.limits, limit_fields, *message.mutable_limits());
     write_links(scenario.radio, *message.mutable_radio());
     write(scenario, trigger_fields, *message.mutable_triggers());
     for (const auto& scale : scenario.density_scale) write(scale, density_fields, *message.add_density_scale());

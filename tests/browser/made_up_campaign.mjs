@@ -61,6 +61,8 @@ const report = {
     { case: 100, outcome: 'impact', reason: 'touched the ground at 31.2 m/s' },
     { case: 200, outcome: 'impact', reason: 'touched the ground at 44.9 m/s' },
   ],
+  outside_limits: 0,
+  outside: [],
 };
 const former = {
   ...state,

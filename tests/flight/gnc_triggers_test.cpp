@@ -23,7 +23,7 @@ TEST_CASE("the parachute needs the speed and three cycles of it", "[gnc][R17]") 
     CHECK_FALSE(all_hold(parachute({405.1, 12000.0, 110.0}, bounds, 3)));
     CHECK_FALSE(all_hold(parachute({404.9, 12000.0, 110.0}, bounds, 2)));
     CHECK(all_hold(parachute({404.9, 12000.0, 110.0}, bounds, 3)));
-    CHECK(parachute({404.9, 12000.0, 110.0}, bounds, 3).size() == 2);
+    CHECK(parachute({404.9, 12000.0, 110.0}, bounds, 3).size() == 4);
 }
 
 TEST_CASE("below its lowest altitude the parachute waits for its speed no longer", "[gnc][R17][R48]") {
@@ -36,11 +36,27 @@ TEST_CASE("below its lowest altitude the parachute waits for its speed no longer
     CHECK_FALSE(all_hold(parachute({500.0, 6000.0, 150.0}, bounds, 2)));
 }
 
-TEST_CASE("straightening up begins its lead time before the parachute's lowest altitude, however fast",
+TEST_CASE("slow or low, the parachute waits until its Mach number and pressure are what it is made for",
+          "[gnc][R17][R27]") {
+    const double pressure_Pa = aeolis::flight::parameters.parachute_pressure_max_Pa;
+    CHECK(parachute_due({404.0, 8000.0, 110.0, pressure_Pa, 1.8}, bounds));
+    CHECK_FALSE(parachute_due({404.0, 8000.0, 110.0, pressure_Pa + 1.0, 1.8}, bounds));
+    CHECK_FALSE(parachute_due({520.0, 5900.0, 110.0, 700.0, 2.3}, bounds));
+    CHECK(parachute_due({480.0, 5900.0, 110.0, 700.0, 2.1}, bounds));
+    // Now or never.
+    const double last_m = aeolis::flight::parameters.parachute_altitude_last_m;
+    CHECK_FALSE(parachute_due({520.0, last_m + 1.0, 110.0, 1500.0, 2.3}, bounds));
+    CHECK(parachute_due({520.0, last_m, 110.0, 1500.0, 2.3}, bounds));
+}
+
+TEST_CASE("straightening up begins its lead time before the parachute's lowest altitude, unless it is too fast",
           "[gnc][R17][R48]") {
     CHECK_FALSE(all_hold(sufr_start({600.0, 6000.0 + 18.1 * 150.0, 150.0}, 2.8, bounds)));
     CHECK(all_hold(sufr_start({600.0, 6000.0 + 17.9 * 150.0, 150.0}, 2.8, bounds)));
     CHECK_FALSE(all_hold(sufr_start({600.0, 5000.0, -10.0}, 2.8, bounds)));  // it climbs
+    CHECK_FALSE(
+        all_hold(sufr_start({2000.0, 20000.0, 900.0}, 60.0, bounds)));   // it dives, and has its lift to pull out
+    CHECK(all_hold(sufr_start({2000.0, 4500.0, 100.0}, 60.0, bounds)));  // now or never
 }
 
 TEST_CASE("the descent rate that ground expects at the backshell moves the altitude at which it goes",
@@ -54,8 +70,8 @@ TEST_CASE("a decision is near when its subject holds or is within a twentieth of
     CHECK(near(parachute({407.1, 12000.0, 110.0}, bounds, 0)));
     CHECK(near(parachute({425.0, 12000.0, 110.0}, bounds, 0)));
     CHECK_FALSE(near(parachute({426.0, 12000.0, 110.0}, bounds, 0)));
-    CHECK(near(heatshield(120.0, 142.0, 12.0)));
-    CHECK_FALSE(near(heatshield(200.0, 142.0, 25.0)));  // the speed is its subject, not the time
+    CHECK(near(heatshield({120.0, 9000.0, 90.0}, 142.0, 12.0)));
+    CHECK_FALSE(near(heatshield({200.0, 9000.0, 90.0}, 142.0, 25.0)));  // the speed is its subject, not the time
     CHECK_FALSE(near({}));
     Conditions timer;
     timer.push_back(at_least(Quantity::time_in_mode_s, 3.15, 3.2));
@@ -63,8 +79,8 @@ TEST_CASE("a decision is near when its subject holds or is within a twentieth of
 }
 
 TEST_CASE("a count of cycles that has not begun is not worth telling", "[gnc][R38]") {
-    CHECK(worth_telling(parachute({407.1, 12000.0, 110.0}, bounds, 0)).size() == 1);
-    CHECK(worth_telling(parachute({404.9, 12000.0, 110.0}, bounds, 1)).size() == 2);
+    CHECK(worth_telling(parachute({407.1, 12000.0, 110.0}, bounds, 0)).size() == 3);
+    CHECK(worth_telling(parachute({404.9, 12000.0, 110.0}, bounds, 1)).size() == 4);
 }
 
 TEST_CASE("a break starts the count of cycles anew", "[gnc][R17]") {
@@ -85,9 +101,23 @@ TEST_CASE("straightening up begins its lead time before the parachute's speed", 
 }
 
 TEST_CASE("the heatshield stays on for twenty seconds after the mortar", "[gnc][R17]") {
-    CHECK_FALSE(all_hold(heatshield(120.0, 142.0, 19.9)));
-    CHECK_FALSE(all_hold(heatshield(143.0, 142.0, 25.0)));
-    CHECK(all_hold(heatshield(142.0, 142.0, 20.0)));
+    CHECK_FALSE(all_hold(heatshield({120.0, 9000.0, 90.0}, 142.0, 19.9)));
+    CHECK_FALSE(all_hold(heatshield({143.0, 9000.0, 90.0}, 142.0, 25.0)));
+    CHECK(all_hold(heatshield({142.0, 9000.0, 90.0}, 142.0, 20.0)));
+}
+
+TEST_CASE("too low or too long after the mortar the heatshield waits for its speed no longer", "[gnc][R17][R27]") {
+    const double low_m = aeolis::flight::parameters.heatshield_altitude_min_m;
+    const double late_s = aeolis::flight::parameters.heatshield_patience_s;
+    CHECK_FALSE(all_hold(heatshield({160.0, low_m + 1.0, 90.0}, 142.0, 25.0)));
+    const auto low = heatshield({160.0, low_m, 90.0}, 142.0, 20.0);
+    CHECK(all_hold(low));
+    CHECK(low[0].quantity == aeolis::flight::Quantity::altitude_m);
+    CHECK_FALSE(all_hold(heatshield({160.0, low_m, 90.0}, 142.0, 19.9)));  // the parachute has hardly opened
+    CHECK_FALSE(all_hold(heatshield({160.0, 9000.0, 90.0}, 142.0, late_s - 0.1)));
+    const auto late = heatshield({160.0, 9000.0, 90.0}, 142.0, late_s);
+    CHECK(all_hold(late));
+    CHECK(late[0].quantity == aeolis::flight::Quantity::time_since_parachute_s);
 }
 
 TEST_CASE("the backshell goes at ground's altitude at 79.1 m/s, earlier when faster", "[gnc][R17]") {

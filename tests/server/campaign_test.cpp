@@ -283,6 +283,28 @@ TEST_CASE("a case that throws is lost, with its reason, and the campaign goes on
     CHECK(number_at(json, {"outcomes", "lost"}) == 2);
 }
 
+TEST_CASE("a case that lands outside the limits is a touchdown, counted and named beside them", "[campaign][limits]") {
+    const test::TemporaryFolder folder;
+    run(folder / "a.db", 9, 2, [](std::uint64_t number) {
+        CaseResult result = made_up(number);
+        if (number == 4) {
+            result.reason = "the rover stands; outside limits: propellant_left_min_kg 1.2 instead of at least 4";
+            result.limits_exceeded = 1;
+        }
+        return result;
+    });
+    const auto summary = summary_of(folder / "a.db", 9);
+    CHECK(summary.failed == 0);
+    CHECK(summary.vertical_mps.count == 9);
+    CHECK(summary.outside_limits == 1);
+    REQUIRE(summary.outside.size() == 1);
+    CHECK(summary.outside[0].number == 4);
+    const auto text = campaign_table(summary, {.scenario = "made_up.textproto"});
+    CHECK_THAT(text, Catch::Contains("1 landed outside limits"));
+    CHECK_THAT(text, Catch::Contains("propellant_left_min_kg 1.2 instead of at least 4"));
+    CHECK(number_at(json_of(campaign_json(summary, {})), {"outside_limits"}) == 1);
+}
+
 TEST_CASE("a landing that diverges ends as lost with reason and cycle, or as what it came to", "[campaign]") {
     auto scenario = test::shipped_scenario("gnc_alone");
     scenario.start_before_entry_s = 60.0;  // still spinning behind the cruise stage: it cannot land

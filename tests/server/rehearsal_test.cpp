@@ -34,13 +34,15 @@ TEST_CASE("a landing's report is the object of the design, its real time proven 
     const auto& fields = report.fields();
     for (const char* name : {"scenario", "seed", "outcome", "digest", "events", "peak_deceleration_mps2", "touchdown",
                              "heatshield_least_m", "backshell_least_m", "test_venue", "timepoints", "tones", "packets",
-                             "cycles", "overruns", "wall_s", "real_time_factor"}) {
+                             "cycles", "overruns", "wall_s", "real_time_factor", "verdict", "limits_exceeded"}) {
         INFO(name);
         CHECK(fields.contains(name));
     }
-    CHECK(fields.size() == 17);
+    CHECK(fields.size() == 19);
     CHECK(fields.at("backshell_least_m").number_value() > 10.0);  // the sidestep
     CHECK(fields.at("outcome").string_value() == "touchdown");
+    CHECK(fields.at("verdict").string_value() == "landed");
+    CHECK(fields.at("limits_exceeded").list_value().values_size() == 0);
     double previous = -1.0e9;
     for (const auto& event : fields.at("events").list_value().values()) {
         const double e_s = event.struct_value().fields().at("e_s").number_value();

@@ -23,10 +23,14 @@ class Steering {
     void cycle(const AttitudeCommand& wanted, const AttitudeState& state, const Inertia& inertia, Steers steers,
                ThrusterCommand& thrusters, EngineCommand& engines);
 
+    /// That was asked for last. [N m] in B
+    const Vector3& torque_B_Nm() const { return torque_B_Nm_; }
+
   private:
     double engine_max_thrust_N_;
     ThrusterSelection thruster_selection_;
     powered_descent::TorqueAllocation torque_allocation_;
+    Vector3 torque_B_Nm_ = Vector3::Zero();
 };
 
 }  // namespace aeolis::flight::gnc

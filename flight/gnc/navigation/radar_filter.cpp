@@ -19,7 +19,8 @@ void RadarFilter::remember(Sclk now, double altitude_m, const Vector3& v_MB_M) {
     count_ = std::min(count_ + 1, static_cast<std::uint32_t>(past_.size()));
 }
 
-std::optional<RadarCorrection> RadarFilter::on(const RadarSolution& solution, Sclk now, const Vector3& up_M) {
+std::optional<RadarCorrection> RadarFilter::on(const RadarSolution& solution, Sclk now, const Vector3& up_M,
+                                               const Belief& belief) {
     const double half_s = 0.5 * solution.span_s;
     double altitude_sum_m = 0.0, time_sum_s = 0.0;
     Vector3 v_sum = Vector3::Zero();
@@ -47,19 +48,24 @@ std::optional<RadarCorrection> RadarFilter::on(const RadarSolution& solution, Sc
     const double residual_h_m = solution.altitude_m - altitude_m;
     const Vector3 residual_v = to_vector(solution.v_MB_M_mps) - v_mean;
 
-    const bool outside = std::abs(residual_h_m) > parameters.radar_altitude_gate_m +
-                                                      parameters.radar_altitude_gate_fraction * solution.altitude_m ||
-                         residual_v.norm() > parameters.radar_velocity_gate_mps;
-    if (accepted_ > 0 && outside && refused_in_a_row_ < refused_max) {
+    const auto outside = [&](double sigmas) {
+        return std::abs(residual_h_m) > parameters.radar_altitude_gate_m +
+                                            parameters.radar_altitude_gate_fraction * solution.altitude_m +
+                                            sigmas * belief.altitude_m() ||
+               residual_v.norm() > parameters.radar_velocity_gate_mps + sigmas * belief.velocity_mps();
+    };
+    const bool far = outside(0.0);
+    if (accepted_ > 0 && outside(parameters.radar_gate_sigmas) && refused_in_a_row_ < refused_max) {
         ++refused_;
         ++refused_in_a_row_;
         return std::nullopt;
     }
-    const double gain = accepted_ == 0 || refused_in_a_row_ >= refused_max ? 1.0 : parameters.radar_gain;
+    const double gain = accepted_ == 0 || refused_in_a_row_ >= refused_max || far ? 1.0 : parameters.radar_gain;
     refused_in_a_row_ = 0;
     ++accepted_;
 
     RadarCorrection correction;
+    correction.gain = gain;
     correction.v_M_mps = gain * residual_v;
     // A velocity error has also become an altitude error since the middle of the span.
     const double since_middle_s = now - solution.time;

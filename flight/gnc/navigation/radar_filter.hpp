@@ -2,6 +2,7 @@
 #pragma once
 
 #include "common/time.hpp"
+#include "flight/gnc/navigation/dead_reckoning.hpp"
 #include "flight/gnc/navigation/radar_batch.hpp"
 #include "flight/gnc/vector.hpp"
 
@@ -25,6 +26,7 @@ namespace aeolis::flight::gnc {
 struct RadarCorrection {
     double altitude_m = 0.0;            ///< to add along the local vertical
     Vector3 v_M_mps = Vector3::Zero();  ///< to add to the velocity
+    double gain = 1.0;                  ///< part of the residual that this is
 };
 
 class RadarFilter {
@@ -32,8 +34,10 @@ class RadarFilter {
     /// Adds the navigated state to the history; call each cycle, every fourth is kept.
     void remember(Sclk now, double altitude_m, const Vector3& v_MB_M);
 
-    /// None when the solution is refused or the history does not cover it.
-    std::optional<RadarCorrection> on(const RadarSolution& solution, Sclk now, const Vector3& up_M);
+    /// None when the solution is refused or the history does not cover it. The gate is as much wider as `belief` is, and
+    /// what is beyond the narrow one then is taken whole.
+    std::optional<RadarCorrection> on(const RadarSolution& solution, Sclk now, const Vector3& up_M,
+                                      const Belief& belief = {});
 
     bool locked() const { return accepted_ > 0; }
     std::uint32_t accepted() const { return accepted_; }

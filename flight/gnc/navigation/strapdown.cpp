@@ -28,14 +28,13 @@ void Strapdown::shift(const NavigationShift& by) {
     bias_B_mps2_ += to_vector(by.accelerometer_bias_mps2);
 }
 
-void Strapdown::step(const Vector3& delta_angle_B, const Vector3& delta_v_B) {
-    constexpr double dt = imu_period_s;
+void Strapdown::step(const Vector3& delta_angle_B, const Vector3& delta_v_B, double dt_s) {
     // Over the step the frame turns by Δθ; on average half of it applies while Δv is sensed.
     const Vector3 delta_v_M = state_.q_MB * (delta_v_B + 0.5 * delta_angle_B.cross(delta_v_B));
     const Vector3 v_before = state_.v_MB_M;
-    state_.v_MB_M += delta_v_M + dt * free_acceleration(state_.p_MoB_M + 0.5 * dt * v_before, v_before);
-    state_.p_MoB_M += 0.5 * dt * (v_before + state_.v_MB_M);
-    const Quaternion mars_turns = small_rotation({0.0, 0.0, -mars_spin_rps * dt});
+    state_.v_MB_M += delta_v_M + dt_s * free_acceleration(state_.p_MoB_M + 0.5 * dt_s * v_before, v_before);
+    state_.p_MoB_M += 0.5 * dt_s * (v_before + state_.v_MB_M);
+    const Quaternion mars_turns = small_rotation({0.0, 0.0, -mars_spin_rps * dt_s});
     state_.q_MB = mars_turns * state_.q_MB * small_rotation(delta_angle_B);
     // One Newton step towards unit norm: exact to 1e-16 for norms this close to one, without a square root.
     state_.q_MB.coeffs() *= 1.5 - 0.5 * state_.q_MB.squaredNorm();
@@ -49,22 +48,45 @@ void Strapdown::on(const ImuSample& sample, bool force_felt) {
         bias_B_mps2_ += (raw_force_B - bias_B_mps2_) / static_cast<double>(bias_samples_);
     }
     const Vector3 force_B = force_felt ? Vector3(raw_force_B - bias_B_mps2_) : Vector3(Vector3::Zero());
-    if (counting_) {
-        const std::uint32_t missing = sample.count - last_count_ - 1;
-        for (std::uint32_t i = 0; i < std::min(missing, gap_max); ++i) {
-            step(rate_B_rps_ * imu_period_s, specific_force_B_mps2_ * imu_period_s);
-            ++filled_;
-        }
-    }
+    if (counting_) fill(sample.count - last_count_ - 1);
     counting_ = true;
+    reckoned_s_ = 0.0;
     last_count_ = sample.count;
     rate_B_rps_ = delta_angle_B / imu_period_s;
     specific_force_B_mps2_ = force_B;
-    step(delta_angle_B, force_B * imu_period_s);
+    step(delta_angle_B, force_B * imu_period_s, imu_period_s);
+}
+
+// Ticks were reckoned whole, and an increment lasts a third of one: what is left over, or was too much, is less than two.
+void Strapdown::fill(std::uint32_t missing) {
+    if (reckoned_s_ > 0.0) {
+        const double left_s = missing * imu_period_s - reckoned_s_;
+        if (std::abs(left_s) <= 2.0 * seconds_per_tick)
+            step(rate_B_rps_ * left_s, specific_force_B_mps2_ * left_s, left_s);
+        return;
+    }
+    for (std::uint32_t i = 0; i < std::min(missing, gap_max); ++i) {
+        step(rate_B_rps_ * imu_period_s, specific_force_B_mps2_ * imu_period_s, imu_period_s);
+        ++filled_;
+    }
+}
+
+void Strapdown::reckon(const Vector3& force_B_mps2, const Vector3& rate_B_rps, double dt_s) {
+    rate_B_rps_ = rate_B_rps;
+    specific_force_B_mps2_ = force_B_mps2;
+    step(rate_B_rps * dt_s, force_B_mps2 * dt_s, dt_s);
+    reckoned_s_ += dt_s;
+}
+
+void Strapdown::turn(const Vector3& angle_M_rad) {
+    const Quaternion turned = small_rotation(angle_M_rad);
+    state_.q_MB = (turned * state_.q_MB).normalized();
+    state_.v_MB_M = turned * state_.v_MB_M;
 }
 
 void Strapdown::coast(double dt_s) {
     state_ = propagate(state_, dt_s);
+    reckoned_s_ = 0.0;
     counting_ = false;  // increments of this time, if they still arrive, were coasted over
 }
 

@@ -15,8 +15,9 @@
 //   p    ← p + (v before + v after)/2 · Δt
 //
 // Frame    M (rotating Mars) for p and v; q_MB transforms components in B into M
-// In       IMU increments, 200 Hz        Out   the navigated state at the time of the last increment
-// Faults   lost increments are replaced by the last one received, up to `gap_max`; a longer gap coasts without force
+// In       IMU increments, 200 Hz        Out   the navigated state at the time of the last increment, or reckoned
+// Faults   lost increments are replaced by the last one received, up to `gap_max`; while none arrives, dead
+//          reckoning supplies force and rates, and the count of the next increment tells what is still missing
 // Source   [savage-1998] (attitude, then velocity with half of the rotation); [titterton-2004] for M's rates
 // Valid    rates below 1 rad/s (Δθ below 5e-3 rad a step: error of the step below 1e-8 rad)
 namespace aeolis::flight::gnc {
@@ -45,8 +46,14 @@ class Strapdown {
     /// vacuum the accelerometers measure only their bias.
     void on(const ImuSample& sample, bool force_felt);
 
-    /// Advances by `dt_s` ≤ 1 s without the IMU: no force, no rotation relative to inertial space.
+    /// Advances by `dt_s`, about a tick, with force and rates that the IMU did not measure.
+    void reckon(const Vector3& force_B_mps2, const Vector3& rate_B_rps, double dt_s);
+
+    /// Advances by any `dt_s` without the IMU: no force, no rotation relative to inertial space.
     void coast(double dt_s);
+
+    /// Corrects attitude by a small angle about an axis in M; velocity, which the radar tells in B, turns with it.
+    void turn(const Vector3& angle_M_rad);
 
     const NavigatedState& state() const { return state_; }
     const Vector3& specific_force_B_mps2() const { return specific_force_B_mps2_; }  ///< of the last increment
@@ -57,11 +64,12 @@ class Strapdown {
     template <typename Exchange>
     void carry(Exchange& exchange) {
         exchange(state_.p_MoB_M, state_.v_MB_M, state_.q_MB, specific_force_B_mps2_, rate_B_rps_, bias_B_mps2_,
-                 bias_samples_, last_count_, filled_, counting_);
+                 bias_samples_, last_count_, filled_, reckoned_s_, counting_);
     }
 
   private:
-    void step(const Vector3& delta_angle_B, const Vector3& delta_v_B);
+    void step(const Vector3& delta_angle_B, const Vector3& delta_v_B, double dt_s);
+    void fill(std::uint32_t missing);
 
     NavigatedState state_;
     Vector3 specific_force_B_mps2_ = Vector3::Zero();
@@ -70,6 +78,7 @@ class Strapdown {
     std::uint32_t bias_samples_ = 0;
     std::uint32_t last_count_ = 0;
     std::uint32_t filled_ = 0;
+    double reckoned_s_ = 0.0;  ///< since the last increment
     bool counting_ = false;
 };
 

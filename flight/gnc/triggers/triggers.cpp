@@ -54,28 +54,45 @@ Conditions heading_alignment(double speed_mps) {
 }
 
 Conditions sufr_start(const InAir& at, double deceleration_mps2, const ParachuteBounds& bounds) {
+    const Conditions last = list(at_most(Quantity::altitude_m, at.altitude_m, parameters.sufr_altitude_last_m));
+    if (all_hold(last)) return last;
     const double to_lowest_s = (at.altitude_m - bounds.altitude_min_m) / std::max(at.descent_rate_mps, 1.0);
     const Conditions low = list(at_most(Quantity::time_to_parachute_s, to_lowest_s, sufr_lead_s),
-                                at_least(Quantity::descent_rate_mps, at.descent_rate_mps, 1.0));
+                                at_least(Quantity::descent_rate_mps, at.descent_rate_mps, 1.0),
+                                at_most(Quantity::speed_mps, at.speed_mps, parameters.sufr_low_speed_mps));
     if (all_hold(low)) return low;
     const double to_parachute_s = (at.speed_mps - bounds.speed_mps) / std::max(deceleration_mps2, 1.0e-3);
     return list(at_most(Quantity::time_to_parachute_s, to_parachute_s, sufr_lead_s),
                 at_most(Quantity::speed_mps, at.speed_mps, bounds.speed_mps + parameters.sufr_near_mps));
 }
 
-bool parachute_due(const InAir& at, const ParachuteBounds& bounds) {
-    return at.speed_mps <= bounds.speed_mps || at.altitude_m <= bounds.altitude_min_m;
-}
-
 Conditions parachute(const InAir& at, const ParachuteBounds& bounds, std::uint32_t cycles_held) {
+    const Condition held = at_least(Quantity::cycles_held, cycles_held, parachute_cycles);
+    const Condition last = at_most(Quantity::altitude_m, at.altitude_m, parameters.parachute_altitude_last_m);
+    if (last.holds) return list(last, held);
     const Condition slow = at_most(Quantity::speed_mps, at.speed_mps, bounds.speed_mps);
     const Condition low = at_most(Quantity::altitude_m, at.altitude_m, bounds.altitude_min_m);
-    return list(low.holds && !slow.holds ? low : slow, at_least(Quantity::cycles_held, cycles_held, parachute_cycles));
+    Conditions conditions =
+        list(low.holds && !slow.holds ? low : slow,
+             at_most(Quantity::dynamic_pressure_Pa, at.dynamic_pressure_Pa, parameters.parachute_pressure_max_Pa),
+             at_most(Quantity::mach, at.mach, parameters.parachute_mach_max));
+    conditions.push_back(held);
+    return conditions;
 }
 
-Conditions heatshield(double speed_mps, double heatshield_speed_mps, double since_parachute_s) {
-    return list(at_most(Quantity::speed_mps, speed_mps, heatshield_speed_mps),
-                at_least(Quantity::time_since_parachute_s, since_parachute_s, heatshield_delay_s));
+bool parachute_due(const InAir& at, const ParachuteBounds& bounds) {
+    return all_hold(parachute(at, bounds, parachute_cycles));
+}
+
+Conditions heatshield(const InAir& at, double heatshield_speed_mps, double since_parachute_s) {
+    const Condition low = at_most(Quantity::altitude_m, at.altitude_m, parameters.heatshield_altitude_min_m);
+    const Condition late =
+        at_least(Quantity::time_since_parachute_s, since_parachute_s, parameters.heatshield_patience_s);
+    const Condition delay = at_least(Quantity::time_since_parachute_s, since_parachute_s, heatshield_delay_s);
+    const Condition slow = at_most(Quantity::speed_mps, at.speed_mps, heatshield_speed_mps);
+    if (slow.holds) return list(slow, delay);
+    if (late.holds) return list(late);
+    return low.holds ? list(low, delay) : list(slow, delay);
 }
 
 double backshell_altitude_needed_m(const BackshellBounds& bounds, double descent_rate_mps) {

@@ -53,6 +53,8 @@ struct InAir {
     double speed_mps = 0.0;
     double altitude_m = 0.0;
     double descent_rate_mps = 0.0;
+    double dynamic_pressure_Pa = 0.0;  ///< estimated from drag
+    double mach = 0.0;                 ///< estimated
 };
 /// From ground's solution: the speed to wait for, and the lowest altitude at which to wait.
 struct ParachuteBounds {
@@ -61,14 +63,17 @@ struct ParachuteBounds {
 };
 
 /// Conditions for straighten-up (SUFR): the parachute's speed is near, or its lowest altitude is.
-/// The second way leaves time for the balance masses. `deceleration_mps2`: of the speed, drag less the effect of
-/// gravity; at zero or less the trigger never fires.
+/// The second way leaves time for the balance masses. A vehicle that would still be too fast for the parachute keeps
+/// the lift that straightening up costs, down to a last altitude. `deceleration_mps2`: of the speed, drag less the
+/// effect of gravity; at zero or less the speed alone never fires.
 Conditions sufr_start(const InAir& at, double deceleration_mps2, const ParachuteBounds& bounds);
 
-/// Slow enough, or too low to wait any longer: better too fast than too low.
+/// Slow enough or too low to wait any longer, and within the parachute's Mach number and pressure.
+/// Below a last altitude it is due at any speed.
 bool parachute_due(const InAir& at, const ParachuteBounds& bounds);
 Conditions parachute(const InAir& at, const ParachuteBounds& bounds, std::uint32_t cycles_held);
-Conditions heatshield(double speed_mps, double heatshield_speed_mps, double since_parachute_s);
+/// Slow enough; or so low, or so long after the mortar, that the radar must see the ground at last.
+Conditions heatshield(const InAir& at, double heatshield_speed_mps, double since_parachute_s);
 
 /// From ground's solution: an altitude, and the descent rate to which it belongs.
 struct BackshellBounds {

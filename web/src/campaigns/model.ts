@@ -47,7 +47,14 @@ export interface CampaignReport {
   least_margin?: { margin_s: number; timepoint: string; case: number };
   recontacts: number;
   failed: number;
-  failures: { case: number; outcome: string; reason: string }[];
+  failures: Failure[];
+  outside_limits: number; // landed, and not within the scenario's limits
+  outside: Failure[];
+}
+export interface Failure {
+  case: number;
+  outcome: string;
+  reason: string;
 }
 export interface Touchdown {
   place: number; // position in the order of completion

@@ -53,6 +53,8 @@ const aReport = (fields: Partial<CampaignReport> = {}): CampaignReport => ({
   miss_m: spread,
   peak_deceleration_mps2: { ...spread, min: 98.0665 },
   failures: [{ case: 2, outcome: 'lost', reason: '<b>no</b> lift' }],
+  outside_limits: 1,
+  outside: [{ case: 7, outcome: 'touchdown', reason: 'propellant_left_min_kg 1.2 instead of at least 4' }],
   ...fields,
 });
 const landed = (place: number, fields: Partial<Touchdown> = {}): Touchdown => ({
@@ -195,6 +197,9 @@ describe('the panel', () => {
     const root = shown();
     expect(root.textContent).toContain('Statistics of rehearsals');
     expect(root.querySelector('[data-testid="campaign-failures"]')?.textContent).toContain('✖ lost<b>no</b> lift');
+    expect(root.querySelector('[data-testid="campaign-outside"]')?.textContent).toContain(
+      '7✖ landed outside limitspropellant_left_min_kg 1.2',
+    );
     expect(root.querySelector('[data-testid="campaign-cancel"]')?.textContent).toBe('cancel campaign-1');
     expect(root.querySelector<HTMLButtonElement>('[data-testid="campaign-start"]')?.disabled).toBe(true);
   });

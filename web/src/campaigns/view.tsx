@@ -24,7 +24,7 @@ import {
   stateWords,
   touchdowns,
 } from './model';
-import type { CampaignReport, CampaignState } from './model';
+import type { CampaignReport, CampaignState, Failure } from './model';
 import { drawTouchdowns } from './picture';
 import './style.css';
 
@@ -224,27 +224,40 @@ function Numbers({ of }: { of: CampaignReport }) {
       {of.recontacts > 0 && (
         <p class="status-alarm">✖ cases in which the vehicle was struck by what it had let go: {of.recontacts}</p>
       )}
-      {of.failures.length > 0 && (
-        <table data-testid="campaign-failures">
-          <thead>
-            <tr>
-              <th class="number">case</th>
-              <th>outcome</th>
-              <th>reason</th>
+      <Cases testId="campaign-failures" cases={of.failures} count={of.failed} told={(each) => each.outcome} />
+      <Cases
+        testId="campaign-outside"
+        cases={of.outside}
+        count={of.outside_limits}
+        told={() => 'landed outside limits'}
+      />
+    </>
+  );
+}
+
+function Cases(of: { testId: string; cases: Failure[]; count: number; told: (each: Failure) => string }) {
+  if (of.cases.length === 0) return null;
+  return (
+    <>
+      <table data-testid={of.testId}>
+        <thead>
+          <tr>
+            <th class="number">case</th>
+            <th>outcome</th>
+            <th>reason</th>
+          </tr>
+        </thead>
+        <tbody>
+          {of.cases.map((each) => (
+            <tr key={each.case}>
+              <td class="number">{each.case}</td>
+              <td class="status-alarm">✖ {of.told(each).replace('_', ' ')}</td>
+              <td class="campaign-reason">{each.reason}</td>
             </tr>
-          </thead>
-          <tbody>
-            {of.failures.map((each) => (
-              <tr key={each.case}>
-                <td class="number">{each.case}</td>
-                <td class="status-alarm">✖ {each.outcome.replace('_', ' ')}</td>
-                <td class="campaign-reason">{each.reason}</td>
-              </tr>
-            ))}
-          </tbody>
-        </table>
-      )}
-      {of.failed > of.failures.length && <p>and {of.failed - of.failures.length} more</p>}
+          ))}
+        </tbody>
+      </table>
+      {of.count > of.cases.length && <p>and {of.count - of.cases.length} more</p>}
     </>
   );
 }

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/rehearsal/timeline_margins.hpp"
+
+#include <algorithm>
+
+namespace aeolis::server {
+namespace {
+
+/// Whether the sequence passes from one anchor to another at this row.
+bool begins_after_another_anchor(const dictionary::Dictionary& dictionary, std::size_t row) {
+    const auto& timeline = dictionary.timeline;
+    if (!timeline[row].anchor) return false;
+    for (std::size_t before = row; before-- > 0;)
+        if (timeline[before].anchor) return *timeline[before].anchor != *timeline[row].anchor;
+    return true;
+}
+
+}  // namespace
+
+std::vector<TimelineMargin> timeline_margins(const std::vector<RecordedFiring>& firings,
+                                             const dictionary::Dictionary& dictionary, double after_sclk) {
+    std::vector<TimelineMargin> margins;
+    for (std::size_t i = 1; i < firings.size(); ++i) {
+        const RecordedFiring& firing = firings[i];
+        if (firing.row >= dictionary.timeline.size() || firing.triggered_sclk < after_sclk) continue;
+        const auto& row = dictionary.timeline[firing.row];
+        if (!row.minimum_offset_s || !begins_after_another_anchor(dictionary, firing.row)) continue;
+        margins.push_back({firing.name, firing.triggered_sclk - (firings[i - 1].fired_sclk + *row.minimum_offset_s)});
+    }
+    return margins;
+}
+
+std::optional<double> least_timeline_margin_s(const std::vector<RecordedFiring>& firings,
+                                              const dictionary::Dictionary& dictionary) {
+    const auto margins = timeline_margins(firings, dictionary);
+    const auto least = std::ranges::min_element(margins, {}, &TimelineMargin::margin_s);
+    return least == margins.end() ? std::nullopt : std::optional{least->margin_s};
+}
+
+}  // namespace aeolis::server

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "simulation/landing.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+// The one judge of landings: rehearsals, campaigns and tests ask it, by the limits that the scenario sets.
+namespace aeolis::simulation {
+
+enum class Verdict : std::uint8_t { flying, landed, landed_outside_limits, lost };
+/// "flying", "landed", …
+const char* name_of(Verdict verdict);
+
+/// What a landing is judged by; what it has not come to is none, and exceeds nothing.
+struct LandingFigures {
+    Outcome outcome = Outcome::running;
+    double propellant_left_kg = 0.0;
+    std::optional<TouchdownReport> touchdown;
+    std::optional<ParachuteReport> parachute;
+    SeparationReport separation;
+    std::optional<double> least_timeline_margin_s;  ///< the recording has it, ground's dictionary reads it
+};
+LandingFigures figures_of(const Landing& landing, std::optional<double> least_timeline_margin_s = {});
+
+/// A limit that was not kept.
+struct ExceededLimit {
+    const char* name;  ///< of the scenario's field: "touchdown_vertical_max_mps"
+    double value, limit;
+};
+
+struct Judgement {
+    Verdict verdict = Verdict::flying;
+    std::vector<ExceededLimit> exceeded;  ///< of a landing only: of a vehicle that is lost its outcome tells why
+};
+Judgement judge(const Limits& limits, const LandingFigures& figures);
+
+/// "touchdown_vertical_max_mps 0.91 instead of at most 0.85; …"; empty when all were kept.
+std::string text_of(const std::vector<ExceededLimit>& exceeded);
+/// Why the landing ended as it did, with the limits that it did not keep.
+std::string reason_of(const Landing& landing, const Judgement& judgement);
+
+}  // namespace aeolis::simulation

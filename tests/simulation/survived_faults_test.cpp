@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "generated/dictionary_flight.hpp"
+#include "simulation/limits.hpp"
+#include "simulation/random.hpp"
+#include "tests/simulation/gale.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/recorded_events.hpp"
+#include "tests/support/telecommands.hpp"
+
+#include <cmath>
+#include <deque>
+#include <string>
+#include <vector>
+
+namespace simulation_survived_faults_test {
+
+using namespace aeolis;
+using namespace aeolis::simulation;
+
+// Faults that GNC survives, each at moments drawn by a seed, in landings forked from one. docs/faults.md
+namespace {
+
+void command(Landing& landing) {
+    landing.uplink(test::set_parameters(landing.solution()));
+    for (int i = 0; i < 64; ++i) landing.step();
+    landing.uplink(test::do_edl());
+}
+
+Judgement flown_to_its_end(Landing& landing) {
+    while (landing.outcome() == Outcome::running) landing.step();
+    return judge(tests::gale_scenario().limits, figures_of(landing));
+}
+
+struct Silence {
+    double e_s, length_s;
+};
+
+/// Whether navigation can know what turns the vehicle, tick by tick of one landing: not in a turn (a reversal, the
+/// swing under the parachute), not while the parachute opens, not on engines.
+class Calm {
+  public:
+    explicit Calm(Landing landing) {
+        begin_s_ = landing.truth().e_s;
+        double mortar_s = 1.0e9;
+        bool on_engines = false;
+        while (landing.outcome() == Outcome::running) {
+            for (const TruthEvent& event : landing.step().events) {
+                if (event.name == "parachute_deploy") mortar_s = event.e_s;
+                on_engines |= event.name == "backshell_separation";
+            }
+            const auto& rate = landing.inspect().rate_B_rps;
+            const bool turns = std::hypot(rate[0], rate[1], rate[2]) > turning_rps;
+            const double since_mortar_s = landing.truth().e_s - mortar_s;
+            calm_.push_back(!turns && !on_engines && !(since_mortar_s >= 0.0 && since_mortar_s < opens_within_s));
+        }
+    }
+    bool during(const Silence& silence) const {
+        const auto first = static_cast<std::size_t>((silence.e_s - begin_s_) * 64.0);
+        const auto ticks = static_cast<std::size_t>(silence.length_s * 64.0) + 2;
+        for (std::size_t i = first; i < first + ticks; ++i)
+            if (i >= calm_.size() || !calm_[i]) return false;
+        return true;
+    }
+    double end_s() const { return begin_s_ + static_cast<double>(calm_.size()) / 64.0; }
+
+  private:
+    static constexpr double turning_rps = 0.05, opens_within_s = 5.0;
+    double begin_s_ = 0.0;
+    std::deque<bool> calm_;
+};
+
+void check_silences(std::uint64_t seed, int short_ones, int long_ones) {
+    Landing common{tests::gale_scenario(900.0), seed};
+    command(common);
+    while (common.truth().e_s < -530.0) common.step();
+    const Calm calm{common};
+    Random random{seed, 0, Stream::imu};
+    std::vector<Silence> silences;
+    const auto moment = [&] { return std::floor(64.0 * (-520.0 + random.uniform() * (calm.end_s() + 490.0))) / 64.0; };
+    for (int i = 0; i < short_ones; ++i) silences.push_back({moment(), 0.5});
+    for (int i = 0; i < long_ones;) {
+        const Silence silence{moment(), 2.0};
+        if (!calm.during(silence)) continue;
+        silences.push_back(silence);
+        ++i;
+    }
+    std::ranges::sort(silences, {}, &Silence::e_s);
+    for (const Silence& silence : silences) {
+        INFO("seed " << seed << ", IMU silent for " << silence.length_s << " s from E" << silence.e_s);
+        while (common.truth().e_s < silence.e_s && common.outcome() == Outcome::running) common.step();
+        Landing landing{common};
+        landing.inject(
+            DeviceFault{flight::Device::imu, flight::Unit::a, DeviceFault::Kind::silent, 0.0, silence.length_s});
+        const Judgement judgement = flown_to_its_end(landing);
+        INFO(landing.outcome_reason() << " " << text_of(judgement.exceeded));
+        CHECK(judgement.verdict == Verdict::landed);
+        CHECK(tests::count_recorded<flight::evr::IMU_SILENT>(landing.recording()) == 1);
+        CHECK(tests::count_recorded<flight::evr::IMU_HEARD_AGAIN>(landing.recording()) == 1);
+    }
+}
+
+/// `short_km` nearer to the target than the delivery was planned for.
+Scenario delivered_short(double short_km) {
+    constexpr double km_per_degree = 59.18;  // of longitude, at the latitude of entry
+    Scenario scenario = tests::gale_scenario(900.0);
+    scenario.entry.longitude_deg += short_km / km_per_degree;
+    return scenario;
+}
+
+void check_short_entry(double short_km, std::uint64_t seed) {
+    INFO(short_km << " km short, seed " << seed);
+    // What is loaded is made for the entry that was planned, not for this one.
+    Landing landing{delivered_short(short_km), seed};
+    command(landing);
+    std::optional<double> mortar_m;
+    while (landing.outcome() == Outcome::running)
+        for (const TruthEvent& event : landing.step().events)
+            if (event.name == "parachute_deploy") mortar_m = event.altitude_m;
+    INFO(landing.outcome_reason());
+    REQUIRE(landing.parachute());
+    INFO("mortar at " << mortar_m.value_or(0.0) << " m, Mach " << landing.parachute()->mach << ", "
+                      << landing.parachute()->dynamic_pressure_Pa << " Pa");
+    CHECK(mortar_m.value_or(0.0) >= 5500.0);
+    CHECK(landing.parachute()->mach <= 2.2);
+    CHECK(landing.parachute()->dynamic_pressure_Pa <= 750.0);
+    CHECK(landing.outcome() == Outcome::touchdown);
+}
+
+}  // namespace
+
+TEST_CASE(
+    "the IMU is silent for half a second at any time, or for two where attitude can be known, and the rover lands",
+    "[simulation][faults][R27]") {
+    check_silences(1, 12, 10);
+}
+
+TEST_CASE("two hundred silences of the IMU are survived", "[.long][simulation][faults][R27]") {
+    for (std::uint64_t seed = 2; seed <= 6; ++seed) check_silences(seed, 20, 20);
+}
+
+TEST_CASE("from an entry that is short the parachute opens in time, at a speed and pressure that it bears",
+          "[simulation][faults][R27]") {
+    for (const double short_km : {20.0, 40.0, 60.0, 80.0}) check_short_entry(short_km, 1);
+    check_short_entry(80.0, 2);
+}
+
+TEST_CASE("a heatshield whose speed never comes goes all the same, and the radar sees the ground",
+          "[simulation][faults][R27]") {
+    Scenario scenario = tests::gale_scenario(900.0);
+    scenario.heatshield_speed_mps = 40.0;  // nothing under this parachute is so slow
+    Landing landing{scenario, 1};
+    command(landing);
+    const Judgement judgement = flown_to_its_end(landing);
+    INFO(landing.outcome_reason());
+    CHECK(judgement.verdict == Verdict::landed);
+}
+
+TEST_CASE("propellant that runs low is told once, on board", "[simulation][faults][R27]") {
+    Scenario scenario = tests::gale_scenario(900.0);
+    scenario.masses.propellant_kg -= 60.0;
+    scenario.masses.powered_descent_kg -= 60.0;
+    scenario.masses.entry_kg -= 60.0;
+    Landing landing{scenario, 1};
+    command(landing);
+    flown_to_its_end(landing);
+    CHECK(tests::count_recorded<flight::evr::PROPELLANT_LOW>(landing.recording()) == 1);
+}
+
+}  // namespace simulation_survived_faults_test
