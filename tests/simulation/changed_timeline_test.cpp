@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "commands/encoder.hpp"
 #include "server/rehearsal/scripted_landing.hpp"
+#include "simulation/limits.hpp"
 #include "telemetry/packet_stream.hpp"
 #include "tests/simulation/gale.hpp"
 #include "tests/support/catch.hpp"
@@ -53,16 +54,10 @@ struct Trunk {
     std::size_t next = 0;  ///< timepoint that has not fired
 };
 
-/// What makes a landing unsafe: no touchdown, a hard one, a parachute beyond what it was qualified for, a collision.
+/// Why a landing was unsafe, by the limits of its scenario; empty: it was safe.
 std::string unsafe(const Landing& landing) {
-    if (landing.outcome() != Outcome::touchdown)
-        return std::string{name_of(landing.outcome())} + ": " + landing.outcome_reason();
-    const auto touchdown = landing.touchdown();
-    if (!touchdown || touchdown->vertical_mps > 1.0 || touchdown->horizontal_mps > 0.5) return "a hard touchdown";
-    if (const auto air = landing.parachute(); !air || air->mach > 2.2 || air->dynamic_pressure_Pa > 750.0)
-        return "the parachute opened beyond its limits";
-    if (landing.separation().struck != nullptr) return std::string{"struck "} + landing.separation().struck;
-    return {};
+    const auto judgement = judge(commanded().limits, figures_of(landing));
+    return judgement.verdict == Verdict::landed ? "" : reason_of(landing, judgement);
 }
 
 /// The command sent past ground, and what the vehicle made of it.
