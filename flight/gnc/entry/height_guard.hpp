@@ -8,7 +8,7 @@
 //   cos(bank) ≥ 1 − 2 (h at the parachute's speed − guard)/band,  −1 … 1
 //
 // In       what is navigated and sensed now           Out   altitude [m]; the largest bank [rad]
-// Rate     4 Hz in range control: up to 150 steps of a second         Memory   none
+// Rate     4 Hz in range control: up to 150 steps         Memory   none
 // Source   ours; in OD137 the altitude foreseen stays above guard and band, and nothing is limited
 namespace aeolis::flight::gnc {
 
@@ -20,7 +20,7 @@ struct PullUp {
     double lift_to_drag = 0.24;
 };
 
-/// Where the vehicle comes to `speed_mps` when its lift is up from now on; where it is after 150 s, if it does not.
+/// Where the vehicle comes to `speed_mps` when its lift is up from now on; where it then is if it does not within the foresight.
 double altitude_when_slow_m(const PullUp& now, double speed_mps);
 
 /// The largest bank for an altitude foreseen. 0 … π
