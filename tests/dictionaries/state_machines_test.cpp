@@ -18,7 +18,7 @@ TEST_CASE("each broken rule of the state machines gives one line, and nothing is
          "EdlPhase,,,landed", "has an initial state already"},
         {"not deterministic", "state_machines.csv", "GncMode,touchdown,flyaway_started,flyaway",
          "GncMode,sky_crane,flyaway_started,touchdown",
-         "event 'flyaway_started' leads from 'sky_crane' already, in line 24"},
+         "event 'flyaway_started' leads from 'sky_crane' already, in line 25"},
         {"leads to itself", "state_machines.csv", "GncMode,off,enabled,approach", "GncMode,off,enabled,off",
          "leads to itself"},
         {"event no name", "state_machines.csv", "GncMode,off,enabled,", "GncMode,off,ena bled,",

@@ -87,7 +87,7 @@ TEST_CASE("each broken rule of the spreadsheets gives one line, and nothing is l
         {"no source", "parameters.csv", "Bridle,[facts] (H)", "Bridle,", "source is empty"},
         {"bad number", "parameters.csv", "guidance_gain,5,", "guidance_gain,five,", "default 'five' is not a number"},
         {"parameter twice", "parameters.csv", "sufr_duration_s,", "guidance_start_drag_mps2,",
-         "is there twice, first in line 28"},
+         "is there twice, first in line 43"},
         // constraints
         {"unknown timepoint", "constraints.csv", "required,coolant_vent,", "required,coolant_went,",
          "from 'coolant_went': there is no timepoint 'coolant_went'"},

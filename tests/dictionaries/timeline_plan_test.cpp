@@ -114,7 +114,9 @@ TEST_CASE("an entry that was heard of as later moves all that comes after it, an
           "[timeline]") {
     const auto& dictionary = tests::shipped_dictionary();
     Heard heard(dictionary.timeline.size());
-    const auto vent = row_of(dictionary, "coolant_vent"), uhf = row_of(dictionary, "uhf_start");
+    const auto armed = row_of(dictionary, "pyros_armed_vent"), vent = row_of(dictionary, "coolant_vent"),
+               uhf = row_of(dictionary, "uhf_start");
+    heard[armed] = -828.0 + 5.0;
     heard[vent] = -826.0 + 5.25;  // it waited for a reply: later than its anchor says
     heard[uhf] = -800.0 + 5.0;
     const auto predicted = predicted_from_entry_s(dictionary, dictionary.predicted_anchor_e_s, heard);
@@ -252,7 +254,7 @@ TEST_CASE("what is not predicted says why", "[timeline][R13]") {
 TEST_CASE("the landing can begin until the first timepoint on an anchor, less what those before it may take",
           "[timeline][R23]") {
     const auto& dictionary = tests::shipped_dictionary();
-    CHECK(predict(dictionary, {}).latest_begin_e_s == -826.0 - 13.0);  // 2 + 4 + 2 + 4 + 1
+    CHECK(predict(dictionary, {}).latest_begin_e_s == -828.0 - 13.0);  // 2 + 4 + 2 + 4 + 1
     SmallTimeline t;
     CHECK(predict(t.dictionary, t.known).latest_begin_e_s == -50.0);
     t.change_anchor(1, 1005.0, -90.0);
