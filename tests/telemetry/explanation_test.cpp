@@ -123,7 +123,8 @@ TEST_CASE("a sub-constraint that does not hold is told by its two moments and it
     const auto row = std::ranges::find_if(dictionary.constraints, [&](const dictionary::ConstraintRow& each) {
         return each.from.kind == dictionary::Moment::Kind::fired &&
                each.to.kind == dictionary::Moment::Kind::triggered &&
-               dictionary.timeline[each.from.index].name == "coolant_vent";
+               dictionary.timeline[each.from.index].name == "coolant_vent" &&
+               dictionary.timeline[each.to.index].name == "uhf_start";
     });
     REQUIRE(row != dictionary.constraints.end());
     const auto number = static_cast<std::uint64_t>(row - dictionary.constraints.begin());
