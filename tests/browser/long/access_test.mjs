@@ -127,7 +127,7 @@ test('with accounts: a log-in in place, an end of the session in the middle that
   await shows('badge', /REHEARSAL/);
   await shows('who', /ann[^]*director/);
   await shows('waiting', /set edl parameters/);
-  await waitFor(() => page.getByTestId('timepoints-fired').innerText(), /of 71/);
+  await waitFor(() => page.getByTestId('timepoints-fired').innerText(), /of \d+/);
 
   await page.keyboard.press('n');
   await waitFor(() => focused(page), /note-text/);
@@ -159,7 +159,7 @@ test('with accounts: a log-in in place, an end of the session in the middle that
   assert.equal((await administer('PATCH', '/users/ann', { role: 'director' })).status, 200);
   await page.reload();
   await shows('who', /ann[^]*director/);
-  await waitFor(() => page.getByTestId('timepoints-fired').innerText(), /of 71/);
+  await waitFor(() => page.getByTestId('timepoints-fired').innerText(), /of \d+/);
   await shows('stream-state', /connected/);
   await page.keyboard.press('Escape');
   await page.getByTestId('tab-notes').click();

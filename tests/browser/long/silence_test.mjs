@@ -22,7 +22,7 @@ test('with tones alone the next moment, the phase, the count and the details go 
   await shows('phase-now', /Parachute[^]*■ by tone/);
   await shows('badge', /paused/);
   assert.match(await text('waiting'), /Waiting for (heatshield separation|radar processing|engine priming)/);
-  const [, all, toned] = /(\d+) of 71 timepoints fired, ■ (\d+) by tone/.exec(await text('timepoints-fired'));
+  const [, all, toned] = /(\d+) of \d+ timepoints fired, ■ (\d+) by tone/.exec(await text('timepoints-fired'));
   assert.ok(Number(all) > 20 && all === toned, await text('timepoints-fired'));
   await page.keyboard.press('.');
   await shows('timepoint-detail', /next|waiting for reply/);
