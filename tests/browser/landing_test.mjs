@@ -42,7 +42,7 @@ test('two commands by keyboard land it; a reload has all of it; a range can be a
   await page.keyboard.press('Escape');
 
   await pace(page, 100);
-  await shows('waiting', /Waiting for coolant vent/);
+  await shows('waiting', /Waiting for (pyros armed vent|coolant vent)/);
   await shows('timepoints-fired', /^[1-9]/);
   await flyTo(server, 266);
   await shows('badge', /paused/);
