@@ -39,7 +39,7 @@ test('with tones alone the next moment, the phase, the count and the details go 
 test('the latest instant to send is that of the next timepoint one can reach, by name, also after the first has fired', async (t) => {
   const server = await serve(t, 'latest', ['--scenario', 'nominal_auto']);
   const { page, problems, text, shows } = await open(server.address);
-  await shows('latest-send', /before coolant vent\s+E−13:46, in/);
+  await shows('latest-send', /before pyros armed vent\s+E−13:48, in/);
   await flyTo(server, -700);
   await shows('latest-send', /before entry antenna\s+E−10:40, in/);
   assert.match(await text('timepoints-fired'), /^[3-9] of/, 'timepoints have fired by then');
