@@ -151,7 +151,8 @@ void EdlGnc::reckon(double passed_s) {
     surroundings_.altitude_m = measured_.altitude_m;
     surroundings_.free_M_mps2 = measured_.free_M_mps2;
     const Felt last{strapdown_.specific_force_B_mps2(), strapdown_.rate_B_rps()};
-    for (double passed = 0.0; passed < passed_s; passed += seconds_per_tick) {
+    const int ticks = static_cast<int>(std::ceil(passed_s / seconds_per_tick));
+    for (int i = 0; i < ticks; ++i) {
         const Felt felt = reckoning_.feel(surroundings_, strapdown_.state(), last, seconds_per_tick);
         strapdown_.reckon(felt.force_B_mps2, felt.rate_B_rps, seconds_per_tick);
     }

@@ -13,7 +13,8 @@ double altitude_when_slow_m(const PullUp& now, double speed_mps) {
     const double step_s = parameters.height_guard_step_s;
     double v = std::max(now.speed_mps, 1.0), h = now.altitude_m;
     double path = -std::asin(std::clamp(now.descent_rate_mps / v, -1.0, 1.0));
-    for (double t = 0.0; t < parameters.height_guard_foresight_s && v > speed_mps && h > 0.0; t += step_s) {
+    const int steps = static_cast<int>(std::ceil(parameters.height_guard_foresight_s / step_s));
+    for (int i = 0; i < steps && v > speed_mps && h > 0.0; ++i) {
         const double faster = v / now.speed_mps;
         const double drag =
             now.drag_mps2 * faster * faster * std::exp((now.altitude_m - h) / parameters.reckoned_scale_height_m);
