@@ -19,7 +19,6 @@ import { Panel } from './design/panel';
 import { openedLater } from './design/opened_later';
 import { Phases } from './phases/view';
 import { Plots } from './plots/view';
-import { Recorded } from './recorded/view';
 import { PaceBar, Rehearsal } from './rehearsal/view';
 import { ReplayBar } from './replay/view';
 import { stream } from './run/connection';
@@ -40,7 +39,7 @@ const DATA = {
   verdicts: openedLater(async () => (await import('./verdicts/view')).Verdicts),
   links: Links,
   flown: openedLater(async () => (await import('./flown/view')).Flown),
-  recorded: Recorded,
+  recorded: openedLater(async () => (await import('./recorded/view')).Recorded),
   rehearsal: Rehearsal,
   campaigns: openedLater(async () => (await import('./campaigns/view')).Campaigns),
 };
