@@ -67,8 +67,8 @@ class EdlMain {
     /// State for another computer. Left out: a present fault, which is reported again, the monitor and the guard.
     template <typename Exchange>
     void carry(Exchange& exchange) {
-        exchange(parameters_, timeline_, configuration_, gnc_, peak_deceleration_, gnc_health_, mode_, phase_, bridle_m_,
-                 was_pre_edl_, was_late_cruise_);
+        exchange(parameters_, timeline_, configuration_, gnc_, peak_deceleration_, gnc_health_, mode_, phase_,
+                 bridle_m_, was_pre_edl_, was_late_cruise_);
     }
 
     const Timeline& timeline() const { return timeline_; }
