@@ -47,7 +47,6 @@ void EdlMain::restart(Sclk now, Outbox& out) {
     // stands by.
     if (timeline_.begun() && !pre_edl(load_.told_until.value_or(now))) {
         activity_ = Activity::stands_by;
-        out.send(ModuleId::mfsk, ToneRequest{tone::stand_by, now});
         for (const ModuleId silent : {ModuleId::mfsk, ModuleId::units}) out.send(silent, StandBy{});
         return out.event(evr::PRIME_STANDS_BY{});
     }

@@ -55,7 +55,7 @@ void tell_reply(const Firing& firing, const TimepointSpec& row, Outbox& out) {
 
 void UnverifiedActions::add(const Firing& firing) {
     if (kept_.full()) kept_.erase_at(0);
-    kept_.push_back({firing, row_of(firing).if_unverified == IfUnverified::done_unless_imu, 0.0});
+    kept_.push_back({firing, row_of(firing).if_unverified == IfUnverified::done_unless_imu, false, 0.0});
 }
 
 bool UnverifiedActions::on(const ActionReply& reply, ActionContext& context) {
@@ -81,6 +81,8 @@ void UnverifiedActions::watch(const gnc::Output& gnc, gnc::Configuration& config
     for (Unverified& unverified : kept_) {
         if (!unverified.by_imu) continue;
         const Firing& firing = unverified.firing;
+        unverified.unheard = unverified.unheard || gnc.dead_reckoned_s >= parameters.imu_silence_told_s;
+        if (gnc.dead_reckoned_s > 0.0) continue;
         unverified.felt_mps2 = std::max(unverified.felt_mps2, magnitude(gnc.acceleration_B_mps2));
         const auto felt = at_least(Quantity::sensed_mps2, unverified.felt_mps2, parameters.parachute_felt_mps2);
         if (felt.holds) {
@@ -92,6 +94,7 @@ void UnverifiedActions::watch(const gnc::Output& gnc, gnc::Configuration& config
             at_least(Quantity::elapsed_s, out.now() - firing.triggered, parameters.parachute_felt_within_s);
         if (!waited.holds) continue;
         unverified.by_imu = false;
+        if (unverified.unheard) continue;
         configuration.forget(firing.fact);
         out.event(evr::TIMEPOINT_CONTRADICTED{.timepoint = firing.timepoint.value, .felt_mps2 = single(felt.value)});
         out.send(ModuleId::mfsk, ToneRequest{tone::pyro_not_fired, out.now()});

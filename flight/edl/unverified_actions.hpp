@@ -23,13 +23,15 @@ class UnverifiedActions {
     /// Takes a reply. True: it was that of an unverified action.
     bool on(const ActionReply& reply, ActionContext& context);
 
-    /// Judges a silent mortar by the force that the IMU senses. Other actions give too small a kick.
+    /// Judges a silent mortar by the force that the IMU senses. Other actions give too small a kick. While the IMU is
+    /// silent GNC's force is reckoned, which is no evidence: a mortar in whose time it was silent stays unverified.
     void watch(const gnc::Output& gnc, gnc::Configuration& configuration, Outbox& out);
 
   private:
     struct Unverified {
         Firing firing;
-        bool by_imu = false;  // the IMU still has to decide
+        bool by_imu = false;   // the IMU still has to decide
+        bool unheard = false;  // the IMU was silent meanwhile
         double felt_mps2 = 0.0;
     };
     static constexpr std::size_t kept_max = 16;

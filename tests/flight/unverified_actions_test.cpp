@@ -32,10 +32,11 @@ struct Fixture {
         reply.evidence = evidence;
         return actions.on(reply, context);
     }
-    void feel(double force_mps2, double at_s) {
+    void feel(double force_mps2, double at_s, double imu_silent_s = 0.0) {
         recorder.begin(ModuleId::edl, Sclk{at_s});
         gnc::Output told;
         told.acceleration_B_mps2 = {0.0, 0.0, -force_mps2};
+        told.dead_reckoned_s = imu_silent_s;
         actions.watch(told, configuration, recorder.out);
     }
 };
@@ -97,6 +98,18 @@ TEST_CASE("without a snatch in time the IMU contradicts, GNC has no parachute, a
     f.feel(6.0, 1004.0);
     CHECK(f.recorder.out.sent().empty());
     CHECK(f.reply(Evidence::verified, 1005.0));  // it fired after all
+    CHECK(f.configuration.parachute_out);
+}
+
+TEST_CASE("an IMU that was silent neither bears out a mortar nor contradicts it: the mortar stays unverified",
+          "[edl][R50]") {
+    Fixture f;
+    f.feel(40.0, 1001.5, 0.5);  // reckoned by the model of a parachute
+    CHECK(f.recorder.out.sent().empty());
+    f.feel(4.0, 1000.0 + parameters.parachute_felt_within_s);
+    CHECK(f.recorder.events<evr::TIMEPOINT_FELT>() == 0);
+    CHECK(f.recorder.events<evr::TIMEPOINT_CONTRADICTED>() == 0);
+    CHECK(f.recorder.out.sent().empty());
     CHECK(f.configuration.parachute_out);
 }
 
