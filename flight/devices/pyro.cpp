@@ -69,7 +69,8 @@ void PyroManager::on(const PyroReply& reply, Outbox& out) {
 }
 
 void PyroManager::on(const UnitsSelected& selected, Outbox&) {
-    unit_ = selected.units[Device::pyro];
+    const Unit unit = selected.units[Device::pyro];
+    if (std::ranges::find(both_controllers, unit) != both_controllers.end()) unit_ = unit;
 }
 
 void PyroManager::on(const Tick& tick, Outbox& out) {

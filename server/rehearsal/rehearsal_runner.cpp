@@ -5,6 +5,7 @@
 #include "server/archive/items.hpp"
 #include "server/archive/kept_request.hpp"
 #include "server/base/wall_clock.hpp"
+#include "server/rehearsal/command_messages.hpp"
 #include "server/rehearsal/rehearsal.hpp"
 #include "server/scenario/scenario_text.hpp"
 

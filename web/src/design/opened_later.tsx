@@ -15,6 +15,6 @@ export function openedLater(load: () => Promise<FunctionComponent>): FunctionCom
       );
     }
     if (panel.value === 'failed') return <p role="alert">This panel could not be loaded. Reload the page.</p>;
-    return panel.value ? <panel.value.Shown /> : <p>Loading …</p>;
+    return panel.value ? <panel.value.Shown /> : <p data-loading>Loading …</p>;
   };
 }

@@ -51,13 +51,21 @@ export const TABS: { id: Tab; title: string; key: string; words: string }[] = [
   { id: 'users', title: 'Users', key: 'u', words: 'users, tokens, audit: for administrators' },
 ];
 
+/**
+ * Opens a panel and focuses its first control: as soon as the panel is there, since some are loaded when first opened;
+ * not when the focus has gone elsewhere meanwhile.
+ */
 export function focusPanel(which: Tab): void {
+  const panel = '[data-testid="panel-data"]';
+  const before = document.activeElement;
   tab.value = which;
-  requestAnimationFrame(() =>
-    document
-      .querySelector<HTMLElement>(`[data-testid="panel-data"] .table-box :is(input, select, button, [tabindex])`)
-      ?.focus(),
-  );
+  const focusFirst = () => {
+    if (tab.value !== which || document.activeElement !== before) return;
+    const first = document.querySelector<HTMLElement>(`${panel} .table-box :is(input, select, button, [tabindex])`);
+    if (first) first.focus();
+    else if (document.querySelector(`${panel} [data-loading]`)) requestAnimationFrame(focusFirst);
+  };
+  requestAnimationFrame(focusFirst);
 }
 
 function toggleTheme(): void {
