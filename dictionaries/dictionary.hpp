@@ -212,6 +212,8 @@ enum class ToneSet { prime, second_chance, spare };
 
 /// Prefix of the Second Chance tone with the same meaning: "touchdown" and "sc_touchdown". R35
 inline constexpr std::string_view second_chance_prefix = "sc_";
+/// Prefix of the prime tone that is sent in a phase for want of a request: "heartbeat_sky_crane". R31
+inline constexpr std::string_view heartbeat_prefix = "heartbeat_";
 
 struct ToneRow {
     ToneId id;
@@ -267,6 +269,7 @@ struct ConstraintRow {
     enum class Kind {
         required,  ///< must follow from the timeline and the given rows
         given,     ///< a bound that GNC or ground's commands keep on when an anchor is set
+        ensured,   ///< given in any flight: GNC's own logic sets the anchor no sooner
     };
     Kind kind = Kind::required;
     Moment from, to;

@@ -39,11 +39,39 @@ TimelineNetwork network_of(const Dictionary& dictionary, TimelineAnalysis& analy
     return {dictionary, [&analysis, &stop] { return analysis.stopped = analysis.stopped || (stop && stop()); }};
 }
 
+/// Due the moment that GNC sets its anchor: those of ground and of the plan are known before.
+bool triggered_by_gnc(const Dictionary& dictionary, const TimelineRow& row) {
+    if (!row.anchor || row.desired_offset_s != 0.0) return false;
+    const AnchorRow& anchor = dictionary.anchors[row.anchor->value];
+    return anchor.parent && !anchor.offset_s && anchor.name != "entry";
+}
+
+std::vector<HoldProof> prove_holds(Dictionary dictionary, TimelineAnalysis& analysis,
+                                   const std::function<bool()>& stop) {
+    std::erase_if(dictionary.constraints,
+                  [](const ConstraintRow& row) { return row.kind == ConstraintRow::Kind::given; });
+    auto network = network_of(dictionary, analysis, stop);
+    std::vector<HoldProof> holds;
+    for (std::size_t i = 0; i < dictionary.timeline.size(); ++i) {
+        const TimelineRow& row = dictionary.timeline[i];
+        if (!triggered_by_gnc(dictionary, row)) continue;
+        for (std::size_t before = 0; before < i; ++before) {
+            const TimelineRow& other = dictionary.timeline[before];
+            if (other.essential) continue;
+            auto claim = prove(network, {Kind::fired, other.id.value}, {Kind::anchor, row.anchor->value}, 0.0);
+            holds.push_back({row.id, other.id, claim.proof, {}});
+            if (claim.proof == Proof::refuted) holds.back().schedule = std::move(claim.schedule);
+        }
+    }
+    return holds;
+}
+
 }  // namespace
 
 bool TimelineAnalysis::all_proven() const {
-    return contradiction.empty() && admits_schedule &&
-           std::ranges::all_of(bounds, [](const BoundProof& bound) { return bound.proof == Proof::proven; });
+    const auto is_proven = [](const auto& claim) { return claim.proof == Proof::proven; };
+    return contradiction.empty() && admits_schedule && std::ranges::all_of(bounds, is_proven) &&
+           std::ranges::all_of(holds, is_proven);
 }
 
 std::string moment_text(const Dictionary& dictionary, const Moment& moment) {
@@ -97,6 +125,7 @@ TimelineAnalysis analyse_timeline(const Dictionary& dictionary, const std::funct
         analysis.margins.push_back(
             {row.id, prove(network, previous, {Kind::anchor, row.anchor->value}, free_s).slack_s});
     }
+    analysis.holds = prove_holds(dictionary, analysis, stop);
     return analysis;
 }
 

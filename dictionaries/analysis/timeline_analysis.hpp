@@ -12,7 +12,9 @@
 // Explicit    By dictionaries/timeline_rule.hpp, as the engine on board applies it: a timepoint is triggered as soon as
 //             it may be. It fires when its reply arrives, at any time up to the time-out.
 // Free        The acceptance of "do edl", and every anchor whose offset is undefined (ground's entry time, GNC's
-//             triggers), within the given rows of constraints.csv.
+//             triggers), within the given and ensured rows of constraints.csv.
+// Held        No row that is not essential may hold one that GNC triggers, however early GNC does. Proven with the
+//             ensured rows alone: a given row is an expectation, which a flight may break.
 // Left out    Offsets changed by command. Exception: a timepoint with an undefined offset is free, at any time after
 //             its predecessor. An anchor is assumed to be known early enough for a negative offset from it.
 // Method      Difference constraints over ticks of 1/64 s. "As soon as" is a disjunction: one of the causes came last.
@@ -65,6 +67,14 @@ struct DueMargin {
     MaybeOffset slack_s;  ///< negative: it may fire that late; undefined: unbounded, the anchor may be set at any time
 };
 
+/// Whether a timepoint that GNC triggers can wait for an earlier one that GNC does not need.
+struct HoldProof {
+    TimepointId triggered;  ///< due when GNC says "now"
+    TimepointId before;     ///< not essential
+    Proof proof = Proof::undecided;
+    std::vector<Instant> schedule;  ///< refuted: one in which it waits
+};
+
 struct TimelineAnalysis {
     /// The cycle of constraints by which the timeline and the given rows admit no schedule.
     /// If set, the rest is empty.
@@ -74,14 +84,16 @@ struct TimelineAnalysis {
     bool admits_schedule = true;
     std::vector<BoundProof> bounds;
     std::vector<DueMargin> margins;  ///< of the timepoints with an anchor
+    std::vector<HoldProof> holds;    ///< each timepoint that GNC triggers with each before it that is not essential
 
+    /// Every bound, and every hold.
     bool all_proven() const;
 };
 
 /// Analyses the timeline.
 /// `stop` is called at each step, some thousand times a second; null: runs to the end.
 TimelineAnalysis analyse_timeline(const Dictionary& dictionary, const std::function<bool()>& stop = {});
-/// The same without the margins, which do not affect the proofs.
+/// The bounds alone.
 TimelineAnalysis analyse_bounds(const Dictionary& dictionary, const std::function<bool()>& stop = {});
 
 /// Text of a moment as in constraints.csv: "do_edl", "parachute:anchor", "radar_power:fired".

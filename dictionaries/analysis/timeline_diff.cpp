@@ -54,12 +54,20 @@ Rows anchor_rows(const Dictionary& d) {
     return rows;
 }
 
+std::string kind_text(ConstraintRow::Kind kind) {
+    switch (kind) {
+    case ConstraintRow::Kind::required: return "required";
+    case ConstraintRow::Kind::given: return "given";
+    case ConstraintRow::Kind::ensured: return "ensured";
+    }
+    return {};
+}
+
 Rows constraint_rows(const Dictionary& d) {
     Rows rows;
     rows.reserve(d.constraints.size());
     for (const ConstraintRow& row : d.constraints)
-        rows.push_back({(row.kind == ConstraintRow::Kind::given ? "given " : "required ") + moment_text(d, row.from) +
-                            " -> " + moment_text(d, row.to),
+        rows.push_back({kind_text(row.kind) + " " + moment_text(d, row.from) + " -> " + moment_text(d, row.to),
                         {{"minimum_s", offset_text(row.minimum_s)},
                          {"maximum_s", offset_text(row.maximum_s)},
                          {"source", row.source},

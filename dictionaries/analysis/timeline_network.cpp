@@ -106,7 +106,7 @@ void TimelineNetwork::add_timepoint(std::size_t index) {
 
 void TimelineNetwork::add_given() {
     for (const ConstraintRow& row : dictionary_.constraints) {
-        if (row.kind != ConstraintRow::Kind::given) continue;
+        if (row.kind == ConstraintRow::Kind::required) continue;
         if (row.minimum_s) add(row.from, row.to, ticks_of(*row.minimum_s), Reason::given, row.line);
         if (row.maximum_s) add(row.to, row.from, -ticks_of(*row.maximum_s), Reason::given, row.line);
     }

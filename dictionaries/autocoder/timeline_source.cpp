@@ -47,6 +47,12 @@ void write_anchors(const Dictionary& dictionary, std::ostringstream& out) {
     out << "}};\n\n";
 }
 
+/// A misspelt phase does not compile, at its row of tones.csv.
+std::string heartbeat_of(const ToneRow& row) {
+    const bool is_one = row.set == ToneSet::prime && row.name.starts_with(heartbeat_prefix);
+    return is_one ? "EdlPhase::" + row.name.substr(heartbeat_prefix.size()) : "std::nullopt";
+}
+
 void write_tones(const Dictionary& dictionary, std::ostringstream& out) {
     out << "#line 1 \"tones.csv\"\nconstinit const std::array<ToneSpec, 256> tone_specs{{\n";
     for (const ToneRow& row : dictionary.tones)
@@ -56,7 +62,7 @@ void write_tones(const Dictionary& dictionary, std::ostringstream& out) {
             << id_literal("ToneId", row.set == ToneSet::prime
                                         ? id_of(dictionary.tones, std::string{second_chance_prefix} + row.name)
                                         : std::optional<ToneId>{})
-            << "},\n";
+            << ", " << heartbeat_of(row) << "},\n";
     out << "}};\n\n";
 }
 

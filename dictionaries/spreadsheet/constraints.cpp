@@ -47,9 +47,10 @@ std::optional<Moment> read_moment(RowReader& cells, std::string_view column, Mom
 
 ConstraintRow::Kind read_kind(RowReader& cells) {
     const std::string& kind = cells.text("kind");
-    if (kind != "required" && kind != "given")
-        cells.fault("kind " + in_quotes(kind) + " is neither required nor given");
-    return kind == "given" ? ConstraintRow::Kind::given : ConstraintRow::Kind::required;
+    if (kind == "given") return ConstraintRow::Kind::given;
+    if (kind == "ensured") return ConstraintRow::Kind::ensured;
+    if (kind != "required") cells.fault("kind " + in_quotes(kind) + " is none of required, given, ensured");
+    return ConstraintRow::Kind::required;
 }
 
 void check_bounds(RowReader& cells, const ConstraintRow& row) {
@@ -95,7 +96,7 @@ std::optional<std::vector<ConstraintRow>> read_constraints(std::string_view text
             row.from = *from;
             row.to = *to;
             if (*from == *to) cells.fault("from and to are the same moment");
-            if (row.kind == ConstraintRow::Kind::given && !may_be_given(*to))
+            if (row.kind != ConstraintRow::Kind::required && !may_be_given(*to))
                 cells.fault("only an anchor can be given; when a timepoint fires is for timeline.csv to say");
             const auto [first, added] =
                 lines.emplace(Key{row.kind, from->kind, from->index, to->kind, to->index}, row.line);

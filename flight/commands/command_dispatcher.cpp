@@ -103,6 +103,10 @@ void CommandDispatcher::take_packet(std::span<const std::uint8_t> octets, Outbox
         return route<command::SELECT_PRIME>(out, tag, packet->arguments, [&](const auto& command) {
             out.send(ModuleId::edl, SelectPrimeCommand{tag, command.computer == ComputerString::b});
         });
+    case command::PRIME_RESUME::opcode.value:
+        return route<command::PRIME_RESUME>(out, tag, packet->arguments, [&](const auto&) {
+            out.send(ModuleId::cross_string, ResumePrimeCommand{tag});
+        });
     case command::EDL_SELECT_UNITS::opcode.value:
         return route<command::EDL_SELECT_UNITS>(out, tag, packet->arguments, [&](const auto& command) {
             out.send(ModuleId::units, SelectUnitsCommand{tag, command});

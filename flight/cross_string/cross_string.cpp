@@ -24,9 +24,10 @@ void CrossString::put(StateOctets& line, std::span<const std::uint8_t> state) {
 void CrossString::tell(const StatePart& part, Outbox& out) {
     if (!assembly_.take(part)) return;
     put(out.bus().cross_string, assembly_.octets());
-    const std::uint32_t revision = StateFrame::header_of(assembly_.octets()).revision;
-    if (revision == kept_revision_) return;
-    kept_revision_ = revision;
+    const StateHeader header = StateFrame::header_of(assembly_.octets());
+    if (header.revision == kept_revision_ && header.time - kept_at_ < keep_every_s) return;
+    kept_revision_ = header.revision;
+    kept_at_ = header.time;
     put(out.bus().restart_record, assembly_.octets());
 }
 
@@ -75,10 +76,24 @@ void CrossString::on(const SelectPrimeCommand& command, Outbox& out) {
     designate_at_ = out.now() + answer_first_s;
 }
 
+void CrossString::on(const OtherRunsBuses& seen, Outbox&) {
+    other_ran_buses_ = seen.now;
+}
+
+// One computer flies: what the other one does cannot be stopped, nor its bus shared.
+void CrossString::on(const ResumePrimeCommand& command, Outbox& out) {
+    if (load_role_ != Role::prime) return;
+    const bool other_flies = other_ran_buses_ && out.now() - *other_ran_buses_ <= prime_silent_s;
+    if (other_flies)
+        out.send(ModuleId::command_dispatcher, CommandOutcome{command.tag, CommandRefusal::wrong_phase});
+    else
+        out.send(ModuleId::edl, command);
+}
+
 bool CrossString::may_take_over(Sclk now, Outbox& out) {
     if (!enabled_ || off_ || in_control_ || latest_.empty() || !heard_) return false;
     const StateHeader prime = latest_.header();
-    const bool due = now - *heard_ > prime_silent_s && prime.begun && !prime.pre_edl && !prime.touchdown;
+    const bool due = now - *heard_ > prime_silent_s && prime.begun && prime.separated && !prime.touchdown;
     const bool fresh = now - prime.time <= state_age_max_s;
     if (due && !fresh && !too_old_told_) {
         too_old_told_ = true;

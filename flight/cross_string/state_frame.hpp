@@ -17,13 +17,13 @@ struct StateHeader {
     std::uint32_t revision = 0;  ///< changes with everything that must survive a restart: parameters, "do edl",
                                  ///< timepoints
     bool begun = false;          ///< "do edl" was accepted
-    bool pre_edl = true;
+    bool separated = false;      ///< from the cruise stage: prime does not start anew any more
     bool touchdown = false;
     UnitSelection units{};  ///< units addressed
 
     template <typename Exchange>
     void carry(Exchange& exchange) {
-        exchange(time, revision, begun, pre_edl, touchdown, units);
+        exchange(time, revision, begun, separated, touchdown, units);
     }
 };
 

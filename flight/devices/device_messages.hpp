@@ -144,6 +144,7 @@ using StateOctets = FixedVector<std::uint8_t, state_octets_max>;
 struct DeviceInputs {
     Sclk now;                       ///< the tick
     bool prime_is_b = false;        ///< the latch that designates the prime computer. R1
+    bool other_runs_buses = false;  ///< a monitor on the buses saw the other computer run them in the previous cycle
     StateOctets cross_string;       ///< sent by the other computer in the previous cycle; empty: nothing
     StateOctets restart_record;     ///< once, in the first cycle after a restart, if stored
     FixedVector<ImuSample, 4> imu;  ///< 3 or 4 per cycle

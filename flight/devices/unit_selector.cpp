@@ -52,8 +52,8 @@ void UnitSelector::on(const EdlBegun&, Outbox&) {
     reports_ = true;
 }
 
-void UnitSelector::on(const StandBy&, Outbox&) {
-    reports_ = false;
+void UnitSelector::on(const StandBy& stand_by, Outbox&) {
+    reports_ = stand_by.over;
 }
 
 void UnitSelector::on(const UnitsSelected& taken_over, Outbox& out) {

@@ -76,7 +76,10 @@ void EdlMain::run_timeline(Sclk now, Outbox& out) {
     if (inhibited_) return;
     ActionContext context{out, configuration_};
     Firings firings;
+    const bool waited = timeline_.waiting().has_value();
     timeline_.pass(now, context, firings);
+    // What was triggered is kept for a restart at once: its reply may be seconds away.
+    if (!firings.empty() || timeline_.waiting().has_value() != waited) ++revision_;
     constraint_monitor_.watch(timeline_, firings.span());
     change_guard_.watch(timeline_, firings.span());
     for (const Firing& firing : firings) {
@@ -87,9 +90,7 @@ void EdlMain::run_timeline(Sclk now, Outbox& out) {
         tell_reply(firing, timeline_specs[firing.timepoint.value], out);
         if (firing.verdict == FiringVerdict::unverified) unverified_.add(firing);
     }
-    if (firings.empty()) return;
-    ++revision_;
-    if (!timeline_.finished()) return;
+    if (firings.empty() || !timeline_.finished()) return;
     out.event(evr::TIMELINE_COMPLETE{});
     out.send(ModuleId::cross_string, EdlFinished{});
     constraint_monitor_.summarise(out);
@@ -134,8 +135,12 @@ void EdlMain::take_triggers(Sclk now, Outbox& out) {
 
 void EdlMain::update_phase(Sclk now, Outbox& out) {
     if (!phase_.follow(output_.mode, configuration_, late_cruise(now))) return;
-    out.send(ModuleId::edl_comm, PhaseChanged{phase()});
+    tell_phase(out);
     out.event(evr::EDL_PHASE_CHANGED{.phase = phase()});
+}
+
+void EdlMain::tell_phase(Outbox& out) const {
+    for (const ModuleId module : {ModuleId::edl_comm, ModuleId::mfsk}) out.send(module, PhaseChanged{phase()});
 }
 
 // ---- inputs from the device managers ---------------------------------------------------------------------------
@@ -201,6 +206,12 @@ bool EdlMain::late_cruise(Sclk now) const {
 // Until ground has sent the time of entry, EDL is still far off.
 bool EdlMain::pre_edl(Sclk now) const {
     return !(now >= timeline_.anchor_time(anchor::pre_edl_end));
+}
+
+// The moment may come late, or be moved ahead of its anchor: what was fired counts, and what should have been.
+bool EdlMain::separated(Sclk now) const {
+    return now >= timeline_.anchor_time(anchor::cruise_stage_separation) ||
+           timeline_.triggered(timepoint::cruise_stage_separation);
 }
 
 bool EdlMain::too_late(Sclk now) const {

@@ -24,12 +24,14 @@ namespace aeolis::flight {
 ///
 /// In      StatePart and Resume: continue from the state of another computer, or from before a restart. R32, R33
 ///         Tick; ImuReadings, EngineReply, BridleReply, CruiseAttitude, RadarSolution; ActionReply;
-///         ParametersUpdate, DoEdlCommand, SetTimepointOffsetCommand, SetAnchorOffsetCommand; InhibitEdl
+///         ParametersUpdate, DoEdlCommand, SetTimepointOffsetCommand, SetAnchorOffsetCommand, ResumePrimeCommand;
+///         InhibitEdl
 /// Out     actions to the device managers; tones; events, firings, explanations and channels to EdlComm; Confirm
 /// Gate    nothing runs before parameters and then "do edl" were received, the latter in late cruise and in time. R23
 /// Changes of the timeline are judged on arrival, and refused where they are unsafe. R51
 /// Roles   prime flies, and sends its state each cycle; Second Chance keeps recent IMU readings until it must take
-///         over; a prime that was restarted after pre-EDL stands by. R33, R34
+///         over; a prime that was restarted after cruise-stage separation stands by, until ground orders it on.
+///         R32, R33, R34
 /// Hold    system fault protection can hold EDL until the end of pre-EDL, not afterwards. R24
 class EdlMain {
   public:
@@ -51,6 +53,7 @@ class EdlMain {
     void on(const SetTimepointOffsetCommand& command, Outbox& out);
     void on(const SetAnchorOffsetCommand& command, Outbox& out);
     void on(const SelectPrimeCommand& command, Outbox& out);
+    void on(const ResumePrimeCommand& command, Outbox& out);
 
     void on(const StatePart& part, Outbox& out);
     void on(const Resume& resume, Outbox& out);
@@ -79,6 +82,8 @@ class EdlMain {
 
     void tell_state(Sclk now, Outbox& out);
     void restart(Sclk now, Outbox& out);
+    void stand_by(bool is, Outbox& out);
+    void tell_phase(Outbox& out) const;
     void take_over(const StateHeader& prime, Sclk now, Outbox& out);
     void watch_approach(Sclk now, Outbox& out);
     void set_inhibited(bool inhibited, Outbox& out);
@@ -95,6 +100,7 @@ class EdlMain {
     MaybeTime entry() const { return timeline_.anchor_time(anchor::entry); }
     bool late_cruise(Sclk now) const;
     bool pre_edl(Sclk now) const;
+    bool separated(Sclk now) const;
     bool too_late(Sclk now) const;
 
     Load load_;

@@ -12,7 +12,7 @@ void EdlMain::tell_state(Sclk now, Outbox& out) {
     const StateHeader header{.time = now,
                              .revision = revision_,
                              .begun = timeline_.begun(),
-                             .pre_edl = pre_edl(now),
+                             .separated = separated(now),
                              .touchdown = configuration_.touchdown_declared,
                              .units = units_};
     StateFrame::of(header, *this).in_parts([&](const StatePart& part) { out.send(ModuleId::cross_string, part); });
@@ -45,19 +45,40 @@ void EdlMain::on(const Resume& resume, Outbox& out) {
 void EdlMain::restart(Sclk now, Outbox& out) {
     // Decided by the last state that the other computer received: it takes over from just the states for which this one
     // stands by.
-    if (timeline_.begun() && !pre_edl(load_.told_until.value_or(now))) {
-        activity_ = Activity::stands_by;
-        for (const ModuleId silent : {ModuleId::mfsk, ModuleId::units}) out.send(silent, StandBy{});
+    if (timeline_.begun() && separated(load_.told_until.value_or(now))) {
+        stand_by(true, out);
         return out.event(evr::PRIME_STANDS_BY{});
     }
     out.send(ModuleId::mfsk, ToneRequest{tone::computer_started, now});
-    out.send(ModuleId::edl_comm, PhaseChanged{phase()});
+    tell_phase(out);
     if (parameters_) gnc_.set_solution(solution_of(*parameters_), now);  // the navigated state is out of date
     configuration_.pyros_armed = false;  // the pyro manager starts safe; the backtrack repeats the arming
     if (!timeline_.begun()) return;
     const TimepointId from = timeline_.current();
     if (timeline_.backtrack(now))
         out.event(evr::TIMELINE_BACKTRACKED{.timepoint = from.value, .backtrack = timeline_.current().value});
+}
+
+void EdlMain::stand_by(bool is, Outbox& out) {
+    activity_ = is ? Activity::stands_by : Activity::flies;
+    for (const ModuleId module : {ModuleId::mfsk, ModuleId::units}) out.send(module, StandBy{.over = !is});
+}
+
+// The state is as old as the restart and the wait. Overdue timepoints fire at once, and navigation coasts over the gap.
+// After touchdown prime could only do harm.
+void EdlMain::on(const ResumePrimeCommand& command, Outbox& out) {
+    std::optional<CommandRefusal> refused;
+    if (activity_ != Activity::stands_by || configuration_.touchdown_declared) refused = CommandRefusal::wrong_phase;
+    out.send(ModuleId::command_dispatcher, CommandOutcome{command.tag, refused});
+    if (refused) return;
+    stand_by(false, out);
+    gnc_.catch_up({}, out.now() - seconds_per_tick);  // the readings of this cycle come with its turn
+    (void)timeline_.backtrack(out.now());
+    out.send(ModuleId::pyro, ArmPyros{configuration_.pyros_armed});
+    ++revision_;
+    out.event(evr::PRIME_RESUMES{.timepoint = timeline_.current().value});
+    out.send(ModuleId::mfsk, ToneRequest{tone::computer_started, out.now()});
+    tell_phase(out);
 }
 
 void EdlMain::take_over(const StateHeader& prime, Sclk now, Outbox& out) {
@@ -72,7 +93,7 @@ void EdlMain::take_over(const StateHeader& prime, Sclk now, Outbox& out) {
     out.send(ModuleId::pyro, ArmPyros{configuration_.pyros_armed});
     out.event(evr::SECOND_CHANCE_TAKES_OVER{.silence_s = now - prime.time, .timepoint = timeline_.current().value});
     out.send(ModuleId::mfsk, ToneRequest{tone::taken_over, now});
-    out.send(ModuleId::edl_comm, PhaseChanged{phase()});
+    tell_phase(out);
     ++revision_;
 }
 

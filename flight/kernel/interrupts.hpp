@@ -29,6 +29,7 @@ void post_interrupts(const DeviceInputs& in, Deliver&& deliver) {
     state_parts(in.cross_string.span(), in.now, [&](const StatePart& part) { deliver(ModuleId::cross_string, part); });
     state_parts(in.restart_record.span(), in.now,
                 [&](const StatePart& part) { deliver(ModuleId::cross_string, StoredStatePart{part}); });
+    if (in.other_runs_buses) deliver(ModuleId::cross_string, OtherRunsBuses{in.now});
     for (const auto& uplink : in.uplink) {
         UplinkReceived received;
         received.size = uplink.size;

@@ -87,6 +87,10 @@ struct Resume {
     ResumeReason reason{};
 };
 
+struct OtherRunsBuses {  ///< in each cycle in which a monitor on the buses sees the other computer run them
+    Sclk now;
+};
+
 inline constexpr std::size_t uplink_octets_max =
     256;  ///< chosen: the longest command of the dictionary makes a CLTU of 194
 struct UplinkReceived {
@@ -193,6 +197,9 @@ struct SelectPrimeCommand {
     CommandTag tag;
     bool string_b = false;
 };
+struct ResumePrimeCommand {  ///< to a prime that stands by: fly on
+    CommandTag tag;
+};
 struct SelectUnitsCommand {
     CommandTag tag;
     command::EDL_SELECT_UNITS arguments;
@@ -219,21 +226,24 @@ struct ToneRequest {
 struct PhaseChanged {
     EdlPhase phase{};
 };
-struct StandBy {};      ///< from Edl of a prime restarted too late: the other computer flies and transmits
+struct StandBy {        ///< from Edl of a prime restarted too late: the other computer flies and transmits
+    bool over = false;  ///< ground has ordered prime to fly on
+};
 struct EdlFinished {};  ///< from Edl: the last timepoint has fired
 struct ToneStatus {     ///< from MFSK to EdlComm, for its status channels
     std::uint8_t tone = 0;
     std::uint8_t outstanding = 0;
 };
 
-using Message = std::variant<ClockTick, Tick, Confirm, ImuReadings, RadarReturns, StatePart, StoredStatePart, Resume,
-                             UplinkReceived, NvmStatus, PyroReply, SwitchReply, EngineReply, ThrusterReply, BridleReply,
-                             CruiseAttitude, gnc::RadarSolution, ActionReply, FirePyro, ArmPyros, SetSwitch,
-                             EnableThrusters, FireThrusters, RunEngines, PayOutBridle, UnitsSelected, EdlBegun,
-                             NavigatedAttitude, SystemFaultReport, InhibitEdl, SetParametersCommand, ParametersUpdate,
-                             DoEdlCommand, SetTimepointOffsetCommand, SetAnchorOffsetCommand, SelectUnitsCommand,
-                             EnableSecondChanceCommand, SelectPrimeCommand, CommandOutcome, Record, ToneRequest,
-                             PhaseChanged, StandBy, EdlFinished, ToneStatus, UplinkStatus, CloseRecording>;
+using Message =
+    std::variant<ClockTick, Tick, Confirm, ImuReadings, RadarReturns, StatePart, StoredStatePart, Resume,
+                 UplinkReceived, NvmStatus, PyroReply, SwitchReply, EngineReply, ThrusterReply, BridleReply,
+                 CruiseAttitude, gnc::RadarSolution, ActionReply, FirePyro, ArmPyros, SetSwitch, EnableThrusters,
+                 FireThrusters, RunEngines, PayOutBridle, UnitsSelected, EdlBegun, NavigatedAttitude, SystemFaultReport,
+                 InhibitEdl, SetParametersCommand, ParametersUpdate, DoEdlCommand, SetTimepointOffsetCommand,
+                 SetAnchorOffsetCommand, SelectUnitsCommand, EnableSecondChanceCommand, SelectPrimeCommand,
+                 ResumePrimeCommand, OtherRunsBuses, CommandOutcome, Record, ToneRequest, PhaseChanged, StandBy,
+                 EdlFinished, ToneStatus, UplinkStatus, CloseRecording>;
 static_assert(std::is_trivially_copyable_v<Message>, "messages hold only data");
 
 /// Copies only the content of a message, not the space of the largest alternative.

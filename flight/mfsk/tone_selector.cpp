@@ -15,12 +15,9 @@ void explain(Outbox& out, ToneId tone, ExplanationVerdict verdict, std::initiali
 }  // namespace
 
 void ToneSelector::on(const ToneRequest& asked, Outbox& out) {
-    ToneRequest request = asked;
-    if (role_ == Role::second_chance) {
-        const auto& counterpart = tones_[asked.tone.value].second_chance;
-        if (!counterpart) return;  // prime's tones are never sent by Second Chance
-        request.tone = *counterpart;
-    }
+    const auto tone = own(asked.tone);
+    if (!tone) return;
+    const ToneRequest request{*tone, asked.requested};
     const auto& spec = tones_[request.tone.value];
     if (spec.supersedes) drop_overtaken(*spec.supersedes, request.tone, out);
     for (auto& same : outstanding_)
@@ -30,6 +27,17 @@ void ToneSelector::on(const ToneRequest& asked, Outbox& out) {
         }
     if (outstanding_.full()) refuse_or_make_room(request, out);
     if (!outstanding_.full()) outstanding_.push_back(request);
+}
+
+// The tone of this computer's set with the meaning of a prime tone. Second Chance never sends prime's tones.
+std::optional<ToneId> ToneSelector::own(ToneId tone) const {
+    return role_ == Role::second_chance ? tones_[tone.value].second_chance : tone;
+}
+
+void ToneSelector::on(const PhaseChanged& change, Outbox&) {
+    heartbeat_.reset();
+    for (std::size_t i = 0; i < tones_.size(); ++i)
+        if (tones_[i].heartbeat_of == change.phase) heartbeat_ = own(ToneId{static_cast<std::uint8_t>(i)});
 }
 
 void ToneSelector::drop_overtaken(ToneId overtaken, ToneId by, Outbox& out) {
@@ -61,8 +69,8 @@ void ToneSelector::refuse_or_make_room(const ToneRequest& request, Outbox& out) 
              is_tone(Quantity::overtaking_tone, request.tone)});
 }
 
-void ToneSelector::on(const StandBy&, Outbox& out) {
-    silent_ = true;
+void ToneSelector::on(const StandBy& stand_by, Outbox& out) {
+    silent_ = !stand_by.over;
     outstanding_.clear();
     sending_.reset();
     out.bus().tone.reset();
@@ -73,24 +81,31 @@ void ToneSelector::on(const ClockTick& tick, Outbox& out) {
     drop_expired(tick.now, out);
     if (sending_ && tick.now - sending_->started >= parameters.tone_duration_s) {
         sending_.reset();
+        quiet_since_ = tick.now;
         out.bus().tone.reset();
     }
     if (!sending_ && !outstanding_.empty()) {
         const std::size_t chosen = most_important();
         const ToneRequest request = outstanding_[chosen];
         outstanding_.erase_at(chosen);
-        sending_ = Sending{request.tone, tick.now};
-        out.bus().tone = request.tone;
-        out.record(packet::ToneSelected{.tone = request.tone.value,
-                                        .started_sclk = tick.now.seconds,
-                                        .requested_sclk = request.requested.seconds,
-                                        .priority = static_cast<std::uint8_t>(priority(request.tone)),
-                                        .outstanding = static_cast<std::uint8_t>(outstanding_.size())});
+        send(request, out);
         explain_choice(request, out);
+    } else if (!sending_ && heartbeat_ && tick.now - quiet_since_ >= parameters.heartbeat_after_s) {
+        send({*heartbeat_, tick.now}, out);
     }
     if (at_resolution(tick.now, 1) == tick.now)
         out.send(ModuleId::edl_comm, ToneStatus{sending_ ? sending_->tone.value : std::uint8_t{0},
                                                 static_cast<std::uint8_t>(outstanding_.size())});
+}
+
+void ToneSelector::send(const ToneRequest& request, Outbox& out) {
+    sending_ = Sending{request.tone, out.now()};
+    out.bus().tone = request.tone;
+    out.record(packet::ToneSelected{.tone = request.tone.value,
+                                    .started_sclk = out.now().seconds,
+                                    .requested_sclk = request.requested.seconds,
+                                    .priority = static_cast<std::uint8_t>(priority(request.tone)),
+                                    .outstanding = static_cast<std::uint8_t>(outstanding_.size())});
 }
 
 void ToneSelector::drop_expired(Sclk now, Outbox& out) {

@@ -12,21 +12,23 @@ namespace aeolis::flight {
 
 /// Chooses the tone that the X-band transmitter sends.
 ///
-/// In      ToneRequest, StandBy, ClockTick (64 Hz)           Out   the transmitter's tone; ToneSelected; Explanation;
-///         ToneStatus
+/// In      ToneRequest, PhaseChanged, StandBy, ClockTick (64 Hz)
+/// Out     the transmitter's tone; ToneSelected; Explanation; ToneStatus
 /// Memory  64 outstanding requests; when full the least important is dropped and reported (MFSK_REQUESTS_FULL)
 /// Rule    the most important request first; among equals, the newest. A request older than its tone's age limit is
 ///         dropped, and so is one that a newer event supersedes (tones.csv: supersedes). R31
 /// Why     each drop, and each choice between several requests, is explained by its values: age and limit, the tone
 ///         that superseded it, or, without room, both priorities. R38
 /// Backup  in Second Chance each request is for the tone with the same meaning in its own set. R35
-/// With no request outstanding, the carrier is sent without a tone.
+/// Pause   with no request outstanding, the carrier is sent without a tone, and after heartbeat_after_s of that the
+///         heartbeat of the phase, if the phase has one (tones.csv: heartbeat_PHASE). R31
 class ToneSelector {
   public:
     explicit ToneSelector(const Load& load, std::span<const ToneSpec> tones = tone_specs)
         : tones_(tones), role_(load.role) {}
 
     void on(const ToneRequest& request, Outbox& out);
+    void on(const PhaseChanged& change, Outbox& out);
     void on(const ClockTick& tick, Outbox& out);
     void on(const StandBy& stand_by, Outbox& out);
 
@@ -36,6 +38,8 @@ class ToneSelector {
         Sclk started;
     };
 
+    void send(const ToneRequest& request, Outbox& out);
+    std::optional<ToneId> own(ToneId tone) const;
     void drop_expired(Sclk now, Outbox& out);
     void drop_overtaken(ToneId overtaken, ToneId by, Outbox& out);
     void refuse_or_make_room(const ToneRequest& request, Outbox& out);
@@ -49,6 +53,8 @@ class ToneSelector {
     Role role_;
     FixedVector<ToneRequest, 64> outstanding_;
     std::optional<Sending> sending_;
+    std::optional<ToneId> heartbeat_;  ///< of the phase, in the set of this computer
+    Sclk quiet_since_;                 ///< when the last tone ended
     bool silent_ = false;
 };
 

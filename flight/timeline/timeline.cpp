@@ -144,6 +144,10 @@ std::optional<Timeline::Waiting> Timeline::waiting() const {
     return Waiting{triggered_, *rows_[current_].reply_timeout_s};
 }
 
+bool Timeline::triggered(TimepointId id) const {
+    return current_ > id.value || (current_ == id.value && waiting_);
+}
+
 MaybeTime Timeline::next_desired() const {
     return finished() ? MaybeTime{} : current_due().desired;
 }

@@ -73,6 +73,8 @@ class Timeline {
         double timeout_s = 0.0;
     };
     std::optional<Waiting> waiting() const;
+    /// Whether the action of a timepoint was triggered, in this cycle or before.
+    bool triggered(TimepointId id) const;
     /// Times from which the current timepoint may fire; undefined while unknown.
     MaybeTime next_desired() const;
     MaybeTime next_minimum() const;

@@ -77,28 +77,28 @@ void print_chain(const Dictionary& d, const std::vector<ChainStep>& chain) {
                    place_text(step));
 }
 
-/// Prints the schedule's moments from one end of the constraint to the other, and their anchors.
-void print_counter_example(const Dictionary& d, const BoundProof& bound) {
-    const ConstraintRow& row = d.constraints[bound.constraint];
+/// Prints the schedule's moments from one end of a claim to the other, and their anchors.
+void print_counter_example(const Dictionary& d, const Moment& from, const Moment& to,
+                           const std::vector<Instant>& schedule) {
     const auto time_of = [&](const Moment& moment) {
-        return std::ranges::find(bound.schedule, moment, &Instant::moment)->time_s;
+        return std::ranges::find(schedule, moment, &Instant::moment)->time_s;
     };
-    const double from_s = time_of(row.from);
-    const double to_s = time_of(row.to);
-    fmt::print("    a counter-example, in seconds from {}: {} comes at {}\n", moment_text(d, row.from),
-               moment_text(d, row.to), number_word(to_s - from_s));
+    const double from_s = time_of(from);
+    const double to_s = time_of(to);
+    fmt::print("    a counter-example, in seconds from {}: {} comes at {}\n", moment_text(d, from), moment_text(d, to),
+               number_word(to_s - from_s));
     std::set<std::uint16_t> anchors;
     std::vector<Instant> shown;
-    shown.reserve(bound.schedule.size());
-    for (const Instant& instant : bound.schedule) {
+    shown.reserve(schedule.size());
+    for (const Instant& instant : schedule) {
         if (instant.moment.kind == Moment::Kind::anchor || instant.moment.kind == Moment::Kind::do_edl) continue;
         if (instant.time_s < std::min(from_s, to_s) || instant.time_s > std::max(from_s, to_s)) continue;
         shown.push_back(instant);
         const auto& anchor = d.timeline[instant.moment.index].anchor;
         if (anchor) anchors.insert(anchor->value);
     }
-    for (const Instant& instant : bound.schedule) {
-        const bool is_end = instant.moment == row.from || instant.moment == row.to;
+    for (const Instant& instant : schedule) {
+        const bool is_end = instant.moment == from || instant.moment == to;
         if (instant.moment.kind == Moment::Kind::do_edl
                 ? is_end
                 : instant.moment.kind == Moment::Kind::anchor && (is_end || anchors.contains(instant.moment.index)))
@@ -115,13 +115,33 @@ void print_counter_example(const Dictionary& d, const BoundProof& bound) {
 void print_bound(const Dictionary& d, const BoundProof& bound) {
     fmt::print("  constraints.csv:{}: {}: {}\n", d.constraints[bound.constraint].line, bound_text(d, bound),
                bound.proof == Proof::undecided ? "undecided: the search was cut short" : proof_text(bound.proof));
-    if (bound.proof == Proof::refuted) print_counter_example(d, bound);
+    if (bound.proof == Proof::refuted) {
+        const ConstraintRow& row = d.constraints[bound.constraint];
+        print_counter_example(d, row.from, row.to, bound.schedule);
+    }
     fmt::print("{}", bound.chain.empty() ? "    nothing bounds it\n" : "    critical chain\n");
     print_chain(d, bound.chain);
 }
 
+void print_holds(const Dictionary& d, const std::vector<HoldProof>& holds) {
+    fmt::print("\nWhat GNC triggers waits for no row that GNC does not need, however early it comes\n");
+    std::size_t proven = 0;
+    for (const HoldProof& hold : holds) {
+        proven += hold.proof == Proof::proven;
+        if (hold.proof == Proof::proven) continue;
+        const TimelineRow& triggered = d.timeline[hold.triggered.value];
+        const TimelineRow& before = d.timeline[hold.before.value];
+        fmt::print("  timeline.csv:{}: {} may wait for {} (timeline.csv:{}): {}\n", triggered.line, triggered.name,
+                   before.name, before.line, proof_text(hold.proof));
+        if (hold.proof == Proof::refuted)
+            print_counter_example(d, Moment::of_anchor(*triggered.anchor), Moment::of_fired(before.id), hold.schedule);
+    }
+    fmt::print("  {} of {} pairs proven.\n", proven, holds.size());
+}
+
 void print_analysis(const Dictionary& d, const TimelineAnalysis& analysis) {
-    const auto given = std::ranges::count(d.constraints, ConstraintRow::Kind::given, &ConstraintRow::kind);
+    const auto given =
+        std::ranges::count_if(d.constraints, [](const auto& row) { return row.kind != ConstraintRow::Kind::required; });
     fmt::print("{}, timeline version {}: {} timepoints, {} anchors, {} given rows, {} bounds to prove\n", d.mission,
                d.timeline_version, d.timeline.size(), d.anchors.size(), given, analysis.bounds.size());
     if (!analysis.contradiction.empty()) {
@@ -146,6 +166,7 @@ void print_analysis(const Dictionary& d, const TimelineAnalysis& analysis) {
     for (const DueMargin& margin : analysis.margins)
         fmt::print("  {:>14}  {}\n", slack_text(margin.slack_s), d.timeline[margin.timepoint.value].name);
 
+    print_holds(d, analysis.holds);
     const auto not_proven = [](const BoundProof& bound) { return bound.proof != Proof::proven; };
     const auto failures = std::ranges::count_if(analysis.bounds, not_proven);
     if (failures == 0) {
@@ -181,6 +202,15 @@ std::string chain_json(const Dictionary& d, const std::vector<ChainStep>& chain)
     });
 }
 
+std::string schedule_json(const Dictionary& d, const std::vector<Instant>& schedule) {
+    return json_array(schedule, [&](const Instant& instant) {
+        return JsonObject{}
+            .text("moment", moment_text(d, instant.moment))
+            .number("since_do_edl_s", instant.time_s)
+            .str();
+    });
+}
+
 std::string analysis_json(const Dictionary& d, const TimelineAnalysis& analysis) {
     const auto bound_json = [&](const BoundProof& bound) {
         const ConstraintRow& row = d.constraints[bound.constraint];
@@ -193,13 +223,15 @@ std::string analysis_json(const Dictionary& d, const TimelineAnalysis& analysis)
             .text("proof", proof_text(bound.proof))
             .raw("slack_s", maybe_number(bound.slack_s))
             .raw("critical_chain", chain_json(d, bound.chain));
-        if (bound.proof == Proof::refuted)
-            object.raw("counter_example", json_array(bound.schedule, [&](const Instant& instant) {
-                           return JsonObject{}
-                               .text("moment", moment_text(d, instant.moment))
-                               .number("since_do_edl_s", instant.time_s)
-                               .str();
-                       }));
+        if (bound.proof == Proof::refuted) object.raw("counter_example", schedule_json(d, bound.schedule));
+        return object.str();
+    };
+    const auto hold_json = [&](const HoldProof& hold) {
+        JsonObject object;
+        object.text("triggered", d.timeline[hold.triggered.value].name)
+            .text("before", d.timeline[hold.before.value].name)
+            .text("proof", proof_text(hold.proof));
+        if (hold.proof == Proof::refuted) object.raw("counter_example", schedule_json(d, hold.schedule));
         return object.str();
     };
     const auto margin_json = [&](const DueMargin& margin) {
@@ -216,6 +248,7 @@ std::string analysis_json(const Dictionary& d, const TimelineAnalysis& analysis)
         .raw("contradiction", chain_json(d, analysis.contradiction))
         .raw("bounds", json_array(analysis.bounds, bound_json))
         .raw("margins", json_array(analysis.margins, margin_json))
+        .raw("holds", json_array(analysis.holds, hold_json))
         .str();
 }
 
@@ -280,7 +313,7 @@ bool is_folder(const std::filesystem::path& path) {
     return std::filesystem::is_directory(path, error);
 }
 
-/// Returns 0 when every required row of constraints.csv is proven.
+/// Returns 0 when every required row of constraints.csv and every hold is proven.
 int timeline_analyse(const TimelineAnalyseOptions& options) {
     if (!is_folder(options.directory))
         return failed(fmt::format("timeline analyse: {} is no directory", options.directory.string()), 2);
@@ -313,8 +346,9 @@ int timeline_diff(const TimelineDiffOptions& options) {
 
 void add_timeline_analyse(CLI::App& timeline, int& exit_code) {
     const auto options = std::make_shared<TimelineAnalyseOptions>();
-    auto& command = *timeline.add_subcommand(
-        "analyse", "proves or refutes each row of constraints.csv; exit code 1 when one is not proven");
+    auto& command = *timeline.add_subcommand("analyse", "proves or refutes each row of constraints.csv, and that GNC "
+                                                        "waits for nothing that it does not need; exit code 1 "
+                                                        "when one is not proven");
     command.add_option("DIR", options->directory, "the dictionary's directory")->capture_default_str();
     command.add_flag("--json", options->json, "print one JSON object");
     command.callback([options, &exit_code] { exit_code = timeline_analyse(*options); });

@@ -39,6 +39,7 @@ void Computers::step(flight::DeviceInputs& in, bool with_prime) {
 
     const auto complete = [&](std::size_t place, flight::DeviceInputs& inputs) {
         inputs.prime_is_b = prime_is_b_;
+        inputs.other_runs_buses = commander_ == 1 - place;
         inputs.cross_string.clear();
         inputs.cross_string.append(out_[1 - place].cross_string.span());
         inputs.restart_record.clear();

@@ -32,7 +32,7 @@ TEST_CASE("the shipped dictionary breaks no rule and is as large as a landing ne
     CHECK(d.packets.size() - d.events.size() >= 12);
     CHECK(d.events.size() >= 50);
     CHECK(d.commands.size() >= 8);
-    CHECK(d.timeline.size() >= 60);
+    CHECK(d.timeline.size() >= 45);
     CHECK(d.tones.size() == 256);
     CHECK(d.timeline.front().name == "descent_imu_power");
     CHECK_FALSE(d.timeline.front().anchor);  // counts from "do edl"

@@ -16,18 +16,18 @@ TEST_CASE("each broken rule of the spreadsheets gives one line, and nothing is l
         {"two roots", "anchors.csv", "parachute,root,undefined", "parachute,,", "has no parent"},
         {"offset of the root", "anchors.csv", "root,,,", "root,,5,", "the root stands at zero"},
         {"anchor twice", "anchors.csv", "priming,root", "backshell,root,undefined,\npriming,root",
-         "is there twice, first in line 9", 2},
+         "is there twice, first in line 10", 2},
         {"anchor off the ticks", "anchors.csv", "-14400", "-14400.1", "-14400.1 is not a multiple of 1/64 s"},
         {"undefined has one spelling", "anchors.csv", "parachute,root,undefined", "parachute,root,nan",
          "'nan' is neither a number nor undefined"},
         {"reserved anchor name", "anchors.csv", "pre_edl_end,", "previous,", "the name means something else"},
         // timeline
-        {"off the ticks", "timeline.csv", "-600.046875", "-600.05", "-600.05 is not a multiple of 1/64 s"},
-        {"offset no number", "timeline.csv", "-600.046875", "soon", "'soon' is neither a number nor undefined"},
-        {"offset left empty", "timeline.csv", "-600.046875", "", "'' is neither a number nor undefined"},
+        {"off the ticks", "timeline.csv", "-519.40625", "-519.4", "-519.4 is not a multiple of 1/64 s"},
+        {"offset no number", "timeline.csv", "-519.40625", "soon", "'soon' is neither a number nor undefined"},
+        {"offset left empty", "timeline.csv", "-519.40625", "", "'' is neither a number nor undefined"},
         {"dangling reference", "timeline.csv", "gnc_enable,entry", "gnc_enable,exit",
          "reference 'exit' is neither previous nor an anchor"},
-        {"timepoint twice", "timeline.csv", "\ndetumble,", "\ngnc_enable,", "is there twice, first in line 16", 1},
+        {"timepoint twice", "timeline.csv", "\ndetumble,", "\ngnc_enable,", "is there twice, first in line 13", 1},
         {"dangling tone", "timeline.csv", ",yes,touchdown,,", ",yes,touchup,,", "there is no tone 'touchup'"},
         {"tone of Second Chance", "timeline.csv", ",yes,touchdown,,", ",yes,sc_touchdown,,", "is not one of prime's"},
         {"dangling event", "timeline.csv", "GNC_ENABLED", "GNC_DISABLED", "there is no event 'GNC_DISABLED'"},
@@ -50,7 +50,8 @@ TEST_CASE("each broken rule of the spreadsheets gives one line, and nothing is l
          "fire_cruise_stage_separation,2,done,1,", "held before separation only"},
         {"held for longer than a reply is waited for", "timeline.csv", "start_uhf,12,done,4,", "start_uhf,12,done,12,",
          "is not below reply_timeout_s"},
-        {"a row that does nothing and does not say why", "timeline.csv", "BRIDLE_END_DUE,Mark (H)", "BRIDLE_END_DUE,",
+        {"a row that does nothing and does not say why", "timeline.csv",
+         "\"Place of the bogie release, 6 s (H): the row keeps its time. The mobility system is not simulated\"", "",
          "its note does not say what it is for"},
         {"essential neither yes nor no", "timeline.csv", "uhf_start,yes", "uhf_start,maybe",
          "'maybe' is neither yes nor no"},
@@ -98,7 +99,7 @@ TEST_CASE("each broken rule of the spreadsheets gives one line, and nothing is l
         {"unknown moment", "constraints.csv", "required,sky_crane:triggered", "required,sky_crane:began",
          "'began' is none of triggered, fired, anchor"},
         {"unknown kind", "constraints.csv", "required,coolant_vent,", "wanted,coolant_vent,",
-         "kind 'wanted' is neither required nor given"},
+         "kind 'wanted' is none of required, given, ensured"},
         {"bound off the ticks", "constraints.csv", "uhf_start,20,", "uhf_start,20.1,",
          "minimum_s 20.1 is not a multiple of 1/64 s"},
         {"bound no number", "constraints.csv", "uhf_start,20,", "uhf_start,,",
@@ -111,9 +112,11 @@ TEST_CASE("each broken rule of the spreadsheets gives one line, and nothing is l
          "from and to are the same moment"},
         {"constraint twice", "constraints.csv", "required,uhf_start,cruise_stage_separation,",
          "required,coolant_vent:fired,uhf_start:triggered,",
-         "from 'coolant_vent:fired' is there twice, first in line 15"},
+         "from 'coolant_vent:fired' is there twice, first in line 21"},
         {"a timepoint given", "constraints.csv", "given,do_edl,entry:anchor,", "given,do_edl,coolant_vent,",
          "only an anchor can be given"},
+        {"a timepoint ensured", "constraints.csv", "ensured,engine_priming:triggered,backshell:anchor,",
+         "ensured,engine_priming:triggered,backshell_separation,", "only an anchor can be given"},
         {"no source of a constraint", "constraints.csv", "uhf_start,20,undefined,[ours],", "uhf_start,20,undefined,,",
          "source is empty"},
         // the sheet itself
@@ -175,10 +178,12 @@ TEST_CASE("constraints are read as moments of timepoints and anchors", "[diction
     const auto rows = dictionary::read_constraints("kind,from,to,minimum_s,maximum_s,source,note\n"
                                                    "required,ready,jump,0.5,undefined,[ours],\n"
                                                    "given,do_edl,jump:anchor,undefined,-2,[ours],early\n"
-                                                   "required,jump:triggered,jump:fired,0,1,[ours],\n",
+                                                   "required,jump:triggered,jump:fired,0,1,[ours],\n"
+                                                   "ensured,ready:triggered,jump:anchor,3,undefined,[ours],\n",
                                                    {&timeline, &anchors}, findings);
     REQUIRE(all.empty());
-    REQUIRE(rows->size() == 3);
+    REQUIRE(rows->size() == 4);
+    CHECK(rows->at(3).kind == dictionary::ConstraintRow::Kind::ensured);
     using Kind = dictionary::Moment::Kind;
     CHECK(rows->at(0).from == dictionary::Moment{Kind::fired, 0});
     CHECK(rows->at(0).to == dictionary::Moment{Kind::triggered, 1});

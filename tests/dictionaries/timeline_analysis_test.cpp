@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <limits>
 #include <random>
+#include <set>
+#include <string>
 
 namespace dictionaries_timeline_analysis_test {
 
@@ -162,8 +164,8 @@ TEST_CASE("a violation planted in the spreadsheet is found, with a schedule that
              Plant{"timeline.csv", "power_on_radar,4,", "power_on_radar,15,", "heatshield:anchor",
                    "heatshield_separation:triggered"},
              // GNC no longer counts from the mortar.
-             Plant{"constraints.csv", "given,parachute_deploy:triggered,heatshield:anchor,20,",
-                   "given,parachute_deploy:triggered,heatshield:anchor,19.984375,", "parachute_deploy:triggered",
+             Plant{"constraints.csv", "ensured,parachute_deploy:triggered,heatshield:anchor,20,",
+                   "ensured,parachute_deploy:triggered,heatshield:anchor,19.984375,", "parachute_deploy:triggered",
                    "heatshield_separation:triggered"},
          }) {
         const tests::MissionCopy mission;
@@ -186,6 +188,64 @@ TEST_CASE("a violation planted in the spreadsheet is found, with a schedule that
             check_schedule_is_real(d, bound.schedule);
             const ConstraintRow& broken = d.constraints[bound.constraint];
             found = found || (moment_text(d, broken.from) == plant.from && moment_text(d, broken.to) == plant.to);
+        }
+        CHECK(found);
+    }
+}
+
+TEST_CASE("what GNC triggers waits for no row that GNC does not need, however early it comes",
+          "[timeline][R19][release]") {
+    const Dictionary& d = tests::shipped_dictionary();
+    const TimelineAnalysis analysis = analyse_timeline(d);
+    std::set<std::string> triggered;
+    for (const HoldProof& hold : analysis.holds) {
+        INFO(d.timeline[hold.triggered.value].name << " after " << d.timeline[hold.before.value].name);
+        CHECK(hold.proof == Proof::proven);
+        CHECK_FALSE(d.timeline[hold.before.value].essential);
+        triggered.insert(d.timeline[hold.triggered.value].name);
+    }
+    CHECK(triggered == std::set<std::string>{"entry_guidance", "sufr", "parachute_deploy", "heatshield_separation",
+                                             "engine_priming", "backshell_separation", "powered_approach", "sky_crane",
+                                             "rover_separation", "touchdown"});
+}
+
+TEST_CASE("a row that is only said, or serves only the radio, is found where it can hold what GNC triggers",
+          "[timeline][R19][release]") {
+    struct Plant {
+        const char* before;  ///< the row that it is put in front of
+        const char* row;
+        const char* name;
+        const char* holds;
+    };
+    for (const Plant& plant : {
+             Plant{"engine_priming,", "beat,heatshield,30,0,,undefined,,,,no,entry_interface,,Only a tone\n", "beat",
+                   "engine_priming"},
+             Plant{"parachute_deploy,", "beat,sufr_start,8,0,select_parachute_antenna,2,done,,,no,,,For the radio\n",
+                   "beat", "parachute_deploy"},
+             // Due at once, but it waits for a reply.
+             Plant{"sufr,", "beat,guidance_start,0,0,select_parachute_antenna,2,done,,,no,,,For the radio\n", "beat",
+                   "sufr"},
+         }) {
+        const tests::MissionCopy mission;
+        std::string text = mission.text("timeline.csv");
+        const auto position = text.find(std::string{"\n"} + plant.before);
+        REQUIRE(position != std::string::npos);
+        mission.write("timeline.csv", text.insert(position + 1, plant.row));
+        const Loaded loaded = mission.load();
+        INFO(plant.row << tests::lines_of(loaded));
+        REQUIRE(loaded.dictionary);
+        const Dictionary& d = *loaded.dictionary;
+
+        const TimelineAnalysis analysis = analyse_timeline(d);
+        CHECK_FALSE(analysis.all_proven());
+        bool found = false;
+        for (const HoldProof& hold : analysis.holds) {
+            if (hold.proof == Proof::proven) continue;
+            REQUIRE(hold.proof == Proof::refuted);
+            CHECK(d.timeline[hold.before.value].name == plant.name);
+            const Moment trigger = anchor(d.timeline[hold.triggered.value].anchor->value);
+            CHECK(time_of(hold.schedule, fired(hold.before.value)) > time_of(hold.schedule, trigger));
+            found |= d.timeline[hold.triggered.value].name == plant.holds;
         }
         CHECK(found);
     }

@@ -252,7 +252,7 @@ TEST_CASE("what is not predicted says why", "[timeline][R13]") {
 TEST_CASE("the landing can begin until the first timepoint on an anchor, less what those before it may take",
           "[timeline][R23]") {
     const auto& dictionary = tests::shipped_dictionary();
-    CHECK(predict(dictionary, {}).latest_begin_e_s == -828.0 - 13.0);  // 2 + 4 + 2 + 4 + 1
+    CHECK(predict(dictionary, {}).latest_begin_e_s == -828.0 - 12.0);  // 2 + 4 + 2 + 4
     SmallTimeline t;
     CHECK(predict(t.dictionary, t.known).latest_begin_e_s == -50.0);
     t.change_anchor(1, 1005.0, -90.0);

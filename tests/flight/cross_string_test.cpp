@@ -29,7 +29,7 @@ StatePart state_at(double at_s, StateHeader header) {
     return whole;
 }
 
-const StateHeader in_edl{.time = {}, .revision = 5, .begun = true, .pre_edl = false, .touchdown = false};
+const StateHeader in_edl{.time = {}, .revision = 5, .begun = true, .separated = true, .touchdown = false};
 
 struct Backup {
     CrossString line{[] {
@@ -65,7 +65,8 @@ TEST_CASE("Second Chance takes over after a quarter of a second of silence, not 
     CHECK(backup.recorder.sent<StatePart>().size() == 1);
 }
 
-TEST_CASE("without ground's enabling, before the end of pre-EDL, before do edl or after touchdown it never takes over",
+TEST_CASE("without ground's enabling, before cruise-stage separation, before do edl or after touchdown it never takes "
+          "over",
           "[cross_string][R34]") {
     SECTION("not enabled") {
         Backup backup;
@@ -85,8 +86,8 @@ TEST_CASE("without ground's enabling, before the end of pre-EDL, before do edl o
         CHECK_FALSE(backup.after_silence(100.0, 200.0));
     }
     StateHeader state = in_edl;
-    SECTION("in pre-EDL") {
-        state.pre_edl = true;
+    SECTION("before cruise-stage separation") {
+        state.separated = false;
     }
     SECTION("before do edl") {
         state.begun = false;
@@ -95,7 +96,7 @@ TEST_CASE("without ground's enabling, before the end of pre-EDL, before do edl o
         state.touchdown = true;
     }
     Backup backup;
-    if (state.pre_edl || !state.begun || state.touchdown) {
+    if (!state.separated || !state.begun || state.touchdown) {
         backup.enable(90.0);
         backup.handle(state_at(100.0, state), 100.0);
         CHECK_FALSE(backup.after_silence(100.0, 200.0));
@@ -167,21 +168,46 @@ TEST_CASE("touchdown turns Second Chance off for good", "[cross_string][R34]") {
     CHECK_FALSE(that_flew.line.in_control());
 }
 
+TEST_CASE("prime that stands by is not ordered on while the other computer runs the buses",
+          "[cross_string][R32][R34]") {
+    CrossString line{Load{}};
+    test::OutboxRecorder recorder{ModuleId::cross_string};
+    const auto handle = [&](const auto& message, double at_s) {
+        recorder.begin(ModuleId::cross_string, Sclk{at_s});
+        line.on(message, recorder.out);
+    };
+    handle(ResumePrimeCommand{}, 100.0);
+    CHECK(recorder.sent<ResumePrimeCommand>().size() == 1);
+    handle(OtherRunsBuses{Sclk{101.0}}, 101.0);
+    handle(ResumePrimeCommand{}, 101.0 + prime_silent_s);
+    CHECK(recorder.sent<ResumePrimeCommand>().empty());
+    REQUIRE(recorder.sent<CommandOutcome>().size() == 1);
+    CHECK(recorder.sent<CommandOutcome>()[0].refused == CommandRefusal::wrong_phase);
+    handle(ResumePrimeCommand{}, 101.0 + prime_silent_s + 1.0 / 64);
+    CHECK(recorder.sent<ResumePrimeCommand>().size() == 1);
+
+    Backup backup;
+    backup.handle(ResumePrimeCommand{}, 100.0);
+    CHECK(backup.recorder.out.sent().empty());
+}
+
 TEST_CASE("prime puts its state on the line each time, and keeps it for a restart when it has changed",
           "[cross_string][R32][R33]") {
     CrossString line{Load{}};
     test::OutboxRecorder recorder{ModuleId::cross_string};
-    const auto told = [&](std::uint32_t revision) {
+    const auto told = [&](std::uint32_t revision, double at_s) {
         StateHeader header = in_edl;
         header.revision = revision;
         recorder.bus->begin_cycle();
-        recorder.begin(ModuleId::cross_string, Sclk{100.0});
-        line.on(state_at(100.0, header), recorder.out);
+        recorder.begin(ModuleId::cross_string, Sclk{at_s});
+        line.on(state_at(at_s, header), recorder.out);
         return std::pair{!recorder.bus->cross_string.empty(), !recorder.bus->restart_record.empty()};
     };
-    CHECK(told(5) == std::pair{true, true});
-    CHECK(told(5) == std::pair{true, false});
-    CHECK(told(6) == std::pair{true, true});
+    CHECK(told(5, 100.0) == std::pair{true, true});
+    CHECK(told(5, 100.5) == std::pair{true, false});
+    CHECK(told(6, 100.5) == std::pair{true, true});
+    CHECK(told(6, 100.5 + keep_every_s - 1.0 / 64) == std::pair{true, false});
+    CHECK(told(6, 100.5 + keep_every_s) == std::pair{true, true});
 }
 
 TEST_CASE("what was kept goes to edl after a restart, and what cannot be read is reported", "[cross_string][R32]") {

@@ -46,7 +46,7 @@ struct Rain {
         if (enabled) state.cross_string.on(EnableSecondChanceCommand{{}, true}, state.outbox);
         EdlMain prime{Load{}};
         const StateHeader header{
-            .time = Sclk{1000.0}, .revision = 1, .begun = true, .pre_edl = false, .touchdown = touchdown, .units = {}};
+            .time = Sclk{1000.0}, .revision = 1, .begun = true, .separated = true, .touchdown = touchdown, .units = {}};
         StateFrame::of(header, prime).in_parts([&](const StatePart& part) {
             state.cross_string.on(part, state.outbox);
         });

@@ -5,6 +5,7 @@
 #include "flight/edl/solution.hpp"
 #include "flight/gnc/navigation/strapdown.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/flown_computers.hpp"
 #include "tests/support/mission_copy.hpp"
 #include "tests/support/outbox.hpp"
 
@@ -304,6 +305,38 @@ TEST_CASE("entry is not set by its anchor while nobody has navigated it", "[edl]
     CHECK(f.recorder.sent<CommandOutcome>()[0].refused == CommandRefusal::bad_argument);
     f.handle(SetAnchorOffsetCommand{{}, {.anchor = 9999, .offset_s = 5.0}}, entry_s - 1200);
     CHECK(f.recorder.sent<CommandOutcome>()[0].refused == CommandRefusal::bad_argument);
+}
+
+TEST_CASE("prime that was reset after touchdown was declared is not ordered on", "[edl][second_chance][R32][R34]") {
+    test::FlownComputers flown;
+    for (const bool touchdown : {false, true}) {
+        flown.fly_until([&](test::FlownComputers& at) {
+            const auto& done = at.prime().gnc_configuration();
+            return touchdown ? done.touchdown_declared : done.parachute_out;
+        });
+        const Sclk told = flown.world().sclk();
+        Load load;
+        load.resets = 1;
+        load.told_until = told;
+        EdlMain restarted{load};
+        test::OutboxRecorder recorder;
+        const auto handle = [&](const auto& message) {
+            recorder.begin(ModuleId::edl, told + restart_s);
+            restarted.on(message, recorder.out);
+        };
+        StateFrame::of(StateHeader{.time = told, .begun = true, .separated = true}, flown.prime().state().edl)
+            .in_parts(handle);
+        handle(Resume{ResumeReason::restart});
+        REQUIRE(recorder.events<evr::PRIME_STANDS_BY>() == 1);
+        REQUIRE(restarted.stands_by());
+        handle(ResumePrimeCommand{});
+        CHECK(restarted.stands_by() == touchdown);
+        CHECK(recorder.events<evr::PRIME_RESUMES>() == (touchdown ? 0 : 1));
+        REQUIRE(recorder.sent<CommandOutcome>().size() == 1);
+        CHECK(recorder.sent<CommandOutcome>()[0].refused.has_value() == touchdown);
+        handle(ResumePrimeCommand{});
+        CHECK(recorder.sent<CommandOutcome>()[0].refused == CommandRefusal::wrong_phase);  // it flies, or may not
+    }
 }
 
 TEST_CASE("every cycle ends with one confirmation to sync", "[edl][R18][R22]") {

@@ -71,6 +71,19 @@ TEST_CASE("lost increments are filled, and an IMU that starts late is not", "[gn
     CHECK(strapdown.filled() == 3);
 }
 
+TEST_CASE("what coasts over a gap turns on at its last rate, for there is no torque", "[gnc][R27][R32]") {
+    Strapdown felt, coasted;
+    const Vector3 delta_angle = Vector3(0.001, 0.21, -0.002) * imu_period_s;  // the spin of 2 rpm
+    for (Strapdown* strapdown : {&felt, &coasted}) {
+        strapdown->start(over_gale());
+        strapdown->on(sample(1, Vector3::Zero(), delta_angle), true);
+    }
+    for (std::uint32_t i = 2; i <= 1 + 200 * 40; ++i) felt.on(sample(i, Vector3::Zero(), delta_angle), true);
+    coasted.coast(40.0);
+    CHECK(coasted.state().q_MB.angularDistance(felt.state().q_MB) < 1e-4);
+    CHECK((coasted.state().p_MoB_M - felt.state().p_MoB_M).norm() < 1.0);
+}
+
 TEST_CASE("what the accelerometer tells in vacuum is learnt as its bias and taken off in the air", "[gnc][R27]") {
     Strapdown strapdown;
     strapdown.start(over_gale());

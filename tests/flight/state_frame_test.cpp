@@ -63,7 +63,7 @@ Everything something() {
     return e;
 }
 
-const StateHeader header{.time = Sclk{123.0}, .revision = 9, .begun = true, .pre_edl = false, .touchdown = true};
+const StateHeader header{.time = Sclk{123.0}, .revision = 9, .begun = true, .separated = true, .touchdown = true};
 
 }  // namespace
 
@@ -75,7 +75,7 @@ TEST_CASE("a state arrives at the other computer as it left, number for number",
     CHECK(arrived->header().time == Sclk{123.0});
     CHECK(arrived->header().revision == 9);
     CHECK(arrived->header().begun);
-    CHECK_FALSE(arrived->header().pre_edl);
+    CHECK(arrived->header().separated);
     CHECK(arrived->header().touchdown);
     Everything got;
     got.offset_s = 5.0;  // must become undefined, as it was sent

@@ -18,6 +18,8 @@ std::array<ToneSpec, 256> tones() {
     std::array<ToneSpec, 256> specs{};
     for (std::size_t i = 0; i < specs.size(); ++i) specs[i] = {0, static_cast<std::int16_t>(i), 30.0, {}, {}};
     specs[50].supersedes = ToneId{40};
+    specs[12].heartbeat_of = EdlPhase::range_control;
+    specs[13].heartbeat_of = EdlPhase::sky_crane;
     return specs;
 }
 
@@ -66,6 +68,10 @@ struct Fixture {
     void request(std::uint8_t tone, double at_s) {
         recorder.begin(ModuleId::mfsk, Sclk{at_s});
         selector.on(ToneRequest{ToneId{tone}, Sclk{at_s}}, recorder.out);
+    }
+    void phase(EdlPhase phase, double at_s) {
+        recorder.begin(ModuleId::mfsk, Sclk{at_s});
+        selector.on(PhaseChanged{phase}, recorder.out);
     }
     std::optional<ToneId> tick(double at_s) {
         recorder.begin(ModuleId::mfsk, Sclk{at_s});
@@ -183,6 +189,72 @@ TEST_CASE("when full, the less important of two requests goes, and says against 
     CHECK(told[0].of(Quantity::tone_priority).value == 5);
     CHECK(told[0].of(Quantity::tone_priority).bound == 101);
     CHECK(f.tick(0) == ToneId{200});
+}
+
+TEST_CASE("after a pause of carrier alone the heartbeat of the phase goes out, for ten seconds, again and again",
+          "[mfsk][R31]") {
+    Fixture f;
+    f.phase(EdlPhase::range_control, 1000);
+    f.request(7, 1000);
+    CHECK(f.tick(1000) == ToneId{7});
+    CHECK_FALSE(f.tick(1010).has_value());
+    const double pause_s = parameters.heartbeat_after_s;
+    CHECK_FALSE(f.tick(1010 + pause_s - 1.0 / 64).has_value());
+    CHECK(f.tick(1010 + pause_s) == ToneId{12});
+    CHECK(f.recorder.packets<packet::ToneSelected>() == 1);
+    CHECK(told_in(f.recorder).empty());
+    CHECK(f.tick(1020 + pause_s - 1.0 / 64) == ToneId{12});
+    CHECK_FALSE(f.tick(1020 + pause_s).has_value());
+    CHECK(f.tick(1020 + 2 * pause_s) == ToneId{12});
+}
+
+TEST_CASE("a heartbeat never goes before a request, and follows the phase", "[mfsk][R31]") {
+    Fixture f;
+    f.phase(EdlPhase::range_control, 1000);
+    f.request(1, 1000);  // less important than any heartbeat
+    CHECK(f.tick(1000) == ToneId{1});
+    f.phase(EdlPhase::sky_crane, 1005);
+    f.request(2, 1005);
+    CHECK(f.tick(1010) == ToneId{2});
+    CHECK_FALSE(f.tick(1020).has_value());
+    CHECK(f.tick(1020 + parameters.heartbeat_after_s) == ToneId{13});
+    f.phase(EdlPhase::landed, 1021 + parameters.heartbeat_after_s);  // a phase without a heartbeat
+    CHECK_FALSE(f.tick(1030 + parameters.heartbeat_after_s).has_value());
+    CHECK_FALSE(f.tick(1200).has_value());
+}
+
+TEST_CASE("a computer that has not been told a phase, or stands by, sends no heartbeat; ordered on, it does",
+          "[mfsk][R31][R32]") {
+    Fixture f;
+    CHECK_FALSE(f.tick(1000).has_value());
+    f.phase(EdlPhase::range_control, 1000);
+    f.recorder.begin(ModuleId::mfsk, Sclk{1001});
+    f.selector.on(StandBy{}, f.recorder.out);
+    CHECK_FALSE(f.tick(1100).has_value());
+    f.selector.on(StandBy{.over = true}, f.recorder.out);
+    CHECK(f.tick(1101) == ToneId{12});
+}
+
+TEST_CASE("each phase from late cruise until the stage has flown away has a heartbeat, and its twin in Second Chance",
+          "[mfsk][R31][R35]") {
+    for (const EdlPhase phase :
+         {EdlPhase::late_cruise, EdlPhase::exo_atmospheric, EdlPhase::wait_for_guidance, EdlPhase::range_control,
+          EdlPhase::heading_alignment, EdlPhase::straighten_up, EdlPhase::wait_for_parachute,
+          EdlPhase::parachute_descent, EdlPhase::powered_descent, EdlPhase::sky_crane, EdlPhase::flyaway}) {
+        std::optional<ToneId> sent[2];
+        for (const Role role : {Role::prime, Role::second_chance}) {
+            Load load;
+            load.role = role;
+            ToneSelector selector{load};
+            test::OutboxRecorder recorder{ModuleId::mfsk};
+            selector.on(PhaseChanged{phase}, recorder.out);
+            selector.on(ClockTick{Sclk{1000.0}}, recorder.out);
+            sent[static_cast<std::size_t>(role)] = recorder.bus->tone;
+        }
+        INFO("phase " << static_cast<unsigned>(phase));
+        REQUIRE((sent[0] && sent[1]));
+        CHECK(tone_specs[sent[0]->value].second_chance == sent[1]);
+    }
 }
 
 TEST_CASE("in Second Chance only tones of its own set go out, whoever asks for which", "[mfsk][R35]") {

@@ -98,6 +98,8 @@ TEST_CASE("a prime that stands by says nothing of the units: the other computer 
     units.on(EdlBegun{});
     units.on(StandBy{});
     CHECK(units.on(ClockTick{Sclk{1010.0}}, Sclk{1010.0}).packets<packet::UnitsHeld>() == 0);
+    units.on(StandBy{.over = true});
+    CHECK(units.on(ClockTick{Sclk{1020.0}}, Sclk{1020.0}).packets<packet::UnitsHeld>() == 1);
 }
 
 }  // namespace flight_unit_selector_test

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulation/landing.hpp"
 
+#include "flight/computer.hpp"
 #include "flight/timeline/timepoint.hpp"
 #include "telemetry/packet_stream.hpp"
 #include "tests/simulation/gale.hpp"
@@ -24,14 +25,16 @@ namespace {
 
 /// When the reset comes, in the words of the rules.
 struct Moment {
-    bool pre_edl = false;
-    bool touchdown = false;  ///< declared on board
+    double before_separation_s = 0.0;  ///< from the cruise stage, by the plan
+    bool separated = false;            ///< it was fired
+    bool touchdown = false;            ///< declared on board
     bool bridle_cut = false;
     double since_flyaway_s = -1.0;  ///< since fly-away started; below 0: not yet
 };
 
-constexpr double hold_s = 2.0;        // devices hold their last command for so long [facts-l]
-constexpr double thrown_far_s = 4.0;  // ours: with hold_s more the stage has burnt long enough to fall clear
+constexpr double hold_s = 2.0;            // devices hold their last command for so long [facts-l]
+constexpr double thrown_far_s = 4.0;      // ours: with hold_s more the stage has burnt long enough to fall clear
+constexpr double repeated_rows_s = 10.0;  // ours: what the rows that a restart goes back over may take, replies and all
 
 struct Expected {
     int rule;
@@ -40,11 +43,13 @@ struct Expected {
 
 /// The rules, written before the runs.
 Expected expected(const Moment& at) {
-    if (at.pre_edl) return {1, Outcome::touchdown};     // prime starts anew and goes on, hours before entry
-    if (!at.touchdown) return {2, Outcome::touchdown};  // Second Chance takes over
-    if (!at.bridle_cut) return {3, Outcome::lost};      // nobody may act: the stage comes down with the rover on it
-    if (at.since_flyaway_s < thrown_far_s) return {4, Outcome::lost};  // the stage falls where it stands
-    return {5, Outcome::touchdown};                                    // it is away
+    // Prime starts anew and goes on, in time for separation or late for it.
+    if (at.before_separation_s > flight::restart_s + repeated_rows_s) return {1, Outcome::touchdown};
+    if (!at.separated) return {2, Outcome::touchdown};
+    if (!at.touchdown) return {3, Outcome::touchdown};  // Second Chance takes over
+    if (!at.bridle_cut) return {4, Outcome::lost};      // nobody may act: the stage comes down with the rover on it
+    if (at.since_flyaway_s < thrown_far_s) return {5, Outcome::lost};  // the stage falls where it stands
+    return {6, Outcome::touchdown};                                    // it is away
 }
 
 struct Reset {
@@ -76,6 +81,7 @@ class Resets {
             if (header->primary.apid != flight::packet::TimepointFired::apid) continue;
             const TimepointId id{static_cast<std::uint16_t>(read_bits(*packet, tm_data_offset_octets * 8, 16))};
             fired_.push_back(id);
+            if (id == flight::timepoint::cruise_stage_separation) at_.separated = true;
             if (id == flight::timepoint::touchdown) at_.touchdown = true;
             if (id == flight::timepoint::bridle_cut) at_.bridle_cut = true;
             if (id == flight::timepoint::flyaway) flyaway_ = trunk_.sclk();
@@ -87,7 +93,8 @@ class Resets {
     Reset reset_now(std::string name) const {
         Landing fork{trunk_};
         Reset reset{std::move(name), at_, Outcome::running, 0.0};
-        reset.at.pre_edl = fork.truth().e_s < -14400.0;
+        reset.at.before_separation_s =
+            *flight::anchor_specs[flight::anchor::cruise_stage_separation.value].offset_s - fork.truth().e_s;
         if (flyaway_) reset.at.since_flyaway_s = trunk_.sclk() - *flyaway_;
         fork.reset_prime();
         while (fork.outcome() == Outcome::running) fork.step();
@@ -118,13 +125,13 @@ void print(const Reset& reset, double e_s) {
 
 }  // namespace
 
-TEST_CASE("a reset just after any of every eighth timepoint ends as the rule says", "[second_chance][R32][R33]") {
+TEST_CASE("a reset just after any of every sixth timepoint ends as the rule says", "[second_chance][R32][R33]") {
     Resets resets{900.0};
     int boundaries = 0;
     while (resets.flying()) {
         resets.step();
         for (const TimepointId id : resets.fired())
-            if (id.value % 8 == 0 && ++boundaries <= 20) check(resets.reset_now(flight::timeline_specs[id.value].name));
+            if (id.value % 6 == 0 && ++boundaries <= 20) check(resets.reset_now(flight::timeline_specs[id.value].name));
     }
     CHECK(boundaries >= 8);
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulation/landing.hpp"
 
+#include "flight/computer.hpp"
+#include "flight/timeline/timepoint.hpp"
 #include "generated/dictionary_flight.hpp"
 #include "telemetry/packet_stream.hpp"
 #include "tests/simulation/gale.hpp"
@@ -21,7 +23,8 @@ using namespace aeolis::simulation;
 
 namespace {
 
-constexpr double light = 1.0;  // s between what a test asks for and what must have been answered
+constexpr double light = 1.0;             // s between what a test asks for and what must have been answered
+constexpr double repeated_rows_s = 10.0;  // ours: what the rows that a restart goes back over may take, replies and all
 
 /// What a recording says of restarts and of Second Chance.
 struct Recorded {
@@ -55,6 +58,9 @@ struct Recorded {
                    });
         });
         return found == packets.end() ? nullptr : &*found;
+    }
+    std::ptrdiff_t fired(TimepointId id) const {
+        return std::ranges::count(firings, id.value, &std::pair<std::uint16_t, Sclk>::first);
     }
     template <typename Evr>
     std::vector<Sclk> times() const {
@@ -141,16 +147,14 @@ TEST_CASE("a channel is of one computer at any time: both speak at once, one tak
 
 TEST_CASE("after a take-over only essential timepoints act", "[second_chance][R33]") {
     Commanded run{900.0};
-    run.fly_to(-700.0);  // before the antenna of entry is selected, which is not essential
+    run.fly_to(120.0);  // before the antenna of the parachute phase is selected, which is not essential
     run.landing.reset_prime();
-    while (run.landing.truth().e_s < -630.0) run.landing.step();
+    while (run.landing.truth().e_s < 270.0) run.landing.step();
     const Recorded recorded{run.landing};
     CHECK(recorded.times<flight::evr::SECOND_CHANCE_TAKES_OVER>().size() == 1);
-    CHECK(recorded.times<flight::evr::ENTRY_ANTENNA_SELECTED>().empty());
-    const auto fired = [&](TimepointId id) {
-        return std::ranges::count(recorded.firings, id.value, &std::pair<std::uint16_t, Sclk>::first);
-    };
-    CHECK(fired(flight::timepoint::entry_antenna) == 1);  // passed over, and said so
+    CHECK(recorded.times<flight::evr::PARACHUTE_DEPLOY>().size() == 1);
+    CHECK(recorded.times<flight::evr::PARACHUTE_ANTENNA_SELECTED>().empty());
+    CHECK(recorded.fired(flight::timepoint::parachute_antenna) == 1);  // passed over, and said so
 }
 
 TEST_CASE("a reset that ground did not provide for is not survived, and Second Chance stays still",
@@ -177,24 +181,24 @@ TEST_CASE("without a reset Second Chance watches, and turns itself off at touchd
 TEST_CASE("a reset in pre-EDL: prime starts anew, goes back over the named timepoints and repeats their actions",
           "[second_chance][R32]") {
     Commanded run{17000.0};
-    run.fly(20.0);  // the first three have fired
+    run.fly(20.0);  // the first two have fired
     run.landing.reset_prime();
     run.fly(60.0);
     const Recorded recorded{run.landing};
     CHECK(recorded.times<flight::evr::TIMELINE_BACKTRACKED>().size() == 1);
     CHECK(recorded.times<flight::evr::DESCENT_IMU_POWERED>().size() == 2);
-    CHECK(recorded.times<flight::evr::EDL_CONFIGURED>().size() == 2);
+    CHECK(recorded.times<flight::evr::EDL_HEATERS_ON>().size() == 2);
     CHECK(recorded.times<flight::evr::COMPUTER_STARTED>().size() == 1);
     CHECK(recorded.times<flight::evr::SECOND_CHANCE_TAKES_OVER>().empty());
 
     Commanded in_between{17000.0};
-    in_between.fly(4.0);  // the first has fired, the second waits for its moment or its reply
+    in_between.fly(2.0);  // the first has fired, the second waits for its moment
     in_between.landing.reset_prime();
     in_between.fly(60.0);
     const Recorded repeated{in_between.landing};
     REQUIRE(repeated.times<flight::evr::TIMELINE_BACKTRACKED>().size() == 1);
     CHECK(repeated.times<flight::evr::DESCENT_IMU_POWERED>().size() == 2);
-    CHECK(repeated.times<flight::evr::EDL_CONFIGURED>().size() == 1);
+    CHECK(repeated.fired(flight::timepoint::edl_heaters) == 1);
     CHECK(repeated.times<flight::evr::PRIME_STANDS_BY>().empty());
 }
 
@@ -224,11 +228,12 @@ TEST_CASE("prime cannot be designated once EDL has begun", "[second_chance][R1]"
     CHECK(recorded.times<flight::evr::COMMAND_REFUSED>().size() == 1);
 }
 
-TEST_CASE("around the end of pre-EDL a reset finds one of the two ready, whichever it is",
+TEST_CASE("around cruise-stage separation a reset finds one of the two ready, whichever it is",
           "[second_chance][R32][R33]") {
-    Commanded run{14500.0};
-    for (const double e_s :
-         {-14431.0, -14415.0, -14400.0 - 2.0 / 64, -14400.0 - 1.0 / 64, -14400.0, -14400.0 + 1.0 / 64, -14399.0}) {
+    Commanded run{900.0};
+    const double separation_s = *flight::anchor_specs[flight::anchor::cruise_stage_separation.value].offset_s;
+    for (const double before_s : {31.0, 15.0, 2.0 / 64, 1.0 / 64, 0.0, -1.0 / 64, -0.25, -1.0}) {
+        const double e_s = separation_s - before_s;
         run.fly_to(e_s);
         Commanded fork{run};
         fork.landing.reset_prime();
@@ -239,9 +244,117 @@ TEST_CASE("around the end of pre-EDL a reset finds one of the two ready, whichev
         INFO("reset at E" << e_s << " s: took over " << took_over << ", prime stands by " << stands_by);
         CHECK(took_over == stands_by);  // exactly one of them flies
         // Ground's time of entry, from which flight counts, is not the truth's to the tick.
-        if (e_s < -14400.5) CHECK(took_over == 0);
-        if (e_s > -14399.5) CHECK(took_over == 1);
+        if (before_s > 0.5) CHECK(took_over == 0);
+        if (before_s < -0.5) CHECK(took_over == 1);
     }
+}
+
+TEST_CASE("the end of pre-EDL is fault protection's alone: prime starts anew before it and after it",
+          "[second_chance][R24][R32]") {
+    Commanded run{14500.0};
+    for (const double e_s : {-14431.0, -14410.0, -14399.0}) {
+        run.fly_to(e_s);
+        Commanded fork{run};
+        fork.landing.reset_prime();
+        fork.fly(60.0);
+        const Recorded recorded{fork.landing};
+        INFO("reset at E" << e_s << " s");
+        CHECK(recorded.times<flight::evr::COMPUTER_STARTED>().size() == 1);
+        CHECK(recorded.times<flight::evr::TIMELINE_BACKTRACKED>().size() == 1);
+        CHECK(recorded.times<flight::evr::PRIME_STANDS_BY>().empty());
+        CHECK(recorded.times<flight::evr::SECOND_CHANCE_TAKES_OVER>().empty());
+    }
+}
+
+TEST_CASE("up to cruise-stage separation prime goes on by itself after a reset at any row, without Second Chance",
+          "[second_chance][R32]") {
+    Commanded run{900.0, false};
+    for (std::size_t row = 0; row < flight::timepoint::cruise_stage_separation.value; ++row) {
+        const TimepointId id{static_cast<std::uint16_t>(row)};
+        while (Recorded{run.landing}.fired(id) == 0) run.fly(1.0);
+        Commanded fork{run};
+        fork.landing.reset_prime();
+        INFO("reset at E" << run.landing.truth().e_s << " s, after " << flight::timeline_specs[row].name);
+        fork.fly_to(-530.0);
+        const Recorded recorded{fork.landing};
+        CHECK(recorded.times<flight::evr::COMPUTER_STARTED>().size() == 1);
+        CHECK(recorded.times<flight::evr::PRIME_STANDS_BY>().empty());
+        CHECK(recorded.times<flight::evr::CRUISE_STAGE_SEPARATION>().size() == 1);
+        CHECK(recorded.times<flight::evr::GNC_ENABLED>().size() == 1);
+        const std::uint16_t next = flight::timeline_specs[row + 1].backtrack->value;
+        CHECK(recorded.fired(TimepointId{next}) == (next <= row ? 2 : 1));
+    }
+}
+
+TEST_CASE("a reset within one restart time of separation: prime separates late by as much, and lands",
+          "[second_chance][R32]") {
+    Commanded run{900.0};
+    const double separation_s = *flight::anchor_specs[flight::anchor::cruise_stage_separation.value].offset_s;
+    for (const double before_s : {31.0, 9.0, 0.5}) {
+        run.fly_to(separation_s - before_s);
+        Commanded fork{run};
+        fork.landing.reset_prime();
+        INFO("reset " << before_s << " s before separation");
+        CHECK(fork.outcome() == Outcome::touchdown);
+        const Recorded recorded{fork.landing};
+        CHECK(recorded.times<flight::evr::SECOND_CHANCE_TAKES_OVER>().empty());
+        const auto separated = recorded.times<flight::evr::CRUISE_STAGE_SEPARATION>();
+        REQUIRE(separated.size() == 1);
+        const double late_s = separated[0] - (fork.landing.solution().entry + separation_s);
+        CHECK(late_s >= std::max(0.0, flight::restart_s - before_s));
+        CHECK(late_s <= flight::restart_s - before_s + repeated_rows_s);
+    }
+}
+
+TEST_CASE("a second reset while separation is overdue is Second Chance's: it separates and lands",
+          "[second_chance][R32][R33]") {
+    Commanded run{900.0};
+    run.fly_to(-604.0);
+    run.landing.reset_prime();
+    run.fly(flight::restart_s + 3.0);  // attitude has come from the star scanner again
+    run.landing.reset_prime();
+    CHECK(run.outcome() == Outcome::touchdown);
+    const Recorded recorded{run.landing};
+    CHECK(recorded.times<flight::evr::SECOND_CHANCE_TAKES_OVER>().size() == 1);
+    CHECK(recorded.times<flight::evr::PRIME_STANDS_BY>().size() == 1);
+}
+
+TEST_CASE("from stand-by ground orders prime on: in the quiet coast it lands, and its tones and channels are back",
+          "[second_chance][R32]") {
+    Commanded run{900.0, false};
+    run.fly_to(-430.0);
+    run.landing.reset_prime();
+    run.fly(flight::restart_s + 10.0);
+    Commanded left_alone{run};
+    run.landing.uplink(test::resume_prime());
+    CHECK(run.outcome() == Outcome::touchdown);
+    const Recorded recorded{run.landing};
+    CHECK(recorded.times<flight::evr::PRIME_STANDS_BY>().size() == 1);
+    REQUIRE(recorded.times<flight::evr::PRIME_RESUMES>().size() == 1);
+    CHECK(recorded.times<flight::evr::COMMAND_EXECUTED>().size() == 3);
+    CHECK(std::ranges::count(recorded.tones, flight::tone::computer_started.value) == 1);
+    CHECK(std::ranges::count(recorded.tones, flight::tone::touchdown.value) == 1);
+    CHECK(recorded.navigation.back() > recorded.times<flight::evr::PRIME_RESUMES>()[0]);
+
+    CHECK(left_alone.outcome() != Outcome::touchdown);
+}
+
+TEST_CASE("prime is not ordered on while it flies, nor while Second Chance does", "[second_chance][R32][R34]") {
+    Commanded run{900.0};
+    const auto refused = [](Landing& landing) {
+        landing.uplink(test::resume_prime());
+        fly_on(landing, 2.0);
+        const Recorded recorded{landing};
+        CHECK(recorded.times<flight::evr::PRIME_RESUMES>().empty());
+        CHECK(recorded.times<flight::evr::COMMAND_REFUSED>().size() == 1);
+    };
+    run.fly_to(-430.0);
+    Commanded flies{run};
+    refused(flies.landing);
+    run.landing.reset_prime();
+    run.fly(flight::restart_s + 10.0);
+    refused(run.landing);
+    CHECK(run.outcome() == Outcome::touchdown);
 }
 
 TEST_CASE("do edl is refused while the computers are about to change roles", "[second_chance][R1][R23]") {

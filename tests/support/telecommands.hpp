@@ -49,6 +49,13 @@ inline std::vector<std::uint8_t> do_edl() {
     return cltu_of(packet);
 }
 
+/// To a prime that stands by.
+inline std::vector<std::uint8_t> resume_prime() {
+    std::vector<std::uint8_t> packet(tc_overhead_octets);
+    seal_tc_packet(packet, Apid{1}, 3, flight::command::PRIME_RESUME::opcode);
+    return cltu_of(packet);
+}
+
 inline std::vector<std::uint8_t> set_timepoint_offset(TimepointId timepoint, double desired_s, double minimum_s) {
     using Command = flight::command::EDL_SET_TIMEPOINT_OFFSET;
     std::vector<std::uint8_t> packet(tc_overhead_octets + Command::argument_octets);

@@ -20,6 +20,11 @@ Quaternion small_rotation(const Vector3& angle) {
     return {1.0 - 0.5 * half_squared, s * angle.x(), s * angle.y(), s * angle.z()};
 }
 
+Quaternion rotation(const Vector3& angle) {
+    const double angle_rad = angle.norm();
+    return angle_rad > 0.0 ? Quaternion{Eigen::AngleAxisd{angle_rad, angle / angle_rad}} : Quaternion::Identity();
+}
+
 }  // namespace
 
 void Strapdown::shift(const NavigationShift& by) {
@@ -85,6 +90,7 @@ void Strapdown::turn(const Vector3& angle_M_rad) {
 }
 
 void Strapdown::coast(double dt_s) {
+    state_.q_MB = state_.q_MB * rotation(rate_B_rps_ * dt_s);  // without torque it turns on
     state_ = propagate(state_, dt_s);
     reckoned_s_ = 0.0;
     counting_ = false;  // increments of this time, if they still arrive, were coasted over

@@ -49,7 +49,7 @@ class Strapdown {
     /// Advances by `dt_s`, about a tick, with force and rates that the IMU did not measure.
     void reckon(const Vector3& force_B_mps2, const Vector3& rate_B_rps, double dt_s);
 
-    /// Advances by any `dt_s` without the IMU: no force, no rotation relative to inertial space.
+    /// Advances by any `dt_s` without the IMU: no force, and the last rate of rotation.
     void coast(double dt_s);
 
     /// Corrects attitude by a small angle about an axis in M; velocity, which the radar tells in B, turns with it.
