@@ -7,7 +7,7 @@ import { step } from '../commands/line';
 import { useForTest } from '../run/session';
 import { lookAtPast, pastRange, withRecording } from '../run/shown';
 import { aDictionary, aStore } from '../testing/fixtures';
-import { SHORTCUTS, helpShown, onKey } from './model';
+import { SHORTCUTS, focusPanel, helpShown, onKey } from './model';
 
 afterEach(() => {
   [step.value, stage.value, helpShown.value, pastRange.value] = ['type', 'review', false, undefined];
@@ -57,4 +57,19 @@ it('Esc takes back what is armed from wherever the focus is, before it closes an
   expect([helpShown.value, step.value]).toEqual([false, 'review']);
   press('Escape', {}, 'button');
   expect(step.value).toBe('type');
+});
+it('a panel that is still being loaded is focused once it is there; not when the focus has gone elsewhere meanwhile', async () => {
+  const frame = () => new Promise((resolve) => requestAnimationFrame(() => resolve(undefined)));
+  for (const elsewhere of [false, true]) {
+    document.body.innerHTML = `<button></button><div data-testid="panel-data"><p data-loading></p></div>`;
+    focusPanel('recorded');
+    await frame();
+    await frame();
+    if (elsewhere) document.querySelector('button')?.focus();
+    const panel = document.querySelector('[data-testid="panel-data"]');
+    if (panel) panel.innerHTML = '<div class="table-box"><input></div>';
+    await frame();
+    await frame();
+    expect(document.activeElement?.tagName).toBe(elsewhere ? 'BUTTON' : 'INPUT');
+  }
 });
