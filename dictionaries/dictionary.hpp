@@ -248,14 +248,14 @@ struct StateMachineTable {
     std::vector<StateTransition> transitions;
 };
 
-/// A row of owners.csv: the one module responsible for an action, a device or a decision. R5
+/// A row of owners.csv: the one module responsible for a device or a decision. R5
+/// The owner of an action stands beside it: flight/timeline/actions.hpp.
 struct OwnerRow {
     enum class Kind {
-        action,    ///< of timeline.csv
         device,    ///< a part of DeviceOutputs
         decision,  ///< a label of the XTCE enumeration Decision
     };
-    Kind kind = Kind::action;
+    Kind kind = Kind::device;
     std::string name;
     std::string module;  ///< an enumerator of flight's ModuleId; the compiler checks it
     std::string note;
@@ -292,7 +292,7 @@ struct ClockRow {
 struct Dictionary {
     std::string mission;   ///< SpaceSystem name
     std::uint16_t id = 0;  ///< in every telemetry packet; changes with any change of a file used on board
-    std::uint16_t timeline_version = 0;
+    std::uint32_t timeline_version = 0;  ///< in telemetry and archive; changes with what the timeline's sheets hold
     std::vector<Channel> channels;
     std::vector<Packet> packets;
     std::vector<Event> events;

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dictionaries/dictionary.hpp"
 
+#include "common/bytes.hpp"
+#include "common/check.hpp"
 #include "common/crc.hpp"
 #include "dictionaries/enumerations.hpp"
 #include "dictionaries/findings.hpp"
 #include "dictionaries/mission_files.hpp"
+#include "dictionaries/spreadsheet/csv.hpp"
 #include "dictionaries/spreadsheet/owners.hpp"
 #include "dictionaries/spreadsheet/state_machines.hpp"
 #include "dictionaries/spreadsheet/tables.hpp"
@@ -12,6 +15,8 @@
 #include "dictionaries/xtce/space_system.hpp"
 
 #include <algorithm>
+#include <array>
+#include <openssl/evp.h>
 #include <tuple>
 
 namespace aeolis::dictionary {
@@ -28,6 +33,26 @@ std::uint16_t hash(std::initializer_list<const File*> files) {
         octets.insert(octets.end(), file->text->begin(), file->text->end());
     }
     return crc16(octets);
+}
+
+/// The first 32 bits of the SHA-256 of what the sheets hold, cell by cell: line ends and quotes change nothing.
+std::uint32_t content_hash(std::initializer_list<const File*> sheets) {
+    std::string content;
+    std::vector<Finding> known;  // a sheet that is no CSV has been told of when it was read
+    for (const File* file : sheets) {
+        Findings findings{file->name, known};
+        const auto sheet = read_csv(*file->text, findings);
+        const auto add = [&](const Sheet::Row& row) {
+            content += std::to_string(row.cells.size()) + "\n";
+            for (const std::string& cell : row.cells) content += std::to_string(cell.size()) + ":" + cell;
+        };
+        content += file->name + ":" + std::to_string(sheet->rows.size()) + "\n";
+        add(sheet->header);
+        std::ranges::for_each(sheet->rows, add);
+    }
+    std::array<std::uint8_t, EVP_MAX_MD_SIZE> sha256{};
+    AEOLIS_CHECK(EVP_Digest(content.data(), content.size(), sha256.data(), nullptr, EVP_sha256(), nullptr) == 1);
+    return static_cast<std::uint32_t>(read_bits(sha256, 0, 32));
 }
 
 std::vector<TimelineContext::DeclaredEvent> declared(const xtce::SpaceSystem& system) {
@@ -92,10 +117,9 @@ Loaded load(const std::filesystem::path& path) {
     });
 
     const File& owners_csv = files.sheet("owners.csv");
-    const OwnerContext owned{timeline && is_sound(timeline_csv) ? &*timeline : nullptr,
-                             has_enumerations ? &enumerations : nullptr};
-    auto owners =
-        read(owners_csv, [&](std::string_view text, Findings& findings) { return read_owners(text, owned, findings); });
+    auto owners = read(owners_csv, [&](std::string_view text, Findings& findings) {
+        return read_owners(text, has_enumerations ? &enumerations : nullptr, findings);
+    });
 
     const File& clock_csv = files.sheet("clock_correlation.csv");
     auto clock = read(clock_csv, read_clock_correlation);
@@ -113,7 +137,7 @@ Loaded load(const std::filesystem::path& path) {
     dictionary.id = hash({&xml, &anchors_csv, &tones_csv, &mfsk_csv, &parameters_csv, &timeline_csv, &constraints_csv,
                           &state_machines_csv, &owners_csv, &plan_csv});
     // constraints.csv is left out: flight only monitors it, so it does not change the timeline.
-    dictionary.timeline_version = hash({&timeline_csv, &anchors_csv});
+    dictionary.timeline_version = content_hash({&timeline_csv, &anchors_csv});
     dictionary.channels = std::move(system->channels);
     dictionary.packets = std::move(system->packets);
     dictionary.events = std::move(system->events);

@@ -29,14 +29,14 @@ struct SheetDiff {
 };
 
 struct TimelineDiff {
-    std::uint16_t version_before = 0, version_after = 0;
+    std::uint32_t version_before = 0, version_after = 0;
     std::vector<SheetDiff> sheets;  ///< timeline.csv, anchors.csv, constraints.csv
 
     bool same() const;
 };
 
 /// Compares the meaning of the rows, not their spelling.
-/// Two versions that differ only in spelling (7 and 7.0, line ends, quotes) have different version numbers, but no
+/// Two versions that differ only in spelling (7 and 7.0) have different version numbers, but no
 /// difference here.
 TimelineDiff compare_timelines(const Dictionary& before, const Dictionary& after);
 

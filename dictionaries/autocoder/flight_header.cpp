@@ -50,7 +50,7 @@ class HeaderWriter {
                 "enum class EventLevel : std::uint8_t {\n"
                 "    fatal, warning_hi, warning_lo, command, activity_hi, activity_lo, diagnostic\n};\n\n"
              << "inline constexpr std::uint16_t dictionary_id = " << hexadecimal(dictionary_.id, 4) << ";\n"
-             << "inline constexpr std::uint16_t timeline_version = " << hexadecimal(dictionary_.timeline_version, 4)
+             << "inline constexpr std::uint32_t timeline_version = " << hexadecimal(dictionary_.timeline_version, 8)
              << ";\n\n";
         write_enumerations();
         out_ << "// `octets` is the whole packet with headers and CRC; encode() writes the data between them.\n"

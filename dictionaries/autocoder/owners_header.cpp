@@ -38,12 +38,7 @@ std::string owners_header(const Dictionary& dictionary) {
         << std::ranges::count(dictionary.owners, Kind::device, &OwnerRow::kind) << ";\n\n";
     write_owner_of(dictionary, Kind::decision, "Decision", out);
     write_owner_of(dictionary, Kind::device, "DeviceLine", out);
-    out << "namespace action_owner {\n";
-    each_row(dictionary, Kind::action, [&](const OwnerRow& row) {
-        out << "#line " << row.line << " \"owners.csv\"\ninline constexpr ModuleId " << row.name
-            << " = ModuleId::" << row.module << ";\n";
-    });
-    out << "}  // namespace action_owner\n\n}  // namespace aeolis::flight\n";
+    out << "}  // namespace aeolis::flight\n";
     return out.str();
 }
 

@@ -23,19 +23,24 @@ auto id_of(const Rows& rows, const std::string& name) {
     return name.empty() || found == rows.end() ? std::optional<Id>{} : std::optional<Id>{found->id};
 }
 
+/// A misspelt action does not compile, at its row of timeline.csv: flight/timeline/actions.hpp.
+std::string action_named(const TimelineRow& row) {
+    return "action_named<" + string_literal(row.action) + ">()";
+}
+
 void write_timeline(const Dictionary& dictionary, std::ostringstream& out) {
     out << "constinit const std::array<TimepointSpec, timepoint_count> timeline_specs{{\n";
     for (const TimelineRow& row : dictionary.timeline)
         out << "#line " << row.line << " \"timeline.csv\"\n    {" << string_literal(row.name) << ", "
             << id_literal("AnchorId", row.anchor) << ", " << optional_literal(row.desired_offset_s) << ", "
             << optional_literal(row.minimum_offset_s) << ", "
-            << (row.action.empty() ? "nullptr" : "&actions::" + row.action) << ", "
+            << (row.action.empty() ? "nullptr" : action_named(row) + ".run") << ", "
             << optional_literal(row.reply_timeout_s) << ", IfUnverified::" << name_of(row.if_unverified) << ", "
             << optional_literal(row.hold_repeat_s) << ", "
             << id_literal("TimepointId", id_of(dictionary.timeline, row.backtrack)) << ", "
             << (row.essential ? "true" : "false") << ", " << id_literal("ToneId", row.tone) << ", "
             << (row.event.empty() ? "nullptr" : "&announce<evr::" + row.event + ">") << ", "
-            << (row.action.empty() ? "std::nullopt" : "action_owner::" + row.action) << "},\n";
+            << (row.action.empty() ? "std::nullopt" : action_named(row) + ".owner") << "},\n";
     out << "}};\n\n";
 }
 
@@ -72,7 +77,7 @@ std::string timeline_source(const Dictionary& dictionary) {
     std::ostringstream out;
     out << made_by_autocoder(dictionary, "the spreadsheets")
         << "#include \"flight/timeline/actions.hpp\"\n#include \"flight/timeline/constraint_monitor.hpp\"\n"
-           "#include \"flight/timeline/timepoint.hpp\"\n#include \"generated/owners.hpp\"\n\n"
+           "#include \"flight/timeline/timepoint.hpp\"\n\n"
            "namespace aeolis::flight {\n\n";
     write_timeline(dictionary, out);
     write_anchors(dictionary, out);

@@ -12,16 +12,10 @@ namespace aeolis::dictionary {
 
 inline constexpr std::size_t owners_max = 1000;  ///< chosen: ten times the rows of the landing
 
-/// Everything that must have an owner.
-/// A null pointer: its own file could not be read, so it is not checked.
-struct OwnerContext {
-    const std::vector<TimelineRow>* timeline = nullptr;
-    const std::vector<const Type*>* enumerations = nullptr;
-};
-
-/// Reads owners.csv: one owning module for each action, each device and each label of Decision.
-/// A second owner, a missing owner, and an owner of something that does not exist are findings. R5
-std::optional<std::vector<OwnerRow>> read_owners(std::string_view text, const OwnerContext& context,
+/// Reads owners.csv: one owning module for each device and each label of Decision.
+/// A second owner, a missing owner, and an owner of a decision that does not exist are findings. `enumerations` is null
+/// when the file with the decisions could not be read: then they are not checked. R5
+std::optional<std::vector<OwnerRow>> read_owners(std::string_view text, const std::vector<const Type*>* enumerations,
                                                  Findings& findings);
 
 }  // namespace aeolis::dictionary

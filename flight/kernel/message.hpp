@@ -14,7 +14,7 @@
 #include <type_traits>
 #include <variant>
 
-// Every message between modules. Plain data, no pointers; a static_assert on the variant checks this.
+// Every message between modules. Plain data: message.cpp does not compile with a pointer in one, however deep. R3
 namespace aeolis::flight {
 
 /// Every module of the load, in order of priority.

@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "common/names.hpp"
 #include "flight/gnc/edl_gnc.hpp"
 #include "flight/kernel/outbox.hpp"
 #include "flight/timeline/timepoint.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
 
 namespace aeolis::flight {
 
@@ -59,58 +64,102 @@ void announce(ActionContext& context) {
     context.out().event(Evr{});
 }
 
-/// The actions that timeline.csv names.
-/// One per line: the spacecraft's action, and the change of GNC's configuration, at once or when the action is done.
-namespace actions {
-// power and telecom
-void power_on_descent_imu(ActionContext& context);
-void power_on_radar(ActionContext& context);
-void power_off_radar(ActionContext& context);
-void select_entry_antenna(ActionContext& context);
-void select_parachute_antenna(ActionContext& context);
-void start_uhf(ActionContext& context);
-void stop_uhf(ActionContext& context);
-void close_recording(ActionContext& context);
+/// An action of timeline.csv: its owner, the only module that it commands, and what it does. R5, R40
+/// That is the spacecraft's action, and the change of GNC's configuration, at once or when the action is done.
+struct Action {
+    std::string_view name;
+    ModuleId owner;
+    ActionFunction run;
+};
 
-// leaving the cruise stage
-void vent_coolant(ActionContext& context);
-void cut_cruise_cables(ActionContext& context);
-void fire_cruise_stage_separation(ActionContext& context);
-void enable_gnc(ActionContext& context);
-void warm_thrusters(ActionContext& context);
-void start_detumble(ActionContext& context);
-void start_turn_to_entry(ActionContext& context);
-void jettison_cruise_balance_1(ActionContext& context);
-void jettison_cruise_balance_2(ActionContext& context);
+inline constexpr std::array actions{
+    // power and telecom
+    Action{"power_on_descent_imu", ModuleId::power,
+           [](ActionContext& on) { on.set_switch(SwitchId::descent_imu, true); }},
+    Action{"power_on_radar", ModuleId::power, [](ActionContext& on) { on.set_switch(SwitchId::radar, true); }},
+    Action{"power_off_radar", ModuleId::power,
+           [](ActionContext& on) {
+               on.configuration().radar_on = false;
+               on.set_switch(SwitchId::radar, false);
+           }},
+    Action{"select_entry_antenna", ModuleId::telecom,
+           [](ActionContext& on) { on.set_switch(SwitchId::entry_antenna, true); }},
+    Action{"select_parachute_antenna", ModuleId::telecom,
+           [](ActionContext& on) { on.set_switch(SwitchId::parachute_antenna, true); }},
+    Action{"start_uhf", ModuleId::telecom, [](ActionContext& on) { on.set_switch(SwitchId::uhf, true); }},
+    Action{"stop_uhf", ModuleId::telecom, [](ActionContext& on) { on.set_switch(SwitchId::uhf, false); }},
+    Action{"close_recording", ModuleId::edl_comm, [](ActionContext& on) { on.close_recording(); }},
 
-// entry
-void start_guidance_wait(ActionContext& context);
-void start_entry_guidance(ActionContext& context);
-void jettison_balance_1(ActionContext& context);
-void jettison_balance_2(ActionContext& context);
-void jettison_balance_3(ActionContext& context);
-void arm_pyros(ActionContext& context);
-void safe_pyros(ActionContext& context);
+    // leaving the cruise stage
+    Action{"vent_coolant", ModuleId::pyro, [](ActionContext& on) { on.fire(PyroId::coolant_vent); }},
+    Action{"cut_cruise_cables", ModuleId::pyro, [](ActionContext& on) { on.fire(PyroId::cruise_cable_cutter); }},
+    Action{"fire_cruise_stage_separation", ModuleId::pyro,
+           [](ActionContext& on) { on.fire(PyroId::cruise_stage_separation, gnc::Fact::cruise_stage_gone); }},
+    Action{"enable_gnc", ModuleId::edl, [](ActionContext& on) { on.configuration().enabled = true; }},
+    Action{"warm_thrusters", ModuleId::power,
+           [](ActionContext& on) { on.set_switch(SwitchId::thruster_heaters, true); }},
+    Action{"start_detumble", ModuleId::thrusters, [](ActionContext& on) { on.enable_thrusters(true); }},
+    Action{"start_turn_to_entry", ModuleId::edl, [](ActionContext& on) { on.configuration().turning_to_entry = true; }},
+    Action{"jettison_cruise_balance_1", ModuleId::pyro, [](ActionContext& on) { on.fire(PyroId::cruise_balance_1); }},
+    Action{"jettison_cruise_balance_2", ModuleId::pyro, [](ActionContext& on) { on.fire(PyroId::cruise_balance_2); }},
 
-// parachute
-void fire_parachute_mortar(ActionContext& context);
-void disable_thrusters(ActionContext& context);
-void enable_thrusters(ActionContext& context);
-void fire_heatshield_separation(ActionContext& context);
-void start_radar_processing(ActionContext& context);
-void open_engine_valves(ActionContext& context);
+    // entry
+    Action{"start_guidance_wait", ModuleId::edl, [](ActionContext& on) { on.configuration().guidance_armed = true; }},
+    Action{"start_entry_guidance", ModuleId::edl, [](ActionContext& on) { on.configuration().sufr_allowed = true; }},
+    Action{"jettison_balance_1", ModuleId::pyro, [](ActionContext& on) { on.fire(PyroId::entry_balance_1); }},
+    Action{"jettison_balance_2", ModuleId::pyro, [](ActionContext& on) { on.fire(PyroId::entry_balance_2); }},
+    Action{"jettison_balance_3", ModuleId::pyro, [](ActionContext& on) { on.fire(PyroId::entry_balance_3); }},
+    Action{"arm_pyros", ModuleId::pyro, [](ActionContext& on) { on.arm_pyros(true); }},
+    Action{"safe_pyros", ModuleId::pyro, [](ActionContext& on) { on.arm_pyros(false); }},
 
-// powered descent and sky crane
-void fire_backshell_separation(ActionContext& context);
-void ignite_engines(ActionContext& context);
-void start_sky_crane(ActionContext& context);
-void fire_rover_separation(ActionContext& context);
-void release_bridle(ActionContext& context);
-void enable_touchdown_logic(ActionContext& context);
-void declare_touchdown(ActionContext& context);
-void fire_bridle_cutters(ActionContext& context);
-void start_flyaway(ActionContext& context);
-void stop_engines(ActionContext& context);
-}  // namespace actions
+    // parachute
+    Action{"fire_parachute_mortar", ModuleId::pyro,
+           [](ActionContext& on) { on.fire(PyroId::parachute_mortar, gnc::Fact::parachute_out); }},
+    Action{"disable_thrusters", ModuleId::thrusters, [](ActionContext& on) { on.enable_thrusters(false); }},
+    Action{"enable_thrusters", ModuleId::thrusters, [](ActionContext& on) { on.enable_thrusters(true); }},
+    Action{"fire_heatshield_separation", ModuleId::pyro,
+           [](ActionContext& on) { on.fire(PyroId::heatshield_separation, gnc::Fact::heatshield_gone); }},
+    Action{"start_radar_processing", ModuleId::edl, [](ActionContext& on) { on.configuration().radar_on = true; }},
+    Action{"open_engine_valves", ModuleId::pyro,
+           [](ActionContext& on) { on.fire(PyroId::engine_valves, gnc::Fact::engines_primed); }},
+
+    // powered descent and sky crane
+    Action{"fire_backshell_separation", ModuleId::pyro,
+           [](ActionContext& on) { on.fire(PyroId::backshell_separation, gnc::Fact::backshell_gone); }},
+    Action{"ignite_engines", ModuleId::descent_engines,
+           [](ActionContext& on) {
+               on.configuration().engines_ignited = true;
+               on.await({ReplyKind::engines, 1});
+           }},
+    Action{"start_sky_crane", ModuleId::edl, [](ActionContext& on) { on.configuration().sky_crane_started = true; }},
+    Action{"fire_rover_separation", ModuleId::pyro,
+           [](ActionContext& on) { on.fire(PyroId::rover_separation, gnc::Fact::rover_separated); }},
+    Action{"release_bridle", ModuleId::descent_engines, [](ActionContext& on) { on.pay_out_bridle(); }},
+    Action{"enable_touchdown_logic", ModuleId::edl,
+           [](ActionContext& on) { on.configuration().touchdown_logic_ready = true; }},
+    Action{"declare_touchdown", ModuleId::edl, [](ActionContext& on) { on.configuration().touchdown_declared = true; }},
+    Action{"fire_bridle_cutters", ModuleId::pyro,
+           [](ActionContext& on) { on.fire(PyroId::bridle_cutter, gnc::Fact::bridle_cut); }},
+    Action{"start_flyaway", ModuleId::edl, [](ActionContext& on) { on.configuration().flyaway_started = true; }},
+    Action{"stop_engines", ModuleId::descent_engines,
+           [](ActionContext& on) {
+               on.configuration().engines_off = true;
+               on.await({ReplyKind::engines, 0});
+           }},
+};
+
+/// Left undefined, so that the compiler names both.
+template <Name misspelt, Name nearest>
+struct ColumnActionNamesNoAction;
+
+/// The action of that name. A misspelt one does not compile, at its row of timeline.csv, and the error has the nearest
+/// name.
+template <Name name>
+consteval const Action& action_named() {
+    constexpr auto found = std::ranges::find(actions, name.view(), &Action::name);
+    if constexpr (found == actions.end())
+        static_assert(sizeof(ColumnActionNamesNoAction<name, nearest(name.view(), actions, &Action::name)>) != 0);
+    return found == actions.end() ? actions.front() : *found;
+}
 
 }  // namespace aeolis::flight

@@ -14,7 +14,7 @@
 namespace aeolis::flight {
 
 class ActionContext;
-using Action = void (*)(ActionContext&);
+using ActionFunction = void (*)(ActionContext&);
 
 /// Assumption about an action whose reply did not come in time. R50
 enum class IfUnverified : std::uint8_t { done, not_done, done_unless_imu };
@@ -25,15 +25,15 @@ struct TimepointSpec {
     const char* name = "";
     std::optional<AnchorId> anchor;  ///< none: the desired offset is from the previous timepoint
     MaybeOffset desired_offset_s;
-    MaybeOffset minimum_offset_s;  ///< from the previous timepoint
-    Action action = nullptr;       ///< nullptr: none
+    MaybeOffset minimum_offset_s;     ///< from the previous timepoint
+    ActionFunction action = nullptr;  ///< nullptr: none
     std::optional<double> reply_timeout_s;
     IfUnverified if_unverified = IfUnverified::done;
     std::optional<double> hold_repeat_s;  ///< while the timeline is held: interval at which the action is repeated
     std::optional<TimepointId> backtrack;
     bool essential = false;
     std::optional<ToneId> tone;
-    Action event = nullptr;           ///< function that announces the done action; nullptr: none
+    ActionFunction event = nullptr;   ///< function that announces the done action; nullptr: none
     std::optional<ModuleId> owner{};  ///< the module that the action may command; none: unspecified, as in tests. R5
 };
 

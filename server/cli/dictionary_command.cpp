@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dictionaries/autocoder/state_diagram.hpp"
 #include "dictionaries/mission_files.hpp"
+#include "flight/timeline/actions.hpp"
 #include "server/cli/commands.hpp"
 #include "server/cli/options.hpp"
 #include "server/cli/shipped_paths.hpp"
@@ -18,12 +19,29 @@ struct DictionaryOptions {
     std::filesystem::path out;  ///< empty: standard output
 };
 
+/// The rows of the timeline whose action the flight software of this program does not have. R40
+std::vector<dictionary::Finding> unknown_actions(const dictionary::Dictionary& dictionary) {
+    std::vector<dictionary::Finding> findings;
+    for (const auto& row : dictionary.timeline)
+        if (const auto like = nearest(row.action, flight::actions, &flight::Action::name);
+            !row.action.empty() && like != row.action)
+            findings.push_back({"timeline.csv", row.line,
+                                fmt::format("timepoint '{}', column action: the flight software has no action '{}'; "
+                                            "the nearest name is '{}'",
+                                            row.name, row.action, like)});
+    return findings;
+}
+
 int dictionary_check(const std::filesystem::path& directory) {
     std::error_code error;
     if (!std::filesystem::exists(directory, error))
         return failed(fmt::format("dictionary check: {} is no directory and no file", directory.string()), 2);
     const auto dictionary = loaded_dictionary(directory);
     if (!dictionary) return 1;
+    if (const auto unknown = unknown_actions(*dictionary); !unknown.empty()) {
+        for (const auto& finding : unknown) fmt::print(stderr, "{}\n", finding.text());
+        return 1;
+    }
     fmt::print("{}: no rule is broken: {} channels, {} packets, {} events, {} commands, {} timepoints, {} anchors, {} "
                "tones, {} parameters, {} constraints, {} state machines; id {}, timeline version {}\n",
                dictionary->mission, dictionary->channels.size(), dictionary->packets.size(), dictionary->events.size(),

@@ -138,8 +138,7 @@ TEST_CASE("a command is preceded and followed by what its author asks for", "[di
     CHECK(begin.verifiers[1].window_s == 20.0);
 }
 
-TEST_CASE("any change of any file on board changes the dictionary's id; the timeline's version follows its own",
-          "[dictionary][R20]") {
+TEST_CASE("any change of any file on board changes the dictionary's id", "[dictionary][R20]") {
     std::set<std::uint16_t> ids{msl().id};
     for (const char* file : {"msl.xml", "timeline.csv", "anchors.csv", "tones.csv", "mfsk.csv", "parameters.csv",
                              "constraints.csv", "state_machines.csv", "owners.csv", "telemetry_plan.csv"}) {
@@ -149,9 +148,41 @@ TEST_CASE("any change of any file on board changes the dictionary's id; the time
         const Loaded loaded = mission.load();
         REQUIRE(loaded.dictionary);
         CHECK(ids.insert(loaded.dictionary->id).second);
-        const bool of_timeline = std::string_view{file} == "timeline.csv" || std::string_view{file} == "anchors.csv";
-        CHECK((loaded.dictionary->timeline_version != msl().timeline_version) == of_timeline);
+        CHECK(loaded.dictionary->timeline_version == msl().timeline_version);  // an empty line is no content
     }
+}
+
+TEST_CASE("the timeline's version is of what its sheets hold: any cell changes it, line ends and quotes do not",
+          "[dictionary][R20]") {
+    const tests::MissionCopy mission;
+    const std::string text = mission.text("timeline.csv");
+    const auto version_of = [&](const std::string& changed) {
+        mission.write("timeline.csv", changed);
+        const Loaded loaded = mission.load();
+        INFO(tests::lines_of(loaded));
+        REQUIRE(loaded.dictionary);
+        return loaded.dictionary->timeline_version;
+    };
+    const auto replaced = [&](std::string_view from, std::string_view to) {
+        std::string changed = text;
+        changed.replace(changed.find(from), from.size(), to);
+        return changed;
+    };
+    std::string line_ends;
+    for (const char c : text) line_ends += c == '\n' ? std::string{"\r\n"} : std::string{c};
+    CHECK(version_of(line_ends) == msl().timeline_version);
+    CHECK(version_of(replaced(",vent_coolant,", ",\"vent_coolant\",")) == msl().timeline_version);
+    // Every number one larger, where the sheet allows it: all versions differ.
+    std::set<std::uint32_t> versions{msl().timeline_version};
+    std::size_t tried = 0;
+    for (std::size_t at = text.find(",entry,-"); at != std::string::npos; at = text.find(",entry,-", at + 1)) {
+        std::string changed = text;
+        changed.insert(at + 8, "1");
+        versions.insert(version_of(changed));
+        ++tried;
+    }
+    CHECK(tried >= 8);
+    CHECK(versions.size() == tried + 1);
 }
 
 TEST_CASE("a change of constraints.csv, which flight checks and does not act on, changes the id and not the version",

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dictionaries/autocoder/owners_header.hpp"
+#include "flight/timeline/actions.hpp"
 #include "generated/owners.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/shipped_dictionary.hpp"
@@ -26,7 +27,7 @@ TEST_CASE("flight knows the owners at compile time", "[dictionary][R5]") {
     using namespace aeolis::flight;
     STATIC_REQUIRE(owner_of(Decision::tone) == ModuleId::mfsk);
     STATIC_REQUIRE(owner_of(DeviceLine::pyros) == ModuleId::pyro);
-    STATIC_REQUIRE(action_owner::fire_parachute_mortar == ModuleId::pyro);
+    STATIC_REQUIRE(action_named<"fire_parachute_mortar">().owner == ModuleId::pyro);
 }
 
 }  // namespace dictionaries_owners_header_test

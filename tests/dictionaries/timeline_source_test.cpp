@@ -18,7 +18,7 @@ TEST_CASE("each timepoint's code names its row of the spreadsheet, and its actio
             source.find("#line " + std::to_string(row.line) + " \"timeline.csv\"\n    {\"" + row.name);
         REQUIRE(begin != std::string::npos);
         const std::string code = source.substr(begin, source.find("\n", source.find("\n", begin) + 1) - begin);
-        if (!row.action.empty()) CHECK_THAT(code, Catch::Contains("&actions::" + row.action + ","));
+        if (!row.action.empty()) CHECK_THAT(code, Catch::Contains("action_named<\"" + row.action + "\">().run,"));
         if (!row.event.empty()) CHECK_THAT(code, Catch::Contains("&announce<evr::" + row.event + ">"));
         if (!row.desired_offset_s) CHECK_THAT(code, Catch::Contains("std::nullopt"));
     }

@@ -20,7 +20,7 @@ struct Fixture {
 TEST_CASE("the mortar's action fires the mortar; GNC has a parachute only once that is done, since it was commanded",
           "[timeline][R17][R26][R50]") {
     Fixture f;
-    actions::fire_parachute_mortar(f.context);
+    action_named<"fire_parachute_mortar">().run(f.context);
     REQUIRE(f.recorder.sent<FirePyro>().size() == 1);
     CHECK(f.recorder.sent<FirePyro>()[0].pyro == PyroId::parachute_mortar);
     CHECK_FALSE(f.configuration.parachute_out);
@@ -37,19 +37,19 @@ TEST_CASE("the mortar's action fires the mortar; GNC has a parachute only once t
 TEST_CASE("leaving the cruise stage is a process of several actions, and GNC learns when it is gone",
           "[timeline][R26]") {
     Fixture f;
-    actions::vent_coolant(f.context);
-    actions::cut_cruise_cables(f.context);
+    action_named<"vent_coolant">().run(f.context);
+    action_named<"cut_cruise_cables">().run(f.context);
     CHECK(f.context.fact() == gnc::Fact::none);
-    actions::fire_cruise_stage_separation(f.context);
+    action_named<"fire_cruise_stage_separation">().run(f.context);
     CHECK(f.context.fact() == gnc::Fact::cruise_stage_gone);
     CHECK(f.recorder.sent<FirePyro>().size() == 3);
 }
 
 TEST_CASE("the timeline powers devices and sets telecom", "[timeline][R28]") {
     Fixture f;
-    actions::power_on_radar(f.context);
-    actions::start_uhf(f.context);
-    actions::select_entry_antenna(f.context);
+    action_named<"power_on_radar">().run(f.context);
+    action_named<"start_uhf">().run(f.context);
+    action_named<"select_entry_antenna">().run(f.context);
     const auto switches = f.recorder.sent<SetSwitch>();
     REQUIRE(switches.size() == 3);
     CHECK(switches[0].id == SwitchId::radar);

@@ -28,7 +28,7 @@ constexpr AnchorId root{0}, entry_anchor{1}, parachute_anchor{2};
 const std::vector<AnchorSpec> anchors{
     {"root", {}, {}}, {"entry", root, MaybeOffset{1100.0}}, {"parachute", root, MaybeOffset{}}};
 
-TimepointSpec row(std::optional<AnchorId> anchor, MaybeOffset desired_s, MaybeOffset minimum_s, Action action = nothing,
+TimepointSpec row(std::optional<AnchorId> anchor, MaybeOffset desired_s, MaybeOffset minimum_s, ActionFunction action = nothing,
                   std::optional<double> reply_timeout_s = {}) {
     return {"row", anchor, desired_s, minimum_s, action, reply_timeout_s, {}, {}, {}, true, {}, nullptr};
 }
@@ -259,7 +259,7 @@ TEST_CASE("the shipped timeline is held before separation only, and asks the IMU
             CHECK(&spec < &timeline_specs[timepoint::cruise_stage_separation.value]);
         }
         CHECK((spec.if_unverified == IfUnverified::done_unless_imu) ==
-              (spec.action == &actions::fire_parachute_mortar));
+              (spec.action == action_named<"fire_parachute_mortar">().run));
     }
     CHECK(held);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "common/fields.hpp"
 #include "flight/kernel/message.hpp"
 
 #include <algorithm>
@@ -8,7 +9,6 @@
 #include <optional>
 #include <span>
 #include <type_traits>
-#include <utility>
 
 // Message values built from octets, a fuzzer's or random ones. The fields come from the type itself, so that a new
 // field is filled too.
@@ -32,25 +32,6 @@ class Source {
   private:
     std::span<const std::uint8_t> rest_;
 };
-
-/// Converts to any type: counts the initialisers of an aggregate.
-struct AnyField {
-    template <typename T>
-    operator T() const;
-};
-
-template <typename T, std::size_t... I>
-constexpr bool takes_fields(std::index_sequence<I...>) {
-    return requires { T{(static_cast<void>(I), AnyField{})...}; };
-}
-/// The number of fields of an aggregate.
-template <typename T, std::size_t N = 24>
-constexpr std::size_t field_count() {
-    if constexpr (N == 0 || takes_fields<T>(std::make_index_sequence<N>{}))
-        return N;
-    else
-        return field_count<T, N - 1>();
-}
 
 template <typename T>
 void fill(Source& from, T& value);
@@ -91,29 +72,6 @@ void carry_into(Source& from, T& value) {
 }
 
 template <typename T>
-void fill_fields(Source& from, T& value) {
-    constexpr std::size_t n = field_count<T>();
-    // clang-format off
-    if constexpr (n == 0) { static_cast<void>(from); static_cast<void>(value); }
-    else if constexpr (n == 1) { auto& [a] = value; fill_each(from, a); }
-    else if constexpr (n == 2) { auto& [a, b] = value; fill_each(from, a, b); }
-    else if constexpr (n == 3) { auto& [a, b, c] = value; fill_each(from, a, b, c); }
-    else if constexpr (n == 4) { auto& [a, b, c, d] = value; fill_each(from, a, b, c, d); }
-    else if constexpr (n == 5) { auto& [a, b, c, d, e] = value; fill_each(from, a, b, c, d, e); }
-    else if constexpr (n == 6) { auto& [a, b, c, d, e, f] = value; fill_each(from, a, b, c, d, e, f); }
-    else if constexpr (n == 7) { auto& [a, b, c, d, e, f, g] = value; fill_each(from, a, b, c, d, e, f, g); }
-    else if constexpr (n == 8) { auto& [a, b, c, d, e, f, g, h] = value; fill_each(from, a, b, c, d, e, f, g, h); }
-    else if constexpr (n == 9) { auto& [a, b, c, d, e, f, g, h, i] = value; fill_each(from, a, b, c, d, e, f, g, h, i); }
-    else if constexpr (n == 17) {
-        auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, o, p, q, r] = value;
-        fill_each(from, a, b, c, d, e, f, g, h, i, j, k, l, m, o, p, q, r);
-    }
-    // clang-format on
-    else
-        static_assert(n == 0, "a message with so many fields: add its line here");
-}
-
-template <typename T>
 void fill(Source& from, T& value) {
     if constexpr (std::is_same_v<T, bool>)
         value = from.take<std::uint8_t>() % 2 != 0;
@@ -124,7 +82,7 @@ void fill(Source& from, T& value) {
     else if constexpr (!std::is_aggregate_v<T>)
         carry_into(from, value);
     else
-        fill_fields(from, value);
+        with_fields(value, [&](auto&... fields) { fill_each(from, fields...); });
 }
 
 /// A message of the variant's type at `index`.

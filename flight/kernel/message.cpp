@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "flight/kernel/message.hpp"
+
+#include "flight/kernel/only_data.hpp"
+
+namespace aeolis::flight {
+
+[[maybe_unused]] constexpr void (*checked)(Message&) = expect_only_data_in_each;
+
+}  // namespace aeolis::flight
