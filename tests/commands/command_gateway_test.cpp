@@ -614,7 +614,7 @@ TEST_CASE("do edl is refused on ground when its first timepoint on the clock wou
 
 TEST_CASE("a file is judged change by change: each with those before it", "[gateway][R51]") {
     Station station{.clock = a_thousand_seconds_before_entry()};
-    const auto separation = timepoint_at("cruise_stage_separation", -594.0),
+    const auto separation = timepoint_at("cruise_stage_separation", 6.046875),
                detumble = timepoint_at("detumble", -516.0);
     const auto alone = station.gateway.look(std::vector{separation}, now);
     CHECK_FALSE(alone.front().accepted);  // no plume on the cruise stage

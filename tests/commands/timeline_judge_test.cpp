@@ -107,8 +107,8 @@ TEST_CASE("what fires by the plan before the command arrives counts as fired", "
     ground.hear_status(-1500.0, "coolant_vent", -1700.0);
     CHECK_FALSE(ground.why(change("uhf_start", -801.0), -900.0));
     CHECK(ground.why(change("uhf_start", -801.0), -672.0) == Why::triggered_already);
-    CHECK(ground.why(change("cruise_stage_separation", -700.0), -672.0) == Why::overdue);
-    CHECK_FALSE(ground.why(change("cruise_stage_separation", -599.0), -672.0));
+    CHECK(ground.why(change("cruise_stage_separation", -99.953125), -672.0) == Why::overdue);
+    CHECK_FALSE(ground.why(change("cruise_stage_separation", 1.046875), -672.0));
 }
 
 TEST_CASE("a timepoint whose reply is due has been triggered", "[commands][timeline][R51]") {
@@ -125,9 +125,9 @@ TEST_CASE("a timepoint whose reply is due has been triggered", "[commands][timel
 TEST_CASE("a change that was made, or is on its way, is what the next is judged with", "[commands][timeline][R51]") {
     Ground ground;
     ground.hear_status(-1000.0, "coolant_vent", -1160.0);
-    CHECK(ground.why(change("cruise_stage_separation", -594.0), -990.0) == Why::too_soon);  // the detumble's plumes
+    CHECK(ground.why(change("cruise_stage_separation", 6.046875), -990.0) == Why::too_soon);  // the detumble's plumes
     ground.judge.make(change("detumble", -516.0));
-    CHECK_FALSE(ground.why(change("cruise_stage_separation", -594.0), -990.0));
+    CHECK_FALSE(ground.why(change("cruise_stage_separation", 6.046875), -990.0));
 }
 
 TEST_CASE("do edl comes too late when its first timepoint on the clock would be overdue, less the margin",

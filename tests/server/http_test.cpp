@@ -520,11 +520,11 @@ TEST_CASE(
     };
     WebReply reply;
     for (int i = 0; i < 3000 && reply.status != 202; ++i) {  // a slow build is long in starting the run
-        reply = ask(-600.0, 2.0, true);
+        reply = ask(0.046875, 2.0, true);
         if (reply.status != 202) std::this_thread::sleep_for(std::chrono::milliseconds{20});
     }
     CHECK_THAT(reply.body, Catch::Contains("bounds of constraints.csv hold on the changed timeline"));
-    const auto broken = ask(-620.0, 0.0, false);  // at once behind the cutters, which need their two seconds
+    const auto broken = ask(-19.953125, 0.0, false);  // at once behind the cutters, which need their two seconds
     INFO(broken.body);
     CHECK(broken.status == 409);
     CHECK_THAT(broken.body, Catch::Contains("breaks a constraint") && Catch::Contains("cruise_stage_separation") &&
@@ -570,7 +570,7 @@ TEST_CASE("when a change of the timeline is cancelled, what waits is looked at a
         if (reply.status != 202) std::this_thread::sleep_for(std::chrono::milliseconds{20});
     }
     REQUIRE(reply.status == 202);
-    const auto later = hold("cruise_stage_separation", -594.0, 2.0);  // as late only because the detumble is
+    const auto later = hold("cruise_stage_separation", 6.046875, 2.0);  // as late only because the detumble is
     INFO(later.body);
     REQUIRE(later.status == 202);
     const auto other = hold("coolant_vent", -825.0, 0.0);  // for which neither matters

@@ -18,7 +18,7 @@ TEST_CASE(
     CHECK(predicted.blackout->from_s == Approx(45.0).margin(3.0));
     CHECK(predicted.blackout->to_s == Approx(98.5).margin(5.0));
     REQUIRE(predicted.hand_over_s);
-    CHECK(*predicted.hand_over_s == Approx(247.0));  // 8 s after SUFR, which the design has at E+239 s
+    CHECK(*predicted.hand_over_s == Approx(256.15));  // 0.25 s after the mortar, which the design has at E+255.9 s
     REQUIRE(predicted.earth_set_s);
     CHECK(*predicted.earth_set_s == Approx(297.0).margin(15.0));  // as OD137 saw it
     REQUIRE(predicted.uhf_stop_s);

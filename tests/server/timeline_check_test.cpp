@@ -79,7 +79,7 @@ v1::CommandRequest later_detumble() {
     return change("detumble", -516.0, 0.0);
 }
 v1::CommandRequest later_separation() {
-    return change("cruise_stage_separation", -594.0, 2.0);
+    return change("cruise_stage_separation", 6.046875, 2.0);
 }
 
 }  // namespace

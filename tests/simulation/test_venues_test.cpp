@@ -150,8 +150,12 @@ TEST_CASE("the lines in place of the timeline stand where the shipped timeline h
             --row;
             offset_s += *row->desired_offset_s;
         }
-        const auto anchor = std::ranges::find(dictionary.anchors, *row->anchor, &dictionary::AnchorRow::id);
+        auto anchor = std::ranges::find(dictionary.anchors, *row->anchor, &dictionary::AnchorRow::id);
         REQUIRE(anchor != dictionary.anchors.end());
+        while (anchor->parent && anchor->offset_s) {  // it is at a fixed time from its parent
+            offset_s += *anchor->offset_s;
+            anchor = std::ranges::find(dictionary.anchors, *anchor->parent, &dictionary::AnchorRow::id);
+        }
         CHECK(anchor->name == anchor_of(line.after));
         CHECK(offset_s == line.offset_s);
     }
