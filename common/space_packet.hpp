@@ -21,6 +21,8 @@ inline constexpr std::size_t packet_crc_octets = 2;
 inline constexpr std::size_t tm_overhead_octets = tm_data_offset_octets + packet_crc_octets;
 inline constexpr std::size_t packet_octets_max = 1024;  ///< chosen: one packet fits one message of the recorder
 
+inline constexpr std::uint16_t packet_count_mask = 0x3FFF;  ///< its 14 bits
+
 struct PrimaryHeader {
     bool telecommand = false;
     bool secondary_header = true;

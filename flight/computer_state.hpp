@@ -61,7 +61,8 @@ struct ComputerState {
     std::array<FixedQueue<Message, mailbox_messages_max>, module_count> mailboxes;
     std::uint32_t ready = 0;  // a bit for each module that has work
     // Messages from modules outside the rate group, for the start of the next cycle under every executive.
-    FixedVector<Envelope, 128> next_cycle;
+    static constexpr std::size_t next_cycle_messages_max = 128;  ///< chosen
+    FixedVector<Envelope, next_cycle_messages_max> next_cycle;
     Outbox outbox;
 
     std::uint32_t mailbox_overflows = 0;

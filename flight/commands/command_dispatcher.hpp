@@ -35,8 +35,7 @@ class CommandDispatcher {
     bool is_for_this_computer(Opcode opcode) const;
 
     Role role_;
-    Farm farm_{
-        {.spacecraft = spacecraft_id, .virtual_channel = telecommand_channel, .window = 128, .locked_at_start = true}};
+    Farm farm_{{.spacecraft = spacecraft_id, .virtual_channel = telecommand_channel, .locked_at_start = true}};
     bool in_control_ = false;  ///< while Second Chance
     std::uint16_t refused_ = 0;
 };

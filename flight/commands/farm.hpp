@@ -16,11 +16,13 @@ namespace aeolis::flight {
 /// Faults  a frame for another spacecraft or channel, or an invalid control command, is refused and changes nothing
 class Farm {
   public:
+    static constexpr unsigned sequence_numbers = 256;
+
     /// `window`: even, 2 … 254. Half of it lies ahead of the expected sequence number, half behind.
     struct Settings {
         std::uint16_t spacecraft = 0;
         std::uint8_t virtual_channel = 0;
-        std::uint8_t window = 128;
+        std::uint8_t window = sequence_numbers / 2;
         /// Refuses sequenced frames until ground unlocks the channel.
         /// After losing the expected sequence number, FARM-1 could otherwise accept an old frame as new.
         bool locked_at_start = false;
@@ -74,7 +76,7 @@ class Farm {
             retransmit_ = true;
             return Verdict::out_of_sequence;
         }
-        if (ahead >= 256U - half) return Verdict::repeated;
+        if (ahead >= sequence_numbers - half) return Verdict::repeated;
         lockout_ = true;
         return Verdict::locked_out;
     }

@@ -18,11 +18,13 @@ T number_at(std::span<const std::uint8_t> octets, std::size_t at) {
 std::uint64_t checksum(std::span<const std::uint8_t> octets) {
     constexpr std::size_t lanes = 4;
     constexpr std::size_t row = lanes * sizeof(std::uint64_t);
+    constexpr std::uint64_t prime = 0x100000001B3U, offset_basis = 0xCBF29CE484222325U;
+    constexpr unsigned high_bits = 29;
     const auto add = [](std::uint64_t& sum, std::uint64_t word) {
-        sum = (sum ^ word) * 0x100000001B3U;
-        sum ^= sum >> 29U;  // a multiplication alone never moves high bits down
+        sum = (sum ^ word) * prime;
+        sum ^= sum >> high_bits;  // a multiplication alone never moves high bits down
     };
-    std::array<std::uint64_t, lanes> sums{0xCBF29CE484222325U, 1, 2, 3};
+    std::array<std::uint64_t, lanes> sums{offset_basis, 1, 2, 3};
     for (std::size_t at = 0; at < octets.size(); at += row) {
         std::array<std::uint64_t, lanes> words{};
         std::memcpy(words.data(), octets.data() + at, std::min(row, octets.size() - at));

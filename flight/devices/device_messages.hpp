@@ -60,6 +60,8 @@ struct CruiseAttitude {
     Sclk at{};  ///< the tick at which it is valid
 };
 
+inline constexpr std::size_t radar_beams = 6;
+
 /// One velocity and slant-range measurement of the landing radar along one beam.
 struct RadarBeam {
     std::uint8_t beam = 0;                ///< 0 … 5
@@ -149,7 +151,7 @@ struct DeviceInputs {
     StateOctets restart_record;     ///< once, in the first cycle after a restart, if stored
     FixedVector<ImuSample, 4> imu;  ///< 3 or 4 per cycle
     std::optional<CruiseAttitude> cruise_attitude;
-    FixedVector<RadarBeam, 6> radar;  ///< each beam at 20 Hz
+    FixedVector<RadarBeam, radar_beams> radar;  ///< each beam at 20 Hz
     FixedVector<PyroReply, 16> pyro_replies;
     FixedVector<SwitchReply, 8> switch_replies;
     std::optional<EngineReply> engines;             ///< each cycle once the valves are open
@@ -198,6 +200,8 @@ struct SwitchCommand {
 
 using SwitchCommands = FixedVector<SwitchCommand, 8>;
 
+inline constexpr std::size_t nvm_octets_per_cycle = 65536, uhf_octets_per_cycle = 8192;  ///< chosen
+
 /// All outputs of the computer in one cycle.
 struct DeviceOutputs {
     UnitSelection units;  ///< to which this cycle's commands are addressed, except pyros
@@ -209,8 +213,8 @@ struct DeviceOutputs {
     EngineCommand engines;
     bool pay_out_bridle = false;
     std::optional<ToneId> tone;             ///< sent by X-band during this cycle; none: carrier only
-    OctetBuffer<65536> nvm;                 ///< packets to append to the recording, in order
-    OctetBuffer<8192> uhf;                  ///< PLTUs to radiate; their packets are a subset of the recorded ones
+    OctetBuffer<nvm_octets_per_cycle> nvm;  ///< packets to append to the recording, in order
+    OctetBuffer<uhf_octets_per_cycle> uhf;  ///< PLTUs to radiate; their packets are a subset of the recorded ones
     StateOctets cross_string;               ///< to the other computer; empty: nothing in this cycle
     StateOctets restart_record;             ///< replaces the stored record; empty: keep that
     std::optional<bool> designate_b_prime;  ///< sets the latch

@@ -14,6 +14,7 @@
 #include "flight/timeline/timeline.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 
 namespace aeolis::flight {
@@ -96,7 +97,10 @@ class EdlMain {
     void update_phase(Sclk now, Outbox& out);
     void record_channels(Sclk now, Outbox& out);
     packet::ParametersHeld parameters_held() const;
-    std::uint8_t reset_count() const { return static_cast<std::uint8_t>(std::min(load_.resets, 255U)); }
+    std::uint8_t reset_count() const {
+        return static_cast<std::uint8_t>(
+            std::min<std::uint32_t>(load_.resets, std::numeric_limits<std::uint8_t>::max()));
+    }
     MaybeTime entry() const { return timeline_.anchor_time(anchor::entry); }
     bool late_cruise(Sclk now) const;
     bool pre_edl(Sclk now) const;

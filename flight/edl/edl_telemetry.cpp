@@ -73,6 +73,7 @@ packet::GncDescent descent(const gnc::Output& gnc, double bridle_m) {
     return {.descent_mode = static_cast<GncMode>(gnc.mode),
             .thrust_command_N = single(gnc.thrust_command_N),
             .throttle_mean_percent = single(sum / static_cast<double>(throttle.size()) * parts_in_percent),
+            // NOLINTBEGIN(readability-magic-numbers): the engines, by number
             .throttle_1_percent = percent(0),
             .throttle_2_percent = percent(1),
             .throttle_3_percent = percent(2),
@@ -81,6 +82,7 @@ packet::GncDescent descent(const gnc::Output& gnc, double bridle_m) {
             .throttle_6_percent = percent(5),
             .throttle_7_percent = percent(6),
             .throttle_8_percent = percent(7),
+            // NOLINTEND(readability-magic-numbers)
             .mass_estimate_kg = single(gnc.mass_kg),
             .propellant_kg = single(gnc.propellant_kg),
             .bridle_m = single(bridle_m)};
@@ -94,6 +96,7 @@ packet::GncBelief belief(const gnc::Output& gnc) {
             .propellant_low = gnc.propellant_low};
 }
 
+// NOLINTBEGIN(readability-magic-numbers): the names of the thirty channels
 /// Synthetic load for benchmarks: thirty slow waves of known phase, no quantities of the vehicle.
 packet::Wideband wideband(Sclk now) {
     const auto wave = [&](int channel) {
@@ -130,6 +133,7 @@ packet::Wideband wideband(Sclk now) {
             .wideband_29 = wave(29),
             .wideband_30 = wave(30)};
 }
+// NOLINTEND(readability-magic-numbers)
 
 }  // namespace
 

@@ -27,10 +27,13 @@ bool is_last(const Record& record) {
            read_bits(record.data, 0, 16) == evr::RECORDING_CLOSED::id.value;
 }
 
+constexpr double bits_per_octet = 8.0;
+
 }  // namespace
 
 EdlComm::EdlComm(const Load& load)
-    : octets_per_cycle_(load.uhf_rate_bps / 8.0 * seconds_per_tick), string_(load.string), plan_(load.telemetry_plan) {
+    : octets_per_cycle_(load.uhf_rate_bps / bits_per_octet * seconds_per_tick), string_(load.string),
+      plan_(load.telemetry_plan) {
     // The computers count from different numbers, so that no packet of one has the identity of one of the other's.
     if (load.string == String::b)
         for (Stream& stream : streams_) stream.count = counts_of_string_b;
@@ -48,7 +51,7 @@ void EdlComm::on(const Record& record, Outbox& out) {
     const Apid apid = apid_of(string_, record.apid);
     auto& stream = streams_[apid.value % streams_.size()];
     seal_tm_packet(std::span{packet.octets}.first(packet.size), apid, stream.count, record.time, dictionary_id);
-    stream.count = (stream.count + 1) & 0x3FFF;
+    stream.count = (stream.count + 1) & packet_count_mask;
     const TelemetryPlanRow& plan = planned(plan_, apid);
     // Only recorded packets may be sent: real time stays a subset of the recording.
     if (append_to_recording(plan.priority, packet, out)) offer_to_link(plan, stream, packet, out);

@@ -70,7 +70,8 @@ class EdlComm {
     std::uint8_t frame_sequence_ = 0;
     Plan plan_;
     EdlPhase phase_{};
-    std::array<Stream, 128> streams_{};
+    static constexpr std::size_t apids = 128;  ///< chosen: of both computers
+    std::array<Stream, apids> streams_{};
     RealtimeQueue queue_;
     DataProducts products_;
     double credit_octets_ = 0.0;  // octets that the link could have sent so far but has not

@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <span>
 
 namespace aeolis::flight {
@@ -51,7 +52,7 @@ class RealtimeQueue {
 
   private:
     using Slot = std::uint8_t;
-    static_assert(packets_max <= 256);
+    static_assert(packets_max <= std::numeric_limits<Slot>::max() + 1);
     static constexpr std::size_t index(TelemetryPriority priority) { return static_cast<std::size_t>(priority); }
     std::size_t most_important() const;
     void release_oldest(std::size_t priority);

@@ -24,13 +24,14 @@ class CfdpSource {
   public:
     static constexpr std::size_t ranges_max = 512;
     static constexpr std::size_t name_octets_max = 64;  ///< chosen
+    static constexpr std::uint16_t segment_octets_usual = 900;
 
     struct File {
         std::uint16_t source = 0;  ///< entity ids
         std::uint16_t destination = 0;
         std::uint32_t sequence = 0;  ///< transaction sequence number
         std::uint32_t octets = 0;
-        std::uint16_t segment_octets = 900;  ///< file data in one PDU
+        std::uint16_t segment_octets = segment_octets_usual;  ///< file data in one PDU
     };
     /// `name` is the file's name at both ends.
     CfdpSource(const File& file, std::string_view name);

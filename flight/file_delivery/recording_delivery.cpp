@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <limits>
 #include <string_view>
 #include <variant>
 
@@ -19,7 +20,7 @@ constexpr std::size_t pdu_octets_max = proximity_data_octets_max - primary_heade
 FixedVector<char, CfdpSource::name_octets_max> file_name(std::uint32_t number) {
     FixedVector<char, CfdpSource::name_octets_max> name;
     name.append(name_of_files);
-    std::array<char, 10> digits{};
+    std::array<char, std::numeric_limits<std::uint32_t>::digits10 + 1> digits{};
     const auto end = std::to_chars(digits.begin(), digits.end(), number).ptr;
     name.append(std::string_view{digits.data(), static_cast<std::size_t>(end - digits.data())});
     return name;
@@ -121,7 +122,7 @@ std::size_t RecordingDelivery::wrapped(std::span<const std::uint8_t> pdu, std::s
                           .count = packet_count_,
                           .length = static_cast<std::uint16_t>(pdu.size() - 1)},
                          packet);
-    packet_count_ = (packet_count_ + 1) & 0x3FFF;
+    packet_count_ = (packet_count_ + 1) & packet_count_mask;
     std::copy(pdu.begin(), pdu.end(), packet.begin() + primary_header_octets);
     return write_pltu({.expedited = false, .spacecraft = spacecraft_id, .sequence = frame_sequence_++},
                       std::span{packet}.first(size), into);

@@ -408,7 +408,7 @@ void EdlGnc::guide_descent(Sclk now, const Configuration& configuration, Output&
     const Vector3 null_drift = -rate_gain_per_s * m.level_velocity_M;
     if (mode() == Mode::free_fall) {
         out.engines.throttle.fill(load_.engine_min_thrust_N / load_.engine_max_thrust_N);  // warm-up
-        thrust_command_N_ = 8.0 * load_.engine_min_thrust_N;
+        thrust_command_N_ = engine_count * load_.engine_min_thrust_N;
     } else if (mode() == Mode::powered_approach) {
         const Vector3 moved = strapdown_.state().p_MoB_M - divert_from_M_;
         const Vector3 level =

@@ -42,11 +42,13 @@ struct Solution {
     double target_latitude_rad = 0.0;   ///< areocentric
     double target_longitude_rad = 0.0;  ///< east
     double target_radius_m = 0.0;
+    // NOLINTBEGIN(readability-magic-numbers): as EDL_SET_PARAMETERS has them until the first command
     double parachute_speed_mps = 405.0;
     double parachute_altitude_min_m = 6000.0;  ///< down to this altitude the parachute waits for its speed
     double heatshield_speed_mps = 142.0;
     double backshell_altitude_m = 1660.0;
     double backshell_descent_rate_mps = 79.1;  ///< to which the altitude belongs
+    // NOLINTEND(readability-magic-numbers)
 
     template <typename Exchange>
     void carry(Exchange& exchange) {

@@ -33,8 +33,9 @@ void fall(Vector3& p_MoB_M, Vector3& v_MB_M, double dt_s) {
     const Vector3 v2 = v + 0.5 * dt_s * a1, a2 = free_acceleration(p + 0.5 * dt_s * v, v2);
     const Vector3 v3 = v + 0.5 * dt_s * a2, a3 = free_acceleration(p + 0.5 * dt_s * v2, v3);
     const Vector3 v4 = v + dt_s * a3, a4 = free_acceleration(p + dt_s * v3, v4);
-    p_MoB_M = p + dt_s / 6.0 * (v + 2.0 * v2 + 2.0 * v3 + v4);
-    v_MB_M = v + dt_s / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4);
+    const double sixth_s = dt_s / (1.0 + 2.0 + 2.0 + 1.0);  // Runge and Kutta's weights
+    p_MoB_M = p + sixth_s * (v + 2.0 * v2 + 2.0 * v3 + v4);
+    v_MB_M = v + sixth_s * (a1 + 2.0 * a2 + 2.0 * a3 + a4);
 }
 
 double speed_of_sound_mps(double altitude_m) {
@@ -62,7 +63,8 @@ double speed_of_sound_mps(double altitude_m) {
             break;
         }
     }
-    return std::sqrt(1.3 * 188.9 * temperature_K);
+    constexpr double heat_ratio = 1.3, gas_J_per_kgK = 188.9;  // of carbon dioxide
+    return std::sqrt(heat_ratio * gas_J_per_kgK * temperature_K);
 }
 
 }  // namespace aeolis::flight::gnc

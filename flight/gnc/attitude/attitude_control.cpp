@@ -32,7 +32,8 @@ Vector3 towards(const Vector3& error_rps, double deadband_rps, double response_s
 Vector3 rotation_of(const Quaternion& q) {
     const double sign = q.w() < 0.0 ? -1.0 : 1.0;
     const double sine = q.vec().norm();
-    if (sine < 1.0e-12) return Vector3::Zero();
+    constexpr double no_rotation = 1.0e-12;
+    if (sine < no_rotation) return Vector3::Zero();
     return q.vec() * (sign * 2.0 * std::atan2(sine, std::abs(q.w())) / sine);
 }
 

@@ -17,7 +17,7 @@ struct PullUp {
     double speed_mps = 0.0;
     double descent_rate_mps = 0.0;
     double drag_mps2 = 0.0;
-    double lift_to_drag = 0.24;
+    double lift_to_drag = 0.0;
 };
 
 /// Where the vehicle comes to `speed_mps` when its lift is up from now on; where it then is if it does not within the foresight.

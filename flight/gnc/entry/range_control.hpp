@@ -29,7 +29,7 @@ struct RangeControlInput {
     double drag_mps2 = 0.0;
     double altitude_rate_mps = 0.0;
     double range_to_go_m = 0.0;
-    double lift_to_drag = 0.24;
+    double lift_to_drag = 0.0;
 };
 
 struct RangeControlOutput {

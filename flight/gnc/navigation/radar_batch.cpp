@@ -47,7 +47,8 @@ std::optional<RadarSolution> RadarBatch::solve(Sclk now) const {
         if (bin.beams < parameters.radar_beams_min || bin.quarter < oldest || bin.quarter >= newest) continue;
         const double count = bin.beams;
         // The directions span space: the determinant of their mean square is far from zero (0.004 with MSL's beams).
-        if (!((bin.normal / count).determinant() > 1.0e-4)) continue;
+        constexpr double determinant_min = 1.0e-4;
+        if (!((bin.normal / count).determinant() > determinant_min)) continue;
         // Each quarter is solved separately: a common sum would mix velocities while the vehicle turns and brakes.
         v_sum += bin.normal.inverse() * bin.right;
         altitude_sum_m += bin.altitude_sum_m / count;

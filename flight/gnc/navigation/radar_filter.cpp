@@ -8,12 +8,13 @@ namespace aeolis::flight::gnc {
 
 namespace {
 
+constexpr double remembered_hz = 16.0;
 constexpr auto refused_max = static_cast<std::uint32_t>(parameters.radar_refused_max);
 
 }  // namespace
 
 void RadarFilter::remember(Sclk now, double altitude_m, const Vector3& v_MB_M) {
-    if (now.ticks() % 4 != 0) return;
+    if (now.ticks() % static_cast<std::int64_t>(1.0 / (remembered_hz * seconds_per_tick)) != 0) return;
     past_[next_] = {now, altitude_m, v_MB_M};
     next_ = (next_ + 1) % static_cast<std::uint32_t>(past_.size());
     count_ = std::min(count_ + 1, static_cast<std::uint32_t>(past_.size()));
@@ -29,7 +30,7 @@ std::optional<RadarCorrection> RadarFilter::on(const RadarSolution& solution, Sc
     const Past* newest = nullptr;
     for (std::uint32_t i = 0; i < count_; ++i) {
         const double from_middle_s = past_[i].time - solution.time;
-        if (std::abs(from_middle_s) > half_s + 0.03125) continue;
+        if (std::abs(from_middle_s) > half_s + 2.0 * seconds_per_tick) continue;
         altitude_sum_m += past_[i].altitude_m;
         v_sum += past_[i].v_MB_M;
         time_sum_s += from_middle_s;
@@ -38,7 +39,7 @@ std::optional<RadarCorrection> RadarFilter::on(const RadarSolution& solution, Sc
         samples += 1.0;
     }
     // At least half of the span must be covered, otherwise averages over different times would be compared.
-    if (samples < std::max(1.0, 8.0 * solution.span_s)) return std::nullopt;
+    if (samples < std::max(1.0, 0.5 * remembered_hz * solution.span_s)) return std::nullopt;
 
     // The remaining difference between the mean times of the history and of the radar is removed by the mean rates.
     const double late_s = time_sum_s / samples;

@@ -55,7 +55,8 @@ class RadarFilter {
         double altitude_m = 0.0;
         Vector3 v_MB_M = Vector3::Zero();
     };
-    std::array<Past, 144> past_{};
+    static constexpr std::size_t past_max = 144;  // 9 s at 16 Hz
+    std::array<Past, past_max> past_{};
     std::uint32_t next_ = 0;
     std::uint32_t count_ = 0;
     std::uint32_t accepted_ = 0;

@@ -42,7 +42,7 @@ void Strapdown::step(const Vector3& delta_angle_B, const Vector3& delta_v_B, dou
     const Quaternion mars_turns = small_rotation({0.0, 0.0, -mars_spin_rps * dt_s});
     state_.q_MB = mars_turns * state_.q_MB * small_rotation(delta_angle_B);
     // One Newton step towards unit norm: exact to 1e-16 for norms this close to one, without a square root.
-    state_.q_MB.coeffs() *= 1.5 - 0.5 * state_.q_MB.squaredNorm();
+    state_.q_MB.coeffs() *= 1.5 - 0.5 * state_.q_MB.squaredNorm();  // NOLINT(readability-magic-numbers)
 }
 
 void Strapdown::on(const ImuSample& sample, bool force_felt) {

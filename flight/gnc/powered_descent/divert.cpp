@@ -15,6 +15,7 @@ constexpr double position_gain_per_s2 = parameters.divert_position_gain_per_s2;
 
 }  // namespace
 
+// NOLINTBEGIN(readability-magic-numbers): the coefficients of a quintic and its derivatives
 void Divert::start(const Vector3& displacement_M, const Vector3& v0_M, double duration_s) {
     duration_s_ = std::max(duration_s, 1.0);
     const double T = duration_s_;
@@ -42,6 +43,7 @@ Vector3 Divert::acceleration_M(double t_s) const {
     const double t = t_s;
     return t * (6.0 * c3_ + t * (12.0 * c4_ + t * 20.0 * c5_));
 }
+// NOLINTEND(readability-magic-numbers)
 
 Vector3 Divert::command_M(double t_s, const Vector3& x_M, const Vector3& v_M) const {
     return acceleration_M(t_s) + velocity_gain_per_s * (velocity_M(t_s) - v_M) +

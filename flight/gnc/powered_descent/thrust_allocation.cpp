@@ -67,8 +67,9 @@ Thrust allocate(const Vector3& specific_force_M, const Vector3& up_M, double mas
     const double norm = level.norm();
     const Vector3 wanted = up * up_M + (norm > most_level ? Vector3(level * (most_level / norm)) : level);
     Thrust thrust;
+    constexpr double no_thrust_mps2 = 1.0e-6;
     const double magnitude = wanted.norm();
-    thrust.direction_M = magnitude > 1.0e-6 ? Vector3(wanted / magnitude) : up_M;
+    thrust.direction_M = magnitude > no_thrust_mps2 ? Vector3(wanted / magnitude) : up_M;
     thrust.throttle = throttles_for(magnitude * mass_kg, engines, engine_max_thrust_N, thrust.magnitude_N);
     return thrust;
 }
