@@ -60,7 +60,7 @@ struct CruiseAttitude {
     Sclk at{};  ///< the tick at which it is valid
 };
 
-inline constexpr std::size_t radar_beams = 6;
+inline constexpr std::size_t radar_beam_count = 6;
 
 /// One velocity and slant-range measurement of the landing radar along one beam.
 struct RadarBeam {
@@ -151,7 +151,7 @@ struct DeviceInputs {
     StateOctets restart_record;     ///< once, in the first cycle after a restart, if stored
     FixedVector<ImuSample, 4> imu;  ///< 3 or 4 per cycle
     std::optional<CruiseAttitude> cruise_attitude;
-    FixedVector<RadarBeam, radar_beams> radar;  ///< each beam at 20 Hz
+    FixedVector<RadarBeam, radar_beam_count> radar;  ///< each beam at 20 Hz
     FixedVector<PyroReply, 16> pyro_replies;
     FixedVector<SwitchReply, 8> switch_replies;
     std::optional<EngineReply> engines;             ///< each cycle once the valves are open

@@ -66,7 +66,7 @@ struct ImuReadings {
 };
 struct RadarReturns {
     Sclk now;
-    FixedVector<RadarBeam, radar_beams> beams;
+    FixedVector<RadarBeam, radar_beam_count> beams;
 };
 /// Part of a state that one computer sends to another, or to itself over a restart. R33
 /// The parts of one state arrive in order, within one cycle.
