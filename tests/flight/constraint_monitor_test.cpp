@@ -179,7 +179,7 @@ TEST_CASE("violations beyond what the outbox can take wait for the next cycles, 
 TEST_CASE("the monitor takes its moments from the timeline: anchors, the triggering while a reply is due, the firing",
           "[timeline][R39]") {
     const std::vector<AnchorSpec> anchors{{"root", {}, {}}, {"entry", root, MaybeOffset{1000.0}}};
-    const Action wait = [](ActionContext& context) { context.fire(PyroId::coolant_vent); };
+    const ActionFunction wait = [](ActionContext& context) { context.fire(PyroId::coolant_vent); };
     const std::vector<TimepointSpec> timepoints{
         {"first", entry, MaybeOffset{2.0}, MaybeOffset{0.0}, wait, 4.0, {}, {}, {}, true, {}, nullptr}};
     Timeline timeline{timepoints, anchors};
