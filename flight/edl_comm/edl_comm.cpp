@@ -110,7 +110,7 @@ void EdlComm::radiate(Outbox& out) {
     constexpr std::size_t saved_octets =
         pltu_overhead_octets + std::max(frame_packets_octets, telemetry_packet_octets_max);
     credit_octets_ = std::min(credit_octets_, static_cast<double>(saved_octets)) + octets_per_cycle_;
-    while (!queue_.empty()) {
+    for (std::size_t frames = 0; !queue_.empty() && frames < RealtimeQueue::packets_max; ++frames) {
         const std::size_t wanted_octets = pltu_overhead_octets + frame_wanted_octets();
         if (static_cast<double>(wanted_octets) > credit_octets_ ||
             out.bus().uhf.size() + wanted_octets > out.bus().uhf.capacity())

@@ -13,8 +13,9 @@ RealtimeQueue::RealtimeQueue() {
 bool RealtimeQueue::offer(const TelemetryPacket& packet, TelemetryPriority priority) {
     const bool full = free_.empty();
     if (full) {
-        std::size_t least = 0;
-        while (waiting_[least].empty()) ++least;
+        const auto least = static_cast<std::size_t>(
+            std::ranges::find_if(waiting_, [](const auto& each) { return !each.empty(); }) - waiting_.begin());
+        AEOLIS_CHECK(least < waiting_.size());
         ++dropped_[std::min(least, index(priority))];
         if (least > index(priority)) return false;
         release_oldest(least);
@@ -37,9 +38,10 @@ void RealtimeQueue::pop() {
 
 std::size_t RealtimeQueue::most_important() const {
     AEOLIS_CHECK(!empty());
-    std::size_t priority = telemetry_priorities - 1;
-    while (waiting_[priority].empty()) --priority;
-    return priority;
+    std::size_t most = 0;
+    for (std::size_t priority = 0; priority < waiting_.size(); ++priority)
+        if (!waiting_[priority].empty()) most = priority;
+    return most;
 }
 
 void RealtimeQueue::release_oldest(std::size_t priority) {

@@ -39,14 +39,20 @@ void Executive::cycle(const DeviceInputs& in, DeviceOutputs& out) {
     post_interrupts(in, [&](ModuleId to, const auto& content) { deliver(to, content); });
 
     // The lowest bit is the module of highest priority; its messages may wake one of still higher priority.
-    while (state_.ready != 0) run(static_cast<ModuleId>(std::countr_zero(state_.ready)), out);
+    // What the bound leaves waits in its mailboxes for the next cycle, where sync reports the overrun.
+    for (std::size_t runs = 0; state_.ready != 0 && runs < runs_per_cycle_max; ++runs)
+        run(static_cast<ModuleId>(std::countr_zero(state_.ready)), out);
 }
 
 void Executive::run(ModuleId id, DeviceOutputs& out) {
     state_.ready &= ~bit_of(id);
     auto& mailbox = state_.mailboxes[static_cast<std::size_t>(id)];
     with_module(state_, id, [&](auto& module) {
-        while (!mailbox.empty()) {
+        for (std::size_t handled = 0; !mailbox.empty(); ++handled) {
+            if (handled == mailbox.capacity()) {  // it fills its own mailbox: others get their turn
+                state_.ready |= bit_of(id);
+                return;
+            }
             state_.outbox.begin(id, state_.now, out);
             if (!handle(module, mailbox.front(), state_.outbox)) ++state_.unexpected_messages;
             mailbox.pop();

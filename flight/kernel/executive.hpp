@@ -26,6 +26,9 @@ class Executive {
 
     void cycle(const DeviceInputs& in, DeviceOutputs& out);
 
+    /// Modules that answer one another without end do not hold the computer. Chosen: each module sixty times.
+    static constexpr std::size_t runs_per_cycle_max = 60 * module_count;
+
   private:
     void run(ModuleId id, DeviceOutputs& out);
     template <typename Content>

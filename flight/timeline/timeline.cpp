@@ -32,7 +32,9 @@ void Timeline::compute_anchors() {
 void Timeline::pass(Sclk now, ActionContext& context, Firings& firings) {
     compute_anchors();
     if (!begun_) return;
-    while (!finished()) {
+    // One that waited, as many as may be triggered, and a look at the next.
+    constexpr std::size_t turns_max = timeline::triggered_per_cycle_max + 2;
+    for (std::size_t turn = 0; turn < turns_max && !finished(); ++turn) {
         if (waiting_) {
             await_reply(now, context, firings);
             if (waiting_) return;
