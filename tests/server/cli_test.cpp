@@ -10,6 +10,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/kernels.hpp"
 #include "tests/support/mission_copy.hpp"
+#include "tests/support/mission_copy.hpp"
 #include "tests/support/shipped_dictionary.hpp"
 #include "tests/support/temporary_folder.hpp"
 
