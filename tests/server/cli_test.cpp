@@ -10,7 +10,6 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/kernels.hpp"
 #include "tests/support/mission_copy.hpp"
-#include "tests/support/mission_copy.hpp"
 #include "tests/support/shipped_dictionary.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -203,7 +202,7 @@ TEST_CASE("bad use of the program is answered in one line that names it, with ex
 TEST_CASE("an action of the timeline that flight does not have is told by row, column and the nearest name",
           "[cli][R40]") {
     if (program() == nullptr) return;
-    const tests::MissionCopy mission;
+    const aeolis::tests::MissionCopy mission;
     std::string text = mission.text("timeline.csv");
     const auto at = text.find(",vent_coolant,");
     REQUIRE(at != std::string::npos);
@@ -214,7 +213,7 @@ TEST_CASE("an action of the timeline that flight does not have is told by row, c
     CHECK(checked.text ==
           fmt::format("timeline.csv:{}: timepoint 'coolant_vent', column action: the flight software has "
                       "no action 'vent_colant'; the nearest name is 'vent_coolant'\n",
-                      tests::line_at(text, at)));
+                      aeolis::tests::line_at(text, at)));
 }
 
 TEST_CASE("each option of serve stands in an environment variable of its name, and the command line counts before it",
