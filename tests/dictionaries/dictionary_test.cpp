@@ -172,6 +172,7 @@ TEST_CASE("the timeline's version is of what its sheets hold: any cell changes i
     for (const char c : text) line_ends += c == '\n' ? std::string{"\r\n"} : std::string{c};
     CHECK(version_of(line_ends) == msl().timeline_version);
     CHECK(version_of(replaced(",vent_coolant,", ",\"vent_coolant\",")) == msl().timeline_version);
+    CHECK(version_of(replaced("Design time (M)", "Design time (L)")) != msl().timeline_version);
     // Every number one larger, where the sheet allows it: all versions differ.
     std::set<std::uint32_t> versions{msl().timeline_version};
     std::size_t tried = 0;
@@ -183,6 +184,9 @@ TEST_CASE("the timeline's version is of what its sheets hold: any cell changes i
     }
     CHECK(tried >= 8);
     CHECK(versions.size() == tried + 1);
+    std::string anchors = mission.text("anchors.csv");
+    mission.write("anchors.csv", anchors.replace(anchors.find("-14400"), 6, "-14401"));
+    CHECK(version_of(text) != msl().timeline_version);
 }
 
 TEST_CASE("a change of constraints.csv, which flight checks and does not act on, changes the id and not the version",

@@ -164,7 +164,7 @@ TEST_CASE("an encoded event begins with its id", "[dictionary][autocoder]") {
     CHECK(Encoded{evr::FLYAWAY_END{}, "FLYAWAY_END"}.raw("event_id") == msl().event("FLYAWAY_END")->id.value);
 }
 
-TEST_CASE("a command decodes as the ground lays it out, or not at all", "[dictionary][autocoder][R44]") {
+TEST_CASE("a command decodes as the ground lays it out, or not at all", "[dictionary][autocoder][R44][R48]") {
     const dictionary::Command& layout = *msl().command("EDL_SET_TIMEPOINT_OFFSET");
     using Decoder = command::EDL_SET_TIMEPOINT_OFFSET;
     REQUIRE(layout.argument_octets == Decoder::argument_octets);

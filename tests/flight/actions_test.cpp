@@ -43,6 +43,14 @@ TEST_CASE("leaving the cruise stage is a process of several actions, and GNC lea
     action_named<"fire_cruise_stage_separation">().run(f.context);
     CHECK(f.context.fact() == gnc::Fact::cruise_stage_gone);
     CHECK(f.recorder.sent<FirePyro>().size() == 3);
+
+    // Each has a timepoint of its own, in this order.
+    const auto action_of = [](TimepointId id) { return timeline_specs[id.value].action; };
+    CHECK(action_of(timepoint::coolant_vent) == action_named<"vent_coolant">().run);
+    CHECK(action_of(timepoint::cruise_cables_cut) == action_named<"cut_cruise_cables">().run);
+    CHECK(action_of(timepoint::cruise_stage_separation) == action_named<"fire_cruise_stage_separation">().run);
+    CHECK(timepoint::coolant_vent.value < timepoint::cruise_cables_cut.value);
+    CHECK(timepoint::cruise_cables_cut.value < timepoint::cruise_stage_separation.value);
 }
 
 TEST_CASE("the timeline powers devices and sets telecom", "[timeline][R28]") {

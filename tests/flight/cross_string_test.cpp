@@ -67,7 +67,7 @@ TEST_CASE("Second Chance takes over after a quarter of a second of silence, not 
 
 TEST_CASE("without ground's enabling, before cruise-stage separation, before do edl or after touchdown it never takes "
           "over",
-          "[cross_string][R34]") {
+          "[cross_string][R1][R34]") {
     SECTION("not enabled") {
         Backup backup;
         backup.handle(state_at(100.0, in_edl), 100.0);

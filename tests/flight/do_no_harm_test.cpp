@@ -99,7 +99,8 @@ TEST_CASE("without ground's enabling a backup fires nothing, whatever messages i
     }
 }
 
-TEST_CASE("while prime is alive an enabled backup fires nothing, whatever messages it is fed", "[second_chance][R34]") {
+TEST_CASE("while prime is alive an enabled backup fires nothing, whatever messages it is fed",
+          "[second_chance][R1][R34]") {
     for (std::uint32_t seed = 1; seed <= 8; ++seed) {
         Rain rain{seed};
         rain.prepare(true, false);

@@ -136,6 +136,41 @@ TEST_CASE("before guidance starts the lift is held sideways", "[gnc][R27]") {
     CHECK(out.bank_command_deg <= 80.0);
 }
 
+TEST_CASE("the configuration selects what navigation takes: the star scanner with the cruise stage, the radar once on",
+          "[gnc][R26]") {
+    for (const bool gone : {false, true}) {
+        INFO("cruise stage gone: " << gone);
+        EdlGnc gnc(Load{});
+        gnc.set_solution(above_gale(), {1000.0});
+        Configuration configuration;
+        configuration.cruise_stage_gone = gone;
+        Output out;
+        std::uint32_t count = 0;
+        const Sclk told = Sclk{1000.0} + seconds_per_tick;
+        gnc.cycle(inputs_at(told, count, Vector3::Zero()), configuration, out);
+        gnc.on(CruiseAttitude{{0, 1, 0, 0}, told});
+        gnc.cycle(inputs_at(told + seconds_per_tick, count, Vector3::Zero()), configuration, out);
+        CHECK(std::abs(to_quaternion(out.q_MB).x()) == Approx(gone ? 0.0 : 1.0).margin(1e-3));
+    }
+    for (const bool processed : {false, true}) {
+        INFO("radar processed: " << processed);
+        EdlGnc gnc(Load{});
+        Solution solution = above_gale();
+        solution.p_MoB_M_m[0] = solution.target_radius_m + 7000.0;
+        solution.v_MB_M_mps = {-80.0, 0.0, 0.0};
+        gnc.set_solution(solution, {1000.0});
+        Configuration configuration;
+        configuration.radar_on = processed;
+        Output out;
+        std::uint32_t count = 0;
+        for (int tick = 1; tick <= 64 * 6; ++tick)
+            gnc.cycle(inputs_at(Sclk{1000.0} + tick / 64.0, count, Vector3::Zero()), configuration, out);
+        gnc.on(RadarSolution{Sclk{1003.5}, 5.0, out.altitude_m + 200.0, {-80.0, 0.0, 0.0}, 600});
+        gnc.cycle(inputs_at(Sclk{1006.0} + seconds_per_tick, count, Vector3::Zero()), configuration, out);
+        CHECK(out.radar_locked == processed);
+    }
+}
+
 TEST_CASE("a copy given the same inputs goes on the same, bit for bit", "[gnc][R27]") {
     EdlGnc one(Load{});
     one.set_solution(above_gale(), {1000.0});

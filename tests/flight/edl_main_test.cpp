@@ -164,9 +164,12 @@ TEST_CASE("parameters may come again with each navigation update, and are read b
     Fixture f;
     f.set_parameters(entry_s - 1200);
     CHECK(f.recorder.packets<packet::ParametersHeld>() == 1);
-    f.set_parameters(entry_s - 1100);
+    auto renewed = possible_parameters();
+    renewed.entry_sclk += 5.0;
+    f.handle(ParametersUpdate{{}, renewed}, entry_s - 1100);
     CHECK(f.recorder.packets<packet::ParametersHeld>() == 1);
     CHECK(f.recorder.events<evr::EDL_PARAMETERS_ACCEPTED>() == 1);
+    CHECK(f.edl.timeline().anchor_time(anchor::entry).get() == Sclk{entry_s + 5.0});
 }
 
 TEST_CASE("do edl explains why it was refused", "[edl][R38]") {
@@ -337,6 +340,25 @@ TEST_CASE("prime that was reset after touchdown was declared is not ordered on",
         handle(ResumePrimeCommand{});
         CHECK(recorder.sent<CommandOutcome>()[0].refused == CommandRefusal::wrong_phase);  // it flies, or may not
     }
+}
+
+TEST_CASE("a firing is recorded with its triggering, its time and how it ended", "[edl][timeline][R14]") {
+    constexpr double begun_s = entry_s - 1170;
+    Fixture f;
+    f.set_parameters(begun_s - 20);
+    CHECK_FALSE(f.do_edl(begun_s).has_value());
+    std::vector<Record> fired;
+    for (double at_s = begun_s; at_s < begun_s + 7; at_s += 1.0 / 64) {
+        f.handle(Tick{Sclk{at_s}}, at_s);
+        for (const auto& record : f.recorder.sent<Record>())
+            if (record.apid == packet::TimepointFired::apid) fired.push_back(record);
+    }
+    REQUIRE(fired.size() == 1);  // due 2 s after "do edl"; nothing answers within its 4 s
+    BitReader in{fired[0].data};
+    CHECK(in.get(16) == timepoint::descent_imu_power.value);
+    CHECK(in.get_double() == begun_s + 2);
+    CHECK(in.get_double() == begun_s + 6);
+    CHECK(static_cast<TimepointVerdict>(in.get(8)) == TimepointVerdict::unverified);
 }
 
 TEST_CASE("every cycle ends with one confirmation to sync", "[edl][R18][R22]") {

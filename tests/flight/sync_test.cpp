@@ -27,7 +27,8 @@ struct Fixture {
 
 }  // namespace
 
-TEST_CASE("sync gives the rate group its turns in the order of the paper, each after a confirmation", "[sync][R22]") {
+TEST_CASE("sync gives the rate group its turns in the order of the paper, each after a confirmation",
+          "[sync][R2][R22]") {
     Fixture f;
     CHECK(f.turn_after(ClockTick{Sclk{0.25}}, 0.25) == ModuleId::radar);
     CHECK(f.turn_after(Confirm{ModuleId::radar}, 0.25) == ModuleId::imu);

@@ -4,6 +4,7 @@
 #include "flight/timeline/actions.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/outbox.hpp"
+#include "tests/support/shipped_dictionary.hpp"
 
 #include <random>
 #include <vector>
@@ -28,8 +29,8 @@ constexpr AnchorId root{0}, entry_anchor{1}, parachute_anchor{2};
 const std::vector<AnchorSpec> anchors{
     {"root", {}, {}}, {"entry", root, MaybeOffset{1100.0}}, {"parachute", root, MaybeOffset{}}};
 
-TimepointSpec row(std::optional<AnchorId> anchor, MaybeOffset desired_s, MaybeOffset minimum_s, ActionFunction action = nothing,
-                  std::optional<double> reply_timeout_s = {}) {
+TimepointSpec row(std::optional<AnchorId> anchor, MaybeOffset desired_s, MaybeOffset minimum_s,
+                  ActionFunction action = nothing, std::optional<double> reply_timeout_s = {}) {
     return {"row", anchor, desired_s, minimum_s, action, reply_timeout_s, {}, {}, {}, true, {}, nullptr};
 }
 
@@ -139,6 +140,8 @@ TEST_CASE("a reply that does not come ends the wait at its time-out, not a tick 
     const auto done = f.cycle(at(1));
     REQUIRE(done.size() == 1);
     CHECK(done[0].verdict == FiringVerdict::unverified);
+    CHECK(done[0].triggered == at(0));
+    CHECK(done[0].fired == at(1));
 }
 
 namespace {
@@ -196,6 +199,8 @@ TEST_CASE("a refusal is no end: until the time-out the device may yet do it; the
         const auto done = f.cycle(at(1));
         REQUIRE(done.size() == 1);
         CHECK(done[0].verdict == (comes_round ? FiringVerdict::verified : FiringVerdict::refused));
+        CHECK(done[0].triggered == at(0));
+        CHECK(done[0].fired == at(1));
         CHECK(f.configuration.parachute_out == comes_round);
         CHECK(f.recorder.events<evr::COOLANT_VENT>() == comes_round);
     }
@@ -343,6 +348,84 @@ TEST_CASE("the shipped timeline fits the engine, and every row that waits for a 
         spec.action(context);
         CHECK(context.awaited().kind != ReplyKind::none);
     }
+}
+
+TEST_CASE("the engine's rows are those of the spreadsheet, cell by cell", "[timeline][R20]") {
+    const auto& sheets = tests::shipped_dictionary();
+    REQUIRE(timeline_specs.size() == sheets.timeline.size());
+    for (std::size_t i = 0; i < sheets.timeline.size(); ++i) {
+        const TimepointSpec& spec = timeline_specs.at(i);
+        const auto& written = sheets.timeline[i];
+        INFO(written.name);
+        CHECK(spec.name == written.name);
+        CHECK(spec.anchor == written.anchor);
+        CHECK(spec.desired_offset_s == written.desired_offset_s);
+        CHECK(spec.minimum_offset_s == written.minimum_offset_s);
+        CHECK((spec.action == nullptr) == written.action.empty());
+        CHECK(spec.reply_timeout_s == written.reply_timeout_s);
+        CHECK(static_cast<int>(spec.if_unverified) == static_cast<int>(written.if_unverified));
+        CHECK(spec.hold_repeat_s == written.hold_repeat_s);
+        CHECK((spec.backtrack ? timeline_specs.at(spec.backtrack->value).name : "") == written.backtrack);
+        CHECK(spec.essential == written.essential);
+        CHECK(spec.tone == written.tone);
+        CHECK((spec.event == nullptr) == written.event.empty());
+    }
+    REQUIRE(anchor_specs.size() == sheets.anchors.size());
+    for (std::size_t i = 0; i < sheets.anchors.size(); ++i) {
+        INFO(sheets.anchors[i].name);
+        CHECK(anchor_specs.at(i).name == sheets.anchors[i].name);
+        CHECK(anchor_specs.at(i).parent == sheets.anchors[i].parent);
+        CHECK(anchor_specs.at(i).offset_s == sheets.anchors[i].offset_s);
+    }
+}
+
+TEST_CASE("what is announced of a device waits for its reply, and a decision on a pyro says that it was commanded",
+          "[timeline][R50]") {
+    const auto is_said_at_once = [](const TimepointSpec& spec) {  // by GNC, or by the clock, not of the device
+        return &spec == &timeline_specs[timepoint::detumble.value] ||
+               &spec == &timeline_specs[timepoint::entry_interface.value];
+    };
+    for (const TimepointSpec& spec : timeline_specs) {
+        if (!spec.action || !(spec.tone || spec.event)) continue;
+        test::OutboxRecorder recorder;
+        gnc::Configuration configuration;
+        ActionContext context{recorder.out, configuration};
+        context.begin(spec);
+        spec.action(context);
+        if (context.awaited().kind == ReplyKind::none) continue;
+        INFO(spec.name);
+        CHECK(spec.reply_timeout_s.has_value() != is_said_at_once(spec));
+    }
+    for (const char* decided :
+         {"PARACHUTE_DEPLOY", "HEATSHIELD_SEPARATION", "ENGINE_PRIMING", "BACKSHELL_SEPARATION", "ROVER_SEPARATION"}) {
+        const auto* event = tests::shipped_dictionary().event(decided);
+        INFO(decided);
+        REQUIRE(event != nullptr);
+        CHECK_THAT(event->format, Catch::Contains(" commanded at "));
+    }
+}
+
+TEST_CASE("for Second Chance a row that is not essential does, announces and awaits nothing; an essential one acts",
+          "[timeline][R33]") {
+    std::vector<TimepointSpec> rows(2, row({}, 0.0, 0.0, fire_a_pyro, 4.0));
+    rows[0].essential = false;
+    rows[0].event = announced;
+    rows[0].tone = tone::coolant_vent;
+    Timeline timeline{rows, anchors, true};
+    timeline.begin(at(0));
+    timeline.begin_cycle();
+    test::OutboxRecorder recorder{ModuleId::edl, at(0)};
+    gnc::Configuration configuration;
+    ActionContext context{recorder.out, configuration};
+    Firings firings;
+    timeline.pass(at(0), context, firings);
+    REQUIRE(firings.size() == 1);
+    CHECK(firings[0].verdict == FiringVerdict::no_operation);
+    CHECK(firings[0].fired == at(0));
+    CHECK(recorder.events<evr::COOLANT_VENT>() == 0);
+    CHECK(recorder.sent<ToneRequest>().empty());
+    CHECK(recorder.sent<FirePyro>().size() == 1);  // the second row's
+    CHECK(timeline.waiting());
 }
 
 TEST_CASE("each row of the shipped timeline does something: none waits for what is only said", "[timeline][R31]") {

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -68,6 +69,21 @@ struct Recorded {
         return found == events.end() ? std::vector<Sclk>{} : found->second;
     }
 };
+
+/// The computer that reported an event last: B counts its packets in the upper half of the 14 bits, and reports too few
+/// events to leave it.
+template <typename Evr>
+std::optional<flight::String> reported_by(const Landing& landing) {
+    std::optional<flight::String> by;
+    telemetry::PacketStream packets{landing.recording()};
+    while (const auto packet = packets.next()) {
+        const auto header = read_tm_packet(*packet);
+        if (!header || header->primary.apid != Evr::apid) continue;
+        if (read_bits(*packet, tm_data_offset_octets * 8, 16) != Evr::id.value) continue;
+        by = header->primary.count < 0x2000 ? flight::String::a : flight::String::b;
+    }
+    return by;
+}
 
 void fly_on(Landing& landing, double for_s) {
     for (double flown_s = 0.0; flown_s < for_s; flown_s += seconds_per_tick) landing.step();
@@ -216,6 +232,9 @@ TEST_CASE("ground designates the other computer prime: both start anew, and it i
     const Recorded recorded{landing};
     CHECK(recorded.times<flight::evr::PRIME_DESIGNATED>().size() == 1);
     CHECK(recorded.times<flight::evr::EDL_BEGUN>().size() == 1);
+    CHECK(reported_by<flight::evr::PRIME_DESIGNATED>(landing) == flight::String::a);
+    CHECK(reported_by<flight::evr::EDL_BEGUN>(landing) == flight::String::b);
+    CHECK(reported_by<flight::evr::TOUCHDOWN>(landing) == flight::String::b);
 }
 
 TEST_CASE("prime cannot be designated once EDL has begun", "[second_chance][R1]") {

@@ -4,6 +4,8 @@
 #include "tests/support/shipped_dictionary.hpp"
 
 #include <algorithm>
+#include <regex>
+#include <set>
 
 namespace structure_words_in_use_test {
 
@@ -31,6 +33,27 @@ TEST_CASE("every event and every tone of prime's that the dictionary words is as
     }
     INFO("nobody asks for " << unused);
     CHECK(unused.empty());
+}
+
+TEST_CASE("every name of the mission in the console's layout is a word of the shipped dictionary", "[structure][R48]") {
+    const auto& dictionary = aeolis::tests::shipped_dictionary();
+    std::set<std::string> words;
+    for (const auto& channel : dictionary.channels)
+        for (const auto& value : channel.type.enumeration) words.insert(value.label);
+    for (const auto& packet : dictionary.packets)
+        for (const auto& field : packet.fields) words.insert(field.name);
+    for (const auto& command : dictionary.commands) words.insert(command.name);
+    for (const auto& row : dictionary.timeline) words.insert(row.name);
+    for (const auto& tone : dictionary.tones) words.insert(tone.name);
+    static const std::regex name{"'([A-Za-z0-9]+(?:_[A-Za-z0-9]+)+)'"};  // words of text have no underscore
+    const std::string layout = text_of("web/src/layout.ts");
+    std::string unknown;
+    std::size_t seen = 0;
+    for (std::sregex_iterator match{layout.begin(), layout.end(), name}, end; match != end; ++match, ++seen)
+        if (!words.contains((*match)[1])) unknown += (*match)[1].str() + ' ';
+    CHECK(seen > 70);
+    INFO("the dictionary does not have " << unknown);
+    CHECK(unknown.empty());
 }
 
 }  // namespace structure_words_in_use_test
