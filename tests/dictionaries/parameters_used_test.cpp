@@ -48,13 +48,28 @@ TEST_CASE("each parameter of parameters.csv is used in flight", "[dictionary][R4
 
 TEST_CASE("no module of EDL has a constant of its own that tunes it: they come from parameters.csv",
           "[dictionary][R48]") {
-    // constexpr TYPE NAME = a number. What remains are units, the world, the interface to a device, and memory.
+    // constexpr TYPE NAME = a number. What remains are units, the world, the interface to a device, memory, and the zero
+    // of a computation. A number without a name is refused by clang-tidy (flight/.clang-tidy).
     static const std::regex literal{R"(constexpr\s+[A-Za-z_:0-9]+\s+([A-Za-z_0-9]+)\s*=\s*-?[0-9])"};
     static const std::set<std::string> no_tuning{
-        "pi",           "degrees_per_radian",    "parts_in_percent", "standard_gravity_mps2",
-        "mars_j2",      "mars_gm_m3ps2",         "mars_spin_rps",    "mars_equator_radius_m",
-        "imu_period_s", "radar_bins_per_second", "mars_weight_mps2", "reports_per_cycle_max",
+        "pi",
+        "degrees_per_radian",
+        "parts_in_percent",
+        "standard_gravity_mps2",
+        "mars_j2",
+        "mars_gm_m3ps2",
+        "mars_spin_rps",
+        "mars_equator_radius_m",
+        "imu_period_s",
+        "radar_bins_per_second",
+        "mars_weight_mps2",
+        "reports_per_cycle_max",
         "kept_max",
+        "heat_ratio",
+        "remembered_hz",
+        "no_rotation",
+        "no_thrust_mps2",
+        "determinant_min",
     };
     std::string tuning;
     std::size_t seen = 0;

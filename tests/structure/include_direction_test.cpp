@@ -104,7 +104,7 @@ const std::vector<Home>& homes() {
         {"muParser", {"server/archive/expression.cpp"}, "muParser is at home in server/archive/expression.cpp"},
         {"sodium", {"server/access/secrets.cpp"}, "libsodium is at home in server/access/secrets.cpp"},
         {"boost/", with_effects, "Boost is at home in server/"},
-        {"openssl/", with_effects, "OpenSSL is at home in server/"},
+        {"openssl/", {"server/", "dictionaries/load.cpp"}, "OpenSSL is at home in server/, and hashes dictionaries"},
         {"spdlog/", with_effects, "only server/ logs"},
         {"CLI/", with_effects, "only server/ reads a command line"},
         {"catch2/", {"tests/support/"}, "Catch2 is reached through tests/support/catch.hpp"},
