@@ -68,10 +68,10 @@ class EdlMain {
     /// Whether this computer leaves the landing to the other one.
     bool stands_by() const { return activity_ != Activity::flies; }
 
-    /// State for another computer. Left out: a present fault, which is reported again, the monitor and the guard.
+    /// State for another computer. Left out: a present fault, which is reported again, and the monitor.
     template <typename Exchange>
     void carry(Exchange& exchange) {
-        exchange(parameters_, timeline_, configuration_, gnc_, peak_deceleration_, gnc_health_, mode_, phase_,
+        exchange(parameters_, timeline_, change_guard_, configuration_, gnc_, peak_deceleration_, gnc_health_, mode_, phase_,
                  bridle_m_, was_pre_edl_, was_late_cruise_);
     }
 

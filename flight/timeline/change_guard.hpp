@@ -4,6 +4,7 @@
 #include "dictionaries/timeline_change_rule.hpp"
 #include "flight/timeline/constraint_monitor.hpp"
 #include "flight/timeline/timeline.hpp"
+#include "generated/dictionary_flight.hpp"
 
 #include <optional>
 #include <span>
@@ -15,7 +16,7 @@ namespace aeolis::flight {
 /// In      "do edl", the firings; a change, with the timeline as it stands      Out   why the change is unsafe, if it is
 /// Rule    dictionaries/timeline_change_rule.hpp. Dispatch is not judged: after a restart or a hand-over, overdue
 ///         timepoints fire together
-/// Reset   the firings before a restart or a hand-over are lost: constraints that span it are not judged
+/// Reset   the firings are part of the state that the other computer gets: it judges with all of them
 /// Memory  fixed: the times of past firings, and the two projections of the last change
 class ChangeGuard {
   public:
@@ -26,6 +27,12 @@ class ChangeGuard {
     void watch(const Timeline& timeline, std::span<const Firing> firings);
 
     std::optional<timeline::Unsafe> judge(const Timeline& timeline, const timeline::Change& change, Sclk now);
+
+    template <typename Exchange>
+    void carry(Exchange& exchange) {
+        exchange(known_.do_edl);
+        for (std::size_t row = 0; row < timepoint_count; ++row) exchange(known_.triggered[row], known_.fired[row]);
+    }
 
   private:
     std::span<const ConstraintSpec> constraints_;

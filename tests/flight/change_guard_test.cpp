@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "flight/timeline/change_guard.hpp"
 
+#include "flight/cross_string/state_exchange.hpp"
+#include "flight/devices/device_messages.hpp"
 #include "flight/edl/decisions.hpp"
 #include "flight/timeline/actions.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/outbox.hpp"
 
+#include <array>
 #include <set>
+#include <vector>
 
 namespace flight_change_guard_test {
 
@@ -84,6 +88,23 @@ TEST_CASE("the guard knows what has fired and what time it is", "[timeline][R51]
     CHECK_FALSE(f.offset(timepoint::uhf_start, -801.0));
 }
 
+TEST_CASE("a guard that gets the state of another judges with what fired there", "[timeline][R33][R51]") {
+    Fixture f;
+    f.run_until(entry_time - 820.0);
+    std::array<std::uint8_t, state_octets_max> octets{};
+    StateExchange<std::uint8_t> writing{octets};
+    writing(f.guard);
+    REQUIRE(writing.ok());
+    ChangeGuard& taken_over = f.guard = ChangeGuard{constraint_specs};
+    // A new guard does not know that the vent has just answered.
+    CHECK_FALSE(f.offset(timepoint::uhf_start, -815.0));
+    StateExchange<const std::uint8_t> reading{octets};
+    reading(taken_over);
+    REQUIRE(reading.ok());
+    CHECK(reading.size() == writing.size());
+    CHECK(f.offset(timepoint::uhf_start, -815.0) == Why::too_soon);
+}
+
 TEST_CASE("entry moved so that timepoints are past is unsafe, and so is entry so late that it holds GNC up",
           "[timeline][R51]") {
     Fixture f;
@@ -100,6 +121,40 @@ TEST_CASE("until separation fault protection keeps its end: the anchor of pre-ED
     CHECK(f.judge(timeline::AnchorChange{anchor::pre_edl_end, 500.0}) == Why::too_soon);
     CHECK(f.judge(timeline::AnchorChange{anchor::pre_edl_end, -100'000.0}) == Why::too_late);
     CHECK_FALSE(f.judge(timeline::AnchorChange{anchor::pre_edl_end, -14'000.0}));
+}
+
+TEST_CASE("whatever of the clock's timepoints is overdue when prime is ordered on, five at most follow in a second",
+          "[timeline][R32][R51]") {
+    // Up to entry the clock alone makes them due; from there on each waits for what GNC decides when it flies again.
+    for (const double stood_by_s : {100.0, 500.0, 3000.0}) {
+        for (std::uint16_t row = timepoint::cruise_stage_separation.value; row < timepoint::entry_guidance.value;
+             ++row) {
+            Timeline timeline{timeline_specs, anchor_specs};
+            REQUIRE(timeline.set_anchor_offset(anchor::entry, entry_time.seconds));
+            timeline.begin(entry_time - 1170.0);
+            test::OutboxRecorder recorder;
+            gnc::Configuration configuration;
+            std::vector<Sclk> triggered;
+            double stood_s = 0.0;
+            for (Sclk flown = entry_time - 1170.0; flown < entry_time + 40.0; flown = flown + seconds_per_tick) {
+                if (timeline.current().value == row && !timeline.waiting() && stood_s == 0.0) stood_s = stood_by_s;
+                const Sclk now = flown + stood_s;
+                recorder.begin(ModuleId::edl, now);
+                ActionContext context{recorder.out, configuration};
+                Firings firings;
+                timeline.begin_cycle();
+                timeline.pass(now, context, firings);
+                for (const Firing& firing : firings) triggered.push_back(firing.triggered);
+                if (!timeline.waiting()) continue;
+                auto reply = context.awaited();
+                reply.evidence = Evidence::verified;
+                timeline.reply(reply);
+            }
+            INFO("stood by for " << stood_by_s << " s at " << timeline_specs[row].name);
+            CHECK(timeline.current() == timepoint::entry_guidance);
+            for (std::size_t i = 5; i < triggered.size(); ++i) CHECK(triggered[i] - triggered[i - 5] > 1.0);
+        }
+    }
 }
 
 }  // namespace flight_change_guard_test

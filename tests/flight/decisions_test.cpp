@@ -7,6 +7,7 @@
 
 #include <array>
 #include <bit>
+#include <set>
 
 namespace flight_decisions_test {
 
@@ -17,6 +18,13 @@ TEST_CASE("what GNC starts and the timeline waits for has an anchor", "[edl][R17
     CHECK(anchor_of(gnc::Trigger::parachute) == anchor::parachute);
     CHECK(anchor_of(gnc::Trigger::touchdown) == anchor::touchdown);
     CHECK_FALSE(anchor_of(gnc::Trigger::radar_lock).has_value());
+    std::set<std::uint16_t> set_by_gnc, awaited;
+    for (std::size_t i = 0; i < gnc::trigger_count; ++i)
+        if (const auto anchor = anchor_of(static_cast<gnc::Trigger>(i))) set_by_gnc.insert(anchor->value);
+    // The plan leaves them undefined; entry alone is ground's.
+    for (std::uint16_t i = 1; i < anchor_count; ++i)
+        if (AnchorId{i} != anchor::entry && !anchor_specs.at(i).offset_s) awaited.insert(i);
+    CHECK(set_by_gnc == awaited);
 }
 
 TEST_CASE("each decision of GNC is an event and an explanation with its conditions", "[edl][R38]") {

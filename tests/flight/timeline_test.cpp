@@ -379,7 +379,7 @@ TEST_CASE("the engine's rows are those of the spreadsheet, cell by cell", "[time
     }
 }
 
-TEST_CASE("what is announced of a device waits for its reply, and a decision on a pyro says that it was commanded",
+TEST_CASE("what is announced of a device waits for its reply, and a decision on a pyro says that it was decided",
           "[timeline][R50]") {
     const auto is_said_at_once = [](const TimepointSpec& spec) {  // by GNC, or by the clock, not of the device
         return &spec == &timeline_specs[timepoint::detumble.value] ||
@@ -401,7 +401,7 @@ TEST_CASE("what is announced of a device waits for its reply, and a decision on 
         const auto* event = tests::shipped_dictionary().event(decided);
         INFO(decided);
         REQUIRE(event != nullptr);
-        CHECK_THAT(event->format, Catch::Contains(" commanded at "));
+        CHECK_THAT(event->format, Catch::Contains(" decided at "));
     }
 }
 

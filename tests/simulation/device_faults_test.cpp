@@ -138,8 +138,7 @@ TEST_CASE("a UHF unit that refuses ends uhf_start as refused; one that answers w
     CHECK(late.count(flight::evr::UHF_STARTED::id) == 1);
 }
 
-TEST_CASE("faults of units that are not selected change nothing, to the last bit; both pyro controllers are used",
-          "[simulation][faults][R2][R50]") {
+TEST_CASE("faults of units that are not selected change nothing, to the last bit", "[simulation][faults][R2][R50]") {
     const Landed sound = land({});
     std::vector<DeviceFault> faults;
     for (std::size_t device = 0; device < flight::device_count; ++device)
