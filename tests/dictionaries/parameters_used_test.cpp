@@ -70,6 +70,7 @@ TEST_CASE("no module of EDL has a constant of its own that tunes it: they come f
         "no_rotation",
         "no_thrust_mps2",
         "determinant_min",
+        "past_max",
     };
     std::string tuning;
     std::size_t seen = 0;
