@@ -4,14 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <string_view>
 
 namespace aeolis::simulation {
 namespace {
 
-bool is_minimum(std::string_view name) {
-    return name.find("_min_") != std::string_view::npos;
-}
+using Bound = ExceededLimit::Bound;
 
 /// The nearer of two distances that may not be known.
 std::optional<double> nearer(const std::optional<double>& a, const std::optional<double>& b) {
@@ -40,24 +37,26 @@ Judgement judge(const Limits& limits, const LandingFigures& figures) {
     if (figures.outcome == Outcome::running) return {Verdict::flying, {}};
     if (figures.outcome != Outcome::touchdown) return {Verdict::lost, {}};
     Judgement judgement{Verdict::landed, {}};
-    const auto keeps = [&](const char* name, std::optional<double> value, double limit) {
-        if (!value || (is_minimum(name) ? *value >= limit : *value <= limit)) return;
-        judgement.exceeded.push_back({name, *value, limit});
+    const auto is = [&](const char* name, std::optional<double> value, Bound bound, double limit) {
+        if (!value || (bound == Bound::at_least ? *value >= limit : *value <= limit)) return;
+        judgement.exceeded.push_back({name, *value, bound, limit});
         judgement.verdict = Verdict::landed_outside_limits;
     };
-    keeps("propellant_left_min_kg", figures.propellant_left_kg, limits.propellant_left_min_kg);
+    is("propellant_left_min_kg", figures.propellant_left_kg, Bound::at_least, limits.propellant_left_min_kg);
     if (const auto& touchdown = figures.touchdown) {
-        keeps("touchdown_vertical_max_mps", touchdown->vertical_mps, limits.touchdown_vertical_max_mps);
-        keeps("touchdown_horizontal_max_mps", touchdown->horizontal_mps, limits.touchdown_horizontal_max_mps);
-        keeps("touchdown_tilt_max_deg", touchdown->tilt_deg, limits.touchdown_tilt_max_deg);
+        is("touchdown_vertical_max_mps", touchdown->vertical_mps, Bound::at_most, limits.touchdown_vertical_max_mps);
+        is("touchdown_horizontal_max_mps", touchdown->horizontal_mps, Bound::at_most,
+           limits.touchdown_horizontal_max_mps);
+        is("touchdown_tilt_max_deg", touchdown->tilt_deg, Bound::at_most, limits.touchdown_tilt_max_deg);
     }
-    keeps("recontact_min_m", nearer(figures.separation.heatshield_least_m, figures.separation.backshell_least_m),
-          limits.recontact_min_m);
+    is("recontact_min_m", nearer(figures.separation.heatshield_least_m, figures.separation.backshell_least_m),
+       Bound::at_least, limits.recontact_min_m);
     if (const auto& parachute = figures.parachute) {
-        keeps("parachute_mach_max", parachute->mach, limits.parachute_mach_max);
-        keeps("parachute_pressure_max_Pa", parachute->dynamic_pressure_Pa, limits.parachute_pressure_max_Pa);
+        is("parachute_mach_max", parachute->mach, Bound::at_most, limits.parachute_mach_max);
+        is("parachute_pressure_max_Pa", parachute->dynamic_pressure_Pa, Bound::at_most,
+           limits.parachute_pressure_max_Pa);
     }
-    keeps("timeline_margin_min_s", figures.least_timeline_margin_s, limits.timeline_margin_min_s);
+    is("timeline_margin_min_s", figures.least_timeline_margin_s, Bound::at_least, limits.timeline_margin_min_s);
     return judgement;
 }
 
@@ -66,7 +65,7 @@ std::string text_of(const std::vector<ExceededLimit>& exceeded) {
     for (const ExceededLimit& one : exceeded) {
         std::array<char, 96> line{};
         std::snprintf(line.data(), line.size(), "%s %.4g instead of at %s %.4g", one.name, one.value,
-                      is_minimum(one.name) ? "least" : "most", one.limit);
+                      one.bound == Bound::at_least ? "least" : "most", one.limit);
         if (!text.empty()) text += "; ";
         text += line.data();
     }

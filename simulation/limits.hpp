@@ -28,8 +28,12 @@ LandingFigures figures_of(const Landing& landing, std::optional<double> least_ti
 
 /// A limit that was not kept.
 struct ExceededLimit {
+    enum class Bound : std::uint8_t { at_least, at_most };
+
     const char* name;  ///< of the scenario's field: "touchdown_vertical_max_mps"
-    double value, limit;
+    double value;
+    Bound bound;
+    double limit;
 };
 
 struct Judgement {
