@@ -9,7 +9,8 @@
 #include <string_view>
 #include <utility>
 
-// telemetry_plan.csv: the part of the recording sent in real time, by the state of the vehicle. R30
+// telemetry_plan.csv: what is recorded at which rate, and the part of it sent in real time, by the state of the vehicle.
+// R30, R52
 namespace aeolis::dictionary {
 
 /// Priority of a packet, least important first; the words used in the sheet.
@@ -42,6 +43,7 @@ struct TelemetryPlanRow {
     Apid apid;
     TelemetryPriority priority = TelemetryPriority::low;
     std::array<std::uint32_t, telemetry_state_columns.size()> every{};  ///< every n-th packet in that state; 0: none
+    std::uint32_t recorded_hz = 0;  ///< highest rate at which it is recorded; 0: on occasion
     std::string note;
     unsigned line = 0;  ///< in telemetry_plan.csv
 };

@@ -113,4 +113,17 @@ std::optional<std::vector<std::vector<std::uint8_t>>> rows_of(const dictionary::
     return rows;
 }
 
+std::optional<std::vector<std::vector<std::uint8_t>>>
+rows_in(const dictionary::Dictionary& dictionary, const Decoded& decoded, std::span<const std::uint8_t> packet) {
+    const dictionary::Packet& table = dictionary.packets[decoded.packet];
+    const auto row_apid = field_index(table, "row_apid"), rows = field_index(table, "table_rows");
+    if (!row_apid || !rows || !table.content || packet.size() != table.octets) return std::nullopt;
+    const Apid apid{static_cast<std::uint16_t>(decoded.raw[*row_apid])};
+    const auto container = std::ranges::find(dictionary.packets, apid, &dictionary::Packet::apid);
+    if (container == dictionary.packets.end() || container->octets <= tm_overhead_octets) return std::nullopt;
+    const std::size_t octets = decoded.raw[*rows] * (container->octets - tm_overhead_octets);
+    if (octets > table.content->octets) return std::nullopt;
+    return rows_of(dictionary, apid, packet.subspan(table.content->offset_octets, octets));
+}
+
 }  // namespace aeolis::telemetry

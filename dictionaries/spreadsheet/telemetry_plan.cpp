@@ -41,6 +41,7 @@ TelemetryPlanRow read_row(RowReader& cells) {
         if (every && row.priority == TelemetryPriority::first && *every != 1)
             cells.fault(column + " " + cells.text(column) + ": what goes first is never thinned, so 1");
     }
+    row.recorded_hz = static_cast<std::uint32_t>(cells.integer("recorded_hz", 0, recorded_hz_max).value_or(0));
     return row;
 }
 
@@ -73,7 +74,8 @@ void check_complete(const std::vector<TelemetryPlanRow>& rows, const std::map<st
 std::optional<std::vector<TelemetryPlanRow>>
 read_telemetry_plan(std::string_view text, const std::vector<Packet>* packets, Findings& findings) {
     const auto table = Table::read(
-        text, {"plan", "packet", "priority", "before_entry", "entry", "descent", "landed", "note"}, findings);
+        text, {"plan", "packet", "priority", "before_entry", "entry", "descent", "landed", "recorded_hz", "note"},
+        findings);
     if (!table) return std::nullopt;
     if (table->rows().size() > telemetry_plan_rows_max) {
         findings.add(table->rows()[telemetry_plan_rows_max].line,

@@ -11,6 +11,7 @@ namespace aeolis::dictionary {
 
 inline constexpr std::size_t telemetry_plan_rows_max = 1000;  ///< chosen: fifty times the rows of the landing
 inline constexpr std::int64_t telemetry_every_max = 4096;     ///< chosen: about one packet a minute at 64 Hz
+inline constexpr std::int64_t recorded_hz_max = 200;          ///< the IMU's
 
 /// Reads telemetry_plan.csv, in the order of the file. R30
 /// Each plan states once what happens to each packet, in its own rows or in those of "all". A packet of priority

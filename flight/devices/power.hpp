@@ -10,7 +10,7 @@ namespace aeolis::flight {
 /// Outside the rate group. R5, R10, R28
 ///
 /// In      SetSwitch, SwitchReply (interrupt), UnitsSelected
-/// Out     switch commands; ActionReply to Edl, verified or refused
+/// Out     switch commands; ActionReply to Edl, verified or refused; PowerStatus on change
 /// Faults  reports a refusal (DEVICE_REFUSED), a state other than commanded (REPLY_CONTRADICTS), and a reply that was
 ///         not due or from the other unit (REPLY_UNEXPECTED)
 class PowerManager {
@@ -22,7 +22,10 @@ class PowerManager {
     void on(const UnitsSelected& selected, Outbox& out);
 
   private:
+    void record(Outbox& out);
+
     SwitchReplies replies_;
+    packet::PowerStatus recorded_;
     Unit unit_ = Unit::a;
 };
 

@@ -85,7 +85,36 @@ void PyroManager::on(const Tick& tick, Outbox& out) {
         else if (tick.now >= shot.until)
             end(pyro, shot, out);
     }
+    record(tick.now, out);
     out.send(ModuleId::sync, Confirm{ModuleId::pyro});
+}
+
+PyroState PyroManager::state(PyroId pyro) const {
+    const Shot& shot = shots_[static_cast<std::size_t>(pyro)];
+    if (shot.fired) return PyroState::fired;
+    if (shot.wanted) return PyroState::commanded;
+    if (!shot.next_try.defined()) return PyroState::not_commanded;
+    return std::ranges::all_of(shot.controllers, &Controller::refuses) ? PyroState::refused : PyroState::unanswered;
+}
+
+void PyroManager::record(Sclk now, Outbox& out) {
+    const packet::PyroStatus status{.pyro_cruise_cable_cutter = state(PyroId::cruise_cable_cutter),
+                                    .pyro_cruise_stage_separation = state(PyroId::cruise_stage_separation),
+                                    .pyro_cruise_balance_1 = state(PyroId::cruise_balance_1),
+                                    .pyro_cruise_balance_2 = state(PyroId::cruise_balance_2),
+                                    .pyro_entry_balance_1 = state(PyroId::entry_balance_1),
+                                    .pyro_entry_balance_2 = state(PyroId::entry_balance_2),
+                                    .pyro_entry_balance_3 = state(PyroId::entry_balance_3),
+                                    .pyro_parachute_mortar = state(PyroId::parachute_mortar),
+                                    .pyro_heatshield_separation = state(PyroId::heatshield_separation),
+                                    .pyro_engine_valves = state(PyroId::engine_valves),
+                                    .pyro_backshell_separation = state(PyroId::backshell_separation),
+                                    .pyro_rover_separation = state(PyroId::rover_separation),
+                                    .pyro_bridle_cutter = state(PyroId::bridle_cutter),
+                                    .pyro_coolant_vent = state(PyroId::coolant_vent),
+                                    .pyro_manager_armed = armed_};
+    if (status != recorded_ || (armed_ && at_resolution(now, 1) == now)) out.record(status);
+    recorded_ = status;
 }
 
 // A pyro without room on the bus waits for the next cycle.

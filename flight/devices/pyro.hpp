@@ -10,7 +10,7 @@ namespace aeolis::flight {
 /// In the rate group: it confirms every tick, idle or not. R5, R10, R22, R50
 ///
 /// In       ArmPyros, FirePyro, PyroReply (interrupt), Tick, UnitsSelected
-/// Out      pyros to fire, at its tick; ActionReply to Edl; Confirm
+/// Out      pyros to fire, at its tick; ActionReply to Edl; PyroStatus on change, and at 1 Hz while armed; Confirm
 /// Armed    starts safe, and fires nothing until ArmPyros arms it
 /// Fires    each pyro over both controllers in one cycle, the selected one first. Until a controller reports that the
 ///          pyro fired, both are commanded again every 1/8 s, while a reply can still arrive before the time-out
@@ -47,7 +47,10 @@ class PyroManager {
     };
     void fire(PyroId pyro, Shot& shot, Outbox& out);
     static void end(PyroId pyro, Shot& shot, Outbox& out);
+    PyroState state(PyroId pyro) const;
+    void record(Sclk now, Outbox& out);
 
+    packet::PyroStatus recorded_;
     bool armed_ = false;
     std::array<Shot, pyro_count> shots_{};
     Unit unit_ = Unit::a;  // the selected one

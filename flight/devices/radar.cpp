@@ -13,7 +13,8 @@ void RadarManager::on(const UnitsSelected& selected, Outbox&) {
 
 void RadarManager::on(const Tick&, Outbox& out) {
     out.bus().units[Device::radar] = unit_;
-    if (!latest_.beams.empty()) out.send(ModuleId::edl_bg, latest_);
+    if (!latest_.beams.empty())
+        for (const ModuleId module : {ModuleId::edl_bg, ModuleId::edl_comm}) out.send(module, latest_);
     latest_.beams.clear();
     out.send(ModuleId::sync, Confirm{ModuleId::radar});
 }

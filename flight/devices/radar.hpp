@@ -10,7 +10,7 @@ namespace aeolis::flight {
 /// In the rate group: it confirms every tick, idle or not. R5, R10, R22
 ///
 /// In      RadarReturns (interrupt), Tick, UnitsSelected
-/// Out     RadarReturns to EdlBg, once a cycle when there are any; Confirm
+/// Out     RadarReturns to EdlBg and EdlComm, once a cycle when there are any; Confirm
 /// Faults  missing returns are detected by EdlBg, which needs them (RADAR_LOST)
 class RadarManager {
   public:

@@ -8,7 +8,8 @@ void SwitchReplies::command(const SetSwitch& command, SwitchCommands& bus, Outbo
     if (number >= switch_count || !bus.try_push_back({command.id, command.on}))
         return out.event(evr::SWITCH_QUEUE_FULL{.switch_number = static_cast<std::uint8_t>(command.id)});
     Awaited& awaited = awaited_[number];
-    awaited = {command.on, static_cast<std::uint8_t>(awaited.replies_due + 1)};
+    awaited = {command.on, static_cast<std::uint8_t>(awaited.replies_due + 1),
+               command.on ? SwitchState::commanded_on : SwitchState::commanded_off};
 }
 
 void SwitchReplies::reply(const SwitchReply& reply, Unit selected, Outbox& out) {
@@ -26,6 +27,7 @@ void SwitchReplies::reply(const SwitchReply& reply, Unit selected, Outbox& out) 
     // This reply answers an older command; the reply to the newer one is still due.
     if (!as_commanded && awaited.replies_due > 0) return;
     awaited.replies_due = 0;
+    awaited.state = reply.refused ? SwitchState::refused : reply.on ? SwitchState::on : SwitchState::off;
     out.send(ModuleId::edl, ActionReply{ReplyKind::device_switch, static_cast<std::uint8_t>(reply.id),
                                         as_commanded ? Evidence::verified : Evidence::refused, awaited.on});
 }

@@ -3,6 +3,8 @@
 
 #include "flight/kernel/outbox.hpp"
 
+#include <array>
+
 namespace aeolis::flight {
 
 /// Switch commands that have not been answered yet; shared by the power and telecom managers.
@@ -14,11 +16,14 @@ class SwitchReplies {
     /// Turns a reply into an answer for the timeline, verified or refused. Also reports a reply that refuses, contradicts
     /// the command, was not due, or comes from the other unit.
     void reply(const SwitchReply& reply, Unit selected, Outbox& out);
+    /// By the last reply, or by a command that is not answered yet.
+    SwitchState state(SwitchId id) const { return awaited_[static_cast<std::size_t>(id)].state; }
 
   private:
     struct Awaited {
         bool on = false;  // by the last command
         std::uint8_t replies_due = 0;
+        SwitchState state{};
     };
     std::array<Awaited, switch_count> awaited_{};
 };

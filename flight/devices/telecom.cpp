@@ -6,10 +6,20 @@ namespace aeolis::flight {
 void TelecomManager::on(const SetSwitch& command, Outbox& out) {
     address(out);
     replies_.command(command, out.bus().telecom, out);
+    record(out);
 }
 
 void TelecomManager::on(const SwitchReply& reply, Outbox& out) {
     replies_.reply(reply, units_[switched_by(reply.id)], out);
+    record(out);
+}
+
+void TelecomManager::record(Outbox& out) {
+    const packet::TelecomStatus status{.switch_uhf = replies_.state(SwitchId::uhf),
+                                       .switch_entry_antenna = replies_.state(SwitchId::entry_antenna),
+                                       .switch_parachute_antenna = replies_.state(SwitchId::parachute_antenna)};
+    if (status != recorded_) out.record(status);
+    recorded_ = status;
 }
 
 void TelecomManager::on(const UnitsSelected& selected, Outbox& out) {

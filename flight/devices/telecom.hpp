@@ -11,7 +11,7 @@ namespace aeolis::flight {
 /// radio does with it. Outside the rate group. R5, R10, R28
 ///
 /// In      SetSwitch, SwitchReply (interrupt), UnitsSelected
-/// Out     switch commands; ActionReply to Edl, verified or refused
+/// Out     switch commands; ActionReply to Edl, verified or refused; TelecomStatus on change
 /// Faults  as for power: DEVICE_REFUSED, REPLY_CONTRADICTS, REPLY_UNEXPECTED
 class TelecomManager {
   public:
@@ -23,8 +23,10 @@ class TelecomManager {
 
   private:
     void address(Outbox& out) const;
+    void record(Outbox& out);
 
     SwitchReplies replies_;
+    packet::TelecomStatus recorded_;
     UnitSelection units_;
 };
 

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "flight/devices/thrusters.hpp"
 
+#include <cmath>
 #include <utility>
 
 namespace aeolis::flight {
 namespace {
 
 constexpr auto thrusters_device = static_cast<std::uint8_t>(Device::thrusters);
+constexpr double microseconds_per_second = 1.0e6;
 
 }  // namespace
 
@@ -22,6 +24,7 @@ void Thrusters::on(const EnableThrusters& command, Outbox&) {
 void Thrusters::on(const ThrusterReply& reply, Outbox& out) {
     if (replies_due_ == 0 || reply.unit != unit_)
         return out.event(evr::REPLY_UNEXPECTED{.device_number = thrusters_device});
+    enabled_ = reply.enabled;
     const bool as_commanded = !reply.refused && reply.enabled == awaited_;
     if (reply.refused)
         out.event(evr::DEVICE_REFUSED{.device_number = thrusters_device});
@@ -35,12 +38,29 @@ void Thrusters::on(const ThrusterReply& reply, Outbox& out) {
              ActionReply{ReplyKind::thrusters, 0, as_commanded ? Evidence::verified : Evidence::refused, awaited_});
 }
 
+void Thrusters::record(const ThrusterCommand& pulses, Outbox& out) {
+    const auto us = [](double on_s) { return static_cast<std::uint16_t>(std::lround(on_s * microseconds_per_second)); };
+    const auto& [t1, t2, t3, t4, t5, t6, t7, t8] = pulses.on_s;
+    const packet::ThrusterPulses now{.thruster_1_on_us = us(t1),
+                                     .thruster_2_on_us = us(t2),
+                                     .thruster_3_on_us = us(t3),
+                                     .thruster_4_on_us = us(t4),
+                                     .thruster_5_on_us = us(t5),
+                                     .thruster_6_on_us = us(t6),
+                                     .thruster_7_on_us = us(t7),
+                                     .thruster_8_on_us = us(t8),
+                                     .thrusters_enabled = enabled_};
+    if (now != recorded_ || pulses != ThrusterCommand{}) out.record(now);
+    recorded_ = now;
+}
+
 void Thrusters::on(const UnitsSelected& selected, Outbox&) {
     unit_ = selected.units[Device::thrusters];
 }
 
 void Thrusters::on(const Tick&, Outbox& out) {
     out.bus().units[Device::thrusters] = unit_;
+    record(thrusters_, out);
     out.bus().thrusters = std::exchange(thrusters_, {});
     if (enable_) out.bus().thrusters_enabled = enable_;
     enable_.reset();

@@ -154,7 +154,7 @@ void EdlMain::on(const ImuReadings& readings, Outbox&) {
 }
 
 void EdlMain::on(const EngineReply& reply, Outbox&) {
-    gnc_inputs_.engines = reply;
+    gnc_inputs_.engines = engines_ = reply;
 }
 
 void EdlMain::on(const BridleReply& reply, Outbox&) {

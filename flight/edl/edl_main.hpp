@@ -123,6 +123,8 @@ class EdlMain {
     std::uint32_t revision_ = 0;
     FixedQueue<ImuReadings, 64> recent_readings_;  // of the last second, for what prime's last state does not cover
     double bridle_m_ = 0.0;
+    EngineReply engines_;  // the last one
+    packet::GncConfiguration recorded_configuration_;
     std::optional<command::EDL_SET_PARAMETERS> parameters_;
     PeakDeceleration peak_deceleration_;
     GncHealth gnc_health_;

@@ -38,7 +38,11 @@ packet::GncNavigation navigation(const gnc::Output& gnc) {
             .flight_path_deg = single(gnc.flight_path_deg),
             .horizontal_speed_mps = single(gnc.horizontal_speed_mps),
             .bank_deg = single(gnc.bank_deg),
-            .angle_of_attack_deg = single(gnc.angle_of_attack_deg)};
+            .angle_of_attack_deg = single(gnc.angle_of_attack_deg),
+            .nav_attitude_w = single(gnc.q_MB[0]),
+            .nav_attitude_x = single(gnc.q_MB[1]),
+            .nav_attitude_y = single(gnc.q_MB[2]),
+            .nav_attitude_z = single(gnc.q_MB[3])};
 }
 
 packet::GncEntry entry_guidance(const gnc::Output& gnc) {
@@ -65,7 +69,7 @@ packet::GncImu imu(const gnc::Output& gnc) {
             .rate_z_dps = single(w[2] * degrees_per_radian)};
 }
 
-packet::GncDescent descent(const gnc::Output& gnc, double bridle_m) {
+packet::GncDescent descent(const gnc::Output& gnc, double bridle_m, const EngineReply& reply) {
     const auto& throttle = gnc.engines.throttle;
     double sum = 0.0;
     for (const double one : throttle) sum += one;
@@ -85,7 +89,31 @@ packet::GncDescent descent(const gnc::Output& gnc, double bridle_m) {
             // NOLINTEND(readability-magic-numbers)
             .mass_estimate_kg = single(gnc.mass_kg),
             .propellant_kg = single(gnc.propellant_kg),
-            .bridle_m = single(bridle_m)};
+            .bridle_m = single(bridle_m),
+            .engine_thrust_N = single(reply.thrust_N),
+            .engines_running = reply.running};
+}
+
+packet::GncConfiguration flown_as(const gnc::Configuration& c) {
+    return {.gnc_enabled = c.enabled,
+            .pyros_armed = c.pyros_armed,
+            .cruise_stage_gone = c.cruise_stage_gone,
+            .turning_to_entry = c.turning_to_entry,
+            .guidance_armed = c.guidance_armed,
+            .sufr_allowed = c.sufr_allowed,
+            .parachute_out = c.parachute_out,
+            .heatshield_gone = c.heatshield_gone,
+            .radar_processing = c.radar_on,
+            .engines_primed = c.engines_primed,
+            .backshell_gone = c.backshell_gone,
+            .engines_ignited = c.engines_ignited,
+            .sky_crane_started = c.sky_crane_started,
+            .rover_separated = c.rover_separated,
+            .touchdown_logic_ready = c.touchdown_logic_ready,
+            .touchdown_declared = c.touchdown_declared,
+            .bridle_gone = c.bridle_cut,
+            .flyaway_started = c.flyaway_started,
+            .engines_off = c.engines_off};
 }
 
 packet::GncBelief belief(const gnc::Output& gnc) {
@@ -163,6 +191,10 @@ void EdlMain::record_channels(Sclk now, Outbox& out) {
     if (parameters_ && !configuration_.enabled && due(now, 1) && now.ticks() / 64 % held_every_s == 0)
         out.record(parameters_held());
     if (load_.telemetry_plan == Plan::wideband) out.record(wideband(now));
+    if (const auto is = flown_as(configuration_); timeline_.begun() && (due(now, 1) || is != recorded_configuration_)) {
+        out.record(is);
+        recorded_configuration_ = is;
+    }
     if (!configuration_.enabled) return;
 
     const bool in_atmosphere = phase() >= EdlPhase::wait_for_guidance;
@@ -170,7 +202,8 @@ void EdlMain::record_channels(Sclk now, Outbox& out) {
     if (due(now, in_atmosphere ? 16 : 8)) out.record(imu(output_));
     if (due(now, 1)) out.record(belief(output_));
     if (in_atmosphere && phase() < EdlPhase::parachute_descent && due(now, 8)) out.record(entry_guidance(output_));
-    if (phase() >= EdlPhase::powered_descent && due(now, 8)) out.record(descent(output_, bridle_m_));
+    if (phase() >= EdlPhase::powered_descent && phase() != EdlPhase::landed)
+        out.record(descent(output_, bridle_m_, engines_));
 }
 
 packet::ParametersHeld EdlMain::parameters_held() const {

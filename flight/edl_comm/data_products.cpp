@@ -2,6 +2,7 @@
 #include "flight/edl_comm/data_products.hpp"
 
 #include "common/crc.hpp"
+#include "flight/edl_comm/sensor_tables.hpp"
 
 #include <algorithm>
 
@@ -34,14 +35,7 @@ void ImuBurst::on(const ImuReadings& readings) {
         const auto octets = std::span{octets_}.subspan(row * row_octets, row_octets);
         std::ranges::fill(octets, std::uint8_t{0});
         BitWriter writer{octets};
-        packet::ImuIncrements{.imu_count = sample.count,
-                              .delta_v_x_mps = single(sample.delta_v_mps[0]),
-                              .delta_v_y_mps = single(sample.delta_v_mps[1]),
-                              .delta_v_z_mps = single(sample.delta_v_mps[2]),
-                              .delta_angle_x_rad = single(sample.delta_angle_rad[0]),
-                              .delta_angle_y_rad = single(sample.delta_angle_rad[1]),
-                              .delta_angle_z_rad = single(sample.delta_angle_rad[2])}
-            .encode(writer);
+        row_of(sample).encode(writer);
     }
 }
 

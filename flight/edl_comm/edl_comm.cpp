@@ -146,12 +146,18 @@ void EdlComm::send_frame(Outbox& out) {
     sent_octets_ += static_cast<std::uint32_t>(size);
 }
 
-void EdlComm::on(const ImuReadings& readings, Outbox&) {
+void EdlComm::on(const ImuReadings& readings, Outbox& out) {
+    tables_.on(readings, out);
     products_.on(readings);
 }
 
-void EdlComm::on(const PhaseChanged& change, Outbox&) {
+void EdlComm::on(const RadarReturns& returns, Outbox& out) {
+    tables_.on(returns, out);
+}
+
+void EdlComm::on(const PhaseChanged& change, Outbox& out) {
     phase_ = change.phase;
+    tables_.on(change, out);
     products_.on(change);
 }
 

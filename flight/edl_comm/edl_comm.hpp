@@ -5,6 +5,7 @@
 #include "common/tc_frame.hpp"
 #include "flight/edl_comm/data_products.hpp"
 #include "flight/edl_comm/realtime_queue.hpp"
+#include "flight/edl_comm/sensor_tables.hpp"
 #include "flight/edl_comm/telemetry_plan.hpp"
 #include "flight/kernel/outbox.hpp"
 
@@ -12,13 +13,13 @@
 
 namespace aeolis::flight {
 
-/// Records all EDL telemetry in non-volatile memory (NVM), and sends a subset in real time. R29, R30
+/// Records all EDL telemetry in non-volatile memory (NVM), and sends a subset in real time. R29, R30, R52
 /// The subset is bit-identical to the recording and limited by the rate of the link.
 ///
-/// In      Record (any module), ImuReadings, PhaseChanged, NvmStatus, ToneStatus, UplinkStatus, CloseRecording,
+/// In      Record (any module), ImuReadings, RadarReturns, PhaseChanged, NvmStatus, ToneStatus, UplinkStatus, CloseRecording,
 ///         ClockTick (64 Hz)
 /// Out     packets to NVM, in order; PLTUs with some of them to the UHF transmitter, within its rate; CommStatus at 1
-///         Hz; data products
+///         Hz; tables of all readings of IMU and radar; data products
 /// Memory  192 packets wait for the link; RealtimeQueue decides which are dropped. Neither recording nor cycle suffers
 /// Faults  a full link queue is reported once per episode (UHF_QUEUE_FULL), and drops are counted by priority in
 ///         CommStatus
@@ -37,6 +38,7 @@ class EdlComm {
 
     void on(const Record& record, Outbox& out);
     void on(const ImuReadings& readings, Outbox& out);
+    void on(const RadarReturns& returns, Outbox& out);
     void on(const PhaseChanged& change, Outbox& out);
     void on(const NvmStatus& status, Outbox& out);
     void on(const ToneStatus& status, Outbox& out);
@@ -73,6 +75,7 @@ class EdlComm {
     static constexpr std::size_t apids = 128;  ///< chosen: of both computers
     std::array<Stream, apids> streams_{};
     RealtimeQueue queue_;
+    SensorTables tables_;
     DataProducts products_;
     double credit_octets_ = 0.0;  // octets that the link could have sent so far but has not
     std::uint32_t sent_octets_ = 0;

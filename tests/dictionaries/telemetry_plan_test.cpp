@@ -11,10 +11,10 @@ using aeolis::tests::Planted;
 
 TEST_CASE("each broken rule of the telemetry plan gives one line, and nothing is loaded", "[dictionary][R30][R40]") {
     static const std::vector<Planted> all{
-        {"unknown packet", "telemetry_plan.csv", "mission,Wideband,", "mission,Wideband,normal,0,0,0,0,\nall,Gnc,",
+        {"unknown packet", "telemetry_plan.csv", "mission,Wideband,", "mission,Wideband,normal,0,0,0,0,0,\nall,Gnc,",
          "packet 'Gnc': there is no such packet", 1},
         {"packet in a plan twice", "telemetry_plan.csv", "mission,Wideband,",
-         "mission,EdlStatus,high,0,0,0,0,\nmission,Wideband,",
+         "mission,EdlStatus,high,0,0,0,0,0,\nmission,Wideband,",
          "packet 'EdlStatus': plan 'mission' has it already, in line 7"},
         {"unknown priority", "telemetry_plan.csv", "mission,Wideband,normal", "mission,Wideband,middling",
          "priority 'middling' is none of first, high, normal, low"},
@@ -26,6 +26,8 @@ TEST_CASE("each broken rule of the telemetry plan gives one line, and nothing is
          "descent '1.5' is not a whole number from 0 to 4096"},
         {"rate left empty", "telemetry_plan.csv", "GncRadar,normal,0,0,1,", "GncRadar,normal,0,0,,",
          "descent '' is not a whole number"},
+        {"no rate of recording", "telemetry_plan.csv", "GncRadar,normal,0,0,1,0,1,", "GncRadar,normal,0,0,1,0,,",
+         "recorded_hz '' is not a whole number from 0 to 200"},
         {"rate too small", "telemetry_plan.csv", "GncRadar,normal,0,0,1", "GncRadar,normal,0,0,5000",
          "descent '5000' is not a whole number from 0 to 4096"},
     };
@@ -35,9 +37,9 @@ TEST_CASE("each broken rule of the telemetry plan gives one line, and nothing is
 TEST_CASE("each plan says what becomes of each packet, and what it leaves out is named", "[dictionary][R30]") {
     const tests::MissionCopy mission;
     std::string text = mission.text("telemetry_plan.csv");
-    const std::string row = "mission,Wideband,normal,0,0,0,0,\n";
-    text.replace(text.find(row), row.size(), "mission,GncRadar,normal,0,0,1,0,\n");
-    const std::string all = "all,GncRadar,normal,0,0,1,0,1 Hz recorded\n";
+    const std::string row = "mission,Wideband,normal,0,0,0,0,0,\n";
+    text.replace(text.find(row), row.size(), "mission,GncRadar,normal,0,0,1,0,1,\n");
+    const std::string all = "all,GncRadar,normal,0,0,1,0,1,\n";
     text.erase(text.find(all), all.size());
     mission.write("telemetry_plan.csv", text);
     const auto loaded = mission.load();
@@ -53,8 +55,8 @@ TEST_CASE("a sheet without a plan's name plans nothing", "[dictionary][R30]") {
     std::vector<dictionary::Finding> all;
     dictionary::Findings findings{"telemetry_plan.csv", all};
     const auto& packets = tests::shipped_dictionary().packets;
-    CHECK(dictionary::read_telemetry_plan("plan,packet,priority,before_entry,entry,descent,landed,note\n"
-                                          "all,events,first,1,1,1,1,\n",
+    CHECK(dictionary::read_telemetry_plan("plan,packet,priority,before_entry,entry,descent,landed,recorded_hz,"
+                                          "note\nall,events,first,1,1,1,1,0,\n",
                                           &packets, findings));
     REQUIRE(all.size() == 1);
     CHECK(all.front().text() == "telemetry_plan.csv:1: no plan is named: each row says 'all'");

@@ -180,7 +180,7 @@ TEST_CASE("which packets go to ground, and how many, follows the state of the ve
         return sent;
     };
     CHECK(sent_in(EdlPhase::late_cruise, packet::GncDescent::apid) == 0);
-    CHECK(sent_in(EdlPhase::powered_descent, packet::GncDescent::apid) == 16);
+    CHECK(sent_in(EdlPhase::powered_descent, packet::GncDescent::apid) == 2);
     CHECK(sent_in(EdlPhase::landed, packet::GncDescent::apid) == 0);
     CHECK(sent_in(EdlPhase::range_control, packet::GncNavigation::apid) == 2);
     CHECK(sent_in(EdlPhase::powered_descent, packet::GncEntry::apid) == 0);

@@ -26,6 +26,7 @@ struct Armed {
     double now_s = 0.0;
     std::vector<ActionReply> answers;
     std::map<std::uint16_t, int> events;
+    std::vector<PyroState> mortar_states;  ///< as recorded
 
     Armed() { say(ArmPyros{true}); }
     template <typename M>
@@ -33,8 +34,12 @@ struct Armed {
         const test::OutboxRecorder& recorder = pyro.on(message, Sclk{1000.0 + now_s});
         for (const ActionReply& reply : recorder.sent<ActionReply>())
             if (reply.kind == ReplyKind::pyro) answers.push_back(reply);
-        for (const Record& record : recorder.sent<Record>())
-            ++events[static_cast<std::uint16_t>(read_bits(record.data, 0, 16))];
+        for (const Record& record : recorder.sent<Record>()) {
+            if (record.apid == evr::PYRO_NOT_FIRED::apid)
+                ++events[static_cast<std::uint16_t>(read_bits(record.data, 0, 16))];
+            if (record.apid == packet::PyroStatus::apid)
+                mortar_states.push_back(static_cast<PyroState>(record.data[static_cast<std::size_t>(mortar)]));
+        }
     }
     void fire(double within_s = 1.0) { say(FirePyro{mortar, Sclk{1000.0 + now_s + within_s}}); }
     /// What goes out at its turn.
@@ -82,6 +87,36 @@ TEST_CASE("one controller's word that the pyro fired verifies it, once", "[devic
     CHECK(f.answers.size() == 1);
     CHECK(f.turns_that_fire(2.0) == 0);
     CHECK(f.events.empty());
+}
+
+TEST_CASE("what becomes of a pyro is recorded when it changes, and each second while armed", "[devices][R52]") {
+    Armed f;
+    f.now_s = seconds_per_tick;
+    f.turn();
+    f.fire();
+    for (int i = 0; i < 5; ++i) f.turn();
+    f.say(PyroReply{mortar, true, Unit::b});
+    for (int i = 0; i < 5; ++i) f.turn();
+    using enum PyroState;
+    CHECK(f.mortar_states == std::vector{not_commanded, commanded, fired});
+    while (f.now_s < 3.5) f.turn();
+    CHECK(f.mortar_states.size() == 3 + 3);
+    f.say(ArmPyros{false});
+    while (f.now_s < 6.5) f.turn();
+    CHECK(f.mortar_states.size() == 3 + 3 + 1);
+}
+
+TEST_CASE("a pyro that both controllers refuse is recorded as refused, one that neither answers as unanswered",
+          "[devices][R52]") {
+    Armed refused;
+    refused.fire();
+    while (refused.now_s < 1.5)
+        for (const PyroCommand& command : refused.turn()) refused.say(PyroReply{mortar, false, command.unit});
+    CHECK(refused.mortar_states.back() == PyroState::refused);
+    Armed silent;
+    silent.fire();
+    while (silent.now_s < 1.5) silent.turn();
+    CHECK(silent.mortar_states.back() == PyroState::unanswered);
 }
 
 TEST_CASE("before it is armed nothing fires, and that is told and refused", "[devices][R50]") {

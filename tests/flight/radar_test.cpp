@@ -9,14 +9,16 @@ namespace flight_radar_test {
 using namespace aeolis;
 using namespace aeolis::flight;
 
-TEST_CASE("radar returns go on to EdlBg in the cycle in which they came, once", "[devices][R10]") {
+TEST_CASE("radar returns go on to EdlBg and to the recording in the cycle in which they came, once",
+          "[devices][R10][R52]") {
     test::Spoken<RadarManager> radar{ModuleId::radar};
     RadarReturns returns{Sclk{1.0}, {}};
     returns.beams.push_back({.beam = 3, .valid = true});
     CHECK(radar.on(returns).out.sent().empty());
     const auto sent = radar.on(Tick{Sclk{1.0}}).sent<RadarReturns>();
-    REQUIRE(sent.size() == 1);
+    REQUIRE(sent.size() == 2);
     CHECK(sent[0].beams[0].beam == 3);
+    CHECK(sent[1].beams[0].beam == 3);
     CHECK(radar.on(Tick{Sclk{1.0}}).sent<RadarReturns>().empty());
 }
 

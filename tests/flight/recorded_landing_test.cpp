@@ -32,6 +32,9 @@ struct Flown {
     std::vector<Octets> recorded;
     std::vector<Octets> radiated;
     std::vector<ImuSample> imu;
+    std::vector<std::pair<Sclk, RadarBeam>> beams;
+    std::map<Sclk, ThrusterCommand> pulses;   ///< of the cycles that have any
+    std::map<Sclk, EngineCommand> throttles;  ///< while ignited
     bool landed = false;
     Computer::Counters counters;
 };
@@ -59,7 +62,11 @@ const Flown& flown() {
             if (cycle == 64) world.receive(test::do_edl());
             const DeviceInputs& in = world.sense();
             flown.imu.insert(flown.imu.end(), in.imu.begin(), in.imu.end());
+            for (const RadarBeam& beam : in.radar) flown.beams.emplace_back(in.now, beam);
+            const Sclk now = in.now;
             computer.step(in, *out);
+            if (out->thrusters != ThrusterCommand{}) flown.pulses[now] = out->thrusters;
+            if (out->engines.ignited) flown.throttles[now] = out->engines;
             take(out->nvm.span(), flown.recorded);
             for (auto& packet : test::packets_in_pltus(out->uhf.span())) flown.radiated.push_back(std::move(packet));
             world.advance(*out);
@@ -87,6 +94,17 @@ struct Ground {
         REQUIRE(index);
         return decoded.value[*index].value_or(-1.0);
     }
+    /// The rows of the recorded tables of one name; each is a packet for name() and value().
+    std::vector<Octets> rows(const char* table) {
+        std::vector<Octets> all;
+        for (const Octets& packet : flown().recorded) {
+            if (name(packet) != table) continue;
+            const auto rows = telemetry::rows_in(dictionary, decoded, packet);
+            REQUIRE(rows);
+            all.insert(all.end(), rows->begin(), rows->end());
+        }
+        return all;
+    }
     telemetry::ProductAssembler products(const std::vector<Octets>& packets) {
         telemetry::ProductAssembler assembler;
         for (const Octets& packet : packets)
@@ -101,6 +119,10 @@ struct Ground {
 
 float f(double value) {
     return static_cast<float>(value);
+}
+
+std::string numbered(const char* before, int number, const char* after) {
+    return before + std::to_string(number) + after;
 }
 
 }  // namespace
@@ -143,6 +165,152 @@ TEST_CASE("UHF carries channels, events and products, chosen by the state of the
     CHECK(live[EdlPhase::range_control]["DataProduct"] == 0);
     CHECK(live[EdlPhase::landed]["GncNavigation"] == 0);
     CHECK(live[EdlPhase::landed]["EdlStatus"] > 0);
+    for (const EdlPhase phase : {EdlPhase::range_control, EdlPhase::parachute_descent, EdlPhase::sky_crane}) {
+        CHECK(live[phase]["GncNavigation"] > 10);  // attitude among it
+        CHECK(live[phase]["GncConfiguration"] > 5);
+        CHECK(live[phase]["PyroStatus"] > 5);
+        CHECK(live[phase]["ImuTable"] == 0);
+    }
+}
+
+TEST_CASE("each reading of the IMU, from separation to the end of fly-away, is in the recording bit for bit",
+          "[edl_comm][R52]") {
+    Ground ground;
+    const auto rows = ground.rows("ImuTable");
+    REQUIRE(rows.size() > 200 * 1000);
+    CHECK(ground.name(rows.front()) == "ImuIncrements");
+    auto sensed =
+        std::ranges::find(flown().imu, static_cast<std::uint32_t>(ground.value("imu_count")), &ImuSample::count);
+    REQUIRE(flown().imu.end() - sensed >= static_cast<std::ptrdiff_t>(rows.size()));
+    for (const Octets& row : rows) {
+        static_cast<void>(ground.name(row));
+        const ImuSample& sample = *sensed++;
+        REQUIRE(ground.value("imu_count") == sample.count);
+        REQUIRE(f(ground.value("delta_v_x_mps")) == f(sample.delta_v_mps[0]));
+        REQUIRE(f(ground.value("delta_v_y_mps")) == f(sample.delta_v_mps[1]));
+        REQUIRE(f(ground.value("delta_v_z_mps")) == f(sample.delta_v_mps[2]));
+        REQUIRE(f(ground.value("delta_angle_x_rad")) == f(sample.delta_angle_rad[0]));
+        REQUIRE(f(ground.value("delta_angle_y_rad")) == f(sample.delta_angle_rad[1]));
+        REQUIRE(f(ground.value("delta_angle_z_rad")) == f(sample.delta_angle_rad[2]));
+    }
+}
+
+TEST_CASE("each reading of a radar beam is in the recording, with its tick", "[edl_comm][R52]") {
+    Ground ground;
+    const auto rows = ground.rows("RadarTable");
+    REQUIRE(rows.size() == flown().beams.size());
+    REQUIRE(rows.size() > 120 * 60);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        static_cast<void>(ground.name(rows[i]));
+        const auto& [at, beam] = flown().beams[i];
+        REQUIRE(ground.value("beam_sclk") == at.seconds);
+        REQUIRE(ground.value("beam") == beam.beam);
+        REQUIRE((ground.value("beam_valid") != 0.0) == beam.valid);
+        REQUIRE(f(ground.value("beam_range_m")) == f(beam.range_m));
+        REQUIRE(f(ground.value("beam_range_rate_mps")) == f(beam.range_rate_mps));
+        REQUIRE(f(ground.value("beam_direction_y")) == f(beam.direction_B[1]));
+    }
+}
+
+TEST_CASE("each pulse of a thruster and each throttle setting is recorded in its cycle", "[thrusters][edl][R52]") {
+    Ground ground;
+    std::map<Sclk, std::vector<double>> pulses, throttles;
+    Sclk closed;
+    for (const Octets& packet : flown().recorded) {
+        const std::string& name = ground.name(packet);
+        if (name == "RECORDING_CLOSED") closed = ground.decoded.header.time;
+        if (name != "ThrusterPulses" && name != "GncDescent") continue;
+        std::vector<double> eight;
+        for (int i = 1; i <= 8; ++i)
+            eight.push_back(ground.value(
+                (name == "GncDescent" ? numbered("throttle_", i, "_percent") : numbered("thruster_", i, "_on_us"))
+                    .c_str()));
+        (name == "GncDescent" ? throttles : pulses)[ground.decoded.header.time] = eight;
+    }
+    CHECK(flown().pulses.size() > 1000);
+    for (const auto& [at, command] : flown().pulses) {
+        if (at >= closed) break;
+        INFO(at.seconds << ", closed at " << closed.seconds);
+        REQUIRE(pulses.contains(at));
+        for (std::size_t i = 0; i < 8; ++i) REQUIRE(pulses[at][i] == std::round(command.on_s[i] * 1e6));
+    }
+    CHECK(flown().throttles.size() > 64 * 40);
+    for (const auto& [at, command] : flown().throttles) {
+        REQUIRE(throttles.contains(at));
+        for (std::size_t i = 0; i < 8; ++i) REQUIRE(f(throttles[at][i]) == f(command.throttle[i] * 100.0));
+    }
+}
+
+TEST_CASE("the recording tells what has become of each pyro, switch and valve, and as what GNC flew the vehicle",
+          "[pyro][edl][R52]") {
+    Ground ground;
+    std::map<std::string, double> last;
+    for (const Octets& packet : flown().recorded) {
+        const std::string& name = ground.name(packet);
+        if (name != "PyroStatus" && name != "PowerStatus" && name != "TelecomStatus" && name != "GncConfiguration" &&
+            name != "ThrusterPulses")
+            continue;
+        const auto& fields = ground.dictionary.packets[ground.decoded.packet].fields;
+        for (std::size_t i = 0; i < fields.size(); ++i) last[fields[i].name] = *ground.decoded.value[i];
+    }
+    int pyros = 0;
+    for (const auto& [name, value] : last)
+        if (name.starts_with("pyro_") && name != "pyro_manager_armed") {
+            INFO(name);
+            ++pyros;
+            CHECK(static_cast<PyroState>(value) == PyroState::fired);
+        }
+    CHECK(pyros == static_cast<int>(pyro_count));
+    CHECK(static_cast<SwitchState>(last.at("switch_descent_imu")) == SwitchState::on);
+    CHECK(static_cast<SwitchState>(last.at("switch_parachute_antenna")) == SwitchState::on);
+    CHECK(static_cast<SwitchState>(last.at("switch_uhf")) == SwitchState::off);
+    CHECK(last.contains("thrusters_enabled"));
+    for (const char* name : {"cruise_stage_gone", "parachute_out", "heatshield_gone", "backshell_gone",
+                             "rover_separated", "touchdown_declared", "bridle_gone", "engines_off"})
+        CHECK(last.at(name) == 1.0);
+}
+
+TEST_CASE("a landing records no packet more often than the telemetry plan says, and keeps its budget",
+          "[telemetry_plan][R52]") {
+    constexpr std::uint64_t periodic_octets_max = 32'000;  // a second; chosen: half of NVM in a quarter of an hour
+    constexpr std::uint64_t others_octets_max = 20'000;    // a second; chosen: a part of a data product a cycle, events
+    constexpr std::uint64_t landing_octets_max = std::uint64_t{16} << 20;  // chosen: a quarter of NVM
+    Ground ground;
+    std::map<std::string, std::uint32_t> hz;
+    std::uint64_t planned_octets = 0;
+    for (const auto& row : ground.dictionary.telemetry_plan) {
+        if (row.plan == "wideband") continue;
+        hz[row.packet] = row.recorded_hz;
+        if (const auto* packet = ground.dictionary.packet(row.packet))
+            planned_octets += std::uint64_t{row.recorded_hz} * packet->octets;
+    }
+    CHECK(planned_octets < periodic_octets_max);
+    std::map<std::pair<std::string, double>, std::uint32_t> packets;
+    std::map<double, std::uint64_t> periodic_octets, others_octets;
+    std::uint64_t octets = 0;
+    for (const Octets& packet : flown().recorded) {
+        const std::string& name = ground.name(packet);
+        const bool event = ground.dictionary.packets[ground.decoded.packet].event.has_value();
+        const double second = std::floor(ground.decoded.header.time.seconds);
+        const std::uint32_t planned = event ? 0 : hz.at(name);
+        (planned > 0 ? periodic_octets : others_octets)[second] += packet.size();
+        if (planned > 0) ++packets[{name, second}];
+        octets += packet.size();
+    }
+    constexpr std::uint32_t on_change_max = 4;  // of one second: pyros armed, commanded, fired
+    for (const auto& [key, count] : packets) {
+        INFO(key.first);
+        CHECK(count <= hz.at(key.first) + on_change_max);
+    }
+    const auto most = [](const std::map<double, std::uint64_t>& by_second) {
+        std::uint64_t found = 0;
+        for (const auto& [second, recorded] : by_second) found = std::max(found, recorded);
+        return found;
+    };
+    CHECK(most(periodic_octets) <= planned_octets);
+    CHECK(most(others_octets) <= others_octets_max);
+    CHECK(octets < landing_octets_max);
+    CHECK(octets > landing_octets_max / 4);  // the limit says something
 }
 
 TEST_CASE("the products of a landing are what flight put in: every firing, and the IMU around the mortar",

@@ -53,6 +53,23 @@ TEST_CASE("a switch that says it is not as it was told to be is reported and cou
     CHECK(f.recorder.events<evr::REPLY_CONTRADICTS>() == 1);
 }
 
+TEST_CASE("a switch is as its last reply says, and as commanded until it replies", "[devices][R52]") {
+    Fixture f;
+    using enum SwitchState;
+    CHECK(f.replies.state(SwitchId::uhf) == not_commanded);
+    f.command(SwitchId::uhf, true);
+    CHECK(f.replies.state(SwitchId::uhf) == commanded_on);
+    f.answers({SwitchId::uhf, true});
+    CHECK(f.replies.state(SwitchId::uhf) == on);
+    f.command(SwitchId::uhf, false);
+    CHECK(f.replies.state(SwitchId::uhf) == commanded_off);
+    f.answers({SwitchId::uhf, true, Unit::a, true});
+    CHECK(f.replies.state(SwitchId::uhf) == refused);
+    f.command(SwitchId::uhf, false);
+    f.answers({SwitchId::uhf, false});
+    CHECK(f.replies.state(SwitchId::uhf) == off);
+}
+
 TEST_CASE("the answer to an overtaken switch command is not taken for the newer one's", "[devices][R14]") {
     Fixture f;
     f.command(SwitchId::radar, true);

@@ -43,6 +43,29 @@ TEST_CASE("the answer to an overtaken thruster command is not taken for the newe
     CHECK(thrusters.on(ThrusterReply{true}).sent<ActionReply>().size() == 1);
 }
 
+TEST_CASE("on-times are recorded in each cycle with a pulse, when the last has ended, and with the driver's answer",
+          "[devices][R52]") {
+    test::Spoken<Thrusters> thrusters{ModuleId::thrusters};
+    const auto recorded = [&](const std::vector<Record>& records) {
+        std::vector<std::uint64_t> first_on_us;
+        for (const Record& record : records)
+            if (record.apid == packet::ThrusterPulses::apid) first_on_us.push_back(read_bits(record.data, 0, 16));
+        return first_on_us;
+    };
+    const auto turn = [&] { return recorded(thrusters.on(Tick{Sclk{1.0}}).sent<Record>()); };
+    CHECK(turn().empty());
+    for (int i = 0; i < 2; ++i) {
+        thrusters.on(FireThrusters{{.on_s = {0.0051234, 0.0}}});
+        CHECK(turn() == std::vector<std::uint64_t>{5123});
+    }
+    CHECK(turn() == std::vector<std::uint64_t>{0});
+    CHECK(turn().empty());
+    thrusters.on(EnableThrusters{true});
+    thrusters.on(ThrusterReply{true});
+    CHECK(turn() == std::vector<std::uint64_t>{0});
+    CHECK(turn().empty());
+}
+
 TEST_CASE("the thrusters' manager confirms each tick and addresses the selected driver", "[devices][R2][R22]") {
     CHECK(test::confirms_and_addresses<Thrusters>(ModuleId::thrusters, Device::thrusters));
 }
