@@ -95,8 +95,8 @@ const std::vector<Home>& homes() {
     static const std::vector<Home> rules{
         {"pugixml", {"dictionaries/", "tests/"}, "pugixml is at home in dictionaries/"},
         {"Eigen/",
-         {"flight/gnc/", "simulation/", "telemetry/mfsk", "tests/", "bench/"},
-         "Eigen: flight/gnc, simulation, telemetry/mfsk"},
+         {"flight/gnc/", "simulation/", "telemetry/mfsk", "server/reconstruction/", "tests/", "bench/"},
+         "Eigen: flight/gnc, simulation, telemetry/mfsk, server/reconstruction"},
         {"google/protobuf/", with_effects, "Protobuf is at home in server/"},
         {"aeolis/v1/", with_effects, "Protobuf is at home in server/"},
         {"sqlite3", {"server/archive/", "tests/", "bench/"}, "SQLite is at home in server/archive/"},
@@ -145,6 +145,7 @@ const std::vector<std::pair<std::string, std::vector<std::string>>>& layers() {
     static const std::vector<std::pair<std::string, std::vector<std::string>>> order{
         {"base", {}},
         {"access", {"base"}},
+        {"reconstruction", {}},
         {"archive", {"base"}},
         {"pipeline", {"archive"}},
         {"links", {"pipeline"}},
@@ -155,7 +156,7 @@ const std::vector<std::pair<std::string, std::vector<std::string>>>& layers() {
         {"tones", {"rehearsal"}},
         {"api", {"campaign", "access"}},
         {"net", {"api", "links"}},
-        {"cli", {"net", "tones"}},
+        {"cli", {"net", "tones", "reconstruction"}},
     };
     return order;
 }

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "flight/gnc/vector.hpp"
+
+#include <cstdint>
+#include <vector>
+
+// Estimates what an inertial path is wrong by, from radar readings along it: a Kalman filter forward, and a smoother
+// back (Rauch, Tung and Striebel), so that the radar of the last two minutes tells about the entry too.
+//
+//   truth = path ⊕ error:  p + δp,  v + δv,  Exp(ψ) · R_MB
+//   δṗ = δv        δv̇ = ψ × R f − R (b + s ∘ f) + G δp − 2 ω × δv        ψ̇ = −ω × ψ
+//   range rate = −d·v + beam's bias          range = (1 + κ) · distance along d to a sphere of radius R + h
+//
+// Frame    M for δp, δv and ψ; B for the accelerometers' bias b and scale error s
+// Left out gyro bias (4e-5 rad over a landing)
+// Source   [savage-1998] for the error's propagation; the smoother is the textbook's
+namespace aeolis::reconstruction {
+
+using flight::gnc::Matrix3;
+using flight::gnc::Quaternion;
+using flight::gnc::Vector3;
+
+/// One standard deviation of each error of ground's solution and of the sensors, on each axis.
+/// [facts] Dispersed landings gives three of them; those marked ours are our assumptions.
+struct SensorErrors {
+    double position_m = 930.0;     ///< of navigation as it begins
+    double velocity_mps = 0.67;    ///< the same
+    double attitude_rad = 1.5e-3;  ///< the same
+    double accelerometer_bias_mps2 = 3.3e-4;
+    double accelerometer_scale = 1.0e-4;      ///< ours
+    double accelerometer_noise_mps = 5.0e-5;  ///< of each reading; ours
+    double gyro_noise_rad = 2.0e-6;           ///< of each reading; ours
+    double imu_misalignment_rad = 1.0e-4;     ///< of the gyros' axes: added for each radian that is turned; ours
+    /// What the filter does not model, in m/s for the root of a second: the centre of mass jumps when a part leaves.
+    /// Ours, from landings without any other error.
+    double unmodelled_mps_per_root_s = 0.01;
+    double radar_range_fraction = 0.0067;  ///< as scale error, and as noise of each reading
+    double radar_velocity_mps = 0.033;     ///< as bias of each beam, and as noise of each reading
+    double ground_height_m = 10.0;         ///< of the map, where the radar first sees the ground; ours
+    double ground_relief_m = 1.0;  ///< of the ground below, for the root of a second: a slope of some degrees; ours
+};
+
+/// What moved the vehicle over one step of the path.
+struct Motion {
+    double seconds = 0.0;
+    std::uint32_t readings = 0;
+    Vector3 p_MoB_M = Vector3::Zero();        ///< [m] at its end
+    Vector3 sensed_M_mps = Vector3::Zero();   ///< Σ R_MB Δv
+    Matrix3 turned = Matrix3::Zero();         ///< [s] Σ R_MB Δt
+    Matrix3 turned_sensed = Matrix3::Zero();  ///< [m/s] Σ R_MB diag(Δv)
+    double turned_rad = 0.0;                  ///< Σ |Δθ|
+    bool broken = false;                      ///< the path begins anew with it: what was known is void
+};
+
+/// One beam's reading, with the inertial path at its tick.
+struct Sighting {
+    std::uint8_t beam = 0;          ///< 0 … 5
+    Vector3 d_M = Vector3::Zero();  ///< direction by the path's attitude
+    double range_m = 0.0, range_rate_mps = 0.0;
+    Vector3 p_MoB_M = Vector3::Zero(), v_MB_M = Vector3::Zero();
+    double before_end_s = 0.0;  ///< from the reading to the end of the step
+};
+
+/// The path's error at the end of a step, and one standard deviation of what is left of it on each axis.
+struct PathError {
+    Vector3 p_M_m = Vector3::Zero(), v_M_mps = Vector3::Zero(), angle_M_rad = Vector3::Zero();
+    Vector3 sigma_p_m = Vector3::Zero(), sigma_v_mps = Vector3::Zero(), sigma_angle_rad = Vector3::Zero();
+};
+
+class ErrorFilter {
+  public:
+    static constexpr int beams = 6;
+
+    ErrorFilter(const SensorErrors& errors, double accelerometer_bias_sigma_mps2, double target_radius_m);
+
+    /// Moves the error over a step, then takes in the readings of its time.
+    void step(const Motion& motion, const std::vector<Sighting>& sightings);
+
+    /// The smoothed error at the end of each step.
+    std::vector<PathError> smoothed() const;
+
+    std::uint64_t taken() const { return taken_; }
+    std::uint64_t refused() const { return refused_; }  ///< beyond six standard deviations
+
+  private:
+    enum Place : int { p = 0, v = 3, angle = 6, bias = 9, scale = 12, range_scale = 15, ground = 16, beam_bias = 17 };
+    static constexpr int states = beam_bias + beams;
+    using State = Eigen::Matrix<double, states, 1>;
+    using Covariance = Eigen::Matrix<double, states, states>;
+    struct Step {
+        Covariance transition, predicted, filtered;
+        State predicted_error, filtered_error;
+    };
+
+    Covariance transition(const Motion& motion) const;
+    void add_noise(const Motion& motion, bool sees_ground);
+    void take(const Sighting& sighting);
+    void observe(const State& row, double residual, double sigma);
+
+    SensorErrors errors_;
+    double target_radius_m_;
+    State error_ = State::Zero();
+    Covariance covariance_ = Covariance::Zero();
+    std::vector<Step> steps_;
+    std::uint64_t taken_ = 0, refused_ = 0;
+};
+
+}  // namespace aeolis::reconstruction

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "common/result.hpp"
+#include "dictionaries/dictionary.hpp"
+#include "flight/devices/device_messages.hpp"
+#include "flight/gnc/navigation/strapdown.hpp"
+#include "telemetry/decommutator.hpp"
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace aeolis::reconstruction {
+
+/// The state that flight navigated, as of a tick.
+struct Navigated {
+    Sclk at;
+    flight::gnc::NavigatedState state;
+};
+
+/// Readings of the radar's beams with one tick.
+struct BeamsAt {
+    Sclk at;
+    std::vector<flight::RadarBeam> beams;
+};
+
+/// How much was recorded of a packet.
+struct Recorded {
+    std::uint64_t packets = 0, octets = 0;
+    std::map<std::int64_t, std::uint64_t> octets_in;  ///< by whole second of SCLK
+};
+
+/// What a recording holds of the path: each reading of IMU and radar, the navigated state, ground's solution. R52
+///
+/// In       packets of one landing, in any order, each any number of times       Out   each reading once, in order
+/// Faults   a packet that cannot be decoded is left out and counted
+class RecordedLanding {
+  public:
+    /// Fails when the dictionary lacks a packet or a field that is needed.
+    static Result<RecordedLanding> with(const dictionary::Dictionary& dictionary);
+
+    void add(std::span<const std::uint8_t> packet);
+
+    const std::map<std::uint32_t, flight::ImuSample>& imu() const { return imu_; }  ///< by their count
+    std::vector<BeamsAt> beams() const;
+    std::vector<Navigated> navigated() const;
+    /// When the reading with count 0 ended: SCLK of the first tick to which a packet's last reading was new, less 5 ms
+    /// a reading. Exact to 1/1600 s, the grid of ticks and readings, after two dozen packets.
+    Sclk imu_began() const { return imu_began_; }
+    std::optional<double> target_radius_m() const { return target_radius_m_; }
+    std::optional<Sclk> entry() const { return entry_; }  ///< of the last parameters
+    /// When flight first reported an event, by the name of its packet.
+    std::optional<Sclk> reported(const std::string& event) const;
+    std::uint64_t not_decoded() const { return not_decoded_; }
+    /// Packets of each name.
+    const std::map<std::string, Recorded>& packets() const { return packets_; }
+
+  private:
+    /// Places of the wanted fields in a packet.
+    struct Fields {
+        std::size_t packet = 0;
+        std::vector<std::size_t> places;
+    };
+    explicit RecordedLanding(const dictionary::Dictionary& dictionary)
+        : dictionary_(&dictionary), decommutator_(dictionary) {}
+
+    double value(const Fields& fields, std::size_t which) const {
+        return decoded_.value[fields.places[which]].value_or(0.0);
+    }
+    void add_rows(std::span<const std::uint8_t> packet);
+    void add_imu_row(Sclk packet_time);
+    void add_beam();
+    void add_navigated();
+    void add_solution();
+
+    const dictionary::Dictionary* dictionary_;
+    telemetry::Decommutator decommutator_;
+    telemetry::Decoded decoded_;
+    Fields imu_table_, radar_table_, imu_row_, beam_row_, navigation_, solution_;
+    std::map<std::uint32_t, flight::ImuSample> imu_;
+    std::map<std::int64_t, std::map<std::uint8_t, flight::RadarBeam>> beams_;  ///< by tick and beam
+    std::map<std::int64_t, flight::gnc::NavigatedState> navigated_;            ///< by tick
+    Sclk imu_began_;
+    std::optional<double> target_radius_m_;
+    std::optional<Sclk> entry_;
+    Sclk solution_at_;
+    std::map<std::string, Recorded> packets_;
+    std::map<std::string, Sclk> reported_;
+    std::uint64_t not_decoded_ = 0;
+};
+
+}  // namespace aeolis::reconstruction
