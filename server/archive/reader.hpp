@@ -183,6 +183,9 @@ class Reader {
     Result<std::vector<ChannelValue>> latest(RunId run, std::optional<Sclk> at);
 
     Result<v1::PacketList> packets(RunId run, const PacketQuery& query);
+    /// Passes the octets of each packet of the run's recording to `take`, in the order of receipt.
+    using TakePacket = std::function<void(std::span<const std::uint8_t> packet)>;
+    Result<void> each_recorded_packet(RunId run, const TakePacket& take);
     Result<v1::EventList> events(RunId run, const EventQuery& query);
     Result<v1::ToneList> tones(RunId run, const ToneQuery& query);
     Result<v1::ExplanationList> explanations(RunId run, const ExplanationQuery& query);

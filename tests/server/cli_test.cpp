@@ -164,7 +164,7 @@ TEST_CASE(
 
 TEST_CASE("bad use of the program is answered in one line that names it, with exit code 2", "[cli]") {
     if (program() == nullptr) return;
-    const std::array<std::pair<const char*, const char*>, 24> table{{
+    const std::array<std::pair<const char*, const char*>, 25> table{{
         {"frob", "there is no command 'frob'"},
         {"--frob", "there is no option '--frob'"},
         {"timeline frob", "there is no command 'timeline frob'"},
@@ -176,6 +176,7 @@ TEST_CASE("bad use of the program is answered in one line that names it, with ex
         {"export --run 1 --format xml", "xml not in {csv,jsonl}"},
         {"export --run 1 --csv --format jsonl", "excludes"},
         {"tones", "subcommand"},
+        {"reconstruct --archive /nope", "--run is required"},
         {"rehearse --scenario nominal_auto --seed -1", "not a whole number of at most 15 digits: -1"},
         {"rehearse", "--scenario"},
         {"campaign --scenario campaign", "--cases"},
@@ -332,6 +333,33 @@ TEST_CASE("a landing's archive is verified, exported, backed up, tabulated and p
     says("archive vacuum --archive " + in("b.db"), "octets, before");
     CHECK(run(program(), "export --run 1 --archive " + in("b.db")).code == 1);
     std::filesystem::remove_all(folder);
+}
+
+TEST_CASE("the program rebuilds a landing's path from its archive", "[cli][archive][R52]") {
+    if (program() == nullptr) return;
+    const aeolis::test::TemporaryFolder folder;
+    const auto in = [&](const char* name) { return (folder / name).string(); };
+    REQUIRE(run(program(), "rehearse --scenario nominal_auto --archive " + in("a.db")).code == 0);
+    const std::string of = "reconstruct --run 1 --archive " + in("a.db");
+    const auto rebuilt = run(program(), of + " --out " + in("path.csv"));
+    INFO(rebuilt.text);
+    CHECK(rebuilt.code == 0);
+    for (const char* words : {"ImuTable", "most in a second", "TOUCHDOWN", " 0 missing and filled, 0 gaps"})
+        CHECK_THAT(rebuilt.text, Catch::Contains(words));
+    std::ifstream path{in("path.csv")};
+    std::string line;
+    REQUIRE(std::getline(path, line));
+    CHECK_THAT(line, Catch::StartsWith("e_s,sclk,p_x_m,"));
+    REQUIRE(std::getline(path, line));
+    CHECK_THAT(line, Catch::StartsWith("-2"));
+    int rows = 1;
+    while (std::getline(path, line)) ++rows;
+    CHECK(rows > 8 * 440);
+
+    const auto again = run(program(), of + " --out " + in("path.csv"));
+    CHECK(again.code == 1);
+    CHECK_THAT(again.text, Catch::Contains("path.csv is there already"));
+    CHECK(run(program(), "reconstruct --run 2 --archive " + in("a.db")).code == 1);
 }
 
 TEST_CASE("each question in SQL of docs/archive.md is answered on a landing that was flown", "[cli][archive][R43]") {

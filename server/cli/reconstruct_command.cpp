@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/archive/reader.hpp"
+#include "server/cli/commands.hpp"
+#include "server/cli/options.hpp"
+#include "server/cli/recorded_dictionary.hpp"
+#include "server/cli/shipped_paths.hpp"
+#include "server/reconstruction/path.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <fmt/format.h>
+#include <fstream>
+#include <memory>
+#include <numbers>
+#include <string>
+
+namespace aeolis::server {
+namespace {
+
+using reconstruction::Path;
+using reconstruction::PathPoint;
+using reconstruction::RecordedLanding;
+using reconstruction::Vector3;
+
+constexpr double degree_rad = std::numbers::pi / 180.0;
+/// The events by which the summary tells of the path.
+constexpr std::array moments{"GUIDANCE_START",       "PARACHUTE_DEPLOY", "HEATSHIELD_SEPARATION", "RADAR_LOCK",
+                             "BACKSHELL_SEPARATION", "SKY_CRANE_START",  "ROVER_SEPARATION",      "TOUCHDOWN"};
+
+struct ReconstructOptions {
+    ArchiveOptions of;
+    std::filesystem::path out;
+};
+
+Result<void> write_csv(const std::filesystem::path& file, const Path& path) {
+    if (std::filesystem::exists(file)) return Error{file.string() + " is there already"};
+    std::ofstream to{file, std::ios::binary};
+    to << "e_s,sclk,p_x_m,p_y_m,p_z_m,v_x_mps,v_y_mps,v_z_mps,q_w,q_x,q_y,q_z,altitude_m,speed_mps,latitude_deg,"
+          "longitude_deg,sigma_p_m,sigma_v_mps,sigma_attitude_deg\n";
+    for (const PathPoint& point : path.points) {
+        const auto& [p, v, q] = point.state;
+        const double radius_m = p.norm();
+        to << fmt::format("{:.6f},{:.6f},{:.3f},{:.3f},{:.3f},{:.5f},{:.5f},{:.5f},{:.9f},{:.9f},{:.9f},{:.9f},{:.3f},"
+                          "{:.5f},{:.7f},{:.7f},{:.3f},{:.5f},{:.6f}\n",
+                          point.at - path.entry, point.at.seconds, p.x(), p.y(), p.z(), v.x(), v.y(), v.z(), q.w(),
+                          q.x(), q.y(), q.z(), radius_m - path.target_radius_m, v.norm(),
+                          std::asin(p.z() / radius_m) / degree_rad, std::atan2(p.y(), p.x()) / degree_rad,
+                          point.sigma_p_m.norm(), point.sigma_v_mps.norm(), point.sigma_angle_rad.norm() / degree_rad);
+    }
+    to.close();
+    if (to.fail()) return Error{file.string() + " cannot be written"};
+    return {};
+}
+
+void print_recorded(const RecordedLanding& recorded) {
+    fmt::print("\n{:<22}{:>9}{:>12}{:>20}\n", "recorded packet", "packets", "octets", "most in a second");
+    reconstruction::Recorded all;
+    const auto row = [](const std::string& name, const reconstruction::Recorded& one) {
+        std::uint64_t most = 0;
+        for (const auto& [second, octets] : one.octets_in) most = std::max(most, octets);
+        fmt::print("{:<22}{:>9}{:>12}{:>20}\n", name, one.packets, one.octets, most);
+    };
+    for (const auto& [name, one] : recorded.packets()) {
+        row(name, one);
+        all.packets += one.packets;
+        all.octets += one.octets;
+        for (const auto& [second, octets] : one.octets_in) all.octets_in[second] += octets;
+    }
+    row("all", all);
+}
+
+void print_path(const Path& path, const RecordedLanding& recorded) {
+    fmt::print("\n{:<22}{:>9}{:>11}{:>10}{:>10}{:>9}{:>10}   {}\n", "path at", "E+ s", "altitude m", "speed m/s", "+-m",
+               "+-m/s", "+-deg", "navigated less rebuilt: m, m/s, deg");
+    const auto row = [&](const char* name, Sclk at) {
+        const auto point = std::ranges::lower_bound(path.points, at, {}, &PathPoint::at);
+        const PathPoint& shown = point == path.points.end() ? path.points.back() : *point;
+        const auto& [p, v, q] = shown.state;
+        fmt::print("{:<22}{:>9.2f}{:>11.1f}{:>10.2f}{:>10.1f}{:>9.3f}{:>10.4f}", name, shown.at - path.entry,
+                   p.norm() - path.target_radius_m, v.norm(), shown.sigma_p_m.norm(), shown.sigma_v_mps.norm(),
+                   shown.sigma_angle_rad.norm() / degree_rad);
+        if (shown.navigated)
+            fmt::print("   {:.1f}, {:.3f}, {:.4f}", (shown.navigated->p_MoB_M - p).norm(),
+                       (shown.navigated->v_MB_M - v).norm(), q.angularDistance(shown.navigated->q_MB) / degree_rad);
+        fmt::print("\n");
+    };
+    row("(begins)", path.points.front().at);
+    row("(entry)", path.entry);
+    for (const char* name : moments)
+        if (const auto at = recorded.reported(name)) row(name, *at);
+}
+
+int reconstruct(const ReconstructOptions& options) {
+    int exit_code = 0;
+    const auto said = [](const Error& error) { return failed("reconstruct: " + error.message); };
+    const auto with = recorded_dictionary(options.of.shared.dictionary, {}, exit_code);
+    if (!with) return exit_code;
+    auto reader = archive::Reader::open(options.of.archive, with->dictionary);
+    if (!reader) return said(reader.error());
+    const archive::RunId run{options.of.run.value_or(0)};
+    const auto state = reader->run(run);
+    if (!state) return said(state.error());
+    auto recorded = RecordedLanding::with(with->dictionary);
+    if (!recorded) return said(recorded.error());
+    const auto read = reader->each_recorded_packet(run, [&](auto packet) { recorded->add(packet); });
+    if (!read) return said(read.error());
+    const auto path = reconstruction::reconstruct(*recorded);
+    if (!path) return said(path.error());
+    fmt::print("Run {}: {}, seed {}, {}\n", state->run(), state->scenario(), state->seed(), state->outcome());
+    print_recorded(*recorded);
+    print_path(*path, *recorded);
+    const Vector3& bias = path->accelerometer_bias_mps2;
+    fmt::print(
+        "\n{} readings of the IMU, {} missing and filled, {} gaps; {} readings of radar beams taken, {} refused. "
+        "Accelerometers' bias {:.2e}, {:.2e}, {:.2e} m/s2.\n"
+        "+-: one standard deviation, of the three axes together. Times are those of the vehicle's clock.\n",
+        path->readings, path->readings_filled, path->breaks, path->beams_taken, path->beams_refused, bias.x(), bias.y(),
+        bias.z());
+    if (options.out.empty()) return 0;
+    if (const auto written = write_csv(options.out, *path); !written) return said(written.error());
+    fmt::print("{} points are in {}\n", path->points.size(), options.out.string());
+    return 0;
+}
+
+}  // namespace
+
+void add_reconstruct_command(CLI::App& program, int& exit_code) {
+    const auto options = std::make_shared<ReconstructOptions>();
+    auto& command = *program.add_subcommand(
+        "reconstruct", "rebuilds the path of a landing from its recording alone: position, velocity and attitude from "
+                       "entry to touchdown, with their standard deviations");
+    add_archive_file(command, options->of.archive);
+    command.add_option("--dictionary", options->of.shared.dictionary, "directory of the mission's dictionary")
+        ->capture_default_str();
+    command.add_option("--run", options->of.run, "number of the run")->required()->check(whole_number());
+    command.add_option("--out", options->out, "write the path, eight rows a second, to this new CSV file");
+    command.callback([options, &exit_code] { exit_code = reconstruct(*options); });
+}
+
+}  // namespace aeolis::server
