@@ -259,8 +259,8 @@ const flight::DeviceOutputs* Landing::State::run_computers(bool skipped) {
 
 const flight::DeviceOutputs* Landing::State::run_gnc_alone() {
     const flight::DeviceOutputs& commands = gnc_alone->cycle(world.sense());
-    for (const flight::gnc::Trigger trigger : gnc_alone->told().triggers)
-        if (const char* name = decided_by_gnc(trigger)) report.events.push_back(moment(name, world.truth()));
+    for (const auto& one : gnc_alone->told().triggers)
+        if (const char* name = decided_by_gnc(one.trigger)) report.events.push_back(moment(name, world.truth()));
     return &commands;
 }
 

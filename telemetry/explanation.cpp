@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "telemetry/explanation.hpp"
 
+#include "dictionaries/state_machine_events.hpp"
 #include "telemetry/text.hpp"
 
 #include <algorithm>
@@ -34,15 +35,61 @@ std::string symbol_of(const std::string& comparison) {
     return comparison;
 }
 
-std::string subject_of(const dictionary::Dictionary& dictionary, const std::string& decision, double number) {
-    if (decision == "timepoint" || decision == "tone") return reference_text(dictionary, decision, number);
+/// The row of a number in a packet, where there is such a row.
+template <typename Rows>
+const auto* row_of(const Rows& rows, double number) {
+    const bool is_there = number >= 0.0 && number < static_cast<double>(rows.size());
+    return is_there ? &rows[static_cast<std::size_t>(number)] : nullptr;
+}
+
+/// The name of a numbered row; the number where there is none.
+template <typename Rows>
+std::string name_in(const Rows& rows, double number) {
+    const auto* row = row_of(rows, number);
+    return row != nullptr && !row->name.empty() ? row->name : named_value_text("number", number);
+}
+
+/// The label of a number in the enumerated fields of that name, "edl_phase"; none where no packet has such a field.
+std::optional<std::string> label_in(const dictionary::Dictionary& dictionary, std::string_view name, double number) {
+    for (const dictionary::Packet& packet : dictionary.packets) {
+        const auto field = field_index(packet, name);
+        if (!field || packet.fields[*field].type.kind != dictionary::ValueKind::enumerated) continue;
+        return number_text(packet.fields[*field].type, number);
+    }
+    return std::nullopt;
+}
+
+std::string event_in(const dictionary::Dictionary& dictionary, std::string_view machine, double number) {
+    for (const dictionary::StateMachineTable& table : dictionary.state_machines) {
+        if (table.name != machine) continue;
+        const auto events = dictionary::events_of(table);
+        if (const std::string* event = row_of(events, number)) return *event;
+    }
+    return named_value_text("number", number);
+}
+
+/// The name that a decision's subject stands for; empty where the decision needs none.
+std::string subject_of(const dictionary::Dictionary& dictionary, std::string_view decision, double number) {
+    if (decision == "timepoint") return name_in(dictionary.timeline, number);
+    if (decision == "tone") return name_in(dictionary.tones, number);
     if (decision == "sub_constraint") return reference_text(dictionary, "constraint", number);
-    if (decision == "command" || decision == "do_edl" || decision == "set_parameters")
-        return reference_text(dictionary, "opcode", number);
-    if (decision == "bank_reversal") return std::to_string(static_cast<unsigned>(number));
-    // "edl_phase", "gnc_mode": the subject is the new value of the channel of that name.
-    const dictionary::Channel* channel = dictionary.channel(decision);
-    return channel != nullptr ? number_text(channel->type, number) : std::string{};
+    if (decision == "command") return reference_text(dictionary, "opcode", number);
+    if (decision == "bank_reversal") return named_value_text("number", number);
+    // "edl_phase", "gnc_mode": the subject is the new value of the field of that name.
+    return label_in(dictionary, decision, number).value_or("");
+}
+
+/// What a condition names rather than measures, by the ending of its quantity; none for an amount.
+std::optional<std::string> named_by(const dictionary::Dictionary& dictionary, std::string_view quantity,
+                                    double number) {
+    if (quantity.ends_with("_tone")) return name_in(dictionary.tones, number);
+    if (quantity.ends_with("_timepoint")) return name_in(dictionary.timeline, number);
+    if (quantity == "unsafe_anchor") return name_in(dictionary.anchors, number);
+    if (quantity == "previous_mode") return label_in(dictionary, "gnc_mode", number);
+    if (quantity == "previous_phase") return label_in(dictionary, "edl_phase", number);
+    if (quantity == "mode_event") return event_in(dictionary, "GncMode", number);
+    if (quantity == "phase_event") return event_in(dictionary, "EdlPhase", number);
+    return std::nullopt;
 }
 
 /// The opposite of a condition that does not hold: of "<= 405.0", "> 405.0".
@@ -55,30 +102,43 @@ std::string opposite_of(const std::string& symbol) {
     return "not " + symbol;
 }
 
-/// Whether the quantity is a tone's number, whose name is added: "overtaking_tone 50 radar_lock".
-bool names_a_tone(const std::string& quantity) {
-    return quantity.ends_with("_tone");
+/// Whether a condition compares a fact, which is or is not.
+bool is_fact(const Condition& condition) {
+    const auto is_bit = [](double value) { return value == 0.0 || value == 1.0; };
+    return condition.comparison == "==" && is_bit(condition.value) && is_bit(condition.bound);
 }
 
 std::string sentence_of(const dictionary::Dictionary& dictionary, const Condition& condition) {
-    if (names_a_tone(condition.quantity))
-        return condition.quantity + " " + reference_text(dictionary, "tone", condition.value);
-    return std::string{without_unit(condition.quantity)} + " " + named_value_text(condition.quantity, condition.value) +
-           " " + (condition.holds ? condition.comparison : opposite_of(condition.comparison)) + " " +
-           named_value_text(condition.quantity, condition.bound);
+    const std::string& quantity = condition.quantity;
+    if (const auto name = named_by(dictionary, quantity, condition.value))
+        return in_words(quantity) + " " + in_words(*name);
+    if (is_fact(condition)) return in_words(quantity) + (condition.value != 0.0 ? ": yes" : ": no");
+    return in_words(without_unit(quantity)) + " " + named_value_text(quantity, condition.value) + " " +
+           (condition.holds ? condition.comparison : opposite_of(condition.comparison)) + " " +
+           named_value_text(quantity, condition.bound);
 }
 
-/// All conditions in order; of a held decision first the unmet ones, then in brackets the met ones.
+/// All conditions in order; of a decision that was held or refused first the unmet ones, then in brackets the others.
 std::string sentences_of(const dictionary::Dictionary& dictionary, const Explanation& explanation) {
-    const bool held = explanation.verdict == "held";
+    const bool unmet_first = explanation.verdict == "held" || explanation.verdict == "refused";
     std::string text;
     std::string there;
     for (const Condition& condition : explanation.conditions) {
-        std::string& into = held && condition.holds ? there : text;
+        std::string& into = unmet_first && condition.holds ? there : text;
         into += (into.empty() ? "" : "; ") + sentence_of(dictionary, condition);
     }
     if (there.empty()) return text;
     return text.empty() ? there : text + " (" + there + ")";
+}
+
+/// "parachute deploy decided", "command EDL_DO_EDL refused", "GNC mode changed to range control"
+std::string opening_of(const Explanation& explanation) {
+    const std::string decision = in_words(explanation.decision);
+    if (explanation.subject.empty()) return decision + " " + explanation.verdict;
+    const bool mnemonic = explanation.decision == "command";
+    const std::string subject = mnemonic ? explanation.subject : in_words(explanation.subject);
+    if (explanation.verdict == "changed") return decision + " changed to " + subject;
+    return decision + " " + subject + " " + explanation.verdict;
 }
 
 std::vector<Condition> conditions_of(const Reader& reader) {
@@ -106,9 +166,7 @@ std::optional<Explanation> explain(const dictionary::Dictionary& dictionary, con
     explanation.subject = subject_of(dictionary, explanation.decision, reader.number("subject"));
     explanation.conditions = conditions_of(reader);
 
-    explanation.text = explanation.decision;
-    if (!explanation.subject.empty()) explanation.text += " " + explanation.subject;
-    explanation.text += " " + explanation.verdict;
+    explanation.text = opening_of(explanation);
     if (!explanation.conditions.empty()) explanation.text += ": " + sentences_of(dictionary, explanation);
     explanation.suppressed = static_cast<std::uint32_t>(std::max(reader.number("suppressed"), 0.0));
     if (explanation.suppressed > 0)

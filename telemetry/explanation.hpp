@@ -21,7 +21,7 @@ struct Condition {
 
 /// A decision of the flight software with its conditions, in words. R38
 struct Explanation {
-    std::string text;  ///< "parachute_deploy fired: speed 404.6 m/s <= 405.0 m/s"
+    std::string text;  ///< "parachute deploy decided: speed 404.6 m/s <= 405.0 m/s"
     std::string decision, verdict;
     std::string subject;  ///< name of the timepoint, command or tone concerned; may be empty
     std::vector<Condition> conditions;
@@ -32,9 +32,9 @@ struct Explanation {
 ///
 /// The packet's fields: decision, verdict, subject, condition_count, then for each slot k from 1 to 4: condition_k (the
 /// quantity), value_k, bound_k, comparison_k (lt, le, eq, ge, gt), holds_k; and suppressed. The text of a condition
-/// that does not hold states the opposite: "speed 407.1 m/s > 405.0 m/s". The decision's label says what number
-/// `subject` is: a timepoint, a tone, a bank reversal, an opcode or a channel's new value; other decisions need no
-/// subject.
+/// that does not hold states the opposite: "speed 407.1 m/s > 405.0 m/s". A fact reads "parameters received: yes". The
+/// decision's label says what number `subject` is: a timepoint, a tone, a bank reversal, an opcode or a field's new
+/// value; other decisions need no subject.
 std::optional<Explanation> explain(const dictionary::Dictionary& dictionary, const Decoded& decoded);
 
 }  // namespace aeolis::telemetry

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "telemetry/text.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <cstdio>
 
@@ -21,8 +23,18 @@ constexpr std::array notations{
     Notation{"s", "sclk", 3},    Notation{"g", "g", 2},           Notation{"kg", "kg", 1},
     Notation{"N", "N", 0},       Notation{"Pa", "Pa", 1},         Notation{"%", "percent", 1},
     Notation{"percent", "", 1},  Notation{"octets", "octets", 0}, Notation{"Hz", "hz", 2},
-    Notation{"dBHz", "dbhz", 1},
+    Notation{"dBHz", "dbhz", 1}, Notation{"", "mach", 2},
 };
+
+/// Words of names that are written in capitals.
+constexpr std::array<std::string_view, 6> acronyms{"edl", "gnc", "imu", "mfsk", "sufr", "uhf"};
+
+constexpr double kilometres_from_m = 100'000.0;
+constexpr double metres_in_km = 1000.0;
+constexpr double slow_below_mps = 10.0;
+constexpr double tenths_from_s = 100.0;
+constexpr double seconds_in_hour = 3600.0;
+constexpr double seconds_in_minute = 60.0;
 
 bool is_whole(double value) {
     return value == std::floor(value) && std::abs(value) < 1e15;
@@ -42,7 +54,7 @@ std::string digits(double value, std::optional<int> decimals) {
 
 const Notation* notation_of_unit(std::string_view unit) {
     for (const Notation& notation : notations)
-        if (notation.unit == unit) return &notation;
+        if (!unit.empty() && notation.unit == unit) return &notation;
     return nullptr;
 }
 
@@ -54,18 +66,44 @@ const Notation* notation_of_name(std::string_view name) {
     return nullptr;
 }
 
+/// Without the zeros at the end of a fraction.
+std::string trimmed(std::string number) {
+    if (number.find('.') == std::string::npos) return number;
+    number.erase(number.find_last_not_of('0') + 1);
+    if (number.back() == '.') number.pop_back();
+    return number;
+}
+
+/// "14.016 s", "4 h 59 min 24 s"
+std::string duration_text(double value_s) {
+    double left_s = std::abs(value_s);
+    const int decimals = left_s >= tenths_from_s ? 1 : 3;
+    if (left_s < seconds_in_hour || left_s > 1e12) return trimmed(digits(value_s, decimals)) + " s";
+    const double scale = std::pow(10.0, decimals);
+    left_s = std::round(left_s * scale) / scale;
+    const double hours = std::floor(left_s / seconds_in_hour);
+    left_s -= hours * seconds_in_hour;
+    const double minutes = std::floor(left_s / seconds_in_minute);
+    left_s -= minutes * seconds_in_minute;
+    std::string text = (value_s < 0.0 ? "-" : "") + digits(hours, 0) + " h";
+    if (minutes > 0.0) text += " " + digits(minutes, 0) + " min";
+    if (left_s > 0.0) text += " " + trimmed(digits(left_s, decimals)) + " s";
+    return text;
+}
+
 bool is_reference(std::string_view field) {
     return field == "opcode" || field == "timepoint" || field == "anchor" || field == "tone" || field == "constraint";
 }
 
 std::string moment_words(const dictionary::Dictionary& dictionary, const dictionary::Moment& moment) {
+    const auto timepoint = [&] { return in_words(dictionary.timeline[moment.index].name); };
     switch (moment.kind) {
-    case dictionary::Moment::Kind::anchor: return "the anchor " + dictionary.anchors[moment.index].name;
-    case dictionary::Moment::Kind::triggered: return "the triggering of " + dictionary.timeline[moment.index].name;
-    case dictionary::Moment::Kind::fired: return "the firing of " + dictionary.timeline[moment.index].name;
+    case dictionary::Moment::Kind::anchor: return "the anchor " + in_words(dictionary.anchors[moment.index].name);
+    case dictionary::Moment::Kind::triggered: return "the triggering of " + timepoint();
+    case dictionary::Moment::Kind::fired: return "the firing of " + timepoint();
     case dictionary::Moment::Kind::do_edl: break;
     }
-    return "the acceptance of do edl";
+    return "the acceptance of \"do EDL\"";
 }
 
 const std::string* label_of(const dictionary::Type& type, double value) {
@@ -109,7 +147,23 @@ std::string_view without_unit(std::string_view name) {
 std::string named_value_text(std::string_view name, double value) {
     const Notation* notation = notation_of_name(name);
     if (notation == nullptr) return digits(value, is_whole(value) ? std::optional{0} : std::nullopt);
-    return digits(value, notation->decimals) + " " + std::string{notation->unit};
+    if (notation->unit == "s") return duration_text(value);
+    if (notation->unit == "m/s" && std::abs(value) < slow_below_mps) return digits(value, 2) + " m/s";
+    if (notation->unit == "m" && std::abs(value) >= kilometres_from_m)
+        return digits(value / metres_in_km, notation->decimals) + " km";
+    return digits(value, notation->decimals) + (notation->unit.empty() ? "" : " ") + std::string{notation->unit};
+}
+
+std::string in_words(std::string_view name) {
+    std::string words;
+    while (!name.empty()) {
+        const std::string_view word = name.substr(0, name.find('_'));
+        name.remove_prefix(std::min(name.size(), word.size() + 1));
+        if (!words.empty()) words += ' ';
+        const bool acronym = std::ranges::find(acronyms, word) != acronyms.end();
+        for (const char c : word) words += acronym ? static_cast<char>(std::toupper(static_cast<unsigned char>(c))) : c;
+    }
+    return words;
 }
 
 std::string reference_text(const dictionary::Dictionary& dictionary, std::string_view field, double number) {

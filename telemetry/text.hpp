@@ -26,7 +26,13 @@ std::string value_text(const dictionary::Type& type, std::optional<double> value
 /// its two moments and its line; an unknown number alone.
 std::string reference_text(const dictionary::Dictionary& dictionary, std::string_view field, double number);
 
+/// A name as people say it: "straighten_up" is "straighten up", "gnc_mode" is "GNC mode".
+std::string in_words(std::string_view name);
+
 /// For a number whose unit is only in the ending of its name, "speed_mps": "speed" and "12.3 m/s".
+///
+/// As people say it: from 100 km on in kilometres, from an hour on in hours, minutes and seconds; slow speeds to a
+/// hundredth, and long times to a tenth.
 std::string_view without_unit(std::string_view name);  ///< "speed"
 std::string named_value_text(std::string_view name, double value);
 

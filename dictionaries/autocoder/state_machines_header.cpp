@@ -2,21 +2,12 @@
 #include "dictionaries/autocoder/state_machines_header.hpp"
 
 #include "dictionaries/autocoder/cpp_text.hpp"
+#include "dictionaries/state_machine_events.hpp"
 
-#include <algorithm>
 #include <sstream>
-#include <vector>
 
 namespace aeolis::dictionary::autocoder {
 namespace {
-
-/// The machine's events, in the order of first use in the sheet.
-std::vector<std::string> events_of(const StateMachineTable& machine) {
-    std::vector<std::string> events;
-    for (const StateTransition& row : machine.transitions)
-        if (std::ranges::find(events, row.event) == events.end()) events.push_back(row.event);
-    return events;
-}
 
 void write_machine(const StateMachineTable& machine, std::ostringstream& out) {
     const std::string state = camel_case(machine.name);

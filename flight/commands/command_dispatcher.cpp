@@ -3,6 +3,7 @@
 
 #include "common/cltu.hpp"
 #include "common/space_packet.hpp"
+#include "flight/explanation/explanation.hpp"
 
 #include <array>
 #include <span>
@@ -10,7 +11,13 @@
 namespace aeolis::flight {
 namespace {
 
-void refuse(Outbox& out, CommandTag tag, CommandRefusal reason) {
+void explain(Outbox& out, const CommandTag& tag, ExplanationVerdict verdict,
+             std::span<const gnc::Condition> conditions) {
+    out.record(explanation(Decision::command, verdict, tag.opcode.value, conditions));
+}
+
+void refuse(Outbox& out, CommandTag tag, CommandRefusal reason, std::span<const gnc::Condition> conditions) {
+    explain(out, tag, ExplanationVerdict::refused, conditions);
     out.event(evr::COMMAND_REFUSED{.opcode = tag.opcode.value, .count = tag.count, .reason = reason});
     out.send(ModuleId::mfsk, ToneRequest{tone::command_refused, out.now()});
 }
@@ -18,9 +25,18 @@ void refuse(Outbox& out, CommandTag tag, CommandRefusal reason) {
 /// Sends the decoded arguments to the owner, or refuses the command with the reason.
 template <typename Command, typename Route>
 void route(Outbox& out, CommandTag tag, std::span<const std::uint8_t> arguments, const Route& to_owner) {
-    if (arguments.size() != Command::argument_octets) return refuse(out, tag, CommandRefusal::bad_length);
+    if (arguments.size() != Command::argument_octets) {
+        const auto octets = static_cast<double>(arguments.size());
+        const gnc::Condition length = arguments.size() > Command::argument_octets
+                                          ? at_most(Quantity::argument_octets, octets, Command::argument_octets)
+                                          : at_least(Quantity::argument_octets, octets, Command::argument_octets);
+        return refuse(out, tag, CommandRefusal::bad_length, {&length, 1});
+    }
     const auto command = Command::decode(arguments);
-    if (!command) return refuse(out, tag, CommandRefusal::bad_argument);
+    if (!command) {
+        const gnc::Condition in_range = is(Quantity::arguments_in_range, false);
+        return refuse(out, tag, CommandRefusal::bad_argument, {&in_range, 1});
+    }
     to_owner(*command);
 }
 
@@ -78,7 +94,7 @@ void CommandDispatcher::take_packet(std::span<const std::uint8_t> octets, Outbox
     case command::NO_OP::opcode.value:
         return route<command::NO_OP>(out, tag, packet->arguments, [&](const command::NO_OP&) {
             out.event(evr::NO_OP_EXECUTED{});
-            on(CommandOutcome{tag, std::nullopt}, out);
+            on(CommandOutcome{.tag = tag}, out);
         });
     case command::EDL_SET_PARAMETERS::opcode.value:
         return route<command::EDL_SET_PARAMETERS>(out, tag, packet->arguments, [&](const auto& command) {
@@ -111,13 +127,17 @@ void CommandDispatcher::take_packet(std::span<const std::uint8_t> octets, Outbox
         return route<command::EDL_SELECT_UNITS>(out, tag, packet->arguments, [&](const auto& command) {
             out.send(ModuleId::units, SelectUnitsCommand{tag, command});
         });
-    default: return refuse(out, tag, CommandRefusal::unknown_opcode);
+    default: {
+        const gnc::Condition known = is(Quantity::command_known, false);
+        return refuse(out, tag, CommandRefusal::unknown_opcode, {&known, 1});
+    }
     }
 }
 
 void CommandDispatcher::on(const CommandOutcome& outcome, Outbox& out) {
     const CommandTag& tag = outcome.tag;
-    if (outcome.refused) return refuse(out, tag, *outcome.refused);
+    if (outcome.refused) return refuse(out, tag, *outcome.refused, outcome.conditions);
+    explain(out, tag, ExplanationVerdict::accepted, outcome.conditions);
     out.event(evr::COMMAND_ACCEPTED{.opcode = tag.opcode.value, .count = tag.count});
     out.event(evr::COMMAND_EXECUTED{.opcode = tag.opcode.value, .count = tag.count});
 }

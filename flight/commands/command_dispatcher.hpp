@@ -14,7 +14,8 @@ namespace aeolis::flight {
 /// Unpacks uplinked CLTUs, frames and packets, and sends each command to the one module that owns it.
 ///
 /// In      UplinkReceived (any octets), CommandOutcome from the owner, Resume when Second Chance takes over
-/// Out     the command as a message; COMMAND_ACCEPTED and COMMAND_EXECUTED, or COMMAND_REFUSED with the reason;
+/// Out     the command as a message; COMMAND_ACCEPTED and COMMAND_EXECUTED, or COMMAND_REFUSED with the reason; an
+///         Explanation with the conditions by which the owner decided;
 ///         UplinkStatus, which tells ground what to retransmit
 /// Faults  Unreadable input is refused with its reason; nothing is acted on before all of it has been parsed. R3, R23
 ///         After a restart of the computer, no sequenced frame is accepted until ground unlocks the channel;

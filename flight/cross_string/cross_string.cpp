@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "flight/cross_string/cross_string.hpp"
 
+#include "flight/explanation/explanation.hpp"
+
+#include <array>
+
 namespace aeolis::flight {
 namespace {
 
@@ -58,16 +62,18 @@ void CrossString::on(const StoredStatePart& stored, Outbox& out) {
 
 void CrossString::on(const EnableSecondChanceCommand& command, Outbox& out) {
     if (load_role_ == Role::prime) return;
-    std::optional<CommandRefusal> refused;
-    if (off_ || in_control_) refused = CommandRefusal::wrong_phase;
-    if (!refused) {
+    CommandOutcome outcome{.tag = command.tag};
+    outcome.conditions.push_back(is(Quantity::second_chance_off, off_, false));
+    outcome.conditions.push_back(is(Quantity::second_chance_in_control, in_control_, false));
+    if (!all_hold(outcome.conditions)) outcome.refused = CommandRefusal::wrong_phase;
+    if (!outcome.refused) {
         enabled_ = command.enabled;
         if (enabled_)
             out.event(evr::SECOND_CHANCE_ENABLED{});
         else
             out.event(evr::SECOND_CHANCE_DISABLED{});
     }
-    out.send(ModuleId::command_dispatcher, CommandOutcome{command.tag, refused});
+    out.send(ModuleId::command_dispatcher, outcome);
 }
 
 void CrossString::on(const SelectPrimeCommand& command, Outbox& out) {
@@ -83,23 +89,33 @@ void CrossString::on(const OtherRunsBuses& seen, Outbox&) {
 // One computer flies: what the other one does cannot be stopped, nor its bus shared.
 void CrossString::on(const ResumePrimeCommand& command, Outbox& out) {
     if (load_role_ != Role::prime) return;
-    const bool other_flies = other_ran_buses_ && out.now() - *other_ran_buses_ <= prime_silent_s;
-    if (other_flies)
-        out.send(ModuleId::command_dispatcher, CommandOutcome{command.tag, CommandRefusal::wrong_phase});
-    else
-        out.send(ModuleId::edl, command);
+    if (other_ran_buses_) {
+        const auto silent = above(Quantity::other_computer_silent_s, out.now() - *other_ran_buses_, prime_silent_s);
+        if (!silent.holds) {
+            CommandOutcome outcome{.tag = command.tag, .refused = CommandRefusal::wrong_phase};
+            outcome.conditions.push_back(silent);
+            return out.send(ModuleId::command_dispatcher, outcome);
+        }
+    }
+    out.send(ModuleId::edl, command);
 }
 
 bool CrossString::may_take_over(Sclk now, Outbox& out) {
     if (!enabled_ || off_ || in_control_ || latest_.empty() || !heard_) return false;
     const StateHeader prime = latest_.header();
-    const bool due = now - *heard_ > prime_silent_s && prime.begun && prime.separated && !prime.touchdown;
-    const bool fresh = now - prime.time <= state_age_max_s;
-    if (due && !fresh && !too_old_told_) {
-        too_old_told_ = true;
-        out.event(evr::SECOND_CHANCE_STATE_TOO_OLD{.silence_s = now - prime.time});
-    }
-    return due && fresh;
+    const auto silent = above(Quantity::prime_silent_s, now - *heard_, prime_silent_s);
+    const auto separated = is(Quantity::cruise_stage_separated, prime.begun && prime.separated);
+    const auto in_flight = is(Quantity::touchdown_declared, prime.touchdown, false);
+    const auto fresh = at_most(Quantity::state_age_s, now - prime.time, state_age_max_s);
+    const bool due = silent.holds && separated.holds && in_flight.holds;
+    if (!due || (!fresh.holds && too_old_told_)) return false;
+    const std::array conditions{silent, fresh, separated, in_flight};
+    out.record(explanation(Decision::take_over, fresh.holds ? ExplanationVerdict::decided : ExplanationVerdict::refused,
+                           0, conditions));
+    if (fresh.holds) return true;
+    too_old_told_ = true;
+    out.event(evr::SECOND_CHANCE_STATE_TOO_OLD{.silence_s = now - prime.time});
+    return false;
 }
 
 void CrossString::on(const ClockTick& tick, Outbox& out) {

@@ -40,11 +40,15 @@ packet::UnitsHeld held(const UnitSelection& units) {
 }  // namespace
 
 void UnitSelector::on(const SelectUnitsCommand& command, Outbox& out) {
-    if (edl_begun_)
-        return out.send(ModuleId::command_dispatcher, CommandOutcome{command.tag, CommandRefusal::wrong_phase});
+    CommandOutcome outcome{.tag = command.tag};
+    outcome.conditions.push_back(gnc::is(Quantity::edl_enabled, edl_begun_, false));
+    if (edl_begun_) {
+        outcome.refused = CommandRefusal::wrong_phase;
+        return out.send(ModuleId::command_dispatcher, outcome);
+    }
     select(selection_of(command.arguments), out);
     out.event(evr::UNITS_SELECTED{});
-    out.send(ModuleId::command_dispatcher, CommandOutcome{command.tag, std::nullopt});
+    out.send(ModuleId::command_dispatcher, outcome);
 }
 
 void UnitSelector::on(const EdlBegun&, Outbox&) {

@@ -25,6 +25,11 @@ void request_tone(Outbox& out, ToneId tone) {
     out.send(ModuleId::mfsk, ToneRequest{tone, out.now()});
 }
 
+template <typename Enumeration>
+constexpr std::uint16_t number_of(Enumeration value) {
+    return static_cast<std::uint16_t>(value);
+}
+
 }  // namespace
 
 Decision decision_of(gnc::Trigger trigger) {
@@ -111,19 +116,51 @@ void announce(gnc::Trigger trigger, const gnc::Output& gnc, Outbox& out) {
 }
 
 void announce_bank_reversal(const gnc::Output& gnc, Outbox& out) {
+    const gnc::BankReversal& reversal = gnc.bank_reversal;
     auto evr = at_state<evr::BANK_REVERSAL>(gnc);
-    evr.number = gnc.bank_reversal;
+    evr.number = reversal.number;
     evr.bank_deg = single(gnc.bank_command_deg);
     out.event(evr);
     request_tone(out, tone::bank_reversal);
+    out.record(
+        explanation(Decision::bank_reversal, ExplanationVerdict::decided, reversal.number, reversal.conditions.span()));
 }
 
-void explain(gnc::Trigger trigger, const gnc::Output& gnc, std::uint16_t suppressed, Outbox& out) {
-    out.record(explanation(decision_of(trigger), ExplanationVerdict::fired, 0, gnc.conditions.span(), suppressed));
+void explain(const gnc::JudgedTrigger& fired, std::uint16_t suppressed, Outbox& out) {
+    out.record(
+        explanation(decision_of(fired.trigger), ExplanationVerdict::decided, 0, fired.conditions.span(), suppressed));
+}
+
+void explain(const gnc::ModeChange& change, Outbox& out) {
+    gnc::Conditions conditions;
+    conditions.push_back(names(Quantity::previous_mode, number_of(change.from)));
+    conditions.push_back(names(Quantity::mode_event, number_of(change.event)));
+    if (change.because) conditions.push_back(*change.because);
+    out.record(explanation(Decision::gnc_mode, ExplanationVerdict::changed, number_of(change.to), conditions.span()));
+}
+
+void explain(const gnc::RadarDecision& decision, Outbox& out) {
+    out.record(explanation(Decision::radar_solution,
+                           decision.believed ? ExplanationVerdict::believed : ExplanationVerdict::refused, 0,
+                           decision.conditions.span()));
+}
+
+void explain(const PhaseChange& change, MaybeTime entry, Outbox& out) {
+    gnc::Conditions conditions;
+    conditions.push_back(names(Quantity::previous_phase, number_of(change.from)));
+    conditions.push_back(names(Quantity::phase_event, number_of(change.event)));
+    if (entry.defined()) {
+        const double to_entry_s = *entry.get() - out.now();
+        if (change.event == EdlPhaseEvent::late_cruise_begins)
+            conditions.push_back(at_most(Quantity::time_to_entry_s, to_entry_s, parameters.late_cruise_before_entry_s));
+        if (change.event == EdlPhaseEvent::entry_moves_away)
+            conditions.push_back(above(Quantity::time_to_entry_s, to_entry_s, parameters.late_cruise_before_entry_s));
+    }
+    out.record(explanation(Decision::edl_phase, ExplanationVerdict::changed, number_of(change.to), conditions.span()));
 }
 
 void explain_held(const gnc::Output& gnc, HeldExplanations& held, Outbox& out) {
-    for (const gnc::HeldTrigger& one : gnc.held) held.held(decision_of(one.trigger), 0, one.conditions.span(), out);
+    for (const gnc::JudgedTrigger& one : gnc.held) held.held(decision_of(one.trigger), 0, one.conditions.span(), out);
 }
 
 void explain_held(const Timeline& timeline, HeldExplanations& held, Outbox& out) {
@@ -134,26 +171,13 @@ void explain_held(const Timeline& timeline, HeldExplanations& held, Outbox& out)
         conditions.push_back(at_least(Quantity::reply_wait_s, now - waiting->triggered, waiting->timeout_s));
     } else if (!waiting && now >= timeline.next_desired() + MaybeOffset{worth_telling_after_s} &&
                timeline.next_minimum().defined() && !(now >= timeline.next_minimum())) {
-        const double clock_s = now.seconds;
-        conditions.push_back(at_least(Quantity::clock_sclk, clock_s, timeline.next_minimum().get()->seconds));
-        conditions.push_back(at_most(Quantity::desired_sclk, timeline.next_desired().get()->seconds, clock_s));
+        const double since_previous_s = now - *timeline.previous_fired().get();
+        const double minimum_s = *timeline.next_minimum().get() - *timeline.previous_fired().get();
+        conditions.push_back(at_least(Quantity::time_since_previous_timepoint_s, since_previous_s, minimum_s));
+        conditions.push_back(
+            at_least(Quantity::time_overdue_s, now - *timeline.next_desired().get(), worth_telling_after_s));
     }
     if (!conditions.empty()) held.held(Decision::timepoint, timeline.current().value, conditions.span(), out);
-}
-
-void explain_do_edl(std::optional<CommandRefusal> refused, MaybeTime entry, MaybeTime first_desired, Outbox& out) {
-    const double now_s = out.now().seconds;
-    FixedVector<gnc::Condition, 4> conditions;
-    conditions.push_back(is(Quantity::parameters_received, refused == CommandRefusal::no_parameters ? 0.0 : 1.0, 1.0));
-    if (refused == CommandRefusal::inhibited) conditions.push_back(is(Quantity::fault_inhibit, 1.0, 0.0));
-    if (entry.defined())
-        conditions.push_back(
-            at_most(Quantity::time_to_entry_s, entry.get()->seconds - now_s, parameters.late_cruise_before_entry_s));
-    if (first_desired.defined())
-        conditions.push_back(
-            below(Quantity::clock_sclk, now_s, first_desired.get()->seconds - parameters.do_edl_margin_s));
-    out.record(explanation(Decision::do_edl, refused ? ExplanationVerdict::refused : ExplanationVerdict::fired, 0,
-                           conditions.span()));
 }
 
 void PeakDeceleration::watch(const gnc::Output& gnc, Outbox& out) {

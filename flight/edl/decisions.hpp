@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "flight/edl/phase.hpp"
 #include "flight/explanation/held_explanations.hpp"
 #include "flight/gnc/edl_gnc.hpp"
 #include "flight/kernel/outbox.hpp"
@@ -8,7 +9,7 @@
 
 #include <optional>
 
-// Announces GNC's triggers to timeline and ground: anchor, event, explanation. R17, R38
+// Announces GNC's triggers to timeline and ground: anchor, event. Explains what EdlMain decides. R17, R38
 namespace aeolis::flight {
 
 Decision decision_of(gnc::Trigger trigger);
@@ -19,9 +20,13 @@ std::optional<AnchorId> anchor_of(gnc::Trigger trigger);
 void announce(gnc::Trigger trigger, const gnc::Output& gnc, Outbox& out);
 void announce_bank_reversal(const gnc::Output& gnc, Outbox& out);
 
-/// Explains a decision by its conditions, with values and bounds.
+/// Explains a decision by its own conditions, with values and bounds.
 /// `suppressed`: number of held explanations that were not sent before it.
-void explain(gnc::Trigger trigger, const gnc::Output& gnc, std::uint16_t suppressed, Outbox& out);
+void explain(const gnc::JudgedTrigger& fired, std::uint16_t suppressed, Outbox& out);
+void explain(const gnc::ModeChange& change, Outbox& out);
+void explain(const gnc::RadarDecision& decision, Outbox& out);
+/// `entry`: late cruise is judged by the time to it.
+void explain(const PhaseChange& change, MaybeTime entry, Outbox& out);
 
 /// Explains triggers that are near, and which of their conditions are missing.
 void explain_held(const gnc::Output& gnc, HeldExplanations& held, Outbox& out);
@@ -45,8 +50,5 @@ class PeakDeceleration {
     double speed_mps_ = 0.0;
     bool passed_ = false;
 };
-
-/// Explains why "do edl" was accepted or refused. R23
-void explain_do_edl(std::optional<CommandRefusal> refused, MaybeTime entry, MaybeTime first_desired, Outbox& out);
 
 }  // namespace aeolis::flight

@@ -2,16 +2,38 @@
 #include "flight/edl/edl_main.hpp"
 
 #include "flight/edl/solution.hpp"
+#include "flight/explanation/explanation.hpp"
 #include "flight/timeline/actions.hpp"
 
+#include <array>
 #include <cmath>
+#include <span>
 #include <utility>
 
 namespace aeolis::flight {
 namespace {
 
-void answer(Outbox& out, const CommandTag& tag, std::optional<CommandRefusal> refused) {
-    out.send(ModuleId::command_dispatcher, CommandOutcome{tag, refused});
+void answer(Outbox& out, const CommandTag& tag, std::optional<CommandRefusal> refused,
+            std::span<const gnc::Condition> conditions) {
+    out.send(ModuleId::command_dispatcher, CommandOutcome{tag, refused, gnc::telling(conditions)});
+}
+
+/// The bound that an unsafe change breaks, and by how much.
+gnc::Condition broken_by(const timeline::Unsafe& unsafe) {
+    using Why = timeline::Unsafe::Why;
+    switch (unsafe.why) {
+    case Why::decided_in_flight: return is(Quantity::decided_in_flight, true, false);
+    case Why::not_navigated:
+        return unsafe.by_s == 0.0 ? is(Quantity::entry_navigated, false)
+                                  : at_most(Quantity::entry_apart_from_navigation_s, std::abs(unsafe.by_s),
+                                            parameters.entry_moved_max_s);
+    case Why::triggered_already: return is(Quantity::triggered_already, true, false);
+    case Why::overdue: return at_most(Quantity::time_overdue_s, unsafe.by_s, 0.0);
+    case Why::burst: return at_most(Quantity::burst_s, unsafe.by_s, 0.0);
+    case Why::too_soon: return at_most(Quantity::too_soon_s, unsafe.by_s, 0.0);
+    case Why::too_late: return at_most(Quantity::too_late_s, unsafe.by_s, 0.0);
+    }
+    return {};
 }
 
 // The event's enumeration has the values of the rule's.
@@ -122,19 +144,22 @@ void EdlMain::run_gnc(Sclk now, Outbox& out) {
 }
 
 void EdlMain::take_triggers(Sclk now, Outbox& out) {
-    for (const gnc::Trigger trigger : output_.triggers) {
-        if (const auto started = anchor_of(trigger)) timeline_.set_anchor_now(*started, now);
-        announce(trigger, output_, out);
-        explain(trigger, output_, held_.take_suppressed(decision_of(trigger)), out);
+    for (const gnc::JudgedTrigger& fired : output_.triggers) {
+        if (const auto started = anchor_of(fired.trigger)) timeline_.set_anchor_now(*started, now);
+        announce(fired.trigger, output_, out);
+        explain(fired, held_.take_suppressed(decision_of(fired.trigger)), out);
     }
-    if (output_.bank_reversal != 0) announce_bank_reversal(output_, out);
+    for (const gnc::ModeChange& change : output_.mode_changes) explain(change, out);
+    if (output_.bank_reversal.number != 0) announce_bank_reversal(output_, out);
     peak_deceleration_.watch(output_, out);
     unverified_.watch(output_, configuration_, out);
     gnc_health_.watch(output_, out);
 }
 
 void EdlMain::update_phase(Sclk now, Outbox& out) {
-    if (!phase_.follow(output_.mode, configuration_, late_cruise(now))) return;
+    const PhaseChanges changes = phase_.follow(output_.mode, configuration_, late_cruise(now));
+    if (changes.empty()) return;
+    for (const PhaseChange& change : changes) explain(change, entry(), out);
     tell_phase(out);
     out.event(evr::EDL_PHASE_CHANGED{.phase = phase()});
 }
@@ -166,8 +191,8 @@ void EdlMain::on(const CruiseAttitude& attitude, Outbox&) {
     gnc_.on(attitude);
 }
 
-void EdlMain::on(const gnc::RadarSolution& solution, Outbox&) {
-    gnc_.on(solution);
+void EdlMain::on(const gnc::RadarSolution& solution, Outbox& out) {
+    if (const auto decision = gnc_.on(solution)) explain(*decision, out);
 }
 
 void EdlMain::on(const ActionReply& reply, Outbox& out) {
@@ -220,11 +245,18 @@ bool EdlMain::too_late(Sclk now) const {
 
 void EdlMain::on(const ParametersUpdate& update, Outbox& out) {
     // Once GNC navigates by itself, a solution from Earth is older than its own.
-    if (configuration_.enabled) return answer(out, update.tag, CommandRefusal::wrong_phase);
-    if (!possible(update.parameters, out.now())) return answer(out, update.tag, CommandRefusal::bad_argument);
+    FixedVector<gnc::Condition, SolutionConditions::capacity() + 2> conditions;
+    conditions.push_back(is(Quantity::gnc_enabled, configuration_.enabled, false));
+    if (configuration_.enabled) return answer(out, update.tag, CommandRefusal::wrong_phase, conditions);
+    const SolutionConditions of_solution = conditions_of(update.parameters, out.now());
+    if (!all_hold(of_solution)) return answer(out, update.tag, CommandRefusal::bad_argument, of_solution);
     const Sclk entry = Sclk::from_ticks(std::llround(update.parameters.entry_sclk * 64.0));
-    if (const auto unsafe = unsafe_entry(entry, navigated_entry(update.parameters), out.now()))
-        return refuse(*unsafe, update.tag, out);
+    const MaybeTime navigated = navigated_entry(update.parameters);
+    if (const auto unsafe = unsafe_entry(entry, navigated, out.now())) return refuse(*unsafe, update.tag, out);
+    if (navigated.defined())
+        conditions.push_back(at_most(Quantity::entry_apart_from_navigation_s, std::abs(entry - *navigated.get()),
+                                     parameters.entry_moved_max_s));
+    conditions.append(of_solution.span());
     ++revision_;
     parameters_ = update.parameters;
     gnc_.set_solution(solution_of(*parameters_), out.now());
@@ -233,7 +265,7 @@ void EdlMain::on(const ParametersUpdate& update, Outbox& out) {
     out.record(parameters_held());
     out.event(evr::EDL_PARAMETERS_ACCEPTED{.solution_id = parameters_->solution_id});
     out.send(ModuleId::mfsk, ToneRequest{tone::parameters_accepted, out.now()});
-    answer(out, update.tag, std::nullopt);
+    answer(out, update.tag, std::nullopt, conditions);
 }
 
 void EdlMain::on(const DoEdlCommand& command, Outbox& out) {
@@ -250,7 +282,17 @@ void EdlMain::on(const DoEdlCommand& command, Outbox& out) {
         refused = CommandRefusal::too_early;
     else if (too_late(out.now()))
         refused = CommandRefusal::too_late;
-    explain_do_edl(refused, entry(), timeline_.first_desired(), out);
+    FixedVector<gnc::Condition, 8> conditions;
+    conditions.push_back(is(Quantity::parameters_received, parameters_.has_value()));
+    if (entry().defined())
+        conditions.push_back(
+            at_most(Quantity::time_to_entry_s, *entry().get() - out.now(), parameters.late_cruise_before_entry_s));
+    if (timeline_.first_desired().defined())
+        conditions.push_back(above(Quantity::time_to_first_timepoint_s, *timeline_.first_desired().get() - out.now(),
+                                   parameters.do_edl_margin_s));
+    conditions.push_back(is(Quantity::fault_inhibit, inhibited_, false));
+    conditions.push_back(is(Quantity::edl_enabled, timeline_.begun(), false));
+    conditions.push_back(is(Quantity::restart_pending, designation_pending_, false));
     if (!refused) {
         timeline_.begin(out.now());
         constraint_monitor_.note(Moment::of_do_edl(), out.now());
@@ -260,15 +302,17 @@ void EdlMain::on(const DoEdlCommand& command, Outbox& out) {
         out.send(ModuleId::units, EdlBegun{});
         out.send(ModuleId::mfsk, ToneRequest{tone::edl_enabled, out.now()});
     }
-    answer(out, command.tag, refused);
+    answer(out, command.tag, refused, conditions);
 }
 
 void EdlMain::on(const SetTimepointOffsetCommand& command, Outbox& out) {
     const auto& arguments = command.arguments;
     const TimepointId id{arguments.timepoint};
-    if (!is_multiple_of_tick(arguments.desired_offset_s) || !is_multiple_of_tick(arguments.minimum_offset_s) ||
-        id.value >= timeline_.rows().size())
-        return answer(out, command.tag, CommandRefusal::bad_argument);
+    const bool in_ticks =
+        is_multiple_of_tick(arguments.desired_offset_s) && is_multiple_of_tick(arguments.minimum_offset_s);
+    const std::array conditions{is(Quantity::offsets_in_ticks, in_ticks),
+                                below(Quantity::row_number, id.value, static_cast<double>(timeline_.rows().size()))};
+    if (!gnc::all_hold(conditions)) return answer(out, command.tag, CommandRefusal::bad_argument, conditions);
     const timeline::TimepointChange change{id, arguments.desired_offset_s, arguments.minimum_offset_s};
     if (const auto unsafe = change_guard_.judge(timeline_, change, out.now())) return refuse(*unsafe, command.tag, out);
     AEOLIS_CHECK(timeline_.set_timepoint_offsets(id, change.desired_s, change.minimum_s));
@@ -276,15 +320,18 @@ void EdlMain::on(const SetTimepointOffsetCommand& command, Outbox& out) {
     out.event(evr::TIMEPOINT_OFFSET_CHANGED{.timepoint = arguments.timepoint,
                                             .desired_offset_s = arguments.desired_offset_s,
                                             .minimum_offset_s = arguments.minimum_offset_s});
-    answer(out, command.tag, std::nullopt);
+    answer(out, command.tag, std::nullopt, conditions);
 }
 
 void EdlMain::on(const SetAnchorOffsetCommand& command, Outbox& out) {
     const auto& arguments = command.arguments;
     const AnchorId id{arguments.anchor};
     const auto anchors = timeline_.anchors();
-    if (!is_multiple_of_tick(arguments.offset_s) || id.value >= anchors.size() || !anchors[id.value].parent)
-        return answer(out, command.tag, CommandRefusal::bad_argument);
+    const std::array conditions{
+        is(Quantity::offsets_in_ticks, is_multiple_of_tick(arguments.offset_s)),
+        below(Quantity::row_number, id.value, static_cast<double>(anchors.size())),
+        is(Quantity::root_anchor, id.value < anchors.size() && !anchors[id.value].parent, false)};
+    if (!gnc::all_hold(conditions)) return answer(out, command.tag, CommandRefusal::bad_argument, conditions);
     const MaybeTime held = parameters_ ? MaybeTime{Sclk{parameters_->entry_sclk}} : MaybeTime{};
     const auto unsafe = id == anchor::entry
                             ? unsafe_entry(Sclk{arguments.offset_s}, held, out.now())
@@ -293,7 +340,7 @@ void EdlMain::on(const SetAnchorOffsetCommand& command, Outbox& out) {
     AEOLIS_CHECK(timeline_.set_anchor_offset(id, arguments.offset_s));
     ++revision_;
     out.event(evr::ANCHOR_OFFSET_CHANGED{.anchor = arguments.anchor, .offset_s = arguments.offset_s});
-    answer(out, command.tag, std::nullopt);
+    answer(out, command.tag, std::nullopt, conditions);
 }
 
 std::optional<timeline::Unsafe> EdlMain::unsafe_entry(Sclk said, MaybeTime navigated, Sclk now) {
@@ -306,13 +353,16 @@ std::optional<timeline::Unsafe> EdlMain::unsafe_entry(Sclk said, MaybeTime navig
 
 void EdlMain::refuse(const timeline::Unsafe& unsafe, const CommandTag& tag, Outbox& out) {
     const auto why = static_cast<UnsafeChange>(unsafe.why);
-    if (unsafe.what.kind == Moment::Kind::anchor)
+    const bool of_anchor = unsafe.what.kind == Moment::Kind::anchor;
+    if (of_anchor)
         out.event(
             evr::ANCHOR_CHANGE_REFUSED{.anchor = unsafe.what.index, .unsafe_change = why, .unsafe_by_s = unsafe.by_s});
     else
         out.event(evr::TIMELINE_CHANGE_REFUSED{
             .timepoint = unsafe.what.index, .unsafe_change = why, .unsafe_by_s = unsafe.by_s});
-    answer(out, tag, CommandRefusal::unsafe_change);
+    const std::array conditions{
+        broken_by(unsafe), names(of_anchor ? Quantity::unsafe_anchor : Quantity::unsafe_timepoint, unsafe.what.index)};
+    answer(out, tag, CommandRefusal::unsafe_change, conditions);
 }
 
 }  // namespace aeolis::flight

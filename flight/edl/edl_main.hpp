@@ -71,8 +71,8 @@ class EdlMain {
     /// State for another computer. Left out: a present fault, which is reported again, and the monitor.
     template <typename Exchange>
     void carry(Exchange& exchange) {
-        exchange(parameters_, timeline_, change_guard_, configuration_, gnc_, peak_deceleration_, gnc_health_, mode_, phase_,
-                 bridle_m_, was_pre_edl_, was_late_cruise_);
+        exchange(parameters_, timeline_, change_guard_, configuration_, gnc_, peak_deceleration_, gnc_health_, mode_,
+                 phase_, bridle_m_, was_pre_edl_, was_late_cruise_);
     }
 
     const Timeline& timeline() const { return timeline_; }
@@ -84,6 +84,7 @@ class EdlMain {
     void tell_state(Sclk now, Outbox& out);
     void restart(Sclk now, Outbox& out);
     void stand_by(bool is, Outbox& out);
+    void explain_stand_by(Sclk told, Outbox& out) const;
     void tell_phase(Outbox& out) const;
     void take_over(const StateHeader& prime, Sclk now, Outbox& out);
     void watch_approach(Sclk now, Outbox& out);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "flight/edl/edl_main.hpp"
 #include "flight/edl/solution.hpp"
+#include "flight/explanation/explanation.hpp"
 
 #include <utility>
 
@@ -45,8 +46,9 @@ void EdlMain::on(const Resume& resume, Outbox& out) {
 void EdlMain::restart(Sclk now, Outbox& out) {
     // Decided by the last state that the other computer received: it takes over from just the states for which this one
     // stands by.
-    if (timeline_.begun() && separated(load_.told_until.value_or(now))) {
+    if (const Sclk told = load_.told_until.value_or(now); timeline_.begun() && separated(told)) {
         stand_by(true, out);
+        explain_stand_by(told, out);
         return out.event(evr::PRIME_STANDS_BY{});
     }
     out.send(ModuleId::mfsk, ToneRequest{tone::computer_started, now});
@@ -64,13 +66,26 @@ void EdlMain::stand_by(bool is, Outbox& out) {
     for (const ModuleId module : {ModuleId::mfsk, ModuleId::units}) out.send(module, StandBy{.over = !is});
 }
 
+void EdlMain::explain_stand_by(Sclk told, Outbox& out) const {
+    gnc::Conditions conditions;
+    conditions.push_back(is(Quantity::edl_enabled, timeline_.begun()));
+    if (timeline_.triggered(timepoint::cruise_stage_separation))
+        conditions.push_back(is(Quantity::separation_triggered, true));
+    else
+        conditions.push_back(at_most(Quantity::time_to_separation_s,
+                                     *timeline_.anchor_time(anchor::cruise_stage_separation).get() - told, 0.0));
+    out.record(explanation(Decision::stand_by, ExplanationVerdict::decided, 0, conditions.span()));
+}
+
 // The state is as old as the restart and the wait. Overdue timepoints fire at once, and navigation coasts over the gap.
 // After touchdown prime could only do harm.
 void EdlMain::on(const ResumePrimeCommand& command, Outbox& out) {
-    std::optional<CommandRefusal> refused;
-    if (activity_ != Activity::stands_by || configuration_.touchdown_declared) refused = CommandRefusal::wrong_phase;
-    out.send(ModuleId::command_dispatcher, CommandOutcome{command.tag, refused});
-    if (refused) return;
+    CommandOutcome outcome{.tag = command.tag};
+    outcome.conditions.push_back(is(Quantity::prime_stands_by, activity_ == Activity::stands_by));
+    outcome.conditions.push_back(is(Quantity::touchdown_declared, configuration_.touchdown_declared, false));
+    if (!all_hold(outcome.conditions)) outcome.refused = CommandRefusal::wrong_phase;
+    out.send(ModuleId::command_dispatcher, outcome);
+    if (outcome.refused) return;
     stand_by(false, out);
     gnc_.catch_up({}, out.now() - seconds_per_tick);  // the readings of this cycle come with its turn
     (void)timeline_.backtrack(out.now());
@@ -98,13 +113,14 @@ void EdlMain::take_over(const StateHeader& prime, Sclk now, Outbox& out) {
 }
 
 void EdlMain::on(const SelectPrimeCommand& command, Outbox& out) {
-    std::optional<CommandRefusal> refused;
+    CommandOutcome outcome{.tag = command.tag};
+    outcome.conditions.push_back(is(Quantity::edl_enabled, timeline_.begun(), false));
     if (timeline_.begun())
-        refused = CommandRefusal::wrong_phase;
+        outcome.refused = CommandRefusal::wrong_phase;
     else
         out.event(evr::PRIME_DESIGNATED{.string_number = static_cast<std::uint8_t>(command.string_b ? 1 : 0)});
-    out.send(ModuleId::command_dispatcher, CommandOutcome{command.tag, refused});
-    if (refused) return;
+    out.send(ModuleId::command_dispatcher, outcome);
+    if (outcome.refused) return;
     designation_pending_ = true;
     out.send(ModuleId::cross_string, command);
 }

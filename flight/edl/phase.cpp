@@ -31,13 +31,18 @@ std::optional<EdlPhaseEvent> event_of(gnc::Mode mode) {
 
 }  // namespace
 
-bool Phase::follow(gnc::Mode mode, const gnc::Configuration& configuration, bool late_cruise) {
-    const EdlPhase before = state();
-    machine_.take(late_cruise ? EdlPhaseEvent::late_cruise_begins : EdlPhaseEvent::entry_moves_away);
-    if (configuration.cruise_stage_gone) machine_.take(EdlPhaseEvent::cruise_stage_gone);
-    if (const auto event = event_of(mode)) machine_.take(*event);
-    if (configuration.engines_off) machine_.take(EdlPhaseEvent::engines_off);
-    return state() != before;
+void Phase::take(EdlPhaseEvent event, PhaseChanges& changes) {
+    const EdlPhase from = state();
+    if (machine_.take(event)) changes.push_back({from, event, state()});
+}
+
+PhaseChanges Phase::follow(gnc::Mode mode, const gnc::Configuration& configuration, bool late_cruise) {
+    PhaseChanges changes;
+    take(late_cruise ? EdlPhaseEvent::late_cruise_begins : EdlPhaseEvent::entry_moves_away, changes);
+    if (configuration.cruise_stage_gone) take(EdlPhaseEvent::cruise_stage_gone, changes);
+    if (const auto event = event_of(mode)) take(*event, changes);
+    if (configuration.engines_off) take(EdlPhaseEvent::engines_off, changes);
+    return changes;
 }
 
 }  // namespace aeolis::flight

@@ -1,11 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "common/fixed_vector.hpp"
 #include "flight/gnc/edl_gnc.hpp"
 #include "generated/dictionary_flight.hpp"
 #include "generated/state_machines.hpp"
 
 namespace aeolis::flight {
+
+/// A change of phase and its event in state_machines.csv. R38
+struct PhaseChange {
+    EdlPhase from{};
+    EdlPhaseEvent event{};
+    EdlPhase to{};
+};
+using PhaseChanges = FixedVector<PhaseChange, 4>;
 
 /// The vehicle's EDL phase, in the mission's terms.
 /// It follows the timeline and GNC's mode, only by the transitions of state_machines.csv.
@@ -13,8 +22,8 @@ class Phase {
   public:
     EdlPhase state() const { return machine_.state(); }
 
-    /// Updates the phase for this cycle. True when it changed.
-    bool follow(gnc::Mode mode, const gnc::Configuration& configuration, bool late_cruise);
+    /// Updates the phase for this cycle. Returns its changes, in order.
+    PhaseChanges follow(gnc::Mode mode, const gnc::Configuration& configuration, bool late_cruise);
 
     template <typename Exchange>
     void carry(Exchange& exchange) {
@@ -22,6 +31,8 @@ class Phase {
     }
 
   private:
+    void take(EdlPhaseEvent event, PhaseChanges& changes);
+
     EdlPhaseMachine machine_;
 };
 

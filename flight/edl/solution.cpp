@@ -5,8 +5,31 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 
 namespace aeolis::flight {
+namespace {
+
+constexpr double clock_end_s = std::numeric_limits<std::uint32_t>::max();  // of the clock's whole seconds in packets
+
+}  // namespace
+
+SolutionConditions conditions_of(const command::EDL_SET_PARAMETERS& p, Sclk now) {
+    const double radius_m = std::hypot(p.position_x_m, p.position_y_m, p.position_z_m);
+    const double speed_mps = std::hypot(p.velocity_x_mps, p.velocity_y_mps, p.velocity_z_mps);
+    const double to_entry_s = p.entry_sclk - now.seconds;
+    SolutionConditions conditions;
+    conditions.push_back(gnc::above(Quantity::time_to_entry_s, to_entry_s, 0.0));
+    conditions.push_back(
+        gnc::at_most(Quantity::solution_age_s, std::abs(p.epoch_sclk - now.seconds), parameters.solution_age_max_s));
+    conditions.push_back(gnc::at_least(Quantity::solution_radius_m, radius_m, parameters.solution_radius_min_m));
+    conditions.push_back(gnc::at_most(Quantity::solution_radius_m, radius_m, parameters.solution_radius_max_m));
+    conditions.push_back(gnc::at_most(Quantity::solution_speed_mps, speed_mps, parameters.solution_speed_max_mps));
+    conditions.push_back(gnc::at_least(Quantity::epoch_before_entry_s, p.entry_sclk - p.epoch_sclk, 0.0));
+    conditions.push_back(gnc::at_most(Quantity::time_to_entry_s, to_entry_s, clock_end_s - now.seconds));
+    return conditions;
+}
 
 MaybeTime navigated_entry(const command::EDL_SET_PARAMETERS& sent) {
     gnc::Vector3 p_MoB_M{sent.position_x_m, sent.position_y_m, sent.position_z_m};

@@ -4,12 +4,11 @@
 #include "flight/gnc/edl_gnc.hpp"
 #include "generated/dictionary_flight.hpp"
 
-#include <cmath>
-#include <cstdint>
-#include <limits>
 #include <numbers>
 
 namespace aeolis::flight {
+
+using SolutionConditions = FixedVector<gnc::Condition, 8>;
 
 /// Converts the arguments of EDL_SET_PARAMETERS to GNC's form: angles in radians.
 inline gnc::Solution solution_of(const command::EDL_SET_PARAMETERS& p) {
@@ -30,16 +29,9 @@ inline gnc::Solution solution_of(const command::EDL_SET_PARAMETERS& p) {
     return solution;
 }
 
-/// Whether GNC can fly from these parameters.
+/// The conditions under which GNC can fly from these parameters.
 /// Each argument is already within its own range. Checked here: combinations of arguments, and their relation to `now`.
-inline bool possible(const command::EDL_SET_PARAMETERS& p, Sclk now) {
-    const double radius_m = std::hypot(p.position_x_m, p.position_y_m, p.position_z_m);
-    const double speed_mps = std::hypot(p.velocity_x_mps, p.velocity_y_mps, p.velocity_z_mps);
-    return radius_m >= parameters.solution_radius_min_m && radius_m <= parameters.solution_radius_max_m &&
-           speed_mps <= parameters.solution_speed_max_mps && p.entry_sclk > now.seconds &&
-           p.entry_sclk <= std::numeric_limits<std::uint32_t>::max() && p.epoch_sclk <= p.entry_sclk &&
-           std::abs(p.epoch_sclk - now.seconds) <= parameters.solution_age_max_s;
-}
+SolutionConditions conditions_of(const command::EDL_SET_PARAMETERS& p, Sclk now);
 
 /// The time at which the position and velocity reach entry interface, close to `entry_sclk` if that is sound. R51
 /// The state is propagated to `entry_sclk`; the remaining height counts at the descent rate there. Undefined where the

@@ -31,21 +31,24 @@ double magnitude(const std::array<double, 3>& v) {
 
 void tell_reply(const Firing& firing, const TimepointSpec& row, Outbox& out) {
     const double waited_s = firing.fired - firing.triggered;
-    const gnc::Condition wait = at_least(Quantity::reply_wait_s, waited_s, row.reply_timeout_s.value_or(0.0));
+    const double timeout_s = row.reply_timeout_s.value_or(0.0);
     switch (firing.verdict) {
     case FiringVerdict::completed:
     case FiringVerdict::no_operation: return;
     case FiringVerdict::verified:
         return out.event(evr::TIMEPOINT_VERIFIED{.timepoint = firing.timepoint.value, .reply_wait_s = waited_s});
-    case FiringVerdict::refused:
+    case FiringVerdict::refused: {
         tell_refused(firing, out);
-        out.record(explanation(Decision::timepoint, ExplanationVerdict::refused, firing.timepoint.value, {&wait, 1}));
-        return;
+        const gnc::Condition in_time = at_most(Quantity::reply_wait_s, waited_s, timeout_s);
+        return out.record(
+            explanation(Decision::timepoint, ExplanationVerdict::refused, firing.timepoint.value, {&in_time, 1}));
+    }
     case FiringVerdict::unverified: {
         const bool as_done = row.if_unverified != IfUnverified::not_done;
         out.event(evr::TIMEPOINT_UNVERIFIED{.timepoint = firing.timepoint.value, .taken_as_done = as_done});
         out.send(ModuleId::mfsk, ToneRequest{tone::action_unverified, out.now()});
-        const std::array conditions{wait, is(Quantity::taken_as_done, as_done ? 1.0 : 0.0, as_done ? 1.0 : 0.0)};
+        const std::array conditions{at_least(Quantity::reply_wait_s, waited_s, timeout_s),
+                                    is(Quantity::taken_as_done, as_done, as_done)};
         out.record(
             explanation(Decision::timepoint, ExplanationVerdict::unverified, firing.timepoint.value, conditions));
         return;
@@ -99,7 +102,8 @@ void UnverifiedActions::watch(const gnc::Output& gnc, gnc::Configuration& config
         out.event(evr::TIMEPOINT_CONTRADICTED{.timepoint = firing.timepoint.value, .felt_mps2 = single(felt.value)});
         out.send(ModuleId::mfsk, ToneRequest{tone::pyro_not_fired, out.now()});
         const std::array conditions{felt, waited};
-        out.record(explanation(Decision::timepoint, ExplanationVerdict::changed, firing.timepoint.value, conditions));
+        out.record(
+            explanation(Decision::timepoint, ExplanationVerdict::contradicted, firing.timepoint.value, conditions));
     }
 }
 

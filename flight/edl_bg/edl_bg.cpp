@@ -4,7 +4,6 @@
 #include "flight/edl/solution.hpp"
 
 namespace aeolis::flight {
-namespace {}  // namespace
 
 void EdlBg::on(const RadarReturns& returns, Outbox&) {
     latest_ = returns;
@@ -24,10 +23,12 @@ void EdlBg::on(const NavigatedAttitude& attitude, Outbox& out) {
 }
 
 void EdlBg::on(const SetParametersCommand& command, Outbox& out) {
-    if (possible(command.arguments, out.now()))
+    const auto conditions = conditions_of(command.arguments, out.now());
+    if (all_hold(conditions))
         out.send(ModuleId::edl, ParametersUpdate{command.tag, command.arguments});
     else
-        out.send(ModuleId::command_dispatcher, CommandOutcome{command.tag, CommandRefusal::bad_argument});
+        out.send(ModuleId::command_dispatcher,
+                 CommandOutcome{command.tag, CommandRefusal::bad_argument, gnc::telling(conditions)});
 }
 
 void EdlBg::on(const ClockTick& tick, Outbox& out) {

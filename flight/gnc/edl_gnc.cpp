@@ -104,14 +104,18 @@ void EdlGnc::take_cruise_attitude() {
     strapdown_.set_attitude((to_quaternion(attitude.q_MB) * since).normalized());
 }
 
-void EdlGnc::on(const RadarSolution& solution) {
-    if (!navigating_ || solution.altitude_m > parameters.radar_altitude_max_m) return;
+std::optional<RadarDecision> EdlGnc::on(const RadarSolution& solution) {
+    if (!navigating_ || solution.altitude_m > parameters.radar_altitude_max_m) return std::nullopt;
     last_radar_beams_ = solution.beams;
-    const auto correction = radar_filter_.on(solution, measured_at_, measured_.up_M, belief_);
-    if (!correction) return;
-    if (radar_filter_.accepted() == 1) radar_first_ = true;
-    strapdown_.correct(correction->altitude_m * measured_.up_M, correction->v_M_mps);
-    level_by(*correction);
+    const RadarJudgement judged = radar_filter_.on(solution, measured_at_, measured_.up_M, belief_);
+    if (judged.accepted()) {
+        if (radar_filter_.accepted() == 1) radar_first_ = true;
+        strapdown_.correct(judged.correction.altitude_m * measured_.up_M, judged.correction.v_M_mps);
+        level_by(judged.correction);
+    }
+    const bool believed = judged.verdict == RadarJudgement::Verdict::believed;
+    if (!believed && judged.verdict != RadarJudgement::Verdict::refused) return std::nullopt;
+    return RadarDecision{believed, judged.conditions};
 }
 
 // Where attitude is off by a tilt, gravity is taken off in a wrong direction, and the radar sees navigation drift away
@@ -186,9 +190,11 @@ void EdlGnc::measure(Sclk now) {
 }
 
 // The only place where the mode changes, always by state_machines.csv.
-bool EdlGnc::take(GncModeEvent event, Sclk now) {
+bool EdlGnc::take(GncModeEvent event, Sclk now, Output& out, const std::optional<Condition>& because) {
+    const Mode from = mode();
     if (!mode_machine_.take(event)) return false;
     mode_since_ = now;
+    static_cast<void>(out.mode_changes.try_push_back({from, event, mode(), because}));
     return true;
 }
 
@@ -200,8 +206,7 @@ bool EdlGnc::fire(Trigger trigger, const Conditions& conditions, Output& out) {
         return false;
     }
     done = true;
-    out.triggers.push_back(trigger);
-    out.conditions = conditions;
+    out.triggers.push_back({trigger, conditions});
     return true;
 }
 
@@ -227,7 +232,7 @@ void EdlGnc::cycle(const DeviceInputs& in, const Configuration& configuration, O
         if (radar_first_) first.push_back(at_least(Quantity::radar_beams, last_radar_beams_, 1.0));
         fire(Trigger::radar_lock, first, out);
     }
-    follow_configuration(configuration, in.now);
+    follow_configuration(configuration, in.now, out);
     decide_in_air(configuration, in.now, out);
     decide_on_engines(configuration, in.now, out);
     guide_entry(in.now, configuration, out);
@@ -238,20 +243,21 @@ void EdlGnc::cycle(const DeviceInputs& in, const Configuration& configuration, O
 }
 
 // Mode changes that follow the timeline. Conditions that stay true are offered in each cycle; the table selects.
-void EdlGnc::follow_configuration(const Configuration& configuration, Sclk now) {
+void EdlGnc::follow_configuration(const Configuration& configuration, Sclk now, Output& out) {
     using Event = GncModeEvent;
-    if (configuration.enabled) take(Event::enabled, now);
-    if (configuration.guidance_armed) take(Event::guidance_armed, now);
-    if (since(mode_since_) >= sufr::duration_s) take(Event::straightened_up, now);
+    if (configuration.enabled) take(Event::enabled, now, out);
+    if (configuration.guidance_armed) take(Event::guidance_armed, now, out);
+    const Condition straight = at_least(Quantity::time_in_mode_s, since(mode_since_), sufr::duration_s);
+    if (straight.holds) take(Event::straightened_up, now, out, straight);
     if (configuration.parachute_out)
-        take(Event::parachute_out, now);
+        take(Event::parachute_out, now, out);
     else
-        take(Event::parachute_missing, now);
-    if (configuration.backshell_gone && take(Event::backshell_gone, configuration.backshell_time.value_or(now)))
+        take(Event::parachute_missing, now, out);
+    if (configuration.backshell_gone && take(Event::backshell_gone, configuration.backshell_time.value_or(now), out))
         mass_kg_ = load_.powered_descent_mass_kg;
-    if (configuration.sky_crane_started && take(Event::throttled_down, now)) rate_control_.start();
-    if (configuration.touchdown_declared) take(Event::touchdown_declared, now);
-    if (configuration.flyaway_started && take(Event::flyaway_started, now))
+    if (configuration.sky_crane_started && take(Event::throttled_down, now, out)) rate_control_.start();
+    if (configuration.touchdown_declared) take(Event::touchdown_declared, now, out);
+    if (configuration.flyaway_started && take(Event::flyaway_started, now, out))
         mass_kg_ -= load_.rover_mass_kg;  // the bridle is cut before fly-away starts
 }
 
@@ -263,14 +269,14 @@ void EdlGnc::decide_in_air(const Configuration& configuration, Sclk now, Output&
     const GncModeMachine& machine = mode_machine_;
     if (machine.can(GncModeEvent::drag_felt) &&
         fire(Trigger::guidance_start, triggers::guidance_start(force_filter_.drag_mps2()), out))
-        take(GncModeEvent::drag_felt, now);
+        take(GncModeEvent::drag_felt, now, out);
     if (machine.can(GncModeEvent::slow_for_heading) &&
         fire(Trigger::heading_alignment, triggers::heading_alignment(m.speed_mps), out))
-        take(GncModeEvent::slow_for_heading, now);
+        take(GncModeEvent::slow_for_heading, now, out);
     if (machine.can(GncModeEvent::parachute_near) && configuration.sufr_allowed &&
         fire(Trigger::sufr_start, triggers::sufr_start(in_air, m.deceleration_mps2, parachute), out)) {
         bank_at_sufr_rad_ = m.bank_rad;
-        take(GncModeEvent::parachute_near, now);
+        take(GncModeEvent::parachute_near, now, out);
     }
     if (mode() >= Mode::range_control && mode() <= Mode::wait_for_parachute) {
         const auto held = due_for_parachute_.on(triggers::parachute_due(in_air, parachute));
@@ -287,7 +293,7 @@ void EdlGnc::decide_in_air(const Configuration& configuration, Sclk now, Output&
     if (radar_filter_.locked() || since_heatshield_s >= triggers::radar_patience_s) {
         fire(Trigger::engine_priming, priming, out);
     } else {
-        priming.push_back(at_least(Quantity::radar_locked, 0.0, 1.0));
+        priming.push_back(is(Quantity::radar_locked, false));
         hold(Trigger::engine_priming, priming, out);
     }
     const triggers::BackshellBounds backshell{solution_.backshell_altitude_m, solution_.backshell_descent_rate_mps};
@@ -305,7 +311,7 @@ void EdlGnc::decide_on_engines(const Configuration& configuration, Sclk now, Out
     if (mode() == Mode::free_fall) {
         conditions.push_back(at_least(Quantity::time_in_mode_s, since(mode_since_), free_fall_s));
         if (!fire(Trigger::powered_approach, conditions, out)) return;
-        take(GncModeEvent::fallen_clear, now);
+        take(GncModeEvent::fallen_clear, now, out);
         approach_.start(m.altitude_m, m.descent_rate_mps);
         const double duration_s = (m.descent_rate_mps - constant_velocity_mps) / approach_.deceleration_mps2();
         const Vector3& p_MoB_M = strapdown_.state().p_MoB_M;
@@ -313,14 +319,13 @@ void EdlGnc::decide_on_engines(const Configuration& configuration, Sclk now, Out
                       m.level_velocity_M, duration_s);
         divert_from_M_ = p_MoB_M;
     } else if (mode() == Mode::powered_approach) {
-        if (approach_.done(m.altitude_m, m.descent_rate_mps))
-            conditions.push_back(below(Quantity::descent_rate_mps, m.descent_rate_mps, 2.0 * constant_velocity_mps));
-        if (fire(Trigger::constant_velocity, conditions, out)) take(GncModeEvent::approached, now);
+        if (fire(Trigger::constant_velocity, triggers::constant_velocity(m.altitude_m, m.descent_rate_mps), out))
+            take(GncModeEvent::approached, now, out);
     } else if (mode() == Mode::constant_velocity) {
         conditions.push_back(
             at_most(Quantity::altitude_m, m.altitude_m, constant_deceleration_altitude_m(m.descent_rate_mps)));
         if (!fire(Trigger::constant_deceleration, conditions, out)) return;
-        take(GncModeEvent::low_enough, now);
+        take(GncModeEvent::low_enough, now, out);
         deceleration_.start(m.altitude_m, m.descent_rate_mps);
     } else if (mode() == Mode::constant_deceleration) {
         conditions.push_back(at_most(Quantity::descent_rate_mps, m.descent_rate_mps,
@@ -359,10 +364,13 @@ void EdlGnc::guide_entry(Sclk now, const Configuration& configuration, Output& o
         predicted_range_m_ = wanted.predicted_range_m;
         lift_to_drag_command_ = wanted.vertical_lift_to_drag;
         // Near full lift up the two sides hardly differ: a reversal then counts as settled.
-        const bool settled = m.bank_rad * lateral_.sign() > 0.0 ||
-                             wanted.bank_magnitude_rad < parameters.reversal_settled_below_deg * degree;
-        if (lateral_.on(now, m.target.crossrange_m, m.speed_mps, wanted.saturated, settled))
-            out.bank_reversal = lateral_.reversals();
+        const Condition level = below(Quantity::bank_command_deg, wanted.bank_magnitude_rad / degree,
+                                      parameters.reversal_settled_below_deg);
+        const Condition on_its_side = lateral_.sign() > 0 ? above(Quantity::bank_deg, m.bank_rad / degree, 0.0)
+                                                          : below(Quantity::bank_deg, m.bank_rad / degree, 0.0);
+        const Conditions reversal =
+            lateral_.on(now, m.target.crossrange_m, m.speed_mps, wanted.saturated, level.holds ? level : on_its_side);
+        if (all_hold(reversal)) out.bank_reversal = {lateral_.reversals(), reversal};
         if (now.ticks() % static_cast<std::int64_t>(parameters.height_guard_every_ticks) == 0)
             bank_allowed_rad_ = bank_allowed_rad(altitude_when_slow_m(
                 {m.altitude_m, m.speed_mps, m.descent_rate_mps, input.drag_mps2, input.lift_to_drag},

@@ -134,21 +134,41 @@ inline constexpr std::size_t trigger_count = static_cast<std::size_t>(Trigger::t
 
 using Mode = GncMode;  ///< in the order in which they occur
 
-/// A trigger that is near, and the conditions that hold it. R38
-struct HeldTrigger {
+/// A trigger with its own conditions: those that it fired on, or of which some hold it. R38
+struct JudgedTrigger {
     Trigger trigger{};
+    Conditions conditions;
+};
+
+/// A change of mode and its event in state_machines.csv. R38
+struct ModeChange {
+    Mode from{};
+    GncModeEvent event{};
+    Mode to{};
+    std::optional<Condition> because;  ///< of an event that no trigger or timepoint explains
+};
+
+/// A bank reversal that begins. R38
+struct BankReversal {
+    std::uint8_t number = 0;  ///< 0: none
+    Conditions conditions;
+};
+
+/// A radar solution that the gate refuses, or that is believed although it is beyond the gate. R38
+struct RadarDecision {
+    bool believed = false;
     Conditions conditions;
 };
 
 /// All outputs of GNC in one cycle.
 struct Output {
     Mode mode = Mode::off;
-    FixedVector<Trigger, 4> triggers;  ///< fired in this cycle
-    Conditions conditions;             ///< of the last trigger in `triggers`
-    FixedVector<HeldTrigger, 4> held;  ///< near, and not fired in this cycle
-    std::uint8_t bank_reversal = 0;    ///< number of the reversal that began in this cycle, 0: none
-    AttitudeCommand attitude;          ///< commanded by guidance
-    ThrusterCommand thrusters;         ///< computed by attitude control
+    FixedVector<ModeChange, 4> mode_changes;  ///< in this cycle, in order
+    FixedVector<JudgedTrigger, 4> triggers;   ///< fired in this cycle
+    FixedVector<JudgedTrigger, 4> held;       ///< near, and not fired in this cycle
+    BankReversal bank_reversal;               ///< began in this cycle
+    AttitudeCommand attitude;                 ///< commanded by guidance
+    ThrusterCommand thrusters;                ///< computed by attitude control
     EngineCommand engines;
     // Telemetry: the navigated state and guidance's commands. Frame M, SI, degrees where the name says so.
     std::array<double, 3> p_MoB_M_m{};
@@ -200,8 +220,8 @@ class EdlGnc {
     /// Attitude from cruise attitude determination, accepted until the cruise stage is gone.
     void on(const CruiseAttitude& attitude);
 
-    /// One radar solution, at 1 Hz.
-    void on(const RadarSolution& solution);
+    /// One radar solution, at 1 Hz. Returns what is not ordinary about it.
+    std::optional<RadarDecision> on(const RadarSolution& solution);
 
     /// Runs GNC; call exactly once in each 64 Hz cycle.
     void cycle(const DeviceInputs& in, const Configuration& configuration, Output& out);
@@ -246,11 +266,11 @@ class EdlGnc {
     void take_cruise_attitude();
     void level_by(const RadarCorrection& correction);
     void measure(Sclk now);
-    bool take(GncModeEvent event, Sclk now);
+    bool take(GncModeEvent event, Sclk now, Output& out, const std::optional<Condition>& because = {});
     bool fire(Trigger trigger, const Conditions& conditions, Output& out);
     void hold(Trigger trigger, const Conditions& conditions, Output& out) const;
     bool fired(Trigger trigger) const { return fired_[static_cast<std::size_t>(trigger)]; }
-    void follow_configuration(const Configuration& configuration, Sclk now);
+    void follow_configuration(const Configuration& configuration, Sclk now, Output& out);
     void decide_in_air(const Configuration& configuration, Sclk now, Output& out);
     void decide_on_engines(const Configuration& configuration, Sclk now, Output& out);
     void guide_entry(Sclk now, const Configuration& configuration, Output& out);

@@ -206,7 +206,8 @@ struct SelectUnitsCommand {
 };
 struct CommandOutcome {
     CommandTag tag;
-    std::optional<CommandRefusal> refused;  ///< none: accepted and executed
+    std::optional<CommandRefusal> refused{};  ///< none: accepted and executed
+    gnc::Conditions conditions{};             ///< by which the owner decided. R38
 };
 
 // ---- data ------------------------------------------------------------------------------------------------------

@@ -46,7 +46,7 @@ void ToneSelector::drop_overtaken(ToneId overtaken, ToneId by, Outbox& out) {
         if (request.tone != overtaken) continue;
         outstanding_.erase_at(i);
         explain(out, request.tone, ExplanationVerdict::dropped,
-                {is_tone(Quantity::overtaking_tone, by),
+                {names(Quantity::overtaking_tone, by.value),
                  at_most(Quantity::request_age_s, out.now() - request.requested, expires_s(request.tone))});
     }
 }
@@ -66,7 +66,7 @@ void ToneSelector::refuse_or_make_room(const ToneRequest& request, Outbox& out) 
     outstanding_.erase_at(least);
     explain(out, other, ExplanationVerdict::dropped,
             {no_room, at_least(Quantity::tone_priority, priority(other), priority(request.tone)),
-             is_tone(Quantity::overtaking_tone, request.tone)});
+             names(Quantity::overtaking_tone, request.tone.value)});
 }
 
 void ToneSelector::on(const StandBy& stand_by, Outbox& out) {
@@ -125,7 +125,7 @@ void ToneSelector::explain_choice(const ToneRequest& chosen, Outbox& out) const 
     const double age_s = out.now() - chosen.requested;
     explain(
         out, chosen.tone, ExplanationVerdict::chosen,
-        {is_tone(Quantity::next_tone, next.tone),
+        {names(Quantity::next_tone, next.tone.value),
          at_least(Quantity::tone_priority, priority(chosen.tone), priority(next.tone)),
          at_most(Quantity::request_age_s, age_s,
                  // Among requests of equal priority, the newest goes first: the age was then decisive.

@@ -116,9 +116,9 @@ CREATE VIEW timeline_log AS
     FROM timepoint_firings f JOIN runs r ON r.run = f.key >> 40
     JOIN words s ON s.kind = 'source' AND s.number = f.source;
 CREATE VIEW explanation_log AS
-    SELECT x.key >> 40 AS run, x.key & 0xFFFFFFFFFF AS seq, x.sclk, x.decision, x.verdict, x.subject, x.text,
-           x.duplicate
-    FROM explanations x;
+    SELECT x.key >> 40 AS run, x.key & 0xFFFFFFFFFF AS seq, x.sclk, x.sclk - r.entry_sclk AS e_s, x.decision,
+           x.verdict, x.subject, x.text, x.duplicate
+    FROM explanations x JOIN runs r ON r.run = x.key >> 40;
 CREATE VIEW alarm_log AS
     SELECT a.key >> 40 AS run, a.key & 0xFFFFFFFFFF AS seq, a.sclk, c.name AS channel, a.severity, a.value, c.unit,
            a.limit_text

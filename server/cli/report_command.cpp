@@ -11,13 +11,14 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <memory>
+#include <vector>
 
 namespace aeolis::server {
 namespace {
 
 struct ReportOptions {
     ArchiveOptions of;
-    bool json = false, csv = false;
+    bool json = false, csv = false, explanations = false;
 };
 
 std::string from_entry(double e_s) {
@@ -92,6 +93,24 @@ void print_notes(const v1::AsFlownReport& report) {
     }
 }
 
+/// Prints each decision on board with its conditions, in the order of the spacecraft's clock.
+int print_explanations(archive::Reader& reader, archive::RunId run) {
+    const auto state = reader.run(run);
+    if (!state) return failed(state.error().message);
+    std::vector<v1::Explanation> decisions;
+    archive::ExplanationQuery query;
+    do {
+        const auto page = reader.explanations(run, query);
+        if (!page) return failed(page.error().message);
+        for (const auto& item : page->explanations()) decisions.push_back(item.explanation());
+        query.after = page->next_after();
+    } while (query.after != 0);
+    std::ranges::stable_sort(decisions, {}, [](const v1::Explanation& decision) { return decision.sclk(); });
+    for (const v1::Explanation& decision : decisions)
+        fmt::print("{:>9}  {}\n", from_entry(decision.sclk() - state->entry_sclk()), decision.text());
+    return 0;
+}
+
 /// Prints the as-flown report of a run.
 int report(const ReportOptions& options) {
     int exit_code = 0;
@@ -99,7 +118,9 @@ int report(const ReportOptions& options) {
     if (!recorded) return exit_code;
     auto reader = archive::Reader::open(options.of.archive, recorded->dictionary);
     if (!reader) return failed(reader.error().message);
-    auto report = reader->as_flown(archive::RunId{options.of.run.value_or(0)});
+    const archive::RunId number{options.of.run.value_or(0)};
+    if (options.explanations) return print_explanations(*reader, number);
+    auto report = reader->as_flown(number);
     if (!report) return failed(fmt::format("{}: {}", options.of.archive.string(), report.error().message));
     write_time_texts(*report);
     if (options.json) {
@@ -139,7 +160,12 @@ void add_report_command(CLI::App& program, int& exit_code) {
         ->capture_default_str();
     command.add_option("--run", options->of.run, "number of the run")->required()->check(whole_number());
     auto* json = command.add_flag("--json", options->json, "print one JSON object");
-    command.add_flag("--csv", options->csv, "print timepoints and events, a row each")->excludes(json);
+    auto* csv = command.add_flag("--csv", options->csv, "print timepoints and events, a row each")->excludes(json);
+    command
+        .add_flag("--explanations", options->explanations,
+                  "print only the decisions on board, each with its conditions")
+        ->excludes(json)
+        ->excludes(csv);
     command.callback([options, &exit_code] { exit_code = report(*options); });
 }
 

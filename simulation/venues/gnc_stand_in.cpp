@@ -57,9 +57,9 @@ bool GncStandIn::take(GncModeEvent event) {
 bool GncStandIn::fire(Trigger trigger, const flight::gnc::Condition& condition) {
     if (fired(trigger) || told_.triggers.full() || !condition.holds) return false;
     fired_[static_cast<std::size_t>(trigger)] = true;
-    told_.triggers.push_back(trigger);
-    told_.conditions.clear();
-    told_.conditions.push_back(condition);
+    flight::gnc::Conditions conditions;
+    conditions.push_back(condition);
+    told_.triggers.push_back({trigger, conditions});
     return true;
 }
 
@@ -153,7 +153,7 @@ void GncStandIn::guide(const World& world, const flight::gnc::Configuration& con
         told_.attitude.mode = Attitude::entry_bank;
         told_.attitude.bank_rad = bank_deg(truth) * degree_rad;
         if (mode == Mode::range_control && reversals(truth) > reversals_)
-            told_.bank_reversal = static_cast<std::uint8_t>(++reversals_);
+            told_.bank_reversal.number = static_cast<std::uint8_t>(++reversals_);
     } else if (mode == Mode::approach)
         told_.attitude.mode = Attitude::detumble;
     if (mode == Mode::parachute_descent) told_.attitude.mode = Attitude::suspended;

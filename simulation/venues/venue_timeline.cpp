@@ -121,7 +121,7 @@ void VenueTimeline::act(Sclk now, flight::DeviceOutputs& out) {
 }
 
 void VenueTimeline::take(const flight::gnc::Output& told, Sclk now) {
-    for (const Trigger trigger : told.triggers) triggered_[static_cast<std::size_t>(trigger)] = now;
+    for (const auto& one : told.triggers) triggered_[static_cast<std::size_t>(one.trigger)] = now;
 }
 
 }  // namespace aeolis::simulation

@@ -14,8 +14,8 @@ TEST_CASE("a second owner and a missing one are refused, by file and line", "[di
     static const std::vector<Planted> all{
         {"second owner of a device", "owners.csv", "device,nvm,edl_comm", "device,tone,edl_comm",
          "device 'tone': has an owner already, in line "},
-        {"second owner of a decision", "owners.csv", "decision,touchdown,edl", "decision,do_edl,command_dispatcher",
-         "decision 'do_edl': has an owner already, in line "},
+        {"second owner of a decision", "owners.csv", "decision,touchdown,edl", "decision,command,command_dispatcher",
+         "decision 'command': has an owner already, in line "},
         {"a decision that is none", "owners.csv", "decision,touchdown,", "decision,touchup,",
          "is no label of the enumeration 'Decision'"},
         {"unknown kind", "owners.csv", "device,nvm,", "devise,nvm,", "kind 'devise' is none of device, decision"},

@@ -86,6 +86,39 @@ TEST_CASE("an unknown opcode, a wrong length and a bad CRC are refused with thei
     CHECK(f.recorder.events<evr::UPLINK_UNREADABLE>() == 1);
 }
 
+TEST_CASE("each answer to a command is explained by the conditions of who decided", "[commands][R5][R38]") {
+    Fixture f;
+    CommandOutcome outcome{.tag = {command::EDL_DO_EDL::opcode, 9}};
+    outcome.conditions.push_back(gnc::is(Quantity::parameters_received, true));
+    f.handle(outcome);
+    auto told = f.recorder.explanations();
+    REQUIRE(told.size() == 1);
+    CHECK(told[0].decision == Decision::command);
+    CHECK(told[0].verdict == ExplanationVerdict::accepted);
+    CHECK(told[0].subject == command::EDL_DO_EDL::opcode.value);
+    REQUIRE(told[0].conditions.size() == 1);
+    CHECK(told[0].conditions[0].quantity == Quantity::parameters_received);
+    outcome.refused = CommandRefusal::inhibited;
+    outcome.conditions.push_back(gnc::is(Quantity::fault_inhibit, true, false));
+    f.handle(outcome);
+    told = f.recorder.explanations();
+    REQUIRE(told.size() == 1);
+    CHECK(told[0].verdict == ExplanationVerdict::refused);
+    CHECK(told[0].conditions.size() == 2);
+    f.handle(received(telecommand(command::EDL_DO_EDL::opcode, 4)));
+    told = f.recorder.explanations();
+    REQUIRE(told.size() == 1);
+    REQUIRE(told[0].conditions.size() == 1);
+    CHECK(told[0].conditions[0].quantity == Quantity::argument_octets);
+    CHECK(told[0].conditions[0].value == 4.0);
+    CHECK(told[0].conditions[0].bound == 0.0);
+    CHECK_FALSE(told[0].conditions[0].holds);
+    f.handle(received(telecommand(Opcode{0x7777}, 0)));
+    CHECK(f.recorder.explanations().at(0).conditions.at(0).quantity == Quantity::command_known);
+    f.handle(received(telecommand(command::EDL_SET_PARAMETERS::opcode, command::EDL_SET_PARAMETERS::argument_octets)));
+    CHECK(f.recorder.explanations().at(0).conditions.at(0).quantity == Quantity::arguments_in_range);
+}
+
 TEST_CASE("parameters that are not numbers or out of range are refused whole", "[commands][R23]") {
     Fixture f;
     f.handle(received(telecommand(command::EDL_SET_PARAMETERS::opcode, command::EDL_SET_PARAMETERS::argument_octets)));

@@ -65,6 +65,40 @@ TEST_CASE("Second Chance takes over after a quarter of a second of silence, not 
     CHECK(backup.recorder.sent<StatePart>().size() == 1);
 }
 
+TEST_CASE("a take-over, made or refused, is explained by prime's silence, its state's age and what that state said",
+          "[cross_string][R33][R38]") {
+    const auto told_by = [](Backup& backup) {
+        const auto told = backup.recorder.explanations();
+        REQUIRE(told.size() == 1);
+        CHECK(told[0].decision == Decision::take_over);
+        REQUIRE(told[0].conditions.size() == 4);
+        CHECK(told[0].conditions[0].quantity == Quantity::prime_silent_s);
+        CHECK(told[0].conditions[0].holds);
+        CHECK(told[0].conditions[1].quantity == Quantity::state_age_s);
+        CHECK(told[0].conditions[2].holds);
+        CHECK(told[0].conditions[3].holds);
+        return told[0];
+    };
+    Backup backup;
+    backup.enable(99.0);
+    backup.handle(state_at(100.0, in_edl), 100.0);
+    REQUIRE(backup.after_silence(100.25 + 1.0 / 64, 100.25 + 1.0 / 64));
+    const auto made = told_by(backup);
+    CHECK(made.verdict == ExplanationVerdict::decided);
+    CHECK(made.conditions[0].value == 0.265625);
+    CHECK(made.conditions[0].bound == prime_silent_s);
+    CHECK(made.conditions[1].value == 0.265625);
+    CHECK(made.conditions[1].holds);
+    Backup late;
+    late.handle(state_at(100.0, in_edl), 100.0);
+    late.enable(160.0);
+    REQUIRE_FALSE(late.after_silence(160.0, 160.0));
+    const auto refused = told_by(late);
+    CHECK(refused.verdict == ExplanationVerdict::refused);
+    CHECK(refused.conditions[1].value == 60.0);
+    CHECK_FALSE(refused.conditions[1].holds);
+}
+
 TEST_CASE("without ground's enabling, before cruise-stage separation, before do edl or after touchdown it never takes "
           "over",
           "[cross_string][R1][R34]") {

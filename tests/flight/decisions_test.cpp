@@ -30,13 +30,56 @@ TEST_CASE("what GNC starts and the timeline waits for has an anchor", "[edl][R17
 TEST_CASE("each decision of GNC is an event and an explanation with its conditions", "[edl][R38]") {
     for (std::size_t i = 0; i < gnc::trigger_count; ++i) {
         test::OutboxRecorder recorder;
-        gnc::Output output;
-        output.conditions.push_back({Quantity{1}, 404.6, 405.0, gnc::Condition::Comparison::le, true});
-        announce(static_cast<gnc::Trigger>(i), output, recorder.out);
+        gnc::JudgedTrigger fired{static_cast<gnc::Trigger>(i), {}};
+        fired.conditions.push_back(gnc::at_most(Quantity::speed_mps, 404.6, 405.0));
+        announce(fired.trigger, gnc::Output{}, recorder.out);
         CHECK(recorder.packets<evr::PARACHUTE_DEPLOY>() == 1);
-        explain(static_cast<gnc::Trigger>(i), output, 0, recorder.out);
-        CHECK(recorder.packets<packet::Explanation>() == 1);
+        explain(fired, 0, recorder.out);
+        const auto told = recorder.explanations();
+        REQUIRE(told.size() == 1);
+        CHECK(told[0].decision == decision_of(fired.trigger));
+        CHECK(told[0].verdict == ExplanationVerdict::decided);
+        REQUIRE(told[0].conditions.size() == 1);
+        CHECK(told[0].conditions[0].value == 404.6);
     }
+}
+
+TEST_CASE("a bank reversal, a change of mode or phase and a judged radar solution are explained", "[edl][R38]") {
+    test::OutboxRecorder recorder;
+    gnc::Output output;
+    output.bank_reversal.number = 2;
+    output.bank_reversal.conditions.push_back(gnc::below(Quantity::crossrange_m, -4100.0, -4000.0));
+    announce_bank_reversal(output, recorder.out);
+    explain(gnc::ModeChange{gnc::Mode::straighten_up, GncModeEvent::straightened_up, gnc::Mode::wait_for_parachute,
+                            gnc::at_least(Quantity::time_in_mode_s, 14.0, 14.0)},
+            recorder.out);
+    explain(PhaseChange{EdlPhase::pre_edl, EdlPhaseEvent::late_cruise_begins, EdlPhase::late_cruise},
+            MaybeTime{recorder.out.now() + 17'999.0}, recorder.out);
+    gnc::RadarDecision decision;
+    decision.conditions.push_back(gnc::at_most(Quantity::radar_altitude_residual_m, 2000.0, 160.0));
+    explain(decision, recorder.out);
+    decision.believed = true;
+    explain(decision, recorder.out);
+
+    const auto told = recorder.explanations();
+    REQUIRE(told.size() == 5);
+    CHECK(told[0].decision == Decision::bank_reversal);
+    CHECK(told[0].subject == 2);
+    CHECK(told[0].conditions[0].value == -4100.0);
+    CHECK(told[1].decision == Decision::gnc_mode);
+    CHECK(told[1].subject == static_cast<unsigned>(gnc::Mode::wait_for_parachute));
+    REQUIRE(told[1].conditions.size() == 3);
+    CHECK(told[1].conditions[0].value == static_cast<double>(gnc::Mode::straighten_up));
+    CHECK(told[1].conditions[1].value == static_cast<double>(GncModeEvent::straightened_up));
+    CHECK(told[1].conditions[2].quantity == Quantity::time_in_mode_s);
+    CHECK(told[2].decision == Decision::edl_phase);
+    CHECK(told[2].subject == static_cast<unsigned>(EdlPhase::late_cruise));
+    REQUIRE(told[2].conditions.size() == 3);
+    CHECK(told[2].conditions[2].value == 17'999.0);
+    CHECK(told[2].conditions[2].holds);
+    CHECK(told[3].decision == Decision::radar_solution);
+    CHECK(told[3].verdict == ExplanationVerdict::refused);
+    CHECK(told[4].verdict == ExplanationVerdict::believed);
 }
 
 TEST_CASE("what GNC holds though it is near is told with its conditions", "[edl][R38]") {
@@ -100,9 +143,9 @@ TEST_CASE("a timepoint that waits for a reply, or for its minimum, is told after
     CHECK(told_at(1000.5) == std::pair{Quantity::reply_wait_s, 0.5});
     CHECK_FALSE(told_at(1001.0));
     timeline.reply({ReplyKind::pyro, 3});
-    CHECK(told_at(1001.5) == std::pair{Quantity::clock_sclk, 1001.5});
+    CHECK(told_at(1001.5) == std::pair{Quantity::time_since_previous_timepoint_s, 0.0});
     CHECK_FALSE(told_at(1002.0));
-    CHECK(told_at(1005.5) == std::pair{Quantity::clock_sclk, 1005.5});
+    CHECK(told_at(1005.5) == std::pair{Quantity::time_since_previous_timepoint_s, 4.0});
     CHECK_FALSE(told_at(1009.5));  // the minimum has come: it fires
     CHECK(timeline.finished());
 }

@@ -105,12 +105,12 @@ TEST_CASE("drag starts entry guidance once, and explains it", "[gnc][R17][R38]")
         const double drag = 0.3 * tick / 64.0;
         gnc.cycle(inputs_at(Sclk{1000.0} + tick / 64.0, count, drag * Vector3(1600, -5600, 0).normalized()),
                   configuration, out);
-        for (const Trigger trigger : out.triggers) {
+        for (const auto& [trigger, conditions] : out.triggers) {
             if (trigger != Trigger::guidance_start) continue;
             ++started;
-            REQUIRE(out.conditions.size() == 1);
-            CHECK(out.conditions[0].quantity == Quantity::drag_mps2);
-            CHECK(out.conditions[0].value >= 1.96);
+            REQUIRE(conditions.size() == 1);
+            CHECK(conditions[0].quantity == Quantity::drag_mps2);
+            CHECK(conditions[0].value >= 1.96);
             CHECK(drag > 1.96);  // filtered: later than the raw drag
             CHECK(drag < 2.3);
         }

@@ -174,8 +174,87 @@ TEST_CASE("parameters may come again with each navigation update, and are read b
 
 TEST_CASE("do edl explains why it was refused", "[edl][R38]") {
     Fixture f;
+    const auto conditions = [&] { return f.recorder.sent<CommandOutcome>()[0].conditions; };
     (void)f.do_edl(entry_s - 1200);
-    CHECK(f.recorder.packets<packet::Explanation>() == 1);
+    REQUIRE_FALSE(conditions().empty());
+    CHECK(conditions()[0].quantity == Quantity::parameters_received);
+    CHECK_FALSE(conditions()[0].holds);
+    f.set_parameters(entry_s - 20'000);
+    CHECK(f.do_edl(entry_s - 19'000) == CommandRefusal::too_early);
+    CHECK(conditions()[0].quantity == Quantity::time_to_entry_s);
+    CHECK(conditions()[0].value == 19'000.0);
+    CHECK(conditions()[0].bound == parameters.late_cruise_before_entry_s);
+    CHECK_FALSE(conditions()[0].holds);
+    CHECK(f.do_edl(entry_s - 800) == CommandRefusal::too_late);
+    CHECK(conditions()[0].quantity == Quantity::time_to_first_timepoint_s);
+    CHECK_FALSE(conditions()[0].holds);
+    CHECK_FALSE(f.do_edl(entry_s - 1000).has_value());
+    CHECK(all_hold(conditions()));
+    CHECK(f.do_edl(entry_s - 999) == CommandRefusal::already_running);
+    CHECK(conditions()[0].quantity == Quantity::edl_enabled);
+}
+
+TEST_CASE("parameters explain why they were taken or refused", "[edl][R23][R38]") {
+    Fixture f;
+    const auto conditions = [&] { return f.recorder.sent<CommandOutcome>()[0].conditions; };
+    f.set_parameters(entry_s - 1190);
+    CHECK(all_hold(conditions()));
+    REQUIRE(conditions().size() == 4);
+    CHECK(conditions()[0].quantity == Quantity::gnc_enabled);
+    CHECK(conditions()[1].quantity == Quantity::entry_apart_from_navigation_s);
+    CHECK(conditions()[1].value < 0.001);
+    CHECK(conditions()[2].quantity == Quantity::time_to_entry_s);
+    CHECK(conditions()[2].value == 1190.0);
+    CHECK(conditions()[3].quantity == Quantity::solution_age_s);
+    CHECK(conditions()[3].value == 10.0);
+    auto moved = possible_parameters();
+    moved.entry_sclk += 20.0;
+    f.handle(ParametersUpdate{{}, moved}, entry_s - 1190);
+    CHECK(conditions()[0].quantity == Quantity::entry_apart_from_navigation_s);
+    CHECK(conditions()[0].value == Approx(20.0).margin(1.0));
+    CHECK(conditions()[0].bound == parameters.entry_moved_max_s);
+    CHECK_FALSE(conditions()[0].holds);
+    f.handle(ParametersUpdate{{}, possible_parameters()}, entry_s + 1.0);
+    CHECK(conditions()[0].quantity == Quantity::time_to_entry_s);
+    CHECK(conditions()[0].value == -1.0);
+}
+
+TEST_CASE("parameters are taken until GNC is enabled, and then refused with the reason", "[edl][R25][R38]") {
+    Fixture f;
+    const auto outcome = [&] { return f.recorder.sent<CommandOutcome>()[0]; };
+    f.set_parameters(entry_s - 1190);
+    REQUIRE_FALSE(f.do_edl(entry_s - 1180).has_value());
+    double at_s = entry_s - 1170;
+    for (; !f.edl.configuration().enabled && at_s < entry_s; at_s += 1.0 / 64) f.handle(Tick{Sclk{at_s}}, at_s);
+    REQUIRE(f.edl.configuration().enabled);
+    f.set_parameters(at_s);
+    CHECK(outcome().refused == CommandRefusal::wrong_phase);
+    REQUIRE(outcome().conditions.size() == 1);
+    CHECK(outcome().conditions[0].quantity == Quantity::gnc_enabled);
+    CHECK_FALSE(outcome().conditions[0].holds);
+}
+
+TEST_CASE("two decisions of one cycle have each its own conditions", "[edl][R17][R38]") {
+    Fixture f;
+    f.set_parameters(entry_s - 1190);
+    gnc::Output told;
+    gnc::JudgedTrigger lock{gnc::Trigger::radar_lock, {}}, priming{gnc::Trigger::engine_priming, {}};
+    lock.conditions.push_back(gnc::at_least(Quantity::radar_beams, 28.0, 1.0));
+    priming.conditions.push_back(gnc::at_most(Quantity::time_to_backshell_s, 15.25, 15.5));
+    told.triggers.push_back(lock);
+    told.triggers.push_back(priming);
+    f.edl.replace_gnc(told);
+    f.handle(Tick{Sclk{entry_s - 1189}}, entry_s - 1189);
+    std::vector<test::Explained> decisions;
+    for (const auto& each : f.recorder.explanations())
+        if (each.verdict == ExplanationVerdict::decided) decisions.push_back(each);
+    REQUIRE(decisions.size() == 2);
+    CHECK(decisions[0].decision == Decision::radar_lock);
+    REQUIRE(decisions[0].conditions.size() == 1);
+    CHECK(decisions[0].conditions[0].value == 28.0);
+    CHECK(decisions[1].decision == Decision::engine_priming);
+    REQUIRE(decisions[1].conditions.size() == 1);
+    CHECK(decisions[1].conditions[0].value == 15.25);
 }
 
 TEST_CASE("without do edl the timeline fires nothing up to and past entry", "[edl][R23]") {
@@ -287,6 +366,10 @@ TEST_CASE("an unsafe change is refused on board when it comes, with an event tha
         CHECK(outcome(f, timepoint_at(timepoint::coolant_vent, -1001.0)) == CommandRefusal::unsafe_change);
         CHECK(f.recorder.events<evr::TIMELINE_CHANGE_REFUSED>() == 1);
         CHECK(f.recorder.events<evr::TIMEPOINT_OFFSET_CHANGED>() == 0);
+        const auto why = f.recorder.sent<CommandOutcome>()[0].conditions;
+        REQUIRE(why.size() == 2);
+        CHECK_FALSE(why[0].holds);
+        CHECK(why[1].quantity == Quantity::unsafe_timepoint);
     }
     {
         Fixture f = begun();
@@ -331,6 +414,12 @@ TEST_CASE("prime that was reset after touchdown was declared is not ordered on",
             .in_parts(handle);
         handle(Resume{ResumeReason::restart});
         REQUIRE(recorder.events<evr::PRIME_STANDS_BY>() == 1);
+        const auto why = recorder.explanations();
+        REQUIRE(why.size() == 1);
+        CHECK(why[0].decision == Decision::stand_by);
+        REQUIRE(why[0].conditions.size() == 2);
+        CHECK(why[0].conditions[0].quantity == Quantity::edl_enabled);
+        CHECK(why[0].conditions[1].quantity == Quantity::separation_triggered);
         REQUIRE(restarted.stands_by());
         handle(ResumePrimeCommand{});
         CHECK(restarted.stands_by() == touchdown);

@@ -11,7 +11,7 @@ using namespace aeolis::flight;
 
 TEST_CASE("an explanation has each condition in its place, and none beyond them", "[explanation][R38]") {
     const std::array conditions{at_most(Quantity::speed_mps, 407.0, 405.0), above(Quantity::tone_priority, 4, 3),
-                                is_tone(Quantity::next_tone, aeolis::ToneId{7})};
+                                names(Quantity::next_tone, 7)};
     const auto e = explanation(Decision::parachute_deploy, ExplanationVerdict::held, 3, conditions, 12);
     CHECK(e.condition_count == 3);
     CHECK(e.subject == 3);

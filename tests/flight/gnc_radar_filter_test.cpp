@@ -15,6 +15,7 @@ struct Descent {
     double rate_mps = 80.0, truth_m = 9000.0;
     double error_m = 0.0, error_mps = 0.0;
     std::int64_t ticks = 0;
+    RadarJudgement judged;
 
     Vector3 navigated_v() const { return -(rate_mps - error_mps) * Vector3::UnitX(); }
     void fly(double seconds) {
@@ -28,10 +29,10 @@ struct Descent {
     bool update(double wrong_m = 0.0) {
         const Sclk now = Sclk::from_ticks(ticks);
         const RadarSolution solution{now - 2.5, 5.0, truth_m + 2.5 * rate_mps + wrong_m, {-rate_mps, 0, 0}, 600};
-        const auto correction = filter.on(solution, now, Vector3::UnitX());
-        if (!correction) return false;
-        error_m += correction->altitude_m;
-        error_mps += correction->v_M_mps.x();
+        judged = filter.on(solution, now, Vector3::UnitX());
+        if (!judged.accepted()) return false;
+        error_m += judged.correction.altitude_m;
+        error_mps += judged.correction.v_M_mps.x();
         return true;
     }
 };
@@ -65,17 +66,33 @@ TEST_CASE("corrections once a second of averages over five do not ring", "[gnc][
     CHECK(largest_undershoot_m > -4.0);
 }
 
-TEST_CASE("a wild solution is refused, five in a row are believed", "[gnc][R25]") {
+TEST_CASE("a wild solution is refused, five in a row are believed", "[gnc][R25][R38]") {
     Descent descent;
     descent.fly(6.0);
     REQUIRE(descent.update());
+    CHECK(descent.judged.verdict == RadarJudgement::Verdict::taken);
     for (int i = 0; i < 5; ++i) {
         descent.fly(1.0);
         CHECK_FALSE(descent.update(2000.0));
+        REQUIRE(descent.judged.verdict == RadarJudgement::Verdict::refused);
+        const Conditions& why = descent.judged.conditions;
+        REQUIRE(why.size() == 3);
+        CHECK(why[0].quantity == Quantity::radar_altitude_residual_m);
+        CHECK(why[0].value == Approx(2000.0).margin(1.0));
+        CHECK(why[0].bound == Approx(flight::parameters.radar_altitude_gate_m +
+                                     flight::parameters.radar_altitude_gate_fraction *
+                                         (descent.truth_m + 2.5 * descent.rate_mps + 2000.0)));
+        CHECK_FALSE(why[0].holds);
+        CHECK(why[1].holds);
+        CHECK(why[2].value == i);
+        CHECK_FALSE(why[2].holds);
     }
     CHECK(descent.filter.refused() == 5);
     descent.fly(1.0);
     CHECK(descent.update(2000.0));
+    CHECK(descent.judged.verdict == RadarJudgement::Verdict::believed);
+    CHECK_FALSE(descent.judged.conditions[0].holds);
+    CHECK(descent.judged.conditions[2].holds);
 }
 
 TEST_CASE("without a past that covers it a solution is not used", "[gnc][R25]") {

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "flight/gnc/powered_descent/vertical_profile.hpp"
+#include "flight/gnc/triggers/triggers.hpp"
 #include "tests/support/catch.hpp"
 
 #include <cmath>
 
 namespace flight_gnc_vertical_profile_test {
 
+using namespace aeolis::flight::gnc;
 using namespace aeolis::flight::gnc::powered_descent;
 
 TEST_CASE("from OD137's powered approach start the net deceleration comes out as published", "[gnc][R27]") {
@@ -18,7 +20,7 @@ TEST_CASE("following the profile ends at 32 m/s at the altitude meant", "[gnc][R
     ApproachProfile profile;
     double h = 1400.0, v = 92.0, t = 0.0;
     profile.start(h, v);
-    for (; !profile.done(h, v) && t < 100.0; t += 0.01) {
+    for (; !all_hold(triggers::constant_velocity(h, v)) && t < 100.0; t += 0.01) {
         v -= profile.acceleration_mps2(h, v) * 0.01;
         h -= v * 0.01;
     }

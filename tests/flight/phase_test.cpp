@@ -14,13 +14,13 @@ TEST_CASE("the phase follows GNC's mode, and before GNC the clock", "[edl][R48]"
     gnc::Configuration configuration;
     Phase phase;
     CHECK(phase.state() == EdlPhase::pre_edl);
-    CHECK(phase.follow(gnc::Mode::off, configuration, true));
+    CHECK(phase.follow(gnc::Mode::off, configuration, true).size() == 1);
     CHECK(phase.state() == EdlPhase::late_cruise);
-    CHECK(phase.follow(gnc::Mode::off, configuration, false));  // a newer solution puts entry later
+    CHECK(phase.follow(gnc::Mode::off, configuration, false).size() == 1);  // a newer solution puts entry later
     CHECK(phase.state() == EdlPhase::pre_edl);
-    CHECK_FALSE(phase.follow(gnc::Mode::off, configuration, false));
+    CHECK(phase.follow(gnc::Mode::off, configuration, false).empty());
     configuration.cruise_stage_gone = true;
-    CHECK(phase.follow(gnc::Mode::off, configuration, true));
+    CHECK(phase.follow(gnc::Mode::off, configuration, true).size() == 2);  // late cruise, and out of it at once
     CHECK(phase.state() == EdlPhase::exo_atmospheric);
     using gnc::Mode;
     const std::vector<std::pair<Mode, EdlPhase>> landing{
@@ -41,7 +41,7 @@ TEST_CASE("the phase follows GNC's mode, and before GNC the clock", "[edl][R48]"
     };
     for (const auto& [mode, expected] : landing) {
         const bool changes = expected != phase.state();
-        CHECK(phase.follow(mode, configuration, true) == changes);
+        CHECK(!phase.follow(mode, configuration, true).empty() == changes);
         CHECK(phase.state() == expected);
     }
 }
@@ -56,14 +56,14 @@ TEST_CASE("the vehicle has landed when its stage has flown away, not before", "[
         phase.follow(mode, configuration, true);
     CHECK(phase.state() == EdlPhase::flyaway);
     configuration.engines_off = true;
-    CHECK(phase.follow(gnc::Mode::flyaway, configuration, true));
+    CHECK(phase.follow(gnc::Mode::flyaway, configuration, true).size() == 1);
     CHECK(phase.state() == EdlPhase::landed);
 }
 
 TEST_CASE("what the table of phases does not have does not happen", "[edl][R48]") {
     gnc::Configuration configuration;
     Phase phase;
-    CHECK_FALSE(phase.follow(gnc::Mode::sky_crane, configuration, false));
+    CHECK(phase.follow(gnc::Mode::sky_crane, configuration, false).empty());
     CHECK(phase.state() == EdlPhase::pre_edl);
 }
 

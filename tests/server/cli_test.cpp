@@ -462,6 +462,22 @@ TEST_CASE(
                                       "tone,verdict,text\ntimepoint,") &&
                         Catch::Contains("\nevent,touchdown,,431.470000,"));
     CHECK(std::count(csv.begin(), csv.end(), '\n') == 1 + report.timepoints_size() + report.events_size());
+    const auto why = run(program(), "report --explanations --run 1 --archive " + archive);
+    CHECK(why.code == 0);
+    std::istringstream decisions{why.text};
+    double before_e_s = -1.0e9;
+    for (std::string line; std::getline(decisions, line);) {
+        INFO(line);
+        double e_s = 0.0;
+        REQUIRE(std::sscanf(line.c_str(), " E%lf ", &e_s) == 1);
+        CHECK(e_s >= before_e_s);
+        // Names are words; a command has its mnemonic.
+        if (line.find("  command ") == std::string::npos) CHECK(line.find('_') == std::string::npos);
+        before_e_s = e_s;
+    }
+    for (const char* text : {"EDL_DO_EDL accepted: parameters received: yes; ", "parachute deploy decided: speed ",
+                             "bank reversal 1 decided: crossrange ", "GNC mode changed to range control: "})
+        CHECK_THAT(why.text, Catch::Contains(text));
     CHECK(predicted >= report.timepoints_size() - 1);  // not the first: it counts from "do edl"
     CHECK(report.run().clock().version() == 1);
     CHECK(report.run().clock().scet() == "2012-219T05:10:47.400");

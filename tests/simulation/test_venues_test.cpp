@@ -216,7 +216,7 @@ TEST_CASE("each line in place of the timeline happens once, at its time, and wai
     CHECK(out.pyros.empty());
     CHECK_FALSE(timeline.configuration().parachute_out);
     flight::gnc::Output told;
-    told.triggers.push_back(flight::gnc::Trigger::parachute);
+    told.triggers.push_back({flight::gnc::Trigger::parachute, {}});
     timeline.take(told, Sclk{1100.0});
     at(100.0);
     CHECK(timeline.configuration().parachute_out);

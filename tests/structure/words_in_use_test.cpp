@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <regex>
 #include <set>
+#include <utility>
 
 namespace structure_words_in_use_test {
 
@@ -32,6 +33,26 @@ TEST_CASE("every event and every tone of prime's that the dictionary words is as
         if (!by_timeline && flight.find("tone::" + tone.name) == std::string::npos) unused += tone.name + ' ';
     }
     INFO("nobody asks for " << unused);
+    CHECK(unused.empty());
+}
+
+TEST_CASE("every decision, verdict and quantity of explanations that the dictionary words is told by flight",
+          "[structure][R38][R48]") {
+    const auto& dictionary = aeolis::tests::shipped_dictionary();
+    std::string flight;
+    for (const std::string& file : files_under("flight", {".cpp", ".hpp"}))
+        for (const std::string& line : lines_of(file)) flight += line + '\n';
+    const auto* packet = dictionary.packet("Explanation");
+    REQUIRE(packet != nullptr);
+    std::string unused;
+    for (const auto& [field, type] : {std::pair{"decision", "Decision::"}, std::pair{"verdict", "ExplanationVerdict::"},
+                                      std::pair{"condition_1", "Quantity::"}})
+        for (const auto& each : packet->fields)
+            if (each.name == field)
+                for (const auto& entry : each.type.enumeration)
+                    if (entry.label != "none" && flight.find(type + entry.label) == std::string::npos)
+                        unused += type + entry.label + ' ';
+    INFO("flight never tells " << unused);
     CHECK(unused.empty());
 }
 

@@ -32,10 +32,10 @@ class GncVenue {
     void step() {
         inputs_ = world_.sense();
         const flight::DeviceOutputs& commands = alone_.cycle(inputs_);
-        for (const flight::gnc::Trigger trigger : told().triggers)
-            events_.push_back({trigger, 0, told(), world_.truth(), world_.inspect()});
-        if (told().bank_reversal != 0)
-            events_.push_back({std::nullopt, told().bank_reversal, told(), world_.truth(), world_.inspect()});
+        for (const auto& one : told().triggers)
+            events_.push_back({one.trigger, 0, told(), world_.truth(), world_.inspect()});
+        if (told().bank_reversal.number != 0)
+            events_.push_back({std::nullopt, told().bank_reversal.number, told(), world_.truth(), world_.inspect()});
         world_.advance(commands);
     }
 

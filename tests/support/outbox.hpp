@@ -1,12 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "flight/gnc/quantities.hpp"
 #include "flight/kernel/outbox.hpp"
 
 #include <memory>
 #include <vector>
 
 namespace aeolis::test {
+
+/// An Explanation as it was recorded.
+struct Explained {
+    flight::Decision decision{};
+    flight::ExplanationVerdict verdict{};
+    std::uint16_t subject = 0;
+    std::vector<flight::gnc::Condition> conditions;
+};
 
 /// An outbox with a bus, recording what was sent, by type.
 struct OutboxRecorder {
@@ -32,6 +41,27 @@ struct OutboxRecorder {
         for (const auto& record : sent<flight::Record>())
             if (record.apid == Evr::apid && read_bits(record.data, 0, 16) == Evr::id.value) ++count;
         return count;
+    }
+    std::vector<Explained> explanations() const {
+        std::vector<Explained> found;
+        for (const auto& record : sent<flight::Record>()) {
+            if (record.apid != flight::packet::Explanation::apid) continue;
+            BitReader in{record.data};
+            Explained& told = found.emplace_back();
+            told.decision = static_cast<flight::Decision>(in.get(16));
+            told.verdict = static_cast<flight::ExplanationVerdict>(in.get(8));
+            told.subject = static_cast<std::uint16_t>(in.get(16));
+            for (auto left = in.get(8); left > 0; --left) {
+                flight::gnc::Condition condition;
+                condition.quantity = static_cast<flight::Quantity>(in.get(16));
+                condition.value = in.get_double();
+                condition.bound = in.get_double();
+                condition.comparison = static_cast<flight::Comparison>(in.get(8));
+                condition.holds = in.get(8) != 0;
+                told.conditions.push_back(condition);
+            }
+        }
+        return found;
     }
     template <typename Packet>
     int packets() const {

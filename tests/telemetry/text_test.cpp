@@ -36,6 +36,26 @@ TEST_CASE("the ending of a name gives the unit", "[text]") {
     CHECK(named_value_text("speed_mps", 405.0) == "405.0 m/s");
     CHECK(named_value_text("tone_priority", 12.0) == "12");
     CHECK(named_value_text("mach", 1.75) == "1.75");
+    CHECK(named_value_text("mach", 1.698765) == "1.70");
+}
+
+TEST_CASE("names, distances and times read as people say them", "[text][R38]") {
+    CHECK(in_words("parachute_deploy") == "parachute deploy");
+    CHECK(in_words("gnc_mode") == "GNC mode");
+    CHECK(in_words("sufr_start") == "SUFR start");
+    CHECK(in_words("") == "");
+    CHECK(named_value_text("altitude_m", 99'999.9) == "99999.9 m");
+    CHECK(named_value_text("solution_radius_m", 3'522'249.0) == "3522.2 km");
+    CHECK(named_value_text("reply_wait_s", 0.5) == "0.5 s");
+    CHECK(named_value_text("time_in_mode_s", 14.015625) == "14.016 s");
+    CHECK(named_value_text("time_to_entry_s", 0.0) == "0 s");
+    CHECK(named_value_text("time_to_entry_s", 3599.5) == "3599.5 s");
+    CHECK(named_value_text("time_to_entry_s", 3600.0) == "1 h");
+    CHECK(named_value_text("time_to_entry_s", 1189.515625) == "1189.5 s");
+    CHECK(named_value_text("time_to_entry_s", 17964.25) == "4 h 59 min 24.3 s");
+    CHECK(named_value_text("time_to_entry_s", 7199.9999) == "2 h");
+    CHECK(named_value_text("descent_rate_mps", 0.83) == "0.83 m/s");
+    CHECK(named_value_text("time_to_separation_s", -3601.0) == "-1 h 1 s");
 }
 
 TEST_CASE("an event's text holds its arguments, undefined ones too", "[text][R48]") {

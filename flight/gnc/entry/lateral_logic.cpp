@@ -18,13 +18,20 @@ double crossrange_deadband_m(double velocity_mps, bool saturated) {
     return saturated ? 0.5 * deadband_m : deadband_m;
 }
 
-bool LateralLogic::on(Sclk now, double crossrange_m, double velocity_mps, bool saturated, bool settled) {
-    if (reversed_at_ && now - *reversed_at_ < reversal_interval_min_s) return false;
-    if (!settled || sign_ * crossrange_m >= -crossrange_deadband_m(velocity_mps, saturated)) return false;
+Conditions LateralLogic::on(Sclk now, double crossrange_m, double velocity_mps, bool saturated,
+                            const Condition& settled) {
+    const double deadband_m = crossrange_deadband_m(velocity_mps, saturated);
+    Conditions conditions;
+    conditions.push_back(sign_ > 0 ? below(Quantity::crossrange_m, crossrange_m, -deadband_m)
+                                   : above(Quantity::crossrange_m, crossrange_m, deadband_m));
+    conditions.push_back(settled);
+    if (reversed_at_)
+        conditions.push_back(at_least(Quantity::time_since_reversal_s, now - *reversed_at_, reversal_interval_min_s));
+    if (!all_hold(conditions)) return conditions;
     sign_ = -sign_;
     ++reversals_;
     reversed_at_ = now;
-    return true;
+    return conditions;
 }
 
 }  // namespace aeolis::flight::gnc

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "common/time.hpp"
+#include "flight/gnc/quantities.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -23,9 +24,9 @@ double crossrange_deadband_m(double velocity_mps, bool saturated);
 
 class LateralLogic {
   public:
-    /// Updates the logic; true in the cycle in which a reversal begins.
-    /// `settled`: the commanded side has been reached.
-    bool on(Sclk now, double crossrange_m, double velocity_mps, bool saturated, bool settled);
+    /// Updates the logic, and returns its conditions: where all hold, a reversal begins in this cycle. R38
+    /// `settled`: that the commanded side has been reached.
+    Conditions on(Sclk now, double crossrange_m, double velocity_mps, bool saturated, const Condition& settled);
 
     void start(int sign) { sign_ = sign; }
     int sign() const { return sign_; }  ///< +1: lift to the right

@@ -20,8 +20,7 @@ void RadarFilter::remember(Sclk now, double altitude_m, const Vector3& v_MB_M) {
     count_ = std::min(count_ + 1, static_cast<std::uint32_t>(past_.size()));
 }
 
-std::optional<RadarCorrection> RadarFilter::on(const RadarSolution& solution, Sclk now, const Vector3& up_M,
-                                               const Belief& belief) {
+RadarJudgement RadarFilter::on(const RadarSolution& solution, Sclk now, const Vector3& up_M, const Belief& belief) {
     const double half_s = 0.5 * solution.span_s;
     double altitude_sum_m = 0.0, time_sum_s = 0.0;
     Vector3 v_sum = Vector3::Zero();
@@ -39,7 +38,7 @@ std::optional<RadarCorrection> RadarFilter::on(const RadarSolution& solution, Sc
         samples += 1.0;
     }
     // At least half of the span must be covered, otherwise averages over different times would be compared.
-    if (samples < std::max(1.0, 0.5 * remembered_hz * solution.span_s)) return std::nullopt;
+    if (samples < std::max(1.0, 0.5 * remembered_hz * solution.span_s)) return {};
 
     // The remaining difference between the mean times of the history and of the radar is removed by the mean rates.
     const double late_s = time_sum_s / samples;
@@ -49,23 +48,36 @@ std::optional<RadarCorrection> RadarFilter::on(const RadarSolution& solution, Sc
     const double residual_h_m = solution.altitude_m - altitude_m;
     const Vector3 residual_v = to_vector(solution.v_MB_M_mps) - v_mean;
 
-    const auto outside = [&](double sigmas) {
-        return std::abs(residual_h_m) > parameters.radar_altitude_gate_m +
-                                            parameters.radar_altitude_gate_fraction * solution.altitude_m +
-                                            sigmas * belief.altitude_m() ||
-               residual_v.norm() > parameters.radar_velocity_gate_mps + sigmas * belief.velocity_mps();
+    const auto altitude_within = [&](double sigmas) {
+        return at_most(Quantity::radar_altitude_residual_m, std::abs(residual_h_m),
+                       parameters.radar_altitude_gate_m +
+                           parameters.radar_altitude_gate_fraction * solution.altitude_m +
+                           sigmas * belief.altitude_m());
     };
-    const bool far = outside(0.0);
-    if (accepted_ > 0 && outside(parameters.radar_gate_sigmas) && refused_in_a_row_ < refused_max) {
+    const auto velocity_within = [&](double sigmas) {
+        return at_most(Quantity::radar_velocity_residual_mps, residual_v.norm(),
+                       parameters.radar_velocity_gate_mps + sigmas * belief.velocity_mps());
+    };
+    const Condition altitude = altitude_within(parameters.radar_gate_sigmas);
+    const Condition velocity = velocity_within(parameters.radar_gate_sigmas);
+    const Condition enough = at_least(Quantity::refused_in_a_row, refused_in_a_row_, refused_max);
+    RadarJudgement judgement;
+    for (const Condition& condition : {altitude, velocity, enough}) judgement.conditions.push_back(condition);
+    if (accepted_ > 0 && !(altitude.holds && velocity.holds) && !enough.holds) {
         ++refused_;
         ++refused_in_a_row_;
-        return std::nullopt;
+        judgement.verdict = RadarJudgement::Verdict::refused;
+        return judgement;
     }
-    const double gain = accepted_ == 0 || refused_in_a_row_ >= refused_max || far ? 1.0 : parameters.radar_gain;
+    const bool near = altitude_within(0.0).holds && velocity_within(0.0).holds;
+    judgement.verdict =
+        accepted_ == 0 || (near && !enough.holds) ? RadarJudgement::Verdict::taken : RadarJudgement::Verdict::believed;
+    const bool whole = accepted_ == 0 || judgement.verdict == RadarJudgement::Verdict::believed;
+    const double gain = whole ? 1.0 : parameters.radar_gain;
     refused_in_a_row_ = 0;
     ++accepted_;
 
-    RadarCorrection correction;
+    RadarCorrection& correction = judgement.correction;
     correction.gain = gain;
     correction.v_M_mps = gain * residual_v;
     // A velocity error has also become an altitude error since the middle of the span.
@@ -75,7 +87,7 @@ std::optional<RadarCorrection> RadarFilter::on(const RadarSolution& solution, Sc
         past_[i].altitude_m += correction.altitude_m + correction.v_M_mps.dot(up_M) * (past_[i].time - now);
         past_[i].v_MB_M += correction.v_M_mps;
     }
-    return correction;
+    return judgement;
 }
 
 }  // namespace aeolis::flight::gnc

@@ -4,18 +4,18 @@
 #include "common/time.hpp"
 #include "flight/gnc/navigation/dead_reckoning.hpp"
 #include "flight/gnc/navigation/radar_batch.hpp"
+#include "flight/gnc/quantities.hpp"
 #include "flight/gnc/vector.hpp"
 
 #include <array>
 #include <cstdint>
-#include <optional>
 
 // Corrects the navigated altitude and velocity by radar solutions.
 //
 //   residual = radar's average − average of the navigated history over the same span
 //   Δh = k_h · residual_h,  Δv = k_v · residual_v ;  the history is shifted by the correction
 //
-// Frame    M; altitude along the local vertical     In   RadarSolution, 1 Hz     Out   RadarCorrection
+// Frame    M; altitude along the local vertical     In   RadarSolution, 1 Hz     Out   RadarJudgement
 // Memory   9 s of navigated history at 16 Hz
 // Faults   a solution whose residual is beyond the gate is refused and counted; after five refusals in a row, the
 //          next solution is taken whole
@@ -29,15 +29,28 @@ struct RadarCorrection {
     double gain = 1.0;                  ///< part of the residual that this is
 };
 
+/// How a solution was judged. R38
+struct RadarJudgement {
+    enum class Verdict : std::uint8_t {
+        uncovered,  ///< the history does not cover it
+        refused,    ///< beyond the gate
+        taken,
+        believed,  ///< beyond the gate, and taken whole all the same
+    };
+    Verdict verdict{};
+    RadarCorrection correction;  ///< of what is taken or believed
+    Conditions conditions;       ///< both residuals by their gates, and the refusals before
+
+    bool accepted() const { return verdict == Verdict::taken || verdict == Verdict::believed; }
+};
+
 class RadarFilter {
   public:
     /// Adds the navigated state to the history; call each cycle, every fourth is kept.
     void remember(Sclk now, double altitude_m, const Vector3& v_MB_M);
 
-    /// None when the solution is refused or the history does not cover it. The gate is as much wider as `belief` is, and
-    /// what is beyond the narrow one then is taken whole.
-    std::optional<RadarCorrection> on(const RadarSolution& solution, Sclk now, const Vector3& up_M,
-                                      const Belief& belief = {});
+    /// The gate is as much wider as `belief` is, and what is beyond the narrow one then is believed.
+    RadarJudgement on(const RadarSolution& solution, Sclk now, const Vector3& up_M, const Belief& belief = {});
 
     bool locked() const { return accepted_ > 0; }
     std::uint32_t accepted() const { return accepted_; }

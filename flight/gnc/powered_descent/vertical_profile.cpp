@@ -42,10 +42,6 @@ double ApproachProfile::acceleration_mps2(double altitude_m, double descent_rate
     return deceleration_mps2_ + rate_gain_per_s * (descent_rate_mps - this->descent_rate_mps(altitude_m));
 }
 
-bool ApproachProfile::done(double altitude_m, double descent_rate_mps) const {
-    return descent_rate_mps <= constant_velocity_mps || altitude_m <= approach_end_altitude_m;
-}
-
 double hold_rate_mps2(double descent_rate_mps, double wanted_mps) {
     return rate_gain_per_s * (descent_rate_mps - wanted_mps);
 }

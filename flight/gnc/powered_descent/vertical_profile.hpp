@@ -37,7 +37,6 @@ class ApproachProfile {
     void start(double altitude_m, double descent_rate_mps);
     double descent_rate_mps(double altitude_m) const;
     double acceleration_mps2(double altitude_m, double descent_rate_mps) const;  ///< up, to command
-    bool done(double altitude_m, double descent_rate_mps) const;
     double deceleration_mps2() const { return deceleration_mps2_; }
 
     template <typename Exchange>

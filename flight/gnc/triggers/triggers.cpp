@@ -106,6 +106,13 @@ Conditions engine_priming(double altitude_m, double descent_rate_mps, double bac
                 at_least(Quantity::descent_rate_mps, descent_rate_mps, 1.0));
 }
 
+Conditions constant_velocity(double altitude_m, double descent_rate_mps) {
+    const Condition slow =
+        at_most(Quantity::descent_rate_mps, descent_rate_mps, powered_descent::constant_velocity_mps);
+    const Condition low = at_most(Quantity::altitude_m, altitude_m, powered_descent::approach_end_altitude_m);
+    return list(low.holds && !slow.holds ? low : slow);
+}
+
 Conditions backshell(double altitude_m, double descent_rate_mps, const BackshellBounds& bounds,
                      std::uint32_t cycles_held) {
     return list(at_most(Quantity::altitude_m, altitude_m, backshell_altitude_needed_m(bounds, descent_rate_mps)),

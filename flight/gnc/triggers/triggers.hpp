@@ -86,6 +86,9 @@ struct BackshellBounds {
 /// altitude that free fall and approach need.
 double backshell_altitude_needed_m(const BackshellBounds& bounds, double descent_rate_mps);
 
+/// Powered approach is over: slow enough, or down at its end.
+Conditions constant_velocity(double altitude_m, double descent_rate_mps);
+
 /// Conditions for priming.
 /// The time is measured to the solution's altitude: by then the descent rate is near its design.
 Conditions engine_priming(double altitude_m, double descent_rate_mps, double backshell_altitude_m);

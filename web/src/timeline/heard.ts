@@ -78,9 +78,10 @@ export function lastHeard(plan: readonly TimepointRow[], heard: ReadonlyMap<numb
 
 /**
  * Whether an explanation is about this timepoint alone. Flight names a decision by the timepoint, by the anchor whose
- * finding triggers it, or as "timepoint" with its name in the text.
+ * finding triggers it, or as "timepoint" with its name, in words, in the text.
  */
 export function speaksOf({ decision, text }: Explanation, row: TimepointRow): boolean {
-  if (decision === 'timepoint') return text.split(' ')[1] === row.name;
+  if (decision === 'timepoint')
+    return text.toLowerCase().startsWith(`timepoint ${row.name.replaceAll('_', ' ')} `.toLowerCase());
   return decision === row.name || (decision !== '' && decision === row.anchor && row.desiredOffsetS === 0);
 }

@@ -71,6 +71,9 @@ const UNITS: Record<string, string> = {
   g: 'g',
 };
 
+/** A fact, as flight compares it. */
+const YES_OR_NO: Record<number, string> = { 0: 'no', 1: 'yes' };
+
 /** Splits a quantity's name at its unit: "speed_mps" is "speed" in m/s. */
 function quantityWords(quantity: string): { words: string; unit: string } {
   const at = quantity.lastIndexOf('_');
@@ -88,6 +91,9 @@ export function conditionLine({
   holds,
 }: Pick<Condition, 'quantity' | 'value' | 'comparison' | 'bound' | 'holds'>): Line {
   const { words, unit } = quantityWords(quantity);
+  const [fact, wanted] = [YES_OR_NO[value], YES_OR_NO[bound]];
+  if (comparison === '==' && fact !== undefined && wanted !== undefined)
+    return { words: `${words}: ${wanted}`, value: fact, holds };
   return {
     words: `${words} ${RELATIONS[comparison] ?? comparison} ${numberText(bound)}${unit}`,
     value: `${numberText(value)}${unit}`,

@@ -25,7 +25,7 @@ import { stream } from '../run/connection';
 import { useForTest } from '../run/session';
 import { timepoints } from '../run/shown';
 import type { ToWorker } from '../stream/messages';
-import { noteWords, waitingFor } from './model';
+import { conditionLine, noteWords, waitingFor } from './model';
 import type { Against } from './model';
 import { WaitingFor } from './view';
 
@@ -322,6 +322,10 @@ describe('waiting for', () => {
       holds: false,
     });
   });
+  it('has a fact as yes or no', () => {
+    const locked = create(ConditionSchema, { quantity: 'radar_locked', value: 0, comparison: '==', bound: 1 });
+    expect(conditionLine(locked)).toEqual({ words: 'radar locked: yes', value: 'no', holds: false });
+  });
   it('takes no other decision’s conditions for its own', () => {
     const condition = create(ConditionSchema, {
       quantity: 'drag_mps2',
@@ -343,11 +347,11 @@ describe('waiting for', () => {
       ).lines.map((line) => line.words);
     const own = ['the vehicle declares “parachute”', 'drag ≥ 1.960 m/s²'];
     expect(words('heading_alignment')).toEqual(own.slice(0, 1));
-    expect(words('timepoint', 'timepoint entry_interface held: …')).toEqual(own.slice(0, 1));
+    expect(words('timepoint', 'timepoint entry interface held: …')).toEqual(own.slice(0, 1));
     for (const each of [
       words('parachute'),
       words('parachute_deploy'),
-      words('timepoint', 'timepoint parachute_deploy held: …'),
+      words('timepoint', 'timepoint parachute deploy held: …'),
     ])
       expect(each).toEqual(own);
   });
