@@ -27,7 +27,7 @@ struct Ground {
         auto dictionary = tests::small_dictionary();
         dictionary.packets[status].expected_rate_hz = 1.0;
         dictionary.telemetry_plan = {
-            {"all", "Status", tests::status_apid, dictionary::TelemetryPriority::high, {2, 4, 4, 0}, "", 2}};
+            {"all", "Status", tests::status_apid, dictionary::TelemetryPriority::high, {2, 4, 4, 0}, 1, "", 2}};
         return dictionary;
     }
     Ground() {
