@@ -290,8 +290,8 @@ struct ClockRow {
 // ---- the whole -------------------------------------------------------------------------------------------------
 
 struct Dictionary {
-    std::string mission;   ///< SpaceSystem name
-    std::uint16_t id = 0;  ///< in every telemetry packet; changes with any change of a file used on board
+    std::string mission;                 ///< SpaceSystem name
+    std::uint16_t id = 0;                ///< in every telemetry packet; changes with any change of a file used on board
     std::uint32_t timeline_version = 0;  ///< in telemetry and archive; changes with what the timeline's sheets hold
     std::vector<Channel> channels;
     std::vector<Packet> packets;

@@ -41,7 +41,7 @@ struct Load {
     Role role = Role::prime;
     /// After a restart: the last cycle whose state the other computer can have received.
     std::optional<Sclk> told_until;
-    std::uint32_t resets = 0;             ///< so far
+    std::uint32_t resets = 0;  ///< so far
     // NOLINTBEGIN(readability-magic-numbers): the vehicle of 2012, until a scenario gives its own
     double uhf_rate_bps = 8000.0;         ///< rate of the real-time link
     Plan telemetry_plan = Plan::mission;  ///< wideband: a synthetic load for benchmarks
