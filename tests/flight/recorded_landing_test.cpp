@@ -441,8 +441,9 @@ class Recorded {
             const double left_s = height_m / near("descent_rate_mps", at).low;
             return Range{left_s - 1.0e-3, left_s + 1.0e-3};
         }
-        const std::string channel = quantity == "thrust_N" ? "thrust_command_N" : quantity;
-        if (values_.contains(channel)) return near(channel, at);
+        // Touchdown is judged before this cycle's thrust is commanded: by that of the one before.
+        if (quantity == "thrust_N") return near("thrust_command_N", at - seconds_per_tick);
+        if (values_.contains(quantity)) return near(quantity, at);
         return std::nullopt;
     }
 

@@ -213,7 +213,7 @@ TEST_CASE("UHF packets and decoded tones are streamed while the vehicle flies, a
 TEST_CASE("a run that is over comes again over the socket at a pace, and not while it goes on", "[stream][R42][R45]") {
     RunningServer server{shipped_scenario("nominal_auto"), 100.0};
     Follower client{server.port(), false};
-    client.read_through(400);  // some tones long
+    client.read_through(1200);  // some tones long
     v1::ClientMessage replay;
     replay.mutable_subscribe()->set_run(1);
     replay.mutable_subscribe()->set_pace(1.0);
