@@ -5,6 +5,6 @@
 
 namespace aeolis::flight {
 
-[[maybe_unused]] constexpr void (*checked)(Message&) = expect_only_data_in_each;
+template void expect_only_data_in_each(Message&);
 
 }  // namespace aeolis::flight
