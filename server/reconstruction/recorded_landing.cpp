@@ -131,6 +131,7 @@ std::vector<BeamsAt> RecordedLanding::beams() const {
 
 std::vector<Navigated> RecordedLanding::navigated() const {
     std::vector<Navigated> all;
+    all.reserve(navigated_.size());
     for (const auto& [ticks, state] : navigated_) all.push_back({Sclk::from_ticks(ticks), state});
     return all;
 }
