@@ -44,7 +44,7 @@ bool read(unsigned sheet, std::string_view text, dictionary::Findings& findings)
     case 4: return dictionary::read_constraints(text, {&mission().timeline, &mission().anchors}, findings).has_value();
     case 5: return dictionary::read_telemetry_plan(text, &mission().packets, findings).has_value();
     case 6: return dictionary::read_state_machines(text, &enumerations, findings).has_value();
-    case 7: return dictionary::read_owners(text, {&mission().timeline, &enumerations}, findings).has_value();
+    case 7: return dictionary::read_owners(text, &enumerations, findings).has_value();
     default: return dictionary::read_csv(text, findings).has_value();
     }
 }
