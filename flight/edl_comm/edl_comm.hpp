@@ -16,8 +16,8 @@ namespace aeolis::flight {
 /// Records all EDL telemetry in non-volatile memory (NVM), and sends a subset in real time. R29, R30, R52
 /// The subset is bit-identical to the recording and limited by the rate of the link.
 ///
-/// In      Record (any module), ImuReadings, RadarReturns, PhaseChanged, NvmStatus, ToneStatus, UplinkStatus, CloseRecording,
-///         ClockTick (64 Hz)
+/// In      Record (any module), ImuReadings, RadarReturns, PhaseChanged, NvmStatus, ToneStatus, UplinkStatus,
+///         CloseRecording, ClockTick (64 Hz)
 /// Out     packets to NVM, in order; PLTUs with some of them to the UHF transmitter, within its rate; CommStatus at 1
 ///         Hz; tables of all readings of IMU and radar; data products
 /// Memory  192 packets wait for the link; RealtimeQueue decides which are dropped. Neither recording nor cycle suffers

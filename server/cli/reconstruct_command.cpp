@@ -77,6 +77,8 @@ void print_path(const Path& path, const RecordedLanding& recorded) {
     const auto row = [&](const char* name, Sclk at) {
         const auto point = std::ranges::lower_bound(path.points, at, {}, &PathPoint::at);
         const PathPoint& shown = point == path.points.end() ? path.points.back() : *point;
+        if (std::abs(shown.at - at) > 2.0 * reconstruction::path_step_s)
+            return fmt::print("{:<22}{:>9.2f}   the path does not cover it\n", name, at - path.entry);
         const auto& [p, v, q] = shown.state;
         fmt::print("{:<22}{:>9.2f}{:>11.1f}{:>10.2f}{:>10.1f}{:>9.3f}{:>10.4f}", name, shown.at - path.entry,
                    p.norm() - path.target_radius_m, v.norm(), shown.sigma_p_m.norm(), shown.sigma_v_mps.norm(),

@@ -19,7 +19,7 @@ using flight::gnc::Strapdown;
 using flight::gnc::to_vector;
 
 constexpr double before_entry_s = 30.0;        // chosen: free fall still, and close to what the path is wanted for
-constexpr std::uint32_t readings_a_step = 25;  // 1/8 s
+constexpr std::uint32_t readings_a_step = 25;  // of 1/200 s: path_step_s
 constexpr double tick_part = 0.01;             // of a tick: readings end on the grid of ticks but for rounding
 constexpr double median_deviation = 1.2533;    // of the median of normal numbers against that of their mean: √(π/2)
 

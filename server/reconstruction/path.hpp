@@ -8,6 +8,8 @@
 
 namespace aeolis::reconstruction {
 
+inline constexpr double path_step_s = 0.125;
+
 /// A point of the path. Frame M; the standard deviations are of each axis.
 struct PathPoint {
     Sclk at;
@@ -17,7 +19,7 @@ struct PathPoint {
 };
 
 struct Path {
-    std::vector<PathPoint> points;  ///< eight a second, from half a minute before entry to touchdown
+    std::vector<PathPoint> points;  ///< one each path_step_s, from half a minute before entry to touchdown
     Vector3 accelerometer_bias_mps2 = Vector3::Zero();  ///< as felt in free fall before entry
     double target_radius_m = 0.0;
     Sclk entry;

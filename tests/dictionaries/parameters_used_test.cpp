@@ -48,8 +48,8 @@ TEST_CASE("each parameter of parameters.csv is used in flight", "[dictionary][R4
 
 TEST_CASE("no module of EDL has a constant of its own that tunes it: they come from parameters.csv",
           "[dictionary][R48]") {
-    // constexpr TYPE NAME = a number. What remains are units, the world, the interface to a device, memory, and the zero
-    // of a computation. A number without a name is refused by clang-tidy (flight/.clang-tidy).
+    // constexpr TYPE NAME = a number. What remains are units, the world, the interface to a device, memory, and the
+    // zero of a computation. A number without a name is refused by clang-tidy (flight/.clang-tidy).
     static const std::regex literal{R"(constexpr\s+[A-Za-z_:0-9]+\s+([A-Za-z_0-9]+)\s*=\s*-?[0-9])"};
     static const std::set<std::string> no_tuning{
         "pi",
