@@ -119,8 +119,8 @@ void TimelineJudge::hear_firing(const dictionary::Decoded& packet) {
     const auto id = static_cast<std::size_t>(*row);
     known_.triggered[id] = Sclk{*began};
     known_.fired[id] = Sclk{*ended};
-    const auto& [anchor, desired_s, minimum_s] = offsets_[id];
-    if (anchor && desired_s && is_decided_in_flight(anchor->value) && !anchor_offsets_[anchor->value])
+    const auto& [anchor, desired_s, minimum_s, may_be_late] = offsets_[id];
+    if (!may_be_late && anchor && desired_s && is_decided_in_flight(anchor->value) && !anchor_offsets_[anchor->value])
         anchor_offsets_[anchor->value] = *began - *desired_s;
     if (id < standing_.current) return;
     standing_ = {.now = std::max(standing_.now, Sclk{*ended}),

@@ -194,6 +194,7 @@ struct TimelineRow {
     std::optional<double> hold_repeat_s;  ///< set when the timeline is held: interval of repeating the action
     std::string backtrack;                ///< timepoint to return to after a reboot in pre-EDL; empty: none
     bool essential = true;                ///< kept in Second Chance
+    bool may_be_late = false;             ///< a "do edl" after its time does no harm: it then follows at once
     std::optional<ToneId> tone;
     std::string event;  ///< name of an event emitted when the action is done; empty: none
     std::string note;

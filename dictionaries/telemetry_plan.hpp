@@ -21,9 +21,11 @@ inline constexpr std::array<std::string_view, 4> telemetry_priority_words{"low",
 inline constexpr std::array<std::string_view, 4> telemetry_state_columns{"before_entry", "entry", "descent", "landed"};
 
 /// The phases of EDL (labels of the XTCE enumeration EdlPhase), and the column of each.
-inline constexpr std::array<std::pair<std::string_view, std::size_t>, 13> telemetry_state_of_phase{
+inline constexpr std::array<std::pair<std::string_view, std::size_t>, 15> telemetry_state_of_phase{
     {{"pre_edl", 0},
      {"late_cruise", 0},
+     {"edl_approach", 0},
+     {"edl_main", 0},
      {"exo_atmospheric", 0},
      {"wait_for_guidance", 1},
      {"range_control", 1},

@@ -79,7 +79,7 @@ class Predictor {
 
     void collect_told() {
         for (std::size_t i = 0; i < offsets_.size(); ++i) {
-            const auto& [anchor, desired_s, minimum_s] = offsets_[i];
+            const auto& [anchor, desired_s, minimum_s, may_be_late] = offsets_[i];
             const auto fired = heard(i);
             if (!fired) continue;
             for (std::size_t before = 0; before < i; ++before)
@@ -87,7 +87,7 @@ class Predictor {
                     auto& passed_e_s = told_[offsets_[before].anchor->value].passed_e_s;
                     passed_e_s = std::min(passed_e_s, fired->triggered_e_s);
                 }
-            if (!anchor || !desired_s) continue;
+            if (!anchor || !desired_s || may_be_late) continue;  // one that may be late says nothing of its anchor
             auto& told = told_[anchor->value];
             told.at_e_s = std::min(told.at_e_s, fired->triggered_e_s);
             const double e_s = fired->triggered_e_s - *desired_s;
@@ -206,6 +206,9 @@ class Predictor {
         auto e_s = seconds_of(due.desired);
         if (!offsets.desired_s || !offsets.minimum_s) return {{}, Unknown::offset};
         if (!e_s) return {{}, offsets.anchor ? Unknown::anchor : Unknown::previous};
+        // Its time has passed without "do edl", which it will follow.
+        if (offsets.may_be_late && !previous_e_s && known_.now_e_s && *e_s < *known_.now_e_s)
+            return {{}, Unknown::previous};
         const auto not_before = [&](MaybeOffset other_e_s) {
             if (other_e_s) e_s = std::max(*e_s, *other_e_s);
         };

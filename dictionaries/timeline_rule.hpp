@@ -48,12 +48,13 @@ struct Moment {
 struct Offsets {
     std::optional<AnchorId> anchor;  ///< none: the desired offset, too, counts from the previous firing
     MaybeOffset desired_s;
-    MaybeOffset minimum_s;  ///< from the previous firing
+    MaybeOffset minimum_s;     ///< from the previous firing
+    bool may_be_late = false;  ///< fires at once when "do edl" comes after its time, and does no harm then
 };
 /// Offsets of a row of timeline.csv, as the dictionary or flight holds it.
 template <typename Row>
 constexpr Offsets offsets_of(const Row& row) {
-    return {row.anchor, row.desired_offset_s, row.minimum_offset_s};
+    return {row.anchor, row.desired_offset_s, row.minimum_offset_s, row.may_be_late};
 }
 
 /// One of the two conditions for triggering: `offset_s` after `from`.
@@ -96,9 +97,9 @@ constexpr MaybeTime anchor_time(MaybeTime parent, MaybeOffset offset_s) {
     return parent + offset_s;
 }
 
-/// The latest acceptance of "do edl" with which nothing is overdue. R23
-/// It is the desired time of the first timepoint with an anchor, less the durations of those before it. Undefined while
-/// that anchor is undefined, or when no timepoint has an anchor.
+/// The latest acceptance of "do edl" with which nothing is overdue that may not be late. R23
+/// It is the desired time of the first timepoint with an anchor that may not be late, less the durations of those before
+/// it. Undefined while that anchor is undefined, or when there is no such timepoint.
 /// @param offsets_of  Offsets of a row         @param reply_timeout_of  of a row, if any
 /// @param anchor_time_of  MaybeTime of an AnchorId
 constexpr MaybeTime latest_begin(std::size_t rows, const auto& offsets_of, const auto& reply_timeout_of,
@@ -106,8 +107,10 @@ constexpr MaybeTime latest_begin(std::size_t rows, const auto& offsets_of, const
     double before_s = 0.0;
     for (std::size_t i = 0; i < rows; ++i) {
         const Offsets offsets = offsets_of(i);
-        if (offsets.anchor) return anchor_time_of(*offsets.anchor) + offsets.desired_s + MaybeOffset{-before_s};
-        before_s += offsets.desired_s.value_or(0.0) + reply_timeout_of(i).value_or(0.0);
+        if (offsets.anchor && !offsets.may_be_late)
+            return anchor_time_of(*offsets.anchor) + offsets.desired_s + MaybeOffset{-before_s};
+        const MaybeOffset waits_s = offsets.anchor ? offsets.minimum_s : offsets.desired_s;
+        before_s += waits_s.value_or(0.0) + reply_timeout_of(i).value_or(0.0);
     }
     return {};
 }

@@ -27,7 +27,7 @@ std::string number(double value) {
 std::vector<Bounded> bounded_fields(const Scenario& s) {
     return {
         {"entry_sclk", s.entry_sclk.seconds, 1.0e6, 4.2e9},
-        {"start_before_entry_s", s.start_before_entry_s, 60.0, 86400.0},
+        {"start_before_entry_s", s.start_before_entry_s, 60.0, 864000.0},
         {"end_after_touchdown_s", s.end_after_touchdown_s, 0.0, 3600.0},
         {"timeout_after_entry_s", s.timeout_after_entry_s, 60.0, 7200.0},
         {"entry.radius_m", s.entry.radius_m, 3.45e6, 3.6e6},

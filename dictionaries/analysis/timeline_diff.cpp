@@ -37,6 +37,7 @@ Rows timeline_rows(const Dictionary& d) {
                          {"hold_repeat_s", row.hold_repeat_s ? number_word(*row.hold_repeat_s) : ""},
                          {"backtrack_point", row.backtrack},
                          {"essential", row.essential ? "yes" : "no"},
+                         {"may_be_late", row.may_be_late ? "yes" : "no"},
                          {"tone", row.tone ? d.tones[row.tone->value].name : ""},
                          {"event", row.event},
                          {"note", row.note}}});

@@ -38,7 +38,8 @@ void write_timeline(const Dictionary& dictionary, std::ostringstream& out) {
             << optional_literal(row.reply_timeout_s) << ", IfUnverified::" << name_of(row.if_unverified) << ", "
             << optional_literal(row.hold_repeat_s) << ", "
             << id_literal("TimepointId", id_of(dictionary.timeline, row.backtrack)) << ", "
-            << (row.essential ? "true" : "false") << ", " << id_literal("ToneId", row.tone) << ", "
+            << (row.essential ? "true" : "false") << ", " << (row.may_be_late ? "true" : "false") << ", "
+            << id_literal("ToneId", row.tone) << ", "
             << (row.event.empty() ? "nullptr" : "&announce<evr::" + row.event + ">") << ", "
             << (row.action.empty() ? "std::nullopt" : action_named(row) + ".owner") << "},\n";
     out << "}};\n\n";

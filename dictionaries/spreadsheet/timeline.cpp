@@ -90,11 +90,11 @@ void read_backtrack(RowReader& cells, const LinesByName& all, const LinesByName&
 
 std::optional<std::vector<TimelineRow>> read_timeline(std::string_view text, const TimelineContext& context,
                                                       Findings& findings) {
-    const auto table =
-        Table::read(text,
-                    {"name", "reference", "desired_offset_s", "minimum_offset_s", "action", "reply_timeout_s",
-                     "if_unverified", "hold_repeat_s", "backtrack_point", "essential", "tone", "event", "note"},
-                    findings);
+    const auto table = Table::read(text,
+                                   {"name", "reference", "desired_offset_s", "minimum_offset_s", "action",
+                                    "reply_timeout_s", "if_unverified", "hold_repeat_s", "backtrack_point", "essential",
+                                    "may_be_late", "tone", "event", "note"},
+                                   findings);
     if (!table) return std::nullopt;
     if (table->rows().size() > timepoints_max) {
         findings.add(table->rows()[timepoints_max].line, "more than " + std::to_string(timepoints_max) + " timepoints");
@@ -122,6 +122,9 @@ std::optional<std::vector<TimelineRow>> read_timeline(std::string_view text, con
         read_backtrack(cells, all, so_far, row);
         read_hold(cells, row);
         row.essential = cells.yes_or_no("essential");
+        row.may_be_late = cells.yes_or_no("may_be_late");
+        if (row.may_be_late && cells.text("reference") == "previous")
+            cells.fault("may_be_late without an anchor: it follows the row before it");
         read_tone(cells, context, row);
         read_event(cells, context, row);
         row.note = cells.text("note");

@@ -86,8 +86,11 @@ enum class PyroId : std::uint8_t {
     rover_separation,
     bridle_cutter,
     coolant_vent,
+    pressurant_valve_1,
+    pressurant_valve_2,
+    thermal_batteries,
 };
-inline constexpr std::size_t pyro_count = 14;
+inline constexpr std::size_t pyro_count = 17;
 
 /// Reply of a pyro controller: the pyro fired, or the controller refuses to fire it.
 /// A device that does not answer sends nothing over the bus; only a time-out shows it.

@@ -21,8 +21,8 @@ PyroName reported(PyroId pyro) {
 // The dictionary numbers pyros as the devices do.
 static_assert(static_cast<PyroId>(PyroName::cruise_cable_cutter) == PyroId::cruise_cable_cutter);
 static_assert(static_cast<PyroId>(PyroName::parachute_mortar) == PyroId::parachute_mortar);
-static_assert(static_cast<PyroId>(PyroName::coolant_vent) == PyroId::coolant_vent &&
-              pyro_count == static_cast<std::size_t>(PyroName::coolant_vent) + 1);
+static_assert(static_cast<PyroId>(PyroName::thermal_batteries) == PyroId::thermal_batteries &&
+              pyro_count == static_cast<std::size_t>(PyroName::thermal_batteries) + 1);
 
 }  // namespace
 
@@ -112,6 +112,9 @@ void PyroManager::record(Sclk now, Outbox& out) {
                                     .pyro_rover_separation = state(PyroId::rover_separation),
                                     .pyro_bridle_cutter = state(PyroId::bridle_cutter),
                                     .pyro_coolant_vent = state(PyroId::coolant_vent),
+                                    .pyro_pressurant_valve_1 = state(PyroId::pressurant_valve_1),
+                                    .pyro_pressurant_valve_2 = state(PyroId::pressurant_valve_2),
+                                    .pyro_thermal_batteries = state(PyroId::thermal_batteries),
                                     .pyro_manager_armed = armed_};
     if (status != recorded_ || (armed_ && at_resolution(now, 1) == now)) out.record(status);
     recorded_ = status;

@@ -169,7 +169,9 @@ void explain_held(const Timeline& timeline, HeldExplanations& held, Outbox& out)
     FixedVector<gnc::Condition, 2> conditions;
     if (const auto waiting = timeline.waiting(); waiting && now - waiting->triggered >= worth_telling_after_s) {
         conditions.push_back(at_least(Quantity::reply_wait_s, now - waiting->triggered, waiting->timeout_s));
-    } else if (!waiting && now >= timeline.next_desired() + MaybeOffset{worth_telling_after_s} &&
+    } else if (const TimepointId current = timeline.current();
+               !waiting && !timeline.finished() && !timeline.rows()[current.value].may_be_late &&
+               now >= timeline.next_desired() + MaybeOffset{worth_telling_after_s} &&
                timeline.next_minimum().defined() && !(now >= timeline.next_minimum())) {
         const double since_previous_s = now - *timeline.previous_fired().get();
         const double minimum_s = *timeline.next_minimum().get() - *timeline.previous_fired().get();

@@ -157,7 +157,9 @@ void EdlMain::take_triggers(Sclk now, Outbox& out) {
 }
 
 void EdlMain::update_phase(Sclk now, Outbox& out) {
-    const PhaseChanges changes = phase_.follow(output_.mode, configuration_, late_cruise(now));
+    const PhaseChanges changes =
+        phase_.follow(output_.mode, configuration_,
+                      {.late_cruise = late_cruise(now), .begun = timeline_.begun(), .pre_edl_over = !pre_edl(now)});
     if (changes.empty()) return;
     for (const PhaseChange& change : changes) explain(change, entry(), out);
     tell_phase(out);

@@ -36,9 +36,11 @@ void Phase::take(EdlPhaseEvent event, PhaseChanges& changes) {
     if (machine_.take(event)) changes.push_back({from, event, state()});
 }
 
-PhaseChanges Phase::follow(gnc::Mode mode, const gnc::Configuration& configuration, bool late_cruise) {
+PhaseChanges Phase::follow(gnc::Mode mode, const gnc::Configuration& configuration, const Approach& approach) {
     PhaseChanges changes;
-    take(late_cruise ? EdlPhaseEvent::late_cruise_begins : EdlPhaseEvent::entry_moves_away, changes);
+    take(approach.late_cruise ? EdlPhaseEvent::late_cruise_begins : EdlPhaseEvent::entry_moves_away, changes);
+    if (approach.begun) take(EdlPhaseEvent::do_edl, changes);
+    if (approach.pre_edl_over) take(EdlPhaseEvent::pre_edl_ends, changes);
     if (configuration.cruise_stage_gone) take(EdlPhaseEvent::cruise_stage_gone, changes);
     if (const auto event = event_of(mode)) take(*event, changes);
     if (configuration.engines_off) take(EdlPhaseEvent::engines_off, changes);

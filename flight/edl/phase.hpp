@@ -14,7 +14,14 @@ struct PhaseChange {
     EdlPhaseEvent event{};
     EdlPhase to{};
 };
-using PhaseChanges = FixedVector<PhaseChange, 4>;
+using PhaseChanges = FixedVector<PhaseChange, 6>;  ///< late cruise, "do edl", pre-EDL, GNC's mode, ...
+
+/// What the clock and "do edl" say of the phase before GNC is enabled.
+struct Approach {
+    bool late_cruise = false;   ///< "do edl" is possible by time
+    bool begun = false;         ///< "do edl" was accepted
+    bool pre_edl_over = false;  ///< fault protection can no longer inhibit EDL
+};
 
 /// The vehicle's EDL phase, in the mission's terms.
 /// It follows the timeline and GNC's mode, only by the transitions of state_machines.csv.
@@ -23,7 +30,7 @@ class Phase {
     EdlPhase state() const { return machine_.state(); }
 
     /// Updates the phase for this cycle. Returns its changes, in order.
-    PhaseChanges follow(gnc::Mode mode, const gnc::Configuration& configuration, bool late_cruise);
+    PhaseChanges follow(gnc::Mode mode, const gnc::Configuration& configuration, const Approach& approach);
 
     template <typename Exchange>
     void carry(Exchange& exchange) {

@@ -17,7 +17,9 @@ constexpr double clock_end_s = std::numeric_limits<std::uint32_t>::max();  // of
 
 SolutionConditions conditions_of(const command::EDL_SET_PARAMETERS& p, Sclk now) {
     const double radius_m = std::hypot(p.position_x_m, p.position_y_m, p.position_z_m);
-    const double speed_mps = std::hypot(p.velocity_x_mps, p.velocity_y_mps, p.velocity_z_mps);
+    // Without what Mars's rotation adds at that distance.
+    const double speed_mps = std::hypot(p.velocity_x_mps - gnc::mars_spin_rps * p.position_y_m,
+                                        p.velocity_y_mps + gnc::mars_spin_rps * p.position_x_m, p.velocity_z_mps);
     const double to_entry_s = p.entry_sclk - now.seconds;
     SolutionConditions conditions;
     conditions.push_back(gnc::above(Quantity::time_to_entry_s, to_entry_s, 0.0));

@@ -18,6 +18,8 @@ std::uint32_t every_in(const TelemetryPlanRow::Every& every, EdlPhase phase) {
     switch (phase) {
     case EdlPhase::pre_edl:
     case EdlPhase::late_cruise:
+    case EdlPhase::edl_approach:
+    case EdlPhase::edl_main:
     case EdlPhase::exo_atmospheric: return every.before_entry;
     case EdlPhase::wait_for_guidance:
     case EdlPhase::range_control:

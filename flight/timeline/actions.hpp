@@ -92,6 +92,9 @@ inline constexpr std::array actions{
 
     // leaving the cruise stage
     Action{"vent_coolant", ModuleId::pyro, [](ActionContext& on) { on.fire(PyroId::coolant_vent); }},
+    Action{"open_pressurant_valve_1", ModuleId::pyro, [](ActionContext& on) { on.fire(PyroId::pressurant_valve_1); }},
+    Action{"open_pressurant_valve_2", ModuleId::pyro, [](ActionContext& on) { on.fire(PyroId::pressurant_valve_2); }},
+    Action{"activate_thermal_batteries", ModuleId::pyro, [](ActionContext& on) { on.fire(PyroId::thermal_batteries); }},
     Action{"cut_cruise_cables", ModuleId::pyro, [](ActionContext& on) { on.fire(PyroId::cruise_cable_cutter); }},
     Action{"fire_cruise_stage_separation", ModuleId::pyro,
            [](ActionContext& on) { on.fire(PyroId::cruise_stage_separation, gnc::Fact::cruise_stage_gone); }},

@@ -91,7 +91,7 @@ void Timeline::await_reply(Sclk now, ActionContext& context, Firings& firings) {
 }
 
 timeline::Offsets Timeline::offsets(std::size_t row) const {
-    return {rows_[row].anchor, desired_offset_s_[row], minimum_offset_s_[row]};
+    return {rows_[row].anchor, desired_offset_s_[row], minimum_offset_s_[row], rows_[row].may_be_late};
 }
 
 timeline::DueTimes Timeline::current_due() const {

@@ -32,6 +32,7 @@ struct TimepointSpec {
     std::optional<double> hold_repeat_s;  ///< while the timeline is held: interval at which the action is repeated
     std::optional<TimepointId> backtrack;
     bool essential = false;
+    bool may_be_late = false;  ///< does not bound the time of "do edl"
     std::optional<ToneId> tone;
     ActionFunction event = nullptr;   ///< function that announces the done action; nullptr: none
     std::optional<ModuleId> owner{};  ///< the module that the action may command; none: unspecified, as in tests. R5

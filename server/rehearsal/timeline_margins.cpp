@@ -6,12 +6,13 @@
 namespace aeolis::server {
 namespace {
 
-/// Whether the sequence passes from one anchor to another at this row.
+/// Whether the sequence passes from one anchor to another at this row. Rows that may be late have no margin to keep.
 bool begins_after_another_anchor(const dictionary::Dictionary& dictionary, std::size_t row) {
     const auto& timeline = dictionary.timeline;
-    if (!timeline[row].anchor) return false;
+    const auto held_to = [&](std::size_t i) { return timeline[i].anchor && !timeline[i].may_be_late; };
+    if (!held_to(row)) return false;
     for (std::size_t before = row; before-- > 0;)
-        if (timeline[before].anchor) return *timeline[before].anchor != *timeline[row].anchor;
+        if (held_to(before)) return *timeline[before].anchor != *timeline[row].anchor;
     return true;
 }
 

@@ -6,7 +6,7 @@
 namespace aeolis::simulation {
 
 bool Recorder::append(std::span<const std::uint8_t> packets) {
-    if (octets_.size() + packets.size() > capacity_octets) {
+    if (octets_.size() + packets.size() > capacity_octets_) {
         refused_octets_ += packets.size();
         return false;
     }

@@ -10,11 +10,13 @@ namespace aeolis::simulation {
 
 /// Non-volatile memory of the vehicle: whole packets, append-only.
 ///
-/// 64 MiB (our assumption); packets that do not fit are refused whole and counted. A fork of the landing has its own
-/// copy.
+/// 512 MiB (our assumption: a week of late cruise is recorded in half of it); packets that do not fit are refused whole
+/// and counted. A fork of the landing has its own copy.
 class Recorder {
   public:
-    static constexpr std::size_t capacity_octets = std::size_t{64} << 20;
+    static constexpr std::size_t capacity_octets = std::size_t{512} << 20;
+
+    explicit Recorder(std::size_t capacity = capacity_octets) : capacity_octets_(capacity) {}
 
     /// Returns false and keeps nothing when the memory is full.
     bool append(std::span<const std::uint8_t> packets);
@@ -22,6 +24,7 @@ class Recorder {
     std::uint64_t refused_octets() const { return refused_octets_; }
 
   private:
+    std::size_t capacity_octets_;
     std::vector<std::uint8_t> octets_;
     std::uint64_t refused_octets_ = 0;
 };

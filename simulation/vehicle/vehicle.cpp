@@ -91,10 +91,13 @@ void Vehicle::fire(flight::PyroId pyro, double now_s) {
         configuration_.rover_on_stage = false;
         break;
     case PyroId::bridle_cutter: configuration_.bridle = false; break;
-    // Neither moves the vehicle in this model: the coolant's push is small, and the cables only join cruise stage and
-    // aeroshell.
+    // None of them moves the vehicle in this model: the coolant's push is small, the cables only join cruise stage and
+    // aeroshell, and propellant has pressure and devices have power whatever becomes of valves and batteries (ours).
     case PyroId::cruise_cable_cutter:
-    case PyroId::coolant_vent: break;
+    case PyroId::coolant_vent:
+    case PyroId::pressurant_valve_1:
+    case PyroId::pressurant_valve_2:
+    case PyroId::thermal_batteries: break;
     }
     recentre();
 }

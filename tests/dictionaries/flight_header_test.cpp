@@ -92,7 +92,7 @@ TEST_CASE("an encoded packet holds each field where the ground looks for it", "[
     status.fault_inhibit = true;
     status.computer_role = flight::ComputerRole::second_chance;
     const Encoded encoded{status, "EdlStatus"};
-    CHECK(encoded.raw("edl_phase") == 10);
+    CHECK(encoded.raw("edl_phase") == 12);
     CHECK(encoded.raw("edl_enabled") == 0);
     CHECK(encoded.raw("parameters_received") == 1);
     CHECK(encoded.raw("late_cruise") == 0);

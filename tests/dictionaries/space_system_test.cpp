@@ -20,10 +20,10 @@ void check_all(const std::vector<Planted>& all) {
 TEST_CASE("each broken rule of types gives one line, and nothing is loaded", "[dictionary][xtce][R40]") {
     check_all({
         {"number without unit", msl, "<Unit>octet</Unit>", "", "type 'octets_u32': has no unit", -1},
-        {"value twice", msl, "value=\"2\" label=\"exo_atmospheric\"", "value=\"1\" label=\"exo_atmospheric\"",
+        {"value twice", msl, "value=\"4\" label=\"exo_atmospheric\"", "value=\"1\" label=\"exo_atmospheric\"",
          "value 1 is there twice"},
         {"label twice", msl, "label=\"exo_atmospheric\"", "label=\"pre_edl\"", "label 'pre_edl' is there twice"},
-        {"value too large", msl, "value=\"2\" label=\"exo_atmospheric\"", "value=\"256\" label=\"exo_atmospheric\"",
+        {"value too large", msl, "value=\"4\" label=\"exo_atmospheric\"", "value=\"256\" label=\"exo_atmospheric\"",
          "value 256 does not fit 8 bits"},
         {"label no name", msl, "label=\"exo_atmospheric\"", "label=\"exo-atmospheric\"", "has characters other than"},
         {"alarms not nested", msl, "<CriticalRange maxInclusive=\"24000\"/>", "<CriticalRange maxInclusive=\"19000\"/>",

@@ -218,12 +218,12 @@ TEST_CASE("a row that is only said, or serves only the radio, is found where it 
         const char* holds;
     };
     for (const Plant& plant : {
-             Plant{"engine_priming,", "beat,heatshield,30,0,,undefined,,,,no,entry_interface,,Only a tone\n", "beat",
+             Plant{"engine_priming,", "beat,heatshield,30,0,,undefined,,,,no,no,entry_interface,,Only a tone\n", "beat",
                    "engine_priming"},
-             Plant{"parachute_deploy,", "beat,sufr_start,8,0,select_parachute_antenna,2,done,,,no,,,For the radio\n",
+             Plant{"parachute_deploy,", "beat,sufr_start,8,0,select_parachute_antenna,2,done,,,no,no,,,For the radio\n",
                    "beat", "parachute_deploy"},
              // Due at once, but it waits for a reply.
-             Plant{"sufr,", "beat,guidance_start,0,0,select_parachute_antenna,2,done,,,no,,,For the radio\n", "beat",
+             Plant{"sufr,", "beat,guidance_start,0,0,select_parachute_antenna,2,done,,,no,no,,,For the radio\n", "beat",
                    "sufr"},
          }) {
         const tests::MissionCopy mission;

@@ -82,7 +82,7 @@ TEST_CASE("two versions are compared row by row: added, removed, moved, and each
     text.erase(text.find(moved), moved.size());
     text.erase(text.find(removed), removed.size());
     text.insert(text.find(line_of(text, "recording_close,")), moved);
-    text.insert(text.find(line_of(text, "recording_close,")), "quiet,previous,1,0,,undefined,,,,no,,,New\n");
+    text.insert(text.find(line_of(text, "recording_close,")), "quiet,previous,1,0,,undefined,,,,no,no,,,New\n");
     after.write("timeline.csv", text);
     replace(after, "timeline.csv", "gnc_enable,entry,-540,0,", "gnc_enable,entry,-539,undefined,");
     replace(after, "anchors.csv", "-14400", "-14401");
@@ -100,11 +100,11 @@ TEST_CASE("two versions are compared row by row: added, removed, moved, and each
     const SheetDiff& timeline = diff.sheets[0];
     CHECK(timeline.file == "timeline.csv");
     CHECK(timeline.rows.size() == 4);
-    CHECK(change_of(timeline, "bogie_release").before == 45);
+    CHECK(change_of(timeline, "bogie_release").before == 48);
     CHECK_FALSE(change_of(timeline, "bogie_release").after);
     CHECK_FALSE(change_of(timeline, "quiet").before);
     REQUIRE(change_of(timeline, "quiet").after);
-    CHECK(*change_of(timeline, "quiet").after == 52);
+    CHECK(*change_of(timeline, "quiet").after == 55);
     CHECK(change_of(timeline, "radar_off").moved);
     CHECK(change_of(timeline, "radar_off").cells.empty());
     const RowChange& changed = change_of(timeline, "gnc_enable");

@@ -261,6 +261,22 @@ TEST_CASE("the landing can begin until the first timepoint on an anchor, less wh
     CHECK_FALSE(predict(t.dictionary, t.known).latest_begin_e_s);
 }
 
+TEST_CASE("a timepoint that may be late does not bound \"do edl\", and then follows it at once", "[timeline][R23]") {
+    const auto& dictionary = tests::shipped_dictionary();
+    const auto heaters = row_of(dictionary, "catbed_heaters");
+    REQUIRE(dictionary.timeline[heaters].may_be_late);
+    dictionary::TimelineKnowledge known;
+    const auto predicted = [&] { return predict(dictionary, known).timepoints[heaters]; };
+    CHECK(predicted().e_s == -10800.0);
+    known.now_e_s = -1180.0;
+    CHECK_FALSE(predicted().e_s);
+    CHECK(predicted().unknown == Unknown::previous);
+    known.heard = {dictionary::TimelineKnowledge::Heard{-1168.0, -1167.5}};
+    CHECK(predicted().e_s == -1165.5);  // 2 s after the first
+    known.heard = {dictionary::TimelineKnowledge::Heard{-518'400.0, -518'399.5}};
+    CHECK(predicted().e_s == -10800.0);
+}
+
 TEST_CASE("at most five are predicted in one cycle", "[timeline][R15]") {
     SmallTimeline t;
     t.dictionary.timeline.resize(1);

@@ -181,7 +181,7 @@ TEST_CASE("the monitor takes its moments from the timeline: anchors, the trigger
     const std::vector<AnchorSpec> anchors{{"root", {}, {}}, {"entry", root, MaybeOffset{1000.0}}};
     const ActionFunction wait = [](ActionContext& context) { context.fire(PyroId::coolant_vent); };
     const std::vector<TimepointSpec> timepoints{
-        {"first", entry, MaybeOffset{2.0}, MaybeOffset{0.0}, wait, 4.0, {}, {}, {}, true, {}, nullptr}};
+        {"first", entry, MaybeOffset{2.0}, MaybeOffset{0.0}, wait, 4.0, {}, {}, {}, true, false, {}, nullptr}};
     Timeline timeline{timepoints, anchors};
     timeline.begin(Sclk{990.0});
     Fixture f{{{Moment::of_anchor(entry), Moment::of_triggered(first), 3.0, {}},

@@ -112,8 +112,20 @@ void waits_for_a_reply(ActionContext& context) {
 /// Row 0 fires at 1000 and waits 4 s for its reply; row 1 is due at once and has a minimum of 8 s.
 const std::array<AnchorSpec, 2> held_anchors{{{"root", {}, {}}, {"start", AnchorId{0}, MaybeOffset{1000.0}}}};
 const std::array<TimepointSpec, 2> held_rows{
-    {{"asks", AnchorId{1}, MaybeOffset{0.0}, MaybeOffset{0.0}, &waits_for_a_reply, 4.0, {}, {}, {}, true, {}, nullptr},
-     {"minimum", AnchorId{1}, MaybeOffset{0.0}, MaybeOffset{8.0}, nullptr, {}, {}, {}, {}, true, {}, nullptr}}};
+    {{"asks",
+      AnchorId{1},
+      MaybeOffset{0.0},
+      MaybeOffset{0.0},
+      &waits_for_a_reply,
+      4.0,
+      {},
+      {},
+      {},
+      true,
+      false,
+      {},
+      nullptr},
+     {"minimum", AnchorId{1}, MaybeOffset{0.0}, MaybeOffset{8.0}, nullptr, {}, {}, {}, {}, true, false, {}, nullptr}}};
 
 }  // namespace
 

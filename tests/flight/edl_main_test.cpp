@@ -18,15 +18,15 @@ using namespace aeolis::flight;
 
 namespace {
 
-constexpr double entry_s = 100'000.0;
+constexpr double entry_s = 1'000'000.0;
 
-/// A state that comes to entry interface at `entry_s`.
-command::EDL_SET_PARAMETERS possible_parameters() {
-    const auto at_epoch =
-        gnc::propagate({.p_MoB_M = {parameters.entry_radius_m, 0.0, 0.0}, .v_MB_M = {-1625.0, 5615.0, 0.0}}, -1200.0);
+/// A state so long before entry that comes to entry interface at `entry_s`.
+command::EDL_SET_PARAMETERS parameters_before(double before_entry_s) {
+    const auto at_epoch = gnc::propagate(
+        {.p_MoB_M = {parameters.entry_radius_m, 0.0, 0.0}, .v_MB_M = {-1625.0, 5615.0, 0.0}}, -before_entry_s);
     command::EDL_SET_PARAMETERS p;
     p.solution_id = 7;
-    p.epoch_sclk = entry_s - 1200.0;
+    p.epoch_sclk = entry_s - before_entry_s;
     p.position_x_m = at_epoch.p_MoB_M.x();
     p.position_y_m = at_epoch.p_MoB_M.y();
     p.velocity_x_mps = at_epoch.v_MB_M.x();
@@ -35,6 +35,10 @@ command::EDL_SET_PARAMETERS possible_parameters() {
     p.target_radius_m = 3391148.0;
     p.parachute_speed_mps = 405.0F;
     return p;
+}
+
+command::EDL_SET_PARAMETERS possible_parameters() {
+    return parameters_before(1200.0);
 }
 
 struct Fixture {
@@ -137,9 +141,9 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("do edl is possible in late cruise only", "[edl][R23]") {
+TEST_CASE("do edl is possible in late cruise only, from a week before entry", "[edl][R23]") {
     Fixture f;
-    f.set_parameters(entry_s - 40'000);
+    f.handle(ParametersUpdate{{}, parameters_before(620'000.0)}, entry_s - 620'000.0);
     const double late_cruise_s = entry_s - parameters.late_cruise_before_entry_s;
     CHECK(f.do_edl(late_cruise_s - 1.0 / 64) == CommandRefusal::too_early);
     CHECK_FALSE(f.do_edl(late_cruise_s).has_value());
@@ -179,10 +183,10 @@ TEST_CASE("do edl explains why it was refused", "[edl][R38]") {
     REQUIRE_FALSE(conditions().empty());
     CHECK(conditions()[0].quantity == Quantity::parameters_received);
     CHECK_FALSE(conditions()[0].holds);
-    f.set_parameters(entry_s - 20'000);
-    CHECK(f.do_edl(entry_s - 19'000) == CommandRefusal::too_early);
+    f.handle(ParametersUpdate{{}, parameters_before(620'000.0)}, entry_s - 620'000.0);
+    CHECK(f.do_edl(entry_s - 610'000.0) == CommandRefusal::too_early);
     CHECK(conditions()[0].quantity == Quantity::time_to_entry_s);
-    CHECK(conditions()[0].value == 19'000.0);
+    CHECK(conditions()[0].value == 610'000.0);
     CHECK(conditions()[0].bound == parameters.late_cruise_before_entry_s);
     CHECK_FALSE(conditions()[0].holds);
     CHECK(f.do_edl(entry_s - 800) == CommandRefusal::too_late);

@@ -10,17 +10,29 @@ namespace flight_phase_test {
 
 using namespace aeolis::flight;
 
-TEST_CASE("the phase follows GNC's mode, and before GNC the clock", "[edl][R48]") {
+namespace {
+
+constexpr Approach late_cruise{.late_cruise = true}, begun{.late_cruise = true, .begun = true},
+    all_over{.late_cruise = true, .begun = true, .pre_edl_over = true};
+
+}  // namespace
+
+TEST_CASE("the phase follows GNC's mode, and before GNC \"do edl\" and the clock", "[edl][R48]") {
     gnc::Configuration configuration;
     Phase phase;
     CHECK(phase.state() == EdlPhase::pre_edl);
-    CHECK(phase.follow(gnc::Mode::off, configuration, true).size() == 1);
+    CHECK(phase.follow(gnc::Mode::off, configuration, late_cruise).size() == 1);
     CHECK(phase.state() == EdlPhase::late_cruise);
-    CHECK(phase.follow(gnc::Mode::off, configuration, false).size() == 1);  // a newer solution puts entry later
+    CHECK(phase.follow(gnc::Mode::off, configuration, {}).size() == 1);  // a newer solution puts entry later
     CHECK(phase.state() == EdlPhase::pre_edl);
-    CHECK(phase.follow(gnc::Mode::off, configuration, false).empty());
+    CHECK(phase.follow(gnc::Mode::off, configuration, {}).empty());
+    CHECK(phase.follow(gnc::Mode::off, configuration, begun).size() == 2);
+    CHECK(phase.state() == EdlPhase::edl_approach);
+    CHECK(phase.follow(gnc::Mode::off, configuration, {.begun = true}).empty());  // begun is begun
+    CHECK(phase.follow(gnc::Mode::off, configuration, all_over).size() == 1);
+    CHECK(phase.state() == EdlPhase::edl_main);
     configuration.cruise_stage_gone = true;
-    CHECK(phase.follow(gnc::Mode::off, configuration, true).size() == 2);  // late cruise, and out of it at once
+    CHECK(phase.follow(gnc::Mode::off, configuration, all_over).size() == 1);
     CHECK(phase.state() == EdlPhase::exo_atmospheric);
     using gnc::Mode;
     const std::vector<std::pair<Mode, EdlPhase>> landing{
@@ -41,9 +53,15 @@ TEST_CASE("the phase follows GNC's mode, and before GNC the clock", "[edl][R48]"
     };
     for (const auto& [mode, expected] : landing) {
         const bool changes = expected != phase.state();
-        CHECK(!phase.follow(mode, configuration, true).empty() == changes);
+        CHECK(!phase.follow(mode, configuration, all_over).empty() == changes);
         CHECK(phase.state() == expected);
     }
+}
+
+TEST_CASE("\"do edl\" in the last hours begins the approach and the main part of EDL at once", "[edl]") {
+    Phase phase;
+    CHECK(phase.follow(gnc::Mode::off, {}, all_over).size() == 3);
+    CHECK(phase.state() == EdlPhase::edl_main);
 }
 
 TEST_CASE("the vehicle has landed when its stage has flown away, not before", "[edl]") {
@@ -53,17 +71,17 @@ TEST_CASE("the vehicle has landed when its stage has flown away, not before", "[
     for (const auto mode :
          {gnc::Mode::approach, gnc::Mode::wait_for_guidance_start, gnc::Mode::range_control,
           gnc::Mode::parachute_descent, gnc::Mode::free_fall, gnc::Mode::sky_crane, gnc::Mode::flyaway})
-        phase.follow(mode, configuration, true);
+        phase.follow(mode, configuration, all_over);
     CHECK(phase.state() == EdlPhase::flyaway);
     configuration.engines_off = true;
-    CHECK(phase.follow(gnc::Mode::flyaway, configuration, true).size() == 1);
+    CHECK(phase.follow(gnc::Mode::flyaway, configuration, all_over).size() == 1);
     CHECK(phase.state() == EdlPhase::landed);
 }
 
 TEST_CASE("what the table of phases does not have does not happen", "[edl][R48]") {
     gnc::Configuration configuration;
     Phase phase;
-    CHECK(phase.follow(gnc::Mode::sky_crane, configuration, false).empty());
+    CHECK(phase.follow(gnc::Mode::sky_crane, configuration, {}).empty());
     CHECK(phase.state() == EdlPhase::pre_edl);
 }
 

@@ -523,6 +523,7 @@ TEST_CASE("each decision of a landing is explained by the values that its record
           "[explanation][R38][release]") {
     const Recorded recorded{flown().recorded};
     std::set<std::string> explained;
+    std::map<std::string, std::pair<double, std::string>> changed;  // by decision: when, and to what
     int checked = 0;
     for (const Recorded::Told& told : recorded.decisions()) {
         const telemetry::Explanation& explanation = told.explanation;
@@ -535,9 +536,19 @@ TEST_CASE("each decision of a landing is explained by the values that its record
         for (const telemetry::Condition& condition : explanation.conditions) {
             INFO(condition.quantity << " " << condition.value);
             if (condition.quantity == "previous_mode" || condition.quantity == "previous_phase") {
-                std::string before = recorded.label_before(explanation.decision, told.sclk);
+                // Of two changes in one cycle the first leads to the second, and only the second is recorded.
+                auto& [at, to] = changed[explanation.decision];
+                std::string before = at == told.sclk ? to : recorded.label_before(explanation.decision, told.sclk);
                 std::ranges::replace(before, '_', ' ');
-                CHECK_THAT(explanation.text, Catch::Contains(before, Catch::CaseSensitive::No));
+                CHECK_THAT(explanation.text,
+                           Catch::Contains(": previous " +
+                                               std::string{condition.quantity == "previous_mode" ? "mode " : "phase "} +
+                                               before,
+                                           Catch::CaseSensitive::No));
+                const auto colon = explanation.text.find(':'), begins = explanation.text.find(" to ") + 4;
+                REQUIRE(begins < colon);
+                at = told.sclk;
+                to = explanation.text.substr(begins, colon - begins);
             } else if (const auto range = recorded.allowed(told, condition.quantity)) {
                 CHECK(condition.value >= range->low);
                 CHECK(condition.value <= range->high);

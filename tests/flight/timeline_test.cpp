@@ -31,7 +31,7 @@ const std::vector<AnchorSpec> anchors{
 
 TimepointSpec row(std::optional<AnchorId> anchor, MaybeOffset desired_s, MaybeOffset minimum_s,
                   ActionFunction action = nothing, std::optional<double> reply_timeout_s = {}) {
-    return {"row", anchor, desired_s, minimum_s, action, reply_timeout_s, {}, {}, {}, true, {}, nullptr};
+    return {"row", anchor, desired_s, minimum_s, action, reply_timeout_s, {}, {}, {}, true, false, {}, nullptr};
 }
 
 struct Fixture {

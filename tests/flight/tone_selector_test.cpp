@@ -238,9 +238,10 @@ TEST_CASE("a computer that has not been told a phase, or stands by, sends no hea
 TEST_CASE("each phase from late cruise until the stage has flown away has a heartbeat, and its twin in Second Chance",
           "[mfsk][R31][R35]") {
     for (const EdlPhase phase :
-         {EdlPhase::late_cruise, EdlPhase::exo_atmospheric, EdlPhase::wait_for_guidance, EdlPhase::range_control,
-          EdlPhase::heading_alignment, EdlPhase::straighten_up, EdlPhase::wait_for_parachute,
-          EdlPhase::parachute_descent, EdlPhase::powered_descent, EdlPhase::sky_crane, EdlPhase::flyaway}) {
+         {EdlPhase::late_cruise, EdlPhase::edl_approach, EdlPhase::edl_main, EdlPhase::exo_atmospheric,
+          EdlPhase::wait_for_guidance, EdlPhase::range_control, EdlPhase::heading_alignment, EdlPhase::straighten_up,
+          EdlPhase::wait_for_parachute, EdlPhase::parachute_descent, EdlPhase::powered_descent, EdlPhase::sky_crane,
+          EdlPhase::flyaway}) {
         std::optional<ToneId> sent[2];
         for (const Role role : {Role::prime, Role::second_chance}) {
             Load load;

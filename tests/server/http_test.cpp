@@ -78,7 +78,7 @@ TEST_CASE("every route answers what it can and refuses the rest by name", "[http
         {"GET", "/api/v1/runs/1/commands?format=csv", "", 200, "command,name,arguments,octets,stages,"},
         {"GET", "/api/v1/runs/1/explanations?format=csv", "", 200, "seq,explanation.sclk,"},
         {"GET", "/api/v1/runs/1/packets?format=csv&limit=5", "", 200, "unit.unit,unit.apid,"},
-        {"GET", "/api/v1/runs/1/timepoints?format=csv", "", 200, "\n1,edl_heaters,"},
+        {"GET", "/api/v1/runs/1/timepoints?format=csv", "", 200, "\n1,catbed_heaters,"},
         {"GET", "/api/v1/runs/1/timepoints?at=2012-219T05:00:00&recorded=false", "", 200, "\"predicted_e_s\":-826"},
         {"GET", "/api/v1/runs/1/timepoints?recorded=maybe", "", 400, "recorded"},
         {"GET",

@@ -12,6 +12,7 @@
 #include "tests/support/telecommands.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <ctime>
 #include <set>
@@ -90,6 +91,19 @@ void work(double seconds) {
     }
 }
 
+/// Keeps a task busy until so many ticks came too early for it, however busy the machine is.
+struct LateTicks {
+    std::atomic<int> sync_mails{0};
+
+    /// In the task's thread: nothing but late ticks reaches sync while the task has not confirmed.
+    void await(int ticks) const {
+        const int before = sync_mails;
+        const auto give_up = std::chrono::steady_clock::now() + std::chrono::seconds{20};
+        while (sync_mails < before + ticks && std::chrono::steady_clock::now() < give_up)
+            std::this_thread::sleep_for(std::chrono::milliseconds{1});
+    }
+};
+
 }  // namespace
 
 TEST_CASE("both executives fly one landing alike: recorded packets, firings, events and tones, bit for bit; no task "
@@ -144,9 +158,10 @@ TEST_CASE("a task that takes too long: sync reports the overruns, those cycles a
     const Sclk slow_at{1000.0 + 20 * seconds_per_tick};
     ThreadedExecutive::Options options;
     options.clock = ThreadedExecutive::Clock::real_time;
+    LateTicks late;
     options.before_mail = [&](flight::ModuleId module, Sclk now) {
-        if (module == flight::ModuleId::edl && now == slow_at)
-            std::this_thread::sleep_for(std::chrono::milliseconds{55});
+        if (module == flight::ModuleId::sync) ++late.sync_mails;
+        if (module == flight::ModuleId::edl && now == slow_at) late.await(3);
     };
     ThreadedExecutive executive{options};
     Bench bench;
@@ -168,10 +183,13 @@ TEST_CASE("an overrun in a landing: the vehicle flies on through the skipped cyc
     ThreadedExecutive::Options options;
     options.clock = ThreadedExecutive::Clock::real_time;
     Sclk slow_at, told;  // the tick that the computer's clock interrupt brought last
+    LateTicks late;
     options.before_mail = [&](flight::ModuleId module, Sclk now) {
-        if (module == flight::ModuleId::sync) told = now;
-        if (module == flight::ModuleId::edl && now == slow_at)
-            std::this_thread::sleep_for(std::chrono::milliseconds{55});
+        if (module == flight::ModuleId::sync) {
+            told = now;
+            ++late.sync_mails;
+        }
+        if (module == flight::ModuleId::edl && now == slow_at) late.await(3);
     };
     simulation::Landing landing{tests::gale_scenario(700.0), 1};
     const Sclk start = landing.sclk();

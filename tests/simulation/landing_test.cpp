@@ -6,6 +6,7 @@
 #include "telemetry/proximity_packets.hpp"
 #include "tests/simulation/gale.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/recorded_events.hpp"
 #include "tests/support/telecommands.hpp"
 
 #include <algorithm>
@@ -87,6 +88,31 @@ TEST_CASE("a commanded landing stands, and all that was sent live is in its reco
     const auto recorded = packets_of(landing.recording());
     CHECK(flown.live.size() > 1000);
     CHECK(std::ranges::all_of(flown.live, [&](const auto& packet) { return recorded.contains(packet); }));
+}
+
+TEST_CASE("do edl six days ahead lands: heaters at E-3 h, the phases of the mission, and the clock's rows on time",
+          "[.long][simulation][landing][R23][R28]") {
+    using namespace aeolis::flight;
+    constexpr double six_days_s = 6.0 * 86400.0;
+    Landing landing{tests::gale_scenario(six_days_s), 1};
+    Flown flown;
+    landing.uplink(set_parameters(landing.solution()));
+    for (int i = 0; i < 640; ++i) landing.step();
+    landing.uplink(do_edl());
+    while (!landing.flown()) landing.step();
+    INFO(landing.outcome_reason());
+    CHECK(landing.outcome() == Outcome::touchdown);
+    const Sclk entry = tests::gale_scenario().entry_sclk;
+    const auto e_s = [&](Sclk at) { return at - entry; };
+    const auto heaters = tests::recorded<evr::EDL_HEATERS_ON>(landing.recording());
+    REQUIRE(heaters.size() == 1);
+    CHECK(e_s(heaters[0].at) == Approx(-10'800.0).margin(1.0));
+    std::map<EdlPhase, double> began_e_s;
+    for (const auto& change : tests::recorded<evr::EDL_PHASE_CHANGED>(landing.recording()))
+        began_e_s.emplace(static_cast<EdlPhase>(change.octet), e_s(change.at));
+    CHECK(began_e_s.at(EdlPhase::edl_approach) == Approx(-six_days_s + 10.0).margin(5.0));
+    CHECK(began_e_s.at(EdlPhase::edl_main) == Approx(-14'400.0).margin(1.0));
+    CHECK(began_e_s.at(EdlPhase::exo_atmospheric) == Approx(-600.0).margin(1.0));
 }
 
 TEST_CASE("a copied landing stepped alike stays bit-identical", "[simulation][landing][invariant2]") {

@@ -99,8 +99,8 @@ TEST_CASE("UHF spoils the scenario's part of the octets, in bursts of the scenar
 }
 
 TEST_CASE("a full recorder refuses whole packets and counts them", "[simulation][recorder]") {
-    Recorder recorder;
-    const std::vector<std::uint8_t> much(Recorder::capacity_octets - 10);
+    Recorder recorder{1000};
+    const std::vector<std::uint8_t> much(990);
     REQUIRE(recorder.append(much));
     CHECK_FALSE(recorder.append(packet_of(16)));
     CHECK(recorder.octets().size() == much.size());

@@ -45,11 +45,14 @@ struct Row {
 namespace point = flight::timepoint;
 const std::vector<Row> rows{
     {point::descent_imu_power, Device::power},
-    {point::edl_heaters, Device::power},
+    {point::catbed_heaters, Device::power},
     {point::coolant_vent, Device::pyro},
     {point::uhf_start, Device::uhf},
     {point::entry_antenna, Device::x_band},
+    {point::pressurant_valve_1, Device::pyro},
+    {point::thermal_batteries, Device::pyro},
     {point::cruise_cables_cut, Device::pyro},
+    {point::pressurant_valve_2, Device::pyro},
     {point::cruise_stage_separation, Device::pyro, Outcome::not_commanded, Outcome::not_commanded},
     {point::thruster_warm_up, Device::power},
     {point::thrusters_enable, Device::thrusters, lands, lands, true},

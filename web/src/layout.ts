@@ -27,7 +27,7 @@ export const LAYOUT = {
   phases: [
     {
       title: 'Cruise',
-      of: ['pre_edl', 'late_cruise', 'exo_atmospheric'],
+      of: ['pre_edl', 'late_cruise', 'edl_approach', 'edl_main', 'exo_atmospheric'],
       untilEntry: 'wait_for_guidance',
       predicted_e_s: undefined,
       from: undefined,
