@@ -88,7 +88,7 @@ TEST_CASE("no module of EDL has a constant of its own that tunes it: they come f
         }
     }
     CHECK(seen >= 9);
-    INFO("put the value in parameters.csv and take it from flight::parameters\n" << tuning);
+    INFO("put the value in parameters.csv and take it from flight::Parameters\n" << tuning);
     CHECK(tuning.empty());
 }
 
