@@ -84,7 +84,7 @@ void ToneSelector::on(const ParameterPart& part, Outbox&) {
 void ToneSelector::on(const ClockTick& tick, Outbox& out) {
     if (silent_) return;
     drop_expired(tick.now, out);
-    if (sending_ && tick.now - sending_->started >= parameters_.tone_duration_s) {
+    if (sending_ && tick.now - sending_->started >= build_parameters.tone_duration_s) {
         sending_.reset();
         quiet_since_ = tick.now;
         out.bus().tone.reset();

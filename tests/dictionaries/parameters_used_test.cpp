@@ -71,6 +71,7 @@ TEST_CASE("no module of EDL has a constant of its own that tunes it: they come f
         "no_thrust_mps2",
         "determinant_min",
         "past_max",
+        "staged_changes_max",
     };
     std::string tuning;
     std::size_t seen = 0;

@@ -88,8 +88,8 @@ TEST_CASE("commands of the table of parameters go to EdlBg, which hands them on 
     CHECK(goes_to_bg(command::EDL_DUMP_PARAMETERS::opcode, 0));
     CHECK(f.recorder.sent<DumpParametersCommand>().size() == 1);
     // Version 0 is the table as built: no command names it.
-    f.handle(received(telecommand(command::EDL_ACTIVATE_PARAMETERS::opcode,
-                                  command::EDL_ACTIVATE_PARAMETERS::argument_octets)));
+    f.handle(received(
+        telecommand(command::EDL_ACTIVATE_PARAMETERS::opcode, command::EDL_ACTIVATE_PARAMETERS::argument_octets)));
     CHECK(f.recorder.events<evr::COMMAND_REFUSED>() == 1);
 }
 

@@ -137,7 +137,7 @@ TEST_CASE("a computer that takes over under the parachute makes no burst of a mo
 }
 
 TEST_CASE("the table of parameters is dumped whole, bit for bit, and a newer table replaces one that is half sent",
-          "[products][parameters][R25][R30]") {
+          "[products][parameters][R25][R30][R48]") {
     DataProducts products;
     const auto dump = [&](const Parameters& parameters) {
         parameter_parts(parameters, [&](const ParameterPart& part) { products.on(part); });

@@ -49,14 +49,14 @@ struct Fixture {
 TEST_CASE("parameters are staged one by one and activated together, and every user of them gets the table",
           "[edl][parameters][R25]") {
     Fixture f;
-    REQUIRE(f.stage(parameter::tone_duration_s, 12.0));
+    REQUIRE(f.stage(parameter::heartbeat_after_s, 30.0));
     CHECK(f.recorder.events<evr::PARAMETER_STAGED>() == 1);
     CHECK(f.recorder.packets<packet::ParameterTable>() == 1);
     REQUIRE(f.stage(parameter::radar_beams_min, 20.0));
     CHECK(f.edl.parameter_table().values() == Parameters{});
     REQUIRE(f.activate(7, 2));
     CHECK(f.recorder.events<evr::PARAMETERS_ACTIVATED>() == 1);
-    CHECK(f.edl.parameter_table().values().tone_duration_s == 12.0);
+    CHECK(f.edl.parameter_table().values().heartbeat_after_s == 30.0);
     CHECK(f.report().parameter_version == 7);
     for (const ModuleId module : {ModuleId::edl_bg, ModuleId::mfsk}) {
         Parameters told;
@@ -159,13 +159,14 @@ TEST_CASE("a computer that is restarted goes on with the table and what was stag
     Fixture f;
     REQUIRE(f.stage(parameter::guidance_gain, 4.0));
     REQUIRE(f.activate(5, 1));
-    REQUIRE(f.stage(parameter::tone_duration_s, 12.0));
+    REQUIRE(f.stage(parameter::heartbeat_after_s, 30.0));
     f.handle(Tick{Sclk{1000.0}});
     const auto parts = f.recorder.sent<StatePart>();  // what prime keeps, though it has no solution yet
     REQUIRE_FALSE(parts.empty());
     Load load;
     load.resets = 1;
-    Fixture restarted{.edl = EdlMain{load}};
+    Fixture restarted;
+    restarted.edl = EdlMain{load};
     for (const StatePart& part : parts) restarted.handle(part);
     restarted.handle(Resume{ResumeReason::restart});
     CHECK(restarted.recorder.events<evr::STATE_UNREADABLE>() == 0);
@@ -174,7 +175,7 @@ TEST_CASE("a computer that is restarted goes on with the table and what was stag
     CHECK(restarted.report() == f.report());
     CHECK(restarted.edl.parameter_table().values() == f.edl.parameter_table().values());
     REQUIRE(restarted.activate(6, 1));
-    CHECK(restarted.edl.parameter_table().values().tone_duration_s == 12.0);
+    CHECK(restarted.edl.parameter_table().values().heartbeat_after_s == 30.0);
 }
 
 TEST_CASE("in any order of these commands the table is that of a simple model, and its values are within their ranges",

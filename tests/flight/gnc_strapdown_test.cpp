@@ -81,7 +81,8 @@ TEST_CASE("what coasts over a gap turns on at its last rate, for there is no tor
         strapdown->start(over_gale());
         strapdown->on(parameters, sample(1, Vector3::Zero(), delta_angle), true);
     }
-    for (std::uint32_t i = 2; i <= 1 + 200 * 40; ++i) felt.on(parameters, sample(i, Vector3::Zero(), delta_angle), true);
+    for (std::uint32_t i = 2; i <= 1 + 200 * 40; ++i)
+        felt.on(parameters, sample(i, Vector3::Zero(), delta_angle), true);
     coasted.coast(40.0);
     CHECK(coasted.state().q_MB.angularDistance(felt.state().q_MB) < 1e-4);
     CHECK((coasted.state().p_MoB_M - felt.state().p_MoB_M).norm() < 1.0);

@@ -61,8 +61,7 @@ TEST_CASE("the conditions of a staged parameter name it, and its range", "[param
     CHECK_FALSE(conditions[3].holds);
 }
 
-TEST_CASE("staged changes fly only when they are activated, all of them, under ground's version",
-          "[parameters][R25]") {
+TEST_CASE("staged changes fly only when they are activated, all of them, under ground's version", "[parameters][R25]") {
     ParameterTable table{Parameters{}};
     table.stage(parameter::guidance_gain, 4.0);
     table.stage(parameter::constant_velocity_mps, 30.0);
