@@ -23,6 +23,7 @@ using Apid = Id<struct ApidTag, std::uint16_t>;              ///< CCSDS applicat
 using ToneId = Id<struct ToneTag, std::uint8_t>;             ///< one of the 256 MFSK tones
 using TimepointId = Id<struct TimepointTag, std::uint16_t>;  ///< row of the timeline, from 0
 using AnchorId = Id<struct AnchorTag, std::uint16_t>;        ///< row of the anchors in topological order, 0 the root
+using ParameterId = Id<struct ParameterTag, std::uint16_t>;  ///< row of the parameters, from 0
 
 /// The vehicle's spacecraft id (10 bits), and its only telecommand virtual channel (6 bits).
 /// The number is chosen and has no further meaning.

@@ -228,9 +228,15 @@ struct ToneRow {
 
 /// A flight parameter: parameters.csv.
 struct ParameterRow {
+    enum class Change {
+        until_gnc,  ///< ground may change it until GNC is enabled
+        build,      ///< fixed when flight is built
+    };
+    ParameterId id;
     std::string name;
     double default_value = 0.0;
-    double min = 0.0, max = 0.0;
+    double min = 0.0, max = 0.0;  ///< what ground may change it to; the default lies between
+    Change change = Change::until_gnc;
     std::string unit;
     std::string text;
     std::string source;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "common/time.hpp"
+#include "generated/parameters.hpp"
 
 #include <array>
 #include <cstdint>
@@ -57,6 +58,7 @@ struct Load {
     double divert_azimuth_deg = 112.0;
     // NOLINTEND(readability-magic-numbers)
     EntryReference entry_reference;
+    Parameters parameters;  ///< until ground changes them
 };
 
 /// Shift of the navigation state for a campaign case, as if its errors had existed from the start.

@@ -84,6 +84,7 @@ std::optional<std::string> named_by(const dictionary::Dictionary& dictionary, st
                                     double number) {
     if (quantity.ends_with("_tone")) return name_in(dictionary.tones, number);
     if (quantity.ends_with("_timepoint")) return name_in(dictionary.timeline, number);
+    if (quantity == "staged_parameter") return name_in(dictionary.parameters, number);
     if (quantity == "unsafe_anchor") return name_in(dictionary.anchors, number);
     if (quantity == "previous_mode") return label_in(dictionary, "gnc_mode", number);
     if (quantity == "previous_phase") return label_in(dictionary, "edl_phase", number);

@@ -92,7 +92,8 @@ std::string duration_text(double value_s) {
 }
 
 bool is_reference(std::string_view field) {
-    return field == "opcode" || field == "timepoint" || field == "anchor" || field == "tone" || field == "constraint";
+    return field == "opcode" || field == "timepoint" || field == "anchor" || field == "tone" || field == "constraint" ||
+           field == "parameter";
 }
 
 std::string moment_words(const dictionary::Dictionary& dictionary, const dictionary::Moment& moment) {
@@ -186,6 +187,7 @@ std::string reference_text(const dictionary::Dictionary& dictionary, std::string
     if (field == "timepoint") return numbered(dictionary.timeline);
     if (field == "anchor") return numbered(dictionary.anchors);
     if (field == "tone") return numbered(dictionary.tones);
+    if (field == "parameter") return numbered(dictionary.parameters);
     return plain;
 }
 

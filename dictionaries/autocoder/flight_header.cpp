@@ -63,7 +63,6 @@ class HeaderWriter {
         for (const Command& command : dictionary_.commands) write_command(command);
         out_ << "}  // namespace command\n\n";
         write_ids();
-        write_parameters();
         out_ << "}  // namespace aeolis::flight\n";
         return out_.str();
     }
@@ -242,14 +241,6 @@ class HeaderWriter {
         write_constants("timepoint", "TimepointId", dictionary_.timeline);
         write_constants("anchor", "AnchorId", dictionary_.anchors);
         write_constants("tone", "ToneId", dictionary_.tones);
-    }
-
-    void write_parameters() {
-        out_ << "/// The parameters of parameters.csv at their defaults.\nstruct ParameterDefaults {\n";
-        for (const ParameterRow& row : dictionary_.parameters)
-            out_ << "    double " << row.name << " = " << double_literal(row.default_value) << ";  ///< [" << row.unit
-                 << "] " << row.text << "\n";
-        out_ << "};\ninline constexpr ParameterDefaults parameters{};\n\n";
     }
 
     const Dictionary& dictionary_;

@@ -29,6 +29,7 @@ std::optional<std::vector<ToneRow>> read_tones(std::string_view text, Findings& 
 /// Tones are orthogonal over a symbol, and no odd harmonic of one coincides with another.
 std::optional<MfskWaveform> read_mfsk(std::string_view text, Findings& findings);
 
+/// Reads parameters.csv in the order of the file: a parameter's id is its row.
 std::optional<std::vector<ParameterRow>> read_parameters(std::string_view text, Findings& findings);
 
 /// Reads clock_correlation.csv, by valid_from.

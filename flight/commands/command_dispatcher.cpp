@@ -100,6 +100,21 @@ void CommandDispatcher::take_packet(std::span<const std::uint8_t> octets, Outbox
         return route<command::EDL_SET_PARAMETERS>(out, tag, packet->arguments, [&](const auto& command) {
             out.send(ModuleId::edl_bg, SetParametersCommand{tag, command});
         });
+    case command::EDL_STAGE_PARAMETER::opcode.value:
+        return route<command::EDL_STAGE_PARAMETER>(out, tag, packet->arguments, [&](const auto& command) {
+            out.send(ModuleId::edl_bg, StageParameterCommand{tag, command});
+        });
+    case command::EDL_ACTIVATE_PARAMETERS::opcode.value:
+        return route<command::EDL_ACTIVATE_PARAMETERS>(out, tag, packet->arguments, [&](const auto& command) {
+            out.send(ModuleId::edl_bg, ActivateParametersCommand{tag, command});
+        });
+    case command::EDL_DISCARD_PARAMETERS::opcode.value:
+        return route<command::EDL_DISCARD_PARAMETERS>(out, tag, packet->arguments, [&](const auto&) {
+            out.send(ModuleId::edl_bg, DiscardParametersCommand{tag});
+        });
+    case command::EDL_DUMP_PARAMETERS::opcode.value:
+        return route<command::EDL_DUMP_PARAMETERS>(
+            out, tag, packet->arguments, [&](const auto&) { out.send(ModuleId::edl_bg, DumpParametersCommand{tag}); });
     case command::EDL_DO_EDL::opcode.value:
         return route<command::EDL_DO_EDL>(out, tag, packet->arguments,
                                           [&](const auto&) { out.send(ModuleId::edl, DoEdlCommand{tag}); });

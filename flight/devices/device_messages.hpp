@@ -141,8 +141,8 @@ struct UplinkPacket {
 };
 
 /// A computer's EDL state, framed for the line between computers and for non-volatile memory.
-/// Only flight reads it. See flight/cross_string. The size is chosen: one and a half times what the state takes.
-inline constexpr std::size_t state_octets_max = 4096;
+/// Only flight reads it. See flight/cross_string. The size is chosen: a third more than what the state takes.
+inline constexpr std::size_t state_octets_max = 6144;
 using StateOctets = FixedVector<std::uint8_t, state_octets_max>;
 
 /// All inputs of the computer with one tick of its clock.

@@ -10,8 +10,6 @@ namespace aeolis::flight {
 namespace {
 
 using gnc::standard_gravity_mps2;
-constexpr double peak_is_real_above_mps2 = parameters.peak_deceleration_min_g * standard_gravity_mps2;
-constexpr double peak_has_passed_at = parameters.peak_deceleration_passed;
 
 template <typename Evr>
 Evr at_state(const gnc::Output& gnc) {
@@ -152,9 +150,11 @@ void explain(const PhaseChange& change, MaybeTime entry, Outbox& out) {
     if (entry.defined()) {
         const double to_entry_s = *entry.get() - out.now();
         if (change.event == EdlPhaseEvent::late_cruise_begins)
-            conditions.push_back(at_most(Quantity::time_to_entry_s, to_entry_s, parameters.late_cruise_before_entry_s));
+            conditions.push_back(
+                at_most(Quantity::time_to_entry_s, to_entry_s, build_parameters.late_cruise_before_entry_s));
         if (change.event == EdlPhaseEvent::entry_moves_away)
-            conditions.push_back(above(Quantity::time_to_entry_s, to_entry_s, parameters.late_cruise_before_entry_s));
+            conditions.push_back(
+                above(Quantity::time_to_entry_s, to_entry_s, build_parameters.late_cruise_before_entry_s));
     }
     out.record(explanation(Decision::edl_phase, ExplanationVerdict::changed, number_of(change.to), conditions.span()));
 }
@@ -163,7 +163,7 @@ void explain_held(const gnc::Output& gnc, HeldExplanations& held, Outbox& out) {
     for (const gnc::JudgedTrigger& one : gnc.held) held.held(decision_of(one.trigger), 0, one.conditions.span(), out);
 }
 
-void explain_held(const Timeline& timeline, HeldExplanations& held, Outbox& out) {
+void explain_held(const Parameters& parameters, const Timeline& timeline, HeldExplanations& held, Outbox& out) {
     const double worth_telling_after_s = parameters.held_worth_telling_after_s;
     const Sclk now = out.now();
     FixedVector<gnc::Condition, 2> conditions;
@@ -182,7 +182,8 @@ void explain_held(const Timeline& timeline, HeldExplanations& held, Outbox& out)
     if (!conditions.empty()) held.held(Decision::timepoint, timeline.current().value, conditions.span(), out);
 }
 
-void PeakDeceleration::watch(const gnc::Output& gnc, Outbox& out) {
+void PeakDeceleration::watch(const Parameters& parameters, const gnc::Output& gnc, Outbox& out) {
+    const double real_above_mps2 = parameters.peak_deceleration_min_g * standard_gravity_mps2;
     if (passed_ || gnc.mode < gnc::Mode::range_control || gnc.mode > gnc::Mode::wait_for_parachute) return;
     const auto& a = gnc.acceleration_B_mps2;
     const double sensed_mps2 = std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
@@ -190,7 +191,7 @@ void PeakDeceleration::watch(const gnc::Output& gnc, Outbox& out) {
         largest_mps2_ = sensed_mps2;
         altitude_m_ = gnc.altitude_m;
         speed_mps_ = gnc.speed_mps;
-    } else if (largest_mps2_ > peak_is_real_above_mps2 && sensed_mps2 < peak_has_passed_at * largest_mps2_) {
+    } else if (largest_mps2_ > real_above_mps2 && sensed_mps2 < parameters.peak_deceleration_passed * largest_mps2_) {
         passed_ = true;
         out.event(evr::PEAK_DECELERATION{.deceleration_g = single(largest_mps2_ / standard_gravity_mps2),
                                          .altitude_m = single(altitude_m_),

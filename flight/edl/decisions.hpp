@@ -32,12 +32,12 @@ void explain(const PhaseChange& change, MaybeTime entry, Outbox& out);
 void explain_held(const gnc::Output& gnc, HeldExplanations& held, Outbox& out);
 
 /// Explains why the timeline waits although its time has come: for its minimum offset, or for a reply.
-void explain_held(const Timeline& timeline, HeldExplanations& held, Outbox& out);
+void explain_held(const Parameters& parameters, const Timeline& timeline, HeldExplanations& held, Outbox& out);
 
 /// Announces the largest sensed deceleration of the entry once it has passed.
 class PeakDeceleration {
   public:
-    void watch(const gnc::Output& gnc, Outbox& out);
+    void watch(const Parameters& parameters, const gnc::Output& gnc, Outbox& out);
 
     template <typename Exchange>
     void carry(Exchange& exchange) {

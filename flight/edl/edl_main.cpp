@@ -26,7 +26,7 @@ gnc::Condition broken_by(const timeline::Unsafe& unsafe) {
     case Why::not_navigated:
         return unsafe.by_s == 0.0 ? is(Quantity::entry_navigated, false)
                                   : at_most(Quantity::entry_apart_from_navigation_s, std::abs(unsafe.by_s),
-                                            parameters.entry_moved_max_s);
+                                            build_parameters.entry_moved_max_s);
     case Why::triggered_already: return is(Quantity::triggered_already, true, false);
     case Why::overdue: return at_most(Quantity::time_overdue_s, unsafe.by_s, 0.0);
     case Why::burst: return at_most(Quantity::burst_s, unsafe.by_s, 0.0);
@@ -49,13 +49,13 @@ static_assert(static_cast<UnsafeChange>(timeline::Unsafe::Why::too_late) == Unsa
 
 EdlMain::EdlMain(const Load& load)
     : load_(load), activity_(load.role == Role::prime ? Activity::flies : Activity::tracks),
-      timeline_(timeline_specs, anchor_specs, load.role == Role::second_chance), gnc_(load) {}
+      timeline_(timeline_specs, anchor_specs, load.role == Role::second_chance), gnc_(load), table_(load.parameters) {}
 
 // ---- the cycle -------------------------------------------------------------------------------------------------
 
 void EdlMain::on(const Tick& tick, Outbox& out) {
     // GNC propagates to the tick's time, however far ahead it is.
-    if (!(std::abs(tick.now - out.now()) <= parameters.tick_apart_max_s)) {
+    if (!(std::abs(tick.now - out.now()) <= table_.values().tick_apart_max_s)) {
         out.event(evr::UNEXPECTED_MESSAGE{.module_number = static_cast<std::uint8_t>(ModuleId::edl),
                                           .message_type = static_cast<std::uint8_t>(Message{tick}.index())});
         return out.send(ModuleId::sync, Confirm{ModuleId::edl});
@@ -71,7 +71,7 @@ void EdlMain::on(const Tick& tick, Outbox& out) {
     run_timeline(tick.now, out);
     if (timeline_.limited(tick.now)) out.event(evr::FIRINGS_LIMITED{.timepoint = timeline_.current().value});
     explain_held(output_, held_, out);
-    if (timeline_.begun() && !inhibited_) explain_held(timeline_, held_, out);
+    if (timeline_.begun() && !inhibited_) explain_held(table_.values(), timeline_, held_, out);
     update_phase(tick.now, out);
     // After a restart, the stored state arrives only in the second cycle: channels recorded before would describe a
     // vehicle that has not begun EDL.
@@ -151,9 +151,9 @@ void EdlMain::take_triggers(Sclk now, Outbox& out) {
     }
     for (const gnc::ModeChange& change : output_.mode_changes) explain(change, out);
     if (output_.bank_reversal.number != 0) announce_bank_reversal(output_, out);
-    peak_deceleration_.watch(output_, out);
-    unverified_.watch(output_, configuration_, out);
-    gnc_health_.watch(output_, out);
+    peak_deceleration_.watch(table_.values(), output_, out);
+    unverified_.watch(table_.values(), output_, configuration_, out);
+    gnc_health_.watch(table_.values(), output_, out);
 }
 
 void EdlMain::update_phase(Sclk now, Outbox& out) {
@@ -227,7 +227,7 @@ void EdlMain::set_inhibited(bool inhibited, Outbox& out) {
 // ---- commands --------------------------------------------------------------------------------------------------
 
 bool EdlMain::late_cruise(Sclk now) const {
-    return now >= entry() + MaybeOffset{-parameters.late_cruise_before_entry_s};
+    return now >= entry() + MaybeOffset{-build_parameters.late_cruise_before_entry_s};
 }
 
 // Until ground has sent the time of entry, EDL is still far off.
@@ -242,7 +242,7 @@ bool EdlMain::separated(Sclk now) const {
 }
 
 bool EdlMain::too_late(Sclk now) const {
-    return now >= timeline_.first_desired() + MaybeOffset{-parameters.do_edl_margin_s};
+    return now >= timeline_.first_desired() + MaybeOffset{-build_parameters.do_edl_margin_s};
 }
 
 void EdlMain::on(const ParametersUpdate& update, Outbox& out) {
@@ -257,7 +257,7 @@ void EdlMain::on(const ParametersUpdate& update, Outbox& out) {
     if (const auto unsafe = unsafe_entry(entry, navigated, out.now())) return refuse(*unsafe, update.tag, out);
     if (navigated.defined())
         conditions.push_back(at_most(Quantity::entry_apart_from_navigation_s, std::abs(entry - *navigated.get()),
-                                     parameters.entry_moved_max_s));
+                                     build_parameters.entry_moved_max_s));
     conditions.append(of_solution.span());
     ++revision_;
     parameters_ = update.parameters;
@@ -287,11 +287,11 @@ void EdlMain::on(const DoEdlCommand& command, Outbox& out) {
     FixedVector<gnc::Condition, 8> conditions;
     conditions.push_back(is(Quantity::parameters_received, parameters_.has_value()));
     if (entry().defined())
-        conditions.push_back(
-            at_most(Quantity::time_to_entry_s, *entry().get() - out.now(), parameters.late_cruise_before_entry_s));
+        conditions.push_back(at_most(Quantity::time_to_entry_s, *entry().get() - out.now(),
+                                     build_parameters.late_cruise_before_entry_s));
     if (timeline_.first_desired().defined())
         conditions.push_back(above(Quantity::time_to_first_timepoint_s, *timeline_.first_desired().get() - out.now(),
-                                   parameters.do_edl_margin_s));
+                                   build_parameters.do_edl_margin_s));
     conditions.push_back(is(Quantity::fault_inhibit, inhibited_, false));
     conditions.push_back(is(Quantity::edl_enabled, timeline_.begun(), false));
     conditions.push_back(is(Quantity::restart_pending, designation_pending_, false));
@@ -346,7 +346,7 @@ void EdlMain::on(const SetAnchorOffsetCommand& command, Outbox& out) {
 }
 
 std::optional<timeline::Unsafe> EdlMain::unsafe_entry(Sclk said, MaybeTime navigated, Sclk now) {
-    if (auto unsafe = timeline::unsafe_entry(anchor::entry, said, navigated, parameters.entry_moved_max_s))
+    if (auto unsafe = timeline::unsafe_entry(anchor::entry, said, navigated, build_parameters.entry_moved_max_s))
         return unsafe;
     // The first parameters move nothing: "do edl" comes later.
     if (!entry().defined()) return std::nullopt;

@@ -5,6 +5,7 @@
 #include "flight/cross_string/state_frame.hpp"
 #include "flight/edl/decisions.hpp"
 #include "flight/edl/gnc_health.hpp"
+#include "flight/edl/parameter_table.hpp"
 #include "flight/edl/phase.hpp"
 #include "flight/edl/unverified_actions.hpp"
 #include "flight/gnc/edl_gnc.hpp"
@@ -26,9 +27,12 @@ namespace aeolis::flight {
 /// In      StatePart and Resume: continue from the state of another computer, or from before a restart. R32, R33
 ///         Tick; ImuReadings, EngineReply, BridleReply, CruiseAttitude, RadarSolution; ActionReply;
 ///         ParametersUpdate, DoEdlCommand, SetTimepointOffsetCommand, SetAnchorOffsetCommand, ResumePrimeCommand;
+///         StageParameterCommand, ActivateParametersCommand, DiscardParametersCommand, DumpParametersCommand;
 ///         InhibitEdl
-/// Out     actions to the device managers; tones; events, firings, explanations and channels to EdlComm; Confirm
+/// Out     actions to the device managers; tones; events, firings, explanations and channels to EdlComm; Confirm;
+///         the table of parameters to EdlBg and MFSK when it changes, and to EdlComm when it is to be dumped
 /// Gate    nothing runs before parameters and then "do edl" were received, the latter in late cruise and in time. R23
+/// The table of parameters is ground's to change until GNC is enabled, whole or not at all. R25
 /// Changes of the timeline are judged on arrival, and refused where they are unsafe. R51
 /// Roles   prime flies, and sends its state each cycle; Second Chance keeps recent IMU readings until it must take
 ///         over; a prime that was restarted after cruise-stage separation stands by, until ground orders it on.
@@ -50,6 +54,10 @@ class EdlMain {
     void on(const UnitsSelected& selected, Outbox& out);
 
     void on(const ParametersUpdate& update, Outbox& out);
+    void on(const StageParameterCommand& command, Outbox& out);
+    void on(const ActivateParametersCommand& command, Outbox& out);
+    void on(const DiscardParametersCommand& command, Outbox& out);
+    void on(const DumpParametersCommand& command, Outbox& out);
     void on(const DoEdlCommand& command, Outbox& out);
     void on(const SetTimepointOffsetCommand& command, Outbox& out);
     void on(const SetAnchorOffsetCommand& command, Outbox& out);
@@ -71,11 +79,12 @@ class EdlMain {
     /// State for another computer. Left out: a present fault, which is reported again, and the monitor.
     template <typename Exchange>
     void carry(Exchange& exchange) {
-        exchange(parameters_, timeline_, change_guard_, configuration_, gnc_, peak_deceleration_, gnc_health_, mode_,
-                 phase_, bridle_m_, was_pre_edl_, was_late_cruise_);
+        exchange(parameters_, table_, timeline_, change_guard_, configuration_, gnc_, peak_deceleration_, gnc_health_,
+                 mode_, phase_, bridle_m_, was_pre_edl_, was_late_cruise_);
     }
 
     const Timeline& timeline() const { return timeline_; }
+    const ParameterTable& parameter_table() const { return table_; }
     EdlPhase phase() const { return phase_.state(); }
 
   private:
@@ -98,6 +107,10 @@ class EdlMain {
     void update_phase(Sclk now, Outbox& out);
     void record_channels(Sclk now, Outbox& out);
     packet::ParametersHeld parameters_held() const;
+    /// Whether the table of parameters is still ground's to change; otherwise the command is answered.
+    bool may_change_table(const CommandTag& tag, Outbox& out) const;
+    void table_changed(Outbox& out);
+    void fly_by_table(Outbox& out);
     std::uint8_t reset_count() const {
         return static_cast<std::uint8_t>(
             std::min<std::uint32_t>(load_.resets, std::numeric_limits<std::uint8_t>::max()));
@@ -127,6 +140,7 @@ class EdlMain {
     EngineReply engines_;  // the last one
     packet::GncConfiguration recorded_configuration_;
     std::optional<command::EDL_SET_PARAMETERS> parameters_;
+    ParameterTable table_;
     PeakDeceleration peak_deceleration_;
     GncHealth gnc_health_;
     HeldExplanations held_;

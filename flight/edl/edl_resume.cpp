@@ -9,7 +9,7 @@
 namespace aeolis::flight {
 
 void EdlMain::tell_state(Sclk now, Outbox& out) {
-    if (load_.role != Role::prime || (!parameters_ && units_ == UnitSelection{})) return;
+    if (load_.role != Role::prime || revision_ == 0) return;
     const StateHeader header{.time = now,
                              .revision = revision_,
                              .begun = timeline_.begun(),
@@ -36,6 +36,7 @@ void EdlMain::on(const Resume& resume, Outbox& out) {
     const bool fits = StateFrame::of(state->header(), *this).octets().size() == state->octets().size();
     if (!fits || !state->restore(*this)) return out.event(evr::STATE_UNREADABLE{});
     revision_ = state->header().revision + 1;
+    fly_by_table(out);
     if (timeline_.begun()) out.send(ModuleId::units, EdlBegun{});
     if (resume.reason == ResumeReason::restart)
         restart(out.now(), out);

@@ -13,7 +13,6 @@ namespace {
 constexpr double degrees_per_radian = 180.0 / std::numbers::pi;
 using gnc::standard_gravity_mps2;
 constexpr double parts_in_percent = 100.0;
-constexpr auto held_every_s = static_cast<std::int64_t>(parameters.parameters_held_every_s);
 
 /// Whether a packet of `hz` (a power of two up to 64) is due in this cycle.
 bool due(Sclk now, std::int64_t hz) {
@@ -188,8 +187,11 @@ void EdlMain::record_channels(Sclk now, Outbox& out) {
                                           .touchdown_anchor_sclk = seconds(timeline_.anchor_time(anchor::touchdown))});
     }
     // Repeated while parameters may still arrive, so that a lost or early read-back is made up for.
-    if (parameters_ && !configuration_.enabled && due(now, 1) && now.ticks() / 64 % held_every_s == 0)
-        out.record(parameters_held());
+    const auto held_every_s = static_cast<std::int64_t>(table_.values().parameters_held_every_s);
+    if (!configuration_.enabled && due(now, 1) && now.ticks() / 64 % held_every_s == 0) {
+        if (parameters_) out.record(parameters_held());
+        out.record(table_.report());
+    }
     if (load_.telemetry_plan == Plan::wideband) out.record(wideband(now));
     if (const auto is = flown_as(configuration_); timeline_.begun() && (due(now, 1) || is != recorded_configuration_)) {
         out.record(is);

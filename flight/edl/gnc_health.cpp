@@ -5,8 +5,8 @@
 
 namespace aeolis::flight {
 
-void GncHealth::watch(const gnc::Output& gnc, Outbox& out) {
-    watch_imu(gnc, out);
+void GncHealth::watch(const Parameters& parameters, const gnc::Output& gnc, Outbox& out) {
+    watch_imu(parameters, gnc, out);
     if (const bool was = std::exchange(attitude_lost_, gnc.attitude_uncertainty_deg >= parameters.attitude_lost_deg);
         attitude_lost_ && !was) {
         out.event(evr::ATTITUDE_LOST{.attitude_uncertainty_deg = single(gnc.attitude_uncertainty_deg)});
@@ -18,7 +18,7 @@ void GncHealth::watch(const gnc::Output& gnc, Outbox& out) {
 }
 
 // A tick without samples is no silence: messages are garbled now and then.
-void GncHealth::watch_imu(const gnc::Output& gnc, Outbox& out) {
+void GncHealth::watch_imu(const Parameters& parameters, const gnc::Output& gnc, Outbox& out) {
     const double before_s = silent_s_;
     if (gnc.dead_reckoned_s == 0.0) {
         silent_s_ = 0.0;

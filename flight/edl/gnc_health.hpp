@@ -11,7 +11,7 @@ namespace aeolis::flight {
 /// In      what GNC tells, each cycle        Out   IMU_SILENT, IMU_HEARD_AGAIN, ATTITUDE_LOST, PROPELLANT_LOW; tones
 class GncHealth {
   public:
-    void watch(const gnc::Output& gnc, Outbox& out);
+    void watch(const Parameters& parameters, const gnc::Output& gnc, Outbox& out);
 
     template <typename Exchange>
     void carry(Exchange& exchange) {
@@ -19,7 +19,7 @@ class GncHealth {
     }
 
   private:
-    void watch_imu(const gnc::Output& gnc, Outbox& out);
+    void watch_imu(const Parameters& parameters, const gnc::Output& gnc, Outbox& out);
 
     double silent_s_ = 0.0;  ///< as told last; 0 while the IMU speaks
     bool attitude_lost_ = false;

@@ -23,11 +23,12 @@ SolutionConditions conditions_of(const command::EDL_SET_PARAMETERS& p, Sclk now)
     const double to_entry_s = p.entry_sclk - now.seconds;
     SolutionConditions conditions;
     conditions.push_back(gnc::above(Quantity::time_to_entry_s, to_entry_s, 0.0));
+    conditions.push_back(gnc::at_most(Quantity::solution_age_s, std::abs(p.epoch_sclk - now.seconds),
+                                      build_parameters.solution_age_max_s));
+    conditions.push_back(gnc::at_least(Quantity::solution_radius_m, radius_m, build_parameters.solution_radius_min_m));
+    conditions.push_back(gnc::at_most(Quantity::solution_radius_m, radius_m, build_parameters.solution_radius_max_m));
     conditions.push_back(
-        gnc::at_most(Quantity::solution_age_s, std::abs(p.epoch_sclk - now.seconds), parameters.solution_age_max_s));
-    conditions.push_back(gnc::at_least(Quantity::solution_radius_m, radius_m, parameters.solution_radius_min_m));
-    conditions.push_back(gnc::at_most(Quantity::solution_radius_m, radius_m, parameters.solution_radius_max_m));
-    conditions.push_back(gnc::at_most(Quantity::solution_speed_mps, speed_mps, parameters.solution_speed_max_mps));
+        gnc::at_most(Quantity::solution_speed_mps, speed_mps, build_parameters.solution_speed_max_mps));
     conditions.push_back(gnc::at_least(Quantity::epoch_before_entry_s, p.entry_sclk - p.epoch_sclk, 0.0));
     conditions.push_back(gnc::at_most(Quantity::time_to_entry_s, to_entry_s, clock_end_s - now.seconds));
     return conditions;
@@ -41,15 +42,15 @@ MaybeTime navigated_entry(const command::EDL_SET_PARAMETERS& sent) {
         const double radius_m = p_MoB_M.norm();
         const double falls_in_s = std::sqrt(radius_m * radius_m * radius_m / gnc::mars_gm_m3ps2);
         const double dt_s =
-            std::min(left_s, parameters.entry_step_fraction * std::min(falls_in_s, radius_m / v_MB_M.norm()));
-        if (step >= parameters.entry_steps_max || !(dt_s > 0.0)) return {};
+            std::min(left_s, build_parameters.entry_step_fraction * std::min(falls_in_s, radius_m / v_MB_M.norm()));
+        if (step >= build_parameters.entry_steps_max || !(dt_s > 0.0)) return {};
         gnc::fall(p_MoB_M, v_MB_M, dt_s);
         left_s -= dt_s;
     }
     const double radius_m = p_MoB_M.norm();
     const double descent_rate_mps = -v_MB_M.dot(p_MoB_M) / radius_m;
     if (!(descent_rate_mps > 0.0)) return {};
-    return Sclk{sent.entry_sclk} + (radius_m - parameters.entry_radius_m) / descent_rate_mps;
+    return Sclk{sent.entry_sclk} + (radius_m - build_parameters.entry_radius_m) / descent_rate_mps;
 }
 
 }  // namespace aeolis::flight

@@ -80,7 +80,8 @@ bool UnverifiedActions::on(const ActionReply& reply, ActionContext& context) {
     return true;
 }
 
-void UnverifiedActions::watch(const gnc::Output& gnc, gnc::Configuration& configuration, Outbox& out) {
+void UnverifiedActions::watch(const Parameters& parameters, const gnc::Output& gnc, gnc::Configuration& configuration,
+                              Outbox& out) {
     for (Unverified& unverified : kept_) {
         if (!unverified.by_imu) continue;
         const Firing& firing = unverified.firing;

@@ -25,7 +25,7 @@ class UnverifiedActions {
 
     /// Judges a silent mortar by the force that the IMU senses. Other actions give too small a kick. While the IMU is
     /// silent GNC's force is reckoned, which is no evidence: a mortar in whose time it was silent stays unverified.
-    void watch(const gnc::Output& gnc, gnc::Configuration& configuration, Outbox& out);
+    void watch(const Parameters& parameters, const gnc::Output& gnc, gnc::Configuration& configuration, Outbox& out);
 
   private:
     struct Unverified {

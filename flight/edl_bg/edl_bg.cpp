@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "flight/edl_bg/edl_bg.hpp"
 
+#include "flight/edl/parameter_table.hpp"
 #include "flight/edl/solution.hpp"
+#include "flight/kernel/parameter_parts.hpp"
 
 namespace aeolis::flight {
 
@@ -16,7 +18,7 @@ void EdlBg::on(const NavigatedAttitude& attitude, Outbox& out) {
     navigated_ = true;
     attitude_at_ = out.now();
     radar_locked_ = attitude.radar_locked;
-    batch_.on(latest_.now, latest_.beams.span(),
+    batch_.on(parameters_, latest_.now, latest_.beams.span(),
               gnc::Quaternion{attitude.q_MB[0], attitude.q_MB[1], attitude.q_MB[2], attitude.q_MB[3]},
               gnc::Vector3{attitude.up_M[0], attitude.up_M[1], attitude.up_M[2]});
     latest_.beams.clear();
@@ -31,9 +33,34 @@ void EdlBg::on(const SetParametersCommand& command, Outbox& out) {
                  CommandOutcome{command.tag, CommandRefusal::bad_argument, gnc::telling(conditions)});
 }
 
+void EdlBg::on(const StageParameterCommand& command, Outbox& out) {
+    const auto conditions = conditions_of(command.arguments);
+    if (all_hold(conditions))
+        out.send(ModuleId::edl, command);
+    else
+        out.send(ModuleId::command_dispatcher,
+                 CommandOutcome{command.tag, refusal_of(conditions), gnc::telling(conditions)});
+}
+
+void EdlBg::on(const ActivateParametersCommand& command, Outbox& out) {
+    out.send(ModuleId::edl, command);
+}
+
+void EdlBg::on(const DiscardParametersCommand& command, Outbox& out) {
+    out.send(ModuleId::edl, command);
+}
+
+void EdlBg::on(const DumpParametersCommand& command, Outbox& out) {
+    out.send(ModuleId::edl, command);
+}
+
+void EdlBg::on(const ParameterPart& part, Outbox&) {
+    take(parameters_, part);
+}
+
 void EdlBg::on(const ClockTick& tick, Outbox& out) {
     if (at_resolution(tick.now, 1) != tick.now || !navigated_) return;
-    const auto solution = batch_.solve(tick.now);
+    const auto solution = batch_.solve(parameters_, tick.now);
     if (!solution) return watch_radar(tick.now, out);
     solved_at_ = tick.now;
     radar_lost_ = false;
@@ -53,7 +80,7 @@ void EdlBg::watch_radar(Sclk now, Outbox& out) {
     const double gap_s = now - solved_at_;
     // Under the parachute the vehicle may first swing so far that its beams miss the ground: the first solution may
     // take longer.
-    const double most_s = solutions_ > 0 ? parameters.radar_gap_max_s : parameters.radar_patience_s;
+    const double most_s = solutions_ > 0 ? parameters_.radar_gap_max_s : parameters_.radar_patience_s;
     if (!wanted || radar_lost_ || gap_s < most_s) return;
     radar_lost_ = true;
     out.event(evr::RADAR_LOST{.gap_s = gap_s});

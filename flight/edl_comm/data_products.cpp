@@ -3,6 +3,7 @@
 
 #include "common/crc.hpp"
 #include "flight/edl_comm/sensor_tables.hpp"
+#include "flight/kernel/parameter_parts.hpp"
 
 #include <algorithm>
 
@@ -12,7 +13,12 @@ namespace {
 constexpr std::size_t part_octets = std::tuple_size_v<decltype(packet::DataProduct::content)>;
 
 Apid row_apid(ProductKind kind) {
-    return kind == ProductKind::as_flown ? packet::TimepointFired::apid : packet::ImuIncrements::apid;
+    switch (kind) {
+    case ProductKind::as_flown: return packet::TimepointFired::apid;
+    case ProductKind::imu_burst: return packet::ImuIncrements::apid;
+    case ProductKind::parameter_table: return packet::ParameterRow::apid;
+    }
+    return {};
 }
 
 }  // namespace
@@ -69,8 +75,20 @@ void DataProducts::on(const PhaseChanged& change) {
     if (change.phase == EdlPhase::landed) static_cast<void>(due_.try_push(ProductKind::as_flown));
 }
 
+void DataProducts::on(const ParameterPart& part) {
+    if (!take(table_, part)) return;
+    table_rows_ = rows_of(table_);
+    if (sending_ && sending_->part.product_kind == ProductKind::parameter_table) sending_.reset();
+    if (!table_due_) table_due_ = due_.try_push(ProductKind::parameter_table);
+}
+
 std::span<const std::uint8_t> DataProducts::content(ProductKind kind) const {
-    return kind == ProductKind::as_flown ? as_flown_.content() : imu_burst_.content();
+    switch (kind) {
+    case ProductKind::as_flown: return as_flown_.content();
+    case ProductKind::imu_burst: return imu_burst_.content();
+    case ProductKind::parameter_table: return table_rows_;
+    }
+    return {};
 }
 
 void DataProducts::begin_next() {
@@ -78,6 +96,7 @@ void DataProducts::begin_next() {
     while (!sending_ && !due_.empty()) {
         const ProductKind kind = due_.front();
         due_.pop();
+        if (kind == ProductKind::parameter_table) table_due_ = false;
         const auto octets = content(kind);
         if (octets.empty()) continue;
         const std::size_t parts = (octets.size() + part_octets - 1) / part_octets;
@@ -100,7 +119,7 @@ void DataProducts::cycle(Outbox& out) {
     const std::size_t begin = part.part * part_octets;
     const std::size_t size = std::min(part_octets, sending_->octets - begin);
     part.content.fill(0);
-    // Rows are only ever appended: the content at the start of the product is unchanged.
+    // Rows are only ever appended, and a new table begins a new product: the content is that at its start.
     std::ranges::copy(content(part.product_kind).subspan(begin, size), part.content.begin());
     ++part.part;
     out.record(part);

@@ -3,6 +3,7 @@
 
 #include "common/fixed_queue.hpp"
 #include "common/fixed_vector.hpp"
+#include "flight/edl/parameter_table.hpp"
 #include "flight/kernel/outbox.hpp"
 #include "flight/timeline/timeline.hpp"
 
@@ -51,12 +52,14 @@ class ImuBurst {
     bool begun_ = false;
 };
 
-/// Makes the two products and sends their parts, at most one a cycle, so that no cycle is long.
+/// Makes the products and sends their parts, at most one a cycle, so that no cycle is long.
 class DataProducts {
   public:
     void on(const Record& record);
     void on(const ImuReadings& readings);
     void on(const PhaseChanged& change);
+    /// The table of parameters, to be dumped. A newer one replaces one that is not sent yet, or only in part.
+    void on(const ParameterPart& part);
 
     /// Sends the next part, if one is due; it is recorded like every packet.
     void cycle(Outbox& out);
@@ -75,6 +78,9 @@ class DataProducts {
 
     AsFlown as_flown_;
     ImuBurst imu_burst_;
+    Parameters table_;
+    std::array<std::uint8_t, parameter_rows_octets> table_rows_{};
+    bool table_due_ = false;
     EdlPhase phase_{};
     bool imu_burst_due_ = false;  // requested, once
     FixedQueue<ProductKind, 4> due_;

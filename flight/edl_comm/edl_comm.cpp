@@ -165,6 +165,10 @@ void EdlComm::on(const NvmStatus& status, Outbox&) {
     nvm_ = status;
 }
 
+void EdlComm::on(const ParameterPart& part, Outbox&) {
+    products_.on(part);
+}
+
 void EdlComm::on(const ToneStatus& status, Outbox&) {
     tone_ = status;
 }

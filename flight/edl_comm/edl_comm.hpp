@@ -17,7 +17,7 @@ namespace aeolis::flight {
 /// The subset is bit-identical to the recording and limited by the rate of the link.
 ///
 /// In      Record (any module), ImuReadings, RadarReturns, PhaseChanged, NvmStatus, ToneStatus, UplinkStatus,
-///         CloseRecording, ClockTick (64 Hz)
+///         ParameterPart, CloseRecording, ClockTick (64 Hz)
 /// Out     packets to NVM, in order; PLTUs with some of them to the UHF transmitter, within its rate; CommStatus at 1
 ///         Hz; tables of all readings of IMU and radar; data products
 /// Memory  192 packets wait for the link; RealtimeQueue decides which are dropped. Neither recording nor cycle suffers
@@ -43,6 +43,7 @@ class EdlComm {
     void on(const NvmStatus& status, Outbox& out);
     void on(const ToneStatus& status, Outbox& out);
     void on(const UplinkStatus& status, Outbox& out);
+    void on(const ParameterPart& part, Outbox& out);
     void on(const CloseRecording& command, Outbox& out);
     void on(const ClockTick& tick, Outbox& out);
 

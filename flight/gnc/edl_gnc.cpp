@@ -19,7 +19,6 @@ namespace aeolis::flight::gnc {
 namespace {
 
 constexpr double cycle_s = seconds_per_tick;
-constexpr double bank_before_guidance_rad = parameters.bank_before_guidance_deg * degree;
 
 /// Of a fact that has a time: both are known, or neither.
 void set(bool& known, std::optional<Sclk>& when, Sclk since) {
@@ -96,7 +95,7 @@ void EdlGnc::take_cruise_attitude() {
     if (!cruise_attitude_ || (navigating_ && cruise_attitude_->at > navigated_to_)) return;
     const CruiseAttitude attitude = *std::exchange(cruise_attitude_, std::nullopt);
     const double age_s = navigating_ ? navigated_to_ - attitude.at : 0.0;
-    if (cruise_stage_gone_ || age_s > parameters.tick_apart_max_s) return;
+    if (cruise_stage_gone_ || age_s > parameters().tick_apart_max_s) return;
     const Vector3 turned = strapdown_.rate_B_rps() * age_s;
     const double angle = turned.norm();
     const Quaternion since =
@@ -105,9 +104,9 @@ void EdlGnc::take_cruise_attitude() {
 }
 
 std::optional<RadarDecision> EdlGnc::on(const RadarSolution& solution) {
-    if (!navigating_ || solution.altitude_m > parameters.radar_altitude_max_m) return std::nullopt;
+    if (!navigating_ || solution.altitude_m > parameters().radar_altitude_max_m) return std::nullopt;
     last_radar_beams_ = solution.beams;
-    const RadarJudgement judged = radar_filter_.on(solution, measured_at_, measured_.up_M, belief_);
+    const RadarJudgement judged = radar_filter_.on(parameters(), solution, measured_at_, measured_.up_M, belief_);
     if (judged.accepted()) {
         if (radar_filter_.accepted() == 1) radar_first_ = true;
         strapdown_.correct(judged.correction.altitude_m * measured_.up_M, judged.correction.v_M_mps);
@@ -123,8 +122,8 @@ std::optional<RadarDecision> EdlGnc::on(const RadarSolution& solution) {
 void EdlGnc::level_by(const RadarCorrection& correction) {
     if (belief_.attitude_rad() > 0.0 && correction.gain < 1.0) {
         const Vector3 residual_mps = correction.v_M_mps / correction.gain;
-        strapdown_.turn(-parameters.level_gain_per_s / mars_weight_mps2 * residual_mps.cross(measured_.up_M));
-        belief_.narrow_attitude();
+        strapdown_.turn(-parameters().level_gain_per_s / mars_weight_mps2 * residual_mps.cross(measured_.up_M));
+        belief_.narrow_attitude(parameters());
     }
     belief_.hear_radar(correction.gain);
 }
@@ -138,26 +137,27 @@ void EdlGnc::navigate(std::span<const ImuSample> imu, Sclk now) {
         reckon(passed_s);
     else
         reckoning_.end();
-    belief_.pass(reckoning_.silent_s() >= parameters.imu_silence_told_s, surroundings_.held_by,
+    belief_.pass(parameters(), reckoning_.silent_s() >= parameters().imu_silence_told_s, surroundings_.held_by,
                  strapdown_.specific_force_B_mps2().norm(), passed_s);
-    const bool pushed = measured_.altitude_m < parameters.air_altitude_max_m || now <= pulses_felt_until_;
+    const bool pushed = measured_.altitude_m < parameters().air_altitude_max_m || now <= pulses_felt_until_;
     for (const ImuSample& sample : imu) {
         const Vector3 force_B = to_vector(sample.delta_v_mps) / imu_period_s;
         smooth_force_B_mps2_ +=
-            imu_period_s / (parameters.push_filter_time_s + imu_period_s) * (force_B - smooth_force_B_mps2_);
-        strapdown_.on(sample, pushed || smooth_force_B_mps2_.squaredNorm() >
-                                            parameters.push_felt_mps2 * parameters.push_felt_mps2);
+            imu_period_s / (parameters().push_filter_time_s + imu_period_s) * (force_B - smooth_force_B_mps2_);
+        strapdown_.on(parameters(), sample,
+                      pushed || smooth_force_B_mps2_.squaredNorm() >
+                                    parameters().push_felt_mps2 * parameters().push_felt_mps2);
     }
 }
 
 void EdlGnc::reckon(double passed_s) {
-    if (passed_s > parameters.tick_apart_max_s) return strapdown_.coast(passed_s);
+    if (passed_s > parameters().tick_apart_max_s) return strapdown_.coast(passed_s);
     surroundings_.altitude_m = measured_.altitude_m;
     surroundings_.free_M_mps2 = measured_.free_M_mps2;
     const Felt last{strapdown_.specific_force_B_mps2(), strapdown_.rate_B_rps()};
     const int ticks = static_cast<int>(std::ceil(passed_s / seconds_per_tick));
     for (int i = 0; i < ticks; ++i) {
-        const Felt felt = reckoning_.feel(surroundings_, strapdown_.state(), last, seconds_per_tick);
+        const Felt felt = reckoning_.feel(parameters(), surroundings_, strapdown_.state(), last, seconds_per_tick);
         strapdown_.reckon(felt.force_B_mps2, felt.rate_B_rps, seconds_per_tick);
     }
 }
@@ -175,11 +175,11 @@ void EdlGnc::measure(Sclk now) {
     m.level_velocity_M = state.v_MB_M - climb_mps * m.up_M;
     m.free_M_mps2 = free_acceleration(state.p_MoB_M, state.v_MB_M);
     const Vector3 ahead = state.v_MB_M / std::max(m.speed_mps, 1.0e-3);
-    force_filter_.on(state.q_MB * strapdown_.specific_force_B_mps2(), ahead, cycle_s);
+    force_filter_.on(parameters(), state.q_MB * strapdown_.specific_force_B_mps2(), ahead, cycle_s);
     m.deceleration_mps2 = force_filter_.drag_mps2() - m.free_M_mps2.dot(ahead);
     if (mode() < Mode::free_fall) {
         const double area_m2 =
-            mode() == Mode::parachute_descent ? parameters.parachute_drag_area_m2 : parameters.entry_drag_area_m2;
+            mode() == Mode::parachute_descent ? parameters().parachute_drag_area_m2 : parameters().entry_drag_area_m2;
         m.dynamic_pressure_Pa = std::max(load_.entry_mass_kg * force_filter_.drag_mps2() / area_m2, 0.0);
     } else {
         m.dynamic_pressure_Pa = 0.0;
@@ -211,7 +211,7 @@ bool EdlGnc::fire(Trigger trigger, const Conditions& conditions, Output& out) {
 }
 
 void EdlGnc::hold(Trigger trigger, const Conditions& conditions, Output& out) const {
-    if (fired(trigger) || !triggers::near(conditions)) return;
+    if (fired(trigger) || !triggers::near(parameters(), conditions)) return;
     static_cast<void>(out.held.try_push_back({trigger, triggers::worth_telling(conditions)}));
 }
 
@@ -247,7 +247,7 @@ void EdlGnc::follow_configuration(const Configuration& configuration, Sclk now, 
     using Event = GncModeEvent;
     if (configuration.enabled) take(Event::enabled, now, out);
     if (configuration.guidance_armed) take(Event::guidance_armed, now, out);
-    const Condition straight = at_least(Quantity::time_in_mode_s, since(mode_since_), sufr::duration_s);
+    const Condition straight = at_least(Quantity::time_in_mode_s, since(mode_since_), parameters().sufr_duration_s);
     if (straight.holds) take(Event::straightened_up, now, out, straight);
     if (configuration.parachute_out)
         take(Event::parachute_out, now, out);
@@ -268,39 +268,42 @@ void EdlGnc::decide_in_air(const Configuration& configuration, Sclk now, Output&
     const triggers::ParachuteBounds parachute{solution_.parachute_speed_mps, solution_.parachute_altitude_min_m};
     const GncModeMachine& machine = mode_machine_;
     if (machine.can(GncModeEvent::drag_felt) &&
-        fire(Trigger::guidance_start, triggers::guidance_start(force_filter_.drag_mps2()), out))
+        fire(Trigger::guidance_start, triggers::guidance_start(parameters(), force_filter_.drag_mps2()), out))
         take(GncModeEvent::drag_felt, now, out);
     if (machine.can(GncModeEvent::slow_for_heading) &&
-        fire(Trigger::heading_alignment, triggers::heading_alignment(m.speed_mps), out))
+        fire(Trigger::heading_alignment, triggers::heading_alignment(parameters(), m.speed_mps), out))
         take(GncModeEvent::slow_for_heading, now, out);
     if (machine.can(GncModeEvent::parachute_near) && configuration.sufr_allowed &&
-        fire(Trigger::sufr_start, triggers::sufr_start(in_air, m.deceleration_mps2, parachute), out)) {
+        fire(Trigger::sufr_start, triggers::sufr_start(parameters(), in_air, m.deceleration_mps2, parachute), out)) {
         bank_at_sufr_rad_ = m.bank_rad;
         take(GncModeEvent::parachute_near, now, out);
     }
     if (mode() >= Mode::range_control && mode() <= Mode::wait_for_parachute) {
-        const auto held = due_for_parachute_.on(triggers::parachute_due(in_air, parachute));
-        fire(Trigger::parachute, triggers::parachute(in_air, parachute, held), out);
+        const auto held = due_for_parachute_.on(triggers::parachute_due(parameters(), in_air, parachute));
+        fire(Trigger::parachute, triggers::parachute(parameters(), in_air, parachute, held), out);
     }
     if (mode() != Mode::parachute_descent) return;
     const double since_parachute_s = configuration.parachute_time ? now - *configuration.parachute_time : 0.0;
     if (!configuration.heatshield_gone)
-        fire(Trigger::heatshield, triggers::heatshield(in_air, solution_.heatshield_speed_mps, since_parachute_s), out);
+        fire(Trigger::heatshield,
+             triggers::heatshield(parameters(), in_air, solution_.heatshield_speed_mps, since_parachute_s), out);
     if (!configuration.heatshield_gone) return;
     // Inertial altitude alone may be kilometres off by now; it is used only after waiting for the radar in vain.
     const double since_heatshield_s = configuration.heatshield_time ? now - *configuration.heatshield_time : 0.0;
-    auto priming = triggers::engine_priming(m.altitude_m, m.descent_rate_mps, solution_.backshell_altitude_m);
-    if (radar_filter_.locked() || since_heatshield_s >= triggers::radar_patience_s) {
+    auto priming =
+        triggers::engine_priming(parameters(), m.altitude_m, m.descent_rate_mps, solution_.backshell_altitude_m);
+    if (radar_filter_.locked() || since_heatshield_s >= parameters().radar_patience_s) {
         fire(Trigger::engine_priming, priming, out);
     } else {
         priming.push_back(is(Quantity::radar_locked, false));
         hold(Trigger::engine_priming, priming, out);
     }
     const triggers::BackshellBounds backshell{solution_.backshell_altitude_m, solution_.backshell_descent_rate_mps};
-    const double needed_m = triggers::backshell_altitude_needed_m(backshell, m.descent_rate_mps);
+    const double needed_m = triggers::backshell_altitude_needed_m(parameters(), backshell, m.descent_rate_mps);
     const auto held = low_for_backshell_.on(m.altitude_m <= needed_m);
     if (configuration.engines_primed)
-        fire(Trigger::backshell, triggers::backshell(m.altitude_m, m.descent_rate_mps, backshell, held), out);
+        fire(Trigger::backshell, triggers::backshell(parameters(), m.altitude_m, m.descent_rate_mps, backshell, held),
+             out);
 }
 
 // Powered descent and sky crane.
@@ -309,39 +312,45 @@ void EdlGnc::decide_on_engines(const Configuration& configuration, Sclk now, Out
     const Measured& m = measured_;
     Conditions conditions;
     if (mode() == Mode::free_fall) {
-        conditions.push_back(at_least(Quantity::time_in_mode_s, since(mode_since_), free_fall_s));
+        conditions.push_back(
+            at_least(Quantity::time_in_mode_s, since(mode_since_), parameters().powered_approach_delay_s));
         if (!fire(Trigger::powered_approach, conditions, out)) return;
         take(GncModeEvent::fallen_clear, now, out);
-        approach_.start(m.altitude_m, m.descent_rate_mps);
-        const double duration_s = (m.descent_rate_mps - constant_velocity_mps) / approach_.deceleration_mps2();
+        approach_.start(parameters(), m.altitude_m, m.descent_rate_mps);
+        const double duration_s =
+            (m.descent_rate_mps - parameters().constant_velocity_mps) / approach_.deceleration_mps2();
         const Vector3& p_MoB_M = strapdown_.state().p_MoB_M;
         divert_.start(load_.divert_m * azimuth_direction(p_MoB_M, load_.divert_azimuth_deg * degree),
                       m.level_velocity_M, duration_s);
         divert_from_M_ = p_MoB_M;
     } else if (mode() == Mode::powered_approach) {
-        if (fire(Trigger::constant_velocity, triggers::constant_velocity(m.altitude_m, m.descent_rate_mps), out))
+        if (fire(Trigger::constant_velocity,
+                 triggers::constant_velocity(parameters(), m.altitude_m, m.descent_rate_mps), out))
             take(GncModeEvent::approached, now, out);
     } else if (mode() == Mode::constant_velocity) {
-        conditions.push_back(
-            at_most(Quantity::altitude_m, m.altitude_m, constant_deceleration_altitude_m(m.descent_rate_mps)));
+        conditions.push_back(at_most(Quantity::altitude_m, m.altitude_m,
+                                     constant_deceleration_altitude_m(parameters(), m.descent_rate_mps)));
         if (!fire(Trigger::constant_deceleration, conditions, out)) return;
         take(GncModeEvent::low_enough, now, out);
-        deceleration_.start(m.altitude_m, m.descent_rate_mps);
+        deceleration_.start(parameters(), m.altitude_m, m.descent_rate_mps);
     } else if (mode() == Mode::constant_deceleration) {
-        conditions.push_back(at_most(Quantity::descent_rate_mps, m.descent_rate_mps,
-                                     sky_crane_mps + parameters.sky_crane_rate_tolerance_mps));
+        conditions.push_back(
+            at_most(Quantity::descent_rate_mps, m.descent_rate_mps,
+                    parameters().sky_crane_descent_rate_mps + parameters().sky_crane_rate_tolerance_mps));
         fire(Trigger::sky_crane, conditions, out);
     } else if (mode() == Mode::sky_crane) {
-        conditions.push_back(at_least(Quantity::time_in_mode_s, since(mode_since_), triggers::sky_crane_settling_s));
+        conditions.push_back(at_least(Quantity::time_in_mode_s, since(mode_since_), parameters().sky_crane_settle_s));
         fire(Trigger::rover_separation, conditions, out);
         if (configuration.rover_separated && configuration.touchdown_logic_ready)
-            fire(Trigger::touchdown, touchdown_logic_.on(thrust_command_N_, mass_kg_, load_.rover_mass_kg), out);
+            fire(Trigger::touchdown,
+                 touchdown_logic_.on(parameters(), thrust_command_N_, mass_kg_, load_.rover_mass_kg), out);
     }
 }
 
 void EdlGnc::guide_entry(Sclk now, const Configuration& configuration, Output& out) {
     const Measured& m = measured_;
     AttitudeCommand& attitude = out.attitude;
+    const double bank_before_guidance_rad = parameters().bank_before_guidance_deg * degree;
     if (mode() < Mode::wait_for_guidance_start) {
         if (mode() == Mode::approach && configuration.turning_to_entry) {
             bank_command_rad_ = bank_before_guidance_rad;
@@ -359,29 +368,31 @@ void EdlGnc::guide_entry(Sclk now, const Configuration& configuration, Output& o
         input.drag_mps2 = force_filter_.drag_mps2();
         input.altitude_rate_mps = -m.descent_rate_mps;
         input.range_to_go_m = m.target.range_to_go_m;
-        input.lift_to_drag = force_filter_.lift_to_drag(load_.entry_lift_to_drag);
-        const RangeControlOutput wanted = range_control(load_.entry_reference, input);
+        input.lift_to_drag = force_filter_.lift_to_drag(parameters(), load_.entry_lift_to_drag);
+        const RangeControlOutput wanted = range_control(parameters(), load_.entry_reference, input);
         predicted_range_m_ = wanted.predicted_range_m;
         lift_to_drag_command_ = wanted.vertical_lift_to_drag;
         // Near full lift up the two sides hardly differ: a reversal then counts as settled.
         const Condition level = below(Quantity::bank_command_deg, wanted.bank_magnitude_rad / degree,
-                                      parameters.reversal_settled_below_deg);
+                                      parameters().reversal_settled_below_deg);
         const Condition on_its_side = lateral_.sign() > 0 ? above(Quantity::bank_deg, m.bank_rad / degree, 0.0)
                                                           : below(Quantity::bank_deg, m.bank_rad / degree, 0.0);
-        const Conditions reversal =
-            lateral_.on(now, m.target.crossrange_m, m.speed_mps, wanted.saturated, level.holds ? level : on_its_side);
+        const Conditions reversal = lateral_.on(parameters(), now, m.target.crossrange_m, m.speed_mps, wanted.saturated,
+                                                level.holds ? level : on_its_side);
         if (all_hold(reversal)) out.bank_reversal = {lateral_.reversals(), reversal};
-        if (now.ticks() % static_cast<std::int64_t>(parameters.height_guard_every_ticks) == 0)
-            bank_allowed_rad_ = bank_allowed_rad(altitude_when_slow_m(
-                {m.altitude_m, m.speed_mps, m.descent_rate_mps, input.drag_mps2, input.lift_to_drag},
-                solution_.parachute_speed_mps));
+        if (now.ticks() % static_cast<std::int64_t>(parameters().height_guard_every_ticks) == 0)
+            bank_allowed_rad_ =
+                bank_allowed_rad(parameters(), altitude_when_slow_m(parameters(),
+                                                                    {m.altitude_m, m.speed_mps, m.descent_rate_mps,
+                                                                     input.drag_mps2, input.lift_to_drag},
+                                                                    solution_.parachute_speed_mps));
         bank_command_rad_ = lateral_.sign() * std::min(wanted.bank_magnitude_rad, bank_allowed_rad_);
     } else if (mode() == Mode::heading_alignment) {
         attitude.mode = AttitudeCommand::Mode::entry_bank;
-        bank_command_rad_ = heading_alignment_bank_rad(m.target);
+        bank_command_rad_ = heading_alignment_bank_rad(parameters(), m.target);
     } else if (mode() == Mode::straighten_up) {
         attitude.mode = AttitudeCommand::Mode::entry_bank;
-        bank_command_rad_ = sufr::bank_rad(now - mode_since_, bank_at_sufr_rad_);
+        bank_command_rad_ = sufr::bank_rad(parameters(), now - mode_since_, bank_at_sufr_rad_);
     } else if (mode() == Mode::wait_for_parachute) {
         attitude.mode = AttitudeCommand::Mode::entry_bank;
         bank_command_rad_ = 0.0;
@@ -393,8 +404,9 @@ void EdlGnc::guide_entry(Sclk now, const Configuration& configuration, Output& o
 
 // Commands the thrust that accelerates the vehicle by `acceleration_M`.
 void EdlGnc::push(const Vector3& acceleration_M, int engines, Output& out) {
-    const powered_descent::Thrust thrust = powered_descent::allocate(
-        acceleration_M - measured_.free_M_mps2, measured_.up_M, mass_kg_, engines, load_.engine_max_thrust_N);
+    const powered_descent::Thrust thrust =
+        powered_descent::allocate(parameters(), acceleration_M - measured_.free_M_mps2, measured_.up_M, mass_kg_,
+                                  engines, load_.engine_max_thrust_N);
     thrust_command_N_ = thrust.magnitude_N;
     out.attitude.thrust_direction_M = to_array(thrust.direction_M);
     out.engines.throttle = thrust.throttle;
@@ -413,28 +425,30 @@ void EdlGnc::guide_descent(Sclk now, const Configuration& configuration, Output&
     const Vector3& v_M = strapdown_.state().v_MB_M;
     const int engines = configuration.sky_crane_started ? 4 : 8;
     // Once the divert has ended, the remaining drift is nulled.
-    const Vector3 null_drift = -rate_gain_per_s * m.level_velocity_M;
+    const Vector3 null_drift = -parameters().descent_rate_gain_per_s * m.level_velocity_M;
     if (mode() == Mode::free_fall) {
         out.engines.throttle.fill(load_.engine_min_thrust_N / load_.engine_max_thrust_N);  // warm-up
         thrust_command_N_ = engine_count * load_.engine_min_thrust_N;
     } else if (mode() == Mode::powered_approach) {
         const Vector3 moved = strapdown_.state().p_MoB_M - divert_from_M_;
         const Vector3 level =
-            divert_.command_M(now - mode_since_, moved - moved.dot(m.up_M) * m.up_M, m.level_velocity_M);
-        const double up = approach_.acceleration_mps2(m.altitude_m, m.descent_rate_mps);
+            divert_.command_M(parameters(), now - mode_since_, moved - moved.dot(m.up_M) * m.up_M, m.level_velocity_M);
+        const double up = approach_.acceleration_mps2(parameters(), m.altitude_m, m.descent_rate_mps);
         push(level - level.dot(m.up_M) * m.up_M + up * m.up_M, engines, out);
     } else if (mode() == Mode::constant_velocity) {
-        push(null_drift + hold_rate_mps2(m.descent_rate_mps, constant_velocity_mps) * m.up_M, engines, out);
+        push(null_drift + hold_rate_mps2(parameters(), m.descent_rate_mps, parameters().constant_velocity_mps) * m.up_M,
+             engines, out);
     } else if (mode() == Mode::constant_deceleration) {
-        deceleration_.advance(m.altitude_m, cycle_s);
-        push(null_drift + deceleration_.acceleration_mps2(m.descent_rate_mps) * m.up_M, engines, out);
+        deceleration_.advance(parameters(), m.altitude_m, cycle_s);
+        push(null_drift + deceleration_.acceleration_mps2(parameters(), m.descent_rate_mps) * m.up_M, engines, out);
     } else if (mode() == Mode::sky_crane || mode() == Mode::touchdown) {
-        const double wanted_mps = mode() == Mode::sky_crane ? sky_crane_mps : 0.0;
-        push(rate_control_.command_M(v_M, m.up_M, wanted_mps, cycle_s), engines, out);
+        const double wanted_mps = mode() == Mode::sky_crane ? parameters().sky_crane_descent_rate_mps : 0.0;
+        push(rate_control_.command_M(parameters(), v_M, m.up_M, wanted_mps, cycle_s), engines, out);
     } else if (mode() == Mode::flyaway) {
-        const flyaway::Command wanted = flyaway::command(now - mode_since_, strapdown_.state().p_MoB_M);
-        const double thrust_N = wanted.full ? engines * engine_used_max_N : mass_kg_ * mars_weight_mps2;
-        out.engines.throttle = throttles_for(thrust_N, engines, load_.engine_max_thrust_N, thrust_command_N_);
+        const flyaway::Command wanted = flyaway::command(parameters(), now - mode_since_, strapdown_.state().p_MoB_M);
+        const double thrust_N = wanted.full ? engines * parameters().engine_used_max_N : mass_kg_ * mars_weight_mps2;
+        out.engines.throttle =
+            throttles_for(parameters(), thrust_N, engines, load_.engine_max_thrust_N, thrust_command_N_);
         out.attitude.thrust_direction_M = to_array(wanted.direction_M);
     }
 }
@@ -467,8 +481,8 @@ void EdlGnc::steer(const Configuration& configuration, Output& out) {
     const double rigid_kg =
         mode() < Mode::free_fall ? load_.entry_mass_kg : mass_kg_ - (rover_hangs ? load_.rover_mass_kg : 0.0);
     const Inertia inertia = inertia_of(mode(), configuration, rigid_kg);
-    steering_.cycle(out.attitude, attitude, inertia, steers(mode(), configuration, out.engines), out.thrusters,
-                    out.engines);
+    steering_.cycle(parameters(), out.attitude, attitude, inertia, steers(mode(), configuration, out.engines),
+                    out.thrusters, out.engines);
     surroundings_.held_by = held_by(mode(), out.engines);
     surroundings_.inertia = inertia;
     surroundings_.mass_kg = rigid_kg;
@@ -477,7 +491,7 @@ void EdlGnc::steer(const Configuration& configuration, Output& out) {
     const bool turned = mode() != Mode::parachute_descent || configuration.heatshield_gone;
     surroundings_.torque_B_Nm = turned ? steering_.torque_B_Nm() : Vector3(Vector3::Zero());
     if (out.thrusters != ThrusterCommand{})
-        pulses_felt_until_ = measured_at_ + parameters.pulse_felt_ticks * seconds_per_tick;
+        pulses_felt_until_ = measured_at_ + parameters().pulse_felt_ticks * seconds_per_tick;
 }
 
 void EdlGnc::burn(const DeviceInputs& in, const Configuration& configuration) {
@@ -517,7 +531,7 @@ void EdlGnc::report(Output& out) const {
     out.mass_kg = on_engines ? mass_kg_ : load_.entry_mass_kg;
     const double carried_kg = load_.descent_stage_dry_kg + (mode() == Mode::flyaway ? 0.0 : load_.rover_mass_kg);
     out.propellant_kg = (on_engines ? mass_kg_ : load_.powered_descent_mass_kg) - carried_kg;
-    out.propellant_low = mode() < Mode::flyaway && out.propellant_kg < parameters.propellant_low_kg;
+    out.propellant_low = mode() < Mode::flyaway && out.propellant_kg < parameters().propellant_low_kg;
     out.dead_reckoned_s = reckoning_.silent_s();
     out.attitude_uncertainty_deg = belief_.attitude_rad() / degree;
     out.velocity_uncertainty_mps = belief_.velocity_mps();

@@ -214,6 +214,9 @@ class EdlGnc {
   public:
     explicit EdlGnc(const Load& load);
 
+    /// Flies by `parameters` from the next cycle on.
+    void set_parameters(const Parameters& parameters) { load_.parameters = parameters; }
+
     /// Takes ground's solution and (re)initialises navigation, propagated to `now` when the epoch is past.
     void set_solution(const Solution& solution, Sclk now);
 
@@ -232,7 +235,7 @@ class EdlGnc {
     /// Runs navigation alone, over a cycle that another computer may have missed.
     void catch_up(std::span<const ImuSample> imu, Sclk now) { navigate(imu, now); }
 
-    /// State that another computer needs to continue; without the radar filter's history.
+    /// State that another computer needs to continue; without the parameters and the radar filter's history.
     template <typename Exchange>
     void carry(Exchange& exchange) {
         exchange(solution_, target_M_, navigating_, navigated_to_, pulses_felt_until_, strapdown_, reckoning_, belief_,
@@ -280,6 +283,7 @@ class EdlGnc {
     void burn(const DeviceInputs& in, const Configuration& configuration);
     void report(Output& out) const;
     double since(Sclk then) const { return measured_at_ - then; }
+    const Parameters& parameters() const { return load_.parameters; }
 
     Load load_;
     Solution solution_;

@@ -178,6 +178,27 @@ struct ParametersUpdate {  ///< checked parameters, from EdlBg to Edl
     CommandTag tag;
     command::EDL_SET_PARAMETERS parameters;
 };
+struct StageParameterCommand {  ///< to EdlBg, which checks it, and on to Edl
+    CommandTag tag;
+    command::EDL_STAGE_PARAMETER arguments;
+};
+struct ActivateParametersCommand {  ///< by EdlBg too, behind the changes that it activates
+    CommandTag tag;
+    command::EDL_ACTIVATE_PARAMETERS arguments;
+};
+struct DiscardParametersCommand {
+    CommandTag tag;
+};
+struct DumpParametersCommand {
+    CommandTag tag;
+};
+/// Part of the table of parameters that Edl holds, to modules that need it. The parts of a table arrive in order.
+inline constexpr std::size_t part_parameters_max = 28;  ///< chosen: no larger than the largest other message
+struct ParameterPart {
+    std::uint16_t first = 0;
+    std::uint8_t count = 0;
+    std::array<double, part_parameters_max> values{};
+};
 struct DoEdlCommand {
     CommandTag tag;
 };
@@ -241,10 +262,11 @@ using Message =
                  UplinkReceived, NvmStatus, PyroReply, SwitchReply, EngineReply, ThrusterReply, BridleReply,
                  CruiseAttitude, gnc::RadarSolution, ActionReply, FirePyro, ArmPyros, SetSwitch, EnableThrusters,
                  FireThrusters, RunEngines, PayOutBridle, UnitsSelected, EdlBegun, NavigatedAttitude, SystemFaultReport,
-                 InhibitEdl, SetParametersCommand, ParametersUpdate, DoEdlCommand, SetTimepointOffsetCommand,
-                 SetAnchorOffsetCommand, SelectUnitsCommand, EnableSecondChanceCommand, SelectPrimeCommand,
-                 ResumePrimeCommand, OtherRunsBuses, CommandOutcome, Record, ToneRequest, PhaseChanged, StandBy,
-                 EdlFinished, ToneStatus, UplinkStatus, CloseRecording>;
+                 InhibitEdl, SetParametersCommand, ParametersUpdate, StageParameterCommand, ActivateParametersCommand,
+                 DiscardParametersCommand, DumpParametersCommand, ParameterPart, DoEdlCommand,
+                 SetTimepointOffsetCommand, SetAnchorOffsetCommand, SelectUnitsCommand, EnableSecondChanceCommand,
+                 SelectPrimeCommand, ResumePrimeCommand, OtherRunsBuses, CommandOutcome, Record, ToneRequest,
+                 PhaseChanged, StandBy, EdlFinished, ToneStatus, UplinkStatus, CloseRecording>;
 static_assert(std::is_trivially_copyable_v<Message>, "messages hold only data");
 
 /// Copies only the content of a message, not the space of the largest alternative.

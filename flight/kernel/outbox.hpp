@@ -69,7 +69,7 @@ class Outbox {
 
   private:
     // The busiest handler is Edl's tick: five timepoints with an event, a tone and a record each, and telemetry.
-    static constexpr std::size_t capacity = 48;
+    static constexpr std::size_t capacity = 64;
 
     ModuleId from_{};
     Sclk now_;

@@ -2,6 +2,7 @@
 #include "flight/mfsk/tone_selector.hpp"
 
 #include "flight/explanation/explanation.hpp"
+#include "flight/kernel/parameter_parts.hpp"
 
 #include <initializer_list>
 
@@ -76,10 +77,14 @@ void ToneSelector::on(const StandBy& stand_by, Outbox& out) {
     out.bus().tone.reset();
 }
 
+void ToneSelector::on(const ParameterPart& part, Outbox&) {
+    take(parameters_, part);
+}
+
 void ToneSelector::on(const ClockTick& tick, Outbox& out) {
     if (silent_) return;
     drop_expired(tick.now, out);
-    if (sending_ && tick.now - sending_->started >= parameters.tone_duration_s) {
+    if (sending_ && tick.now - sending_->started >= build_parameters.tone_duration_s) {
         sending_.reset();
         quiet_since_ = tick.now;
         out.bus().tone.reset();
@@ -90,7 +95,7 @@ void ToneSelector::on(const ClockTick& tick, Outbox& out) {
         outstanding_.erase_at(chosen);
         send(request, out);
         explain_choice(request, out);
-    } else if (!sending_ && heartbeat_ && tick.now - quiet_since_ >= parameters.heartbeat_after_s) {
+    } else if (!sending_ && heartbeat_ && tick.now - quiet_since_ >= parameters_.heartbeat_after_s) {
         send({*heartbeat_, tick.now}, out);
     }
     if (at_resolution(tick.now, 1) == tick.now)

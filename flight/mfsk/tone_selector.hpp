@@ -12,7 +12,7 @@ namespace aeolis::flight {
 
 /// Chooses the tone that the X-band transmitter sends.
 ///
-/// In      ToneRequest, PhaseChanged, StandBy, ClockTick (64 Hz)
+/// In      ToneRequest, PhaseChanged, StandBy, ParameterPart, ClockTick (64 Hz)
 /// Out     the transmitter's tone; ToneSelected; Explanation; ToneStatus
 /// Memory  64 outstanding requests; when full the least important is dropped and reported (MFSK_REQUESTS_FULL)
 /// Rule    the most important request first; among equals, the newest. A request older than its tone's age limit is
@@ -25,12 +25,13 @@ namespace aeolis::flight {
 class ToneSelector {
   public:
     explicit ToneSelector(const Load& load, std::span<const ToneSpec> tones = tone_specs)
-        : tones_(tones), role_(load.role) {}
+        : parameters_(load.parameters), tones_(tones), role_(load.role) {}
 
     void on(const ToneRequest& request, Outbox& out);
     void on(const PhaseChanged& change, Outbox& out);
     void on(const ClockTick& tick, Outbox& out);
     void on(const StandBy& stand_by, Outbox& out);
+    void on(const ParameterPart& part, Outbox& out);
 
   private:
     struct Sending {
@@ -49,6 +50,7 @@ class ToneSelector {
     std::int16_t priority(ToneId tone) const { return tones_[tone.value].priority; }
     double expires_s(ToneId tone) const { return tones_[tone.value].expires_s; }
 
+    Parameters parameters_;
     std::span<const ToneSpec> tones_;
     Role role_;
     FixedVector<ToneRequest, 64> outstanding_;

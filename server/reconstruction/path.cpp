@@ -76,7 +76,7 @@ class Integration {
         ImuSample sample = reading;
         sample.delta_v_mps = flight::gnc::to_array(delta_v);
         const std::uint32_t filled = strapdown_.filled();
-        strapdown_.on(sample, true);
+        strapdown_.on(parameters_, sample, true);
         const std::uint32_t count = 1 + strapdown_.filled() - filled;
         filled_ += count - 1;
         const Matrix3 R_MB = before_.q_MB.toRotationMatrix();
@@ -116,6 +116,7 @@ class Integration {
     std::uint32_t filled() const { return filled_; }
 
   private:
+    flight::Parameters parameters_;  ///< of learning a bias, which is not done: every reading is taken as felt
     Strapdown strapdown_;
     Vector3 bias_mps2_;
     ErrorFilter& filter_;

@@ -21,7 +21,7 @@ flight::gnc::Solution solution_of(const NavigationSolution& from) {
 }
 
 GncAlone::GncAlone(const flight::Load& load, const NavigationSolution& solution, Sclk now)
-    : gnc_(load), timeline_(solution.entry) {
+    : parameters_(load.parameters), gnc_(load), timeline_(solution.entry) {
     gnc_.set_solution(solution_of(solution), now);
 }
 
@@ -32,10 +32,10 @@ const flight::DeviceOutputs& GncAlone::cycle(const flight::DeviceInputs& in) {
     if (configuration().radar_on) {
         // As in flight: the beams are combined with the attitude of their own tick, and the solution waits for the next
         // cycle.
-        batch_.on(in.now, in.radar.span(), flight::gnc::to_quaternion(told_.q_MB),
+        batch_.on(parameters_, in.now, in.radar.span(), flight::gnc::to_quaternion(told_.q_MB),
                   flight::gnc::to_vector(told_.p_MoB_M_m).normalized());
         if (in.now.ticks() % 64 == 0)
-            if (const auto solution = batch_.solve(in.now)) gnc_.on(*solution);
+            if (const auto solution = batch_.solve(parameters_, in.now)) gnc_.on(*solution);
     }
     timeline_.take(told_, in.now);
     timeline_.act(in.now, out_);

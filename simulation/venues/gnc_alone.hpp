@@ -31,6 +31,7 @@ class GncAlone {
     const flight::gnc::EdlGnc& gnc() const { return gnc_; }
 
   private:
+    flight::Parameters parameters_;
     flight::gnc::EdlGnc gnc_;
     flight::gnc::RadarBatch batch_;
     flight::gnc::Output told_;

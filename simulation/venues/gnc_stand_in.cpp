@@ -19,14 +19,13 @@ using flight::gnc::Mode;
 using flight::gnc::Trigger;
 using Attitude = flight::gnc::AttitudeCommand::Mode;
 
-using flight::parameters;
 constexpr double sufr_mps = 453.0;  // [od137]
 constexpr double priming_above_backshell_m = 1340.0;
 constexpr double approach_end_m = 150.0, slow_below_m = 32.0;
 constexpr double sidestep_mps = 12.0;  // during the approach: out from under the backshell
 
 /// Bank angle, roughly as in [od137].
-double bank_deg(const TruthState& truth) {
+double bank_deg(const flight::Parameters& parameters, const TruthState& truth) {
     if (truth.speed_mps <= parameters.heading_alignment_speed_mps) return 0.0;
     if (truth.e_s > 124.0) return -49.0;
     if (truth.e_s > 98.0) return 46.0;
@@ -38,7 +37,7 @@ int reversals(const TruthState& truth) {
 }
 
 /// Climb rate: two stretches of constant deceleration, then slow and steady.
-double wanted_climb_mps(double height_m) {
+double wanted_climb_mps(const flight::Parameters& parameters, double height_m) {
     if (height_m > approach_end_m)
         return -std::min(75.0, std::sqrt(parameters.constant_velocity_mps * parameters.constant_velocity_mps +
                                          6.0 * (height_m - approach_end_m)));
@@ -78,7 +77,7 @@ const flight::gnc::Output& GncStandIn::cycle(const World& world, const flight::g
 void GncStandIn::follow(const flight::gnc::Configuration& configuration) {
     if (configuration.enabled) take(GncModeEvent::enabled);
     if (configuration.guidance_armed) take(GncModeEvent::guidance_armed);
-    if (now_ - mode_since_ >= parameters.sufr_duration_s) take(GncModeEvent::straightened_up);
+    if (now_ - mode_since_ >= load_.parameters.sufr_duration_s) take(GncModeEvent::straightened_up);
     take(configuration.parachute_out ? GncModeEvent::parachute_out : GncModeEvent::parachute_missing);
     if (configuration.backshell_gone) take(GncModeEvent::backshell_gone);
     if (configuration.sky_crane_started) take(GncModeEvent::throttled_down);
@@ -91,11 +90,11 @@ void GncStandIn::decide_in_air(const World& world, const flight::gnc::Configurat
     const NavigationSolution& solution = world.solution();
     if (mode_.can(GncModeEvent::drag_felt) &&
         fire(Trigger::guidance_start,
-             at_least(Quantity::drag_mps2, truth.sensed_mps2, parameters.guidance_start_drag_mps2)))
+             at_least(Quantity::drag_mps2, truth.sensed_mps2, load_.parameters.guidance_start_drag_mps2)))
         take(GncModeEvent::drag_felt);
     if (mode_.can(GncModeEvent::slow_for_heading) &&
         fire(Trigger::heading_alignment,
-             at_most(Quantity::speed_mps, truth.speed_mps, parameters.heading_alignment_speed_mps)))
+             at_most(Quantity::speed_mps, truth.speed_mps, load_.parameters.heading_alignment_speed_mps)))
         take(GncModeEvent::slow_for_heading);
     if (mode_.can(GncModeEvent::parachute_near) && configuration.sufr_allowed &&
         fire(Trigger::sufr_start, at_most(Quantity::speed_mps, truth.speed_mps, sufr_mps)))
@@ -104,11 +103,12 @@ void GncStandIn::decide_in_air(const World& world, const flight::gnc::Configurat
         fire(Trigger::parachute, at_most(Quantity::speed_mps, truth.speed_mps, solution.parachute_speed_mps));
     if (mode_.state() != Mode::parachute_descent) return;
     const double parachute_s = configuration.parachute_time ? now_ - *configuration.parachute_time : 0.0;
-    if (parachute_s > parameters.heatshield_delay_min_s)
+    if (parachute_s > load_.parameters.heatshield_delay_min_s)
         fire(Trigger::heatshield, at_most(Quantity::speed_mps, truth.speed_mps, solution.heatshield_speed_mps));
     if (!configuration.heatshield_gone) return;
     if (configuration.radar_on)
-        fire(Trigger::radar_lock, at_most(Quantity::altitude_m, truth.altitude_m, parameters.radar_altitude_max_m));
+        fire(Trigger::radar_lock,
+             at_most(Quantity::altitude_m, truth.altitude_m, load_.parameters.radar_altitude_max_m));
     fire(Trigger::engine_priming,
          at_most(Quantity::altitude_m, truth.altitude_m, solution.backshell_altitude_m + priming_above_backshell_m));
     if (configuration.engines_primed)
@@ -121,7 +121,7 @@ void GncStandIn::decide_on_engines(const World& world, const flight::gnc::Config
     switch (mode_.state()) {
     case Mode::free_fall:
         if (fire(Trigger::powered_approach,
-                 at_least(Quantity::time_in_mode_s, in_mode_s, flight::gnc::powered_descent::free_fall_s)))
+                 at_least(Quantity::time_in_mode_s, in_mode_s, load_.parameters.powered_approach_delay_s)))
             take(GncModeEvent::fallen_clear);
         break;
     case Mode::powered_approach:
@@ -136,10 +136,11 @@ void GncStandIn::decide_on_engines(const World& world, const flight::gnc::Config
         fire(Trigger::sky_crane, at_most(Quantity::altitude_m, truth.altitude_m, slow_below_m - 2.0));
         break;
     case Mode::sky_crane:
-        fire(Trigger::rover_separation, at_least(Quantity::time_in_mode_s, in_mode_s, parameters.sky_crane_settle_s));
+        fire(Trigger::rover_separation,
+             at_least(Quantity::time_in_mode_s, in_mode_s, load_.parameters.sky_crane_settle_s));
         if (configuration.touchdown_logic_ready && world.contact())
             fire(Trigger::touchdown,
-                 at_least(Quantity::time_in_mode_s, now_ - *world.contact(), parameters.touchdown_settle_s));
+                 at_least(Quantity::time_in_mode_s, now_ - *world.contact(), load_.parameters.touchdown_settle_s));
         break;
     default: break;
     }
@@ -151,7 +152,7 @@ void GncStandIn::guide(const World& world, const flight::gnc::Configuration& con
     if (mode == Mode::approach ? configuration.turning_to_entry
                                : mode >= Mode::wait_for_guidance_start && mode <= Mode::wait_for_parachute) {
         told_.attitude.mode = Attitude::entry_bank;
-        told_.attitude.bank_rad = bank_deg(truth) * degree_rad;
+        told_.attitude.bank_rad = bank_deg(load_.parameters, truth) * degree_rad;
         if (mode == Mode::range_control && reversals(truth) > reversals_)
             told_.bank_reversal.number = static_cast<std::uint8_t>(++reversals_);
     } else if (mode == Mode::approach)
@@ -170,8 +171,8 @@ void GncStandIn::guide(const World& world, const flight::gnc::Configuration& con
     }
     const double up_mps = v.dot(local.up);
     const double feed_forward_mps2 = truth.altitude_m > slow_below_m ? 3.0 : 0.0;
-    const double climb_mps2 =
-        flight::gnc::mars_weight_mps2 + feed_forward_mps2 + 1.2 * (wanted_climb_mps(truth.altitude_m) - up_mps);
+    const double climb_mps2 = flight::gnc::mars_weight_mps2 + feed_forward_mps2 +
+                              1.2 * (wanted_climb_mps(load_.parameters, truth.altitude_m) - up_mps);
     const Vector3 wanted_level = (mode == Mode::powered_approach ? sidestep_mps : 0.0) * local.east;
     const Vector3 push = climb_mps2 * local.up - 0.3 * (v - up_mps * local.up - wanted_level);
     const double mass_kg = world.inspect().mass_kg - (world.contact() ? load_.rover_mass_kg : 0.0);
@@ -194,7 +195,7 @@ void GncStandIn::steer(const World& world, const flight::gnc::Configuration& con
     const flight::gnc::AttitudeState state{vector3(truth.p_MoB_M_m), vector3(truth.v_MB_M_mps),
                                            flight::gnc::to_quaternion(seen.q_MB), vector3(seen.rate_B_rps),
                                            mode >= Mode::range_control};
-    steering_.cycle(told_.attitude, state, flight::gnc::inertia_of(mode, configuration, rigid_kg),
+    steering_.cycle(load_.parameters, told_.attitude, state, flight::gnc::inertia_of(mode, configuration, rigid_kg),
                     flight::gnc::steers(mode, configuration, told_.engines), told_.thrusters, told_.engines);
 }
 

@@ -81,4 +81,14 @@ TEST_CASE("the shipped dictionary reports the parameters that it is sent", "[rea
     CHECK(read_back_packet(dictionary, *command) == dictionary.packet("ParametersHeld"));
 }
 
+TEST_CASE("an activated table of parameters is read back by its version, and a staged change by the activation only",
+          "[read_back][R25][R48]") {
+    const auto& dictionary = tests::shipped_dictionary();
+    const auto report_of = [&](const char* command) {
+        return read_back_packet(dictionary, *dictionary.command(command));
+    };
+    CHECK(report_of("EDL_ACTIVATE_PARAMETERS") == dictionary.packet("ParameterTable"));
+    CHECK(report_of("EDL_STAGE_PARAMETER") == nullptr);
+}
+
 }  // namespace commands_read_back_test

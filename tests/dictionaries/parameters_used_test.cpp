@@ -71,6 +71,7 @@ TEST_CASE("no module of EDL has a constant of its own that tunes it: they come f
         "no_thrust_mps2",
         "determinant_min",
         "past_max",
+        "staged_changes_max",
     };
     std::string tuning;
     std::size_t seen = 0;
@@ -88,7 +89,7 @@ TEST_CASE("no module of EDL has a constant of its own that tunes it: they come f
         }
     }
     CHECK(seen >= 9);
-    INFO("put the value in parameters.csv and take it from flight::parameters\n" << tuning);
+    INFO("put the value in parameters.csv and take it from flight::Parameters\n" << tuning);
     CHECK(tuning.empty());
 }
 

@@ -87,8 +87,10 @@ TEST_CASE("each broken rule of the spreadsheets gives one line, and nothing is l
          "default 11 is outside 1 ... 10"},
         {"range upside down", "parameters.csv", "guidance_gain,5,1,10", "guidance_gain,5,10,1",
          "min 10 is above max 1"},
-        {"no unit", "parameters.csv", "guidance_gain,5,1,10,1,", "guidance_gain,5,1,10,,", "has no unit"},
+        {"no unit", "parameters.csv", "guidance_gain,5,1,10,until_gnc,1,", "guidance_gain,5,1,10,until_gnc,,", "has no unit"},
         {"no source", "parameters.csv", "Bridle,[facts] (H)", "Bridle,", "source is empty"},
+        {"unknown time of change", "parameters.csv", "guidance_gain,5,1,10,until_gnc,", "guidance_gain,5,1,10,always,",
+         "parameter 'guidance_gain': change 'always' is none of until_gnc, build"},
         {"bad number", "parameters.csv", "guidance_gain,5,", "guidance_gain,five,", "default 'five' is not a number"},
         {"parameter twice", "parameters.csv", "sufr_duration_s,", "guidance_start_drag_mps2,",
          "is there twice, first in line 43"},
@@ -123,7 +125,7 @@ TEST_CASE("each broken rule of the spreadsheets gives one line, and nothing is l
         {"no source of a constraint", "constraints.csv", "uhf_start,20,undefined,[ours],", "uhf_start,20,undefined,,",
          "source is empty"},
         // the sheet itself
-        {"ragged row", "parameters.csv", "guidance_gain,5,", "guidance_gain,5,5,", "the row has 8 cells, the header 7"},
+        {"ragged row", "parameters.csv", "guidance_gain,5,", "guidance_gain,5,5,", "the row has 9 cells, the header 8"},
         {"open quote", "tones.csv", "\n255,spare,,Spare", "\n255,spare,,\"Spare",
          "the quote that opens here is never closed", 1},
     };

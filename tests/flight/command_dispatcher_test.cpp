@@ -74,6 +74,25 @@ TEST_CASE("do edl goes to its one owner, and nothing is claimed before the owner
     CHECK(f.recorder.events<evr::COMMAND_ACCEPTED>() == 0);
 }
 
+TEST_CASE("commands of the table of parameters go to EdlBg, which hands them on in their order",
+          "[commands][parameters][R25]") {
+    Fixture f;
+    const auto goes_to_bg = [&](Opcode opcode, std::size_t octets) {
+        f.handle(received(telecommand(opcode, octets)));
+        return f.recorder.out.sent()[0].to == ModuleId::edl_bg;
+    };
+    CHECK(goes_to_bg(command::EDL_STAGE_PARAMETER::opcode, command::EDL_STAGE_PARAMETER::argument_octets));
+    CHECK(f.recorder.sent<StageParameterCommand>().size() == 1);
+    CHECK(goes_to_bg(command::EDL_DISCARD_PARAMETERS::opcode, 0));
+    CHECK(f.recorder.sent<DiscardParametersCommand>().size() == 1);
+    CHECK(goes_to_bg(command::EDL_DUMP_PARAMETERS::opcode, 0));
+    CHECK(f.recorder.sent<DumpParametersCommand>().size() == 1);
+    // Version 0 is the table as built: no command names it.
+    f.handle(received(
+        telecommand(command::EDL_ACTIVATE_PARAMETERS::opcode, command::EDL_ACTIVATE_PARAMETERS::argument_octets)));
+    CHECK(f.recorder.events<evr::COMMAND_REFUSED>() == 1);
+}
+
 TEST_CASE("an unknown opcode, a wrong length and a bad CRC are refused with their reason", "[commands][R23]") {
     Fixture f;
     f.handle(received(telecommand(Opcode{0x7777}, 0)));

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "flight/edl_comm/data_products.hpp"
 
+#include "flight/kernel/parameter_parts.hpp"
 #include "telemetry/product_assembler.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/outbox.hpp"
 #include "tests/support/shipped_dictionary.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 
 namespace flight_data_products_test {
@@ -132,6 +134,37 @@ TEST_CASE("a computer that takes over under the parachute makes no burst of a mo
     products.on(PhaseChanged{EdlPhase::parachute_descent});
     for (std::uint32_t count = 0; count < 2000; ++count) products.on(reading(count));
     CHECK(all_parts(products).empty());
+}
+
+TEST_CASE("the table of parameters is dumped whole, bit for bit, and a newer table replaces one that is half sent",
+          "[products][parameters][R25][R30][R48]") {
+    DataProducts products;
+    const auto dump = [&](const Parameters& parameters) {
+        parameter_parts(parameters, [&](const ParameterPart& part) { products.on(part); });
+    };
+    Parameters first, second;
+    first.guidance_gain = 4.0;
+    second.guidance_gain = std::nextafter(4.0, 5.0);
+    dump(first);
+    test::OutboxRecorder recorder{ModuleId::edl_comm};
+    products.cycle(recorder.out);
+    Ground ground;
+    for (const Record& part : recorder.sent<Record>()) ground.assembler.add(ground.part(part));
+    dump(second);
+    for (const Record& part : all_parts(products)) ground.assembler.add(ground.part(part));
+    REQUIRE(ground.assembler.products().size() == 2);
+    CHECK_FALSE(ground.assembler.products().begin()->second.content(ground.assembler.products().begin()->first));
+    const auto& [identity, product] = *ground.assembler.products().rbegin();
+    CHECK(product.kind == "parameter_table");
+    const auto rows = telemetry::rows_of(ground.dictionary, product.row_apid, *product.content(identity));
+    REQUIRE(rows);
+    REQUIRE(rows->size() == parameter_count);
+    for (std::uint16_t row = 0; row < parameter_count; ++row) {
+        telemetry::Decoded decoded;
+        REQUIRE_FALSE(ground.decommutator.decode((*rows)[row], decoded));
+        CHECK(decoded.value[0] == row);
+        CHECK(decoded.value[1] == value_of(second, ParameterId{row}));
+    }
 }
 
 TEST_CASE("a part that is lost is named", "[products][R30]") {

@@ -142,7 +142,7 @@ TEST_CASE("a timepoint that waits for a reply, or for its minimum, is told after
         Firings firings;
         ActionContext context{recorder.out, configuration};
         timeline.pass(Sclk{sclk}, context, firings);
-        explain_held(timeline, held, recorder.out);
+        explain_held(Parameters{}, timeline, held, recorder.out);
         for (const auto& record : recorder.sent<Record>())
             if (record.apid == packet::Explanation::apid)
                 return std::pair{static_cast<Quantity>(read_bits(record.data, 48, 16)),
@@ -170,7 +170,7 @@ TEST_CASE("the peak of deceleration is told once, after it has passed, with the 
     for (const double mps2 : {5.0, 40.0, 90.0, 120.0, 119.0, 100.0, 80.0, 110.0, 20.0}) {
         test::OutboxRecorder recorder;
         output.acceleration_B_mps2 = {0.0, 0.0, -mps2};
-        peak.watch(output, recorder.out);
+        peak.watch(Parameters{}, output, recorder.out);
         told += recorder.events<evr::PEAK_DECELERATION>();
         if (mps2 >= 119.0) CHECK(told == 0);
     }

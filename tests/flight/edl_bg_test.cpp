@@ -49,10 +49,31 @@ TEST_CASE("parameters that cannot be true are refused: under the ground, entry i
     CHECK(f.recorder.sent<CommandOutcome>()[0].refused == CommandRefusal::bad_argument);
 }
 
+TEST_CASE("commands of the table of parameters go on to Edl in their order, and a change beyond its range does not",
+          "[edl_bg][parameters][R25]") {
+    Fixture f;
+    const auto stage = [&](ParameterId id, double value) {
+        f.handle(StageParameterCommand{{}, {.parameter = id.value, .value = value}}, 1000.0);
+        return !f.recorder.sent<StageParameterCommand>().empty();
+    };
+    CHECK(stage(parameter::guidance_gain, 4.0));
+    CHECK(f.recorder.sent<CommandOutcome>().empty());  // Edl answers
+    CHECK_FALSE(stage(parameter::guidance_gain, 11.0));
+    CHECK(f.recorder.sent<CommandOutcome>()[0].refused == CommandRefusal::bad_argument);
+    CHECK_FALSE(stage(parameter::radar_average_s, 5.0));
+    CHECK(f.recorder.sent<CommandOutcome>()[0].refused == CommandRefusal::fixed_at_build);
+    f.handle(ActivateParametersCommand{{}, {.parameter_version = 3, .parameter_changes = 1}}, 1000.0);
+    CHECK(f.recorder.sent<ActivateParametersCommand>().size() == 1);
+    f.handle(DiscardParametersCommand{}, 1000.0);
+    CHECK(f.recorder.sent<DiscardParametersCommand>().size() == 1);
+    f.handle(DumpParametersCommand{}, 1000.0);
+    CHECK(f.recorder.sent<DumpParametersCommand>().size() == 1);
+}
+
 TEST_CASE("a solution whose epoch is more than a day away is refused: GNC would fly there in one cycle",
           "[edl_bg][R23]") {
     Fixture f;
-    constexpr double solution_age_max_s = parameters.solution_age_max_s;
+    constexpr double solution_age_max_s = build_parameters.solution_age_max_s;
     auto old = possible_parameters();
     old.entry_sclk = old.epoch_sclk + 2.0 * solution_age_max_s;
     f.handle(SetParametersCommand{{}, old}, old.epoch_sclk + solution_age_max_s);

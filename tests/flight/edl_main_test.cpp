@@ -23,7 +23,7 @@ constexpr double entry_s = 1'000'000.0;
 /// A state so long before entry that comes to entry interface at `entry_s`.
 command::EDL_SET_PARAMETERS parameters_before(double before_entry_s) {
     const auto at_epoch = gnc::propagate(
-        {.p_MoB_M = {parameters.entry_radius_m, 0.0, 0.0}, .v_MB_M = {-1625.0, 5615.0, 0.0}}, -before_entry_s);
+        {.p_MoB_M = {build_parameters.entry_radius_m, 0.0, 0.0}, .v_MB_M = {-1625.0, 5615.0, 0.0}}, -before_entry_s);
     command::EDL_SET_PARAMETERS p;
     p.solution_id = 7;
     p.epoch_sclk = entry_s - before_entry_s;
@@ -102,7 +102,7 @@ TEST_CASE("entry is where the position and velocity of the parameters have it, o
         auto said = possible_parameters();
         said.entry_sclk += off_s;
         f.handle(ParametersUpdate{{}, said}, entry_s - 1190);
-        const bool refused = std::abs(off_s) > parameters.entry_moved_max_s;
+        const bool refused = std::abs(off_s) > build_parameters.entry_moved_max_s;
         REQUIRE(f.recorder.sent<CommandOutcome>().size() == 1);
         CHECK(f.recorder.sent<CommandOutcome>()[0].refused ==
               (refused ? std::optional{CommandRefusal::unsafe_change} : std::nullopt));
@@ -144,7 +144,7 @@ TEST_CASE(
 TEST_CASE("do edl is possible in late cruise only, from a week before entry", "[edl][R23]") {
     Fixture f;
     f.handle(ParametersUpdate{{}, parameters_before(620'000.0)}, entry_s - 620'000.0);
-    const double late_cruise_s = entry_s - parameters.late_cruise_before_entry_s;
+    const double late_cruise_s = entry_s - build_parameters.late_cruise_before_entry_s;
     CHECK(f.do_edl(late_cruise_s - 1.0 / 64) == CommandRefusal::too_early);
     CHECK_FALSE(f.do_edl(late_cruise_s).has_value());
 }
@@ -187,7 +187,7 @@ TEST_CASE("do edl explains why it was refused", "[edl][R38]") {
     CHECK(f.do_edl(entry_s - 610'000.0) == CommandRefusal::too_early);
     CHECK(conditions()[0].quantity == Quantity::time_to_entry_s);
     CHECK(conditions()[0].value == 610'000.0);
-    CHECK(conditions()[0].bound == parameters.late_cruise_before_entry_s);
+    CHECK(conditions()[0].bound == build_parameters.late_cruise_before_entry_s);
     CHECK_FALSE(conditions()[0].holds);
     CHECK(f.do_edl(entry_s - 800) == CommandRefusal::too_late);
     CHECK(conditions()[0].quantity == Quantity::time_to_first_timepoint_s);
@@ -216,7 +216,7 @@ TEST_CASE("parameters explain why they were taken or refused", "[edl][R23][R38]"
     f.handle(ParametersUpdate{{}, moved}, entry_s - 1190);
     CHECK(conditions()[0].quantity == Quantity::entry_apart_from_navigation_s);
     CHECK(conditions()[0].value == Approx(20.0).margin(1.0));
-    CHECK(conditions()[0].bound == parameters.entry_moved_max_s);
+    CHECK(conditions()[0].bound == build_parameters.entry_moved_max_s);
     CHECK_FALSE(conditions()[0].holds);
     f.handle(ParametersUpdate{{}, possible_parameters()}, entry_s + 1.0);
     CHECK(conditions()[0].quantity == Quantity::time_to_entry_s);

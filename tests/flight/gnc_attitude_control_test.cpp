@@ -6,6 +6,7 @@
 namespace flight_gnc_attitude_control_test {
 
 using namespace aeolis::flight::gnc;
+constexpr aeolis::flight::Parameters parameters;
 using Mode = AttitudeCommand::Mode;
 
 namespace {
@@ -23,7 +24,7 @@ AttitudeState flying_east() {
 AttitudeState steered(AttitudeState state, const AttitudeCommand& command, double for_s) {
     constexpr double cycle_s = 1.0 / 64;
     for (double t = 0.0; t < for_s; t += cycle_s) {
-        const Vector3 torque = control_torque(command, state, inertia);
+        const Vector3 torque = control_torque(parameters, command, state, inertia);
         const Vector3 gyroscopic = state.rate_B_rps.cross(inertia.times(state.rate_B_rps));
         const Vector3 net = torque - gyroscopic;
         state.rate_B_rps +=
@@ -43,7 +44,7 @@ double bank_of(const AttitudeState& state) {
 TEST_CASE("nothing is steered in idle, and a tumbling vehicle comes to rest in detumble", "[gnc][R27]") {
     AttitudeState state = flying_east();
     state.rate_B_rps = {0.02, -0.03, 0.21};  // 2 rpm and a little nutation
-    CHECK(control_torque({}, state, inertia).isZero());
+    CHECK(control_torque(parameters, {}, state, inertia).isZero());
     AttitudeCommand command;
     command.mode = Mode::detumble;
     state = steered(state, command, 60.0);
@@ -77,7 +78,7 @@ TEST_CASE("in the air bank is turned about the velocity the short way, and the a
     state.in_air = true;
     const Vector3 forward_B = state.q_MB.conjugate() * state.v_MB_M.normalized();
     command.bank_rad = -170.0 * degree;  // 20° further, not 340° back
-    CHECK(control_torque(command, state, inertia).dot(forward_B) > 0.0);
+    CHECK(control_torque(parameters, command, state, inertia).dot(forward_B) > 0.0);
     state = steered(state, command, 20.0);
     CHECK(std::abs(bank_error(command.bank_rad, state)) / degree < 1.5);
     CHECK((state.q_MB.conjugate() * state.v_MB_M.normalized() - forward_B).norm() < 0.05);
@@ -100,9 +101,9 @@ TEST_CASE("under the parachute small swings are left alone and large ones are da
     AttitudeCommand command;
     command.mode = Mode::suspended;
     state.rate_B_rps = {2.0 * degree, 0.0, 0.0};
-    CHECK(control_torque(command, state, inertia).isZero());
+    CHECK(control_torque(parameters, command, state, inertia).isZero());
     state.rate_B_rps = {8.0 * degree, 0.0, 0.0};
-    CHECK(control_torque(command, state, inertia).x() < 0.0);
+    CHECK(control_torque(parameters, command, state, inertia).x() < 0.0);
 }
 
 }  // namespace flight_gnc_attitude_control_test

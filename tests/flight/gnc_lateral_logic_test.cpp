@@ -7,28 +7,30 @@ namespace flight_gnc_lateral_logic_test {
 
 using namespace aeolis;
 using namespace aeolis::flight::gnc;
+constexpr aeolis::flight::Parameters parameters;
 
 namespace {
 
 constexpr Sclk now{1000.0};
-constexpr double interval_s = flight::parameters.reversal_interval_min_s;
+constexpr double interval_s = parameters.reversal_interval_min_s;
 
 /// `settled`: the bank is on the commanded side.
 bool reverses(LateralLogic& logic, Sclk at, double crossrange_m, double velocity_mps, bool saturated, bool settled) {
-    return all_hold(logic.on(at, crossrange_m, velocity_mps, saturated, is(Quantity::bank_deg, settled)));
+    return all_hold(logic.on(parameters, at, crossrange_m, velocity_mps, saturated, is(Quantity::bank_deg, settled)));
 }
 
 }  // namespace
 
 TEST_CASE("the deadband shrinks with velocity and is halved when lift is saturated", "[gnc][R27]") {
-    CHECK(crossrange_deadband_m(5000.0, false) > crossrange_deadband_m(2000.0, false));
-    CHECK(crossrange_deadband_m(2000.0, true) == Approx(0.5 * crossrange_deadband_m(2000.0, false)));
+    CHECK(crossrange_deadband_m(parameters, 5000.0, false) > crossrange_deadband_m(parameters, 2000.0, false));
+    CHECK(crossrange_deadband_m(parameters, 2000.0, true) ==
+          Approx(0.5 * crossrange_deadband_m(parameters, 2000.0, false)));
 }
 
 TEST_CASE("bank reverses when the target has left the deadband on the side away from lift", "[gnc][R27]") {
     LateralLogic logic;
     logic.start(1);
-    const double edge_m = crossrange_deadband_m(3000.0, false);
+    const double edge_m = crossrange_deadband_m(parameters, 3000.0, false);
     CHECK_FALSE(reverses(logic, now, +2.0 * edge_m, 3000.0, false, true));  // lift already turns towards it
     CHECK_FALSE(reverses(logic, now, -0.99 * edge_m, 3000.0, false, true));
     CHECK(reverses(logic, now, -1.01 * edge_m, 3000.0, false, true));
@@ -59,8 +61,8 @@ TEST_CASE("a reversal tells the crossrange that it found beyond the deadband, th
     LateralLogic logic;
     logic.start(1);
     const Condition settled = above(Quantity::bank_deg, 61.0, 0.0);
-    const double edge_m = crossrange_deadband_m(3000.0, false);
-    const Conditions first = logic.on(now, -1.01 * edge_m, 3000.0, false, settled);
+    const double edge_m = crossrange_deadband_m(parameters, 3000.0, false);
+    const Conditions first = logic.on(parameters, now, -1.01 * edge_m, 3000.0, false, settled);
     REQUIRE(first.size() == 2);
     CHECK(first[0].quantity == Quantity::crossrange_m);
     CHECK(first[0].value == -1.01 * edge_m);
@@ -68,7 +70,7 @@ TEST_CASE("a reversal tells the crossrange that it found beyond the deadband, th
     CHECK(first[0].comparison == Condition::Comparison::lt);
     CHECK(first[1].value == 61.0);
     const Conditions second =
-        logic.on(now + interval_s, 1.01 * edge_m, 3000.0, false, below(Quantity::bank_deg, -61.0, 0.0));
+        logic.on(parameters, now + interval_s, 1.01 * edge_m, 3000.0, false, below(Quantity::bank_deg, -61.0, 0.0));
     REQUIRE(second.size() == 3);
     CHECK(second[0].bound == edge_m);
     CHECK(second[0].comparison == Condition::Comparison::gt);

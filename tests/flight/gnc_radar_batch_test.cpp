@@ -8,6 +8,7 @@ namespace flight_gnc_radar_batch_test {
 
 using namespace aeolis;
 using namespace aeolis::flight::gnc;
+constexpr aeolis::flight::Parameters parameters;
 
 namespace {
 
@@ -35,8 +36,9 @@ TEST_CASE("a steady descent comes out exactly: altitude and velocity", "[gnc][R2
     REQUIRE(((down * Vector3::UnitZ()) + up).norm() < 1e-12);
     const Vector3 v(-80.0, 5.0, -3.0);
     for (int tick = 0; tick <= 64 * 8; ++tick)
-        batch.on(Sclk::from_ticks(tick), beams_of(3000.0 - 80.0 * tick / 64.0, v, down, up).span(), down, up);
-    const auto solution = batch.solve(Sclk{8.0});
+        batch.on(parameters, Sclk::from_ticks(tick), beams_of(3000.0 - 80.0 * tick / 64.0, v, down, up).span(), down,
+                 up);
+    const auto solution = batch.solve(parameters, Sclk{8.0});
     REQUIRE(solution);
     CHECK((to_vector(solution->v_MB_M_mps) - v).norm() < 1e-9);
     CHECK(solution->altitude_m == Approx(3000.0 - 80.0 * solution->time.seconds).epsilon(1e-9));
@@ -46,22 +48,22 @@ TEST_CASE("a steady descent comes out exactly: altitude and velocity", "[gnc][R2
 
 TEST_CASE("no beams, one beam or lost beams give no solution", "[gnc][R25]") {
     RadarBatch batch;
-    CHECK_FALSE(batch.solve(Sclk{1.0}));
+    CHECK_FALSE(batch.solve(parameters, Sclk{1.0}));
     for (int tick = 0; tick < 128; ++tick) {
         auto beams = beams_of(1000.0, Vector3::Zero(), down, up);
         for (std::size_t i = 1; i < beams.size(); ++i) beams[i].valid = false;
-        batch.on(Sclk::from_ticks(tick), beams.span(), down, up);
+        batch.on(parameters, Sclk::from_ticks(tick), beams.span(), down, up);
     }
-    CHECK_FALSE(batch.solve(Sclk{2.0}));
+    CHECK_FALSE(batch.solve(parameters, Sclk{2.0}));
 }
 
 TEST_CASE("what is older than five seconds is forgotten", "[gnc][R25]") {
     RadarBatch batch;
     for (int tick = 0; tick < 64; ++tick)
-        batch.on(Sclk::from_ticks(tick), beams_of(1000.0, Vector3::Zero(), down, up).span(), down, up);
-    CHECK(batch.solve(Sclk{1.0}));
-    CHECK(batch.solve(Sclk{5.5}));
-    CHECK_FALSE(batch.solve(Sclk{6.0}));
+        batch.on(parameters, Sclk::from_ticks(tick), beams_of(1000.0, Vector3::Zero(), down, up).span(), down, up);
+    CHECK(batch.solve(parameters, Sclk{1.0}));
+    CHECK(batch.solve(parameters, Sclk{5.5}));
+    CHECK_FALSE(batch.solve(parameters, Sclk{6.0}));
 }
 
 }  // namespace flight_gnc_radar_batch_test

@@ -6,6 +6,7 @@ namespace flight_gnc_radar_filter_test {
 
 using namespace aeolis;
 using namespace aeolis::flight::gnc;
+constexpr aeolis::flight::Parameters parameters;
 
 namespace {
 
@@ -29,7 +30,7 @@ struct Descent {
     bool update(double wrong_m = 0.0) {
         const Sclk now = Sclk::from_ticks(ticks);
         const RadarSolution solution{now - 2.5, 5.0, truth_m + 2.5 * rate_mps + wrong_m, {-rate_mps, 0, 0}, 600};
-        judged = filter.on(solution, now, Vector3::UnitX());
+        judged = filter.on(parameters, solution, now, Vector3::UnitX());
         if (!judged.accepted()) return false;
         error_m += judged.correction.altitude_m;
         error_mps += judged.correction.v_M_mps.x();
@@ -79,9 +80,9 @@ TEST_CASE("a wild solution is refused, five in a row are believed", "[gnc][R25][
         REQUIRE(why.size() == 3);
         CHECK(why[0].quantity == Quantity::radar_altitude_residual_m);
         CHECK(why[0].value == Approx(2000.0).margin(1.0));
-        CHECK(why[0].bound == Approx(flight::parameters.radar_altitude_gate_m +
-                                     flight::parameters.radar_altitude_gate_fraction *
-                                         (descent.truth_m + 2.5 * descent.rate_mps + 2000.0)));
+        CHECK(why[0].bound ==
+              Approx(parameters.radar_altitude_gate_m +
+                     parameters.radar_altitude_gate_fraction * (descent.truth_m + 2.5 * descent.rate_mps + 2000.0)));
         CHECK_FALSE(why[0].holds);
         CHECK(why[1].holds);
         CHECK(why[2].value == i);

@@ -8,6 +8,7 @@ namespace flight_gnc_range_control_test {
 
 using namespace aeolis::flight;
 using namespace aeolis::flight::gnc;
+constexpr aeolis::flight::Parameters parameters;
 
 namespace {
 
@@ -35,7 +36,7 @@ TEST_CASE("rows are linear between and held beyond", "[gnc][R27]") {
 }
 
 TEST_CASE("on the reference the reference's lift is commanded", "[gnc][R27]") {
-    const RangeControlOutput out = range_control(two_rows(), on_reference());
+    const RangeControlOutput out = range_control(parameters, two_rows(), on_reference());
     CHECK(out.predicted_range_m == Approx(120000.0));
     CHECK(out.vertical_lift_to_drag == Approx(0.18));
     CHECK(std::cos(out.bank_magnitude_rad) == Approx(0.18 / 0.26));
@@ -45,23 +46,25 @@ TEST_CASE("on the reference the reference's lift is commanded", "[gnc][R27]") {
 TEST_CASE("ten kilometres short of range asks for K times the lift that would give them", "[gnc][R27]") {
     RangeControlInput input = on_reference();
     input.range_to_go_m += 10000.0;
-    CHECK(range_control(two_rows(), input).vertical_lift_to_drag == Approx(0.18 + 5.0 * 10000.0 / 240000.0));
+    CHECK(range_control(parameters, two_rows(), input).vertical_lift_to_drag ==
+          Approx(0.18 + 5.0 * 10000.0 / 240000.0));
 }
 
 TEST_CASE("more drag than the reference shortens the prediction by its partial", "[gnc][R27]") {
     RangeControlInput input = on_reference();
     input.drag_mps2 += 2.0;
     input.altitude_rate_mps += 10.0;
-    CHECK(range_control(two_rows(), input).predicted_range_m == Approx(120000.0 - 2.0 * 2500.0 + 10.0 * 150.0));
+    CHECK(range_control(parameters, two_rows(), input).predicted_range_m ==
+          Approx(120000.0 - 2.0 * 2500.0 + 10.0 * 150.0));
 }
 
 TEST_CASE("beyond what lift can give bank is full up or full down", "[gnc][R27]") {
     RangeControlInput input = on_reference();
     input.range_to_go_m = 400000.0;
-    CHECK(range_control(two_rows(), input).bank_magnitude_rad == 0.0);
-    CHECK(range_control(two_rows(), input).saturated);
+    CHECK(range_control(parameters, two_rows(), input).bank_magnitude_rad == 0.0);
+    CHECK(range_control(parameters, two_rows(), input).saturated);
     input.range_to_go_m = 1000.0;
-    CHECK(range_control(two_rows(), input).bank_magnitude_rad == Approx(3.14159265));
+    CHECK(range_control(parameters, two_rows(), input).bank_magnitude_rad == Approx(3.14159265));
 }
 
 }  // namespace flight_gnc_range_control_test

@@ -6,6 +6,7 @@ namespace flight_gnc_rate_control_test {
 
 using namespace aeolis::flight::gnc;
 using namespace aeolis::flight::gnc::sky_crane;
+constexpr aeolis::flight::Parameters parameters;
 
 namespace {
 const Vector3 up = Vector3::UnitX();
@@ -16,7 +17,7 @@ TEST_CASE("the rate settles and drift dies out", "[gnc][R27]") {
     RateControl control;
     control.start();
     Vector3 v(-1.5, 0.8, -0.4);
-    for (int i = 0; i < 64 * 8; ++i) v += dt * control.command_M(v, up, 0.75, dt);
+    for (int i = 0; i < 64 * 8; ++i) v += dt * control.command_M(parameters, v, up, 0.75, dt);
     CHECK(v.x() == Approx(-0.75).margin(1e-3));
     CHECK((v - v.x() * up).norm() < 0.01);
 }
@@ -27,7 +28,7 @@ TEST_CASE("a mass that is not as believed is taken up by the integral", "[gnc][R
     control.start();
     Vector3 v(-0.75, 0.0, 0.0);
     for (int i = 0; i < 64 * 6; ++i) {
-        const double asked = 3.71 + control.command_M(v, up, 0.75, dt).x();
+        const double asked = 3.71 + control.command_M(parameters, v, up, 0.75, dt).x();
         v.x() += dt * (asked * 2000.0 / 1930.0 - 3.71);
     }
     CHECK(v.x() == Approx(-0.75).margin(0.005));
@@ -35,7 +36,7 @@ TEST_CASE("a mass that is not as believed is taken up by the integral", "[gnc][R
 
 TEST_CASE("an acceleration command is bounded", "[gnc][R27]") {
     RateControl control;
-    CHECK(control.command_M({-50.0, 0.0, 0.0}, up, 0.75, dt).norm() <= 3.0);
+    CHECK(control.command_M(parameters, {-50.0, 0.0, 0.0}, up, 0.75, dt).norm() <= 3.0);
 }
 
 }  // namespace flight_gnc_rate_control_test

@@ -11,6 +11,7 @@ namespace flight_gnc_steering_test {
 using namespace aeolis;
 using namespace aeolis::flight;
 using namespace aeolis::flight::gnc;
+constexpr aeolis::flight::Parameters parameters;
 
 namespace {
 
@@ -30,7 +31,7 @@ struct Spinning {
         Steering steering{full_N};
         for (int cycle = 0; cycle < 64 && thrusters == ThrusterCommand{}; ++cycle) {
             engines.throttle = throttle;
-            steering.cycle(wanted, state, inertia, by, thrusters, engines);
+            steering.cycle(parameters, wanted, state, inertia, by, thrusters, engines);
         }
     }
 };

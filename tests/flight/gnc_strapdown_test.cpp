@@ -9,6 +9,7 @@ namespace flight_gnc_strapdown_test {
 
 using namespace aeolis;
 using namespace aeolis::flight::gnc;
+constexpr aeolis::flight::Parameters parameters;
 
 namespace {
 
@@ -30,7 +31,7 @@ TEST_CASE("a vehicle held up against its weight stays where it is", "[gnc][R27]"
     strapdown.start(state);
     const Vector3 hold = -free_acceleration(state.p_MoB_M, Vector3::Zero()) * imu_period_s;
     const Vector3 with_mars(0.0, 0.0, mars_spin_rps * imu_period_s);
-    for (std::uint32_t i = 1; i <= 200 * 60; ++i) strapdown.on(sample(i, hold, with_mars), true);
+    for (std::uint32_t i = 1; i <= 200 * 60; ++i) strapdown.on(parameters, sample(i, hold, with_mars), true);
     CHECK((strapdown.state().p_MoB_M - state.p_MoB_M).norm() < 5e-3);
     CHECK(strapdown.state().v_MB_M.norm() < 1e-4);
     CHECK(strapdown.state().q_MB.angularDistance(state.q_MB) < 1e-9);
@@ -39,7 +40,8 @@ TEST_CASE("a vehicle held up against its weight stays where it is", "[gnc][R27]"
 TEST_CASE("an inertially fixed vehicle turns backwards relative to Mars", "[gnc][R27]") {
     Strapdown strapdown;
     strapdown.start(over_gale());
-    for (std::uint32_t i = 1; i <= 200 * 100; ++i) strapdown.on(sample(i, Vector3::Zero(), Vector3::Zero()), true);
+    for (std::uint32_t i = 1; i <= 200 * 100; ++i)
+        strapdown.on(parameters, sample(i, Vector3::Zero(), Vector3::Zero()), true);
     const Vector3 x_B_M = strapdown.state().q_MB * Vector3::UnitX();
     CHECK(std::atan2(x_B_M.y(), x_B_M.x()) == Approx(-mars_spin_rps * 100.0).epsilon(1e-6));
 }
@@ -54,7 +56,8 @@ TEST_CASE("coning at 1 rad/s leaves less than a milliradian in a minute", "[gnc]
     constexpr double w = 1.0;
     const Vector3 rate_B = tilt.conjugate() * Vector3(0.0, 0.0, w + mars_spin_rps);
     const Vector3 delta_angle = rate_B * imu_period_s;
-    for (std::uint32_t i = 1; i <= 200 * 60; ++i) strapdown.on(sample(i, Vector3::Zero(), delta_angle), true);
+    for (std::uint32_t i = 1; i <= 200 * 60; ++i)
+        strapdown.on(parameters, sample(i, Vector3::Zero(), delta_angle), true);
     const Quaternion truth = Quaternion(Eigen::AngleAxisd(60.0 * w, Vector3::UnitZ())) * tilt;
     CHECK(strapdown.state().q_MB.angularDistance(truth) < 1e-3);
 }
@@ -62,12 +65,12 @@ TEST_CASE("coning at 1 rad/s leaves less than a milliradian in a minute", "[gnc]
 TEST_CASE("lost increments are filled, and an IMU that starts late is not", "[gnc][R27]") {
     Strapdown strapdown;
     strapdown.start(over_gale());
-    strapdown.on(sample(1000, Vector3::Zero(), Vector3::Zero()), true);
+    strapdown.on(parameters, sample(1000, Vector3::Zero(), Vector3::Zero()), true);
     CHECK(strapdown.filled() == 0);
-    strapdown.on(sample(1004, Vector3::Zero(), Vector3::Zero()), true);
+    strapdown.on(parameters, sample(1004, Vector3::Zero(), Vector3::Zero()), true);
     CHECK(strapdown.filled() == 3);
     strapdown.coast(1.0);
-    strapdown.on(sample(1300, Vector3::Zero(), Vector3::Zero()), true);
+    strapdown.on(parameters, sample(1300, Vector3::Zero(), Vector3::Zero()), true);
     CHECK(strapdown.filled() == 3);
 }
 
@@ -76,9 +79,10 @@ TEST_CASE("what coasts over a gap turns on at its last rate, for there is no tor
     const Vector3 delta_angle = Vector3(0.001, 0.21, -0.002) * imu_period_s;  // the spin of 2 rpm
     for (Strapdown* strapdown : {&felt, &coasted}) {
         strapdown->start(over_gale());
-        strapdown->on(sample(1, Vector3::Zero(), delta_angle), true);
+        strapdown->on(parameters, sample(1, Vector3::Zero(), delta_angle), true);
     }
-    for (std::uint32_t i = 2; i <= 1 + 200 * 40; ++i) felt.on(sample(i, Vector3::Zero(), delta_angle), true);
+    for (std::uint32_t i = 2; i <= 1 + 200 * 40; ++i)
+        felt.on(parameters, sample(i, Vector3::Zero(), delta_angle), true);
     coasted.coast(40.0);
     CHECK(coasted.state().q_MB.angularDistance(felt.state().q_MB) < 1e-4);
     CHECK((coasted.state().p_MoB_M - felt.state().p_MoB_M).norm() < 1.0);
@@ -88,10 +92,11 @@ TEST_CASE("what the accelerometer tells in vacuum is learnt as its bias and take
     Strapdown strapdown;
     strapdown.start(over_gale());
     const Vector3 bias(3.0e-4, -2.0e-4, 1.0e-4);
-    for (std::uint32_t i = 1; i <= 2000; ++i) strapdown.on(sample(i, bias * imu_period_s, Vector3::Zero()), false);
+    for (std::uint32_t i = 1; i <= 2000; ++i)
+        strapdown.on(parameters, sample(i, bias * imu_period_s, Vector3::Zero()), false);
     CHECK((strapdown.bias_B_mps2() - bias).norm() < 1e-12);
     CHECK(strapdown.specific_force_B_mps2().norm() == 0.0);
-    strapdown.on(sample(2001, (bias + Vector3::UnitX()) * imu_period_s, Vector3::Zero()), true);
+    strapdown.on(parameters, sample(2001, (bias + Vector3::UnitX()) * imu_period_s, Vector3::Zero()), true);
     CHECK((strapdown.specific_force_B_mps2() - Vector3::UnitX()).norm() < 1e-9);
 }
 

@@ -7,6 +7,7 @@ namespace flight_gnc_thrust_allocation_test {
 
 using namespace aeolis::flight::gnc;
 using namespace aeolis::flight::gnc::powered_descent;
+constexpr aeolis::flight::Parameters parameters;
 
 namespace {
 constexpr double largest_N = 3603.0;
@@ -19,29 +20,29 @@ double sum_N(const Thrust& thrust) {
 }  // namespace
 
 TEST_CASE("eight engines share the thrust that mass and acceleration need", "[gnc][R27]") {
-    const Thrust thrust = allocate({6.9, 2.0, -1.0}, up, 2200.0, 8, largest_N);
+    const Thrust thrust = allocate(parameters, {6.9, 2.0, -1.0}, up, 2200.0, 8, largest_N);
     CHECK(thrust.magnitude_N == Approx(2200.0 * Vector3(6.9, 2.0, -1.0).norm()));
     CHECK(sum_N(thrust) == Approx(thrust.magnitude_N));
     CHECK((thrust.direction_M - Vector3(6.9, 2.0, -1.0).normalized()).norm() < 1e-12);
 }
 
 TEST_CASE("of four engines every other one runs", "[gnc][R27]") {
-    const Thrust thrust = allocate(3.71 * up, up, 2040.0, 4, largest_N);
+    const Thrust thrust = allocate(parameters, 3.71 * up, up, 2040.0, 4, largest_N);
     for (std::size_t i = 0; i < 8; ++i) CHECK((thrust.throttle[i] > 0.0) == (i % 2 == 0));
     CHECK(sum_N(thrust) == Approx(2040.0 * 3.71));
 }
 
 TEST_CASE("an engine gives 400 to 3060 N", "[gnc][R27]") {
-    CHECK(allocate(100.0 * up, up, 2200.0, 8, largest_N).magnitude_N == Approx(8 * 3060.0));
-    CHECK(allocate(0.01 * up, up, 2200.0, 8, largest_N).magnitude_N == Approx(8 * 400.0));
+    CHECK(allocate(parameters, 100.0 * up, up, 2200.0, 8, largest_N).magnitude_N == Approx(8 * 3060.0));
+    CHECK(allocate(parameters, 0.01 * up, up, 2200.0, 8, largest_N).magnitude_N == Approx(8 * 400.0));
 }
 
 TEST_CASE("the sidestep gives way before lift does, and tilt stays within 60°", "[gnc][R27]") {
-    const Thrust steep = allocate({7.0, 50.0, 0.0}, up, 2200.0, 8, largest_N);
+    const Thrust steep = allocate(parameters, {7.0, 50.0, 0.0}, up, 2200.0, 8, largest_N);
     CHECK(steep.direction_M.dot(up) * steep.magnitude_N / 2200.0 == Approx(7.0));
-    const Thrust flat = allocate({1.0, 50.0, 0.0}, up, 2200.0, 8, largest_N);
+    const Thrust flat = allocate(parameters, {1.0, 50.0, 0.0}, up, 2200.0, 8, largest_N);
     CHECK(flat.direction_M.dot(up) >= 0.5 - 1e-9);
-    CHECK((allocate(Vector3::Zero(), up, 2200.0, 8, largest_N).direction_M - up).norm() < 1e-12);
+    CHECK((allocate(parameters, Vector3::Zero(), up, 2200.0, 8, largest_N).direction_M - up).norm() < 1e-12);
 }
 
 TEST_CASE("a torque is spread over eight engines or four without changing their sum, which gives way at their limits",
@@ -53,8 +54,8 @@ TEST_CASE("a torque is spread over eight engines or four without changing their 
         for (const Vector3& torque :
              {Vector3{400.0, -250.0, 0.0}, Vector3{0.0, 0.0, 90.0}, Vector3{-30000.0, 0.0, 0.0}}) {
             double given_N = 0.0;
-            auto throttle = powered_descent::throttles_for(1400.0 * engines, engines, 3603.0, given_N);
-            allocation.add(torque, engines, 3603.0, throttle);
+            auto throttle = powered_descent::throttles_for(parameters, 1400.0 * engines, engines, 3603.0, given_N);
+            allocation.add(parameters, torque, engines, 3603.0, throttle);
             double sum_N = 0.0;
             Vector3 turns = Vector3::Zero();
             for (std::size_t i = 0; i < throttle.size(); ++i) {
@@ -63,8 +64,8 @@ TEST_CASE("a torque is spread over eight engines or four without changing their 
                     CHECK(throttle[i] == 0.0);
                     continue;
                 }
-                CHECK(thrust_N >= powered_descent::engine_used_min_N - 1e-6);
-                CHECK(thrust_N <= powered_descent::engine_used_max_N + 1e-6);
+                CHECK(thrust_N >= parameters.engine_used_min_N - 1e-6);
+                CHECK(thrust_N <= parameters.engine_used_max_N + 1e-6);
                 sum_N += thrust_N;
                 turns += thrust_N * to_vector(mounted[i].position_B_m).cross(to_vector(mounted[i].direction_B));
             }
@@ -81,14 +82,14 @@ TEST_CASE("a torque is spread over eight engines or four without changing their 
 TEST_CASE("engines at their limit give way to a torque: attitude comes before thrust", "[gnc][R27]") {
     const powered_descent::TorqueAllocation allocation;
     double given_N = 0.0;
-    auto throttle = powered_descent::throttles_for(1.0e6, 8, 3603.0, given_N);
-    allocation.add({1500.0, 0.0, 0.0}, 8, 3603.0, throttle);
+    auto throttle = powered_descent::throttles_for(parameters, 1.0e6, 8, 3603.0, given_N);
+    allocation.add(parameters, {1500.0, 0.0, 0.0}, 8, 3603.0, throttle);
     double sum_N = 0.0, most_N = 0.0;
     for (const double each : throttle) {
         sum_N += each * 3603.0;
         most_N = std::max(most_N, each * 3603.0);
     }
-    CHECK(most_N == Approx(powered_descent::engine_used_max_N));
+    CHECK(most_N == Approx(parameters.engine_used_max_N));
     CHECK(sum_N < given_N - 1000.0);
 }
 

@@ -11,6 +11,7 @@ namespace flight_tone_selector_test {
 
 using namespace aeolis;
 using namespace aeolis::flight;
+constexpr aeolis::flight::Parameters parameters;
 
 namespace {
 

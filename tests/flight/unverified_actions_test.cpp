@@ -9,6 +9,7 @@ namespace flight_unverified_actions_test {
 
 using namespace aeolis;
 using namespace aeolis::flight;
+constexpr aeolis::flight::Parameters parameters;
 
 namespace {
 
@@ -37,7 +38,7 @@ struct Fixture {
         gnc::Output told;
         told.acceleration_B_mps2 = {0.0, 0.0, -force_mps2};
         told.dead_reckoned_s = imu_silent_s;
-        actions.watch(told, configuration, recorder.out);
+        actions.watch(parameters, told, configuration, recorder.out);
     }
 };
 

@@ -67,6 +67,30 @@ inline std::vector<std::uint8_t> set_timepoint_offset(TimepointId timepoint, dou
     return cltu_of(packet);
 }
 
+inline std::vector<std::uint8_t> stage_parameter(ParameterId parameter, double value) {
+    using Command = flight::command::EDL_STAGE_PARAMETER;
+    std::vector<std::uint8_t> packet(tc_overhead_octets + Command::argument_octets);
+    BitWriter arguments{std::span{packet}.subspan(tc_arguments_offset_octets)};
+    arguments.put(parameter.value, 16);
+    arguments.put_double(value);
+    seal_tc_packet(packet, Apid{1}, 2, Command::opcode);
+    return cltu_of(packet);
+}
+inline std::vector<std::uint8_t> activate_parameters(std::uint16_t version, std::uint16_t changes) {
+    using Command = flight::command::EDL_ACTIVATE_PARAMETERS;
+    std::vector<std::uint8_t> packet(tc_overhead_octets + Command::argument_octets);
+    BitWriter arguments{std::span{packet}.subspan(tc_arguments_offset_octets)};
+    arguments.put(version, 16);
+    arguments.put(changes, 16);
+    seal_tc_packet(packet, Apid{1}, 2, Command::opcode);
+    return cltu_of(packet);
+}
+inline std::vector<std::uint8_t> dump_parameters() {
+    std::vector<std::uint8_t> packet(tc_overhead_octets);
+    seal_tc_packet(packet, Apid{1}, 2, flight::command::EDL_DUMP_PARAMETERS::opcode);
+    return cltu_of(packet);
+}
+
 inline std::vector<std::uint8_t> with_one_octet(Opcode opcode, std::uint8_t argument) {
     std::vector<std::uint8_t> packet(tc_overhead_octets + 1);
     packet[tc_arguments_offset_octets] = argument;

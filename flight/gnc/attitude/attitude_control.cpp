@@ -1,20 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "flight/gnc/attitude/attitude_control.hpp"
 
-#include "generated/dictionary_flight.hpp"
-
 #include <algorithm>
 #include <cmath>
 
 namespace aeolis::flight::gnc {
 namespace {
 
-constexpr TurnLimits bank_limits{parameters.bank_rate_max_dps * degree, parameters.bank_acceleration_max_dps2* degree,
-                                 parameters.bank_deadband_deg* degree, parameters.bank_gain_per_s};
-constexpr TurnLimits turn_limits{parameters.turn_rate_max_dps * degree, parameters.turn_acceleration_max_dps2* degree,
-                                 parameters.turn_deadband_deg* degree, parameters.turn_gain_per_s};
-constexpr TurnLimits tilt_limits{parameters.tilt_rate_max_dps * degree, parameters.tilt_acceleration_max_dps2* degree,
-                                 0.0, parameters.tilt_gain_per_s};
+TurnLimits bank_limits(const Parameters& parameters) {
+    return {parameters.bank_rate_max_dps * degree, parameters.bank_acceleration_max_dps2 * degree,
+            parameters.bank_deadband_deg * degree, parameters.bank_gain_per_s};
+}
+
+TurnLimits turn_limits(const Parameters& parameters) {
+    return {parameters.turn_rate_max_dps * degree, parameters.turn_acceleration_max_dps2 * degree,
+            parameters.turn_deadband_deg * degree, parameters.turn_gain_per_s};
+}
+
+TurnLimits tilt_limits(const Parameters& parameters) {
+    return {parameters.tilt_rate_max_dps * degree, parameters.tilt_acceleration_max_dps2 * degree, 0.0,
+            parameters.tilt_gain_per_s};
+}
 
 /// `v`, shortened to length `most` if longer.
 Vector3 limited(const Vector3& v, double most) {
@@ -43,8 +49,8 @@ Vector3 lift_direction(double bank_rad, const Vector3& forward, const Vector3& p
 }
 
 /// Attitude at the nominal trim angle with the lift vector at `bank_rad`.
-Quaternion trimmed(double bank_rad, const AttitudeState& state) {
-    constexpr double trim_rad = parameters.entry_trim_angle_deg * degree;
+Quaternion trimmed(const Parameters& parameters, double bank_rad, const AttitudeState& state) {
+    const double trim_rad = parameters.entry_trim_angle_deg * degree;
     const Vector3 forward = state.v_MB_M.normalized();
     const Vector3 lift = lift_direction(bank_rad, forward, state.p_MoB_M);
     Matrix3 R_MB;
@@ -54,7 +60,7 @@ Quaternion trimmed(double bank_rad, const AttitudeState& state) {
     return Quaternion{R_MB};
 }
 
-Vector3 turn(const Vector3& still_B, const Vector3& rate_B, const TurnLimits& limits) {
+Vector3 turn(const Parameters& parameters, const Vector3& still_B, const Vector3& rate_B, const TurnLimits& limits) {
     const double angle_rad = still_B.norm();
     Vector3 wanted = Vector3::Zero();
     if (angle_rad > 0.0) wanted = still_B / angle_rad * rate_to_turn(angle_rad, limits);
@@ -62,39 +68,40 @@ Vector3 turn(const Vector3& still_B, const Vector3& rate_B, const TurnLimits& li
                    limits.acceleration_rps2);
 }
 
-Vector3 bank(const AttitudeCommand& command, const AttitudeState& state) {
+Vector3 bank(const Parameters& parameters, const AttitudeCommand& command, const AttitudeState& state) {
     if (!state.in_air)
-        return turn(rotation_of(state.q_MB.conjugate() * trimmed(command.bank_rad, state)), state.rate_B_rps,
-                    turn_limits);
+        return turn(parameters, rotation_of(state.q_MB.conjugate() * trimmed(parameters, command.bank_rad, state)),
+                    state.rate_B_rps, turn_limits(parameters));
+    const TurnLimits limits = bank_limits(parameters);
     const Vector3 forward_B = state.q_MB.conjugate() * state.v_MB_M.normalized();
     const double about_rps = state.rate_B_rps.dot(forward_B);
-    const double wanted_rps = rate_to_turn(bank_error(command.bank_rad, state), bank_limits);
+    const double wanted_rps = rate_to_turn(bank_error(command.bank_rad, state), limits);
     const Vector3 about = towards((wanted_rps - about_rps) * forward_B, parameters.rate_deadband_dps * degree,
-                                  parameters.rate_response_s, bank_limits.acceleration_rps2);
+                                  parameters.rate_response_s, limits.acceleration_rps2);
     const Vector3 across = state.rate_B_rps - about_rps * forward_B;
     return about + towards(-across, parameters.damping_deadband_dps * degree, parameters.rate_response_s,
-                           bank_limits.acceleration_rps2);
+                           limits.acceleration_rps2);
 }
 
-Vector3 acceleration(const AttitudeCommand& command, const AttitudeState& state) {
+Vector3 acceleration(const Parameters& parameters, const AttitudeCommand& command, const AttitudeState& state) {
     using Mode = AttitudeCommand::Mode;
     switch (command.mode) {
     case Mode::idle: return Vector3::Zero();
     case Mode::detumble:
         return towards(-state.rate_B_rps, parameters.rate_deadband_dps * degree, parameters.rate_response_s,
                        parameters.detumble_acceleration_dps2 * degree);
-    case Mode::entry_bank: return bank(command, state);
+    case Mode::entry_bank: return bank(parameters, command, state);
     case Mode::suspended:
         return towards(-state.rate_B_rps, parameters.suspended_deadband_dps * degree, parameters.rate_response_s,
-                       bank_limits.acceleration_rps2);
+                       bank_limits(parameters).acceleration_rps2);
     case Mode::thrust: {
+        const TurnLimits limits = tilt_limits(parameters);
         const Vector3 wanted_B = state.q_MB.conjugate() * -to_vector(command.thrust_direction_M);
         const Vector3 axis = Vector3::UnitZ().cross(wanted_B);
         const double sine = axis.norm();
         const double angle_rad = std::atan2(sine, wanted_B.z());
-        const Vector3 rate =
-            sine > 1.0e-9 ? Vector3{axis / sine * rate_to_turn(angle_rad, tilt_limits)} : Vector3::Zero();
-        return limited((rate - state.rate_B_rps) / parameters.tilt_response_s, tilt_limits.acceleration_rps2);
+        const Vector3 rate = sine > 1.0e-9 ? Vector3{axis / sine * rate_to_turn(angle_rad, limits)} : Vector3::Zero();
+        return limited((rate - state.rate_B_rps) / parameters.tilt_response_s, limits.acceleration_rps2);
     }
     }
     return Vector3::Zero();
@@ -110,8 +117,9 @@ double bank_error(double bank_rad, const AttitudeState& state) {
     return std::remainder(bank_rad - now_rad, 2.0 * pi);
 }
 
-Vector3 control_torque(const AttitudeCommand& command, const AttitudeState& state, const Inertia& inertia) {
-    const Vector3 wanted_rps2 = acceleration(command, state);
+Vector3 control_torque(const Parameters& parameters, const AttitudeCommand& command, const AttitudeState& state,
+                       const Inertia& inertia) {
+    const Vector3 wanted_rps2 = acceleration(parameters, command, state);
     if (wanted_rps2.isZero()) return Vector3::Zero();
     return inertia.times(wanted_rps2) + state.rate_B_rps.cross(inertia.times(state.rate_B_rps));
 }

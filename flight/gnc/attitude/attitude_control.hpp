@@ -4,6 +4,7 @@
 #include "flight/gnc/attitude/attitude_command.hpp"
 #include "flight/gnc/attitude/phase_plane.hpp"
 #include "flight/gnc/vector.hpp"
+#include "generated/parameters.hpp"
 
 // Three-axis attitude control: from guidance's command to the torque required of thrusters or engines.
 //
@@ -37,7 +38,8 @@ struct Inertia {
 };
 
 /// Torque for the next cycle. [N m] in B
-Vector3 control_torque(const AttitudeCommand& command, const AttitudeState& state, const Inertia& inertia);
+Vector3 control_torque(const Parameters& parameters, const AttitudeCommand& command, const AttitudeState& state,
+                       const Inertia& inertia);
 
 /// Angle by which the vehicle must turn about its velocity to bring its lift to `bank_rad`; −π … π.
 /// Measured from the x axis rather than from the tilt of z, so that it stays defined at zero angle of attack.

@@ -20,8 +20,8 @@ class Steering {
   public:
     explicit Steering(double engine_max_thrust_N) : engine_max_thrust_N_(engine_max_thrust_N) {}
 
-    void cycle(const AttitudeCommand& wanted, const AttitudeState& state, const Inertia& inertia, Steers steers,
-               ThrusterCommand& thrusters, EngineCommand& engines);
+    void cycle(const Parameters& parameters, const AttitudeCommand& wanted, const AttitudeState& state,
+               const Inertia& inertia, Steers steers, ThrusterCommand& thrusters, EngineCommand& engines);
 
     /// That was asked for last. [N m] in B
     const Vector3& torque_B_Nm() const { return torque_B_Nm_; }

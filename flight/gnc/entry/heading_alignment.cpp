@@ -6,10 +6,10 @@
 
 namespace aeolis::flight::gnc {
 
-double heading_alignment_bank_rad(const TargetGeometry& geometry) {
-    constexpr double gain = parameters.heading_alignment_gain;
-    return std::clamp(gain * std::atan2(geometry.crossrange_m, geometry.downrange_m), -heading_alignment_limit_rad,
-                      heading_alignment_limit_rad);
+double heading_alignment_bank_rad(const Parameters& parameters, const TargetGeometry& geometry) {
+    const double limit_rad = parameters.heading_alignment_bank_max_deg * degree;
+    return std::clamp(parameters.heading_alignment_gain * std::atan2(geometry.crossrange_m, geometry.downrange_m),
+                      -limit_rad, limit_rad);
 }
 
 }  // namespace aeolis::flight::gnc

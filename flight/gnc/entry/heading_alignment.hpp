@@ -2,7 +2,7 @@
 #pragma once
 
 #include "flight/gnc/entry/target_geometry.hpp"
-#include "generated/dictionary_flight.hpp"
+#include "generated/parameters.hpp"
 
 // Heading alignment: below about 1100 m/s, bank turns the velocity towards the target.
 // Range is no longer controlled.
@@ -13,9 +13,6 @@
 // Source   [facts] Guidance: gain 100, limit 30°, start at 1100 m/s
 namespace aeolis::flight::gnc {
 
-inline constexpr double heading_alignment_speed_mps = parameters.heading_alignment_speed_mps;
-inline constexpr double heading_alignment_limit_rad = parameters.heading_alignment_bank_max_deg * degree;
-
-double heading_alignment_bank_rad(const TargetGeometry& geometry);
+double heading_alignment_bank_rad(const Parameters& parameters, const TargetGeometry& geometry);
 
 }  // namespace aeolis::flight::gnc

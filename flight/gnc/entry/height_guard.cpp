@@ -2,14 +2,13 @@
 #include "flight/gnc/entry/height_guard.hpp"
 
 #include "flight/gnc/mars.hpp"
-#include "generated/dictionary_flight.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 namespace aeolis::flight::gnc {
 
-double altitude_when_slow_m(const PullUp& now, double speed_mps) {
+double altitude_when_slow_m(const Parameters& parameters, const PullUp& now, double speed_mps) {
     const double step_s = parameters.height_guard_step_s;
     double v = std::max(now.speed_mps, 1.0), h = now.altitude_m;
     double path = -std::asin(std::clamp(now.descent_rate_mps / v, -1.0, 1.0));
@@ -27,7 +26,7 @@ double altitude_when_slow_m(const PullUp& now, double speed_mps) {
     return h;
 }
 
-double bank_allowed_rad(double altitude_foreseen_m) {
+double bank_allowed_rad(const Parameters& parameters, double altitude_foreseen_m) {
     const double spare = (altitude_foreseen_m - parameters.height_guard_m) / parameters.height_guard_band_m;
     return std::acos(std::clamp(1.0 - 2.0 * spare, -1.0, 1.0));
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "generated/parameters.hpp"
+
 // Height before range: how far from lift up range control may bank without coming to the parachute's speed too low.
 //
 //   from now on with lift up:   v̇ = −D − g sin γ    γ̇ = (L − (g − v²/r) cos γ)/v    ḣ = v sin γ
@@ -21,9 +23,9 @@ struct PullUp {
 };
 
 /// Where the vehicle comes to `speed_mps` when its lift is up from now on; where it then is if it does not within the foresight.
-double altitude_when_slow_m(const PullUp& now, double speed_mps);
+double altitude_when_slow_m(const Parameters& parameters, const PullUp& now, double speed_mps);
 
 /// The largest bank for an altitude foreseen. 0 … π
-double bank_allowed_rad(double altitude_foreseen_m);
+double bank_allowed_rad(const Parameters& parameters, double altitude_foreseen_m);
 
 }  // namespace aeolis::flight::gnc

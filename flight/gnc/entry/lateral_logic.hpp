@@ -3,6 +3,7 @@
 
 #include "common/time.hpp"
 #include "flight/gnc/quantities.hpp"
+#include "generated/parameters.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -20,13 +21,14 @@
 namespace aeolis::flight::gnc {
 
 /// Half width of the deadband [m] at a velocity.
-double crossrange_deadband_m(double velocity_mps, bool saturated);
+double crossrange_deadband_m(const Parameters& parameters, double velocity_mps, bool saturated);
 
 class LateralLogic {
   public:
     /// Updates the logic, and returns its conditions: where all hold, a reversal begins in this cycle. R38
     /// `settled`: that the commanded side has been reached.
-    Conditions on(Sclk now, double crossrange_m, double velocity_mps, bool saturated, const Condition& settled);
+    Conditions on(const Parameters& parameters, Sclk now, double crossrange_m, double velocity_mps, bool saturated,
+                  const Condition& settled);
 
     void start(int sign) { sign_ = sign; }
     int sign() const { return sign_; }  ///< +1: lift to the right

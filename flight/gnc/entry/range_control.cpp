@@ -8,9 +8,6 @@ namespace aeolis::flight::gnc {
 
 namespace {
 
-constexpr double saturation = parameters.guidance_saturation;
-constexpr double sensitivity_min_m = parameters.guidance_sensitivity_min_m;
-
 double between(double a, double b, double part) {
     return a + part * (b - a);
 }
@@ -40,16 +37,17 @@ EntryReferenceRow reference_at(const EntryReference& reference, double velocity_
     return row;
 }
 
-RangeControlOutput range_control(const EntryReference& reference, const RangeControlInput& input) {
+RangeControlOutput range_control(const Parameters& parameters, const EntryReference& reference,
+                                 const RangeControlInput& input) {
     const EntryReferenceRow row = reference_at(reference, input.velocity_mps);
     RangeControlOutput out;
     out.predicted_range_m = row.range_to_go_m + row.d_range_d_drag_s2 * (input.drag_mps2 - row.drag_mps2) +
                             row.d_range_d_altitude_rate_s * (input.altitude_rate_mps - row.altitude_rate_mps);
-    const double sensitivity_m = std::max(row.d_range_d_lift_to_drag_m, sensitivity_min_m);
+    const double sensitivity_m = std::max(row.d_range_d_lift_to_drag_m, parameters.guidance_sensitivity_min_m);
     out.vertical_lift_to_drag =
-        row.lift_to_drag + overcontrol_gain * (input.range_to_go_m - out.predicted_range_m) / sensitivity_m;
+        row.lift_to_drag + parameters.guidance_gain * (input.range_to_go_m - out.predicted_range_m) / sensitivity_m;
     const double cosine = out.vertical_lift_to_drag / input.lift_to_drag;
-    out.saturated = std::abs(cosine) > saturation;
+    out.saturated = std::abs(cosine) > parameters.guidance_saturation;
     out.bank_magnitude_rad = std::acos(std::clamp(cosine, -1.0, 1.0));
     return out;
 }

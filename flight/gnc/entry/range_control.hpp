@@ -2,7 +2,7 @@
 #pragma once
 
 #include "flight/load.hpp"
-#include "generated/dictionary_flight.hpp"
+#include "generated/parameters.hpp"
 
 #include <cstdint>
 
@@ -17,8 +17,6 @@
 // Source   [apollo-entry-guidance]; K from parameters.csv
 // Valid    within the reference's velocities; held at its ends
 namespace aeolis::flight::gnc {
-
-inline constexpr double overcontrol_gain = parameters.guidance_gain;  ///< K
 
 /// The reference at a velocity, linear between its rows, held at its ends.
 /// An empty reference gives a row of zeros.
@@ -39,6 +37,7 @@ struct RangeControlOutput {
     bool saturated = false;              ///< lift nearly full up or down: no margin left to control range
 };
 
-RangeControlOutput range_control(const EntryReference& reference, const RangeControlInput& input);
+RangeControlOutput range_control(const Parameters& parameters, const EntryReference& reference,
+                                 const RangeControlInput& input);
 
 }  // namespace aeolis::flight::gnc

@@ -8,10 +8,13 @@
 
 namespace aeolis::flight::gnc::flyaway {
 
-Command command(double since_start_s, const Vector3& p_MoB_M) {
-    const double pitch = pitch_rad * std::clamp((since_start_s - upright_s) / pitch_time_s, 0.0, 1.0);
-    const Vector3 away = powered_descent::azimuth_direction(p_MoB_M, azimuth_rad);
-    return {std::cos(pitch) * p_MoB_M.normalized() + std::sin(pitch) * away, since_start_s >= clear_s};
+Command command(const Parameters& parameters, double since_start_s, const Vector3& p_MoB_M) {
+    const double pitched =
+        std::clamp((since_start_s - parameters.flyaway_upright_s) / parameters.flyaway_pitch_time_s, 0.0, 1.0);
+    const double pitch = parameters.flyaway_pitch_deg * degree * pitched;
+    const Vector3 away = powered_descent::azimuth_direction(p_MoB_M, parameters.flyaway_azimuth_deg * degree);
+    return {std::cos(pitch) * p_MoB_M.normalized() + std::sin(pitch) * away,
+            since_start_s >= parameters.flyaway_clear_s};
 }
 
 }  // namespace aeolis::flight::gnc::flyaway

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "flight/gnc/vector.hpp"
-#include "generated/dictionary_flight.hpp"
+#include "generated/parameters.hpp"
 
 // Flies the stage away from the rover after the bridle is cut, so that it falls at a distance.
 //
@@ -16,17 +16,11 @@
 //          assumption
 namespace aeolis::flight::gnc::flyaway {
 
-inline constexpr double clear_s = parameters.flyaway_clear_s;
-inline constexpr double upright_s = parameters.flyaway_upright_s;
-inline constexpr double pitch_time_s = parameters.flyaway_pitch_time_s;
-inline constexpr double pitch_rad = parameters.flyaway_pitch_deg * degree;
-inline constexpr double azimuth_rad = parameters.flyaway_azimuth_deg * degree;
-
 struct Command {
     Vector3 direction_M = Vector3::UnitX();  ///< unit, of thrust
     bool full = false;                       ///< false: thrust equals the stage's weight
 };
 
-Command command(double since_start_s, const Vector3& p_MoB_M);
+Command command(const Parameters& parameters, double since_start_s, const Vector3& p_MoB_M);
 
 }  // namespace aeolis::flight::gnc::flyaway

@@ -18,7 +18,7 @@ bool in_air(HeldBy held_by) {
     return held_by == HeldBy::air || held_by == HeldBy::new_trim;
 }
 
-double unknown_rate_rps(HeldBy held_by) {
+double unknown_rate_rps(const Parameters& parameters, HeldBy held_by) {
     switch (held_by) {
     case HeldBy::nothing: return parameters.reckoned_rate_free_dps * degree;
     case HeldBy::air: return parameters.reckoned_rate_air_dps * degree;
@@ -31,7 +31,8 @@ double unknown_rate_rps(HeldBy held_by) {
 
 }  // namespace
 
-Felt DeadReckoning::feel(const Surroundings& now, const NavigatedState& state, const Felt& last, double dt_s) {
+Felt DeadReckoning::feel(const Parameters& parameters, const Surroundings& now, const NavigatedState& state,
+                         const Felt& last, double dt_s) {
     if (silent_s_ == 0.0) {
         rate_B_rps_ = last.rate_B_rps;
         force_B_mps2_ = last.force_B_mps2;
@@ -41,11 +42,12 @@ Felt DeadReckoning::feel(const Surroundings& now, const NavigatedState& state, c
         thrust_N_ = now.thrust_N;
     }
     silent_s_ += dt_s;
-    const Vector3 force = force_B(now, state);
-    return {force, turn(now, state, force, dt_s)};
+    const Vector3 force = force_B(parameters, now, state);
+    return {force, turn(parameters, now, state, force, dt_s)};
 }
 
-Vector3 DeadReckoning::force_B(const Surroundings& now, const NavigatedState& state) const {
+Vector3 DeadReckoning::force_B(const Parameters& parameters, const Surroundings& now,
+                               const NavigatedState& state) const {
     if (now.held_by == HeldBy::nothing) return Vector3::Zero();
     if (now.held_by == HeldBy::engines) {
         if (thrust_N_ < parameters.engine_used_min_N) return {0.0, 0.0, -now.thrust_N / now.mass_kg};
@@ -58,8 +60,8 @@ Vector3 DeadReckoning::force_B(const Surroundings& now, const NavigatedState& st
 }
 
 // The rate over the next step; what of it goes on is kept.
-Vector3 DeadReckoning::turn(const Surroundings& now, const NavigatedState& state, const Vector3& force_B_mps2,
-                            double dt_s) {
+Vector3 DeadReckoning::turn(const Parameters& parameters, const Surroundings& now, const NavigatedState& state,
+                            const Vector3& force_B_mps2, double dt_s) {
     if (in_air(now.held_by)) {
         const double speed_mps = std::max(state.v_MB_M.norm(), 1.0);
         const Vector3 forward_M = state.v_MB_M / speed_mps;
@@ -78,9 +80,9 @@ Vector3 DeadReckoning::turn(const Surroundings& now, const NavigatedState& state
     return rate_B_rps_;
 }
 
-void Belief::pass(bool silent, HeldBy held_by, double force_mps2, double dt_s) {
+void Belief::pass(const Parameters& parameters, bool silent, HeldBy held_by, double force_mps2, double dt_s) {
     if (silent) {
-        attitude_rad_ += unknown_rate_rps(held_by) * dt_s;
+        attitude_rad_ += unknown_rate_rps(parameters, held_by) * dt_s;
         velocity_mps_ += parameters.reckoned_force_error * force_mps2 * dt_s;
     }
     velocity_mps_ += attitude_rad_ * force_mps2 * dt_s;
@@ -92,7 +94,7 @@ void Belief::hear_radar(double gain) {
     altitude_m_ *= 1.0 - gain;
 }
 
-void Belief::narrow_attitude() {
+void Belief::narrow_attitude(const Parameters& parameters) {
     attitude_rad_ *= 1.0 - parameters.level_narrowing;
     if (attitude_rad_ < parameters.level_known_deg * degree) attitude_rad_ = 0.0;
 }

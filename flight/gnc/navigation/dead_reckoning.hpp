@@ -4,7 +4,7 @@
 #include "flight/gnc/attitude/attitude_control.hpp"
 #include "flight/gnc/navigation/strapdown.hpp"
 #include "flight/gnc/vector.hpp"
-#include "generated/dictionary_flight.hpp"
+#include "generated/parameters.hpp"
 
 #include <cstdint>
 
@@ -49,7 +49,8 @@ struct Surroundings {
 class DeadReckoning {
   public:
     /// What is felt over the next `dt_s`. The first of a silence takes hold of `last`, which the IMU felt.
-    Felt feel(const Surroundings& now, const NavigatedState& state, const Felt& last, double dt_s);
+    Felt feel(const Parameters& parameters, const Surroundings& now, const NavigatedState& state, const Felt& last,
+              double dt_s);
     /// The IMU speaks again.
     void end() { silent_s_ = 0.0; }
 
@@ -61,8 +62,9 @@ class DeadReckoning {
     }
 
   private:
-    Vector3 force_B(const Surroundings& now, const NavigatedState& state) const;
-    Vector3 turn(const Surroundings& now, const NavigatedState& state, const Vector3& force_B_mps2, double dt_s);
+    Vector3 force_B(const Parameters& parameters, const Surroundings& now, const NavigatedState& state) const;
+    Vector3 turn(const Parameters& parameters, const Surroundings& now, const NavigatedState& state,
+                 const Vector3& force_B_mps2, double dt_s);
 
     double silent_s_ = 0.0;
     Vector3 rate_B_rps_ = Vector3::Zero();
@@ -76,11 +78,11 @@ class DeadReckoning {
 class Belief {
   public:
     /// `force_mps2` is felt, or thought to be, for `dt_s`.
-    void pass(bool silent, HeldBy held_by, double force_mps2, double dt_s);
+    void pass(const Parameters& parameters, bool silent, HeldBy held_by, double force_mps2, double dt_s);
     /// The radar was heard, and this part of what it differed by was taken.
     void hear_radar(double gain);
     /// The attitude was corrected by what the radar said.
-    void narrow_attitude();
+    void narrow_attitude(const Parameters& parameters);
 
     double attitude_rad() const { return attitude_rad_; }
     double velocity_mps() const { return velocity_mps_; }

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "flight/gnc/vector.hpp"
-#include "generated/dictionary_flight.hpp"
+#include "generated/parameters.hpp"
 
 #include <algorithm>
 
@@ -18,10 +18,11 @@ namespace aeolis::flight::gnc {
 
 class ForceFilter {
   public:
-    void on(const Vector3& force_mps2, const Vector3& direction_of_flight, double dt_s) {
+    void on(const Parameters& parameters, const Vector3& force_mps2, const Vector3& direction_of_flight, double dt_s) {
+        const double lift_time_s = parameters.lift_filter_time_s;
         const double along = force_mps2.dot(direction_of_flight);
         const double across = (force_mps2 - along * direction_of_flight).norm();
-        drag_mps2_ += dt_s / (drag_time_s + dt_s) * (-along - drag_mps2_);
+        drag_mps2_ += dt_s / (parameters.drag_filter_time_s + dt_s) * (-along - drag_mps2_);
         lift_mps2_ += dt_s / (lift_time_s + dt_s) * (across - lift_mps2_);
         slow_drag_mps2_ += dt_s / (lift_time_s + dt_s) * (-along - slow_drag_mps2_);
     }
@@ -30,15 +31,11 @@ class ForceFilter {
 
     /// Lift over drag; `otherwise` while drag is too weak to measure it.
     /// Limited to bounds wider than any value flown.
-    double lift_to_drag(double otherwise) const {
-        if (slow_drag_mps2_ < enough_drag_mps2) return otherwise;
+    double lift_to_drag(const Parameters& parameters, double otherwise) const {
+        if (slow_drag_mps2_ < parameters.lift_to_drag_felt_mps2) return otherwise;
         const double ratio = lift_mps2_ / slow_drag_mps2_;
         return std::clamp(ratio, parameters.lift_to_drag_min, parameters.lift_to_drag_max);
     }
-
-    static constexpr double drag_time_s = parameters.drag_filter_time_s;
-    static constexpr double lift_time_s = parameters.lift_filter_time_s;
-    static constexpr double enough_drag_mps2 = parameters.lift_to_drag_felt_mps2;
 
     template <typename Exchange>
     void carry(Exchange& exchange) {

@@ -14,7 +14,8 @@ std::int64_t quarter_of(Sclk time) {
 
 }  // namespace
 
-void RadarBatch::on(Sclk now, std::span<const RadarBeam> beams, const Quaternion& q_MB, const Vector3& up_M) {
+void RadarBatch::on(const Parameters& parameters, Sclk now, std::span<const RadarBeam> beams, const Quaternion& q_MB,
+                    const Vector3& up_M) {
     const std::int64_t quarter = quarter_of(now);
     Bin& bin = bins_[static_cast<std::size_t>(quarter) % bins_.size()];
     for (const RadarBeam& beam : beams) {
@@ -36,7 +37,7 @@ void RadarBatch::on(Sclk now, std::span<const RadarBeam> beams, const Quaternion
     }
 }
 
-std::optional<RadarSolution> RadarBatch::solve(Sclk now) const {
+std::optional<RadarSolution> RadarBatch::solve(const Parameters& parameters, Sclk now) const {
     const std::int64_t newest = quarter_of(now);  // not complete yet
     const auto oldest = newest - static_cast<std::int64_t>(bins_.size()) + 1;
     RadarSolution solution;

@@ -4,7 +4,7 @@
 #include "common/time.hpp"
 #include "flight/devices/device_messages.hpp"
 #include "flight/gnc/vector.hpp"
-#include "generated/dictionary_flight.hpp"
+#include "generated/parameters.hpp"
 
 #include <array>
 #include <cstdint>
@@ -40,11 +40,12 @@ inline constexpr double radar_bins_per_second = 4.0;  ///< a quarter of a second
 class RadarBatch {
   public:
     /// Adds the beams of one cycle, with the navigated attitude of that cycle and the local vertical in M.
-    void on(Sclk now, std::span<const RadarBeam> beams, const Quaternion& q_MB, const Vector3& up_M);
+    void on(const Parameters& parameters, Sclk now, std::span<const RadarBeam> beams, const Quaternion& q_MB,
+            const Vector3& up_M);
 
     /// Averages over the last whole quarters of a second, 4.75 s. None when every quarter is left out.
     /// A quarter with too few measurements, or with all in one plane, is left out.
-    std::optional<RadarSolution> solve(Sclk now) const;
+    std::optional<RadarSolution> solve(const Parameters& parameters, Sclk now) const;
 
     void clear() { bins_ = {}; }
 
@@ -58,7 +59,7 @@ class RadarBatch {
         Vector3 right = Vector3::Zero();
         std::uint16_t beams = 0;
     };
-    std::array<Bin, static_cast<std::size_t>(parameters.radar_average_s* radar_bins_per_second)> bins_{};
+    std::array<Bin, static_cast<std::size_t>(build_parameters.radar_average_s* radar_bins_per_second)> bins_{};
 };
 
 }  // namespace aeolis::flight::gnc

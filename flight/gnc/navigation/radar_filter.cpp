@@ -9,7 +9,6 @@ namespace aeolis::flight::gnc {
 namespace {
 
 constexpr double remembered_hz = 16.0;
-constexpr auto refused_max = static_cast<std::uint32_t>(parameters.radar_refused_max);
 
 }  // namespace
 
@@ -20,7 +19,8 @@ void RadarFilter::remember(Sclk now, double altitude_m, const Vector3& v_MB_M) {
     count_ = std::min(count_ + 1, static_cast<std::uint32_t>(past_.size()));
 }
 
-RadarJudgement RadarFilter::on(const RadarSolution& solution, Sclk now, const Vector3& up_M, const Belief& belief) {
+RadarJudgement RadarFilter::on(const Parameters& parameters, const RadarSolution& solution, Sclk now,
+                               const Vector3& up_M, const Belief& belief) {
     const double half_s = 0.5 * solution.span_s;
     double altitude_sum_m = 0.0, time_sum_s = 0.0;
     Vector3 v_sum = Vector3::Zero();
@@ -60,7 +60,8 @@ RadarJudgement RadarFilter::on(const RadarSolution& solution, Sclk now, const Ve
     };
     const Condition altitude = altitude_within(parameters.radar_gate_sigmas);
     const Condition velocity = velocity_within(parameters.radar_gate_sigmas);
-    const Condition enough = at_least(Quantity::refused_in_a_row, refused_in_a_row_, refused_max);
+    const Condition enough =
+        at_least(Quantity::refused_in_a_row, refused_in_a_row_, std::floor(parameters.radar_refused_max));
     RadarJudgement judgement;
     for (const Condition& condition : {altitude, velocity, enough}) judgement.conditions.push_back(condition);
     if (accepted_ > 0 && !(altitude.holds && velocity.holds) && !enough.holds) {

@@ -50,7 +50,8 @@ class RadarFilter {
     void remember(Sclk now, double altitude_m, const Vector3& v_MB_M);
 
     /// The gate is as much wider as `belief` is, and what is beyond the narrow one then is believed.
-    RadarJudgement on(const RadarSolution& solution, Sclk now, const Vector3& up_M, const Belief& belief = {});
+    RadarJudgement on(const Parameters& parameters, const RadarSolution& solution, Sclk now, const Vector3& up_M,
+                      const Belief& belief = {});
 
     bool locked() const { return accepted_ > 0; }
     std::uint32_t accepted() const { return accepted_; }

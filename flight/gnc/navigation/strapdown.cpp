@@ -11,8 +11,6 @@ namespace aeolis::flight::gnc {
 
 namespace {
 
-constexpr auto bias_samples_max = static_cast<std::uint32_t>(parameters.imu_bias_samples_max);
-
 /// The rotation by a small vector, to third order; the caller keeps the angle below 0.1 rad.
 Quaternion small_rotation(const Vector3& angle) {
     const double half_squared = 0.25 * angle.squaredNorm();
@@ -45,11 +43,11 @@ void Strapdown::step(const Vector3& delta_angle_B, const Vector3& delta_v_B, dou
     state_.q_MB.coeffs() *= 1.5 - 0.5 * state_.q_MB.squaredNorm();  // NOLINT(readability-magic-numbers)
 }
 
-void Strapdown::on(const ImuSample& sample, bool force_felt) {
+void Strapdown::on(const Parameters& parameters, const ImuSample& sample, bool force_felt) {
     const Vector3 delta_angle_B = to_vector(sample.delta_angle_rad);
     const Vector3 raw_force_B = to_vector(sample.delta_v_mps) / imu_period_s;
     if (!force_felt) {
-        bias_samples_ = std::min(bias_samples_ + 1, bias_samples_max);
+        bias_samples_ = std::min(bias_samples_ + 1, static_cast<std::uint32_t>(parameters.imu_bias_samples_max));
         bias_B_mps2_ += (raw_force_B - bias_B_mps2_) / static_cast<double>(bias_samples_);
     }
     const Vector3 force_B = force_felt ? Vector3(raw_force_B - bias_B_mps2_) : Vector3(Vector3::Zero());

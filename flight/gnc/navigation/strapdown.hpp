@@ -4,7 +4,7 @@
 #include "flight/devices/device_messages.hpp"
 #include "flight/gnc/vector.hpp"
 #include "flight/load.hpp"
-#include "generated/dictionary_flight.hpp"
+#include "generated/parameters.hpp"
 
 #include <cstdint>
 
@@ -23,7 +23,7 @@
 namespace aeolis::flight::gnc {
 
 inline constexpr double imu_period_s = 1.0 / 200.0;  ///< [facts] Vehicle
-inline constexpr std::uint32_t gap_max = static_cast<std::uint32_t>(parameters.imu_gap_max);
+inline constexpr std::uint32_t gap_max = static_cast<std::uint32_t>(build_parameters.imu_gap_max);
 
 struct NavigatedState {
     Vector3 p_MoB_M = Vector3::Zero();  ///< [m]
@@ -44,7 +44,7 @@ class Strapdown {
     /// Integrates one increment.
     /// With `force_felt` false the specific force is taken as zero, and the bias is learnt from the measurement: in
     /// vacuum the accelerometers measure only their bias.
-    void on(const ImuSample& sample, bool force_felt);
+    void on(const Parameters& parameters, const ImuSample& sample, bool force_felt);
 
     /// Advances by `dt_s`, about a tick, with force and rates that the IMU did not measure.
     void reckon(const Vector3& force_B_mps2, const Vector3& rate_B_rps, double dt_s);

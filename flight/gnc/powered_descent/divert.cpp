@@ -1,19 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "flight/gnc/powered_descent/divert.hpp"
 
-#include "generated/dictionary_flight.hpp"
-
 #include <algorithm>
 #include <cmath>
 
 namespace aeolis::flight::gnc::powered_descent {
-
-namespace {
-
-constexpr double velocity_gain_per_s = parameters.divert_velocity_gain_per_s;
-constexpr double position_gain_per_s2 = parameters.divert_position_gain_per_s2;
-
-}  // namespace
 
 // NOLINTBEGIN(readability-magic-numbers): the coefficients of a quintic and its derivatives
 void Divert::start(const Vector3& displacement_M, const Vector3& v0_M, double duration_s) {
@@ -45,9 +36,9 @@ Vector3 Divert::acceleration_M(double t_s) const {
 }
 // NOLINTEND(readability-magic-numbers)
 
-Vector3 Divert::command_M(double t_s, const Vector3& x_M, const Vector3& v_M) const {
-    return acceleration_M(t_s) + velocity_gain_per_s * (velocity_M(t_s) - v_M) +
-           position_gain_per_s2 * (position_M(t_s) - x_M);
+Vector3 Divert::command_M(const Parameters& parameters, double t_s, const Vector3& x_M, const Vector3& v_M) const {
+    return acceleration_M(t_s) + parameters.divert_velocity_gain_per_s * (velocity_M(t_s) - v_M) +
+           parameters.divert_position_gain_per_s2 * (position_M(t_s) - x_M);
 }
 
 Vector3 azimuth_direction(const Vector3& p_MoB_M, double azimuth_rad) {

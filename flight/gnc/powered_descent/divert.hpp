@@ -2,6 +2,7 @@
 #pragma once
 
 #include "flight/gnc/vector.hpp"
+#include "generated/parameters.hpp"
 
 // The divert of the powered approach, away from the backshell: a sidestep that ends at rest.
 //
@@ -25,7 +26,7 @@ class Divert {
     Vector3 acceleration_M(double t_s) const;  ///< zero after the end
 
     /// Horizontal acceleration to command at t; x and v are measured from the start.
-    Vector3 command_M(double t_s, const Vector3& x_M, const Vector3& v_M) const;
+    Vector3 command_M(const Parameters& parameters, double t_s, const Vector3& x_M, const Vector3& v_M) const;
 
     double duration_s() const { return duration_s_; }
 

@@ -28,8 +28,9 @@ Eigen::Matrix<double, n, 3> changes_by_torque() {
 
 TorqueAllocation::TorqueAllocation() : of_eight_(changes_by_torque<8>()), of_four_(changes_by_torque<4>()) {}
 
-void TorqueAllocation::add(const Vector3& torque_B_Nm, int engines, double engine_max_thrust_N,
-                           std::array<double, 8>& throttle) const {
+void TorqueAllocation::add(const Parameters& parameters, const Vector3& torque_B_Nm, int engines,
+                           double engine_max_thrust_N, std::array<double, 8>& throttle) const {
+    const double engine_used_min_N = parameters.engine_used_min_N, engine_used_max_N = parameters.engine_used_max_N;
     Eigen::Matrix<double, 8, 1> change_N = Eigen::Matrix<double, 8, 1>::Zero();
     if (engines == 4)
         for (Eigen::Index i = 0; i < 4; ++i) change_N[2 * i] = of_four_.row(i).dot(torque_B_Nm);
@@ -47,8 +48,9 @@ void TorqueAllocation::add(const Vector3& torque_B_Nm, int engines, double engin
         throttle[i] = (each_N + part * change_N[static_cast<Eigen::Index>(i)]) / engine_max_thrust_N;
 }
 
-std::array<double, 8> throttles_for(double thrust_N, int engines, double engine_max_thrust_N, double& given_N) {
-    const double each_N = std::clamp(thrust_N / engines, engine_used_min_N, engine_used_max_N);
+std::array<double, 8> throttles_for(const Parameters& parameters, double thrust_N, int engines,
+                                    double engine_max_thrust_N, double& given_N) {
+    const double each_N = std::clamp(thrust_N / engines, parameters.engine_used_min_N, parameters.engine_used_max_N);
     given_N = each_N * engines;
     std::array<double, 8> throttle{};
     const std::size_t stride = engines == 4 ? 2 : 1;
@@ -56,21 +58,21 @@ std::array<double, 8> throttles_for(double thrust_N, int engines, double engine_
     return throttle;
 }
 
-Thrust allocate(const Vector3& specific_force_M, const Vector3& up_M, double mass_kg, int engines,
-                double engine_max_thrust_N) {
+Thrust allocate(const Parameters& parameters, const Vector3& specific_force_M, const Vector3& up_M, double mass_kg,
+                int engines, double engine_max_thrust_N) {
     const double up = std::max(specific_force_M.dot(up_M), 0.0);
     const Vector3 level = specific_force_M - specific_force_M.dot(up_M) * up_M;
     // Lift has priority over sidestep: beyond the limit of tilt or thrust, the level part is reduced.
     const double most_level =
-        std::min(std::tan(tilt_max_rad) * up,
-                 std::sqrt(std::max(std::pow(engines * engine_used_max_N / mass_kg, 2) - up * up, 0.0)));
+        std::min(std::tan(parameters.tilt_max_deg * degree) * up,
+                 std::sqrt(std::max(std::pow(engines * parameters.engine_used_max_N / mass_kg, 2) - up * up, 0.0)));
     const double norm = level.norm();
     const Vector3 wanted = up * up_M + (norm > most_level ? Vector3(level * (most_level / norm)) : level);
     Thrust thrust;
     constexpr double no_thrust_mps2 = 1.0e-6;
     const double magnitude = wanted.norm();
     thrust.direction_M = magnitude > no_thrust_mps2 ? Vector3(wanted / magnitude) : up_M;
-    thrust.throttle = throttles_for(magnitude * mass_kg, engines, engine_max_thrust_N, thrust.magnitude_N);
+    thrust.throttle = throttles_for(parameters, magnitude * mass_kg, engines, engine_max_thrust_N, thrust.magnitude_N);
     return thrust;
 }
 

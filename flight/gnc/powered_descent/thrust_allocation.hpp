@@ -3,7 +3,7 @@
 
 #include "flight/devices/device_messages.hpp"
 #include "flight/gnc/vector.hpp"
-#include "generated/dictionary_flight.hpp"
+#include "generated/parameters.hpp"
 
 // Direction of thrust and throttles of eight or four engines, for a wanted acceleration.
 //
@@ -15,10 +15,6 @@
 // Source   [facts] Vehicle: each engine 400 … 3060 N used; the tilt limit is our assumption
 namespace aeolis::flight::gnc::powered_descent {
 
-inline constexpr double engine_used_min_N = parameters.engine_used_min_N;
-inline constexpr double engine_used_max_N = parameters.engine_used_max_N;
-inline constexpr double tilt_max_rad = parameters.tilt_max_deg * degree;
-
 struct Thrust {
     Vector3 direction_M = Vector3::UnitX();  ///< unit
     double magnitude_N = 0.0;                ///< given by the throttles
@@ -26,17 +22,18 @@ struct Thrust {
 };
 
 /// Allocates thrust. With four engines every other one runs; the rest are shut (throttle 0).
-Thrust allocate(const Vector3& specific_force_M, const Vector3& up_M, double mass_kg, int engines,
-                double engine_max_thrust_N);
+Thrust allocate(const Parameters& parameters, const Vector3& specific_force_M, const Vector3& up_M, double mass_kg,
+                int engines, double engine_max_thrust_N);
 
 /// Throttles for a total thrust; `given_N` receives the total that they give.
-std::array<double, 8> throttles_for(double thrust_N, int engines, double engine_max_thrust_N, double& given_N);
+std::array<double, 8> throttles_for(const Parameters& parameters, double thrust_N, int engines,
+                                    double engine_max_thrust_N, double& given_N);
 
 /// Varies the equal throttles of eight or four engines so that they also turn the vehicle. [N m] in B
 class TorqueAllocation {
   public:
     TorqueAllocation();
-    void add(const Vector3& torque_B_Nm, int engines, double engine_max_thrust_N,
+    void add(const Parameters& parameters, const Vector3& torque_B_Nm, int engines, double engine_max_thrust_N,
              std::array<double, 8>& throttle) const;
 
   private:

@@ -10,67 +10,75 @@ namespace aeolis::flight::gnc::powered_descent {
 
 namespace {
 
-constexpr double deceleration_min_mps2 = parameters.profile_deceleration_min_mps2;
-constexpr double deceleration_max_mps2 = parameters.profile_deceleration_max_mps2;
-
-double limited(double deceleration_mps2) {
-    return std::clamp(deceleration_mps2, deceleration_min_mps2, deceleration_max_mps2);
+double limited(const Parameters& parameters, double deceleration_mps2) {
+    return std::clamp(deceleration_mps2, parameters.profile_deceleration_min_mps2,
+                      parameters.profile_deceleration_max_mps2);
 }
 
 }  // namespace
 
-double altitude_used_until_constant_velocity_m(double descent_rate_mps) {
+double altitude_used_until_constant_velocity_m(const Parameters& parameters, double descent_rate_mps) {
+    const double free_fall_s = parameters.powered_approach_delay_s;
+    const double constant_velocity_mps = parameters.constant_velocity_mps;
     const double after_fall_mps = descent_rate_mps + mars_weight_mps2 * free_fall_s;
     const double fallen_m = 0.5 * (descent_rate_mps + after_fall_mps) * free_fall_s;
     const double approach_m = (after_fall_mps * after_fall_mps - constant_velocity_mps * constant_velocity_mps) /
-                              (2.0 * approach_deceleration_mps2);
+                              (2.0 * parameters.approach_deceleration_mps2);
     return fallen_m + approach_m;
 }
 
-void ApproachProfile::start(double altitude_m, double descent_rate_mps) {
-    const double room_m = std::max(altitude_m - approach_end_altitude_m, 1.0);
+void ApproachProfile::start(const Parameters& parameters, double altitude_m, double descent_rate_mps) {
+    const double constant_velocity_mps = parameters.constant_velocity_mps;
+    const double room_m = std::max(altitude_m - approach_end_altitude_m(parameters), 1.0);
     deceleration_mps2_ =
-        limited((descent_rate_mps * descent_rate_mps - constant_velocity_mps * constant_velocity_mps) / (2.0 * room_m));
+        limited(parameters,
+                (descent_rate_mps * descent_rate_mps - constant_velocity_mps * constant_velocity_mps) / (2.0 * room_m));
 }
 
-double ApproachProfile::descent_rate_mps(double altitude_m) const {
-    const double above_m = std::max(altitude_m - approach_end_altitude_m, 0.0);
+double ApproachProfile::descent_rate_mps(const Parameters& parameters, double altitude_m) const {
+    const double constant_velocity_mps = parameters.constant_velocity_mps;
+    const double above_m = std::max(altitude_m - approach_end_altitude_m(parameters), 0.0);
     return std::sqrt(constant_velocity_mps * constant_velocity_mps + 2.0 * deceleration_mps2_ * above_m);
 }
 
-double ApproachProfile::acceleration_mps2(double altitude_m, double descent_rate_mps) const {
-    return deceleration_mps2_ + rate_gain_per_s * (descent_rate_mps - this->descent_rate_mps(altitude_m));
+double ApproachProfile::acceleration_mps2(const Parameters& parameters, double altitude_m,
+                                          double descent_rate_mps) const {
+    return deceleration_mps2_ +
+           parameters.descent_rate_gain_per_s * (descent_rate_mps - this->descent_rate_mps(parameters, altitude_m));
 }
 
-double hold_rate_mps2(double descent_rate_mps, double wanted_mps) {
-    return rate_gain_per_s * (descent_rate_mps - wanted_mps);
+double hold_rate_mps2(const Parameters& parameters, double descent_rate_mps, double wanted_mps) {
+    return parameters.descent_rate_gain_per_s * (descent_rate_mps - wanted_mps);
 }
 
-double constant_deceleration_altitude_m(double descent_rate_mps) {
-    return sky_crane_altitude_m +
-           (descent_rate_mps * descent_rate_mps - sky_crane_mps * sky_crane_mps) / (2.0 * constant_deceleration_mps2);
+double constant_deceleration_altitude_m(const Parameters& parameters, double descent_rate_mps) {
+    const double sky_crane_mps = parameters.sky_crane_descent_rate_mps;
+    return sky_crane_altitude_m(parameters) + (descent_rate_mps * descent_rate_mps - sky_crane_mps * sky_crane_mps) /
+                                                  (2.0 * parameters.constant_deceleration_mps2);
 }
 
-void DecelerationProfile::start(double altitude_m, double descent_rate_mps) {
+void DecelerationProfile::start(const Parameters& parameters, double altitude_m, double descent_rate_mps) {
     rate_mps_ = descent_rate_mps;
-    aim(altitude_m);
+    aim(parameters, altitude_m);
 }
 
-void DecelerationProfile::aim(double altitude_m) {
-    const double room_m = std::max(altitude_m - sky_crane_altitude_m, 1.0);
-    deceleration_mps2_ = limited((rate_mps_ * rate_mps_ - sky_crane_mps * sky_crane_mps) / (2.0 * room_m));
+void DecelerationProfile::aim(const Parameters& parameters, double altitude_m) {
+    const double sky_crane_mps = parameters.sky_crane_descent_rate_mps;
+    const double room_m = std::max(altitude_m - sky_crane_altitude_m(parameters), 1.0);
+    deceleration_mps2_ = limited(parameters, (rate_mps_ * rate_mps_ - sky_crane_mps * sky_crane_mps) / (2.0 * room_m));
 }
 
-void DecelerationProfile::advance(double altitude_m, double dt_s) {
+void DecelerationProfile::advance(const Parameters& parameters, double altitude_m, double dt_s) {
+    const double sky_crane_mps = parameters.sky_crane_descent_rate_mps;
     // The radar brings a correction once a second (R25): in the last second it can no longer be flown out.
     const double left_s = (rate_mps_ - sky_crane_mps) / deceleration_mps2_;
-    if (left_s > 1.0) aim(altitude_m);
+    if (left_s > 1.0) aim(parameters, altitude_m);
     rate_mps_ = std::max(rate_mps_ - deceleration_mps2_ * dt_s, sky_crane_mps);
 }
 
-double DecelerationProfile::acceleration_mps2(double descent_rate_mps) const {
-    const double planned_mps2 = rate_mps_ > sky_crane_mps ? deceleration_mps2_ : 0.0;
-    return planned_mps2 + 2.0 * rate_gain_per_s * (descent_rate_mps - rate_mps_);
+double DecelerationProfile::acceleration_mps2(const Parameters& parameters, double descent_rate_mps) const {
+    const double planned_mps2 = rate_mps_ > parameters.sky_crane_descent_rate_mps ? deceleration_mps2_ : 0.0;
+    return planned_mps2 + 2.0 * parameters.descent_rate_gain_per_s * (descent_rate_mps - rate_mps_);
 }
 
 }  // namespace aeolis::flight::gnc::powered_descent

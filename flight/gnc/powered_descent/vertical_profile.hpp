@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "generated/dictionary_flight.hpp"
+#include "generated/parameters.hpp"
 
 // Vertical profile of powered descent: descent rate at each altitude, and acceleration to keep it.
 //
@@ -17,26 +17,27 @@
 namespace aeolis::flight::gnc::powered_descent {
 
 /// Height of the stage when the wheels touch the ground: the bridle, and the stage above the bridle.
-inline constexpr double stage_height_at_touchdown_m = parameters.bridle_length_m + parameters.stage_above_bridle_m;
-inline constexpr double constant_velocity_mps = parameters.constant_velocity_mps;
-inline constexpr double sky_crane_mps = parameters.sky_crane_descent_rate_mps;
-inline constexpr double approach_end_altitude_m =
-    parameters.powered_approach_end_altitude_m + stage_height_at_touchdown_m;
-inline constexpr double sky_crane_altitude_m = parameters.sky_crane_altitude_m + stage_height_at_touchdown_m;
-inline constexpr double approach_deceleration_mps2 = parameters.approach_deceleration_mps2;
-inline constexpr double constant_deceleration_mps2 = parameters.constant_deceleration_mps2;
-/// Time from backshell separation to powered approach.
-inline constexpr double free_fall_s = parameters.powered_approach_delay_s;
-inline constexpr double rate_gain_per_s = parameters.descent_rate_gain_per_s;
+constexpr double stage_height_at_touchdown_m(const Parameters& parameters) {
+    return parameters.bridle_length_m + parameters.stage_above_bridle_m;
+}
+/// Altitude at which the powered approach ends.
+constexpr double approach_end_altitude_m(const Parameters& parameters) {
+    return parameters.powered_approach_end_altitude_m + stage_height_at_touchdown_m(parameters);
+}
+/// Altitude of throttle-down.
+constexpr double sky_crane_altitude_m(const Parameters& parameters) {
+    return parameters.sky_crane_altitude_m + stage_height_at_touchdown_m(parameters);
+}
 
 /// Altitude used by design in free fall and approach, for a descent rate at backshell separation.
-double altitude_used_until_constant_velocity_m(double descent_rate_mps);
+double altitude_used_until_constant_velocity_m(const Parameters& parameters, double descent_rate_mps);
 
 class ApproachProfile {
   public:
-    void start(double altitude_m, double descent_rate_mps);
-    double descent_rate_mps(double altitude_m) const;
-    double acceleration_mps2(double altitude_m, double descent_rate_mps) const;  ///< up, to command
+    void start(const Parameters& parameters, double altitude_m, double descent_rate_mps);
+    double descent_rate_mps(const Parameters& parameters, double altitude_m) const;
+    /// Up, to command.
+    double acceleration_mps2(const Parameters& parameters, double altitude_m, double descent_rate_mps) const;
     double deceleration_mps2() const { return deceleration_mps2_; }
 
     template <typename Exchange>
@@ -45,21 +46,21 @@ class ApproachProfile {
     }
 
   private:
-    double deceleration_mps2_ = approach_deceleration_mps2;
+    double deceleration_mps2_ = Parameters{}.approach_deceleration_mps2;  ///< until it starts
 };
 
 /// Upward acceleration that holds a descent rate.
-double hold_rate_mps2(double descent_rate_mps, double wanted_mps);
+double hold_rate_mps2(const Parameters& parameters, double descent_rate_mps, double wanted_mps);
 
 /// Altitude at which constant deceleration must begin at a descent rate.
-double constant_deceleration_altitude_m(double descent_rate_mps);
+double constant_deceleration_altitude_m(const Parameters& parameters, double descent_rate_mps);
 
 class DecelerationProfile {
   public:
-    void start(double altitude_m, double descent_rate_mps);
-    void advance(double altitude_m, double dt_s);
+    void start(const Parameters& parameters, double altitude_m, double descent_rate_mps);
+    void advance(const Parameters& parameters, double altitude_m, double dt_s);
     double descent_rate_mps() const { return rate_mps_; }
-    double acceleration_mps2(double descent_rate_mps) const;  ///< up, to command
+    double acceleration_mps2(const Parameters& parameters, double descent_rate_mps) const;  ///< up, to command
     double deceleration_mps2() const { return deceleration_mps2_; }
 
     template <typename Exchange>
@@ -68,10 +69,10 @@ class DecelerationProfile {
     }
 
   private:
-    void aim(double altitude_m);
+    void aim(const Parameters& parameters, double altitude_m);
 
-    double rate_mps_ = constant_velocity_mps;
-    double deceleration_mps2_ = constant_deceleration_mps2;
+    double rate_mps_ = Parameters{}.constant_velocity_mps;  ///< until it starts, and the next
+    double deceleration_mps2_ = Parameters{}.constant_deceleration_mps2;
 };
 
 }  // namespace aeolis::flight::gnc::powered_descent

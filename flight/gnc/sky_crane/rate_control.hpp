@@ -2,6 +2,7 @@
 #pragma once
 
 #include "flight/gnc/vector.hpp"
+#include "generated/parameters.hpp"
 
 // Holds the descent rate and nulls the drift on four engines, with the rover on the bridle.
 //
@@ -17,7 +18,8 @@ class RateControl {
     void start() { integral_mps2_ = 0.0; }
 
     /// Acceleration to command, in M. Free fall is compensated elsewhere.
-    Vector3 command_M(const Vector3& v_MB_M, const Vector3& up_M, double wanted_descent_rate_mps, double dt_s);
+    Vector3 command_M(const Parameters& parameters, const Vector3& v_MB_M, const Vector3& up_M,
+                      double wanted_descent_rate_mps, double dt_s);
 
     template <typename Exchange>
     void carry(Exchange& exchange) {

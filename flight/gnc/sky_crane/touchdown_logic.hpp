@@ -3,7 +3,7 @@
 
 #include "common/time.hpp"
 #include "flight/gnc/quantities.hpp"
-#include "generated/dictionary_flight.hpp"
+#include "generated/parameters.hpp"
 
 #include <cstdint>
 
@@ -20,13 +20,10 @@
 // Valid    while the stage is upright and its descent rate is steady
 namespace aeolis::flight::gnc::sky_crane {
 
-inline constexpr auto touchdown_cycles = static_cast<std::uint32_t>(parameters.touchdown_settle_s / seconds_per_tick);
-inline constexpr double thrust_tolerance = parameters.touchdown_thrust_tolerance;
-
 class TouchdownLogic {
   public:
     /// Call once a cycle. Touchdown is detected in the cycle in which all conditions returned hold.
-    Conditions on(double thrust_command_N, double mass_kg, double rover_kg);
+    Conditions on(const Parameters& parameters, double thrust_command_N, double mass_kg, double rover_kg);
 
     template <typename Exchange>
     void carry(Exchange& exchange) {

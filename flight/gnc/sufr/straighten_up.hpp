@@ -2,7 +2,7 @@
 #pragma once
 
 #include "flight/gnc/vector.hpp"
-#include "generated/dictionary_flight.hpp"
+#include "generated/parameters.hpp"
 
 // Straighten up and fly right (SUFR): bank turns to lift up while the angle of attack goes to zero.
 // The balance masses are jettisoned, and the angle of attack goes with them.
@@ -14,9 +14,6 @@
 //          Vehicle
 namespace aeolis::flight::gnc::sufr {
 
-inline constexpr double duration_s = parameters.sufr_duration_s;
-inline constexpr double roll_rate_rps = parameters.sufr_roll_rate_dps * degree;
-
-double bank_rad(double since_start_s, double bank_at_start_rad);
+double bank_rad(const Parameters& parameters, double since_start_s, double bank_at_start_rad);
 
 }  // namespace aeolis::flight::gnc::sufr

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "flight/gnc/triggers/triggers.hpp"
 
-#include "flight/gnc/entry/heading_alignment.hpp"
 #include "flight/gnc/powered_descent/vertical_profile.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace aeolis::flight::gnc::triggers {
 
@@ -27,15 +27,13 @@ Conditions list(const Condition& a, const Condition& b, const Condition& c) {
     return conditions;
 }
 
-constexpr double near_fraction = parameters.held_near_fraction;  // fraction of the bound
-
 }  // namespace
 
-bool near(const Conditions& conditions) {
+bool near(const Parameters& parameters, const Conditions& conditions) {
     if (conditions.empty()) return false;
     const Condition& first = conditions[0];
     if (first.quantity == Quantity::time_in_mode_s) return false;  // a timer alone is not a decision
-    return first.holds || std::abs(first.value - first.bound) <= near_fraction * std::abs(first.bound);
+    return first.holds || std::abs(first.value - first.bound) <= parameters.held_near_fraction * std::abs(first.bound);
 }
 
 Conditions worth_telling(const Conditions& conditions) {
@@ -45,29 +43,31 @@ Conditions worth_telling(const Conditions& conditions) {
     return told;
 }
 
-Conditions guidance_start(double filtered_drag_mps2) {
-    return list(at_least(Quantity::drag_mps2, filtered_drag_mps2, guidance_start_drag_mps2));
+Conditions guidance_start(const Parameters& parameters, double filtered_drag_mps2) {
+    return list(at_least(Quantity::drag_mps2, filtered_drag_mps2, parameters.guidance_start_drag_mps2));
 }
 
-Conditions heading_alignment(double speed_mps) {
-    return list(at_most(Quantity::speed_mps, speed_mps, heading_alignment_speed_mps));
+Conditions heading_alignment(const Parameters& parameters, double speed_mps) {
+    return list(at_most(Quantity::speed_mps, speed_mps, parameters.heading_alignment_speed_mps));
 }
 
-Conditions sufr_start(const InAir& at, double deceleration_mps2, const ParachuteBounds& bounds) {
+Conditions sufr_start(const Parameters& parameters, const InAir& at, double deceleration_mps2,
+                      const ParachuteBounds& bounds) {
     const Conditions last = list(at_most(Quantity::altitude_m, at.altitude_m, parameters.sufr_altitude_last_m));
     if (all_hold(last)) return last;
     const double to_lowest_s = (at.altitude_m - bounds.altitude_min_m) / std::max(at.descent_rate_mps, 1.0);
-    const Conditions low = list(at_most(Quantity::time_to_parachute_s, to_lowest_s, sufr_lead_s),
+    const Conditions low = list(at_most(Quantity::time_to_parachute_s, to_lowest_s, parameters.sufr_lead_s),
                                 at_least(Quantity::descent_rate_mps, at.descent_rate_mps, 1.0),
                                 at_most(Quantity::speed_mps, at.speed_mps, parameters.sufr_low_speed_mps));
     if (all_hold(low)) return low;
     const double to_parachute_s = (at.speed_mps - bounds.speed_mps) / std::max(deceleration_mps2, 1.0e-3);
-    return list(at_most(Quantity::time_to_parachute_s, to_parachute_s, sufr_lead_s),
+    return list(at_most(Quantity::time_to_parachute_s, to_parachute_s, parameters.sufr_lead_s),
                 at_most(Quantity::speed_mps, at.speed_mps, bounds.speed_mps + parameters.sufr_near_mps));
 }
 
-Conditions parachute(const InAir& at, const ParachuteBounds& bounds, std::uint32_t cycles_held) {
-    const Condition held = at_least(Quantity::cycles_held, cycles_held, parachute_cycles);
+Conditions parachute(const Parameters& parameters, const InAir& at, const ParachuteBounds& bounds,
+                     std::uint32_t cycles_held) {
+    const Condition held = at_least(Quantity::cycles_held, cycles_held, std::floor(parameters.parachute_cycles));
     const Condition last = at_most(Quantity::altitude_m, at.altitude_m, parameters.parachute_altitude_last_m);
     if (last.holds) return list(last, held);
     const Condition slow = at_most(Quantity::speed_mps, at.speed_mps, bounds.speed_mps);
@@ -80,44 +80,49 @@ Conditions parachute(const InAir& at, const ParachuteBounds& bounds, std::uint32
     return conditions;
 }
 
-bool parachute_due(const InAir& at, const ParachuteBounds& bounds) {
-    return all_hold(parachute(at, bounds, parachute_cycles));
+bool parachute_due(const Parameters& parameters, const InAir& at, const ParachuteBounds& bounds) {
+    return all_hold(parachute(parameters, at, bounds, std::numeric_limits<std::uint32_t>::max()));
 }
 
-Conditions heatshield(const InAir& at, double heatshield_speed_mps, double since_parachute_s) {
+Conditions heatshield(const Parameters& parameters, const InAir& at, double heatshield_speed_mps,
+                      double since_parachute_s) {
     const Condition low = at_most(Quantity::altitude_m, at.altitude_m, parameters.heatshield_altitude_min_m);
     const Condition late =
         at_least(Quantity::time_since_parachute_s, since_parachute_s, parameters.heatshield_patience_s);
-    const Condition delay = at_least(Quantity::time_since_parachute_s, since_parachute_s, heatshield_delay_s);
+    const Condition delay =
+        at_least(Quantity::time_since_parachute_s, since_parachute_s, parameters.heatshield_delay_min_s);
     const Condition slow = at_most(Quantity::speed_mps, at.speed_mps, heatshield_speed_mps);
     if (slow.holds) return list(slow, delay);
     if (late.holds) return list(late);
     return low.holds ? list(low, delay) : list(slow, delay);
 }
 
-double backshell_altitude_needed_m(const BackshellBounds& bounds, double descent_rate_mps) {
-    return bounds.altitude_m + powered_descent::altitude_used_until_constant_velocity_m(descent_rate_mps) -
-           powered_descent::altitude_used_until_constant_velocity_m(bounds.descent_rate_mps);
+double backshell_altitude_needed_m(const Parameters& parameters, const BackshellBounds& bounds,
+                                   double descent_rate_mps) {
+    return bounds.altitude_m + powered_descent::altitude_used_until_constant_velocity_m(parameters, descent_rate_mps) -
+           powered_descent::altitude_used_until_constant_velocity_m(parameters, bounds.descent_rate_mps);
 }
 
-Conditions engine_priming(double altitude_m, double descent_rate_mps, double backshell_altitude_m) {
+Conditions engine_priming(const Parameters& parameters, double altitude_m, double descent_rate_mps,
+                          double backshell_altitude_m) {
     const double to_backshell_s = (altitude_m - backshell_altitude_m) / std::max(descent_rate_mps, 1.0);
-    return list(at_most(Quantity::time_to_backshell_s, to_backshell_s, priming_lead_s),
+    return list(at_most(Quantity::time_to_backshell_s, to_backshell_s, parameters.priming_lead_s),
                 at_least(Quantity::descent_rate_mps, descent_rate_mps, 1.0));
 }
 
-Conditions constant_velocity(double altitude_m, double descent_rate_mps) {
-    const Condition slow =
-        at_most(Quantity::descent_rate_mps, descent_rate_mps, powered_descent::constant_velocity_mps);
-    const Condition low = at_most(Quantity::altitude_m, altitude_m, powered_descent::approach_end_altitude_m);
+Conditions constant_velocity(const Parameters& parameters, double altitude_m, double descent_rate_mps) {
+    const Condition slow = at_most(Quantity::descent_rate_mps, descent_rate_mps, parameters.constant_velocity_mps);
+    const Condition low =
+        at_most(Quantity::altitude_m, altitude_m, powered_descent::approach_end_altitude_m(parameters));
     return list(low.holds && !slow.holds ? low : slow);
 }
 
-Conditions backshell(double altitude_m, double descent_rate_mps, const BackshellBounds& bounds,
-                     std::uint32_t cycles_held) {
-    return list(at_most(Quantity::altitude_m, altitude_m, backshell_altitude_needed_m(bounds, descent_rate_mps)),
-                at_least(Quantity::descent_rate_mps, descent_rate_mps, 1.0),
-                at_least(Quantity::cycles_held, cycles_held, backshell_cycles));
+Conditions backshell(const Parameters& parameters, double altitude_m, double descent_rate_mps,
+                     const BackshellBounds& bounds, std::uint32_t cycles_held) {
+    return list(
+        at_most(Quantity::altitude_m, altitude_m, backshell_altitude_needed_m(parameters, bounds, descent_rate_mps)),
+        at_least(Quantity::descent_rate_mps, descent_rate_mps, 1.0),
+        at_least(Quantity::cycles_held, cycles_held, std::floor(parameters.backshell_cycles)));
 }
 
 }  // namespace aeolis::flight::gnc::triggers

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "flight/gnc/quantities.hpp"
-#include "generated/dictionary_flight.hpp"
+#include "generated/parameters.hpp"
 
 #include <cstdint>
 
@@ -13,15 +13,6 @@
 // Rate     64 Hz        Memory   none; the caller counts the cycles for which a condition has held
 // Source   [facts] Timeline; bounds that ground may change are part of its solution
 namespace aeolis::flight::gnc::triggers {
-
-inline constexpr double guidance_start_drag_mps2 = parameters.guidance_start_drag_mps2;
-inline constexpr double sufr_lead_s = parameters.sufr_lead_s;  ///< before the parachute
-inline constexpr auto parachute_cycles = static_cast<std::uint32_t>(parameters.parachute_cycles);
-inline constexpr auto backshell_cycles = static_cast<std::uint32_t>(parameters.backshell_cycles);
-inline constexpr double heatshield_delay_s = parameters.heatshield_delay_min_s;  ///< after the mortar
-inline constexpr double priming_lead_s = parameters.priming_lead_s;              ///< before backshell separation
-inline constexpr double radar_patience_s = parameters.radar_patience_s;          ///< after heatshield separation
-inline constexpr double sky_crane_settling_s = parameters.sky_crane_settle_s;    ///< to rover separation
 
 /// Counts the consecutive cycles for which a condition has held.
 class Persistence {
@@ -38,15 +29,15 @@ class Persistence {
 };
 
 /// Whether a decision that is held is near enough to be reported with the conditions that hold it.
-/// Its first condition, the subject, must hold or be within a twentieth of its bound. A timer alone is never near. The
-/// fraction is our assumption.
-bool near(const Conditions& conditions);
+/// Its first condition, the subject, must hold or be within a part of its bound (held_near_fraction). A timer alone is
+/// never near.
+bool near(const Parameters& parameters, const Conditions& conditions);
 
 /// Conditions without a cycle count of zero: that repeats the condition it counts.
 Conditions worth_telling(const Conditions& conditions);
 
-Conditions guidance_start(double filtered_drag_mps2);
-Conditions heading_alignment(double speed_mps);
+Conditions guidance_start(const Parameters& parameters, double filtered_drag_mps2);
+Conditions heading_alignment(const Parameters& parameters, double speed_mps);
 
 /// Quantities that the triggers of the entry use.
 struct InAir {
@@ -66,14 +57,17 @@ struct ParachuteBounds {
 /// The second way leaves time for the balance masses. A vehicle that would still be too fast for the parachute keeps
 /// the lift that straightening up costs, down to a last altitude. `deceleration_mps2`: of the speed, drag less the
 /// effect of gravity; at zero or less the speed alone never fires.
-Conditions sufr_start(const InAir& at, double deceleration_mps2, const ParachuteBounds& bounds);
+Conditions sufr_start(const Parameters& parameters, const InAir& at, double deceleration_mps2,
+                      const ParachuteBounds& bounds);
 
 /// Slow enough or too low to wait any longer, and within the parachute's Mach number and pressure.
 /// Below a last altitude it is due at any speed.
-bool parachute_due(const InAir& at, const ParachuteBounds& bounds);
-Conditions parachute(const InAir& at, const ParachuteBounds& bounds, std::uint32_t cycles_held);
+bool parachute_due(const Parameters& parameters, const InAir& at, const ParachuteBounds& bounds);
+Conditions parachute(const Parameters& parameters, const InAir& at, const ParachuteBounds& bounds,
+                     std::uint32_t cycles_held);
 /// Slow enough; or so low, or so long after the mortar, that the radar must see the ground at last.
-Conditions heatshield(const InAir& at, double heatshield_speed_mps, double since_parachute_s);
+Conditions heatshield(const Parameters& parameters, const InAir& at, double heatshield_speed_mps,
+                      double since_parachute_s);
 
 /// From ground's solution: an altitude, and the descent rate to which it belongs.
 struct BackshellBounds {
@@ -84,15 +78,17 @@ struct BackshellBounds {
 /// Altitude at which the backshell must go for the same powered approach to fit below it.
 /// At the descent rate of ground's solution, that solution's altitude; at a higher rate, higher by the additional
 /// altitude that free fall and approach need.
-double backshell_altitude_needed_m(const BackshellBounds& bounds, double descent_rate_mps);
+double backshell_altitude_needed_m(const Parameters& parameters, const BackshellBounds& bounds,
+                                   double descent_rate_mps);
 
 /// Powered approach is over: slow enough, or down at its end.
-Conditions constant_velocity(double altitude_m, double descent_rate_mps);
+Conditions constant_velocity(const Parameters& parameters, double altitude_m, double descent_rate_mps);
 
 /// Conditions for priming.
 /// The time is measured to the solution's altitude: by then the descent rate is near its design.
-Conditions engine_priming(double altitude_m, double descent_rate_mps, double backshell_altitude_m);
-Conditions backshell(double altitude_m, double descent_rate_mps, const BackshellBounds& bounds,
-                     std::uint32_t cycles_held);
+Conditions engine_priming(const Parameters& parameters, double altitude_m, double descent_rate_mps,
+                          double backshell_altitude_m);
+Conditions backshell(const Parameters& parameters, double altitude_m, double descent_rate_mps,
+                     const BackshellBounds& bounds, std::uint32_t cycles_held);
 
 }  // namespace aeolis::flight::gnc::triggers

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "flight/edl/parameter_table.hpp"
+
+#include "common/bytes.hpp"
+#include "common/check.hpp"
+#include "common/crc.hpp"
+
+#include <algorithm>
+#include <span>
+
+namespace aeolis::flight {
+
+std::array<std::uint8_t, parameter_rows_octets> rows_of(const Parameters& parameters) {
+    std::array<std::uint8_t, parameter_rows_octets> octets{};
+    BitWriter writer{octets};
+    for (std::uint16_t row = 0; row < parameter_count; ++row)
+        packet::ParameterRow{.parameter_number = row, .parameter_held = value_of(parameters, ParameterId{row})}.encode(
+            writer);
+    return octets;
+}
+
+gnc::Conditions conditions_of(const command::EDL_STAGE_PARAMETER& change) {
+    gnc::Conditions conditions;
+    conditions.push_back(
+        gnc::below(Quantity::row_number, change.parameter, static_cast<double>(parameter_specs.size())));
+    if (change.parameter >= parameter_specs.size()) return conditions;
+    const ParameterSpec& spec = parameter_specs[change.parameter];
+    conditions.clear();
+    conditions.push_back(gnc::names(Quantity::staged_parameter, change.parameter));
+    conditions.push_back(gnc::is(Quantity::parameter_changeable, spec.member != nullptr));
+    conditions.push_back(gnc::at_least(Quantity::parameter_value, change.value, spec.min));
+    conditions.push_back(gnc::at_most(Quantity::parameter_value, change.value, spec.max));
+    return conditions;
+}
+
+CommandRefusal refusal_of(const gnc::Conditions& conditions) {
+    const auto fixed = [](const gnc::Condition& condition) {
+        return condition.quantity == Quantity::parameter_changeable && !condition.holds;
+    };
+    return std::ranges::any_of(conditions, fixed) ? CommandRefusal::fixed_at_build : CommandRefusal::bad_argument;
+}
+
+const ParameterTable::Change* ParameterTable::staged_of(ParameterId id) const {
+    const auto staged = std::span{staged_}.first(staged_count_);
+    const auto found = std::ranges::find(staged, id.value, &Change::id);
+    return found == staged.end() ? nullptr : &*found;
+}
+
+bool ParameterTable::has_room(ParameterId id) const {
+    return staged_count_ < staged_changes_max || staged_of(id) != nullptr;
+}
+
+void ParameterTable::stage(ParameterId id, double value) {
+    AEOLIS_CHECK(has_room(id));
+    const Change* const same = staged_of(id);
+    const std::size_t place = same != nullptr ? static_cast<std::size_t>(same - staged_.data()) : staged_count_++;
+    staged_[place] = {id.value, value};
+}
+
+void ParameterTable::activate(std::uint16_t version) {
+    for (const Change& change : std::span{staged_}.first(staged_count_))
+        set_value(values_, ParameterId{change.id}, change.value);
+    version_ = version;
+    changes_ = staged_count_;
+    discard();
+}
+
+packet::ParameterTable ParameterTable::report() const {
+    std::uint16_t changed = 0;
+    for (const ParameterSpec& spec : parameter_specs)
+        if (spec.member != nullptr && values_.*spec.member != built_in_.*spec.member) ++changed;
+    return {.parameter_version = version_,
+            .parameter_changes = changes_,
+            .parameters_changed = changed,
+            .parameters_staged = staged_count_,
+            .parameter_crc = crc16(rows_of(values_))};
+}
+
+}  // namespace aeolis::flight

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "common/ids.hpp"
+#include "common/space_packet.hpp"
+#include "flight/gnc/quantities.hpp"
+#include "generated/dictionary_flight.hpp"
+#include "generated/parameters.hpp"
+
+#include <array>
+#include <cstdint>
+
+// The table of parameters that flight flies by (parameters.csv), and the changes that ground has staged for it.
+//
+// In       EDL_STAGE_PARAMETER one by one, then EDL_ACTIVATE_PARAMETERS for all of them, or EDL_DISCARD_PARAMETERS
+// Rule     a change is within the range of its row, and its row may change; the table is replaced whole or not at all
+// Memory   one value a row, and up to 32 staged changes: the largest number that EDL_ACTIVATE_PARAMETERS can name
+// R25, R48
+namespace aeolis::flight {
+
+inline constexpr std::size_t staged_changes_max = 32;
+
+/// The value held of any parameter, also of one that is fixed at build. `id` is one of the table.
+constexpr double value_of(const Parameters& parameters, ParameterId id) {
+    const ParameterSpec& spec = parameter_specs[id.value];
+    return spec.member != nullptr ? parameters.*spec.member : spec.fixed;
+}
+
+/// Sets a parameter; without effect for one that is fixed at build, or in no row.
+constexpr void set_value(Parameters& parameters, ParameterId id, double value) {
+    if (id.value < parameter_count && parameter_specs[id.value].member != nullptr)
+        parameters.*parameter_specs[id.value].member = value;
+}
+
+inline constexpr std::size_t parameter_rows_octets =
+    parameter_count * (packet::ParameterRow::octets - tm_overhead_octets);
+/// The table as a data product has it: each parameter as a packet::ParameterRow, by id.
+std::array<std::uint8_t, parameter_rows_octets> rows_of(const Parameters& parameters);
+
+/// The conditions under which a change may be staged: its row is there, may change, and has the value in its range.
+gnc::Conditions conditions_of(const command::EDL_STAGE_PARAMETER& change);
+/// Why a change is refused whose conditions do not hold.
+CommandRefusal refusal_of(const gnc::Conditions& conditions);
+
+class ParameterTable {
+  public:
+    explicit ParameterTable(const Parameters& built_in) : values_(built_in), built_in_(built_in) {}
+
+    const Parameters& values() const { return values_; }
+    std::uint16_t version() const { return version_; }  ///< ground's number; 0: as built in
+    std::size_t staged() const { return staged_count_; }
+
+    /// Room for a change of this parameter: a second change of the same one replaces the first.
+    bool has_room(ParameterId id) const;
+    void stage(ParameterId id, double value);
+    void discard() { staged_count_ = 0; }
+    /// Takes all staged changes into the table.
+    void activate(std::uint16_t version);
+
+    packet::ParameterTable report() const;
+
+    /// What is built in is left out: the other computer has the same.
+    template <typename Exchange>
+    void carry(Exchange& exchange) {
+        exchange(values_, version_, changes_, staged_count_, staged_);
+    }
+
+  private:
+    struct Change {
+        std::uint16_t id = 0;
+        double value = 0.0;
+
+        template <typename Exchange>
+        void carry(Exchange& exchange) {
+            exchange(id, value);
+        }
+    };
+    const Change* staged_of(ParameterId id) const;
+
+    Parameters values_, built_in_;
+    std::uint16_t version_ = 0;
+    std::uint16_t changes_ = 0;  ///< by which the version was made
+    std::uint16_t staged_count_ = 0;
+    std::array<Change, staged_changes_max> staged_{};
+};
+
+}  // namespace aeolis::flight

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "flight/edl/parameter_table.hpp"
+#include "simulation/limits.hpp"
+#include "tests/simulation/gale.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/recorded_events.hpp"
+#include "tests/support/shipped_dictionary.hpp"
+#include "tests/support/telecommands.hpp"
+
+#include <vector>
+
+namespace simulation_changed_parameters_test {
+
+using namespace aeolis;
+using namespace aeolis::simulation;
+namespace evr = flight::evr;
+namespace parameter = flight::parameter;
+
+// Landings by a table of parameters that ground has changed. R25
+namespace {
+
+struct Change {
+    ParameterId id;
+    double value;
+};
+
+void step(Landing& landing, int cycles) {
+    for (int i = 0; i < cycles; ++i) landing.step();
+}
+
+/// A commanded landing before GNC is enabled, to be forked. Second Chance may take over.
+Landing before_gnc(double until_e_s = -600.0) {
+    Landing landing{tests::gale_scenario(900.0), 1};
+    landing.uplink(test::set_parameters(landing.solution()));
+    step(landing, 64);
+    landing.uplink(test::enable_second_chance());
+    landing.uplink(test::do_edl());
+    while (landing.truth().e_s < until_e_s) landing.step();
+    return landing;
+}
+
+void change(Landing& landing, const std::vector<Change>& changes) {
+    for (const Change& one : changes) {
+        landing.uplink(test::stage_parameter(one.id, one.value));
+        step(landing, 16);
+    }
+    landing.uplink(test::activate_parameters(1, static_cast<std::uint16_t>(changes.size())));
+    step(landing, 32);
+    REQUIRE(tests::count_recorded<evr::PARAMETERS_ACTIVATED>(landing.recording()) == 1);
+}
+
+void land(Landing& landing) {
+    while (landing.outcome() == Outcome::running) landing.step();
+}
+
+/// Flies with one parameter changed, and demands that all is as it should be.
+void check_lands(const Landing& common, Change one) {
+    INFO(tests::shipped_dictionary().parameters[one.id.value].name << " = " << one.value);
+    Landing landing{common};
+    change(landing, {one});
+    land(landing);
+    const Judgement judgement = judge(tests::gale_scenario().limits, figures_of(landing));
+    INFO(reason_of(landing, judgement));
+    CHECK(judgement.verdict == Verdict::landed);
+    CHECK(tests::count_recorded<evr::SUB_CONSTRAINT_VIOLATED>(landing.recording()) == 0);
+}
+
+void check_both_ends(const Landing& common, ParameterId id) {
+    const flight::ParameterSpec& spec = flight::parameter_specs.at(id.value);
+    for (const double end : {spec.min, spec.max}) check_lands(common, {id, end});
+}
+
+constexpr Change slower_parachute{parameter::parachute_mach_max, 1.6};  // as built it opens at Mach 1.7
+
+}  // namespace
+
+TEST_CASE("a table of the values as built flies as built, bit for bit", "[simulation][parameters][R25][R48]") {
+    Landing as_built = before_gnc(), activated{as_built};
+    change(activated, {{parameter::guidance_gain, flight::Parameters{}.guidance_gain}});
+    land(as_built);
+    land(activated);
+    CHECK(as_built.truth().p_MoB_M_m == activated.truth().p_MoB_M_m);
+    CHECK(as_built.truth().v_MB_M_mps == activated.truth().v_MB_M_mps);
+    CHECK(as_built.sclk() == activated.sclk());
+}
+
+TEST_CASE("a changed parameter changes the flight, and only once it is activated", "[simulation][parameters][R25]") {
+    Landing landing = before_gnc();
+    change(landing, {slower_parachute, {parameter::sky_crane_descent_rate_mps, 0.65}});
+    landing.uplink(test::stage_parameter(parameter::parachute_mach_max, 2.2));  // and not activated
+    land(landing);
+    CHECK(landing.outcome() == Outcome::touchdown);
+    REQUIRE(landing.parachute());
+    CHECK(landing.parachute()->mach < 1.65);
+    REQUIRE(landing.touchdown());
+    CHECK(landing.touchdown()->vertical_mps < 0.70);
+}
+
+TEST_CASE("once GNC is enabled a parameter is refused, and the table can still be dumped",
+          "[simulation][parameters][R25][R30]") {
+    Landing landing = before_gnc(-500.0);
+    landing.uplink(test::stage_parameter(slower_parachute.id, slower_parachute.value));
+    step(landing, 32);
+    CHECK(tests::count_recorded<evr::COMMAND_REFUSED>(landing.recording()) == 1);
+    CHECK(tests::count_recorded<evr::PARAMETER_STAGED>(landing.recording()) == 0);
+    landing.uplink(test::dump_parameters());
+    step(landing, 64);
+    CHECK(tests::count_recorded<evr::COMMAND_REFUSED>(landing.recording()) == 1);
+    std::size_t parts = 0;
+    telemetry::PacketStream packets{landing.recording()};
+    while (const auto packet = packets.next())
+        if (read_tm_packet(*packet)->primary.apid == flight::packet::DataProduct::apid) ++parts;
+    constexpr std::size_t part_octets = std::tuple_size_v<decltype(flight::packet::DataProduct::content)>;
+    CHECK(parts == (flight::parameter_rows_octets + part_octets - 1) / part_octets);
+}
+
+TEST_CASE("prime that is restarted flies by the table that it had, and so does Second Chance when it takes over",
+          "[simulation][parameters][second_chance][R25][R32][R33]") {
+    for (const double reset_e_s : {-800.0, 100.0}) {
+        INFO("prime is reset at E" << reset_e_s);
+        Landing landing = before_gnc(-850.0);
+        change(landing, {slower_parachute});
+        while (landing.truth().e_s < reset_e_s) landing.step();
+        landing.reset_prime();
+        land(landing);
+        CHECK(landing.outcome() == Outcome::touchdown);
+        REQUIRE(landing.parachute());
+        CHECK(landing.parachute()->mach < 1.65);
+    }
+}
+
+TEST_CASE("a few parameters at either end of their ranges land within the limits", "[simulation][parameters][R25]") {
+    const Landing common = before_gnc();
+    for (const ParameterId id : {parameter::guidance_gain, parameter::constant_velocity_mps})
+        check_both_ends(common, id);
+}
+
+TEST_CASE("each parameter at either end of its range lands within the limits", "[.long][simulation][parameters][R25]") {
+    const Landing common = before_gnc();
+    for (std::uint16_t row = 0; row < flight::parameter_count; ++row)
+        if (flight::parameter_specs.at(row).member != nullptr) check_both_ends(common, ParameterId{row});
+}
+
+}  // namespace simulation_changed_parameters_test
