@@ -13,7 +13,7 @@ precision highp float;
 varying vec2 at;
 uniform vec3 right, up, forward, ground, groundDark, haze, space, ink;
 uniform vec2 reach, over, foot;
-uniform float height, radius, shown;
+uniform float height, radius, shown, raised;
 
 float hash(vec2 p) { p = fract(p * vec2(123.34, 345.45)); p += dot(p, p + 34.345); return fract(p.x * p.y); }
 float noise(vec2 p) {
@@ -22,7 +22,7 @@ float noise(vec2 p) {
   return mix(mix(hash(i), hash(i + vec2(1, 0)), f.x), mix(hash(i + vec2(0, 1)), hash(i + vec2(1, 1)), f.x), f.y);
 }
 void main() {
-  vec3 ray = normalize(forward + at.x * reach.x * right + at.y * reach.y * up);
+  vec3 ray = normalize(forward + at.x * reach.x * right + (at.y - raised) * reach.y * up);
   float b = ray.y * (radius + height), c = height * (2.0 * radius + height);
   float under = b * b - c;
   float thick = exp(-height / 18000.0); // chosen: how much of the air is still above
@@ -80,6 +80,7 @@ export class Ground {
       height: { value: 0 },
       radius: { value: 3391148 }, // [facts: Timeline]: the landing radius
       shown: { value: 0 },
+      raised: { value: 0 },
       ...Object.fromEntries(Object.keys(THEMES.dark).map((name) => [name, { value: new Color() }])),
     },
   });

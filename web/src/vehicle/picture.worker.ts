@@ -21,16 +21,21 @@ type Wanted = Extract<ToPicture, { type: 'scene' }>;
 
 const EASE_S = 0.22; // chosen: the picture follows within half a second, and does not jump
 const FRAME_MS = 33;
+const FRAME_EARLY_MS = 4; // frames are not exact to the millisecond
 const SOFTWARE_FRAME_MS = 120; // chosen: without a graphics processor a frame costs the processors that all else needs
 const FIELD_DEG = 32;
+const RAISED = 0.07; // chosen: the vehicle stands so much of the height above the middle, over the figures
 
-/** What the view holds, in metres: how tall, and how far below the vehicle's centre its middle is along its axis. */
-const VIEWS: Record<Scenery, { tall: number; below: number }> = {
-  cruise: { tall: 8.4, below: -0.3 },
-  entry: { tall: 9.2, below: 0 },
-  parachute: { tall: PARACHUTE.lines + 17, below: -(PARACHUTE.lines + 7) / 2 },
-  descent: { tall: 10.5, below: 0.9 },
-  crane: { tall: 15.5, below: 4.4 },
+/**
+ * What the view holds, in metres: how tall, and how far below the vehicle's centre its middle is along its axis.
+ * `arrow`: the length of the vectors, as a part of the height.
+ */
+const VIEWS: Record<Scenery, { tall: number; below: number; arrow: number }> = {
+  cruise: { tall: 9, below: -0.3, arrow: 0.3 },
+  entry: { tall: 9.4, below: 0, arrow: 0.36 },
+  parachute: { tall: PARACHUTE.lines + 22, below: -(PARACHUTE.lines + 7) / 2, arrow: 0.14 },
+  descent: { tall: 11, below: 0.9, arrow: 0.3 },
+  crane: { tall: 17.5, below: 4.2, arrow: 0.13 },
 };
 
 const say = (message: FromPicture) => self.postMessage(message);
@@ -55,6 +60,7 @@ class Picture {
   private wanted: Wanted | undefined;
   private fresh = true;
   private last_ms = 0;
+  private going = false;
 
   constructor(
     private readonly renderer: WebGLRenderer,
@@ -71,7 +77,7 @@ class Picture {
     this.renderer.setSize(size.width, size.height, false);
     this.camera.aspect = size.width / Math.max(1, size.height);
     this.camera.updateProjectionMatrix();
-    this.draw(true);
+    this.begin();
   }
 
   show(wanted: Wanted): void {
@@ -85,19 +91,19 @@ class Picture {
     this.begin();
   }
 
-  private going = false;
+  /** The browser calls when it can show another frame, so that a slow one never has frames waiting. */
   private begin(): void {
     if (this.going) return;
     this.going = true;
-    setTimeout(() => this.frame(), Math.max(0, this.every_ms - (performance.now() - this.last_ms)));
+    requestAnimationFrame((now_ms) => this.frame(now_ms));
   }
-  private frame(): void {
+  private frame(now_ms: number): void {
     this.going = false;
-    if (this.draw(false)) this.begin();
+    if (now_ms - this.last_ms < this.every_ms - FRAME_EARLY_MS || this.draw()) this.begin();
   }
 
   /** Returns whether the picture still moves towards what is wanted. */
-  private draw(again: boolean): boolean {
+  private draw(): boolean {
     const { wanted } = this;
     if (!wanted || this.size.width === 0) return false;
     const now_ms = performance.now();
@@ -108,7 +114,7 @@ class Picture {
     const moves = this.ease(part);
     this.compose();
     this.renderer.render(this.scene, this.camera);
-    return moves && !again;
+    return moves;
   }
 
   private ease(part: number): boolean {
@@ -190,23 +196,19 @@ class Picture {
     camera.position.y = Math.max(camera.position.y, 0.6 - height_m);
     camera.lookAt(middle);
     camera.updateMatrixWorld();
-
-    for (const [arrow, direction, length] of [
-      [vehicle.velocity, motion.velocity && this.velocity, 0.42],
-      [vehicle.lift, scenery === 'entry' ? motion.lift && this.lift : undefined, 0.42],
-    ] as const) {
-      arrow.group.visible = direction !== undefined && known;
-      if (direction)
-        arrow.point(
-          direction,
-          this.view.tall * length,
-          this.view.tall,
-          new Vector3(1, 0, 0).applyQuaternion(camera.quaternion),
-        );
-    }
+    const { width, height } = this.size;
+    camera.setViewOffset(width, height, 0, RAISED * height, width, height);
 
     const [right, up, forward] = [new Vector3(), new Vector3(), new Vector3()];
     camera.matrixWorld.extractBasis(right, up, forward);
+    for (const [arrow, direction] of [
+      [vehicle.velocity, motion.velocity && this.velocity],
+      [vehicle.lift, scenery === 'entry' ? motion.lift && this.lift : undefined],
+    ] as const) {
+      arrow.group.visible = direction !== undefined && known;
+      if (direction) arrow.point(direction, VIEWS[scenery].arrow, this.view.tall, right);
+    }
+
     ground.vector<Vector3>('right').copy(right);
     ground.vector<Vector3>('up').copy(up);
     ground.vector<Vector3>('forward').copy(forward).negate();
@@ -214,6 +216,7 @@ class Picture {
     ground.vector<Vector2>('reach').set(reach * camera.aspect, reach);
     ground.vector<Vector2>('over').set(this.over.x + camera.position.x, this.over.y + camera.position.z);
     ground.vector<Vector2>('foot').set(-camera.position.x, -camera.position.z);
+    ground.set('raised', 2 * RAISED);
     ground.set('height', height_m + camera.position.y);
     ground.set('shown', motion.altitude_m === undefined || !known ? 0 : 1);
     this.sky.intensity = colours.light ? 2.1 : 1.25;

@@ -258,7 +258,7 @@ function plume(): Mesh {
   geometry.translate(0, 0, 0.5);
   const z = geometry.getAttribute('position');
   const colours: number[] = [];
-  for (let i = 0; i < z.count; ++i) colours.push(0.72, 0.85, 1, z.getZ(i) < 0.5 ? 0.8 : 0);
+  for (let i = 0; i < z.count; ++i) colours.push(0.55, 0.76, 1, z.getZ(i) < 0.5 ? 0.6 : 0);
   geometry.setAttribute('color', new Float32BufferAttribute(colours, 4));
   return new Mesh(
     geometry,
@@ -276,18 +276,14 @@ function plume(): Mesh {
 class Arrow {
   readonly group = new Group();
   private readonly material = new MeshBasicMaterial();
+  private readonly shaft = new Mesh(new CylinderGeometry(0.0035, 0.0035, 1, 8), this.material);
+  private readonly head = new Mesh(new ConeGeometry(0.013, 0.04, 16), this.material);
   private readonly sprite = new Sprite(new SpriteMaterial({ depthTest: false, transparent: true }));
   private written = '';
   constructor(private readonly words: string) {
-    const shaft = new Mesh(new CylinderGeometry(0.012, 0.012, 1, 8), this.material);
-    shaft.rotation.z = -Math.PI / 2;
-    shaft.position.x = 0.5;
-    const head = new Mesh(new ConeGeometry(0.04, 0.12, 16), this.material);
-    head.rotation.z = -Math.PI / 2;
-    head.position.x = 1.04;
-    this.sprite.position.x = 1.16;
-    this.sprite.center.set(0, 0.5);
-    this.group.add(shaft, head, this.sprite);
+    this.shaft.rotation.z = -Math.PI / 2;
+    this.head.rotation.z = -Math.PI / 2;
+    this.group.add(this.shaft, this.head, this.sprite);
   }
   useColour(colour: string, font: string): void {
     this.material.color.set(colour);
@@ -304,12 +300,18 @@ class Arrow {
     this.sprite.material.map = new CanvasTexture(canvas);
     this.sprite.material.needsUpdate = true;
   }
-  /** Along a direction in the picture; the name keeps its size on the screen. */
-  point(direction: Vector3, length: number, inView: number, screenRight: Vector3): void {
+  /**
+   * Along a direction in the picture, as long as this part of a view so tall; shaft and name keep their size on the
+   * screen.
+   */
+  point(direction: Vector3, part: number, tall: number, screenRight: Vector3): void {
     this.group.quaternion.setFromUnitVectors(new Vector3(1, 0, 0), direction);
-    this.group.scale.setScalar(length);
-    const size = inView / length;
-    this.sprite.scale.set(size * 0.3, size * 0.056, 1);
+    this.group.scale.setScalar(tall);
+    this.shaft.scale.set(1, part, 1);
+    this.shaft.position.x = part / 2;
+    this.head.position.x = part;
+    this.sprite.position.x = part + 0.035;
+    this.sprite.scale.set(0.21, 0.0394, 1);
     this.sprite.center.set(direction.dot(screenRight) < -0.2 ? 0.42 : 0, 0.5);
   }
 }

@@ -20,7 +20,11 @@ import { figuresOf, rowsOf } from './rows';
 import './style.css';
 
 /** Who draws: 'asking' until the worker has answered. `why`: why it is flat. */
-type Renderer = { kind: 'asking' | 'space'; words: string } | { kind: 'flat'; words: string };
+interface Renderer {
+  kind: 'asking' | 'space' | 'flat';
+  words: string;
+  by?: string;
+}
 const renderer = signal<Renderer>({ kind: 'asking', words: '' });
 const KEPT = 'aeolis-vehicle';
 
@@ -57,7 +61,7 @@ function Space() {
     worker.onmessage = ({ data }: MessageEvent<FromPicture>) => {
       renderer.value =
         data.type === 'drawn'
-          ? { kind: 'space', words: `3-D${data.software ? ', without a graphics processor' : ''}: ${data.renderer}` }
+          ? { kind: 'space', words: `3-D${data.software ? ', without a graphics processor' : ''}`, by: data.renderer }
           : { kind: 'flat', words: `flat: no 3-D here (${data.why})` };
     };
     worker.onerror = () => (renderer.value = { kind: 'flat', words: 'flat: the worker that draws in 3-D failed' });
@@ -211,7 +215,7 @@ export function Vehicle() {
           full screen
         </button>
         {!result && (
-          <span data-testid="vehicle-renderer" title={renderer.value.words}>
+          <span data-testid="vehicle-renderer" title={renderer.value.by ?? renderer.value.words}>
             {renderer.value.kind === 'asking' ? 'drawn: not known yet' : renderer.value.words}
           </span>
         )}
