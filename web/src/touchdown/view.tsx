@@ -53,61 +53,70 @@ export function Touchdown() {
   const done = of.steps.filter(({ state }) => state === 'done').length;
   const miss = missOf(look, of.sclk);
   return (
-    <div class="touchdown" data-testid="touchdown" data-verdict={of.verdict}>
-      <h3 class={`status-${verdict.token}`}>
-        {verdict.shape} {verdict.words}{' '}
-        <span class="touchdown-when">
-          {fromEntry(of.sclk - look.run.entrySclk, { tenths: true })}, {done} of {of.steps.length} signals
-        </span>
-      </h3>
-      <dl class="touchdown-figures" data-testid="touchdown-figures">
-        {resultsOf(look, of.sclk).map(({ name, value, unit, note }) => (
-          <div key={name} title={note}>
-            <dt>{name}</dt>
-            <dd>
-              <output>{value}</output> {unit}
-              <small>{note}</small>
-            </dd>
-          </div>
-        ))}
-      </dl>
-      <ol class="touchdown-steps" data-testid="touchdown-steps">
-        {of.steps.map(({ name, state, words: evidence }) => (
-          <li key={name} data-state={state}>
-            <span class={`status-${LOOKS[state].token}`} title={LOOKS[state].word}>
-              {LOOKS[state].shape}
-            </span>
-            <span>
-              {name}
-              <small>{evidence}</small>
-            </span>
-          </li>
-        ))}
-      </ol>
-      <div class="touchdown-map">
-        {miss ? (
-          <Path points={[]} now={miss} stale={false} label="Touchdown and target from above" />
-        ) : (
-          <p>The place is not known.</p>
-        )}
-        <small>no ellipse: the server gives none for this run</small>
-      </div>
-      <div class="touchdown-next" data-testid="touchdown-next">
-        {restOf(look, pastRange.value === undefined).map((rest) => (
-          <p key={rest.words}>
-            {rest.part !== undefined && rest.part < 1 && (
-              <progress max={1} value={rest.part} aria-label="of the recording" />
-            )}{' '}
-            {rest.words}
+    <div class="touchdown-box">
+      <div
+        class="touchdown"
+        data-testid="touchdown"
+        data-verdict={of.verdict}
+        tabIndex={0}
+        role="region"
+        aria-label="touchdown"
+      >
+        <h3 class={`status-${verdict.token}`}>
+          {verdict.shape} {verdict.words}{' '}
+          <span class="touchdown-when">
+            {fromEntry(of.sclk - look.run.entrySclk, { tenths: true })}, {done} of {of.steps.length} signals
+          </span>
+        </h3>
+        <dl class="touchdown-figures" data-testid="touchdown-figures">
+          {resultsOf(look, of.sclk).map(({ name, value, unit, note }) => (
+            <div key={name} title={note}>
+              <dt>{name}</dt>
+              <dd>
+                <output>{value}</output> {unit}
+                <small>{note}</small>
+              </dd>
+            </div>
+          ))}
+        </dl>
+        <ol class="touchdown-steps" data-testid="touchdown-steps">
+          {of.steps.map(({ name, state, words: evidence }) => (
+            <li key={name} data-state={state} title={evidence}>
+              <span class={`status-${LOOKS[state].token}`} title={LOOKS[state].word}>
+                {LOOKS[state].shape}
+              </span>
+              <span>
+                {name}
+                <small>{evidence}</small>
+              </span>
+            </li>
+          ))}
+        </ol>
+        <div class="touchdown-map">
+          {miss ? (
+            <Path points={[]} now={miss} stale={false} label="Touchdown and target from above" />
+          ) : (
+            <p>The place is not known.</p>
+          )}
+          <small>no ellipse: the server gives none for this run</small>
+        </div>
+        <div class="touchdown-next" data-testid="touchdown-next">
+          {restOf(look, pastRange.value === undefined).map((rest) => (
+            <p key={rest.words}>
+              {rest.part !== undefined && rest.part < 1 && (
+                <progress max={1} value={rest.part} aria-label="of the recording" />
+              )}{' '}
+              {rest.words}
+            </p>
+          ))}
+          <p class="touchdown-links">
+            <Open panel="flown" keyName="f" words="as flown" run={look.run.id} />
+            <Open panel="verdicts" keyName="v" words="verdicts" run={look.run.id} />
+            <button type="button" class="quiet" onClick={toggleReplay}>
+              {pastRange.value ? 'leave the past' : 'replay'} <kbd>y</kbd>
+            </button>
           </p>
-        ))}
-        <p class="touchdown-links">
-          <Open panel="flown" keyName="f" words="as flown" run={look.run.id} />
-          <Open panel="verdicts" keyName="v" words="verdicts" run={look.run.id} />
-          <button type="button" class="quiet" onClick={toggleReplay}>
-            {pastRange.value ? 'leave the past' : 'replay'} <kbd>y</kbd>
-          </button>
-        </p>
+        </div>
       </div>
     </div>
   );

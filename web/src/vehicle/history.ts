@@ -61,14 +61,36 @@ export function once(run: RunStore, key: string, what: () => Promise<void>): voi
   what().catch(() => known.delete(key)); // the header says that there is no connection
 }
 
+/** Whether the parts of attitude and position are of different instants: thinned channel by channel. */
+export function isTorn(run: RunStore): boolean {
+  const all = [...VEHICLE.attitude, ...VEHICLE.position].map((name) => {
+    const channel = dictionary.value?.pick([name]);
+    return channel && run.live.get(channel.id);
+  });
+  const first = all[0];
+  return all.some(
+    (each) =>
+      each?.length !== first?.length ||
+      LOOKED_AT.some((part) => each?.sclk[index(each, part)] !== first?.sclk[index(first, part)]),
+  );
+}
+const LOOKED_AT = [0.5, 0.7, 0.9, 0.97];
+const index = (series: { length: number } | undefined, part: number) => Math.floor((series?.length ?? 0) * part);
+
+const AGAIN_MS = 2000; // chosen: the page's own history may come later and thin it anew; not more often than this
+let lastLive_ms = -Infinity;
+
 /** For the view: keeps what is shown at `sclk` in the store. `past`: the instant is not the newest of a running run. */
 export function useHistory(sclk: number, past: boolean): void {
   const run = runNow() && store.value;
   const part = Math.floor(sclk / WINDOW_S);
   const heard = asHeard.value;
   useEffect(() => {
-    if (run) once(run, 'live', () => fetchSamples(run, NAMES, run.run.startSclk, run.seenSclk, true));
-  }, [run]);
+    const now_ms = performance.now();
+    if (!run || now_ms - lastLive_ms < AGAIN_MS || !isTorn(run)) return;
+    lastLive_ms = now_ms;
+    void fetchSamples(run, NAMES, run.run.startSclk, run.seenSclk, true).catch(() => undefined); // asked again
+  });
   useEffect(() => {
     if (!run || !past || heard || !Number.isFinite(part)) return;
     for (const each of [part - 1, part, part + 1])

@@ -339,8 +339,8 @@ export function pathOf(look: Look): { east_m: number; north_m: number; recorded:
     const stride = Math.max(1, Math.ceil(end / MOST_POINTS));
     for (let i = (end - 1) % stride; i >= 0 && i < end; i += stride) {
       const sclk = x.sclk[i] as number;
-      const [by, bz] = [y.at(sclk + TOGETHER_S), z.at(sclk + TOGETHER_S)];
-      if (!by || !bz || sclk - by.sclk > TOGETHER_S || sclk - bz.sclk > TOGETHER_S) continue;
+      const [by, bz] = [y.at(sclk), z.at(sclk)];
+      if (by?.sclk !== sclk || bz?.sclk !== sclk) continue; // thinned: not one place
       points.push({ sclk, recorded, ...overGround([x.value[i] as number, by.value, bz.value], target) });
     }
   }

@@ -18,6 +18,7 @@ import {
   MeshBasicMaterial,
   MeshStandardMaterial,
   NormalBlending,
+  SRGBColorSpace,
   SphereGeometry,
   Sprite,
   SpriteMaterial,
@@ -298,6 +299,7 @@ class Arrow {
     context.fillText(this.words, 4, 24);
     this.sprite.material.map?.dispose();
     this.sprite.material.map = new CanvasTexture(canvas);
+    this.sprite.material.map.colorSpace = SRGBColorSpace;
     this.sprite.material.needsUpdate = true;
   }
   /**
