@@ -22,9 +22,11 @@ export function useTouchdownHistory(sclk: number | undefined): void {
   const run = runNow() && store.value;
   const live = asHeard.value;
   const complete = run?.run.relayProgress === 1;
+  // The page's own history thins what it brings, so that of the run comes first.
+  const known = run?.askedFor.has(TOUCHDOWN.flag) ?? false;
   useEffect(() => {
     if (!run || sclk === undefined) return;
-    const part = `touchdown ${sclk} ${live} ${complete}`;
+    const part = `touchdown ${sclk} ${live} ${complete} ${known}`;
     once(run, part, () => fetchSamples(run, NAMES, sclk - BEFORE_S, sclk + AFTER_S, live));
-  }, [run, sclk, live, complete]);
+  }, [run, sclk, live, complete, known]);
 }

@@ -16,13 +16,14 @@ import type { Presence, Scene, Scenery } from './model';
 import { rotated } from './vectors';
 import type { Vector } from './vectors';
 
-const VIEWS: Record<Scenery, { tall: number; below: number }> = {
-  cruise: { tall: 9, below: -0.3 },
-  entry: { tall: 10, below: 0 },
-  parachute: { tall: PARACHUTE.lines + 18, below: -(PARACHUTE.lines + 7) / 2 },
-  descent: { tall: 11, below: 0.9 },
-  crane: { tall: 15.5, below: 4.4 },
+const VIEWS: Record<Scenery, { tall: number; below: number; arrow: number }> = {
+  cruise: { tall: 9, below: -0.3, arrow: 0.3 },
+  entry: { tall: 10, below: 0, arrow: 0.36 },
+  parachute: { tall: PARACHUTE.lines + 34, below: -PARACHUTE.lines / 2 - 1, arrow: 0.11 },
+  descent: { tall: 11, below: 0.9, arrow: 0.3 },
+  crane: { tall: 17.5, below: 4.2, arrow: 0.13 },
 };
+const RAISED = 0.07; // chosen: the vehicle stands so much of the height above the middle, over the figures
 const GROUND = { dark: ['#5f3e30', '#0d131c', '#6b5243'], light: ['#c79f84', '#dfe7f0', '#ecdccb'] } as const;
 const AIR_M = 18000; // as in the other picture: how much of the air is still above
 
@@ -36,7 +37,10 @@ export function drawFlat({ context: c, width, height, colours }: Surface, scene:
   const down: [number, number] = motion.attitude ? flat(rotated(motion.attitude, [0, 0, 1])) : [0, 1];
   const turn = Math.atan2(down[1], down[0]);
   const wheels_m = wheelsBelow_m(scene.bridle_m ?? 0);
-  const [x0, y0] = [width / 2 - Math.cos(turn) * view.below * px, height / 2 - Math.sin(turn) * view.below * px];
+  const [x0, y0] = [
+    width / 2 - Math.cos(turn) * view.below * px,
+    height * (0.5 - RAISED) - Math.sin(turn) * view.below * px,
+  ];
 
   drawBackground(c, width, height, colours.name === 'light', known ? motion.altitude_m : undefined, () => {
     const altitude = Math.max(motion.altitude_m ?? Infinity, scene.bridle_m ? wheels_m : 0);
@@ -138,10 +142,10 @@ export function drawFlat({ context: c, width, height, colours }: Surface, scene:
     shape(box(0.12, -0.2 + 0.3 * i, 0.3 * i, 0.2 - AEROSHELL.radius), mass, '#5d6a78');
   c.restore();
 
-  const reach = view.tall * 0.4 * px;
+  const reach = view.tall * view.arrow * px;
   arrow(
     c,
-    [width / 2, height / 2],
+    [x0, y0],
     motion.velocity && known ? flat(motion.velocity) : undefined,
     reach,
     colours.accent,
@@ -150,7 +154,7 @@ export function drawFlat({ context: c, width, height, colours }: Surface, scene:
   );
   arrow(
     c,
-    [width / 2, height / 2],
+    [x0, y0],
     motion.lift && known && scenery === 'entry' ? flat(motion.lift) : undefined,
     reach,
     colours.text,

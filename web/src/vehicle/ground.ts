@@ -4,6 +4,8 @@
 // nothing. The rings are 10 m, 100 m, 1 km, … from the point below the vehicle.
 import { BufferGeometry, Color, Float32BufferAttribute, Mesh, ShaderMaterial, Vector2, Vector3 } from 'three';
 
+export const RADIUS_M = 3391148; // [od137]: the landing radius
+
 const vertexShader = `
 varying vec2 at;
 void main() { at = position.xy; gl_Position = vec4(position.xy, 1.0, 1.0); }`;
@@ -78,7 +80,7 @@ export class Ground {
       over: { value: new Vector2() },
       foot: { value: new Vector2() },
       height: { value: 0 },
-      radius: { value: 3391148 }, // [facts: Timeline]: the landing radius
+      radius: { value: RADIUS_M },
       shown: { value: 0 },
       raised: { value: 0 },
       ...Object.fromEntries(Object.keys(THEMES.dark).map((name) => [name, { value: new Color() }])),

@@ -313,7 +313,7 @@ export function sceneOf(look: Look): Scene {
 export function missingOf({ parts, motion, bridle_m }: Scene): string[] {
   return [
     ...(parts.descentStage === 'unknown' ? ['configuration not received yet'] : []),
-    ...(motion.attitude ? [] : ['attitude not received yet: drawn upright, as it may not fly']),
+    ...(motion.attitude ? [] : ['attitude not received yet: drawn upright and hollow']),
     ...(motion.altitude_m === undefined ? ['altitude not received yet: no ground is drawn'] : []),
     ...(motion.velocity ? [] : ['velocity not received yet']),
     ...(bridle_m === undefined ? ['bridle not received: the rover is not drawn'] : []),

@@ -73,14 +73,14 @@ export function Path({ points, now, stale, label }: Properties) {
         <path key={i} d={d} class={recorded ? 'path-recorded' : 'path-live'} />
       ))}
       {now && <circle cx={x(now.east_m)} cy={-x(now.north_m)} r="4" class={stale ? 'path-old' : 'path-now'} />}
-      <text x="0" y="16" text-anchor="middle">
+      <text class="path-word" x="0" y="16" text-anchor="middle">
         target
       </text>
       <path d={`M${-HALF + 8} ${HALF - 8}h${x(bar)}m0-3v6m${-x(bar)}-6v6`} class="path-bar" />
       <text x={-HALF + 8} y={HALF - 14}>
         {lengthWords(bar)}
       </text>
-      <text x={HALF - 8} y={-HALF + 16} text-anchor="end">
+      <text class="path-word" x={HALF - 8} y={-HALF + 16} text-anchor="end">
         ↑ N
       </text>
       {stale && (

@@ -12,7 +12,7 @@ import {
   WebGLRenderer,
 } from 'three';
 import { PARACHUTE, wheelsBelow_m } from './geometry';
-import { Ground } from './ground';
+import { Ground, RADIUS_M } from './ground';
 import type { FromPicture, ToPicture } from './messages';
 import type { Scenery } from './model';
 import { Vehicle } from './shapes';
@@ -33,7 +33,7 @@ const RAISED = 0.07; // chosen: the vehicle stands so much of the height above t
 const VIEWS: Record<Scenery, { tall: number; below: number; arrow: number }> = {
   cruise: { tall: 9, below: -0.3, arrow: 0.3 },
   entry: { tall: 9.4, below: 0, arrow: 0.36 },
-  parachute: { tall: PARACHUTE.lines + 22, below: -(PARACHUTE.lines + 7) / 2, arrow: 0.14 },
+  parachute: { tall: PARACHUTE.lines + 34, below: -PARACHUTE.lines / 2 - 1, arrow: 0.11 },
   descent: { tall: 11, below: 0.9, arrow: 0.3 },
   crane: { tall: 17.5, below: 4.2, arrow: 0.13 },
 };
@@ -183,7 +183,9 @@ class Picture {
     const far = scenery === 'parachute' ? distance : distance * Math.max(1, 0.95 / camera.aspect);
     const ahead = new Vector3(Math.sin(this.heading), 0, -Math.cos(this.heading));
     const side = new Vector3().crossVectors(ahead, new Vector3(0, 1, 0));
-    const raised = scenery === 'entry' || scenery === 'cruise' ? 0.16 : 0.1;
+    // From high up the horizon is far below: the view follows it, so that it stays in sight.
+    const dip = Math.acos(RADIUS_M / (RADIUS_M + Math.max(0, this.altitude_m)));
+    const raised = 0.1 + 0.9 * Math.tan(dip);
     const from = side
       .clone()
       .addScaledVector(ahead, scenery === 'entry' ? 0.5 : 0.18)
@@ -230,6 +232,7 @@ let picture: Picture | undefined;
 
 function begin(canvas: OffscreenCanvas): void {
   try {
+    if (!new OffscreenCanvas(1, 1).getContext('webgl2')) throw new Error('the browser gives no WebGL');
     const renderer = new WebGLRenderer({ canvas, antialias: true, powerPreference: 'low-power' });
     const gl = renderer.getContext();
     const told = gl.getExtension('WEBGL_debug_renderer_info');

@@ -259,7 +259,7 @@ function plume(): Mesh {
   geometry.translate(0, 0, 0.5);
   const z = geometry.getAttribute('position');
   const colours: number[] = [];
-  for (let i = 0; i < z.count; ++i) colours.push(0.55, 0.76, 1, z.getZ(i) < 0.5 ? 0.6 : 0);
+  for (let i = 0; i < z.count; ++i) colours.push(0.55, 0.76, 1, z.getZ(i) < 0.5 ? 0.45 : 0);
   geometry.setAttribute('color', new Float32BufferAttribute(colours, 4));
   return new Mesh(
     geometry,
