@@ -13,7 +13,7 @@ import {
   wheelsBelow_m,
 } from './geometry';
 import type { Presence, Scene, Scenery } from './model';
-import { rotated } from './vectors';
+import { rotated, unit } from './vectors';
 import type { Vector } from './vectors';
 
 const VIEWS: Record<Scenery, { tall: number; below: number; arrow: number }> = {
@@ -24,7 +24,10 @@ const VIEWS: Record<Scenery, { tall: number; below: number; arrow: number }> = {
   crane: { tall: 17.5, below: 4.2, arrow: 0.13 },
 };
 const RAISED = 0.07; // chosen: the vehicle stands so much of the height above the middle, over the figures
-const GROUND = { dark: ['#5f3e30', '#0d131c', '#6b5243'], light: ['#c79f84', '#dfe7f0', '#ecdccb'] } as const;
+const GROUND = {
+  dark: ['#5f3e30', '#0d131c', '#6b5243', '#4d3228'],
+  light: ['#c79f84', '#dfe7f0', '#ecdccb', '#b1886e'],
+} as const; // ground far off, space, haze, ground below the vehicle
 const AIR_M = 18000; // as in the other picture: how much of the air is still above
 
 export function drawFlat({ context: c, width, height, colours }: Surface, scene: Scene): void {
@@ -146,7 +149,7 @@ export function drawFlat({ context: c, width, height, colours }: Surface, scene:
   arrow(
     c,
     [x0, y0],
-    motion.velocity && known ? flat(motion.velocity) : undefined,
+    motion.velocity && known ? flat(unit(motion.velocity)) : undefined,
     reach,
     colours.accent,
     'velocity',
@@ -171,12 +174,13 @@ function drawBackground(
   altitude_m: number | undefined,
   groundAt: () => number | undefined,
 ): void {
-  const [soil, space, haze] = GROUND[light ? 'light' : 'dark'];
+  const [soil, space, haze, near] = GROUND[light ? 'light' : 'dark'];
   c.fillStyle = space;
   c.fillRect(0, 0, width, height);
   if (altitude_m === undefined) return;
   const thick = Math.exp(-altitude_m / AIR_M);
-  const horizon = groundAt() ?? height * (0.62 + 0.25 * (1 - thick));
+  const horizon = height * (0.6 + 0.25 * (1 - thick));
+  const ground = groundAt();
   const sky = c.createLinearGradient(0, horizon - height * (0.15 + 0.85 * thick), 0, horizon);
   sky.addColorStop(0, space);
   sky.addColorStop(1, haze);
@@ -184,8 +188,12 @@ function drawBackground(
   c.fillRect(0, 0, width, horizon);
   c.fillStyle = soil;
   c.fillRect(0, horizon, width, height - horizon);
+  if (ground === undefined || ground >= height) return;
+  c.fillStyle = near;
+  c.fillRect(0, ground, width, height - ground);
 }
 
+/** `way`: a unit vector as seen in the picture, short where it points towards the viewer or away. */
 function arrow(
   c: CanvasRenderingContext2D,
   [x, y]: [number, number],
@@ -198,7 +206,7 @@ function arrow(
   const size = way && Math.hypot(...way);
   if (!way || !size) return;
   const [dx, dy] = [way[0] / size, way[1] / size];
-  const [tx, ty] = [x + dx * reach, y + dy * reach];
+  const [tx, ty] = [x + way[0] * reach, y + way[1] * reach];
   c.strokeStyle = c.fillStyle = colour;
   c.lineWidth = 2;
   c.beginPath();

@@ -123,11 +123,7 @@ function Stage({ look }: { look: Look }) {
     <div class={`vehicle-stage ${stale ? 'is-old' : ''}`} data-testid="vehicle-stage" data-scenery={scene.scenery}>
       {!empty && (renderer.value.kind === 'flat' ? <Flat /> : <Space />)}
       <ul class="vehicle-said" data-testid="vehicle-said">
-        {stale && (
-          <li>
-            {STATUS.stale.shape} as last heard, {stale.replace(STATUS.stale.shape, '').trim()} ago
-          </li>
-        )}
+        {stale && <li>{`${STATUS.stale.shape} as last heard, ${stale.replace(STATUS.stale.shape, '').trim()} ago`}</li>}
         {missing.map((words) => (
           <li key={words}>
             {STATUS.unknown.shape} {words}
@@ -137,9 +133,9 @@ function Stage({ look }: { look: Look }) {
       <dl class="vehicle-figures" data-testid="vehicle-figures">
         {figuresOf(look, scene.motion).map(({ name, value, unit, note, age }) => (
           <div key={name} class={age ? 'old' : ''}>
-            <dt>{name}</dt>
+            <dt>{unit === '' ? name : `${name}, ${unit}`}</dt>
             <dd>
-              <output>{value}</output> {unit}
+              <output>{value}</output>
               <small>{age ?? note}</small>
             </dd>
           </div>
