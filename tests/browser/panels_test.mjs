@@ -31,7 +31,7 @@ const SHOWN = {
   recorded: /A range of this run/,
   rehearsal: /Review of run 1/,
   campaigns: /No campaign lies beside this archive/,
-  vehicle: /Touchdown reported[^]*✓\s+touchdown told[^]*from the target[^]*The recording is complete/,
+  vehicle: /Touchdown reported[^]*from the target[^]*✓\s+touchdown told[^]*The recording is complete/,
   users: /This server runs without accounts/,
 };
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Measures of the vehicle in metres, in B: z towards the heatshield, down in powered descent. Both pictures use them.
-// From [facts: Vehicle] are the aeroshell's diameter and cone, the parachute, the bridle and the number of engines;
+// From [facts] are the aeroshell's diameter and cone, the parachute, the bridle and the number of engines;
 // the engines' places are those of flight's own mounts. The rest is our drawing, marked "drawn".
 
 export const AEROSHELL = {
-  radius: 2.25, // facts: 4.5 m across
-  cone_deg: 70, // facts: 70° sphere-cone
+  radius: 2.25, // [facts] 4.5 m across
+  cone_deg: 70, // [facts] 70° sphere-cone
   nose_z: 1.5, // drawn
   nose_radius: 1.125, // drawn: half of the radius, as on sphere-cones of its family
   shoulder_z: 0.78, // drawn
@@ -15,8 +15,8 @@ export const AEROSHELL = {
 export const CRUISE_STAGE = { radius: 2.1, z: -1.75, height: 0.5 } as const; // drawn
 
 export const PARACHUTE = {
-  lines: 50, // facts: lines of more than 50 m
-  radius: 7.5, // drawn: a disk-gap-band of 21.35 m nominal diameter (facts) opens to about 0.7 of it
+  lines: 50, // [facts] lines of more than 50 m
+  radius: 7.5, // drawn: a disk-gap-band of 21.35 m nominal diameter [facts] opens to about 0.7 of it
   dome: 3.4, // drawn
   gap: 0.9, // drawn
   band: 2.5, // drawn

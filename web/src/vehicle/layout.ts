@@ -76,7 +76,7 @@ export const TOUCHDOWN = {
    */
   roverRates_dps: [] as readonly string[],
   roverAcceleration_g: [] as readonly string[],
-  gravity_g: 0.378, // 3.71 m/s² at Gale [facts: Mars]; chosen: of the magnitude, since the slope is not known
+  gravity_g: 0.378, // 3.71 m/s² at Gale [facts]; chosen: of the magnitude, since the slope is not known
   /** Chosen: well above the noise of a gyro at rest, well below a wheel that sinks or slides. */
   stillRate_dps: 0.5,
   stillAcceleration_g: 0.02,
