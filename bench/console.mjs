@@ -439,6 +439,7 @@ async function zoomAt(long) {
 
 /** The panel of the vehicle while a landing runs: under the parachute at pace 1, from there to the ground at pace 10. */
 async function vehicle() {
+  await fetch(`${server.address}/api/v1/rehearsals/current`, { method: 'POST', body: '{"pause":true}' });
   const landing = await serve({
     archive: path.join(folder, 'vehicle.db'),
     more: ['--scenario', 'nominal_auto', '--pace', '100'],
@@ -447,7 +448,7 @@ async function vehicle() {
   const control = (body) =>
     fetch(`${landing.address}/api/v1/rehearsals/current`, { method: 'POST', body: JSON.stringify(body) });
   try {
-    await flyTo(landing, VEHICLE_FROM_E_S);
+    for (const e_s of [-600, 0, VEHICLE_FROM_E_S]) await flyTo(landing, e_s);
     for (const [pace, seconds] of [
       [1, LIVE_S],
       [10, VEHICLE_FAST_S],

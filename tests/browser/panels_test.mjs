@@ -73,6 +73,7 @@ test('the console, its timeline and plots, its channels and its command line com
   await page.setViewportSize({ width: 1600, height: 900 });
   await page.goto(server.address);
   await shows('waiting', /Landed/);
+  await shows('touchdown-figures', /from the target\s+\d/);
   different.push(...(await comesToLook(page, 'console_dark', page)));
   assert.deepEqual(different, []);
   assert.deepEqual(problems, []);
