@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The console beside a bare uPlot page and Open MCT, on the same load from the same server: 64 Hz x 30 channels live, 8 of them plotted.
-//   node bench/console.mjs      AEOLIS_FULL=1: heap over ten minutes instead of one     AEOLIS_PARTS=first,live,heap,ranges,pace,zoom
+//   node bench/console.mjs      AEOLIS_FULL=1: heap over ten minutes instead of one     AEOLIS_PARTS=first,live,heap,ranges,pace,zoom,vehicle
 // Needs npm ci and npm run build in web/, npm ci in web/openmct/. The ratios and limits are the goals; what the machine does beside moves the rest.
 import { spawnSync } from 'node:child_process';
 import { cpSync, readFileSync, readdirSync, writeFileSync } from 'node:fs';
 import path from 'node:path';
 import { gzipSync } from 'node:zlib';
-import { browser, program, root, serve, temporaryFolder, waitFor } from '../tests/browser/support.mjs';
+import { browser, flyTo, program, root, serve, temporaryFolder, waitFor } from '../tests/browser/support.mjs';
 import { serve as serveOpenMct } from '../web/openmct/serve.mjs';
 
 if (!globalThis.WebSocket) {
@@ -18,7 +18,7 @@ if (!globalThis.WebSocket) {
   );
 }
 
-const PARTS = (process.env.AEOLIS_PARTS ?? 'first,live,heap,ranges,pace,zoom').split(',');
+const PARTS = (process.env.AEOLIS_PARTS ?? 'first,live,heap,ranges,pace,zoom,vehicle').split(',');
 const COLD_STARTS = 5;
 const LIVE_S = 20;
 const HEAP_S = process.env.AEOLIS_FULL ? 600 : 60;
@@ -26,6 +26,8 @@ const HEAP_WARM_S = 120; // by then every channel that is not drawn holds as muc
 const RANGES = 20;
 const HISTORY_S = 150; // flown before anything is measured
 const CHANNELS = Array.from({ length: 8 }, (_, i) => `wideband_0${i + 1}`);
+const VEHICLE_FROM_E_S = 262;
+const VEHICLE_FAST_S = 15; // from under the parachute to the sky crane
 const SIZE = { width: 1600, height: 900 };
 
 const median = (all) => [...all].sort((a, b) => a - b)[Math.floor(all.length / 2)];
@@ -435,6 +437,65 @@ async function zoomAt(long) {
   await close();
 }
 
+/** The panel of the vehicle while a landing runs: under the parachute at pace 1, from there to the ground at pace 10. */
+async function vehicle() {
+  await fetch(`${server.address}/api/v1/rehearsals/current`, { method: 'POST', body: '{"pause":true}' });
+  const landing = await serve({
+    archive: path.join(folder, 'vehicle.db'),
+    more: ['--scenario', 'nominal_auto', '--pace', '100'],
+    web,
+  });
+  const control = (body) =>
+    fetch(`${landing.address}/api/v1/rehearsals/current`, { method: 'POST', body: JSON.stringify(body) });
+  try {
+    for (const e_s of [-600, 0, VEHICLE_FROM_E_S]) await flyTo(landing, e_s);
+    for (const [pace, seconds] of [
+      [1, LIVE_S],
+      [10, VEHICLE_FAST_S],
+    ]) {
+      const { page, cdp, close } = await cold('?panel=vehicle', [], landing.address);
+      await waitFor(() => page.getByTestId('vehicle-renderer').innerText(), /3-D|flat/);
+      await pause(4000);
+      await page.evaluate(watchFrames);
+      await page.evaluate(watchShifts);
+      await control({ pause: false, pace });
+      await cdp.send('Performance.enable');
+      const busy = async () =>
+        (await cdp.send('Performance.getMetrics')).metrics.find((each) => each.name === 'TaskDuration').value;
+      const [before, began] = [await busy(), performance.now()];
+      await pause(seconds * 1000);
+      const share = ((await busy()) - before) / ((performance.now() - began) / 1000);
+      await control({ pause: true });
+      const { long, shifts } = await page.evaluate(() => ({ long: window.long, shifts: window.shifts }));
+      const drawn = await page.getByTestId('vehicle-renderer').innerText();
+      row(
+        `vehicle at pace ${pace}, ${drawn}: main thread over ${seconds} s`,
+        `${(share * 100).toFixed(1)} %`,
+        '≤ 15',
+        share <= 0.15,
+      );
+      row(
+        '  tasks over 50 ms; layout shift',
+        `${long.length}${long.length ? `, longest ${Math.max(...long).toFixed(0)} ms` : ''}; ${shifts}`,
+        'none; 0',
+        long.length === 0 && shifts === 0,
+      );
+      await close();
+    }
+  } finally {
+    await landing.stop();
+  }
+}
+
+/** In the page: how much the panel's own parts shift. */
+function watchShifts() {
+  window.shifts = 0;
+  new PerformanceObserver((list) => {
+    for (const { value, sources } of list.getEntries())
+      if (sources.some(({ node }) => node?.parentElement?.closest('main'))) window.shifts += value;
+  }).observe({ type: 'layout-shift' });
+}
+
 try {
   const assets = path.join(root, 'web/dist/assets');
   const html = readFileSync(path.join(root, 'web/dist/index.html'), 'utf8');
@@ -450,7 +511,7 @@ try {
   );
   await setPace(1);
   await pause(3000);
-  const parts = { first: firstPoints, live, heap, ranges, pace: highestPace, zoom };
+  const parts = { first: firstPoints, live, heap, ranges, pace: highestPace, zoom, vehicle };
   for (const name of PARTS) await parts[name]();
   console.log(
     `\n${CHANNELS.length} plots, scenario bench_wideband, ${SIZE.width} x ${SIZE.height}, load average of the machine at the end ${readFileSync('/proc/loadavg', 'utf8').split(' ').slice(0, 2).join(' ')}\n`,

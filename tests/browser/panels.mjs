@@ -19,5 +19,6 @@ export const PANELS = [
   'recorded',
   'rehearsal',
   'campaigns',
+  'vehicle',
   'users',
 ];

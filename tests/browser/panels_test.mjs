@@ -14,7 +14,7 @@ const SCRIPT_KB = 150;
 /** A text in each panel that only this landing could produce. */
 const SHOWN = {
   timeline: /(\d+) of \1 timepoints fired/,
-  descent: /at touchdown[^]*the rover hangs below/,
+  descent: /Touchdown reported[^]*2 of 3 signals/,
   phases: /✓ Cruise[^]*▶ Landed/,
   tones: /Last tone, E\+\d\d:\d\d/,
   plots: /Altitude[^]*\d km[^]*Deceleration[^]*\d g/,
@@ -31,6 +31,7 @@ const SHOWN = {
   recorded: /A range of this run/,
   rehearsal: /Review of run 1/,
   campaigns: /No campaign lies beside this archive/,
+  vehicle: /Touchdown reported[^]*from the target[^]*✓\s+touchdown told[^]*The recording is complete/,
   users: /This server runs without accounts/,
 };
 
@@ -72,6 +73,7 @@ test('the console, its timeline and plots, its channels and its command line com
   await page.setViewportSize({ width: 1600, height: 900 });
   await page.goto(server.address);
   await shows('waiting', /Landed/);
+  await shows('touchdown-figures', /from the target\s+\d/);
   different.push(...(await comesToLook(page, 'console_dark', page)));
   assert.deepEqual(different, []);
   assert.deepEqual(problems, []);

@@ -69,7 +69,8 @@ export async function serve({ archive, port = 0, more = [], web = path.join(root
   };
 }
 
-export async function browser() {
+/** `more`: further arguments of the browser. */
+export async function browser(more = []) {
   return chromium.launch({
     executablePath: process.env.AEOLIS_CHROMIUM ?? '/usr/bin/chromium',
     args: [
@@ -81,6 +82,7 @@ export async function browser() {
       '--disable-background-networking',
       '--disable-component-update',
       '--disable-sync',
+      ...more,
     ],
   });
 }

@@ -42,6 +42,7 @@ const DATA = {
   recorded: openedLater(async () => (await import('./recorded/view')).Recorded),
   rehearsal: Rehearsal,
   campaigns: openedLater(async () => (await import('./campaigns/view')).Campaigns),
+  vehicle: openedLater(async () => (await import('./vehicle/view')).Vehicle),
 };
 
 function Data() {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The default layout, the only file that knows names of a mission. Each pick lists names in order of preference. If the
+// The default layout: with vehicle/layout.ts, which is loaded with its panel, all that knows names of a mission. Each pick lists names in order of preference. If the
 // dictionary has none of them, the panel does without or takes the first channels.
 
 export const LAYOUT = {

@@ -107,6 +107,7 @@ test('after landing height and speed say whose they are, and no word of the desc
   await shows('waiting', /Landed/);
   await shows('whose-altitude', /descent stage/);
   await shows('whose-speed', /descent stage/);
+  await page.getByTestId('descent-result').click(); // from the result back to the picture
   await shows('descent-whose', /descent stage, the rover hangs below it/);
   await shows('channel-altitude_m', /altitude_m, descent stage/);
   const found = [];

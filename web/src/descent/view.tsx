@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The descent in one picture: altitude against speed.
+import type { ComponentChildren } from 'preact';
 import { Canvas } from '../draw/canvas';
 import type { Surface } from '../draw/canvas';
 import { LAYOUT } from '../layout';
+import { openedLater } from '../design/opened_later';
 import { Panel } from '../design/panel';
 import { STATUS } from '../design/status';
 import { staleWords } from '../channels/model';
@@ -10,6 +12,7 @@ import { isLost } from '../run/connection';
 import { cutoff, dictionary, runNow, shownRun, tick, timepoints, withRecording } from '../run/shown';
 import type { RunStore } from '../run/store';
 import { landedSclk } from '../run/whose';
+import { resultShown, touchedDown } from '../touchdown/shown';
 import { isImportant, outages, shortTitle } from '../timeline/model';
 import { phaseSteps } from '../phases/model';
 import { GAP_S } from '../plots/model';
@@ -366,7 +369,26 @@ const PLACES = {
   below: { status: STATUS.caution, words: 'below the predicted corridor: lower or faster' },
 } as const;
 
+const Result = openedLater(async () => (await import('../touchdown/view')).Touchdown);
+
+/** The descent, and from touchdown on its result in the same place. */
 export function Descent() {
+  const landed = touchedDown();
+  const choose = landed && (
+    <button type="button" onClick={() => (resultShown.value = !resultShown.value)} data-testid="descent-result">
+      {resultShown.value ? 'the descent' : 'the result'}
+    </button>
+  );
+  return landed && resultShown.value ? (
+    <Panel name="descent" title="Touchdown" extra={choose}>
+      <Result />
+    </Panel>
+  ) : (
+    <Picture choose={choose} />
+  );
+}
+
+function Picture({ choose }: { choose: ComponentChildren }) {
   const run = runNow();
   const until = lastInstant(run, cutoff.value);
   const words = dictionary.value;
@@ -389,6 +411,7 @@ export function Descent() {
       extra={
         <>
           {whose !== undefined && <span>at touchdown</span>}
+          {choose}
           {place && (
             <span class={`status-${PLACES[place].status.token}`} data-testid="descent-place">
               {PLACES[place].status.shape} {PLACES[place].words}

@@ -25,10 +25,12 @@ export type Tab =
   | 'campaigns'
   | 'alarms'
   | 'notes'
-  | 'users';
+  | 'users'
+  | 'vehicle';
 export const tab = signal<Tab>('channels');
 export const TABS: { id: Tab; title: string; key: string; words: string }[] = [
   { id: 'channels', title: 'Channels', key: 'c', words: 'channels: values, ages, limits' },
+  { id: 'vehicle', title: 'Vehicle', key: 'm', words: 'the moving picture of the vehicle' },
   { id: 'alarms', title: 'Alarms', key: 'a', words: 'alarms: acknowledge, shelve, reset' },
   { id: 'notes', title: 'Notes', key: 'n', words: 'shift log: write, search' },
   { id: 'packets', title: 'Packets', key: 'k', words: 'packets: octets and fields' },

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+// The part of the default layout (../layout.ts) that only the vehicle and the touchdown need; loaded with them, so that
+// the page's first load stays small. Like there, each pick lists names in order of preference.
+
+/** One thing that happens to the vehicle, and every channel or timepoint that can tell of it. */
+export interface Telling {
+  flag?: string; // 1 once it has happened, as flight believes
+  pyros?: readonly string[]; // all of them have fired
+  timepoint?: string;
+}
+
+export const VEHICLE = {
+  attitude: ['nav_attitude_w', 'nav_attitude_x', 'nav_attitude_y', 'nav_attitude_z'], // from B to M
+  position: ['nav_position_x_m', 'nav_position_y_m', 'nav_position_z_m'], // in M
+  velocity: ['nav_velocity_x_mps', 'nav_velocity_y_mps', 'nav_velocity_z_mps'], // in M
+  bank: ['bank_deg'],
+  mode: ['descent_mode'],
+  thrust: ['engine_thrust_N', 'thrust_command_N'],
+  throttles: [
+    'throttle_1_percent',
+    'throttle_2_percent',
+    'throttle_3_percent',
+    'throttle_4_percent',
+    'throttle_5_percent',
+    'throttle_6_percent',
+    'throttle_7_percent',
+    'throttle_8_percent',
+  ],
+  bridle: ['bridle_m'],
+  propellant: ['propellant_kg'],
+  descentRate: ['descent_rate_mps'],
+  horizontalSpeed: ['horizontal_speed_mps'],
+
+  /** The label of a pyro's channel once it has fired, and those by which it has not. */
+  fired: 'fired',
+  notFired: ['not_commanded', 'refused', 'unanswered'],
+  happenings: {
+    cruiseStageGone: {
+      flag: 'cruise_stage_gone',
+      pyros: ['pyro_cruise_stage_separation'],
+      timepoint: 'cruise_stage_separation',
+    },
+    cruiseMass1Gone: { pyros: ['pyro_cruise_balance_1'], timepoint: 'cruise_balance_1' },
+    cruiseMass2Gone: { pyros: ['pyro_cruise_balance_2'], timepoint: 'cruise_balance_2' },
+    entryMasses1Gone: { pyros: ['pyro_entry_balance_1'], timepoint: 'balance_1' },
+    entryMasses2Gone: { pyros: ['pyro_entry_balance_2'], timepoint: 'balance_2' },
+    entryMasses3Gone: { pyros: ['pyro_entry_balance_3'], timepoint: 'balance_3' },
+    parachuteOut: { flag: 'parachute_out', pyros: ['pyro_parachute_mortar'], timepoint: 'parachute_deploy' },
+    heatshieldGone: {
+      flag: 'heatshield_gone',
+      pyros: ['pyro_heatshield_separation'],
+      timepoint: 'heatshield_separation',
+    },
+    backshellGone: { flag: 'backshell_gone', pyros: ['pyro_backshell_separation'], timepoint: 'backshell_separation' },
+    skyCrane: { flag: 'sky_crane_started', timepoint: 'sky_crane' },
+    roverSeparated: { flag: 'rover_separated', pyros: ['pyro_rover_separation'], timepoint: 'rover_separation' },
+    bridleGone: { flag: 'bridle_gone', pyros: ['pyro_bridle_cutter'], timepoint: 'bridle_cut' },
+    flyaway: { flag: 'flyaway_started', timepoint: 'flyaway' },
+    enginesOff: { flag: 'engines_off', timepoint: 'engines_off' },
+  } satisfies Record<string, Telling>,
+} as const;
+
+export type Happening = keyof typeof VEHICLE.happenings;
+
+/**
+ * How a touchdown is confirmed: three signals, as flown landings used them [steltzner-2012]. The bounds are not
+ * published: chosen here.
+ */
+export const TOUCHDOWN = {
+  timepoint: 'touchdown',
+  flag: 'touchdown_declared',
+  event: 'TOUCHDOWN',
+  /**
+   * The rover's own IMU: its rates and its acceleration. None is named, because flight sends no such channel: after
+   * the bridle is cut, the IMU of its packets is that of the descent stage, which flies away.
+   */
+  roverRates_dps: [] as readonly string[],
+  roverAcceleration_g: [] as readonly string[],
+  gravity_g: 0.378, // 3.71 m/s² at Gale [facts]; chosen: of the magnitude, since the slope is not known
+  /** Chosen: well above the noise of a gyro at rest, well below a wheel that sinks or slides. */
+  stillRate_dps: 0.5,
+  stillAcceleration_g: 0.02,
+  still_s: 5,
+  /** The link of a live confirmation, and how long it must bring data without a break. Chosen: half of what is planned. */
+  link: 'uhf_live',
+  uhf_s: 10,
+  /** Chosen: a channel quieter than this has a gap. Configuration is told each second. */
+  gap_s: 3,
+  /** What still comes, as one link brings it. */
+  recordingLink: 'relay',
+} as const;
