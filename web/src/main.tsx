@@ -30,5 +30,6 @@ const known = new Promise<void>(
 // The page is built once, with its content, while the first look is under way. Built earlier, it would be built twice,
 // and the picture would appear later.
 const root = document.getElementById('console');
-await Promise.race([known, new Promise((resolve) => setTimeout(resolve, EMPTY_MS))]);
+const typeThere = Promise.all(['Inter', 'JetBrains Mono'].map((family) => document.fonts.load(`16px "${family}"`)));
+await Promise.race([Promise.all([known, typeThere]), new Promise((resolve) => setTimeout(resolve, EMPTY_MS))]);
 if (root) render(<App panel={panel} />, root);
