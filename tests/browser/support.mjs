@@ -69,9 +69,11 @@ export async function serve({ archive, port = 0, more = [], web = path.join(root
   };
 }
 
-export async function browser() {
+/** `scrollbars` are hidden, as Playwright has it, unless asked for: then they take their room as in a window. */
+export async function browser({ scrollbars = false } = {}) {
   return chromium.launch({
     executablePath: process.env.AEOLIS_CHROMIUM ?? '/usr/bin/chromium',
+    ignoreDefaultArgs: scrollbars ? ['--hide-scrollbars'] : [],
     args: [
       '--headless',
       '--no-sandbox',
@@ -89,10 +91,10 @@ export async function browser() {
  * The resources shared by the tests of one file: a browser and a folder. A server of the test `t` ends with it, any
  * other with the file.
  */
-export function workplace() {
+export function workplace(options = {}) {
   let made;
   const servers = [];
-  const both = () => (made ??= Promise.all([browser(), temporaryFolder()]));
+  const both = () => (made ??= Promise.all([browser(options), temporaryFolder()]));
   after(async () => {
     const [chrome, folder] = await both();
     await Promise.all(servers.map((server) => server.stop()));

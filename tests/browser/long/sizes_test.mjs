@@ -3,9 +3,11 @@
 // timeline and not over it.
 import assert from 'node:assert/strict';
 import { before, test } from 'node:test';
+import { SIZES, STATES, measured } from '../sizes.mjs';
 import { comesToRest, waitFor, workplace } from '../support.mjs';
 
 const { open, serve } = workplace();
+const withScrollbars = workplace({ scrollbars: true });
 const post = (server, body) =>
   fetch(`${server.address}/api/v1/rehearsals/current`, { method: 'POST', body: JSON.stringify(body) });
 const held = async (t, scenario, e_s) => {
@@ -124,6 +126,29 @@ test('what is opened stands beside the timeline, and a link’s reason takes no 
         picture.x + picture.width <= beside.x && picture.width > 250,
         `${opened}, ${width}: ${picture.x + picture.width} > ${beside.x}`,
       );
+    }
+  }
+  await page.close();
+});
+
+test('at each size that people have, in four states and both themes, all texts are whole, and so are header, command line and what is armed', async (t) => {
+  assert.deepEqual(await measured(withScrollbars, t, Object.keys(STATES), SIZES, ['dark', 'light']), []);
+});
+
+test('at 3 m the clock from entry and the phase are read: 15 mm on a screen of 24 inches from 1920 × 950 on', async () => {
+  const { page, shows } = await open(blackout.address);
+  await shows('phases', /▶/);
+  for (const [width, height] of [
+    [1920, 950],
+    [2560, 1300],
+    [3840, 2000],
+  ]) {
+    await page.setViewportSize({ width, height });
+    for (const selector of ['[data-testid=clock-entry]', '.phase-now b']) {
+      const px = await page
+        .locator(selector)
+        .evaluate((each) => parseFloat(getComputedStyle(each).fontSize) * each.currentCSSZoom);
+      assert.ok(px >= 54, `${selector}, ${width} × ${height}: ${px} px`);
     }
   }
   await page.close();

@@ -5,6 +5,7 @@ import type { Surface } from '../draw/canvas';
 import { LAYOUT } from '../layout';
 import { Panel } from '../design/panel';
 import { STATUS } from '../design/status';
+import { TYPE } from '../design/type';
 import { staleWords } from '../channels/model';
 import { isLost } from '../run/connection';
 import { cutoff, dictionary, runNow, shownRun, tick, timepoints, withRecording } from '../run/shown';
@@ -49,7 +50,7 @@ function scalesOf(width: number, height: number): Scales {
 
 function drawAxes({ context: c, width, height, colours }: Surface, { x, y }: Scales): void {
   const bottom = height - BOTTOM;
-  c.font = `13px ${colours.mono}`;
+  c.font = `${TYPE.mark}px ${colours.mono}`;
   c.textBaseline = 'middle';
   c.lineWidth = 1;
   c.strokeStyle = colours.line;
@@ -57,12 +58,15 @@ function drawAxes({ context: c, width, height, colours }: Surface, { x, y }: Sca
   c.textAlign = 'right';
   for (const m of [10, 100, 1000, 10000, 100000]) {
     line(c, LEFT, Math.round(y(m)) + 0.5, width - RIGHT, Math.round(y(m)) + 0.5);
-    c.fillText(m >= 1000 ? `${m / 1000} km` : `${m} m`, LEFT - 8, y(m));
+    // where decades are narrow, every second one has its name
+    if (y(10) - y(100) > TYPE.mark + 3 || Math.log10(m) % 2 === 1)
+      c.fillText(m >= 1000 ? `${m / 1000} km` : `${m} m`, LEFT - 8, y(m));
   }
   c.textAlign = 'center';
   for (const mps of [1, 10, 100, 1000]) {
     line(c, Math.round(x(mps)) + 0.5, 12, Math.round(x(mps)) + 0.5, bottom);
-    c.fillText(mps >= 1000 ? `${mps / 1000} km/s` : `${mps} m/s`, x(mps), bottom + 13);
+    if (x(100) - x(10) > 52 || Math.log10(mps) % 2 === 0)
+      c.fillText(mps >= 1000 ? `${mps / 1000} km/s` : `${mps} m/s`, x(mps), bottom + 13);
   }
   c.font = `12px ${colours.sans}`;
   c.textAlign = 'right';
@@ -234,9 +238,11 @@ function draw(surface: Surface): void {
   const now = points[points.length - 1];
   if (!now) {
     c.fillStyle = colours.dim;
-    c.font = `${Math.min(14, (width - LEFT) / 33)}px ${colours.sans}`;
+    c.font = `${TYPE.table}px ${colours.sans}`;
     c.textAlign = 'left';
-    c.fillText('The vehicle is above this picture, or has not told its height yet.', LEFT + 14, 30);
+    const words = ['The vehicle is above this picture,', 'or has not told its height yet.'];
+    for (const [i, each] of (width > 560 ? [words.join(' ')] : words).entries())
+      c.fillText(each, LEFT + 14, 30 + i * (TYPE.table + 4));
     return;
   }
   const stale = staleNow(run) !== undefined; // hollow, at the last known place

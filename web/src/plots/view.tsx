@@ -3,7 +3,7 @@
 import { useLayoutEffect, useRef } from 'preact/hooks';
 import uPlot from 'uplot';
 import 'uplot/dist/uPlot.min.css';
-import { axisNumber, shortStep, shortTime, ticks } from '../draw/axis';
+import { CHARACTER_PX, axisNumber, shortStep, shortTime, ticks, valueTicks } from '../draw/axis';
 import { grownBy } from '../draw/canvas';
 import { onDraw } from '../draw/loop';
 import { palette } from '../draw/palette';
@@ -35,6 +35,12 @@ interface Properties {
   digits: number;
 }
 
+const X_AXIS_PX = 22;
+const Y_AXIS_PX = 48;
+const RIGHT_PX = 20;
+/** The room for labels of time. The plot's own box still has its former size while ticks are chosen. */
+const wideOf = (plot: uPlot): number => plot.width - Y_AXIS_PX - RIGHT_PX;
+
 function options(width: number, height: number, channel: DictionaryChannel, per: number): uPlot.Options {
   const colours = palette();
   const axis = {
@@ -48,22 +54,29 @@ function options(width: number, height: number, channel: DictionaryChannel, per:
     height,
     legend: { show: false },
     pxAlign: 1,
-    padding: [6, 20, 0, 0],
+    padding: [6, RIGHT_PX, 0, 0],
     cursor: { show: false }, // our own cursor is shared by plots, tones and timeline
     scales: { x: { time: false } },
     axes: [
       {
         ...axis,
-        size: 22,
+        size: X_AXIS_PX,
         gap: 3,
-        splits: (plot, _index, from, to) => ticks(from, to, shortStep(from, to, plot.over.clientWidth)),
+        splits: (plot, _index, from, to) => ticks(from, to, shortStep(from, to, wideOf(plot))),
         values: (plot, splits) => {
           const { min = 0, max = 1 } = plot.scales.x ?? {};
-          const step = shortStep(min, max, plot.over.clientWidth);
+          const step = shortStep(min, max, wideOf(plot));
           return splits.map((e_s) => shortTime(e_s, step));
         },
       },
-      { ...axis, size: 48, gap: 4, space: 26, values: (_plot, splits) => splits.map(axisNumber) },
+      {
+        ...axis,
+        // as wide as its longest number: those of a large constant are whole too
+        size: (_plot, words) => Math.max(Y_AXIS_PX, ...(words ?? []).map((each) => each.length * CHARACTER_PX + 10)),
+        gap: 4,
+        splits: (plot, _index, low, high) => valueTicks(low, high, plot.height - X_AXIS_PX),
+        values: (_plot, splits) => splits.map(axisNumber),
+      },
     ],
     series: [
       {},
