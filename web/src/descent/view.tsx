@@ -68,7 +68,7 @@ function drawAxes({ context: c, width, height, colours }: Surface, { x, y }: Sca
     if (x(100) - x(10) > 52 || Math.log10(mps) % 2 === 0)
       c.fillText(mps >= 1000 ? `${mps / 1000} km/s` : `${mps} m/s`, x(mps), bottom + 13);
   }
-  c.font = `12px ${colours.sans}`;
+  c.font = `${TYPE.table}px ${colours.sans}`;
   c.textAlign = 'right';
   c.fillText('faster →', width - RIGHT, bottom + 31);
   c.textAlign = 'left';
@@ -134,7 +134,7 @@ function staleNow(run: RunStore | undefined): string | undefined {
 function figures({ context: c, width, height, colours }: Surface): Box[] {
   const figure_px = Math.min(110, Math.max(24, Math.min(height * 0.13, width * 0.09))) * 1.1;
   const whose = whoseWords(shownRun());
-  c.font = `12.5px ${colours.sans}`;
+  c.font = `${TYPE.table}px ${colours.sans}`;
   const line_px = (whose ?? staleNow(shownRun())) === undefined ? 0 : 15;
   const bottom_px = matchMedia('(max-width: 1500px)').matches ? 46 : 62;
   const all: Box[] = [[width - RIGHT - figure_px * 3.6, height - bottom_px - line_px - 2 * figure_px, width, height]];
@@ -321,7 +321,7 @@ function moments(
 ): void {
   const run = shownRun();
   if (!run || points.length === 0) return;
-  c.font = `14px ${colours.sans}`;
+  c.font = `${TYPE.body}px ${colours.sans}`;
   const boxes = [...taken];
   const way = wayOf(points.map((point) => [x(point.speed), y(point.altitude)] as const));
   const now = points[points.length - 1];

@@ -3,6 +3,7 @@
 import { useLayoutEffect, useRef } from 'preact/hooks';
 import uPlot from 'uplot';
 import 'uplot/dist/uPlot.min.css';
+import { TYPE } from '../design/type';
 import { CHARACTER_PX, axisNumber, shortStep, shortTime, ticks, valueTicks } from '../draw/axis';
 import { grownBy } from '../draw/canvas';
 import { onDraw } from '../draw/loop';
@@ -45,7 +46,7 @@ function options(width: number, height: number, channel: DictionaryChannel, per:
   const colours = palette();
   const axis = {
     stroke: colours.dim,
-    font: `11px ${colours.mono}`,
+    font: `${TYPE.mark}px ${colours.mono}`,
     grid: { stroke: colours.line, width: 1 },
     ticks: { show: false },
   };
@@ -105,7 +106,7 @@ function shadeSilence(plot: uPlot): void {
     plot.ctx.globalAlpha = 0.1;
     plot.ctx.fillRect(from, top, to - from, height);
     const words = `${shape} ${shortReason(outage.words)}`;
-    plot.ctx.font = `${11 * (window.devicePixelRatio || 1)}px ${palette().sans}`;
+    plot.ctx.font = `${TYPE.mark * (window.devicePixelRatio || 1)}px ${palette().sans}`;
     if (plot.ctx.measureText(words).width + 8 > to - from) continue;
     plot.ctx.globalAlpha = 1;
     plot.ctx.textAlign = 'center';
@@ -173,7 +174,7 @@ function alarmBands(plot: uPlot, channel: DictionaryChannel, per: number): void 
     }
   }
   ctx.globalAlpha = 1;
-  ctx.font = `${10 * ratio}px ${colours.sans}`;
+  ctx.font = `${TYPE.mark * ratio}px ${colours.sans}`;
   ctx.textAlign = 'left';
   ctx.textBaseline = 'alphabetic';
   const taken: [number, number, number][] = []; // left, right, row
