@@ -37,7 +37,7 @@ export const STATES = {
         await shows('dry-run', /✓ It would be sent/);
         await page.keyboard.press('Enter');
         await waitFor(() => stageLook(page, 'EDL_SET_PARAMETERS', 'verified'), /ok/);
-        await shows('waiting', /type “do edl”/);
+        await shows('waiting', /ype “do edl”/);
         await pause(server);
         await page.keyboard.type('do edl');
         await page.keyboard.press('Enter');
