@@ -14,7 +14,7 @@ import { Panel } from '../design/panel';
 import { SOURCES, silenceStatus } from '../design/status';
 import { staleWords } from '../channels/model';
 import { cursor } from '../run/cursor';
-import { inWords } from '../run/dictionary';
+import { inWords, numberText } from '../run/dictionary';
 import { isWorst, limitsOver } from '../run/limits';
 import { namedChannels } from '../run/address';
 import { isLost } from '../run/connection';
@@ -24,7 +24,7 @@ import { fromEntry } from '../run/time';
 import { whoseAt } from '../run/whose';
 import { outages, shortReason } from '../timeline/model';
 import { plotSpan } from '../run/window';
-import { align, readingAt } from './model';
+import { align, gapOf, readingAt } from './model';
 import type { Aligned } from './model';
 import './style.css';
 
@@ -33,7 +33,8 @@ interface Properties {
   channel: DictionaryChannel;
   unit: string;
   per: number;
-  digits: number;
+  /** Of the reading; left out: those that fit the value. */
+  digits?: number | undefined;
 }
 
 const X_AXIS_PX = 22;
@@ -254,6 +255,7 @@ function Plot({ title, channel, unit, per, digits }: Properties) {
               cutoff.value,
               per,
               width,
+              gapOf(channel.expectedRateHz),
             )
           : ([[], [], []] as Aligned);
         element.dataset.holes = String(holesOf(data));
@@ -277,7 +279,8 @@ function Plot({ title, channel, unit, per, digits }: Properties) {
   const run = shownRun();
   const at = cursor.value;
   const now = run?.latest(channel.id, cutoff.value)?.value;
-  const shown = at === undefined || !run ? undefined : readingAt(run, channel.id, at, cutoff.value);
+  const shown =
+    at === undefined || !run ? undefined : readingAt(run, channel.id, at, cutoff.value, gapOf(channel.expectedRateHz));
   const value = at === undefined ? now : shown?.value;
   const sources = [run?.live.has(channel.id) && SOURCES.uhf, run?.recorded.has(channel.id) && SOURCES.recording].filter(
     (each) => each !== false && each !== undefined,
@@ -350,7 +353,8 @@ function Plot({ title, channel, unit, per, digits }: Properties) {
 }
 
 /** Formats a value, without a minus sign on zero. */
-const reading = (value: number, digits: number): string => value.toFixed(digits).replace(/^-(?=0(\.0*)?$)/, '');
+const reading = (value: number, digits: number | undefined): string =>
+  (digits === undefined ? numberText(value) : value.toFixed(digits)).replace(/^-(?=0(\.0*)?$)/, '');
 
 /** The number of instants at which neither trace continues, for observers that cannot see a canvas. */
 function holesOf([x, silent, lit]: Aligned): number {
@@ -387,7 +391,7 @@ export function Plots() {
         {NAMED.slice(0, MOST_NAMED).map((name) => {
           const channel = words.pick([name]);
           return channel ? (
-            <Plot key={name} channel={channel} title={name} unit={channel.unit} per={1} digits={3} />
+            <Plot key={name} channel={channel} title={name} unit={channel.unit} per={1} />
           ) : (
             <p class="none" key={name}>
               no channel {name} in the dictionary
