@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The states in which the console is measured at each size of a window, and the measurement.
-import { comesToRest, flyTo, landed, stageLook, waitFor } from './support.mjs';
+import { comesToRest, flyTo, focused, landed, stageLook, waitFor } from './support.mjs';
 import { keepWhatIsWritten, notWhole } from './texts.mjs';
 
 /** Inner sizes of browser windows that people have, scrollbars shown. */
@@ -63,6 +63,24 @@ export const STATES = {
       );
     },
   }),
+};
+
+/** A past view of the landed run: bar, marks and double borders take their room. */
+STATES.past = async (serve, t) => {
+  const { server, reach } = await STATES.landed((of, _name, more) => serve(of, 'past', more), t);
+  return {
+    server,
+    reach: async (opened) => {
+      const { page, shows } = opened;
+      await reach(opened);
+      await page.keyboard.press('r');
+      await waitFor(() => focused(page), /range-from/);
+      await page.keyboard.type('E+0:30');
+      await page.getByTestId('range-to').fill('E+4:30');
+      await page.keyboard.press('Enter');
+      await shows('range-message', /✓/);
+    },
+  };
 };
 
 /** A row of the situation, where the page has none now: what is measured must hold with it. */
