@@ -6,7 +6,7 @@ import { defineConfig } from 'vitest/config';
 const server = process.env.AEOLIS_SERVER ?? 'http://127.0.0.1:8080';
 
 type Output =
-  | { type: 'asset' }
+  | { type: 'asset'; fileName: string }
   | { type: 'chunk'; fileName: string; isEntry: boolean; name: string; imports: string[] };
 
 /** The script that `first.ts` imports, and what that imports itself. */
@@ -23,22 +23,33 @@ function firstLoad(outputs: Output[]): string[] {
   return chunks.filter(({ fileName, isEntry }) => found.has(fileName) && !isEntry).map(({ fileName }) => fileName);
 }
 
-/** The page's first line imports the rest of its script: the document asks for both at once. Panels that are loaded when opened stay out. */
-const preloadScript: Plugin = {
-  name: 'preload-script',
+/**
+ * The page's first line imports the rest of its script, its style names the type: the document asks for all at once.
+ * Panels that are loaded when opened stay out.
+ */
+const preloadFirst: Plugin = {
+  name: 'preload-first',
   transformIndexHtml: {
     order: 'post',
-    handler: (_html, { bundle = {} }) =>
-      firstLoad(Object.values(bundle)).map((fileName) => ({
+    handler: (_html, { bundle = {} }) => [
+      ...firstLoad(Object.values(bundle)).map((fileName) => ({
         tag: 'link',
         attrs: { rel: 'modulepreload', crossorigin: true, href: `./${fileName}` },
         injectTo: 'head' as const,
       })),
+      ...Object.values(bundle)
+        .filter(({ fileName }) => fileName.endsWith('.woff2'))
+        .map(({ fileName }) => ({
+          tag: 'link',
+          attrs: { rel: 'preload', as: 'font', type: 'font/woff2', crossorigin: true, href: `./${fileName}` },
+          injectTo: 'head' as const,
+        })),
+    ],
   },
 };
 
 export default defineConfig({
-  plugins: [preloadScript],
+  plugins: [preloadFirst],
   base: './',
   build: {
     target: 'es2023',

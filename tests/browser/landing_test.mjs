@@ -21,7 +21,7 @@ test('two commands by keyboard land it; a reload has all of it; a range can be a
   await shows('command-message', /EDL_SET_PARAMETERS is #1/);
   await waitFor(() => stage(page, 'EDL_SET_PARAMETERS', 'executed'), /ok/);
   await waitFor(() => stage(page, 'EDL_SET_PARAMETERS', 'verified'), /ok/); // flight reports its parameters every 8 s
-  await shows('waiting', /type “do edl”/);
+  await shows('waiting', /ype “do edl”/);
   await shows('command-history', /EDL_SET_PARAMETERS #1/);
 
   await waitFor(() => focused(page), /command-line/);

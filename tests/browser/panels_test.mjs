@@ -11,6 +11,7 @@ import { comesToLook } from './picture.mjs';
 import { findings, landed, root, waitFor, workplace } from './support.mjs';
 
 const SCRIPT_KB = 150;
+const TYPE_KB = 120;
 /** A text in each panel that only this landing could produce. */
 const SHOWN = {
   timeline: /(\d+) of \1 timepoints fired/,
@@ -92,4 +93,18 @@ test('the script of the first load is at most 150 kB, compressed', async () => {
   const sum = sizes.reduce((total, size) => total + size, 0);
   assert.ok(scripts.length >= 2 && sum > 1, 'no built scripts');
   assert.ok(sum <= SCRIPT_KB, `${sum.toFixed(1)} kB`);
+});
+
+test('the type of the console is at most 120 kB, and nothing else is loaded for it', async () => {
+  const assets = path.join(root, 'web/dist/assets');
+  const html = await readFile(path.join(root, 'web/dist/index.html'), 'utf8');
+  const files = (await readdir(assets)).filter((name) => /\.(woff2?|ttf|otf)$/.test(name));
+  assert.deepEqual(
+    files.filter((name) => !html.includes(name)),
+    [],
+    'not preloaded',
+  );
+  const sizes = await Promise.all(files.map(async (name) => (await readFile(path.join(assets, name))).length / 1000));
+  const sum = sizes.reduce((total, size) => total + size, 0);
+  assert.ok(files.length === 2 && sum <= TYPE_KB, `${files.length} files, ${sum.toFixed(1)} kB`);
 });

@@ -69,10 +69,14 @@ export async function serve({ archive, port = 0, more = [], web = path.join(root
   };
 }
 
-/** `more`: further arguments of the browser. */
-export async function browser(more = []) {
+/**
+ * `scrollbars` are hidden, as Playwright has it, unless asked for: then they take their room as in a window. `more`:
+ * further arguments of the browser.
+ */
+export async function browser({ scrollbars = false, more = [] } = {}) {
   return chromium.launch({
     executablePath: process.env.AEOLIS_CHROMIUM ?? '/usr/bin/chromium',
+    ignoreDefaultArgs: scrollbars ? ['--hide-scrollbars'] : [],
     args: [
       '--headless',
       '--no-sandbox',
@@ -91,10 +95,10 @@ export async function browser(more = []) {
  * The resources shared by the tests of one file: a browser and a folder. A server of the test `t` ends with it, any
  * other with the file.
  */
-export function workplace() {
+export function workplace(options = {}) {
   let made;
   const servers = [];
-  const both = () => (made ??= Promise.all([browser(), temporaryFolder()]));
+  const both = () => (made ??= Promise.all([browser(options), temporaryFolder()]));
   after(async () => {
     const [chrome, folder] = await both();
     await Promise.all(servers.map((server) => server.stop()));

@@ -139,10 +139,12 @@ export function App({ panel }: { panel?: string | undefined }) {
         <Phases />
         <PaceBar />
       </section>
-      {run && <ExpiredBar />}
-      <PastBar />
-      <ReplayBar />
-      <Notices />
+      <div class="bars">
+        {run && <ExpiredBar />}
+        <PastBar />
+        <ReplayBar />
+        <Notices />
+      </div>
       {['out', 'choose'].includes(access.value.state) && !run ? (
         <LogIn />
       ) : Alone ? (

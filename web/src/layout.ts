@@ -88,6 +88,11 @@ export const LAYOUT = {
     { timepoint: 'heatshield_separation', channel: 'speed_mps', comparison: '<=', bound: 'heatshield_speed_mps' },
     { timepoint: 'heatshield_separation', since: 'parachute_deploy', bound: 20 },
   ],
+  /** Arguments of commands that number a row of the timeline. */
+  numbered: [
+    { argument: 'timepoint', of: 'timepoint' },
+    { argument: 'anchor', of: 'anchor' },
+  ],
   /** The first rows of the table of channels. */
   channels: [
     'edl_phase',

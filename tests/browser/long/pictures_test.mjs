@@ -87,6 +87,7 @@ test('each panel comes to look as its stored picture does, within a tolerance, a
   await shows('waiting', /Landed/);
   await shows('complete-through', /[1-9]/);
   await page.keyboard.press('y');
+  await shows('badge', /REPLAY/); // two letters in a row are a word
   await page.keyboard.press('p');
   await page.getByTestId('replay-bar').locator('input').fill('265');
   await shows('clock-entry', /E\+00:04:25/);

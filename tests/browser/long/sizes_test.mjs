@@ -3,9 +3,11 @@
 // timeline and not over it.
 import assert from 'node:assert/strict';
 import { before, test } from 'node:test';
+import { SIZES, STATES, measured } from '../sizes.mjs';
 import { comesToRest, waitFor, workplace } from '../support.mjs';
 
 const { open, serve } = workplace();
+const withScrollbars = workplace({ scrollbars: true });
 const post = (server, body) =>
   fetch(`${server.address}/api/v1/rehearsals/current`, { method: 'POST', body: JSON.stringify(body) });
 const held = async (t, scenario, e_s) => {
@@ -126,5 +128,77 @@ test('what is opened stands beside the timeline, and a link’s reason takes no 
       );
     }
   }
+  await page.close();
+});
+
+test('at each size that people have, in four states and both themes, all texts are whole, and so are header, command line and what is armed', async (t) => {
+  assert.deepEqual(await measured(withScrollbars, t, Object.keys(STATES), SIZES, ['dark', 'light']), []);
+});
+
+test('at 3 m the clock from entry and the phase are read: 15 mm on a screen of 24 inches from 1920 × 950 on', async () => {
+  const { page, shows } = await open(blackout.address);
+  await shows('phases', /▶/);
+  for (const [width, height] of [
+    [1920, 950],
+    [2560, 1300],
+    [3840, 2000],
+  ]) {
+    await page.setViewportSize({ width, height });
+    for (const selector of ['[data-testid=clock-entry]', '.phase-now b']) {
+      const px = await page
+        .locator(selector)
+        .evaluate((each) => parseFloat(getComputedStyle(each).fontSize) * each.currentCSSZoom);
+      assert.ok(px >= 54, `${selector}, ${width} × ${height}: ${px} px`);
+    }
+  }
+  await page.close();
+});
+
+test('type that comes late moves next to nothing: a local face of its width stands in', async () => {
+  const { page, shows } = await open(blackout.address, { width: 1440, height: 790 }, () => {
+    window.shifts = [];
+    new PerformanceObserver((list) => {
+      for (const { startTime, value } of list.getEntries()) window.shifts.push({ startTime, value });
+    }).observe({ type: 'layout-shift', buffered: true });
+  });
+  const held = [];
+  await page.route('**/*.woff2', (route) => held.push(route));
+  await page.reload({ waitUntil: 'commit' }); // its loading ends with the type
+  await shows('phases', /▶/);
+  await shows('waiting', /peak deceleration/);
+  await comesToRest(page);
+  await page.waitForTimeout(500);
+  const before = await page.evaluate(() => performance.now());
+  for (const route of held) await route.continue();
+  await waitFor(
+    () =>
+      page.evaluate(() =>
+        [...document.fonts].filter((face) => !/stand-in/.test(face.family)).every((face) => face.status === 'loaded'),
+      ),
+    (loaded) => loaded,
+  );
+  await comesToRest(page);
+  const moved = await page.evaluate(
+    (since) => window.shifts.filter((each) => each.startTime > since).reduce((sum, each) => sum + each.value, 0),
+    before,
+  );
+  assert.equal(held.length, 2);
+  assert.ok(moved < 0.002, `layout shift ${moved}`);
+  await page.close();
+});
+
+test('on paper a report is as wide as the paper, without what could be pressed', async () => {
+  const { page } = await open(`${blackout.address}/?panel=flown`, { width: 702, height: 1000 }); // A4 less its margins
+  await waitFor(
+    () => page.locator('[data-testid=flown-table] tbody tr').count(),
+    (rows) => rows > 20,
+  );
+  await page.emulateMedia({ media: 'print' });
+  const { wide, seen } = await page.evaluate(() => ({
+    wide: document.documentElement.scrollWidth,
+    seen: [...document.querySelectorAll('button, input, select')].filter((each) => each.checkVisibility()).length,
+  }));
+  assert.ok(wide <= 702, `${wide} px`);
+  assert.equal(seen, 0);
   await page.close();
 });

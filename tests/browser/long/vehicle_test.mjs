@@ -114,7 +114,7 @@ after(() => chrome?.close());
 test('without WebGL the picture is flat, says so, and shows the same', async (t) => {
   const server = await serve(t, 'flat', ['--scenario', 'nominal_auto', '--pace', '100']);
   await flyTo(server, -600);
-  chrome = await browser(['--disable-software-rasterizer']);
+  chrome = await browser({ more: ['--disable-software-rasterizer'] });
   const { page, shows } = await openIn(chrome, `${server.address}/?panel=vehicle`, { width: 1440, height: 790 });
   await shows('vehicle-renderer', /^flat: no 3-D here/);
   for (const { name, e_s, rows } of MOMENTS) {

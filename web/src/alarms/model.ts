@@ -134,6 +134,17 @@ export async function act(name: string, action: Action): Promise<void> {
   }
 }
 
+/** Acknowledges all that the list shows and no one has looked at; ends with the first that fails. */
+export async function acknowledgeAll(): Promise<void> {
+  const [words, run] = [note.value, store.value];
+  for (const { name } of toAcknowledge.value) {
+    if (store.value !== run) return;
+    note.value = words; // each has the note
+    await act(name, 'acknowledge');
+    if (problem.value !== '') return;
+  }
+}
+
 export const sound = signal(false);
 let audio: AudioContext | undefined;
 

@@ -10,6 +10,7 @@ import { pastRange } from '../run/shown';
 import { aDictionary, aStore, alarm } from '../testing/fixtures';
 import { aServer } from '../testing/server';
 import {
+  acknowledgeAll,
   act,
   actionsOn,
   alarms,
@@ -171,6 +172,19 @@ describe('the panel', () => {
     alarms.value = { run: 1, all: [an({ name: '<i>x</i>', limit: '> 1' })] };
     expect(shown().querySelector('td i')).toBeNull();
     expect(shown().querySelector('[aria-label="acknowledge <i>x</i>"]')).not.toBeNull();
+  });
+  it('acknowledges all that it shows, each with the note, and ends with the first that is refused', async () => {
+    const all = [an({ name: 'a' }), an({ name: 'b' }), an({ name: 'c', acknowledged: true }), an({ name: 'd' })];
+    server.routes[CURRENT] = { json: { alarms: all } };
+    await refreshAlarms();
+    let times = 0;
+    server.routes['POST /runs/1/alarms'] = () =>
+      ++times < 3 ? { json: {} } : { status: 409, json: { error: 'no such alarm any more' } };
+    note.value = 'seen';
+    await acknowledgeAll();
+    const sent = server.asked.filter(({ method }) => method === 'POST').map(({ body }) => body);
+    expect(sent).toMatchObject(['a', 'b', 'd'].map((channel) => ({ channel, action: 'acknowledge', note: 'seen' })));
+    expect(problem.value).toMatch(/d was not acknowledged/);
   });
   it('gives observers nothing to press, and shows nothing of now in a view of the past', () => {
     alarms.value = { run: 1, all: [an({})] };

@@ -7,6 +7,7 @@ import { numberText } from '../run/dictionary';
 import { dictionary, pastRange, runNow } from '../run/shown';
 import { duration, fromEntry } from '../run/time';
 import {
+  acknowledgeAll,
   act,
   acting,
   actionsOn,
@@ -115,6 +116,16 @@ export function Alarms() {
         <button type="button" aria-pressed={sound.value} data-testid="alarm-sound" onClick={toggleSound}>
           {sound.value ? '♪ sound on' : '♪ sound off'}
         </button>
+        {mayAct() && toAcknowledge.value.length > 1 && (
+          <button
+            type="button"
+            data-testid="acknowledge-all"
+            disabled={acting.value !== undefined}
+            onClick={() => void acknowledgeAll()}
+          >
+            acknowledge all {toAcknowledge.value.length} shown
+          </button>
+        )}
         <span role="status" data-testid="alarm-sentence">
           {alarms.value?.run !== run.id
             ? '? asking…'

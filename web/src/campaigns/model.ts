@@ -71,6 +71,8 @@ export const chosen = signal<string | undefined>(undefined);
 export const report = signal<CampaignReport | undefined>(undefined);
 /** Touchdowns of the selected campaign, in the order of arrival. */
 export const touchdowns = signal<readonly Touchdown[]>([]);
+/** The number of the case whose landing is looked at. */
+export const openedCase = signal<number | undefined>(undefined);
 export const message = signal<{ good: boolean; text: string } | undefined>(undefined);
 export const busy = signal(false);
 
@@ -85,6 +87,7 @@ export function choose(campaign: string | undefined): void {
   chosen.value = campaign;
   report.value = undefined;
   touchdowns.value = [];
+  openedCase.value = undefined;
 }
 
 let under: Promise<void> | undefined;
@@ -265,4 +268,18 @@ export function reach_km(points: readonly Touchdown[], ellipse: Ellipse | undefi
   }
   const step = (metres: number) => Math.max(2, Math.ceil((metres * 1.08) / 2000) * 2);
   return { east: step(east), north: step(north) };
+}
+
+/** What is known of a case, and how to fly it alone. */
+export function caseWords(point: Touchdown, state: CampaignState): { words: string; command: string } {
+  const { east_m, north_m } = point;
+  const km = (value: number) => (Math.abs(value) / 1000).toFixed(2);
+  const where =
+    east_m === undefined || north_m === undefined
+      ? 'its place is not known'
+      : `${km(east_m)} km ${east_m < 0 ? 'west' : 'east'} and ${km(north_m)} km ${north_m < 0 ? 'south' : 'north'} of the target, ${km(Math.hypot(east_m, north_m))} km from it`;
+  return {
+    words: `Case ${point.case}: ${point.outcome.replace('_', ' ')}, ${where}.`,
+    command: `aeolis rehearse --scenario ${state.scenario} --seed ${state.seed} --case ${point.case}`,
+  };
 }

@@ -2,10 +2,25 @@
 // Touchdown points about the target and the ellipse that holds 99 % of them, with one scale for east and north.
 import { ticks, valueStep } from '../draw/axis';
 import type { Surface } from '../draw/canvas';
-import { reach_km, report, touchdowns } from './model';
+import { openedCase, reach_km, report, touchdowns } from './model';
 
 const EDGE = 10;
 const LOW_PX = 170; // chosen: below this height the axes have no words
+
+/** Where the picture last drew, so that a click finds its case. */
+let drawn: { x: (east_km: number) => number; y: (north_km: number) => number } | undefined;
+const NEAR_PX = 14; // chosen: as far from a dot as a finger is sure of
+
+/** The case whose dot is nearest to a place in the picture. */
+export function caseAt(px: number, py: number): number | undefined {
+  let [nearest, apart_px]: [number | undefined, number] = [undefined, NEAR_PX];
+  for (const { case: number, east_m, north_m } of touchdowns.value) {
+    if (!drawn || east_m === undefined || north_m === undefined) continue;
+    const away = Math.hypot(drawn.x(east_m / 1000) - px, drawn.y(north_m / 1000) - py);
+    if (away <= apart_px) [nearest, apart_px] = [number, away];
+  }
+  return nearest;
+}
 
 export function drawTouchdowns({ context: c, width, height, colours }: Surface): void {
   const points = touchdowns.value;
@@ -22,6 +37,7 @@ export function drawTouchdowns({ context: c, width, height, colours }: Surface):
   const [x0, y0] = [left_px + wide / 2, EDGE + high / 2];
   const x = (east_km: number) => x0 + east_km * km_px;
   const y = (north_km: number) => y0 - north_km * km_px;
+  drawn = { x, y };
   const [bottom, right] = [EDGE + high, left_px + wide];
 
   // The grid: the same step in both directions, so that its cells are square.
@@ -73,6 +89,14 @@ export function drawTouchdowns({ context: c, width, height, colours }: Surface):
     const [px, py] = [x(point.east_m / 1000), y(point.north_m / 1000)];
     line(c, px - 5, py - 5, px + 5, py + 5);
     line(c, px - 5, py + 5, px + 5, py - 5);
+  }
+
+  const opened = points.find((point) => point.case === openedCase.value);
+  if (opened?.east_m !== undefined && opened.north_m !== undefined) {
+    c.strokeStyle = colours.accent;
+    c.beginPath();
+    c.arc(x(opened.east_m / 1000), y(opened.north_m / 1000), radius + 5, 0, 7);
+    c.stroke();
   }
 
   if (ellipse) {

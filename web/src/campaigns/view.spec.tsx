@@ -9,6 +9,7 @@ import {
   campaigns,
   cancel,
   choose,
+  openedCase,
   chosen,
   ellipseWords,
   endWords,
@@ -202,6 +203,19 @@ describe('the panel', () => {
     );
     expect(root.querySelector('[data-testid="campaign-cancel"]')?.textContent).toBe('cancel campaign-1');
     expect(root.querySelector<HTMLButtonElement>('[data-testid="campaign-start"]')?.disabled).toBe(true);
+  });
+  it('opens the case of a dot, in words and with the way to fly it alone', () => {
+    serves([state()], aReport(), { 0: [] });
+    campaigns.value = [state()];
+    choose('campaign-1');
+    report.value = aReport();
+    touchdowns.value = [{ place: 1, case: 17, outcome: 'touchdown', east_m: -1200, north_m: 500 }];
+    openedCase.value = 17;
+    const told = () => shown().querySelector('[data-testid="campaign-case-told"]')?.textContent ?? '';
+    expect(told()).toContain('Case 17: touchdown, 1.20 km west and 0.50 km north of the target, 1.30 km from it.');
+    expect(told()).toContain('aeolis rehearse --scenario campaign --seed 1 --case 17');
+    openedCase.value = 18;
+    expect(told()).toBe('No case 18 is kept.');
   });
   it('lets nobody cancel twice, nor start while the cases of one that is cancelled end', () => {
     serves([state({ state: 'cancelling' })], aReport(), {});

@@ -10,6 +10,7 @@ import {
   busy,
   campaigns,
   cancel,
+  caseWords,
   choose,
   chosen,
   ellipseWords,
@@ -17,6 +18,7 @@ import {
   limits,
   look,
   message,
+  openedCase,
   orderProblem,
   report,
   spreadRows,
@@ -25,7 +27,7 @@ import {
   touchdowns,
 } from './model';
 import type { CampaignReport, CampaignState, Failure } from './model';
-import { drawTouchdowns } from './picture';
+import { caseAt, drawTouchdowns } from './picture';
 import './style.css';
 
 const LOOK_EVERY_MS = 1000;
@@ -131,6 +133,36 @@ function Standing({ state }: { state: CampaignState }) {
   );
 }
 
+/** The case of the dot that was clicked, or of the number that is typed. */
+function OpenedCase({ state }: { state: CampaignState }) {
+  const point = touchdowns.value.find((each) => each.case === openedCase.value);
+  const told = point && caseWords(point, state);
+  return (
+    <div class="campaign-case">
+      <label>
+        case{' '}
+        <input
+          class="count"
+          inputMode="numeric"
+          data-testid="campaign-case"
+          placeholder="click a dot"
+          value={openedCase.value ?? ''}
+          onInput={(event) => (openedCase.value = Number(event.currentTarget.value) || undefined)}
+        />
+      </label>
+      <span role="status" data-testid="campaign-case-told">
+        {told ? (
+          <>
+            {told.words} To fly it alone: <code tabIndex={0}>{told.command}</code>
+          </>
+        ) : (
+          openedCase.value !== undefined && `No case ${openedCase.value} is kept.`
+        )}
+      </span>
+    </div>
+  );
+}
+
 function Picture({ of }: { of: CampaignReport }) {
   const landed = touchdowns.value.filter((each) => each.outcome === 'touchdown').length;
   const nowhere = touchdowns.value.filter((each) => each.east_m === undefined).length;
@@ -140,7 +172,8 @@ function Picture({ of }: { of: CampaignReport }) {
         <Canvas
           draw={drawTouchdowns}
           testId="campaign-picture"
-          keyOf={() => `${chosen.value} ${touchdowns.value.length} ${report.value?.state.kept}`}
+          onPoint={(x, y) => (openedCase.value = caseAt(x, y))}
+          keyOf={() => `${openedCase.value} ${chosen.value} ${touchdowns.value.length} ${report.value?.state.kept}`}
           label={`${landed} touchdowns about the target${of.ellipse ? `; the 99 % ellipse is ${ellipseWords(of.ellipse)}` : ''}`}
         />
       </div>
@@ -152,7 +185,7 @@ function Picture({ of }: { of: CampaignReport }) {
             {nowhere > 0 && `, ${nowhere} of them without a place`}){' '}
           </span>
         )}
-        ◯ 99 % ellipse
+        ◯ 99 % ellipse <OpenedCase state={of.state} />
       </figcaption>
     </figure>
   );

@@ -35,7 +35,8 @@ function Row({ channel, place }: { channel: DictionaryChannel; place: number }) 
       </td>
       <td>{row.unit}</td>
       <td class="number">
-        {row.look === 'stale' ? `stale, ${row.age}` : row.age}
+        {row.look === 'stale' && <span class="age-word">stale, </span>}
+        {row.age}
         {row.recorded ? ` ${SOURCES.recording.shape}` : ''}
       </td>
       <td class="limits" title={row.allLimits}>

@@ -10,6 +10,7 @@ import { dayOfYear, fromEntry } from '../run/time';
 import { act, uplink } from './line';
 import { newestEvidence, readBackOf, stageCells, waitingCommands } from './model';
 import type { StageCell } from './model';
+import { argumentsInWords, rowsNow } from './names';
 
 const HISTORY_SHOWN = 12; // chosen: each has eight stages; as many more are shown at each request
 /** The number of commands shown, and of which run. */
@@ -196,7 +197,7 @@ function Details({
       <ReadBack row={row} />
       {row.arguments && (
         <p class="encoded" tabIndex={0} role="group" aria-label="arguments as sent">
-          {row.arguments}
+          {argumentsInWords(row.arguments, rowsNow())}
         </p>
       )}
       <p class="encoded" tabIndex={0} role="group" aria-label="octets as sent">

@@ -8,6 +8,7 @@ import { dictionary, pastRange, store, tick } from '../run/shown';
 import type { CommandIntent, QueueAction } from '../stream/messages';
 import { AT_ONCE, argumentOffers, candidates, fieldsOf, intentOf, isHazardous, readLine, unknownNames } from './model';
 import type { Step, UplinkText } from './model';
+import { rowsNow, withNames } from './names';
 
 export const step = signal<Step>('type');
 export const line = signal('');
@@ -22,15 +23,18 @@ export const uplink = signal<UplinkText>(AT_ONCE);
 export const typed = computed(() => readLine(line.value));
 /** Set once the line names a command and continues with its arguments. */
 export const inArguments = computed(() =>
-  dictionary.value ? argumentOffers(dictionary.value, line.value) : undefined,
+  dictionary.value
+    ? argumentOffers(dictionary.value, line.value, (command) => withNames(command, rowsNow()))
+    : undefined,
 );
 export const offered = computed(() => {
   if (inArguments.value) return [inArguments.value.command];
   return dictionary.value ? candidates(dictionary.value, typed.value.words) : [];
 });
-export const chosen = computed(() =>
-  chosenName.value === undefined ? undefined : dictionary.value?.command(chosenName.value),
-);
+export const chosen = computed(() => {
+  const command = chosenName.value === undefined ? undefined : dictionary.value?.command(chosenName.value);
+  return command && withNames(command, rowsNow());
+});
 export const fields = computed(() => {
   void tick.value;
   return chosen.value
@@ -82,14 +86,32 @@ export async function tryOut(): Promise<CommandReply | undefined> {
   return reply;
 }
 
+/** Whether the command line has the focus: nothing then asks for it to be opened. */
+export const lineFocused = signal(false);
+
+const lineInput = () => document.querySelector<HTMLInputElement>('[data-testid="command-line"]');
+
+/** Gives the command line the focus; what stands in it is selected, so that the next letter replaces it. */
 export function openCommandLine(text?: string): void {
+  const input = lineInput();
   if (text !== undefined) {
     line.value = text;
     back(true);
+    if (input) input.value = text; // before the page is drawn anew, or the selection would be lost
   }
-  const input = document.querySelector<HTMLInputElement>('[data-testid="command-line"]');
   input?.focus();
   input?.select();
+}
+
+/** Takes letters that were typed without opening the line; false if it takes none now. */
+export function typeIntoLine(letters: string): boolean {
+  const input = lineInput();
+  if (!input || input.disabled || step.value !== 'type') return false;
+  type(line.value + letters);
+  input.value = line.value;
+  input.focus();
+  input.setSelectionRange(line.value.length, line.value.length);
+  return true;
 }
 
 export function type(text: string): void {
@@ -149,6 +171,10 @@ export async function forward(): Promise<void> {
   if (step.value === 'review' && isHazardous(command)) return arm();
   if (!previewNow.value) {
     message.value = { good: false, text: notReviewed() };
+    return;
+  }
+  if (!previewNow.value.accepted) {
+    message.value = { good: false, text: `nothing was sent: ${previewNow.value.reason}` };
     return;
   }
   if (step.value === 'armed' && confirmation.value.trim().toUpperCase() !== command.name) {

@@ -54,10 +54,12 @@ export function candidates(dictionary: Dictionary, words: readonly string[]): Di
 export function argumentOffers(
   dictionary: Dictionary,
   text: string,
+  named: (command: DictionaryCommand) => DictionaryCommand = (command) => command,
 ): { command: DictionaryCommand; stem: string; offers: string[]; strays: string[] } | undefined {
   const tokens = text.trimStart().split(/\s+/);
-  const command = dictionary.command((tokens[0] ?? '').toUpperCase());
-  if (!command || tokens.length < 2) return undefined;
+  const found = dictionary.command((tokens[0] ?? '').toUpperCase());
+  if (!found || tokens.length < 2) return undefined;
+  const command = named(found);
   const last = tokens[tokens.length - 1] ?? '';
   const given = new Set(tokens.slice(1).map((token) => token.split('=')[0]));
   const strays = tokens.slice(1).filter((token) => token !== '' && !token.includes('='));
@@ -137,7 +139,10 @@ export function unknownNames(command: DictionaryCommand, given: ReadonlyMap<stri
 /** The dictionary's unit of a dimensionless number is 1; next to a range it would read as a number. */
 export const unitText = (argument: DictionaryArgument): string => (argument.unit === '1' ? '' : argument.unit);
 
+const FEW_LABELS = 12; // chosen: more are offered while their name is typed
+
 export function rangeText(argument: DictionaryArgument): string {
+  if (argument.labels.length > FEW_LABELS) return `${argument.labels.length} names`;
   if (argument.labels.length > 0) return argument.labels.map((label) => label.label).join(' | ');
   const { min, max } = argument;
   if (min === undefined && max === undefined) return argument.integer ? 'whole number' : '';

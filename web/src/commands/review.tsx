@@ -22,6 +22,7 @@ import {
 } from './line';
 import { arrivalOf, conditionWords, isHazardous, rangeText, unitText } from './model';
 import type { UplinkText } from './model';
+import { argumentsInWords, rowName, rowsNow } from './names';
 
 const TYPED_MS = 150; // chosen: delay after the last key
 const AGAIN_MS = 1000; // chosen: the rate of the vehicle's status reports
@@ -56,7 +57,8 @@ function Fields({ onKey }: Pick<Properties, 'onKey'>) {
               }
             />
             <small>
-              {unitText(field.argument)} {field.problem ?? rangeText(field.argument)}
+              {unitText(field.argument)}{' '}
+              {field.problem ?? rowName(field.argument, field.value) ?? rangeText(field.argument)}
             </small>
           </label>
         ))}
@@ -229,7 +231,7 @@ function Told({ reply }: { reply: CommandReply }) {
             <>
               <dt>as encoded</dt>
               <dd class="encoded" tabIndex={0}>
-                {reply.arguments}
+                {argumentsInWords(reply.arguments, rowsNow())}
               </dd>
             </>
           )}

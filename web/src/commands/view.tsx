@@ -16,6 +16,7 @@ import {
   forward,
   inArguments,
   line,
+  lineFocused,
   message,
   offered,
   openCommandLine,
@@ -122,9 +123,11 @@ export function Commands() {
       name="commands"
       title="Command"
       extra={
-        <span>
-          <kbd>/</kbd> to type
-        </span>
+        canSend && (
+          <span class={lineFocused.value ? 'done-hint' : ''}>
+            <kbd>/</kbd> to type
+          </span>
+        )
       }
     >
       <div class="command-line">
@@ -148,6 +151,8 @@ export function Commands() {
           }
           disabled={!canSend}
           value={line.value}
+          onFocus={() => (lineFocused.value = true)}
+          onBlur={() => (lineFocused.value = false)}
           onInput={(event) => type(event.currentTarget.value)}
           onKeyDown={onKey}
         />

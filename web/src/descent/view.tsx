@@ -7,6 +7,7 @@ import { LAYOUT } from '../layout';
 import { openedLater } from '../design/opened_later';
 import { Panel } from '../design/panel';
 import { STATUS } from '../design/status';
+import { TYPE } from '../design/type';
 import { staleWords } from '../channels/model';
 import { isLost } from '../run/connection';
 import { cutoff, dictionary, runNow, shownRun, tick, timepoints, withRecording } from '../run/shown';
@@ -52,7 +53,7 @@ function scalesOf(width: number, height: number): Scales {
 
 function drawAxes({ context: c, width, height, colours }: Surface, { x, y }: Scales): void {
   const bottom = height - BOTTOM;
-  c.font = `13px ${colours.mono}`;
+  c.font = `${TYPE.mark}px ${colours.mono}`;
   c.textBaseline = 'middle';
   c.lineWidth = 1;
   c.strokeStyle = colours.line;
@@ -60,14 +61,17 @@ function drawAxes({ context: c, width, height, colours }: Surface, { x, y }: Sca
   c.textAlign = 'right';
   for (const m of [10, 100, 1000, 10000, 100000]) {
     line(c, LEFT, Math.round(y(m)) + 0.5, width - RIGHT, Math.round(y(m)) + 0.5);
-    c.fillText(m >= 1000 ? `${m / 1000} km` : `${m} m`, LEFT - 8, y(m));
+    // where decades are narrow, every second one has its name
+    if (y(10) - y(100) > TYPE.mark + 3 || Math.log10(m) % 2 === 1)
+      c.fillText(m >= 1000 ? `${m / 1000} km` : `${m} m`, LEFT - 8, y(m));
   }
   c.textAlign = 'center';
   for (const mps of [1, 10, 100, 1000]) {
     line(c, Math.round(x(mps)) + 0.5, 12, Math.round(x(mps)) + 0.5, bottom);
-    c.fillText(mps >= 1000 ? `${mps / 1000} km/s` : `${mps} m/s`, x(mps), bottom + 13);
+    if (x(100) - x(10) > 52 || Math.log10(mps) % 2 === 0)
+      c.fillText(mps >= 1000 ? `${mps / 1000} km/s` : `${mps} m/s`, x(mps), bottom + 13);
   }
-  c.font = `12px ${colours.sans}`;
+  c.font = `${TYPE.table}px ${colours.sans}`;
   c.textAlign = 'right';
   c.fillText('faster →', width - RIGHT, bottom + 31);
   c.textAlign = 'left';
@@ -133,7 +137,7 @@ function staleNow(run: RunStore | undefined): string | undefined {
 function figures({ context: c, width, height, colours }: Surface): Box[] {
   const figure_px = Math.min(110, Math.max(24, Math.min(height * 0.13, width * 0.09))) * 1.1;
   const whose = whoseWords(shownRun());
-  c.font = `12.5px ${colours.sans}`;
+  c.font = `${TYPE.table}px ${colours.sans}`;
   const line_px = (whose ?? staleNow(shownRun())) === undefined ? 0 : 15;
   const bottom_px = matchMedia('(max-width: 1500px)').matches ? 46 : 62;
   const all: Box[] = [[width - RIGHT - figure_px * 3.6, height - bottom_px - line_px - 2 * figure_px, width, height]];
@@ -237,9 +241,11 @@ function draw(surface: Surface): void {
   const now = points[points.length - 1];
   if (!now) {
     c.fillStyle = colours.dim;
-    c.font = `${Math.min(14, (width - LEFT) / 33)}px ${colours.sans}`;
+    c.font = `${TYPE.table}px ${colours.sans}`;
     c.textAlign = 'left';
-    c.fillText('The vehicle is above this picture, or has not told its height yet.', LEFT + 14, 30);
+    const words = ['The vehicle is above this picture,', 'or has not told its height yet.'];
+    for (const [i, each] of (width > 560 ? [words.join(' ')] : words).entries())
+      c.fillText(each, LEFT + 14, 30 + i * (TYPE.table + 4));
     return;
   }
   const stale = staleNow(run) !== undefined; // hollow, at the last known place
@@ -318,7 +324,7 @@ function moments(
 ): void {
   const run = shownRun();
   if (!run || points.length === 0) return;
-  c.font = `14px ${colours.sans}`;
+  c.font = `${TYPE.body}px ${colours.sans}`;
   const boxes = [...taken];
   const way = wayOf(points.map((point) => [x(point.speed), y(point.altitude)] as const));
   const now = points[points.length - 1];

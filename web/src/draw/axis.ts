@@ -18,6 +18,20 @@ export function valueStep(span: number, most: number): number {
   return 10 * power;
 }
 
+const APART_PX = 26; // between the numbers of an axis, where there is room
+const LEAST_APART_PX = 14;
+
+/** The ticks of values, by one rule for all plots: round numbers, and two at least where they are legible. */
+export function valueTicks(low: number, high: number, high_px: number): number[] {
+  for (const apart_px of [APART_PX, 20, LEAST_APART_PX]) {
+    const all = ticks(low, high, valueStep(high - low, Math.floor(high_px / apart_px))).filter(
+      (each) => each >= low && each <= high,
+    );
+    if (all.length > 1) return all;
+  }
+  return ticks(low, high, valueStep(high - low, 1));
+}
+
 export function ticks(from: number, to: number, step: number): number[] {
   const all: number[] = [];
   for (let n = Math.ceil(from / step - 1e-9); n * step <= to + step * 1e-9 && all.length < 200; ++n) all.push(n * step);
@@ -41,7 +55,7 @@ export function shortTime(e_s: number, step_s: number): string {
   return Math.abs(e_s) < step_s / 2 ? 'E' : axisTime(e_s, step_s).slice(1);
 }
 
-const CHARACTER_PX = 6.7; // of the axes' 11 px mono
+export const CHARACTER_PX = 6.7; // of the axes' 11 px mono
 const BETWEEN_PX = 14;
 
 /** The smallest step whose short labels fit side by side in `wide_px`. */

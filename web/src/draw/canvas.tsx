@@ -57,7 +57,6 @@ export function Canvas({ keyOf, draw, label, testId, onPoint, onHover, onWheel }
         }
         context.setTransform(ratio, 0, 0, ratio, 0, 0);
         context.clearRect(0, 0, width, height);
-        context.font = '11px var(--sans, sans-serif)';
         current.current.draw({ context, width, height, colours });
       };
     });

@@ -35,6 +35,11 @@ export function onDraw(look: Look): () => void {
   return () => drawings.delete(look);
 }
 
+/** Draws everything that is not current at once, for paper, which waits for no frame. */
+export function drawAll(): void {
+  for (const look of drawings) look()?.();
+}
+
 function frame(now: number): void {
   requestAnimationFrame(frame);
   if (now - lastStep >= NUMBERS_EVERY_MS - FRAME_EARLY_MS) {

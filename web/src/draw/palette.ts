@@ -23,9 +23,14 @@ const TOKENS = {
 export type Palette = Record<keyof typeof TOKENS, string> & { name: string; sans: string; mono: string };
 
 let read: Palette | undefined;
+let faces = 0; // of type that have come: pictures are then drawn again, as in another theme
+document.fonts?.addEventListener('loadingdone', () => {
+  faces += 1;
+  read = undefined;
+});
 
 export function palette(): Palette {
-  const name = document.documentElement.dataset.theme ?? 'dark';
+  const name = `${document.documentElement.dataset.theme ?? 'dark'} ${faces}`;
   if (read?.name === name) return read;
   const style = getComputedStyle(document.documentElement);
   const colours = { name, sans: style.getPropertyValue('--sans'), mono: style.getPropertyValue('--mono') } as Palette;

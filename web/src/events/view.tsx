@@ -48,13 +48,13 @@ export function Events() {
             onKeyDown={onSearchKey}
           />
           <select
-            aria-label="least level shown"
+            aria-label="this level and above"
             value={from.value}
             onChange={(event) => (from.value = event.currentTarget.value as (typeof LEVELS)[number])}
           >
             {LEVELS.map((level) => (
               <option key={level} value={level}>
-                {levelWords(level)} and above
+                ≥ {levelWords(level)}
               </option>
             ))}
           </select>

@@ -10,11 +10,66 @@ interface FlownRow {
   tone: string;
   uhf: string;
   recorded: string;
+  againstPlan: string;
+  againstPrediction: string;
   margin: string;
   verdict: string;
 }
 
 const time = (e_s: number | undefined) => (e_s === undefined ? '' : fromEntry(e_s, { tenths: true }));
+
+/** When it was flown, by the best that is known: the recording, else UHF, else a tone. */
+const flownAt = (row: {
+  recordedES?: number | undefined;
+  realtimeES?: number | undefined;
+  toneES?: number | undefined;
+}) => row.recordedES ?? row.realtimeES ?? row.toneES;
+
+const apart = (flown: number | undefined, expected: number | undefined) =>
+  flown === undefined || expected === undefined ? undefined : flown - expected;
+
+/** "+4.4": later than expected, in seconds. */
+function difference(flown: number | undefined, expected: number | undefined): string {
+  const by_s = apart(flown, expected);
+  if (by_s === undefined) return '';
+  const tenths = Math.round(by_s * 10);
+  return tenths === 0 ? '0.0' : `${tenths < 0 ? '−' : '+'}${Math.abs(tenths / 10).toFixed(1)}`;
+}
+
+/** The columns of the report by which its rows can be put in order, and each one's value. */
+export const FLOWN_ORDER = {
+  timepoint: (row: AsFlownTimepoint) => row.name,
+  planned: (row: AsFlownTimepoint) => row.plannedES,
+  predicted: (row: AsFlownTimepoint) => row.predictedES,
+  'by tone': (row: AsFlownTimepoint) => row.toneES,
+  'by UHF': (row: AsFlownTimepoint) => row.realtimeES,
+  recorded: (row: AsFlownTimepoint) => row.recordedES,
+  'Δ plan, s': (row: AsFlownTimepoint) => apart(flownAt(row), row.plannedES),
+  'Δ prediction, s': (row: AsFlownTimepoint) => apart(flownAt(row), row.predictedES),
+  margin: (row: AsFlownTimepoint) => row.marginS,
+  verdict: (row: AsFlownTimepoint) => row.verdict,
+} as const;
+export type FlownColumn = keyof typeof FLOWN_ORDER;
+
+/** The rows in the order of a column; those without a value come last, whichever way. Differences by their size. */
+export function inOrder(
+  rows: readonly AsFlownTimepoint[],
+  by: { column: FlownColumn; down: boolean } | undefined,
+): readonly AsFlownTimepoint[] {
+  if (!by) return rows;
+  const value = FLOWN_ORDER[by.column];
+  const sized = (row: AsFlownTimepoint) => {
+    const own = value(row);
+    return typeof own === 'number' && by.column.startsWith('Δ') ? Math.abs(own) : own;
+  };
+  const known = rows.filter((row) => value(row) !== undefined);
+  const sorted = known.sort((one, other) => {
+    const [a, b] = [sized(one), sized(other)];
+    const order = typeof a === 'string' ? a.localeCompare(String(b)) : (a as number) - (b as number);
+    return by.down ? -order : order;
+  });
+  return [...sorted, ...rows.filter((row) => value(row) === undefined)];
+}
 
 export function flownRow(row: AsFlownTimepoint): FlownRow {
   return {
@@ -24,6 +79,8 @@ export function flownRow(row: AsFlownTimepoint): FlownRow {
     tone: time(row.toneES),
     uhf: time(row.realtimeES),
     recorded: time(row.recordedES),
+    againstPlan: difference(flownAt(row), row.plannedES),
+    againstPrediction: difference(flownAt(row), row.predictedES),
     margin: row.marginS === undefined ? '' : `${row.marginS.toFixed(1)} s`,
     verdict: row.verdict,
   };

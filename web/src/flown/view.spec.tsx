@@ -8,7 +8,7 @@ import {
   AsFlownTimepointSchema,
   SilenceSchema,
 } from '../gen/aeolis/v1/run_pb';
-import { flownEvent, flownRow, silenceWords, summaryOf } from './model';
+import { flownEvent, flownRow, inOrder, silenceWords, summaryOf } from './model';
 
 const row = (of: object) => create(AsFlownTimepointSchema, { name: 'parachute_deploy', verdict: 'nominal', ...of });
 
@@ -26,6 +26,34 @@ describe('a timepoint as it was flown', () => {
     expect(flownRow(row({ marginS: 0.1 }))).toMatchObject({ margin: '0.1 s' });
     expect(flownRow(row({ marginS: 3 }))).toMatchObject({ margin: '3.0 s' });
     expect(flownRow(row({}))).toMatchObject({ margin: '' });
+  });
+});
+
+describe('the differences', () => {
+  it('are flown less expected by the best source, and nothing where one of them is not known', () => {
+    expect(flownRow(row({ plannedES: 255, predictedES: 255.9, realtimeES: 260, recordedES: 260.3 }))).toMatchObject({
+      againstPlan: '+5.3',
+      againstPrediction: '+4.4',
+    });
+    expect(flownRow(row({ predictedES: 255.9, toneES: 250 }))).toMatchObject({
+      againstPlan: '',
+      againstPrediction: '−5.9',
+    });
+    expect(flownRow(row({ predictedES: 10.02, recordedES: 10 }))).toMatchObject({ againstPrediction: '0.0' });
+  });
+  it('put the rows in order by their size, those without one last whichever way', () => {
+    const rows = [
+      row({ name: 'a', predictedES: 10, recordedES: 11 }),
+      row({ name: 'b', predictedES: 10 }),
+      row({ name: 'c', predictedES: 10, recordedES: 5 }),
+    ];
+    const names = (down: boolean) => inOrder(rows, { column: 'Δ prediction, s', down }).map((each) => each.name);
+    expect([names(false), names(true)]).toEqual([
+      ['a', 'c', 'b'],
+      ['c', 'a', 'b'],
+    ]);
+    expect(inOrder(rows, { column: 'timepoint', down: true }).map((each) => each.name)).toEqual(['c', 'b', 'a']);
+    expect(inOrder(rows, undefined)).toBe(rows);
   });
 });
 

@@ -1,11 +1,42 @@
 // SPDX-License-Identifier: Apache-2.0
 // A run as flown: the time of each timepoint by plan, prediction, tone, UHF and recording, the events between them, and
 // the silences.
+import { signal } from '@preact/signals';
 import type { AsFlownReport } from '../gen/aeolis/v1/run_pb';
 import { linkTitle } from '../links/model';
 import { reportOfRun } from '../run/report';
 import { pastRange, runNow } from '../run/shown';
-import { flownEvent, flownRow, silenceWords, summaryOf } from './model';
+import { FLOWN_ORDER, flownEvent, flownRow, inOrder, silenceWords, summaryOf } from './model';
+import type { FlownColumn } from './model';
+import './style.css';
+
+const order = signal<{ column: FlownColumn; down: boolean } | undefined>(undefined);
+const TIPS: Partial<Record<FlownColumn, string>> = {
+  predicted: 'at entry interface, by the anchors that ground had then',
+  'Δ plan, s': 'flown less planned, by the best source',
+  'Δ prediction, s': 'flown less predicted, by the best source',
+  margin: 'beyond the minimum offset from the previous one',
+};
+
+/** A head that puts the rows in order: up, down, and back to the order of the timeline. */
+function Head({ column }: { column: FlownColumn }) {
+  const down = order.value?.column === column ? order.value.down : undefined;
+  const next = () =>
+    (order.value = down === undefined ? { column, down: column.startsWith('Δ') } : turned(column, down));
+  return (
+    <th
+      class={column === 'timepoint' || column === 'verdict' ? '' : 'number'}
+      aria-sort={down === undefined ? 'none' : down ? 'descending' : 'ascending'}
+    >
+      <button type="button" class="order" title={TIPS[column]} onClick={next}>
+        {column} {down === undefined ? '' : down ? '▼' : '▲'}
+      </button>
+    </th>
+  );
+}
+
+const turned = (column: FlownColumn, down: boolean) =>
+  down === column.startsWith('Δ') ? { column, down: !down } : undefined;
 
 const AGAIN_MS = 5000; // chosen: during a run, since the report is work for the archive
 const flown = reportOfRun<AsFlownReport>('report', 'report', AGAIN_MS);
@@ -33,33 +64,28 @@ export function Flown() {
           <table data-testid="flown-table">
             <thead>
               <tr>
-                <th>timepoint</th>
-                <th class="number">planned</th>
-                <th class="number" title="at entry interface, by the anchors that ground had then">
-                  predicted
-                </th>
-                <th class="number">by tone</th>
-                <th class="number">by UHF</th>
-                <th class="number">recorded</th>
-                <th class="number" title="beyond the minimum offset from the previous one">
-                  margin
-                </th>
-                <th>verdict</th>
+                {(Object.keys(FLOWN_ORDER) as FlownColumn[]).map((column) => (
+                  <Head key={column} column={column} />
+                ))}
               </tr>
             </thead>
             <tbody>
-              {of.timepoints.map(flownRow).map((row) => (
-                <tr key={row.name} data-flown={row.name}>
-                  <td>{row.name}</td>
-                  <td class="number">{row.planned}</td>
-                  <td class="number">{row.predicted}</td>
-                  <td class="number">{row.tone}</td>
-                  <td class="number">{row.uhf}</td>
-                  <td class="number">{row.recorded}</td>
-                  <td class="number">{row.margin}</td>
-                  <td>{row.verdict}</td>
-                </tr>
-              ))}
+              {inOrder(of.timepoints, order.value)
+                .map(flownRow)
+                .map((row) => (
+                  <tr key={row.name} data-flown={row.name}>
+                    <td>{row.name}</td>
+                    <td class="number">{row.planned}</td>
+                    <td class="number">{row.predicted}</td>
+                    <td class="number">{row.tone}</td>
+                    <td class="number">{row.uhf}</td>
+                    <td class="number">{row.recorded}</td>
+                    <td class="number">{row.againstPlan}</td>
+                    <td class="number">{row.againstPrediction}</td>
+                    <td class="number">{row.margin}</td>
+                    <td>{row.verdict}</td>
+                  </tr>
+                ))}
             </tbody>
           </table>
         )}

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The guide through a first landing, from opening the page to touchdown: what to press, why, and what is happening.
 import { signal } from '@preact/signals';
-import { step as commandStep } from '../commands/line';
+import { lineFocused, step as commandStep } from '../commands/line';
 import type { Step } from '../commands/model';
 import { LAYOUT } from '../layout';
 import { phaseSteps } from '../phases/model';
@@ -45,7 +45,7 @@ const FAST = 20; // chosen: a faster pace flies the landing in seconds
 
 type FirstStep = (typeof LAYOUT.firstSteps)[number];
 
-function commandPress(step: FirstStep, at: Step): Press[] {
+function commandPress(step: FirstStep, at: Step, opened: boolean): Press[] {
   switch (at) {
     case 'review':
       return [
@@ -61,7 +61,7 @@ function commandPress(step: FirstStep, at: Step): Press[] {
       return [{ words: 'It is on its way.' }];
     default:
       return [
-        { key: '/', words: 'opens the command line' },
+        ...(opened ? [] : [{ key: '/', words: 'opens the command line' }]),
         { type: step.words, words: '' },
         { key: 'Enter', words: 'shows what would be sent; nothing is sent yet' },
       ];
@@ -77,6 +77,7 @@ export function guideStep(
   until: number,
   recorded = false,
   told: Told = {},
+  opened = false,
 ): GuideStep | undefined {
   if (mode === 'range' || mode === 'replay') {
     return {
@@ -148,7 +149,7 @@ export function guideStep(
       number,
       title: missing.number === 0 ? 'Tell the vehicle where it is' : 'Let it begin',
       why: `“${step.words}” ${step.why}.`,
-      press: commandPress(step, at),
+      press: commandPress(step, at, opened),
       wants: 'command',
     };
   }
@@ -220,6 +221,7 @@ export function guideNow(): GuideStep | undefined {
     cutoff.value,
     withRecording.value,
     toldNow.value,
+    lineFocused.value,
   );
   // An observer is not told to press what would be refused.
   const allowed = step?.wants === 'command' ? mayAct() : modeNow() !== 'rehearsal' || mayRehearse();

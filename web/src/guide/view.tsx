@@ -14,7 +14,7 @@ export function Guide() {
             <i key={i} class={i + 1 < step.number ? 'done' : i + 1 === step.number ? 'now' : ''} />
           ))}
         </span>
-        Your first landing
+        <span class="guide-name">Your first landing</span>
         <button type="button" class="quiet" onClick={toggleGuide} data-testid="guide-hide">
           put away <kbd>g</kbd>
         </button>

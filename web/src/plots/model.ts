@@ -14,8 +14,13 @@ export interface Silence {
   to: number;
 }
 
-// chosen: a longer time without a sample is drawn as a gap; plotted channels arrive at 1 Hz or faster
+// chosen: a longer time without a sample is drawn as a gap, of a channel that arrives at 1 Hz or faster
 export const GAP_S = 6;
+const GAP_PERIODS = 2.5; // chosen: one lost sample of a slow channel is no line through what is not known
+
+/** The longest time between two samples of a channel that its trace goes through. */
+export const gapOf = (expected_rate_hz: number): number =>
+  expected_rate_hz > 0 ? Math.max(GAP_S, GAP_PERIODS / expected_rate_hz) : GAP_S;
 
 /**
  * Aligns both series for a plot `pixels` wide. Of the samples that share a pixel the least and the largest are drawn,
@@ -31,6 +36,7 @@ export function align(
   cutoff: number,
   per: number,
   pixels: number,
+  gap_s = GAP_S,
 ): Aligned {
   const from = from_e_s + entry_sclk;
   const to = Math.min(to_e_s + entry_sclk, cutoff);
@@ -52,7 +58,7 @@ export function align(
     const value = of.value[at] as number;
     const shown = Number.isNaN(value) ? null : value / per;
     const isSilent = of === a && silences.some((silence) => e_s > silence.from && e_s < silence.to);
-    if ((of.since[at] as number) - reached > GAP_S) {
+    if ((of.since[at] as number) - reached > gap_s) {
       xs.push(e_s - 1e-3);
       silent.push(null);
       lit.push(null);
@@ -163,8 +169,14 @@ function thin(
 }
 
 /** The reading at an instant: the newest sample by then. Undefined in a gap and after the end of the shown data. */
-export function readingAt(run: RunStore, channel: number, e_s: number, cutoff: number): Sample | undefined {
+export function readingAt(
+  run: RunStore,
+  channel: number,
+  e_s: number,
+  cutoff: number,
+  gap_s = GAP_S,
+): Sample | undefined {
   const sclk = run.entrySclk + e_s;
   const sample = run.latest(channel, Math.min(cutoff, sclk));
-  return sample && sclk - sample.sclk <= GAP_S ? sample : undefined;
+  return sample && sclk - sample.sclk <= gap_s ? sample : undefined;
 }

@@ -3,8 +3,8 @@ import { describe, expect, it } from 'vitest';
 import { axisNumber } from '../draw/axis';
 import { Series } from '../run/series';
 import { aDictionary, aStore, samples } from '../testing/fixtures';
-import { shortStep, shortTime, ticks } from '../draw/axis';
-import { align, readingAt } from './model';
+import { shortStep, shortTime, ticks, valueTicks } from '../draw/axis';
+import { align, gapOf, readingAt } from './model';
 
 function series(...points: [number, number][]): Series {
   const made = new Series();
@@ -65,6 +65,12 @@ describe('a plot', () => {
       }
     }
   });
+  it('draws a slow channel through its samples, and a gap where more than one is missing', () => {
+    const slow = series([0, 1], [10, 2], [20, 3], [50, 4]);
+    const holes = (rate: number) =>
+      align(undefined, slow, [], 0, 0, 60, Infinity, 1, 180, gapOf(rate))[2].filter((value) => value === null).length;
+    expect([holes(0.1), holes(1)]).toEqual([1, 3]);
+  });
   it('draws the same samples while its axis grows, so that nothing flickers', () => {
     const made = series(...Array.from({ length: 8000 }, (_, i): [number, number] => [i / 8, (i * 7919) % 101]));
     const [one] = align(undefined, made, [], 0, 0, 1000, 900, 1, 180);
@@ -116,6 +122,20 @@ describe('a plot', () => {
     expect(readingAt(store, altitude, -194.5, Infinity)).toMatchObject({ value: 7, recorded: true });
     expect(readingAt(store, altitude, -150, Infinity)).toBeUndefined();
     expect(readingAt(store, altitude, -194.5, 803)).toMatchObject({ value: 6 });
+  });
+  it('has two round values at least on each plot, a flat or a large one too', () => {
+    for (const [low, high] of [
+      [57, 257],
+      [77.4, 79.1],
+      [0, 0.28],
+      [397501234, 397501236],
+      [-200, 200],
+    ] as const)
+      for (const high_px of [60, 90, 240]) {
+        const all = valueTicks(low, high, high_px);
+        expect(all.length, `${low} … ${high} on ${high_px} px: ${all}`).toBeGreaterThanOrEqual(2);
+        expect(all.every((each) => each >= low && each <= high)).toBe(true);
+      }
   });
   it('numbers its axis in no one’s language', () => {
     expect([6000, -200000, 0.1 + 0.2, -0.25, 0, 1e-7].map(axisNumber)).toEqual([

@@ -3,7 +3,8 @@
 import { useLayoutEffect, useRef } from 'preact/hooks';
 import uPlot from 'uplot';
 import 'uplot/dist/uPlot.min.css';
-import { axisNumber, shortStep, shortTime, ticks } from '../draw/axis';
+import { TYPE } from '../design/type';
+import { CHARACTER_PX, axisNumber, shortStep, shortTime, ticks, valueTicks } from '../draw/axis';
 import { grownBy } from '../draw/canvas';
 import { onDraw } from '../draw/loop';
 import { palette } from '../draw/palette';
@@ -13,7 +14,7 @@ import { Panel } from '../design/panel';
 import { SOURCES, silenceStatus } from '../design/status';
 import { staleWords } from '../channels/model';
 import { cursor } from '../run/cursor';
-import { inWords } from '../run/dictionary';
+import { inWords, numberText } from '../run/dictionary';
 import { isWorst, limitsOver } from '../run/limits';
 import { namedChannels } from '../run/address';
 import { isLost } from '../run/connection';
@@ -23,7 +24,7 @@ import { fromEntry } from '../run/time';
 import { whoseAt } from '../run/whose';
 import { outages, shortReason } from '../timeline/model';
 import { plotSpan } from '../run/window';
-import { align, readingAt } from './model';
+import { align, gapOf, readingAt } from './model';
 import type { Aligned } from './model';
 import './style.css';
 
@@ -32,14 +33,21 @@ interface Properties {
   channel: DictionaryChannel;
   unit: string;
   per: number;
-  digits: number;
+  /** Of the reading; left out: those that fit the value. */
+  digits?: number | undefined;
 }
+
+const X_AXIS_PX = 22;
+const Y_AXIS_PX = 48;
+const RIGHT_PX = 20;
+/** The room for labels of time. The plot's own box still has its former size while ticks are chosen. */
+const wideOf = (plot: uPlot): number => plot.width - Y_AXIS_PX - RIGHT_PX;
 
 function options(width: number, height: number, channel: DictionaryChannel, per: number): uPlot.Options {
   const colours = palette();
   const axis = {
     stroke: colours.dim,
-    font: `11px ${colours.mono}`,
+    font: `${TYPE.mark}px ${colours.mono}`,
     grid: { stroke: colours.line, width: 1 },
     ticks: { show: false },
   };
@@ -48,22 +56,29 @@ function options(width: number, height: number, channel: DictionaryChannel, per:
     height,
     legend: { show: false },
     pxAlign: 1,
-    padding: [6, 20, 0, 0],
+    padding: [6, RIGHT_PX, 0, 0],
     cursor: { show: false }, // our own cursor is shared by plots, tones and timeline
     scales: { x: { time: false } },
     axes: [
       {
         ...axis,
-        size: 22,
+        size: X_AXIS_PX,
         gap: 3,
-        splits: (plot, _index, from, to) => ticks(from, to, shortStep(from, to, plot.over.clientWidth)),
+        splits: (plot, _index, from, to) => ticks(from, to, shortStep(from, to, wideOf(plot))),
         values: (plot, splits) => {
           const { min = 0, max = 1 } = plot.scales.x ?? {};
-          const step = shortStep(min, max, plot.over.clientWidth);
+          const step = shortStep(min, max, wideOf(plot));
           return splits.map((e_s) => shortTime(e_s, step));
         },
       },
-      { ...axis, size: 48, gap: 4, space: 26, values: (_plot, splits) => splits.map(axisNumber) },
+      {
+        ...axis,
+        // as wide as its longest number: those of a large constant are whole too
+        size: (_plot, words) => Math.max(Y_AXIS_PX, ...(words ?? []).map((each) => each.length * CHARACTER_PX + 10)),
+        gap: 4,
+        splits: (plot, _index, low, high) => valueTicks(low, high, plot.height - X_AXIS_PX),
+        values: (_plot, splits) => splits.map(axisNumber),
+      },
     ],
     series: [
       {},
@@ -92,7 +107,7 @@ function shadeSilence(plot: uPlot): void {
     plot.ctx.globalAlpha = 0.1;
     plot.ctx.fillRect(from, top, to - from, height);
     const words = `${shape} ${shortReason(outage.words)}`;
-    plot.ctx.font = `${11 * (window.devicePixelRatio || 1)}px ${palette().sans}`;
+    plot.ctx.font = `${TYPE.mark * (window.devicePixelRatio || 1)}px ${palette().sans}`;
     if (plot.ctx.measureText(words).width + 8 > to - from) continue;
     plot.ctx.globalAlpha = 1;
     plot.ctx.textAlign = 'center';
@@ -160,7 +175,7 @@ function alarmBands(plot: uPlot, channel: DictionaryChannel, per: number): void 
     }
   }
   ctx.globalAlpha = 1;
-  ctx.font = `${10 * ratio}px ${colours.sans}`;
+  ctx.font = `${TYPE.mark * ratio}px ${colours.sans}`;
   ctx.textAlign = 'left';
   ctx.textBaseline = 'alphabetic';
   const taken: [number, number, number][] = []; // left, right, row
@@ -240,6 +255,7 @@ function Plot({ title, channel, unit, per, digits }: Properties) {
               cutoff.value,
               per,
               width,
+              gapOf(channel.expectedRateHz),
             )
           : ([[], [], []] as Aligned);
         element.dataset.holes = String(holesOf(data));
@@ -263,7 +279,8 @@ function Plot({ title, channel, unit, per, digits }: Properties) {
   const run = shownRun();
   const at = cursor.value;
   const now = run?.latest(channel.id, cutoff.value)?.value;
-  const shown = at === undefined || !run ? undefined : readingAt(run, channel.id, at, cutoff.value);
+  const shown =
+    at === undefined || !run ? undefined : readingAt(run, channel.id, at, cutoff.value, gapOf(channel.expectedRateHz));
   const value = at === undefined ? now : shown?.value;
   const sources = [run?.live.has(channel.id) && SOURCES.uhf, run?.recorded.has(channel.id) && SOURCES.recording].filter(
     (each) => each !== false && each !== undefined,
@@ -336,7 +353,8 @@ function Plot({ title, channel, unit, per, digits }: Properties) {
 }
 
 /** Formats a value, without a minus sign on zero. */
-const reading = (value: number, digits: number): string => value.toFixed(digits).replace(/^-(?=0(\.0*)?$)/, '');
+const reading = (value: number, digits: number | undefined): string =>
+  (digits === undefined ? numberText(value) : value.toFixed(digits)).replace(/^-(?=0(\.0*)?$)/, '');
 
 /** The number of instants at which neither trace continues, for observers that cannot see a canvas. */
 function holesOf([x, silent, lit]: Aligned): number {
@@ -373,7 +391,7 @@ export function Plots() {
         {NAMED.slice(0, MOST_NAMED).map((name) => {
           const channel = words.pick([name]);
           return channel ? (
-            <Plot key={name} channel={channel} title={name} unit={channel.unit} per={1} digits={3} />
+            <Plot key={name} channel={channel} title={name} unit={channel.unit} per={1} />
           ) : (
             <p class="none" key={name}>
               no channel {name} in the dictionary

@@ -68,7 +68,28 @@ export function seriesPath(
   return `/runs/${run}/channels?${new URLSearchParams({ ...rangeQuery(names, from_sclk, to_sclk), points: String(size), format: 'protobuf', ...(live && { source: 'realtime' }) }).toString()}`;
 }
 
-/** Path of a query for every sample of the channels, one line each. */
-export function samplesPath(run: number, names: readonly string[], from_sclk: number, to_sclk: number): string {
-  return `/runs/${run}/samples?${new URLSearchParams(rangeQuery(names, from_sclk, to_sclk)).toString()}`;
+/** A file of samples. `long`: one line a sample. `wide`: one line an instant of the first channel, one column a channel. */
+export type Shape = 'long' | 'wide';
+
+/** Path of a query for every sample of the channels. */
+export function samplesPath(
+  run: number,
+  names: readonly string[],
+  from_sclk: number,
+  to_sclk: number,
+  shape: Shape,
+): string {
+  const align: Record<string, string> = shape === 'wide' ? { align: names[0] ?? '' } : {};
+  return `/runs/${run}/samples?${new URLSearchParams({ ...rangeQuery(names, from_sclk, to_sclk), ...align }).toString()}`;
+}
+
+/** "nominal_run-3_E+3m50s_E+5m00s_wide.csv": run and range, without what a file's name cannot have. */
+export function fileName(scenario: string, run: number, from_e_s: number, to_e_s: number, shape: Shape): string {
+  const instant = (e_s: number) => {
+    const [sign, all] = [e_s < 0 ? '-' : '+', Math.abs(e_s)];
+    const seconds = (all % 60).toFixed(Number.isInteger(all) ? 0 : 1).padStart(Number.isInteger(all) ? 2 : 4, '0');
+    return `E${sign}${Math.floor(all / 60)}m${seconds}s`;
+  };
+  const safe = scenario.replace(/[^\w.-]+/g, '-') || 'run';
+  return `${safe}_run-${run}_${instant(from_e_s)}_${instant(to_e_s)}_${shape}.csv`;
 }

@@ -2,7 +2,7 @@
 // @vitest-environment happy-dom
 import { afterEach, describe, expect, it, vi } from 'vitest';
 import { download, sizeWords } from './download';
-import { rangeProblem, rangeRow, samplesPath, seriesPath } from './model';
+import { fileName, rangeProblem, rangeRow, samplesPath, seriesPath } from './model';
 
 describe('a recorded range', () => {
   it('is refused upside down or unreadable, in words', () => {
@@ -33,7 +33,12 @@ describe('a recorded range', () => {
     expect(seriesPath(3, ['a', 'b'], 1.5, 2, 100)).toBe(
       '/runs/3/channels?names=a%2Cb&from=1.5&to=2&points=100&format=protobuf',
     );
-    expect(samplesPath(3, ['a', 'b'], 1.5, 2)).toBe('/runs/3/samples?names=a%2Cb&from=1.5&to=2');
+    expect(samplesPath(3, ['a', 'b'], 1.5, 2, 'long')).toBe('/runs/3/samples?names=a%2Cb&from=1.5&to=2');
+    expect(samplesPath(3, ['a', 'b'], 1.5, 2, 'wide')).toBe('/runs/3/samples?names=a%2Cb&from=1.5&to=2&align=a');
+  });
+  it('names a file by run, range and shape, in letters that every system takes', () => {
+    expect(fileName('nominal_auto', 3, 230, 300, 'wide')).toBe('nominal_auto_run-3_E+3m50s_E+5m00s_wide.csv');
+    expect(fileName('my case/1', 12, -61.5, 0, 'long')).toBe('my-case-1_run-12_E-1m01.5s_E+0m00s_long.csv');
   });
 });
 

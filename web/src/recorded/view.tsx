@@ -9,8 +9,8 @@ import { dictionary, lookAtPast, pastRange, replay, runNow, signalOfRun, store }
 import { fromEntry, readFromEntry } from '../run/time';
 import { wordsFor } from '../run/api';
 import { download, save, sizeWords } from './download';
-import { rangeProblem, rangeRow, samplesPath, seriesPath } from './model';
-import type { RangeRow } from './model';
+import { fileName, rangeProblem, rangeRow, samplesPath, seriesPath } from './model';
+import type { RangeRow, Shape } from './model';
 import { columnsOf } from '../stream/series_answer';
 import type { SeriesAnswer } from '../stream/series_answer';
 import './style.css';
@@ -24,12 +24,13 @@ const summary = signalOfRun<RecordingSummary | undefined>(undefined);
 const message = signalOfRun<{ good: boolean; text: string; range?: { from: number; to: number } } | undefined>(
   undefined,
 );
-const csvPath = signalOfRun<string | undefined>(undefined);
+/** The files that the shown samples can be taken as. */
+const files = signalOfRun<{ shape: Shape; path: string; name: string }[]>([]);
 const underWay = signal(false);
 /** The download in progress. */
 const taking = signal<{ stop: AbortController; octets: number; of: number | undefined } | undefined>(undefined);
 
-async function take(path: string): Promise<void> {
+async function take(path: string, name: string): Promise<void> {
   if (taking.value) return;
   const stop = new AbortController();
   taking.value = { stop, octets: 0, of: undefined };
@@ -37,8 +38,8 @@ async function take(path: string): Promise<void> {
   try {
     refuseInDoubt();
     const file = await download(path, stop.signal, (octets, of) => (taking.value = { stop, octets, of }));
-    save(file, 'aeolis.csv');
-    message.value = { good: true, text: `aeolis.csv: ${sizeWords(file.size, undefined)}` };
+    save(file, name);
+    message.value = { good: true, text: `${name}: ${sizeWords(file.size, undefined)}` };
   } catch (error) {
     message.value = {
       good: false,
@@ -83,7 +84,11 @@ async function query(): Promise<void> {
     if (store.value !== run) return;
     rows.value = list.map(rangeRow);
     run.addRange(columnsOf(list), run.entrySclk + start, run.entrySclk + end);
-    csvPath.value = `api/v1${samplesPath(run.id, names, run.entrySclk + start, run.entrySclk + end)}`;
+    files.value = (['long', 'wide'] as const).map((shape) => ({
+      shape,
+      path: `api/v1${samplesPath(run.id, names, run.entrySclk + start, run.entrySclk + end, shape)}`,
+      name: fileName(run.run.scenario, run.id, start, end, shape),
+    }));
     replay.value = undefined;
     const range = { from: start, to: end };
     lookAtPast(range, true);
@@ -214,7 +219,7 @@ export function Recorded() {
             differing from it {String(summary.value.realtimeDiffers)}.
           </p>
         )}
-        {csvPath.value && rows.value.length > 0 && (
+        {files.value.length > 0 && rows.value.length > 0 && (
           <p data-testid="range-export">
             {taking.value ? (
               <>
@@ -229,9 +234,19 @@ export function Recorded() {
                 </button>
               </>
             ) : (
-              <button type="button" onClick={() => csvPath.value && void take(csvPath.value)}>
-                take these samples as CSV
-              </button>
+              <>
+                take these samples as CSV:{' '}
+                {files.value.map(({ shape, path, name }) => (
+                  <button
+                    type="button"
+                    key={shape}
+                    title={`${name}: ${shape === 'long' ? 'a line a sample' : 'a line an instant of the first channel, a column a channel'}`}
+                    onClick={() => void take(path, name)}
+                  >
+                    {shape}
+                  </button>
+                ))}
+              </>
             )}
           </p>
         )}

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // @vitest-environment happy-dom
-import { afterEach, expect, it } from 'vitest';
+import { afterEach, beforeEach, expect, it, vi } from 'vitest';
 import guide from '../../../docs/console.md?raw';
 import { stage } from '../commands/file';
 import { step } from '../commands/line';
 import { useForTest } from '../run/session';
 import { lookAtPast, pastRange, withRecording } from '../run/shown';
 import { aDictionary, aStore } from '../testing/fixtures';
-import { SHORTCUTS, focusPanel, helpShown, onKey } from './model';
+import { SHORTCUTS, WORD_MS, focusPanel, helpShown, onKey, tab } from './model';
 
+beforeEach(() => void vi.useFakeTimers({ toFake: ['setTimeout', 'clearTimeout', 'performance'] }));
 afterEach(() => {
+  vi.useRealTimers();
   [step.value, stage.value, helpShown.value, pastRange.value] = ['type', 'review', false, undefined];
   document.body.textContent = '';
 });
@@ -20,6 +22,7 @@ function press(key: string, on: Partial<HTMLInputElement> = {}, tag = 'input'): 
   const event = new KeyboardEvent('keydown', { key, bubbles: true, cancelable: true });
   element.addEventListener('keydown', onKey);
   element.dispatchEvent(event);
+  vi.advanceTimersByTime(3 * WORD_MS); // nothing follows
   return event.defaultPrevented;
 }
 
@@ -72,4 +75,31 @@ it('a panel that is still being loaded is focused once it is there; not when the
     await frame();
     expect(document.activeElement?.tagName).toBe(elsewhere ? 'BUTTON' : 'INPUT');
   }
+});
+
+it('a word that is typed fires no shortcut: it goes into the command line if the run takes commands, else nowhere; a letter alone acts', () => {
+  useForTest(aStore(), aDictionary);
+  const typing = (text: string, apart_ms: number) => {
+    for (const key of text) {
+      const on = document.activeElement ?? document.body;
+      const event = new KeyboardEvent('keydown', { key, bubbles: true, cancelable: true });
+      Object.defineProperty(event, 'timeStamp', { value: performance.now() });
+      on.dispatchEvent(event);
+      if (on instanceof HTMLInputElement && !event.defaultPrevented) on.value += key;
+      vi.advanceTimersByTime(apart_ms);
+    }
+  };
+  document.addEventListener('keydown', onKey);
+  tab.value = 'channels';
+  document.body.innerHTML = '<input data-testid="command-line">';
+  typing('set edl', 200);
+  expect([document.querySelector('input')?.value, tab.value, helpShown.value]).toEqual(['set edl', 'channels', false]);
+
+  document.body.innerHTML = ''; // no line to take it
+  typing('landing 2', 200);
+  vi.advanceTimersByTime(3 * WORD_MS);
+  expect(tab.value).toBe('channels');
+  typing('l', WORD_MS);
+  expect(tab.value).toBe('links');
+  document.removeEventListener('keydown', onKey);
 });

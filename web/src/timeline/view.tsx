@@ -2,6 +2,8 @@
 // The timeline: lanes one below the other over one time axis, for comparing the plan with each source.
 import { signal } from '@preact/signals';
 import { Canvas } from '../draw/canvas';
+import { palette } from '../draw/palette';
+import { TYPE } from '../design/type';
 import type { Surface } from '../draw/canvas';
 import { axisTime, ticks, timeStep } from '../draw/axis';
 import { Panel } from '../design/panel';
@@ -89,14 +91,14 @@ function drawTimeline({ context: c, width: width_px, height: height_px, colours 
   const step = timeStep(to - from, Math.floor((width - GUTTER) / 90));
   c.textAlign = 'center';
   c.textBaseline = 'middle';
-  c.font = `11px ${colours.mono}`;
+  c.font = `${TYPE.mark}px ${colours.mono}`;
   for (const e_s of ticks(from, to, step)) {
     c.strokeStyle = e_s === 0 ? colours.edge : colours.line;
     line(c, Math.round(x(e_s)) + 0.5, TOP - 6, Math.round(x(e_s)) + 0.5, bottom);
     c.fillStyle = colours.dim;
     if ([now_px, pointed_px].every((px) => Math.abs(x(e_s) - px) > 58)) c.fillText(axisTime(e_s, step), x(e_s), 11);
   }
-  c.font = `12.5px ${colours.sans}`;
+  c.font = `${TYPE.table}px ${colours.sans}`;
   c.textAlign = 'left';
   LANES.forEach((name, lane) => {
     c.fillStyle = colours.text;
@@ -191,7 +193,7 @@ function drawOutages(
       c.clip();
       c.fillStyle = colour;
       c.textAlign = 'left';
-      c.font = `11px ${colours.sans}`;
+      c.font = `${TYPE.mark}px ${colours.sans}`;
       const words = [`${shape} ${outage.words}`, `${shape} ${shortReason(outage.words)}`].find(
         (each) => c.measureText(each).width + 8 <= right - left,
       );
@@ -280,7 +282,7 @@ function labels(
     .filter(({ mark }) => mark.important || closeUp)
     .sort((a, b) => Number(b.mark.important) - Number(a.mark.important) || a.mark.e_s - b.mark.e_s);
   const rows: [number, number][][] = Array.from({ length: Math.max(1, Math.floor((height - top - 6) / 15)) }, () => []);
-  c.font = `12px ${colours.sans}`;
+  c.font = `${TYPE.table}px ${colours.sans}`;
   c.textAlign = 'center';
   for (const { mark, done } of all) {
     const px = x(mark.e_s);
@@ -336,7 +338,7 @@ function flag(
   if (px < GUTTER - 6 || px > right + 10) return; // a zoomed stretch may end before it
   c.strokeStyle = colour;
   line(c, Math.round(px) + 0.5, TOP - 8, Math.round(px) + 0.5, bottom + 4);
-  c.font = 'bold 11px sans-serif';
+  c.font = `bold ${TYPE.mark}px ${palette().sans}`;
   const half = c.measureText(words).width / 2 + 6;
   const middle = Math.max(GUTTER + half - 6, Math.min(right - half, px));
   c.fillStyle = colour;

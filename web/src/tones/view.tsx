@@ -2,6 +2,7 @@
 // The strip of tones: 256 rows, 10 s per column.
 import { signal } from '@preact/signals';
 import { Canvas } from '../draw/canvas';
+import { TYPE } from '../design/type';
 import type { Surface } from '../draw/canvas';
 import { axisTime, ticks, timeStep } from '../draw/axis';
 import { Panel } from '../design/panel';
@@ -69,7 +70,7 @@ export function drawSpectrum(
   const y = (index: number) => bottom - (index / TONES) * (bottom - 22);
   const [left, right] = [width - SPECTRUM + 30, width - 12];
   const numbered = [tone?.tone, tone?.runnerUp].filter((each) => each !== undefined);
-  c.font = `10px ${colours.mono}`;
+  c.font = `${TYPE.mark}px ${colours.mono}`;
   c.textBaseline = 'middle';
   c.fillStyle = colours.dim;
   c.fillRect(left - 2, y(TONES), 1, bottom - y(TONES));
@@ -103,7 +104,7 @@ function draw(surface: Surface): void {
   const most = bars.reduce((largest, bar) => Math.max(largest, bar.tone ?? 0), 0);
   const high = HEIGHTS.find((height) => most < height) ?? 256;
   const y = (tone: number) => bottom - (tone / high) * (bottom - 22);
-  c.font = `11px ${colours.mono}`;
+  c.font = `${TYPE.mark}px ${colours.mono}`;
   c.lineWidth = 1;
   c.textBaseline = 'middle';
   const quarters = [0, high / 4, high / 2, (high * 3) / 4, high - 1];
@@ -153,7 +154,7 @@ function draw(surface: Surface): void {
     if (last || (before?.tone !== bar.tone && room)) {
       labelled = left + c.measureText(String(bar.tone)).width;
       c.fillStyle = last ? colours.text : colours.dim;
-      c.font = last ? `bold 13px ${colours.mono}` : `10px ${colours.mono}`;
+      c.font = last ? `bold ${TYPE.body}px ${colours.mono}` : `${TYPE.mark}px ${colours.mono}`;
       c.textAlign = 'left';
       c.fillText(String(bar.tone), left, y(bar.tone) - 12);
     }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 import { STATUS, held } from '../design/status';
-import { openCommandLine } from '../commands/line';
-import { mayRehearse } from '../access/model';
+import { useEffect } from 'preact/hooks';
+import { chosen, lineFocused, openCommandLine, previewNow, step } from '../commands/line';
+import { mayRehearse, whyNotRehearse } from '../access/model';
 import { EndRun } from '../rehearsal/view';
 import { isLost } from '../run/connection';
 import { cutoff, dictionary, modeNow, runNow, takesCommands, timepoints } from '../run/shown';
@@ -12,6 +13,30 @@ import { waitingFor } from './model';
 import { told } from './told';
 import './style.css';
 
+/** What is to be done next of the first command: what has been done is not asked for again. */
+function toDo(title: string): string {
+  if (chosen.value && step.value === 'armed') return `Type ${chosen.value.name} and press Enter`;
+  if (chosen.value && step.value === 'review')
+    return previewNow.value?.accepted === false ? 'It would be refused now' : 'Read it, then press Enter';
+  return lineFocused.value ? title.replace(/^Press \/ and type/, 'Type') : title;
+}
+
+/**
+ * A run that waits for its first command has the command line in focus, so that who types words at once types them
+ * there. The button opens it for who has left it.
+ */
+function LineFor({ command, run }: { command: string; run: number }) {
+  useEffect(() => {
+    if (document.activeElement === document.body && step.value === 'type') openCommandLine();
+  }, [command, run]);
+  if (lineFocused.value || step.value !== 'type') return null;
+  return (
+    <button type="button" class="primary" onClick={() => openCommandLine(command)}>
+      Open the command line <kbd>/</kbd>
+    </button>
+  );
+}
+
 export function WaitingFor() {
   const run = runNow();
   const words = dictionary.value;
@@ -20,10 +45,16 @@ export function WaitingFor() {
     return (
       <section class="panel waiting" data-testid="waiting">
         <h2>No run yet</h2>
-        <p>Start a rehearsal: choose a scenario below and press start.</p>
-        <button type="button" onClick={() => focusPanel('rehearsal')}>
-          Go to rehearsals
-        </button>
+        {mayRehearse() ? (
+          <>
+            <p>Start a rehearsal: choose a scenario below and press start.</p>
+            <button type="button" onClick={() => focusPanel('rehearsal')}>
+              Go to rehearsals
+            </button>
+          </>
+        ) : (
+          <p>Nothing is flown now: {whyNotRehearse('starting a rehearsal')}</p>
+        )}
       </section>
     );
   }
@@ -36,7 +67,7 @@ export function WaitingFor() {
       data-testid="waiting"
     >
       <ModeMark />
-      <h2 aria-live="polite">{waiting.title}</h2>
+      <h2 aria-live="polite">{waiting.type === undefined ? waiting.title : toDo(waiting.title)}</h2>
       <p>{waiting.words}</p>
       <ul>
         {waiting.lines.map((line) => {
@@ -73,11 +104,7 @@ export function WaitingFor() {
           Go to the runs <kbd>s</kbd>
         </button>
       )}
-      {waiting.type !== undefined && takesCommands() && (
-        <button type="button" class="primary" onClick={() => openCommandLine(waiting.type)}>
-          Open the command line <kbd>/</kbd>
-        </button>
-      )}
+      {waiting.type !== undefined && takesCommands() && <LineFor command={waiting.type} run={run.id} />}
     </section>
   );
 }

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+// The states in which the console is measured at each size of a window, and the measurement.
+import { comesToRest, flyTo, focused, landed, stageLook, waitFor } from './support.mjs';
+import { keepWhatIsWritten, notWhole } from './texts.mjs';
+
+/** Inner sizes of browser windows that people have, scrollbars shown. */
+export const SIZES = [
+  [1280, 585],
+  [1366, 650],
+  [1536, 730],
+  [1440, 790],
+  [1920, 950],
+  [2560, 1300],
+  [3840, 2000],
+  [390, 700],
+];
+
+const pause = ({ address }) =>
+  fetch(`${address}/api/v1/rehearsals/current`, { method: 'POST', body: JSON.stringify({ pause: true }) });
+
+/** Each state: a server in it, and the way of a page to it. */
+export const STATES = {
+  'first open': async (serve, t) => {
+    const server = await serve(t, 'first', ['--scenario', 'nominal']);
+    await pause(server);
+    return { server, reach: ({ shows }) => shows('waiting', /set edl parameters/) };
+  },
+  armed: async (serve, t) => {
+    const server = await serve(t, 'armed', ['--scenario', 'nominal']);
+    return {
+      server,
+      reach: async ({ page, shows }) => {
+        await shows('waiting', /set edl parameters/);
+        await page.keyboard.press('/');
+        await page.keyboard.type('set edl parameters');
+        await page.keyboard.press('Enter');
+        await shows('dry-run', /✓ It would be sent/);
+        await page.keyboard.press('Enter');
+        await waitFor(() => stageLook(page, 'EDL_SET_PARAMETERS', 'verified'), /ok/);
+        await shows('waiting', /ype “do edl”/);
+        await pause(server);
+        await page.keyboard.type('do edl');
+        await page.keyboard.press('Enter');
+        await shows('dry-run', /✓ It would be sent once it is armed/);
+        await page.keyboard.press('Enter');
+        await shows('command-armed', /ARMED/);
+      },
+    };
+  },
+  'mid entry': async (serve, t) => {
+    const server = await serve(t, 'entry', ['--scenario', 'nominal_auto', '--pace', '100']);
+    await flyTo(server, 70);
+    return { server, reach: ({ shows }) => shows('waiting', /peak deceleration/) };
+  },
+  landed: async (serve, t) => ({
+    server: await landed(serve, t),
+    reach: async ({ page, shows }) => {
+      await shows('waiting', /Landed/);
+      await shows('reading-altitude', /\d/);
+      await waitFor(
+        () => page.locator('[data-event]').count(),
+        (count) => count > 8,
+      );
+    },
+  }),
+};
+
+/** A past view of the landed run: bar, marks and double borders take their room. */
+STATES.past = async (serve, t) => {
+  const { server, reach } = await STATES.landed((of, _name, more) => serve(of, 'past', more), t);
+  return {
+    server,
+    reach: async (opened) => {
+      const { page, shows } = opened;
+      await reach(opened);
+      await page.keyboard.press('r');
+      await waitFor(() => focused(page), /range-from/);
+      await page.keyboard.type('E+0:30');
+      await page.getByTestId('range-to').fill('E+4:30');
+      await page.keyboard.press('Enter');
+      await shows('range-message', /✓/);
+    },
+  };
+};
+
+/** A row of the situation, where the page has none now: what is measured must hold with it. */
+function takeItsRow() {
+  if (document.querySelector('.situation')) return;
+  const row = document.createElement('div');
+  row.className = 'situation';
+  document.querySelector('.console').append(row);
+}
+
+/** What is not whole in each state at each size, in words. */
+export async function measured({ open, serve }, t, states, sizes, themes = ['dark']) {
+  const found = [];
+  for (const state of states) {
+    const { server, reach } = await STATES[state](serve, t);
+    const opened = await open(server.address, { width: 1440, height: 790 }, keepWhatIsWritten);
+    const { page, problems } = opened;
+    await reach(opened);
+    await waitFor(
+      () => page.locator('body').innerText(),
+      (all) => !/asking…|has not answered|connecting/.test(all),
+    );
+    await page.evaluate(takeItsRow);
+    for (const theme of themes) {
+      await page.evaluate((name) => (document.documentElement.dataset.theme = name), theme);
+      for (const [width, height] of sizes) {
+        await page.setViewportSize({ width, height });
+        await comesToRest(page);
+        found.push(...(await page.evaluate(notWhole)).map((words) => `${state}, ${width} × ${height}: ${words}`));
+      }
+    }
+    found.push(...problems);
+    await page.close();
+  }
+  return found;
+}
