@@ -73,6 +73,12 @@ std::string title_of(std::string_view link) {
     return std::string(link);
 }
 
+/// The station's fault, told behind the prediction that it stands beside.
+std::string fault_of(const std::string& words) {
+    const auto behind = words.rfind("; ");
+    return behind == std::string::npos ? words : words.substr(behind + 2);
+}
+
 double seconds_from(Ert from, Ert to) {
     return static_cast<double>(to.microseconds - from.microseconds) * 1e-6;
 }
@@ -345,7 +351,7 @@ void SituationDesk::add_links(Entries& all, Ert now, bool not_heard) const {
             if (!std::exchange(station, true))
                 all.push_back({SituationRank::news,
                                "station",
-                               fmt::format("The station receives nothing, a fault on the ground ({} lost since {})",
+                               fmt::format("A fault on the ground: {} ({} silent since {})", fault_of(link.words),
                                            title_of(name), when(link.since)),
                                "the station",
                                link.seq,

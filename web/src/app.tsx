@@ -25,6 +25,7 @@ import { stream } from './run/connection';
 import { dismissNotice, modeNow, notices, runNow } from './run/shown';
 import { TABS, helpShown, ignoreHeldEnter, tab } from './shortcuts/model';
 import { Help } from './shortcuts/view';
+import { Situation } from './situation/view';
 import { Timeline } from './timeline/view';
 import { Tones } from './tones/view';
 import { WaitingFor } from './waiting/view';
@@ -134,6 +135,7 @@ export function App({ panel }: { panel?: string | undefined }) {
     >
       <Tape />
       <Header />
+      <Situation />
       <section class="strip" aria-label="phase and pace">
         <Phases />
         <PaceBar />
