@@ -26,6 +26,7 @@ constexpr std::string_view resume_event = "PRIME_RESUMES", designate_event = "PR
 constexpr std::string_view role_channel = "computer_role";  // its alarm says what the take-over says
 /// Told by the stages of the command itself, or in words of their own.
 constexpr std::array<std::string_view, 3> told_otherwise{"COMMAND_REFUSED", take_over_event, resume_event};
+constexpr std::string_view stand_by_event = "PRIME_STANDS_BY";  // told by the take-over, where there was one
 constexpr std::array<std::string_view, 2> change_events{"TIMEPOINT_OFFSET_CHANGED", "ANCHOR_OFFSET_CHANGED"};
 
 /// An event or tone that ends the news of another.
@@ -47,6 +48,9 @@ constexpr std::array<std::string_view, 14> bad_tones{
     "action_held",  "recording_fault", "overrun",         "constraint_violated", "radar_lost",
     "imu_silent",   "attitude_lost",   "propellant_low",  "pyro_not_fired"};
 constexpr std::string_view fatal_tone = "check_failed";
+// Subjects.
+constexpr std::string_view landing = "landed", computer = "computer", station_fault = "station",
+                           commanding = "commanding";
 
 constexpr std::size_t sentence_octets_max = 240;  ///< chosen: two lines of the console
 constexpr double orbiter_soon_s = 600.0;          ///< chosen: nobody looks at a countdown to a pass beyond it
@@ -79,6 +83,14 @@ std::string fault_of(const std::string& words) {
     return behind == std::string::npos ? words : words.substr(behind + 2);
 }
 
+/// The order of news: what concerns the whole landing first; what closes in every landing last.
+int weight_of(std::string_view subject) {
+    constexpr std::array<std::string_view, 3> heavy{landing, computer, station_fault};
+    if (const auto found = std::ranges::find(heavy, subject); found != heavy.end())
+        return static_cast<int>(heavy.end() - found);
+    return subject == commanding ? -1 : 0;
+}
+
 double seconds_from(Ert from, Ert to) {
     return static_cast<double>(to.microseconds - from.microseconds) * 1e-6;
 }
@@ -89,8 +101,9 @@ std::string requirement(const Condition& condition) {
                              : condition.comparison == ">=" ? "≥"
                              : condition.comparison == "==" ? "="
                                                             : condition.comparison;
-    return in_words(without_unit(condition.quantity)) + " " + sign + " " +
-           named_value_text(condition.quantity, condition.bound);
+    std::string bound = named_value_text(condition.quantity, condition.bound);
+    if (const auto square = bound.rfind("/s2"); square != std::string::npos) bound.replace(square, 3, "/s²");
+    return in_words(without_unit(condition.quantity)) + " " + sign + " " + bound;
 }
 
 }  // namespace
@@ -160,7 +173,7 @@ void SituationDesk::take_over(std::string_view how, Ert at, const Origin& origin
     if (backup_ && (!how.empty() || backup_->evidence.starts_with("event"))) return;  // an event knows better
     const std::string sentence = how.empty() ? fmt::format("Flying on computer {} since {}", backup_name_, when(at))
                                              : fmt::format("Flying on computer {}, {} {}", backup_name_, how, when(at));
-    SituationEntry entry{SituationRank::news, "computer", sentence, std::move(evidence), origin.seq, at, {}};
+    SituationEntry entry{SituationRank::news, std::string(computer), sentence, std::move(evidence), origin.seq, at, {}};
     add_news(entry);
     entry.rank = SituationRank::lasting;
     backup_ = std::move(entry);
@@ -170,7 +183,7 @@ void SituationDesk::touch_down(Ert at, std::string_view how, const Origin& origi
     begun_ = true;
     if (landed_) return;
     landed_ = SituationEntry{SituationRank::news,
-                             "landed",
+                             std::string(landing),
                              how.empty() ? fmt::format("Landed: touchdown at {}", when(at))
                                          : fmt::format("Landed: touchdown at {}, {}", when(at), how),
                              std::move(evidence),
@@ -194,7 +207,7 @@ void SituationDesk::event(const EventFact& event, const Origin& origin) {
     if (event.name == resume_event) {
         backup_.reset();
         add_news({SituationRank::news,
-                  "computer",
+                  std::string(computer),
                   fmt::format("Flying on computer {} since {}", prime_, when(at)),
                   evidence,
                   origin.seq,
@@ -205,6 +218,7 @@ void SituationDesk::event(const EventFact& event, const Origin& origin) {
         if (follower.by == event.name) follow(fmt::format("event {}", follower.news));
     if (std::ranges::find(change_events, event.name) != change_events.end()) offsets_changed_ = true;
     if (std::ranges::find(told_otherwise, event.name) != told_otherwise.end()) return;
+    if (event.name == stand_by_event && backup_) return;
     if (event.level != EventLevel::fatal && event.level != EventLevel::warning_hi) return;
     add_news({event.level == EventLevel::fatal ? SituationRank::danger : SituationRank::news,
               fmt::format("event {}", event.name),
@@ -279,6 +293,7 @@ void SituationDesk::link(const LinkState& state, const Origin& origin) {
     row.words = colon == std::string::npos ? std::string{} : state.reason.substr(colon + 2);
     row.until = state.until;
     row.seq = origin.seq;
+    if (silence == SilenceClass::no_orbiter && state.until) pass_ = {*state.until, row.words};
 }
 
 void SituationDesk::stage(const StageFact& stage, const Origin& origin) {
@@ -334,8 +349,11 @@ Entries SituationDesk::at(Ert now) const {
     const auto told = [](const auto& entry) { return entry.rank >= SituationRank::calm; };
     if (std::ranges::none_of(all, told))
         all.push_back({SituationRank::calm, "calm", "Nothing is awaited", "", 0, last_change(), {}});
-    std::ranges::stable_sort(
-        all, [](const auto& a, const auto& b) { return a.rank != b.rank ? a.rank > b.rank : a.since > b.since; });
+    std::ranges::stable_sort(all, [](const auto& a, const auto& b) {
+        if (a.rank != b.rank) return a.rank > b.rank;
+        const int before = weight_of(a.subject), behind = weight_of(b.subject);
+        return before != behind ? before > behind : a.since > b.since;
+    });
     while (all.size() > entries_max) {  // what lasts is kept
         const auto last = std::ranges::find(all, SituationRank::lasting, &SituationEntry::rank);
         all.erase(std::prev(last));
@@ -350,7 +368,7 @@ void SituationDesk::add_links(Entries& all, Ert now, bool not_heard) const {
         if (link.station) {
             if (!std::exchange(station, true))
                 all.push_back({SituationRank::news,
-                               "station",
+                               std::string(station_fault),
                                fmt::format("A fault on the ground: {} ({} silent since {})", fault_of(link.words),
                                            title_of(name), when(link.since)),
                                "the station",
@@ -430,15 +448,16 @@ bool SituationDesk::add_not_heard(Entries& all, Ert now) const {
         const Ert landing = seen(*clocks_.entry + *timeline_.foreseen_e_s(*row));
         entry.sentence += fmt::format("; landing {} predicted at {}", now < landing ? "is" : "was", when(landing));
     }
-    if (next == nullptr) {
+    const bool rises = next != nullptr ? next->silence == SilenceClass::no_orbiter : pass_ && pass_->rises > now;
+    if (next == nullptr && !rises) {
         entry.sentence += "; when the next word comes is not predicted";
     } else {
-        const bool rises = next->silence == SilenceClass::no_orbiter && !next->words.empty();
-        entry.sentence += rises ? fmt::format("; next word when {}", capitalised(next->words))
-                                : fmt::format("; next word predicted at {}", when(*next->until));
+        entry.at = next != nullptr ? *next->until : pass_->rises;
+        entry.sentence +=
+            rises ? fmt::format("; next word when {}", capitalised(next != nullptr ? next->words : pass_->words))
+                  : fmt::format("; next word predicted at {}", when(*entry.at));
         entry.awaited = "next word";
-        entry.at = next->until;
-        entry.overdue = now > *next->until;
+        entry.overdue = now > *entry.at;
     }
     if (const auto last = timeline_.last()) {
         const auto& known = *timeline_.known(*last);
@@ -474,7 +493,10 @@ void SituationDesk::add_waiting(Entries& all, Ert now) const {
         all.push_back(std::move(entry));
         return;
     }
-    if (const auto next = timeline_.next())
+    const bool live = up(uhf_live_link.name);
+    const auto next = timeline_.next(live ? 0 : tone_sure);
+    const bool only_recording = up(relay_link.name) && !live && !tones_come();
+    if (next && !only_recording)
         add_step(all, *next, now);
     else
         add_recording(all, now);
@@ -482,10 +504,24 @@ void SituationDesk::add_waiting(Entries& all, Ert now) const {
 
 void SituationDesk::add_step(Entries& all, std::size_t next, Ert now) const {
     const auto& row = dictionary_->timeline[next];
-    SituationEntry entry{SituationRank::waiting, "step", "Waiting for " + in_words(row.name), {}, 0, last_change(), {}};
+    SituationEntry entry{SituationRank::waiting,
+                         "step",
+                         (timeline_.is_planned(next) ? "Next: " : "Waiting for ") + in_words(row.name),
+                         {},
+                         0,
+                         last_change(),
+                         {}};
+    const bool live = up(uhf_live_link.name);
+    if (const auto e_s = timeline_.predicted_e_s(next); e_s && !offsets_changed_) {
+        entry.awaited = in_words(row.name);
+        entry.at = seen(*clocks_.entry + *e_s);
+        entry.overdue = seconds_from(*entry.at, now) > (live ? uhf_late_s : tone_late_s);
+    }
+    // An anchor's decision is that of the step at it. Of what is overdue, the condition may have been met unheard.
+    const bool at_anchor = row.anchor && row.desired_offset_s == 0.0;
     const bool of_step = held_ && (held_->decision == row.name ||
-                                   (row.anchor && held_->decision == dictionary_->anchors[row.anchor->value].name));
-    if (of_step && up(uhf_live_link.name)) {
+                                   (at_anchor && held_->decision == dictionary_->anchors[row.anchor->value].name));
+    if (of_step && live && !entry.overdue) {
         entry.sentence += ", not yet " + held_->condition;
         entry.evidence_seq = held_->seq;
         entry.evidence = "as the vehicle explained";
@@ -503,12 +539,6 @@ void SituationDesk::add_step(Entries& all, std::size_t next, Ert now) const {
             entry.sentence +=
                 fmt::format("; last by tone: {}, {}", in_words(dictionary_->timeline[*last].name), when(at));
     }
-    if (const auto e_s = timeline_.predicted_e_s(next); e_s && !offsets_changed_) {
-        entry.awaited = in_words(row.name);
-        entry.at = seen(*clocks_.entry + *e_s);
-        const double late_s = up(uhf_live_link.name) ? uhf_late_s : tone_late_s;
-        entry.overdue = seconds_from(*entry.at, now) > late_s;
-    }
     all.push_back(std::move(entry));
 }
 
@@ -521,7 +551,8 @@ void SituationDesk::add_recording(Entries& all, Ert now) const {
         entry.evidence_seq = link.seq;
         entry.evidence = "link " + relay_link.name;
         if (link.up) {
-            entry.sentence = "The recording comes down";
+            entry.sentence =
+                landed_ ? "The recording comes down" : "The recording comes down; it has not told of a landing yet";
         } else if (link.silence == SilenceClass::recording_complete) {
             entry.rank = SituationRank::calm;
             entry.sentence = "The recording is complete";
@@ -543,7 +574,7 @@ void SituationDesk::add_lasting(Entries& all, Ert now) const {
     if (!closes_ || now < *closes_) return;
     SituationEntry closed{
         SituationRank::lasting,
-        "commanding",
+        std::string(commanding),
         fmt::format("Commanding closed since {}: nothing sent now comes before a planned step", when(*closes_)),
         "the plan and the light time",
         0,

@@ -5,6 +5,7 @@
 #include "common/time.hpp"
 #include "dictionaries/dictionary.hpp"
 #include "telemetry/explanation.hpp"
+#include "telemetry/situation.hpp"
 #include "telemetry/station/silence_classifier.hpp"
 #include "telemetry/timeline_watch.hpp"
 
@@ -16,33 +17,6 @@
 #include <vector>
 
 namespace aeolis::telemetry {
-
-/// The order of importance; numbers equal those of the schema. A lost connection is above all and known to a client
-/// alone.
-enum class SituationRank : std::uint8_t {
-    lasting,  ///< a state that goes on
-    calm,
-    waiting,  ///< for the next step
-    silence,  ///< as predicted
-    news,     ///< what changed, until a reader puts it aside or something follows it
-    danger,   ///< to the vehicle
-};
-inline constexpr std::size_t situation_ranks = 6;
-const char* name_of(SituationRank rank);
-
-/// One thing that is true, in words, with its evidence.
-struct SituationEntry {
-    SituationRank rank{};
-    std::string subject;             ///< "computer", "uhf_live", "command 3"; unique within a rank
-    std::string sentence;            ///< holds no time that passes
-    std::string evidence;            ///< in words
-    std::uint64_t evidence_seq = 0;  ///< the item that it rests on; 0: a prediction alone
-    Ert since;                       ///< since when it is so
-    std::string awaited;             ///< what is counted down to; empty: nothing
-    std::optional<Ert> at{};         ///< when that can be received, as predicted
-    bool overdue = false;            ///< it should have been received by now
-    bool operator==(const SituationEntry&) const = default;
-};
 
 /// Says what is true and matters now, from what has reached Earth and what was predicted before the landing.
 ///
@@ -59,6 +33,7 @@ class SituationDesk {
     static constexpr std::size_t news_max = 32;     ///< chosen: kept at once; the oldest are dropped first
     static constexpr double uhf_late_s = 5.0;       ///< chosen: over UHF a step may be told this much after it
     static constexpr double tone_late_s = 25.0;     ///< a symbol under way, one of its own, and its decision
+    static constexpr int tone_sure = 80;            ///< chosen: a tone of less priority may be dropped for others
     static constexpr double tone_believed = 0.9;    ///< chosen: of a decision that a sentence rests on
 
     /// Clocks of the run.
@@ -148,6 +123,11 @@ class SituationDesk {
     std::vector<SituationEntry> news_;  ///< news and danger, the oldest first
     std::optional<SituationEntry> backup_, landed_;
     std::optional<Ert> last_heard_;
+    struct Pass {
+        Ert rises;
+        std::string words;  ///< "odyssey rises at E+2:00:00"
+    };
+    std::optional<Pass> pass_;  ///< the last that was predicted
     bool begun_ = false;
     std::string prime_ = "A", backup_name_ = "B";
     std::optional<Ert> closes_;  ///< when the last command that can precede a planned step must have left

@@ -9,7 +9,8 @@ namespace aeolis::telemetry {
 
 TimelineWatch::TimelineWatch(const dictionary::Dictionary& dictionary)
     : dictionary_(&dictionary), known_(dictionary.timeline.size()), fired_e_s_(dictionary.timeline.size()),
-      triggered_e_s_(dictionary.timeline.size()), of_tone_(dictionary.tones.size()) {
+      triggered_e_s_(dictionary.timeline.size()), planned_e_s_(dictionary::planned_from_entry_s(dictionary)),
+      of_tone_(dictionary.tones.size()) {
     for (const auto& tone : dictionary.tones) {
         // A twin of Second Chance tells what prime's tone tells. R35
         const bool twin = tone.set == dictionary::ToneSet::second_chance;
@@ -50,9 +51,12 @@ std::optional<std::size_t> TimelineWatch::last() const {
     return {};
 }
 
-std::optional<std::size_t> TimelineWatch::next() const {
-    for (std::size_t row = last() ? *last() + 1 : 0; row < known_.size(); ++row)
-        if (dictionary_->timeline[row].tone) return row;
+std::optional<std::size_t> TimelineWatch::next(int priority) const {
+    const auto before = last();
+    for (std::size_t row = before ? *before + 1 : 0; row < known_.size(); ++row)
+        if (const auto tone = dictionary_->timeline[row].tone;
+            tone && dictionary_->tones[tone->value].priority >= priority)
+            return row;
     return {};
 }
 

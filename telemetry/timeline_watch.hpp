@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 namespace aeolis::telemetry {
@@ -32,12 +33,14 @@ class TimelineWatch {
     const std::optional<Known>& known(std::size_t timepoint) const { return known_[timepoint]; }
     /// The last one known, in the timeline's order; none before the first.
     std::optional<std::size_t> last() const;
-    /// The next one that is announced by a tone, behind all known ones.
-    std::optional<std::size_t> next() const;
+    /// The next one that is announced by a tone of this priority at least, behind all known ones.
+    std::optional<std::size_t> next(int priority = 0) const;
     /// When it fires, in seconds from entry, as predicted; none: not predicted.
     MaybeOffset predicted_e_s(std::size_t timepoint) const { return predicted_e_s_[timepoint]; }
     /// The same as it was predicted before the landing.
     MaybeOffset foreseen_e_s(std::size_t timepoint) const { return foreseen_e_s_[timepoint]; }
+    /// Whether the plan alone, and nothing in flight, gives its time.
+    bool is_planned(std::size_t timepoint) const { return planned_e_s_[timepoint].has_value(); }
     std::optional<std::size_t> row_of(std::string_view name) const;
 
   private:
@@ -47,7 +50,7 @@ class TimelineWatch {
     std::vector<std::optional<Known>> known_;
     std::vector<std::optional<double>> fired_e_s_;  ///< by packet
     std::vector<std::optional<double>> triggered_e_s_;
-    std::vector<MaybeOffset> predicted_e_s_, foreseen_e_s_;
+    std::vector<MaybeOffset> predicted_e_s_, foreseen_e_s_, planned_e_s_;
     std::vector<std::optional<TimepointId>> of_tone_;  ///< by tone: the only timepoint that requests it
 };
 

@@ -9,7 +9,7 @@
 #include "telemetry/alarm_desk.hpp"
 #include "telemetry/explanation.hpp"
 #include "telemetry/link_counters.hpp"
-#include "telemetry/situation_desk.hpp"
+#include "telemetry/situation.hpp"
 #include "telemetry/unit_identity.hpp"
 
 #include <cstdint>
