@@ -17,6 +17,7 @@ export type Rank = NamedEntry['rank'] | 'lost';
 export interface Line {
   key: string;
   rank: Rank;
+  subject: string;
   sentence: string;
   evidence: string;
   since_e_s: number;
@@ -41,8 +42,11 @@ export const LOOKS: Record<Rank, Status> = {
   calm: 'good',
   lasting: 'caution',
 };
-export const lookOf = (line: Line): Status =>
-  line.rank === 'news' && line.key.startsWith('news landed ') ? 'holds' : LOOKS[line.rank];
+/** Landed is good news; a link that is silent is silent, however calm that leaves people. */
+export function lookOf({ rank, subject, sentence }: Pick<Line, 'rank' | 'subject' | 'sentence'>): Status {
+  if (rank === 'news' && subject === 'landed') return 'holds';
+  return rank === 'calm' && / silent: /.test(sentence) ? 'quiet' : LOOKS[rank];
+}
 
 /** Keys of the news that the reader has put aside. Nothing is lost: they stay in the list. */
 export const aside = signalOfRun<ReadonlySet<string>>(new Set());
@@ -67,6 +71,7 @@ export function situationOf(
       return {
         key,
         rank: entry.rank,
+        subject: entry.subject,
         sentence: entry.sentence,
         evidence: entry.evidence,
         since_e_s: e_s(entry.sinceUs),
@@ -80,6 +85,7 @@ export function situationOf(
           {
             key: 'lost',
             rank: 'lost' as const,
+            subject: 'connection',
             sentence: `NO CONNECTION: ${until === Infinity ? 'everything here is old' : 'nothing new comes'}. Trying again, attempt ${lost.attempt}.`,
             evidence: '',
             since_e_s: NaN,
@@ -95,7 +101,10 @@ export function situationOf(
     more: [...all.slice(1), ...lines.filter((line) => line.aside)],
     lasting: told
       .filter(({ rank }) => rank === 'lasting')
-      .map(({ sentence }) => ({ words: sentence.split(/ since |, |: /)[0] ?? sentence, sentence })),
+      .map(({ sentence }) => ({
+        words: (sentence.split(/ since |, |: /)[0] ?? sentence).replace(/^Flying on/, 'on'),
+        sentence,
+      })),
   };
 }
 

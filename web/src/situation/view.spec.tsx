@@ -68,9 +68,11 @@ describe('the banner', () => {
     expect(situationOf(ended, Infinity, undefined).first?.countdown).toBe('UHF back predicted E−1:00');
   });
   it('marks each rank by a shape, and landed as good', () => {
-    const store = aStore([situation('2012-219T04:59:55.0', { ...BACKUP, subject: 'landed' }, BLACKOUT)]);
+    const store = aStore([
+      situation('2012-219T04:59:55.0', { ...BACKUP, subject: 'landed' }, BLACKOUT, { ...BLACKOUT, rank: 'calm' }),
+    ]);
     const { first, more } = situationOf(store, Infinity, undefined);
-    expect([first, more[0]].map((line) => line && lookOf(line))).toEqual(['holds', 'quiet']);
+    expect([first, ...more].map((line) => line && lookOf(line))).toEqual(['holds', 'quiet', 'quiet']);
   });
 });
 

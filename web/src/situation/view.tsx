@@ -8,28 +8,33 @@ import type { Line } from './model';
 import './style.css';
 
 /** The evidence of an entry, which leads to its instant. */
-function Evidence({ line }: { line: Line }) {
+function Evidence({ line, words }: { line: Line; words: string }) {
   if (Number.isNaN(line.since_e_s)) return null;
+  const told = `${line.evidence === '' ? '' : `${line.evidence}, `}${fromEntry(line.since_e_s)}`;
   return (
     <button
       type="button"
-      class="quiet situation-evidence"
-      title={line.evidence === '' ? 'show this instant' : `${line.evidence}: show its instant`}
+      class="quiet"
+      title={`${told}: show this instant`}
+      aria-label={`evidence: ${told}`}
       onClick={() => pointAt(line.since_e_s)}
     >
-      {fromEntry(line.since_e_s)}
+      {words || told}
     </button>
   );
 }
 
 function Entry({ line }: { line: Line }) {
-  const look = lookOf(line);
+  const { shape, token } = STATUS[lookOf(line)];
   return (
-    <li class={`look-${look}`}>
-      <span aria-hidden="true">{STATUS[look].shape}</span> <span>{line.sentence}</span>
+    <li>
+      <span aria-hidden="true" style={{ color: `var(--${token})` }}>
+        {shape}
+      </span>{' '}
+      <span>{line.sentence}</span>
       <output>{line.countdown}</output>
-      <Evidence line={line} />
       {line.aside && <small>put aside</small>}
+      <Evidence line={line} words="" />
     </li>
   );
 }
@@ -41,7 +46,13 @@ export function Situation() {
   const look = first ? lookOf(first) : 'never';
   const waiting = more.filter((line) => !line.aside).length;
   return (
-    <section class={`situation look-${look}`} data-testid="situation" data-rank={first?.rank} aria-label="situation">
+    <section
+      class={`situation ${first?.rank === 'lost' ? 'situation-lost' : ''}`}
+      style={{ '--look': `var(--${STATUS[look].token})` }}
+      data-testid="situation"
+      data-rank={first?.rank}
+      aria-label="situation"
+    >
       <span class="situation-shape" aria-hidden="true">
         {STATUS[look].shape}
       </span>
@@ -49,7 +60,7 @@ export function Situation() {
         {first?.sentence ?? 'Nothing has been told yet'}
       </b>
       <output data-testid="situation-countdown">{first?.countdown}</output>
-      {first && <Evidence line={first} />}
+      {first && <Evidence line={first} words="why" />}
       {first?.rank === 'news' && (
         <button type="button" class="quiet" onClick={() => putAside(first)}>
           put aside <kbd>x</kbd>
@@ -68,9 +79,7 @@ export function Situation() {
       )}
       {listShown.value && more.length > 0 && (
         <ol data-testid="situation-list">
-          {more.map((line) => (
-            <Entry key={line.key} line={line} />
-          ))}
+          {first && [first, ...more].map((line) => <Entry key={line.key} line={line} />)}
         </ol>
       )}
     </section>
@@ -79,13 +88,15 @@ export function Situation() {
 
 /** The states that last, beside the badge. */
 export function Lasting() {
+  const { lasting } = situationNow(runNow());
+  if (lasting.length === 0) return null;
   return (
-    <>
-      {situationNow(runNow()).lasting.map(({ words, sentence }) => (
-        <span key={words} class="lasting" title={sentence} data-testid="lasting">
+    <ul class="lasting" data-testid="lasting" aria-label="states that last">
+      {lasting.map(({ words, sentence }) => (
+        <li key={words} title={sentence}>
           {words}
-        </span>
+        </li>
       ))}
-    </>
+    </ul>
   );
 }
