@@ -434,6 +434,7 @@ bool SituationDesk::add_not_heard(Entries& all, Ert now) const {
     for (const auto& [name, link] : links_) {
         down = down || name == uhf_live_link.name || name == x_band_link.name;
         lost = lost || link.lost_since || link.station;
+        if (link.lost_since || link.station) continue;  // what was predicted for it no longer holds
         if (link.until && (next == nullptr || *link.until < *next->until)) next = &link;
     }
     if (!down) return false;
@@ -445,8 +446,8 @@ bool SituationDesk::add_not_heard(Entries& all, Ert now) const {
                          *last_heard_,
                          {}};
     if (const auto row = timeline_.row_of(touchdown_timepoint); row && timeline_.foreseen_e_s(*row)) {
-        const Ert landing = seen(*clocks_.entry + *timeline_.foreseen_e_s(*row));
-        entry.sentence += fmt::format("; landing {} predicted at {}", now < landing ? "is" : "was", when(landing));
+        const Ert lands = seen(*clocks_.entry + *timeline_.foreseen_e_s(*row));
+        entry.sentence += fmt::format("; landing {} predicted at {}", now < lands ? "is" : "was", when(lands));
     }
     const bool rises = next != nullptr ? next->silence == SilenceClass::no_orbiter : pass_ && pass_->rises > now;
     if (next == nullptr && !rises) {

@@ -119,6 +119,10 @@ TEST_CASE("a fault that the station knows is said, within a predicted silence to
     CHECK(ground.first(61.0).rank == Rank::news);
     CHECK_THAT(ground.sentence(61.0),
                Catch::Equals("A fault on the ground: nothing comes from the station (UHF silent since E+0:50)"));
+    ground.fired("entry_guidance", 43.0);
+    CHECK(ground.about("vehicle", 61.0)->sentence ==
+          "Not heard since E+0:43; landing is predicted at E+7:11; when the next word comes is not predicted");
+    ground.up(x_band_link, 65.0);
     ground.down(uhf_live_link, 70.0, "plasma blackout: predicted from E+0:45 to E+1:38", false, 98.0);
     CHECK_FALSE(ground.about("station", 71.0));
     CHECK(ground.about("uhf_live", 71.0)->rank == Rank::silence);
