@@ -58,8 +58,9 @@ struct LinkState {
     Link link;
     Ert ert;
     bool up = false;
-    std::string reason{};  ///< "nominal", "by mro", "connected"; for a link that is down, set by ground alone
-    bool lost = false;     ///< down, though it should be up; also set by ground
+    std::string reason{};        ///< "nominal", "by mro", "connected"; for a link that is down, set by ground alone
+    bool lost = false;           ///< down, though it should be up; also set by ground
+    std::optional<Ert> until{};  ///< when the link is predicted to be heard again, set by ground; none: not predicted
 };
 
 /// Everything that has reached a station since the last call.

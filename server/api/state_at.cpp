@@ -24,7 +24,7 @@ struct Cut {
 struct Stand {
     Newest<std::string> links, alarms, timepoints;
     Newest<std::uint64_t> commands;
-    std::optional<v1::Item> tone;
+    std::optional<v1::Item> tone, situation;
 
     void take(const v1::Item& item, const Cut& cut) {
         switch (item.item_case()) {
@@ -46,6 +46,9 @@ struct Stand {
             return;
         case v1::Item::kTone:
             if (!cut.leaves_out(item)) tone = item;
+            return;
+        case v1::Item::kSituation:
+            if (!cut.leaves_out(item)) situation = item;
             return;
         default: return;
         }
@@ -94,6 +97,7 @@ Result<v1::StateAt> state_at(archive::Reader& reader, archive::RunId run, const 
     for (auto& [name, item] : stand.alarms)
         if (stands(item)) *answer.add_alarms() = std::move(item);
     if (stand.tone) *answer.mutable_tone() = std::move(*stand.tone);
+    if (stand.situation) *answer.mutable_situation() = std::move(*stand.situation);
     return answer;
 }
 

@@ -26,7 +26,18 @@ void write_item(v1::Item& item) {
         item.mutable_tone()->set_ert_end(ert);
         break;
     case v1::Item::kCommandStage: item.mutable_command_stage()->set_at(ert); break;
-    case v1::Item::kLink: item.mutable_link()->set_ert(ert); break;
+    case v1::Item::kLink: {
+        auto& link = *item.mutable_link();
+        link.set_ert(ert);
+        if (link.has_until_us()) link.set_until(text_of(link.until_us()));
+        break;
+    }
+    case v1::Item::kSituation:
+        for (auto& entry : *item.mutable_situation()->mutable_entries()) {
+            entry.set_since(text_of(entry.since_us()));
+            if (entry.has_at_us()) entry.set_at(text_of(entry.at_us()));
+        }
+        break;
     case v1::Item::kStaleness: item.mutable_staleness()->set_ert(ert); break;
     case v1::Item::kAlarmAction: {
         auto& action = *item.mutable_alarm_action();

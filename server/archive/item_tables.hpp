@@ -60,6 +60,11 @@ struct EnumWords<telemetry::AlarmAct> {
     static const char* of(telemetry::AlarmAct act) { return telemetry::name_of(act); }
 };
 template <>
+struct EnumWords<telemetry::SituationRank> {
+    static constexpr std::size_t count = telemetry::situation_ranks;
+    static const char* of(telemetry::SituationRank rank) { return telemetry::name_of(rank); }
+};
+template <>
 struct EnumWords<CarrierLock> {
     static constexpr std::size_t count = 4;
     static const char* of(CarrierLock lock) { return to_text(lock); }
@@ -216,6 +221,7 @@ struct ItemTable<LinkRecord> {
         visit("up", record.up);
         visit("reason", record.reason);
         visit("lost", record.lost);
+        visit("until_us", record.until);
     }
 };
 
@@ -245,6 +251,30 @@ struct ItemTable<StalenessRecord> {
         visit("silent_s", record.silent_s);
         visit("expected_s", record.expected_s);
         visit("reason", record.reason);
+    }
+};
+
+template <>
+struct ItemTable<SituationRecord> {
+    static constexpr char name[] = "situations";
+    static constexpr bool derived = false;
+    static constexpr auto of_batch = &Batch::situations;
+    static auto& parts(auto& record) { return record.entries; }
+    static void columns(auto& record, auto&& visit) { visit("sentence", record.sentence, Column::searched); }
+};
+template <>
+struct PartTable<telemetry::SituationEntry> {
+    static constexpr char name[] = "situation_entries";
+    static void columns(auto& part, auto&& visit) {
+        visit("rank", part.rank);
+        visit("subject", part.subject);
+        visit("sentence", part.sentence);
+        visit("evidence", part.evidence);
+        visit("evidence_seq", part.evidence_seq);
+        visit("since_us", part.since);
+        visit("awaited", part.awaited);
+        visit("at_us", part.at);
+        visit("overdue", part.overdue);
     }
 };
 
@@ -290,7 +320,7 @@ struct ItemKind {
 template <template <typename> typename Of>
 using OfItemKinds = std::tuple<Of<PacketRecord>, Of<EventRecord>, Of<ToneRecord>, Of<StageRecord>, Of<FiringRecord>,
                                Of<ExplanationRecord>, Of<LinkRecord>, Of<AlarmRecord>, Of<StalenessRecord>,
-                               Of<AlarmActionRecord>, Of<NoteRecord>>;
+                               Of<SituationRecord>, Of<AlarmActionRecord>, Of<NoteRecord>>;
 
 /// Calls act(ItemKind<Record>) for each kind.
 void for_item_kinds(auto act) {

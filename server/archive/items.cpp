@@ -156,6 +156,7 @@ v1::Item to_item(const LinkRecord& record) {
     link.set_up(record.up);
     link.set_reason(record.reason);
     link.set_lost(record.lost);
+    if (record.until) link.set_until_us(record.until->microseconds);
     return item;
 }
 
@@ -178,6 +179,23 @@ v1::Item to_item(const StalenessRecord& record, const dictionary::Dictionary* di
     staleness.set_silent_s(record.silent_s);
     staleness.set_expected_s(record.expected_s);
     staleness.set_reason(record.reason);
+    return item;
+}
+
+v1::Item to_item(const SituationRecord& record) {
+    v1::Item item = item_with(record);
+    for (const auto& entry : record.entries) {
+        auto& written = *item.mutable_situation()->add_entries();
+        written.set_rank(wire<v1::SituationEntry::Rank>(entry.rank));
+        written.set_subject(entry.subject);
+        written.set_sentence(entry.sentence);
+        written.set_evidence(entry.evidence);
+        written.set_evidence_seq(entry.evidence_seq);
+        written.set_since_us(entry.since.microseconds);
+        written.set_awaited(entry.awaited);
+        if (entry.at) written.set_at_us(entry.at->microseconds);
+        written.set_overdue(entry.overdue);
+    }
     return item;
 }
 

@@ -29,6 +29,7 @@ v1::Item to_item(const LinkRecord& record);
 v1::Item to_item(const AlarmRecord& record);
 /// Without a dictionary the packet has no name.
 v1::Item to_item(const StalenessRecord& record, const dictionary::Dictionary* dictionary);
+v1::Item to_item(const SituationRecord& record);
 v1::Item to_item(const AlarmActionRecord& record);
 v1::Item to_item(const NoteRecord& record);
 /// Converts a record of any kind that has a table.

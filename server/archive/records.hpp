@@ -9,6 +9,7 @@
 #include "telemetry/alarm_desk.hpp"
 #include "telemetry/explanation.hpp"
 #include "telemetry/link_counters.hpp"
+#include "telemetry/situation.hpp"
 #include "telemetry/unit_identity.hpp"
 
 #include <cstdint>
@@ -130,7 +131,8 @@ struct LinkRecord : ItemRecord {
     std::string link;
     bool up = false;
     std::string reason;
-    bool lost = false;  ///< down although it should be up
+    bool lost = false;         ///< down although it should be up
+    std::optional<Ert> until;  ///< when it is predicted to be heard again
 };
 
 struct AlarmRecord : ItemRecord {
@@ -148,6 +150,12 @@ struct StalenessRecord : ItemRecord {
     bool stale = false;
     double silent_s = 0.0, expected_s = 0.0;
     std::string reason;
+};
+
+/// What is true and matters, from this item to the next of its kind.
+struct SituationRecord : ItemRecord {
+    std::string sentence;  ///< of the first entry
+    std::vector<telemetry::SituationEntry> entries;
 };
 
 /// An action on an alarm, identified by the alarm's name.
@@ -272,6 +280,7 @@ struct Batch {
     std::vector<LinkRecord> links;
     std::vector<AlarmRecord> alarms;
     std::vector<StalenessRecord> staleness;
+    std::vector<SituationRecord> situations;
     std::vector<AlarmActionRecord> alarm_actions;
     std::vector<NoteRecord> notes;
     std::vector<SegmentRecord> segments;

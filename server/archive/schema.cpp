@@ -144,6 +144,12 @@ CREATE VIEW staleness_log AS
            s.silent_s, s.expected_s, s.reason
     FROM staleness s JOIN runs r ON r.run = s.key >> 40
     JOIN dictionary_packets p ON p.dictionary = r.dictionary AND p.packet = s.packet;
+CREATE VIEW situation_log AS
+    SELECT p.key >> 40 AS run, p.key & 0xFFFFFFFFFF AS seq,
+           strftime('%Y-%jT%H:%M:%f', s.ert_us / 1e6 + 946728000, 'unixepoch') AS ert, p.position, p.rank, p.subject,
+           p.sentence, p.evidence, p.evidence_seq, p.awaited,
+           strftime('%Y-%jT%H:%M:%f', p.at_us / 1e6 + 946728000, 'unixepoch') AS at, p.overdue
+    FROM situation_entries p JOIN situations s ON s.key = p.key;
 CREATE VIEW alarm_action_log AS
     SELECT a.key >> 40 AS run, a.key & 0xFFFFFFFFFF AS seq,
            strftime('%Y-%jT%H:%M:%f', a.ert_us / 1e6 + 946728000, 'unixepoch') AS at, a.alarm, a.action, a.author, a.note,

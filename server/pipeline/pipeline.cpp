@@ -5,6 +5,7 @@
 #include "server/archive/items.hpp"
 #include "server/archive/packet_columns.hpp"
 #include "server/pipeline/packet_intake.hpp"
+#include "server/pipeline/situation_feed.hpp"
 #include "telemetry/staleness.hpp"
 
 #include <algorithm>
@@ -20,12 +21,14 @@ struct Pipeline::State {
     struct Run {
         Run(RunId id_in, archive::RunStart start_in, const State& state, std::vector<Sequence> taken)
             : id(id_in), start(std::move(start_in)), numbering(1, std::move(taken)),
-              intake(state.dictionary, state.columns, state.other), staleness(state.dictionary) {}
+              intake(state.dictionary, state.columns, state.other), staleness(state.dictionary),
+              situation(state.dictionary, start) {}
         RunId id;
         archive::RunStart start;
         Numbering numbering;
         PacketIntake intake;
         telemetry::StalenessMonitor staleness;
+        SituationFeed situation;
         archive::Batch pending;
         double progress = 0.0, durable_progress = 0.0;  ///< of the recording
         Sequence last_durable = 0;
@@ -49,6 +52,7 @@ struct Pipeline::State {
     void add(std::span<const telemetry::StalenessChange> changes, Ert ert);
     void take(const telemetry::ReceivedTone& tone);
     void take(const telemetry::LinkState& link);
+    void add(std::optional<archive::SituationRecord> situation);
     void compare_with_archive();
     Result<void> go_on_where_it_was_cut_off();
     std::shared_ptr<const PublishedBatch> published(RunId of, const archive::Batch& batch, bool built) const;
@@ -197,6 +201,7 @@ Result<void> Pipeline::accept(const telemetry::EarthTime& time) {
     std::vector<telemetry::StalenessChange> changes;
     state_->run->staleness.pass(time.now, changes);
     state_->add(changes, time.now);
+    state_->add(state_->run->situation.changed(time.now));
     return {};
 }
 
@@ -231,12 +236,14 @@ Result<void> Pipeline::accept(archive::StageRecord stage) {
     auto& run = *state_->run;
     stage.seq = run.numbering.next(run.pending);
     run.pending.stages.push_back(std::move(stage));
+    run.situation.follow(run.pending);
     return {};
 }
 
 void Pipeline::State::take(const telemetry::ReceivedPacket& packet) {
     run->intake.take(packet, run->numbering, run->pending, observer);
     if (!packet.link.recorded) heard();
+    run->situation.follow(run->pending);
 }
 
 void Pipeline::State::heard() {
@@ -261,7 +268,8 @@ void Pipeline::State::add(std::span<const telemetry::StalenessChange> changes, E
 
 void Pipeline::State::take(const telemetry::LinkState& link) {
     run->pending.links.push_back(
-        {{run->numbering.next(run->pending), link.ert}, link.link.name, link.up, link.reason, link.lost});
+        {{run->numbering.next(run->pending), link.ert}, link.link.name, link.up, link.reason, link.lost, link.until});
+    run->situation.follow(run->pending);
     if (link.link.recorded) return;
     std::vector<telemetry::StalenessChange> changes;
     using telemetry::LinkIs;
@@ -300,6 +308,13 @@ void Pipeline::State::take(const telemetry::ReceivedTone& tone) {
         run->start.light_time_s;
     record.sclk = run->start.correlation.sclk + sent_s / run->start.correlation.rate;
     run->pending.tones.push_back(std::move(record));
+    run->situation.follow(run->pending);
+}
+
+void Pipeline::State::add(std::optional<archive::SituationRecord> situation) {
+    if (!situation) return;
+    situation->seq = run->numbering.next(run->pending);
+    run->pending.situations.push_back(std::move(*situation));
 }
 
 void Pipeline::relay_progress(double progress) {
@@ -353,6 +368,7 @@ Result<void> Pipeline::commit() {
 Result<void> Pipeline::finish(const archive::RunEnd& end) {
     AEOLIS_CHECK(state_->run.has_value());
     auto& run = *state_->run;
+    if (!run.pending.end) state_->add(run.situation.changed());  // once, though a failed commit is tried again
     run.intake.seal(run.pending);
     run.pending.end = end;
     if (auto done = commit(); !done) return done;

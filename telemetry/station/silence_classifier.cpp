@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "telemetry/station/silence_classifier.hpp"
 
+#include "common/entry_time.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,10 +12,10 @@
 namespace aeolis::telemetry {
 namespace {
 
-/// "E+45 s"
-std::string after_entry(double e_s) {
-    return fmt::format("E{}{:.0f} s", std::round(e_s) < 0.0 ? "−" : "+", std::abs(std::round(e_s)));
-}
+constexpr std::array<std::string_view, 12> class_names{
+    "light time", "switched off",     "plasma blackout", "antenna hand-over",  "no orbiter in view", "orbiter records",
+    "Earth set",  "carrier too weak", "delivered",       "recording complete", "ground fault",       "unexplained"};
+static_assert(class_names.size() == static_cast<std::size_t>(SilenceClass::unexplained) + 1);
 
 bool holds(const PredictedSilences::Window& window, double e_s) {
     return e_s >= window.from_s - SilenceClassifier::margin_s && e_s <= window.to_s + SilenceClassifier::margin_s;
@@ -22,12 +24,18 @@ bool holds(const PredictedSilences::Window& window, double e_s) {
 }  // namespace
 
 const char* name_of(SilenceClass silence) {
-    static constexpr std::array names{"light time",         "switched off",       "plasma blackout",
-                                      "antenna hand-over",  "no orbiter in view", "orbiter records",
-                                      "Earth set",          "carrier too weak",   "delivered",
-                                      "recording complete", "ground fault",       "unexplained"};
-    static_assert(names.size() == static_cast<std::size_t>(SilenceClass::unexplained) + 1);
-    return names[static_cast<std::size_t>(silence)];
+    return class_names[static_cast<std::size_t>(silence)].data();
+}
+
+std::optional<SilenceClass> silence_class(std::string_view words) {
+    const auto found = std::ranges::find(class_names, words.substr(0, words.find(':')));
+    if (found == class_names.end()) return {};
+    return static_cast<SilenceClass>(found - class_names.begin());
+}
+
+bool is_over(SilenceClass silence) {
+    return silence == SilenceClass::switched_off || silence == SilenceClass::delivered ||
+           silence == SilenceClass::recording_complete;
 }
 
 bool is_lost(SilenceClass silence) {
@@ -44,16 +52,20 @@ SilenceClassifier::SilenceClassifier(PredictedSilences predicted, Ert start_ert,
 double SilenceClassifier::e_s(Ert ert) const {
     return static_cast<double>(ert.microseconds - entry_ert_.microseconds) * 1e-6;
 }
+Ert SilenceClassifier::ert_of(double e_s) const {
+    return {entry_ert_.microseconds + static_cast<std::int64_t>(e_s * 1e6)};
+}
 
 std::vector<LinkState> SilenceClassifier::tell(const std::vector<LinkState>& changes, Ert now, const Station& station) {
     std::vector<LinkState> all;
     if (!std::exchange(begun_, true) && predicted_.light_time_s > 0.0) {
         const Ert first{start_ert_.microseconds + static_cast<std::int64_t>(predicted_.light_time_s * 1e6)};
         for (const Link& link : {uhf_live_link, x_band_link})
-            all.push_back(told(silent_.emplace_back(Silence{link, false, {}}),
-                               {SilenceClass::light_time,
-                                "what leaves the vehicle at the start is here at " + day_of_year_text(first)},
-                               start_ert_, station));
+            all.push_back(
+                told(silent_.emplace_back(Silence{link}),
+                     {SilenceClass::light_time,
+                      "what leaves the vehicle at the start is here at " + day_of_year_text(first), e_s(first)},
+                     start_ert_, station));
     }
     for (const LinkState& change : changes) {
         const auto known = std::ranges::find(silent_, change.link, &Silence::link);
@@ -63,30 +75,35 @@ std::vector<LinkState> SilenceClassifier::tell(const std::vector<LinkState>& cha
             continue;
         }
         const bool told_of = known != silent_.end();
-        Silence& silence = told_of ? *known : silent_.emplace_back(Silence{change.link, !station.fault.empty(), {}});
+        Silence& silence = told_of ? *known : silent_.emplace_back(Silence{change.link, !station.fault.empty()});
         const Explanation why = explain(silence, e_s(change.ert), station);
-        if (!told_of || silence.told != why.silence) all.push_back(told(silence, why, change.ert, station));
+        if (!told_of || silence.told != why.silence || silence.told_fault != why.fault)
+            all.push_back(told(silence, why, change.ert, station));
     }
     for (Silence& silence : silent_) {
         const Explanation why = explain(silence, e_s(now), station);
         const bool begins =
             silence.told == SilenceClass::light_time &&
             now.microseconds - start_ert_.microseconds < static_cast<std::int64_t>(predicted_.light_time_s * 1e6);
-        if (why.silence != silence.told && !begins) all.push_back(told(silence, why, now, station));
+        if ((why.silence != silence.told || why.fault != silence.told_fault) && !begins)
+            all.push_back(told(silence, why, now, station));
     }
     return all;
 }
 
 LinkState SilenceClassifier::told(Silence& silence, const Explanation& why, Ert ert, const Station& station) const {
     silence.told = why.silence;
+    silence.told_fault = why.fault;
     std::string sentence = why.sentence;
+    if (why.fault) sentence += (sentence.empty() ? "" : "; ") + station.fault;
     if (why.silence == SilenceClass::unexplained) {
         const auto last =
             std::ranges::find(station.heard, silence.link.name, [](const auto& heard) { return heard.first; });
         if (last != station.heard.end())
-            sentence += fmt::format("; its last octet left at {}", after_entry(e_s(last->second)));
+            sentence += fmt::format("; its last octet left at {}", from_entry_text(e_s(last->second)));
     }
-    return {silence.link, ert, false, words_of(why.silence, sentence), is_lost(why.silence)};
+    const auto until = why.until_e_s ? std::optional(ert_of(*why.until_e_s)) : std::nullopt;
+    return {silence.link, ert, false, words_of(why.silence, sentence), is_lost(why.silence) || why.fault, until};
 }
 
 SilenceClassifier::Explanation SilenceClassifier::explain(const Silence& silence, double e_s,
@@ -96,6 +113,7 @@ SilenceClassifier::Explanation SilenceClassifier::explain(const Silence& silence
     const bool predicted =
         why.silence != SilenceClass::unexplained && !(why.silence == SilenceClass::delivered && silence.cut);
     if (!predicted && !station.fault.empty()) return {SilenceClass::ground_fault, station.fault};
+    why.fault = !station.fault.empty() && !is_over(why.silence);
     return why;
 }
 
@@ -118,24 +136,29 @@ std::optional<SilenceClassifier::Explanation> SilenceClassifier::explain_by_pass
         if (pass.rise_s > e_s && !pass.stored && (next == nullptr || pass.rise_s < next->rise_s)) next = &pass;
     }
     if (recording != nullptr)
-        return Explanation{SilenceClass::orbiter_records,
-                           fmt::format("{} delivers from {}", recording->orbiter, after_entry(recording->delivery_s))};
+        return Explanation{
+            SilenceClass::orbiter_records,
+            fmt::format("{} delivers from {}", recording->orbiter, from_entry_text(recording->delivery_s)),
+            recording->delivery_s};
     if (next != nullptr)
         return Explanation{SilenceClass::no_orbiter,
-                           fmt::format("{} rises at {}", next->orbiter, after_entry(next->rise_s))};
+                           fmt::format("{} rises at {}", next->orbiter, from_entry_text(next->rise_s)), next->rise_s};
     return Explanation{SilenceClass::no_orbiter, "no further pass is planned"};
 }
 
 SilenceClassifier::Explanation SilenceClassifier::explain_uhf(double e_s) const {
     const auto& blackout = predicted_.blackout;
     const auto hand_over_s = predicted_.hand_over_s, stop_s = predicted_.uhf_stop_s;
-    if (stop_s && e_s >= *stop_s - margin_s) return {SilenceClass::switched_off, "planned at " + after_entry(*stop_s)};
+    if (stop_s && e_s >= *stop_s - margin_s)
+        return {SilenceClass::switched_off, "planned at " + from_entry_text(*stop_s)};
     if (const auto why = explain_by_passes(e_s)) return *why;
     if (blackout && holds(*blackout, e_s))
-        return {SilenceClass::blackout,
-                fmt::format("predicted from {} to {}", after_entry(blackout->from_s), after_entry(blackout->to_s))};
+        return {
+            SilenceClass::blackout,
+            fmt::format("predicted from {} to {}", from_entry_text(blackout->from_s), from_entry_text(blackout->to_s)),
+            blackout->to_s};
     if (hand_over_s && holds({*hand_over_s, *hand_over_s}, e_s))
-        return {SilenceClass::hand_over, "planned at " + after_entry(*hand_over_s)};
+        return {SilenceClass::hand_over, "planned at " + from_entry_text(*hand_over_s)};
     return {SilenceClass::unexplained, "nothing is predicted to silence it now"};
 }
 
@@ -147,7 +170,7 @@ SilenceClassifier::Explanation SilenceClassifier::explain_relay(double e_s, cons
 
 SilenceClassifier::Explanation SilenceClassifier::explain_x_band(double e_s) const {
     if (predicted_.earth_set_s && e_s >= *predicted_.earth_set_s - margin_s)
-        return {SilenceClass::earth_set, "predicted at " + after_entry(*predicted_.earth_set_s)};
+        return {SilenceClass::earth_set, "predicted at " + from_entry_text(*predicted_.earth_set_s)};
     if (predicted_.carrier_weak)
         return {SilenceClass::weak_carrier, "the link's budget has it below what a lock needs"};
     return {SilenceClass::unexplained, "nothing is predicted to silence it now"};

@@ -28,10 +28,14 @@ enum class SilenceClass : std::uint8_t {
 };
 /// "plasma blackout", "Earth set", …
 const char* name_of(SilenceClass silence);
+/// Whether nothing more is awaited of a link with this silence.
+bool is_over(SilenceClass silence);
 /// Whether a link with this silence should be up.
 bool is_lost(SilenceClass silence);
-/// "plasma blackout: predicted from E+45 s to E+98 s", as reported for a link. Without a sentence: the name alone.
+/// "plasma blackout: predicted from E+0:45 to E+1:38", as reported for a link. Without a sentence: the name alone.
 std::string words_of(SilenceClass silence, const std::string& sentence);
+/// The class that words_of() wrote; none for another text.
+std::optional<SilenceClass> silence_class(std::string_view words);
 
 /// Explains why a link is silent from ground's knowledge: predictions, light time, the link, its last octet.
 ///
@@ -41,7 +45,8 @@ std::string words_of(SilenceClass silence, const std::string& sentence);
 /// Rate     any; each call judges silences anew: when an explanation ends, another replaces it
 /// Margin   a prediction counts for `margin_s` on both sides, since dispersed landings come that much earlier or later
 /// Rules    in this order: the plan's switching, passes, blackout, hand-over; X-band: Earth set, link budget; the
-///          recording: complete, passes. If none holds: the station's fault, or unexplained
+///          recording: complete, passes. If none holds: the station's fault, or unexplained. A fault of the station
+///          is told beside a prediction too, and the link is then lost: what is predicted excuses no fault
 /// Memory   a row a link
 /// A value, like the landing.
 class SilenceClassifier {
@@ -69,10 +74,13 @@ class SilenceClassifier {
         Link link;
         bool cut = false;  ///< began while the station had a fault
         SilenceClass told{};
+        bool told_fault = false;  ///< beside a prediction
     };
     struct Explanation {
         SilenceClass silence = SilenceClass::unexplained;
         std::string sentence{};
+        std::optional<double> until_e_s{};  ///< when it ends, as predicted
+        bool fault = false;                 ///< the station has a fault as well
     };
     Explanation explain(const Silence& silence, double e_s, const Station& station) const;
     Explanation explain_by_link(const Link& link, double e_s, const Station& station) const;
@@ -82,6 +90,7 @@ class SilenceClassifier {
     std::optional<Explanation> explain_by_passes(double e_s) const;
     LinkState told(Silence& silence, const Explanation& why, Ert ert, const Station& station) const;
     double e_s(Ert ert) const;
+    Ert ert_of(double e_s) const;
 
     PredictedSilences predicted_;
     Ert start_ert_, entry_ert_;

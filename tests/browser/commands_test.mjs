@@ -106,7 +106,7 @@ test('what a changed offset would move is named and drawn before it is sent, and
   await review(page, `edl_set_timepoint_offset timepoint=${shield} desired_offset_s=12 minimum_offset_s=0`);
   await shows('effect', /^◌ It would move \d+ timepoints, by at most 12\.0 s$/);
   await page.getByTestId('effect').locator('summary').press('Enter');
-  await shows('effect', /heatshield separation\s+E\+04:37\.4 → E\+04:49\.4, \+12\.0 s/);
+  await shows('effect', /heatshield separation\s+E\+4:37\.4 → E\+4:49\.4, \+12\.0 s/);
   await waitFor(
     async () => !before.equals(await picture()),
     (differs) => differs,

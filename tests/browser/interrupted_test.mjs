@@ -114,7 +114,7 @@ test('cut off in mid-entry the page says so, says what it missed once it is back
   await shows('stream-state', /connected/);
   way.cut();
   await shows('stream-state', /NO CONNECTION/);
-  await shows('lost-bar', /everything here is old/);
+  await shows('situation-sentence', /everything here is old/);
   const [{ last_seq: last }] = (await server.get('/runs')).runs;
   await waitFor(
     async () => (await server.get('/runs')).runs[0],
@@ -123,7 +123,7 @@ test('cut off in mid-entry the page says so, says what it missed once it is back
   way.mend();
   await shows(
     'notices',
-    /The connection was lost at E\+0\d:\d\d and is back[^]*were filled in from the archive, none is missing/,
+    /The connection was lost at E\+\d:\d\d and is back[^]*were filled in from the archive, none is missing/,
   );
   await shows('stream-state', /connected/);
   await pace(page, 100);

@@ -17,7 +17,7 @@ const SHOWN = {
   timeline: /(\d+) of \1 timepoints fired/,
   descent: /Touchdown reported[^]*2 of 3 signals/,
   phases: /✓ Cruise[^]*▶ Landed/,
-  tones: /Last tone, E\+\d\d:\d\d/,
+  tones: /Last tone, E\+\d+:\d\d/,
   plots: /Altitude[^]*\d km[^]*Deceleration[^]*\d g/,
   events: /The EDL recording is closed/,
   waiting: /This run: touchdown\. The recording is complete\./,

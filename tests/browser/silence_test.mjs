@@ -48,7 +48,7 @@ test('a replay shows what had been heard then; with the recording it shows what 
   );
 
   way.cut();
-  await shows('lost-bar', /NO CONNECTION: nothing new comes/);
+  await shows('situation-sentence', /NO CONNECTION: nothing new comes/);
   await shows('replay-bar', /REPLAY/);
   assert.deepEqual(await findings(page, 'dark'), []);
   if (process.env.AEOLIS_SHOTS) await page.screenshot({ path: `${process.env.AEOLIS_SHOTS}/replay_lost.png` });

@@ -299,9 +299,9 @@ export const stageLook = (page, command, name) =>
 /** The test name of the focused element. */
 export const focused = (page) => page.evaluate(() => document.activeElement?.dataset.testid);
 
-/** Converts "E+00:04:28" to seconds. */
+/** Converts "E+4:28" to seconds. */
 export function secondsFromEntry(text) {
-  const [, sign, hours, minutes, seconds] = /E([+−])(\d+):(\d+):(\d+)/.exec(text) ?? [];
-  const value = Number(hours) * 3600 + Number(minutes) * 60 + Number(seconds);
+  const [, sign, hours, minutes, seconds] = /E([+−])(?:(\d+):)?(\d+):(\d+)/.exec(text) ?? [];
+  const value = Number(hours ?? 0) * 3600 + Number(minutes) * 60 + Number(seconds);
   return sign === '−' ? -value : value;
 }

@@ -113,7 +113,7 @@ TEST_CASE("a transmitter that fails where nothing is predicted is an unexplained
     REQUIRE(told.size() == 1);
     CHECK_THAT(told[0],
                Catch::Contains(
-                   "uhf_live lost: unexplained: nothing is predicted to silence it now; its last octet left at E−30"));
+                   "uhf_live lost: unexplained: nothing is predicted to silence it now; its last octet left at E−5:0"));
 }
 
 TEST_CASE("a station's outage takes what came live meanwhile and nothing else: links are lost for a ground fault, the "

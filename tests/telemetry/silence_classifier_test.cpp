@@ -50,11 +50,11 @@ std::string class_of(const std::string& reason) {
 
 TEST_CASE("a silence is named by what was predicted for its time, and by nothing that only the simulation knows",
           "[station][silence]") {
-    CHECK(words(uhf_live_link, 44.6) == "plasma blackout: predicted from E+45 s to E+98 s");
-    CHECK(words(uhf_live_link, 251.4) == "antenna hand-over: planned at E+247 s");
-    CHECK(words(uhf_live_link, 456.4) == "switched off: planned at E+450 s");
+    CHECK(words(uhf_live_link, 44.6) == "plasma blackout: predicted from E+0:45 to E+1:38");
+    CHECK(words(uhf_live_link, 251.4) == "antenna hand-over: planned at E+4:07");
+    CHECK(words(uhf_live_link, 456.4) == "switched off: planned at E+7:30");
     CHECK(words(uhf_live_link, -300.0) == "unexplained: nothing is predicted to silence it now");
-    CHECK(words(x_band_link, 290.0) == "Earth set: predicted at E+300 s");
+    CHECK(words(x_band_link, 290.0) == "Earth set: predicted at E+5:00");
     CHECK(words(x_band_link, -20.0) == "unexplained: nothing is predicted to silence it now");
     auto weak = predicted();
     weak.carrier_weak = true;
@@ -64,7 +64,7 @@ TEST_CASE("a silence is named by what was predicted for its time, and by nothing
     CHECK(words({"uhf_mro", false}, 2600.0) == "delivered: nothing more comes until the orbiter's next pass");
     // Where nothing explains it, what was heard last is told.
     CHECK(words(uhf_live_link, -300.0, predicted(), {0.0, {{"uhf_live", at(-301.2)}}}) ==
-          "unexplained: nothing is predicted to silence it now; its last octet left at E−301 s");
+          "unexplained: nothing is predicted to silence it now; its last octet left at E−5:02");
 }
 
 TEST_CASE("a prediction counts as far as its margin, and no farther", "[station][silence]") {
@@ -82,8 +82,8 @@ TEST_CASE("orbiters explain a silence by their passes: none in view, or one that
     silences.passes = {{"odyssey", -1200.0, 200.0, 200.0, false},
                        {"mro", -300.0, 400.0, 2200.0, true},
                        {"odyssey", 7200.0, 7800.0, 7800.0, false}};
-    CHECK(words(uhf_live_link, 210.0, silences) == "orbiter records: mro delivers from E+2200 s");
-    CHECK(words(relay_link, 600.0, silences) == "no orbiter in view: odyssey rises at E+7200 s");
+    CHECK(words(uhf_live_link, 210.0, silences) == "orbiter records: mro delivers from E+36:40");
+    CHECK(words(relay_link, 600.0, silences) == "no orbiter in view: odyssey rises at E+2:00:00");
     CHECK(words(relay_link, 9000.0, silences) == "no orbiter in view: no further pass is planned");
     CHECK(class_of(words(uhf_live_link, 60.0, silences)) == "plasma blackout");  // odyssey is in view
 }
@@ -116,11 +116,15 @@ TEST_CASE(
     REQUIRE(lost.size() == 2);
     CHECK(lost[0].reason == "ground fault: nothing comes from the station");
     CHECK(lost[0].lost);
-    CHECK(class_of(lost[1].reason) == "plasma blackout");  // which explains it as well
+    // A prediction explains it as well, but does not excuse the fault.
+    CHECK(lost[1].reason == "plasma blackout: predicted from E+0:45 to E+1:38; nothing comes from the station");
+    CHECK(lost[1].lost);
     const auto back = classifier.tell({}, at(50.0), {});
-    REQUIRE(back.size() == 1);
+    REQUIRE(back.size() == 2);
     CHECK(back[0].link == x_band_link);
     CHECK(class_of(back[0].reason) == "unexplained");
+    CHECK(back[1].reason == "plasma blackout: predicted from E+0:45 to E+1:38");
+    CHECK_FALSE(back[1].lost);
 }
 
 TEST_CASE(
@@ -137,6 +141,27 @@ TEST_CASE(
     const auto back = classifier.tell({}, at(2700.0), {});
     REQUIRE(back.size() == 1);
     CHECK(class_of(back[0].reason) == "delivered");
+}
+
+TEST_CASE("a silence that is predicted to end says when: blackout, the next pass, a delivery", "[station][silence]") {
+    const auto until = [](const Link& link, double e_s, const PredictedSilences& silences) {
+        SilenceClassifier classifier{silences, at(-1200.0), entry};
+        return classifier.tell({down(link, e_s)}, at(e_s), {}).at(0).until;
+    };
+    auto silences = predicted();
+    CHECK(until(uhf_live_link, 50.0, silences) == at(98.0));
+    CHECK_FALSE(until(uhf_live_link, 456.0, silences));  // switched off for good
+    CHECK_FALSE(until(x_band_link, 300.0, silences));
+    silences.passes = {{"mro", -300.0, 400.0, 2200.0, true}, {"odyssey", 7200.0, 7800.0, 7800.0, false}};
+    CHECK(until(uhf_live_link, 210.0, silences) == at(2200.0));
+    CHECK(until(relay_link, 600.0, silences) == at(7200.0));
+    CHECK_FALSE(until(relay_link, 9000.0, silences));
+}
+
+TEST_CASE("the class of a silence is read from the words that tell it", "[station][silence]") {
+    CHECK(silence_class("plasma blackout: predicted from E+0:45 to E+1:38") == SilenceClass::blackout);
+    CHECK(silence_class("recording complete") == SilenceClass::recording_complete);
+    CHECK_FALSE(silence_class("nominal"));
 }
 
 TEST_CASE("before anything can have come the silence is the light time's", "[station][silence]") {

@@ -90,7 +90,7 @@ test('each panel comes to look as its stored picture does, within a tolerance, a
   await shows('badge', /REPLAY/); // two letters in a row are a word
   await page.keyboard.press('p');
   await page.getByTestId('replay-bar').locator('input').fill('265');
-  await shows('clock-entry', /E\+00:04:25/);
+  await shows('clock-entry', /E\+4:25/);
   await page.evaluate(() => document.activeElement.blur());
   await compare('console_mid_entry_dark', page);
   await page.keyboard.press('t');
@@ -108,7 +108,7 @@ test('each panel comes to look as its stored picture does, within a tolerance, a
   await page.keyboard.press('c');
   await page.evaluate(() => document.activeElement.blur());
   way.cut();
-  await shows('lost-bar', /NO CONNECTION/);
+  await shows('situation-sentence', /NO CONNECTION/);
   await compare('console_lost_dark', page);
   assert.deepEqual(different, []);
   assert.deepEqual(

@@ -28,7 +28,7 @@ test('with tones alone the next moment, the phase, the count and the details go 
   await shows('timepoint-detail', /next|waiting for reply/);
   for (let steps = 0; steps < 12 && !/parachute deploy\s/.test(await text('timepoint-detail')); ++steps)
     await page.keyboard.press(',');
-  assert.match(await text('timepoint-detail'), /parachute deploy\s+fired, ■ by tone[^]*its tone began\s+E\+04:\d\d/);
+  assert.match(await text('timepoint-detail'), /parachute deploy\s+fired, ■ by tone[^]*its tone began\s+E\+4:\d\d/);
   assert.deepEqual(await findings(page, 'dark'), []);
   await page.keyboard.press('Escape');
   if (process.env.AEOLIS_SHOTS) await page.screenshot({ path: `${process.env.AEOLIS_SHOTS}/tones_only.png` });
@@ -62,7 +62,7 @@ test('a connection that dies without a word is lost within seconds, and comes ba
   };
   await goesOn();
   way.freeze();
-  await shows('lost-bar', /NO CONNECTION: everything here is old/);
+  await shows('situation-sentence', /NO CONNECTION: everything here is old/);
   assert.match(await text('stream-state'), /✖ NO CONNECTION/);
   way.thaw();
   await goesOn();

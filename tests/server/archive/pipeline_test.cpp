@@ -581,4 +581,35 @@ TEST_CASE("kill -9 takes back nothing that was acknowledged", "[pipeline][archiv
     CHECK(series->channels(0).samples() == after / 2);  // sealed segments and the open tail together
 }
 
+TEST_CASE("a situation is an item like every other: numbered, published, read back with its list, and said once until "
+          "it changes",
+          "[pipeline][situation]") {
+    Ground ground;
+    REQUIRE(ground.pipeline.accept(telemetry::LinkState{telemetry::uhf_live_link, Ert{0}, true, "nominal"}).ok());
+    const auto pass = [&](std::int64_t at_s) {
+        REQUIRE(ground.pipeline.accept(telemetry::EarthTime{Ert{at_s * 1'000'000}}).ok());
+        REQUIRE(ground.pipeline.commit().ok());
+    };
+    for (const std::int64_t at_s : {1, 2, 3}) pass(at_s);
+    REQUIRE(ground.items().size() == 2);
+    const auto said = ground.items().back();
+    CHECK(said.seq() == 2);
+    CHECK(said.ert_us() == 1'000'000);
+    REQUIRE(said.has_situation());
+    CHECK(said.situation().entries_size() > 0);
+    REQUIRE(ground.pipeline
+                .accept(telemetry::LinkState{telemetry::uhf_live_link, Ert{3'500'000}, false,
+                                             "unexplained: nothing is predicted to silence it now", true})
+                .ok());
+    pass(4);
+    REQUIRE(ground.items().size() == 4);
+    CHECK(ground.items().back().situation().entries(0).subject() == "uhf_live");
+    auto reader = ground.reader();
+    const auto page = reader.items(ground.run(), 0, 10);
+    REQUIRE(page.ok());
+    REQUIRE(page->items.size() == 4);
+    for (std::size_t i = 0; i < 4; ++i)
+        CHECK(page->items[i].SerializeAsString() == ground.items()[i].SerializeAsString());
+}
+
 }  // namespace archive_pipeline_test

@@ -29,7 +29,7 @@ export function clocksOf(store: RunStore, past: number | undefined): { entry: st
   if (lightTime > 0 && past === undefined && clocks?.ert) {
     others.push({ id: 'mars-now', label: 'the vehicle is at', value: fromEntry(clocks.eS) });
   }
-  return { entry: fromEntry(store.entryKnown ? e_s : NaN, { hours: true }), others };
+  return { entry: fromEntry(store.entryKnown ? e_s : NaN), others };
 }
 
 /**

@@ -12,6 +12,7 @@ import { access } from '../access/model';
 import { Who } from '../access/view';
 import { severitiesNow, toAcknowledge } from '../alarms/model';
 import { focusPanel } from '../shortcuts/model';
+import { Lasting } from '../situation/view';
 import './style.css';
 
 function Link({ line, testId }: { line: LinkLine; testId: string }) {
@@ -83,6 +84,7 @@ export function Header() {
       <div class={`badge badge-${modeNow()}`} data-testid="badge" role="status">
         <b>{badge.title}</b> <span>{!run && access.value.state === 'out' ? 'log in first' : badge.detail}</span>
       </div>
+      <Lasting />
       {run && (
         <div class="clock clock-entry">
           <small>from entry{run.run.lightTimeS > 0 ? ', as seen on Earth' : ''}</small>
@@ -101,11 +103,11 @@ export function Header() {
           ))}
         </dl>
       )}
-      {send && (
-        <div class={`clock ${send.next && send.next.left_s < 60 ? 'late' : ''}`} data-testid="latest-send">
-          <small>{send.next ? `latest to send before ${inWords(send.next.name)}` : 'latest to send'}</small>
+      {send?.next && (
+        <div class={`clock ${send.next.left_s < 60 ? 'late' : ''}`} data-testid="latest-send">
+          <small>latest to send before {inWords(send.next.name)}</small>
           <output>
-            {send.next ? `${send.next.at}, in ${duration(send.next.left_s)}` : 'nothing useful can arrive'}
+            {send.next.at}, in {duration(send.next.left_s)}
           </output>
         </div>
       )}

@@ -14,12 +14,12 @@ const row = (of: object) => create(AsFlownTimepointSchema, { name: 'parachute_de
 
 describe('a timepoint as it was flown', () => {
   it('has the times that are known, from entry, and nothing where nobody told', () => {
-    expect(flownRow(row({ predictedES: 255.9 }))).toMatchObject({ planned: '', predicted: 'E+04:15.9', recorded: '' });
+    expect(flownRow(row({ predictedES: 255.9 }))).toMatchObject({ planned: '', predicted: 'E+4:15.9', recorded: '' });
     expect(flownRow(row({ realtimeES: 254.05, recordedES: 254.05 }))).toMatchObject({
       planned: '',
       tone: '',
-      uhf: 'E+04:14.1',
-      recorded: 'E+04:14.1',
+      uhf: 'E+4:14.1',
+      recorded: 'E+4:14.1',
     });
   });
   it('tells what it had to spare, which is nothing where it only follows the one before', () => {
@@ -67,7 +67,7 @@ describe('an event as it was flown', () => {
       name: 'bank_reversal_2',
       predicted: '',
       uhf: '',
-      recorded: 'E+02:01.5',
+      recorded: 'E+2:01.5',
       text: 'Bank reversal 2 begins',
     });
   });
@@ -86,10 +86,10 @@ describe('the report', () => {
   });
   it('tells a silence from when to when, and why', () => {
     expect(silenceWords(create(SilenceSchema, { link: 'uhf_live', reason: 'plasma', fromES: 60, toES: 130 }))).toBe(
-      'E+01:00 to E+02:10, 70 s: plasma',
+      'E+1:00 to E+2:10, 70 s: plasma',
     );
     expect(silenceWords(create(SilenceSchema, { link: 'x_band', reason: 'Earth has set', fromES: 300 }))).toBe(
-      'E+05:00 to the end: Earth has set',
+      'E+5:00 to the end: Earth has set',
     );
   });
 });

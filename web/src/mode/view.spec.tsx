@@ -42,7 +42,7 @@ describe('a break of the connection', () => {
   it('says since when, what was filled in, and whether the server went on without us', () => {
     const break_ = { after: 1200, through: 1612, attempts: 3 };
     expect(resumedWords(break_, aRun(), 80)).toBe(
-      'The connection was lost at E+01:20 and is back at attempt 3: numbers 1201 to 1612, which came meanwhile, were filled in from the archive, none is missing.',
+      'The connection was lost at E+1:20 and is back at attempt 3: numbers 1201 to 1612, which came meanwhile, were filled in from the archive, none is missing.',
     );
     expect(resumedWords({ ...break_, through: 1200 }, aRun(), 80)).toContain('nothing had come meanwhile');
     expect(resumedWords(break_, aRun({ state: 'interrupted' }), 80)).toContain(

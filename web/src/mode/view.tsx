@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // The display of the mode: a tape along the top of a rehearsal, a bar over every past view, a mark in each panel.
-import { stream } from '../run/connection';
 import { backToLive } from '../run/session';
 import { modeNow, pastRange, replay, runNow } from '../run/shown';
 import { fromEntry } from '../run/time';
@@ -26,26 +25,16 @@ export function Tape() {
 export function PastBar() {
   const past = pastRange.value;
   const run = runNow();
-  const lost = stream.value.state === 'lost';
+  if (!past || replay.value) return null;
   return (
-    <>
-      {lost && (
-        <div class="past-bar lost-bar" role="alert" data-testid="lost-bar">
-          ✖ NO CONNECTION: {past ? 'nothing new comes' : 'everything here is old'}. Trying again, attempt{' '}
-          {stream.value.attempt}.
-        </div>
-      )}
-      {past && !replay.value && (
-        <div class="past-bar" role="alert" data-testid="past-bar">
-          THE PAST: {fromEntry(past.from)} to {fromEntry(past.to)}. Nothing here is live
-          {run?.going ? '; the run goes on' : ''}.
-          <Reading />
-          <button type="button" onClick={backToLive}>
-            leave <kbd>Esc</kbd>
-          </button>
-        </div>
-      )}
-    </>
+    <div class="past-bar" role="alert" data-testid="past-bar">
+      THE PAST: {fromEntry(past.from)} to {fromEntry(past.to)}. Nothing here is live
+      {run?.going ? '; the run goes on' : ''}.
+      <Reading />
+      <button type="button" onClick={backToLive}>
+        leave <kbd>Esc</kbd>
+      </button>
+    </div>
   );
 }
 

@@ -4,8 +4,11 @@ import { inWords } from '../run/dictionary';
 import type { Dictionary } from '../run/dictionary';
 import type { TimepointRow } from '../gen/aeolis/v1/run_pb';
 import type { RunStore } from '../run/store';
+import { countdownWords } from '../situation/countdown';
 import { heardOf } from '../timeline/heard';
 import type { Prediction } from '../timeline/model';
+
+const LATE_S = 5; // chosen: as the server's, from when on a step that UHF tells is overdue
 
 interface PhaseStep {
   title: string;
@@ -120,19 +123,10 @@ function byTone(
   };
 }
 
-/** "parachute in ≈ 1 m 20 s", as far as it is predicted. An overdue phase is predicted for now at the earliest. */
-export function nextWords(
-  steps: readonly PhaseStep[],
-  seen_e_s: number,
-  duration: (seconds: number) => string,
-): string {
+/** "parachute in ≈ 1 m 20 s", as far as it is predicted; what is late is "overdue since E+4:15". */
+export function nextWords(steps: readonly PhaseStep[], seen_e_s: number): string {
   const next = steps[steps.findIndex((step) => step.state === 'now') + 1];
   if (next?.state !== 'ahead' || next.predicted_e_s === undefined) return '';
-  const left = next.predicted_e_s - seen_e_s;
   const title = next.title.toLowerCase();
-  return left > 0
-    ? `${title} in ≈ ${duration(left)}`
-    : left > -1
-      ? `${title} is due`
-      : `${title} ≈ ${duration(-left)} later than predicted`;
+  return countdownWords(title, next.predicted_e_s, seen_e_s, seen_e_s - next.predicted_e_s >= LATE_S);
 }

@@ -40,11 +40,11 @@ describe('the strip of phases', () => {
     const moved = steps(['parachute_deploy', 400], ['powered_approach', 522]);
     expect(moved.map((step) => step.predicted_e_s)).toEqual([undefined, 0, 400, 522, 431.5]);
     expect(moved[1]?.part, 'of what is going on').toBeCloseTo(0.25);
-    expect([100, 400, 400.1, 410].map((seen_e_s) => nextWords(moved, seen_e_s, String))).toEqual([
-      'parachute in ≈ 300',
+    expect([100, 400, 404.9, 405].map((seen_e_s) => nextWords(moved, seen_e_s))).toEqual([
+      'parachute in ≈ 5 m 00 s',
       'parachute is due',
       'parachute is due',
-      'parachute ≈ 10 later than predicted',
+      'parachute overdue since E+6:40',
     ]);
   });
   it('claims no phase before the vehicle has spoken', () => {

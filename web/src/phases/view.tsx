@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The strip of phases, legible across a room.
 import { cutoff, dictionary, runNow, timepoints } from '../run/shown';
-import { duration, fromEntry } from '../run/time';
+import { fromEntry } from '../run/time';
 import { predicted } from '../timeline/now';
 import { nextWords, phaseSteps } from './model';
 import './style.css';
@@ -29,12 +29,13 @@ export function Phases() {
             {step.state === 'now' ? (
               <>
                 {step.detail || (step.since_e_s !== undefined && `from ${fromEntry(step.since_e_s)}`)}{' '}
-                <i>{nextWords(steps, seen_e_s, duration)}</i>
+                <i>{nextWords(steps, seen_e_s)}</i>
               </>
             ) : step.state === 'done' ? (
               step.since_e_s !== undefined && `from ${fromEntry(step.since_e_s)}`
             ) : (
-              step.predicted_e_s !== undefined && `≈ ${fromEntry(step.predicted_e_s)}`
+              step.predicted_e_s !== undefined &&
+              `${step.predicted_e_s < seen_e_s ? 'predicted' : '≈'} ${fromEntry(step.predicted_e_s)}`
             )}
           </small>
           {step.part !== undefined && <span class="phase-part" style={{ width: `${(step.part * 100).toFixed(1)}%` }} />}

@@ -68,8 +68,8 @@ describe('the instructor’s desk', () => {
     };
     await open();
     expect([...page.querySelectorAll('[data-testid="interventions"] li')].map((each) => each.textContent)).toEqual([
-      'E+00:12.3 ▲ radar B silent, for 10 s',
-      'E+00:14.0 Ida <b>no one looks</b>',
+      'E+0:12.3 ▲ radar B silent, for 10 s',
+      'E+0:14.0 Ida <b>no one looks</b>',
     ]);
     expect(page.textContent).toContain('no accounts: whoever opens this fold can read it');
   });

@@ -205,10 +205,10 @@ describe('the score', () => {
     };
     const text = scoreText('run 1', score(of), interventions);
     for (const part of [
-      'landing: E+07:11.0 touchdown',
+      'landing: E+7:11.0 touchdown',
       'descending 0.7 m/s',
       '4.7 km from the target, by the vehicle’s own navigation',
-      "instructor's note: E+00:20.0 Ida: slow",
+      "instructor's note: E+0:20.0 Ida: slow",
       'score: 100 of 100',
       '  landing: 40.0 of 40',
       'Our own rule',

@@ -103,10 +103,11 @@ describe('times', () => {
       expect(dayOfYear(secondsOfErt(us), 3)).toBe(`2012-223T05:10:47${text}`);
   });
   it('counts from entry', () => {
-    expect(fromEntry(268.4, { hours: true })).toBe('E+00:04:28');
+    expect(fromEntry(268.4)).toBe('E+4:28');
+    expect(fromEntry(3723)).toBe('E+1:02:03');
     expect(fromEntry(-1142)).toBe('E−19:02');
-    expect(fromEntry(255.93, { tenths: true })).toBe('E+04:15.9');
-    expect(fromEntry(59.96, { tenths: true })).toBe('E+01:00.0');
+    expect(fromEntry(255.93, { tenths: true })).toBe('E+4:15.9');
+    expect(fromEntry(59.96, { tenths: true })).toBe('E+1:00.0');
     expect(fromEntry(NaN)).toBe('E —');
   });
   it('reads what people type', () => {

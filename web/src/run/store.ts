@@ -5,7 +5,7 @@ import type { Clocks, Explanation, LinkChange, TimepointFiring, Unit } from '../
 import type { RunState } from '../gen/aeolis/v1/run_pb';
 import { SOURCE_RECORDED } from '../stream/columns';
 import type { BatchOfFacts, Column, Fact } from '../stream/messages';
-import type { NamedAlarm, NamedEvent, NamedStage, NamedTone } from '../stream/names';
+import type { NamedAlarm, NamedEvent, NamedSituation, NamedStage, NamedTone } from '../stream/names';
 import { LIMIT_NOT_DRAWN, Series } from './series';
 import { isGoing } from './start';
 import { secondsOfDayOfYear, secondsOfErt } from './time';
@@ -14,6 +14,7 @@ const EVENT_LIMIT = 20000;
 const UNIT_LIMIT = 400;
 const LINK_LIMIT = 5000;
 const ALARM_LIMIT = 1000; // per channel
+const SITUATION_LIMIT = 5000; // chosen: a landing has a hundred or two
 // chosen: a packet heard this much later than light time was kept by an orbiter or by a queue on board
 const LATE_S = 2;
 export const LATE_LIMIT = 1 << 14; // per packet; older ones are forgotten, and notTold reports that
@@ -98,6 +99,8 @@ export class RunStore {
   /** Alarms in force, by channel. */
   alarms = new Map<number, NamedAlarm>();
   private readonly alarmChanges = new Map<number, NamedAlarm[]>();
+  /** What mattered, each from its item to the next. */
+  situations: Known<NamedSituation>[] = [];
   units: Known<Unit>[] = [];
   /** Totals by link and packet. */
   unitTotals = new Map<string, UnitTotals>();
@@ -370,6 +373,10 @@ export class RunStore {
         break;
       case 'unit':
         this.addUnit(item);
+        break;
+      case 'situation':
+        this.situations.push(item);
+        if (this.situations.length > SITUATION_LIMIT) this.situations.shift();
         break;
     }
   }

@@ -29,17 +29,17 @@ export function dayOfYear(seconds: number, digits = 1): string {
   return `${year}-${pad(day, 3)}T${date.toISOString().slice(11, 19)}.${pad(count % unit, digits)}`;
 }
 
-/** "E+00:04:28", "E−19:02"; with tenths "E+04:28.3". Hours only if needed, unless `hours`. */
-export function fromEntry(e_s: number, options: { tenths?: boolean; hours?: boolean } = {}): string {
+/** "E+4:58", "E−19:02", "E+1:02:03"; with tenths "E+4:28.3". Truncated like a clock; with tenths rounded. */
+export function fromEntry(e_s: number, options: { tenths?: boolean } = {}): string {
   if (!Number.isFinite(e_s)) return 'E —';
   const unit = options.tenths ? 10 : 1;
   const count = options.tenths ? Math.round(e_s * 10) : Math.floor(e_s + 1e-6);
   const sign = count < 0 ? '−' : '+';
   const all = Math.abs(count);
   const whole = Math.floor(all / unit);
-  const hours = Math.floor(whole / 3600);
-  const text = `${pad(Math.floor(whole / 60) % 60, 2)}:${pad(whole % 60, 2)}${options.tenths ? `.${all % 10}` : ''}`;
-  return `E${sign}${hours > 0 || options.hours ? `${pad(hours, 2)}:` : ''}${text}`;
+  const [hours, minutes, seconds] = [Math.floor(whole / 3600), Math.floor(whole / 60) % 60, pad(whole % 60, 2)];
+  const text = hours > 0 ? `${hours}:${pad(minutes, 2)}:${seconds}` : `${minutes}:${seconds}`;
+  return `E${sign}${text}${options.tenths ? `.${all % 10}` : ''}`;
 }
 
 /** "13 m 48.1 s", "0 s": a duration. */

@@ -9,6 +9,7 @@ import { toggleRecording, toggleReplay } from '../replay/model';
 import { backToLive } from '../run/session';
 import { dismissNotice, pastRange, store, takesCommands } from '../run/shown';
 import { closeCursor, stepCursor } from '../run/cursor';
+import { closeList, putAside, toggleList } from '../situation/model';
 import { closeDetail, stepTimepoint, toggleAnchors } from '../timeline/view';
 import { focusTones } from '../tones/view';
 import { choice, pan, zoom } from '../run/window';
@@ -106,6 +107,8 @@ export const SHORTCUTS: Shortcut[] = [
   { keys: ['p'], shown: 'p', words: 'pause and go on', act: togglePause },
   { keys: ['y'], shown: 'y', words: 'replay the landing; again: leave', act: toggleReplay },
   { keys: ['w'], shown: 'w', words: 'in a past view: as heard then, or with the recording', act: toggleRecording },
+  { keys: ['m'], shown: 'm', words: 'banner: what else matters, and what was put aside', act: toggleList },
+  { keys: ['x'], shown: 'x', words: 'banner: put its news aside', act: () => putAside() },
   { keys: ['1'], shown: '1', words: 'show the landing', act: () => (choice.value = 'landing') },
   { keys: ['2'], shown: '2', words: 'show the last minute', act: () => (choice.value = 'minute') },
   { keys: ['3'], shown: '3', words: 'show the whole run', act: () => (choice.value = 'run') },
@@ -146,7 +149,7 @@ export const SHORTCUTS: Shortcut[] = [
     act: () => {
       if (takeBackArmed()) return;
       if (helpShown.value) helpShown.value = false;
-      else if (closeCursor() || closeDetail()) return;
+      else if (closeList() || closeCursor() || closeDetail()) return;
       else if (step.value !== 'type' && takesCommands()) back();
       else if (pastRange.value) backToLive();
       else dismissNotice();

@@ -3,7 +3,7 @@
 // 2^53.
 import type { Clocks, Explanation, LinkChange, TimepointFiring, Unit } from '../gen/aeolis/v1/items_pb';
 import type { CommandReply, RunState } from '../gen/aeolis/v1/run_pb';
-import type { NamedAlarm, NamedEvent, NamedStage, NamedTone } from './names';
+import type { NamedAlarm, NamedEvent, NamedSituation, NamedStage, NamedTone } from './names';
 
 /** Samples of one channel as two columns. A value that is undefined on board is NaN. */
 export interface Column {
@@ -23,6 +23,7 @@ export type Fact = { seq: number; ert_s: number } & (
   | { kind: 'link'; fact: LinkChange }
   | { kind: 'alarm'; fact: NamedAlarm }
   | { kind: 'unit'; fact: Unit }
+  | { kind: 'situation'; fact: NamedSituation }
 );
 
 export interface BatchOfFacts {

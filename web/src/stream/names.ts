@@ -7,8 +7,9 @@ import {
   CommandStage_Stage,
   CommandStage_Status,
   Event_Level,
+  SituationEntry_Rank,
 } from '../gen/aeolis/v1/items_pb';
-import type { Alarm, CommandStage, Event, Item, Tone } from '../gen/aeolis/v1/items_pb';
+import type { Alarm, CommandStage, Event, Item, SituationEntry, Tone } from '../gen/aeolis/v1/items_pb';
 
 type Named<Message, Names> = Omit<Message, keyof Names> & Names;
 export type NamedEvent = Named<Event, { level: keyof typeof Event_Level }>;
@@ -18,6 +19,11 @@ export type NamedStage = Named<
   CommandStage,
   { stage: keyof typeof CommandStage_Stage; status: keyof typeof CommandStage_Status }
 >;
+
+export type NamedEntry = Named<SituationEntry, { rank: keyof typeof SituationEntry_Rank }>;
+export interface NamedSituation {
+  entries: NamedEntry[];
+}
 
 /** The number of a value that this console does not know. */
 const nameOf = <Names extends object>(names: Names, value: number) =>
@@ -37,6 +43,10 @@ export function named(item: Item['item']) {
         ...item.value,
         stage: nameOf(CommandStage_Stage, item.value.stage),
         status: nameOf(CommandStage_Status, item.value.status),
+      };
+    case 'situation':
+      return {
+        entries: item.value.entries.map((entry) => ({ ...entry, rank: nameOf(SituationEntry_Rank, entry.rank) })),
       };
     default:
       return item.value;

@@ -15,6 +15,9 @@ import {
   ExplanationSchema,
   ItemSchema,
   LinkChangeSchema,
+  SituationEntrySchema,
+  SituationEntry_Rank,
+  SituationSchema,
   TimepointFiringSchema,
   ToneSchema,
   UnitSchema,
@@ -189,6 +192,29 @@ export const explanation = (fields: MessageInitShape<typeof ExplanationSchema>) 
   item({ case: 'explanation', value: create(ExplanationSchema, { source: 1, ...fields }) });
 export const link = ({ ert, ...fields }: Fields<typeof LinkChangeSchema>) =>
   item({ case: 'link', value: create(LinkChangeSchema, fields) }, ert);
+/** Times of entries as day-of-year texts. */
+export const situation = (
+  ert: string,
+  ...entries: (Omit<MessageInitShape<typeof SituationEntrySchema>, 'rank' | '$typeName'> & {
+    rank: keyof typeof SituationEntry_Rank;
+  })[]
+) =>
+  item(
+    {
+      case: 'situation',
+      value: create(SituationSchema, {
+        entries: entries.map(({ rank, since = '', at = '', ...fields }) =>
+          create(SituationEntrySchema, {
+            ...fields,
+            rank: SituationEntry_Rank[rank],
+            sinceUs: ertUs(since),
+            ...(at !== '' && { atUs: ertUs(at) }),
+          }),
+        ),
+      }),
+    },
+    ert,
+  );
 export const alarm = ({
   severity = 'none',
   ...fields

@@ -8,7 +8,7 @@ import { ColumnCollector } from '../stream/columns';
 import { aBatch, aDictionary, aRun, aStore, event, firing, stage, tone } from '../testing/fixtures';
 import { TimelinePace, timelineAnswer, timelineQuestion } from './asked';
 import type { TimelineQuestion } from './asked';
-import { moved, predicted, predictedAsOf } from './now';
+import { moved, predicted, predictedAsOf, predictionsOf } from './now';
 
 const at = (e_s: number) =>
   aRun({
@@ -44,6 +44,22 @@ describe('the prediction of the run that is shown', () => {
       { id: 0, name: 'vent', e_s: -826, fired: true },
       { id: 1, name: 'mortar', e_s: 250, fired: false },
     ]);
+  });
+  it('keeps for what is overdue, and for what follows it, the time at which it was expected: no later one is known', () => {
+    const list = create(TimepointListSchema, {
+      anchors: [
+        { id: 0, name: 'entry', basis: 'plan', eS: 0 },
+        { id: 1, name: 'parachute', basis: 'overdue', eS: 3600, predictedES: 256 },
+        { id: 2, name: 'touchdown', basis: 'design', eS: 3775.5, predictedES: 431.5 },
+      ],
+      timepoints: [
+        { id: 0, name: 'sufr', anchor: 'sufr_start', predictedES: 239, heardBy: 'tone' },
+        { id: 1, name: 'mortar', anchor: 'parachute', predictedES: 3600 },
+        { id: 2, name: 'planned', anchor: 'entry', predictedES: 4000, plannedES: 4000 },
+        { id: 3, name: 'touchdown', anchor: 'touchdown', predictedES: 3775.5 },
+      ],
+    });
+    expect(predictionsOf(list).map(({ e_s }) => e_s)).toEqual([239, 256, 4000, 431.5]);
   });
   it('is of one run only', () => {
     store.value = aStore([], at(-100));

@@ -50,8 +50,8 @@ describe('tones', () => {
     expect([700, 740, 740.1].map((seen) => isOld(last, seen))).toEqual([false, false, true]);
     expect(isOld(undefined, 900)).toBe(false);
     expect([toneTitle(last, -300), toneTitle(lost, -300)]).toEqual([
-      'Last tone, E−05:00: 7 · Entry interface',
-      'Last tone, E−05:00: not decoded',
+      'Last tone, E−5:00: 7 · Entry interface',
+      'Last tone, E−5:00: not decoded',
     ]);
   });
   it('show what a receiver saw, and of a statistical tone no spectrum', () => {

@@ -459,11 +459,16 @@ function timeLine(
       holds: left <= 0,
     };
   if (left > 0) return { words, value: `≈ in ${duration(left)}`, holds: false };
-  return due_sclk === undefined && foreseen_sclk === undefined
-    ? { words, value: 'no word yet', holds: undefined }
-    : { words, value: 'not yet', holds: false };
+  if (due_sclk === undefined && foreseen_sclk === undefined) return { words, value: 'no word yet', holds: undefined };
+  const late = foreseen_sclk !== undefined && left < -LATE_S;
+  return {
+    words,
+    value: late ? `overdue since ${fromEntry(foreseen_sclk - entry_sclk)}` : 'not yet',
+    holds: false,
+  };
 }
 
+const LATE_S = 5; // chosen: as the server's, from when on a step that UHF tells is overdue
 // chosen: an older explanation no longer says what holds the decision now, and an older time belongs to another
 // timepoint
 const FRESH_S = 5;

@@ -289,7 +289,7 @@ describe('waiting for', () => {
       ).lines[0];
     expect(first(plan, 1000, 1005), 'while it is new').toMatchObject({
       words: '50 s after entry',
-      value: 'E+00:00.0',
+      value: 'E+0:00.0',
       holds: true,
     });
     expect(first(plan, 1000, 1005.5)).toMatchObject({ value: '≈ in 44.5 s', holds: false });
@@ -392,7 +392,7 @@ describe('waiting for', () => {
     const store = aStore([...commanded, tone({ sclk: 890, tone: 29, name: 'entry_interface' })]);
     expect(waitingFor(store, aDictionary, plan, Infinity)).toMatchObject({
       title: 'Waiting for parachute deploy',
-      byTone: 'entry interface, E−01:50',
+      byTone: 'entry interface, E−1:50',
     });
     expect(
       waitingFor(

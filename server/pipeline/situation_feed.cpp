@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/pipeline/situation_feed.hpp"
+
+#include <algorithm>
+
+namespace aeolis::pipeline {
+namespace {
+
+using telemetry::SituationDesk;
+
+SituationDesk::Clocks clocks_of(const archive::RunStart& start) {
+    const bool known = start.entry != Sclk{};  // of another mission nobody knows when it enters
+    return {known ? std::optional(start.entry) : std::nullopt, start.correlation, start.light_time_s};
+}
+
+/// Calls take(record) for the records behind `followed`, in their order.
+template <typename Record>
+void each_new(const std::vector<Record>& records, archive::Sequence followed, auto take) {
+    auto first = records.end();
+    while (first != records.begin() && std::prev(first)->seq > followed) --first;
+    for (; first != records.end(); ++first) take(*first);
+}
+
+SituationDesk::Origin origin_of(const archive::ItemRecord& record, archive::Source source = archive::Source::realtime) {
+    return {record.seq, record.ert, source == archive::Source::recorded};
+}
+
+}  // namespace
+
+SituationFeed::SituationFeed(const dictionary::Dictionary& dictionary, const archive::RunStart& start)
+    : desk_(dictionary, clocks_of(start)) {}
+
+void SituationFeed::follow(const archive::Batch& batch) {
+    if (batch.last_seq <= followed_) return;
+    each_new(batch.links, followed_, [&](const archive::LinkRecord& link) {
+        desk_.link({{link.link, false}, link.ert, link.up, link.reason, link.lost, link.until}, origin_of(link));
+    });
+    each_new(batch.packets, followed_, [&](const archive::PacketRecord& packet) {
+        if (packet.packet && packet.source == archive::Source::realtime) desk_.heard(packet.sclk);
+    });
+    each_new(batch.events, followed_, [&](const archive::EventRecord& event) {
+        desk_.event({event.name, event.text, event.level, event.sclk}, origin_of(event, event.source));
+    });
+    each_new(batch.firings, followed_, [&](const archive::FiringRecord& firing) {
+        desk_.fired(firing.timepoint, firing.triggered, firing.fired, origin_of(firing, firing.source));
+    });
+    each_new(batch.explanations, followed_, [&](const archive::ExplanationRecord& explanation) {
+        desk_.explained(explanation.explanation, origin_of(explanation, explanation.source));
+    });
+    each_new(batch.alarms, followed_, [&](const archive::AlarmRecord& alarm) {
+        desk_.alarm(alarm.channel, alarm.severity, alarm.limit, alarm.sclk, origin_of(alarm));
+    });
+    each_new(batch.tones, followed_, [&](const archive::ToneRecord& tone) {
+        if (tone.tone) desk_.tone(*tone.tone, tone.likelihood, tone.sclk, origin_of(tone));
+    });
+    each_new(batch.stages, followed_, [&](const archive::StageRecord& stage) {
+        const bool executed = stage.stage == commands::Stage::executed || stage.stage == commands::Stage::verified;
+        desk_.stage({stage.command, stage.name, stage.evidence, stage.status == commands::Status::failed,
+                     executed && stage.status == commands::Status::ok},
+                    origin_of(stage));
+    });
+    followed_ = batch.last_seq;
+}
+
+std::optional<archive::SituationRecord> SituationFeed::changed(Ert now) {
+    now_ = now;
+    auto entries = desk_.at(now);
+    if (entries == told_) return {};
+    told_ = entries;
+    archive::SituationRecord record;
+    record.ert = now;
+    record.sentence = entries.front().sentence;
+    record.entries = std::move(entries);
+    return record;
+}
+
+}  // namespace aeolis::pipeline

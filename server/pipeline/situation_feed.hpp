@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "dictionaries/dictionary.hpp"
+#include "server/archive/records.hpp"
+#include "telemetry/situation_desk.hpp"
+
+#include <optional>
+#include <vector>
+
+namespace aeolis::pipeline {
+
+/// Gives a run's records to the situation desk, before they are committed, and returns each new situation.
+///
+/// In       the batch after each entry, in the order of the items; the time on Earth, once a second of the run
+/// Rule     Items that people add are left out: a run flown again has the same situations without them
+class SituationFeed {
+  public:
+    SituationFeed(const dictionary::Dictionary& dictionary, const archive::RunStart& start);
+
+    /// Takes the records that were added to the batch since the last call.
+    void follow(const archive::Batch& batch);
+    /// The situation at `now`; none while it is the one returned last.
+    std::optional<archive::SituationRecord> changed(Ert now);
+    /// The same for the last time that was given: at the end of a run. None before the first.
+    std::optional<archive::SituationRecord> changed() { return now_ ? changed(*now_) : std::nullopt; }
+
+  private:
+    telemetry::SituationDesk desk_;
+    archive::Sequence followed_ = 0;
+    std::optional<Ert> now_;
+    std::vector<telemetry::SituationEntry> told_;
+};
+
+}  // namespace aeolis::pipeline

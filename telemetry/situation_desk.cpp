@@ -1,0 +1,592 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "telemetry/situation_desk.hpp"
+
+#include "common/entry_time.hpp"
+#include "dictionaries/timeline_plan.hpp"
+#include "telemetry/alarms.hpp"
+#include "telemetry/text.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <fmt/format.h>
+
+namespace aeolis::telemetry {
+namespace {
+
+using dictionary::EventLevel;
+using dictionary::Severity;
+using Entries = std::vector<SituationEntry>;
+
+// Names of the dictionary that the ground itself interprets.
+constexpr std::string_view begin_event = "EDL_BEGUN", begin_tone = "edl_enabled", begin_command = "EDL_DO_EDL";
+constexpr std::string_view touchdown_event = "TOUCHDOWN", touchdown_timepoint = "touchdown";
+constexpr std::string_view take_over_event = "SECOND_CHANCE_TAKES_OVER", take_over_tone = "taken_over";
+constexpr std::string_view resume_event = "PRIME_RESUMES", designate_event = "PRIME_DESIGNATED";
+constexpr std::string_view role_channel = "computer_role";  // its alarm says what the take-over says
+/// Told by the stages of the command itself, or in words of their own.
+constexpr std::array<std::string_view, 3> told_otherwise{"COMMAND_REFUSED", take_over_event, resume_event};
+constexpr std::string_view stand_by_event = "PRIME_STANDS_BY";  // told by the take-over, where there was one
+constexpr std::array<std::string_view, 2> change_events{"TIMEPOINT_OFFSET_CHANGED", "ANCHOR_OFFSET_CHANGED"};
+
+/// An event or tone that ends the news of another.
+struct Follower {
+    std::string_view news, by;
+};
+constexpr std::array<Follower, 9> followers{{{"FAULT_PROTECTION_INHIBITS_EDL", "FAULT_PROTECTION_RELEASES_EDL"},
+                                             {"TIMEPOINT_UNVERIFIED", "TIMEPOINT_VERIFIED_LATE"},
+                                             {"TIMEPOINT_UNVERIFIED", "TIMEPOINT_FELT"},
+                                             {"TIMEPOINT_HELD", "TIMEPOINT_VERIFIED"},
+                                             {"IMU_SILENT", "IMU_HEARD_AGAIN"},
+                                             {"RADAR_LOST", "RADAR_LOCK"},
+                                             {"FATAL_CHECK_FAILED", "COMPUTER_STARTED"},
+                                             {"fault_inhibit", "fault_inhibit_over"},
+                                             {"check_failed", "computer_started"}}};
+/// Tones of what went wrong. They are news where UHF does not tell the same with more words.
+constexpr std::array<std::string_view, 14> bad_tones{
+    "check_failed", "fault_inhibit",   "command_refused", "action_unverified",   "action_refused",
+    "action_held",  "recording_fault", "overrun",         "constraint_violated", "radar_lost",
+    "imu_silent",   "attitude_lost",   "propellant_low",  "pyro_not_fired"};
+constexpr std::string_view fatal_tone = "check_failed";
+// Subjects.
+constexpr std::string_view landing = "landed", computer = "computer", station_fault = "station",
+                           commanding = "commanding";
+
+constexpr std::size_t sentence_octets_max = 240;  ///< chosen: two lines of the console
+constexpr double orbiter_soon_s = 600.0;          ///< chosen: nobody looks at a countdown to a pass beyond it
+
+std::string shortened(std::string text) {
+    if (text.size() <= sentence_octets_max) return text;
+    std::size_t end = sentence_octets_max;
+    while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U) --end;  // not within a character
+    return text.substr(0, end) + "…";
+}
+
+std::string capitalised(std::string text) {
+    if (!text.empty()) text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
+    return text;
+}
+
+std::string title_of(std::string_view link) {
+    if (link == uhf_live_link.name) return "UHF";
+    if (link == x_band_link.name) return "X-band";
+    if (link == relay_link.name) return "Relay";
+    if (link == downlink_link.name) return "Downlink";
+    if (link.starts_with("uhf_")) return "UHF by " + capitalised(std::string(link.substr(4)));
+    if (link.starts_with("relay_")) return "Relay by " + capitalised(std::string(link.substr(6)));
+    return std::string(link);
+}
+
+/// The station's fault, told behind the prediction that it stands beside.
+std::string fault_of(const std::string& words) {
+    const auto behind = words.rfind("; ");
+    return behind == std::string::npos ? words : words.substr(behind + 2);
+}
+
+/// The order of news: what concerns the whole landing first; what closes in every landing last.
+int weight_of(std::string_view subject) {
+    constexpr std::array<std::string_view, 3> heavy{landing, computer, station_fault};
+    if (const auto found = std::ranges::find(heavy, subject); found != heavy.end())
+        return static_cast<int>(heavy.end() - found);
+    return subject == commanding ? -1 : 0;
+}
+
+double seconds_from(Ert from, Ert to) {
+    return static_cast<double>(to.microseconds - from.microseconds) * 1e-6;
+}
+
+/// "speed ≤ 405.0 m/s", as it must become.
+std::string requirement(const Condition& condition) {
+    const std::string sign = condition.comparison == "<="   ? "≤"
+                             : condition.comparison == ">=" ? "≥"
+                             : condition.comparison == "==" ? "="
+                                                            : condition.comparison;
+    std::string bound = named_value_text(condition.quantity, condition.bound);
+    if (const auto square = bound.rfind("/s2"); square != std::string::npos) bound.replace(square, 3, "/s²");
+    return in_words(without_unit(condition.quantity)) + " " + sign + " " + bound;
+}
+
+}  // namespace
+
+const char* name_of(SituationRank rank) {
+    static constexpr std::array names{"lasting", "calm", "waiting", "silence", "news", "danger"};
+    static_assert(names.size() == situation_ranks);
+    return names[static_cast<std::size_t>(rank)];
+}
+
+SituationDesk::SituationDesk(const dictionary::Dictionary& dictionary, const Clocks& clocks)
+    : dictionary_(&dictionary), clocks_(clocks), timeline_(dictionary) {
+    if (!clocks_.entry) return;
+    std::optional<double> last_e_s;
+    for (const auto& e_s : dictionary::planned_from_entry_s(dictionary))
+        if (e_s) last_e_s = std::max(*e_s, last_e_s.value_or(*e_s));
+    if (last_e_s)
+        closes_ = {seen(*clocks_.entry + *last_e_s).microseconds -
+                   static_cast<std::int64_t>(2.0 * clocks_.light_time_s * 1e6)};
+}
+
+Ert SituationDesk::seen(Sclk sclk) const {
+    return {clocks_.correlation.scet_of(sclk).microseconds + static_cast<std::int64_t>(clocks_.light_time_s * 1e6)};
+}
+
+std::string SituationDesk::when(Ert ert) const {
+    if (!clocks_.entry) return day_of_year_text(ert);
+    const Scet sent{ert.microseconds - static_cast<std::int64_t>(clocks_.light_time_s * 1e6)};
+    return from_entry_text(clocks_.correlation.sclk_of(sent) - *clocks_.entry);
+}
+
+void SituationDesk::add_news(SituationEntry entry) {
+    std::erase_if(news_, [&](const auto& old) { return old.subject == entry.subject; });
+    entry.sentence = shortened(std::move(entry.sentence));
+    news_.push_back(std::move(entry));
+    if (news_.size() > news_max) news_.erase(news_.begin());
+}
+
+void SituationDesk::follow(std::string_view subject) {
+    std::erase_if(news_, [&](const auto& old) { return old.subject == subject; });
+}
+
+bool SituationDesk::up(std::string_view link) const {
+    const auto found = links_.find(link);
+    return found != links_.end() && found->second.up;
+}
+
+bool SituationDesk::anything_up() const {
+    return std::ranges::any_of(links_, [](const auto& link) { return link.second.up; });
+}
+
+Ert SituationDesk::last_change() const {
+    Ert last;
+    for (const auto& [name, link] : links_) last = std::max(last, link.since);
+    return last;
+}
+
+// ---- facts -------------------------------------------------------------------------------------------------------
+
+void SituationDesk::heard(Sclk sclk) {
+    if (!clocks_.entry) return;
+    const Ert at = seen(sclk);
+    if (!last_heard_ || at > *last_heard_) last_heard_ = at;
+}
+
+void SituationDesk::take_over(std::string_view how, Ert at, const Origin& origin, std::string evidence) {
+    if (backup_ && (!how.empty() || backup_->evidence.starts_with("event"))) return;  // an event knows better
+    const std::string sentence = how.empty() ? fmt::format("Flying on computer {} since {}", backup_name_, when(at))
+                                             : fmt::format("Flying on computer {}, {} {}", backup_name_, how, when(at));
+    SituationEntry entry{SituationRank::news, std::string(computer), sentence, std::move(evidence), origin.seq, at, {}};
+    add_news(entry);
+    entry.rank = SituationRank::lasting;
+    backup_ = std::move(entry);
+}
+
+void SituationDesk::touch_down(Ert at, std::string_view how, const Origin& origin, std::string evidence) {
+    begun_ = true;
+    if (landed_) return;
+    landed_ = SituationEntry{SituationRank::news,
+                             std::string(landing),
+                             how.empty() ? fmt::format("Landed: touchdown at {}", when(at))
+                                         : fmt::format("Landed: touchdown at {}, {}", when(at), how),
+                             std::move(evidence),
+                             origin.seq,
+                             at,
+                             {}};
+}
+
+void SituationDesk::event(const EventFact& event, const Origin& origin) {
+    const Ert at = seen(event.sclk, origin);
+    const std::string evidence = fmt::format("event {}{}", event.name, origin.recorded ? ", by the recording" : "");
+    if (event.name == begin_event) begun_ = true;
+    if (event.name == touchdown_event) touch_down(at, origin.recorded ? "by the recording" : "", origin, evidence);
+    if (event.name == take_over_event && !origin.recorded) take_over("", at, origin, evidence);
+    if (origin.recorded) return;  // the rest is of the present
+    if (event.name == designate_event) {
+        const bool b = event.text.find("Computer 1") != std::string_view::npos;
+        prime_ = b ? "B" : "A";
+        backup_name_ = b ? "A" : "B";
+    }
+    if (event.name == resume_event) {
+        backup_.reset();
+        add_news({SituationRank::news,
+                  std::string(computer),
+                  fmt::format("Flying on computer {} since {}", prime_, when(at)),
+                  evidence,
+                  origin.seq,
+                  at,
+                  {}});
+    }
+    for (const auto& follower : followers)
+        if (follower.by == event.name) follow(fmt::format("event {}", follower.news));
+    if (std::ranges::find(change_events, event.name) != change_events.end()) offsets_changed_ = true;
+    if (std::ranges::find(told_otherwise, event.name) != told_otherwise.end()) return;
+    if (event.name == stand_by_event && backup_) return;
+    if (event.level != EventLevel::fatal && event.level != EventLevel::warning_hi) return;
+    add_news({event.level == EventLevel::fatal ? SituationRank::danger : SituationRank::news,
+              fmt::format("event {}", event.name),
+              fmt::format("{}: {}", when(at), event.text),
+              evidence,
+              origin.seq,
+              at,
+              {}});
+}
+
+void SituationDesk::fired(TimepointId timepoint, Sclk triggered, Sclk fired, const Origin& origin) {
+    if (!clocks_.entry || timepoint.value >= dictionary_->timeline.size()) return;
+    begun_ = true;
+    timeline_.fired(timepoint, triggered - *clocks_.entry, fired - *clocks_.entry, origin.recorded, origin.seq);
+    if (dictionary_->timeline[timepoint.value].name == touchdown_timepoint)
+        touch_down(seen(fired), origin.recorded ? "by the recording" : "", origin, "timepoint touchdown");
+}
+
+void SituationDesk::tone(ToneId tone, double likelihood, Sclk start, const Origin& origin) {
+    if (!clocks_.entry || likelihood < tone_believed || tone.value >= dictionary_->tones.size()) return;
+    const auto& row = dictionary_->tones[tone.value];
+    const bool twin = row.set == dictionary::ToneSet::second_chance;
+    const auto name = twin && row.name.starts_with(dictionary::second_chance_prefix)
+                          ? std::string_view(row.name).substr(dictionary::second_chance_prefix.size())
+                          : std::string_view(row.name);
+    if (name.empty()) return;
+    heard(start);
+    const Ert at = seen(start);
+    const std::string evidence = fmt::format("tone {}", tone.value);
+    if (name == begin_tone) begun_ = true;
+    if (name == take_over_tone && twin) take_over("by tone at", at, origin, evidence);
+    if (const auto told = timeline_.tone(tone, start - *clocks_.entry, origin.seq)) {
+        begun_ = true;
+        if (dictionary_->timeline[told->value].name == touchdown_timepoint) touch_down(at, "by tone", origin, evidence);
+    }
+    for (const auto& follower : followers)
+        if (follower.by == name) follow(fmt::format("tone {}", follower.news));
+    if (up(uhf_live_link.name) || std::ranges::find(bad_tones, name) == bad_tones.end()) return;
+    add_news({name == fatal_tone ? SituationRank::danger : SituationRank::news,
+              fmt::format("tone {}", name),
+              fmt::format("{}, by tone: {}", when(at), row.meaning),
+              evidence,
+              origin.seq,
+              at,
+              {}});
+}
+
+void SituationDesk::link(const LinkState& state, const Origin& origin) {
+    LinkRow& row = links_[state.link.name];
+    if (state.up) {
+        row = LinkRow{};
+        row.up = true;
+        row.since = state.ert;
+        row.seq = origin.seq;
+        return;
+    }
+    const auto silence = silence_class(state.reason);
+    if (row.up || row.seq == 0) {
+        row = LinkRow{};
+        row.since = state.ert;
+    }
+    const bool unexplained = state.lost && (!silence || *silence == SilenceClass::unexplained);
+    if (unexplained && !row.lost_since && !row.station) {
+        row.lost_since = row.silence ? state.ert : row.since;
+        row.lost_seq = origin.seq;
+        if (row.silence && row.until) row.outlasted = row.silence, row.outlasted_until = row.until;
+    }
+    row.station = state.lost && !unexplained;
+    row.lost = state.lost;
+    row.silence = silence;
+    const auto colon = state.reason.find(": ");
+    row.words = colon == std::string::npos ? std::string{} : state.reason.substr(colon + 2);
+    row.until = state.until;
+    row.seq = origin.seq;
+    if (silence == SilenceClass::no_orbiter && state.until) pass_ = {*state.until, row.words};
+}
+
+void SituationDesk::stage(const StageFact& stage, const Origin& origin) {
+    const std::string subject = fmt::format("command {}", stage.name);
+    if (stage.done) {
+        follow(subject);
+        if (stage.name == begin_command) begun_ = true;
+    }
+    if (!stage.failed || stage.evidence.starts_with("cancelled")) return;
+    add_news({SituationRank::news,
+              subject,
+              fmt::format("{} failed: {}", stage.name, stage.evidence),
+              fmt::format("command {}", stage.command),
+              origin.seq,
+              origin.ert,
+              {}});
+}
+
+void SituationDesk::alarm(ChannelId channel, Severity severity, std::string_view limit, Sclk sclk,
+                          const Origin& origin) {
+    const auto& name = dictionary_->channels[channel.value].name;
+    if (name == role_channel) return;
+    const std::string subject = fmt::format("channel {}", name);
+    if (severity < Severity::critical) return follow(subject);
+    const Ert at = seen(sclk, origin);
+    add_news({SituationRank::danger,
+              subject,
+              fmt::format("{} {}: {} since {}", capitalised(in_words(without_unit(name))), limit, name_of(severity),
+                          when(at)),
+              fmt::format("channel {}", name),
+              origin.seq,
+              at,
+              {}});
+}
+
+void SituationDesk::explained(const Explanation& explanation, const Origin& origin) {
+    if (explanation.verdict != "held" || origin.recorded) return;
+    const auto unmet = std::ranges::find(explanation.conditions, false, &Condition::holds);
+    if (unmet == explanation.conditions.end()) return;
+    held_ = Held{explanation.decision == "timepoint" ? explanation.subject : explanation.decision, requirement(*unmet),
+                 origin.seq};
+}
+
+// ---- the situation -----------------------------------------------------------------------------------------------
+
+Entries SituationDesk::at(Ert now) const {
+    Entries all = news_;
+    if (landed_) all.push_back(*landed_);
+    const bool silent = add_not_heard(all, now);
+    add_links(all, now, silent);
+    if (!silent) add_waiting(all, now);
+    add_lasting(all, now);
+    const auto told = [](const auto& entry) { return entry.rank >= SituationRank::calm; };
+    if (std::ranges::none_of(all, told))
+        all.push_back({SituationRank::calm, "calm", "Nothing is awaited", "", 0, last_change(), {}});
+    std::ranges::stable_sort(all, [](const auto& a, const auto& b) {
+        if (a.rank != b.rank) return a.rank > b.rank;
+        const int before = weight_of(a.subject), behind = weight_of(b.subject);
+        return before != behind ? before > behind : a.since > b.since;
+    });
+    while (all.size() > entries_max) {  // what lasts is kept
+        const auto last = std::ranges::find(all, SituationRank::lasting, &SituationEntry::rank);
+        all.erase(std::prev(last));
+    }
+    return all;
+}
+
+void SituationDesk::add_links(Entries& all, Ert now, bool not_heard) const {
+    bool station = false;
+    for (const auto& [name, link] : links_) {
+        if (link.up) continue;
+        if (link.station) {
+            if (!std::exchange(station, true))
+                all.push_back({SituationRank::news,
+                               std::string(station_fault),
+                               fmt::format("A fault on the ground: {} ({} silent since {})", fault_of(link.words),
+                                           title_of(name), when(link.since)),
+                               "the station",
+                               link.seq,
+                               link.since,
+                               {}});
+            continue;
+        }
+        if (link.lost_since)
+            add_lost(all, name, link);
+        else if (!not_heard && (name == uhf_live_link.name || name == x_band_link.name || name == downlink_link.name))
+            add_silent(all, name, link, now);
+    }
+}
+
+void SituationDesk::add_lost(Entries& all, const std::string& name, const LinkRow& link) const {
+    const std::string title = title_of(name);
+    SituationEntry entry{SituationRank::news, name, {}, "link " + name, link.lost_seq, *link.lost_since, {}};
+    if (link.outlasted && link.outlasted_until) {
+        entry.sentence = fmt::format("{} silent since {}, longer than predicted ({} until {})", title, when(link.since),
+                                     name_of(*link.outlasted), when(*link.outlasted_until));
+        entry.awaited = title + " back";
+        entry.at = link.outlasted_until;
+        entry.overdue = true;
+    } else if (link.lost || !link.silence) {
+        entry.sentence = fmt::format("{} lost since {}: nothing predicted it", title, when(link.since));
+    } else {
+        entry.sentence = fmt::format("{} lost since {}, before what was predicted ({})", title, when(link.since),
+                                     name_of(*link.silence));
+    }
+    all.push_back(std::move(entry));
+}
+
+void SituationDesk::add_silent(Entries& all, const std::string& name, const LinkRow& link, Ert now) const {
+    if (!link.silence || is_over(*link.silence)) return;
+    const std::string title = title_of(name);
+    const bool uhf = name == uhf_live_link.name;
+    if (*link.silence == SilenceClass::light_time) {
+        if (uhf)
+            all.push_back({SituationRank::silence, "light time", "Nothing can have come yet: it is under way",
+                           "the light time", link.seq, link.since, "first word", link.until,
+                           link.until && now > *link.until});
+        return;
+    }
+    SituationEntry entry{SituationRank::silence, name, {}, "predicted before the landing", link.seq, link.since, {}};
+    entry.sentence = fmt::format("{} silent: {}{}{}{}", title, name_of(*link.silence), link.words.empty() ? "" : ", ",
+                                 link.words, uhf && tones_come() ? "; tones still come" : "");
+    const bool other_tells =
+        uhf ? tones_come() && link.until && seconds_from(now, *link.until) > orbiter_soon_s : up(uhf_live_link.name);
+    if (other_tells) entry.rank = SituationRank::calm;  // the landing is followed by the other link
+    if (link.until) {
+        entry.awaited = *link.silence == SilenceClass::orbiter_records ? "delivery" : title + " back";
+        entry.at = link.until;
+        entry.overdue = now > *link.until;
+    }
+    all.push_back(std::move(entry));
+}
+
+bool SituationDesk::add_not_heard(Entries& all, Ert now) const {
+    if (!clocks_.entry || dictionary_->timeline.empty() || !last_heard_ || landed_ || anything_up()) return false;
+    const LinkRow* next = nullptr;
+    bool lost = links_.empty(), down = false;
+    for (const auto& [name, link] : links_) {
+        down = down || name == uhf_live_link.name || name == x_band_link.name;
+        lost = lost || link.lost_since || link.station;
+        if (link.lost_since || link.station) continue;  // what was predicted for it no longer holds
+        if (link.until && (next == nullptr || *link.until < *next->until)) next = &link;
+    }
+    if (!down) return false;
+    SituationEntry entry{lost ? SituationRank::news : SituationRank::silence,
+                         "vehicle",
+                         fmt::format("Not heard since {}", when(*last_heard_)),
+                         "predicted before the landing",
+                         0,
+                         *last_heard_,
+                         {}};
+    if (const auto row = timeline_.row_of(touchdown_timepoint); row && timeline_.foreseen_e_s(*row)) {
+        const Ert lands = seen(*clocks_.entry + *timeline_.foreseen_e_s(*row));
+        entry.sentence += fmt::format("; landing {} predicted at {}", now < lands ? "is" : "was", when(lands));
+    }
+    const bool rises = next != nullptr ? next->silence == SilenceClass::no_orbiter : pass_ && pass_->rises > now;
+    if (next == nullptr && !rises) {
+        entry.sentence += "; when the next word comes is not predicted";
+    } else {
+        entry.at = next != nullptr ? *next->until : pass_->rises;
+        entry.sentence +=
+            rises ? fmt::format("; next word when {}", capitalised(next != nullptr ? next->words : pass_->words))
+                  : fmt::format("; next word predicted at {}", when(*entry.at));
+        entry.awaited = "next word";
+        entry.overdue = now > *entry.at;
+    }
+    if (const auto last = timeline_.last()) {
+        const auto& known = *timeline_.known(*last);
+        entry.evidence = fmt::format("last heard: {}{}", in_words(dictionary_->timeline[*last].name),
+                                     known.by_tone ? ", by tone" : "");
+        entry.evidence_seq = known.seq;
+    }
+    all.push_back(std::move(entry));
+    return true;
+}
+
+void SituationDesk::add_waiting(Entries& all, Ert now) const {
+    if (!clocks_.entry || dictionary_->timeline.empty()) {
+        const bool heard = anything_up();
+        all.push_back(
+            {SituationRank::calm, "waiting", heard ? "Listening" : "Nothing comes yet", "", 0, last_change(), {}});
+        return;
+    }
+    if (landed_) return add_recording(all, now);
+    if (!begun_) {
+        const Ert entry_at = seen(*clocks_.entry);
+        SituationEntry entry{SituationRank::waiting,
+                             "begin",
+                             "“Do EDL” is not confirmed: the timeline does not run",
+                             "",
+                             0,
+                             entry_at,
+                             {}};
+        if (now < entry_at)
+            entry.awaited = "entry", entry.at = entry_at;
+        else
+            entry.sentence = fmt::format("“Do EDL” was never confirmed; entry was predicted at {}", when(entry_at));
+        all.push_back(std::move(entry));
+        return;
+    }
+    const bool live = up(uhf_live_link.name);
+    const auto next = timeline_.next(live ? 0 : tone_sure);
+    const bool only_recording = up(relay_link.name) && !live && !tones_come();
+    if (next && !only_recording)
+        add_step(all, *next, now);
+    else
+        add_recording(all, now);
+}
+
+void SituationDesk::add_step(Entries& all, std::size_t next, Ert now) const {
+    const auto& row = dictionary_->timeline[next];
+    SituationEntry entry{SituationRank::waiting,
+                         "step",
+                         (timeline_.is_planned(next) ? "Next: " : "Waiting for ") + in_words(row.name),
+                         {},
+                         0,
+                         last_change(),
+                         {}};
+    const bool live = up(uhf_live_link.name);
+    if (const auto e_s = timeline_.predicted_e_s(next); e_s && !offsets_changed_) {
+        entry.awaited = in_words(row.name);
+        entry.at = seen(*clocks_.entry + *e_s);
+        entry.overdue = seconds_from(*entry.at, now) > (live ? uhf_late_s : tone_late_s);
+    }
+    // An anchor's decision is that of the step at it. Of what is overdue, the condition may have been met unheard.
+    const bool at_anchor = row.anchor && row.desired_offset_s == 0.0;
+    const bool of_step = held_ && (held_->decision == row.name ||
+                                   (at_anchor && held_->decision == dictionary_->anchors[row.anchor->value].name));
+    if (of_step && live && !entry.overdue) {
+        entry.sentence += ", not yet " + held_->condition;
+        entry.evidence_seq = held_->seq;
+        entry.evidence = "as the vehicle explained";
+    }
+    if (const auto last = timeline_.last()) {
+        const auto& known = *timeline_.known(*last);
+        const Ert at = seen(*clocks_.entry + known.e_s);
+        entry.since = at;
+        if (entry.evidence_seq == 0) {
+            entry.evidence_seq = known.seq;
+            entry.evidence = fmt::format("last heard: {}{}", in_words(dictionary_->timeline[*last].name),
+                                         known.by_tone ? ", by tone" : "");
+        }
+        if (known.by_tone)
+            entry.sentence +=
+                fmt::format("; last by tone: {}, {}", in_words(dictionary_->timeline[*last].name), when(at));
+    }
+    all.push_back(std::move(entry));
+}
+
+void SituationDesk::add_recording(Entries& all, Ert now) const {
+    SituationEntry entry{SituationRank::waiting, "recording", "Waiting for the recording", {}, 0, last_change(), {}};
+    if (landed_) entry.since = landed_->since;
+    if (const auto found = links_.find(relay_link.name); found != links_.end()) {
+        const LinkRow& link = found->second;
+        entry.since = link.since;
+        entry.evidence_seq = link.seq;
+        entry.evidence = "link " + relay_link.name;
+        if (link.up) {
+            entry.sentence =
+                landed_ ? "The recording comes down" : "The recording comes down; it has not told of a landing yet";
+        } else if (link.silence == SilenceClass::recording_complete) {
+            entry.rank = SituationRank::calm;
+            entry.sentence = "The recording is complete";
+        } else if (link.until) {
+            entry.sentence += ": " + capitalised(link.words);
+            entry.awaited = "recording";
+            entry.at = link.until;
+            entry.overdue = now > *link.until;
+        } else if (link.silence == SilenceClass::no_orbiter) {
+            entry.rank = SituationRank::calm;
+            entry.sentence = "The recording is not complete, and " + link.words;
+        }
+    }
+    all.push_back(std::move(entry));
+}
+
+void SituationDesk::add_lasting(Entries& all, Ert now) const {
+    if (backup_) all.push_back(*backup_);
+    if (!closes_ || now < *closes_) return;
+    SituationEntry closed{
+        SituationRank::lasting,
+        std::string(commanding),
+        fmt::format("Commanding closed since {}: nothing sent now comes before a planned step", when(*closes_)),
+        "the plan and the light time",
+        0,
+        *closes_,
+        {}};
+    all.push_back(closed);
+    const auto last = timeline_.last();
+    const bool followed = landed_ || (last && seen(*clocks_.entry + timeline_.known(*last)->e_s) > *closes_);
+    if (followed) return;
+    closed.rank = SituationRank::news;
+    all.push_back(std::move(closed));
+}
+
+}  // namespace aeolis::telemetry

@@ -1,0 +1,319 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the ground says at every second of whole landings, held against what was flown. The test reads the truth; the
+// ground does not.
+#include "server/pipeline/pipeline.hpp"
+#include "server/rehearsal/rehearsal.hpp"
+#include "telemetry/decommutator.hpp"
+#include "telemetry/packet_stream.hpp"
+#include "telemetry/situation_desk.hpp"
+#include "telemetry/text.hpp"
+#include "tests/server/running_server.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/shipped_dictionary.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace server_situation_landing_test {
+
+using namespace aeolis;
+using namespace aeolis::server;
+using v1::SituationEntry;
+
+namespace {
+
+constexpr std::int64_t second_us = 1'000'000;
+
+/// A landing as ground told it, second by second, and as it was.
+struct Told {
+    struct Second {
+        Ert now;
+        v1::Situation situation;
+        archive::Sequence seq = 0;  ///< of the item
+    };
+    std::vector<Second> seconds;
+    std::vector<v1::Item> items;
+    std::vector<Ert> live;                                       ///< packets in real time, by UHF itself
+    std::map<std::string, double, std::less<>> events, firings;  ///< truth, by name: SCLK of the first
+    archive::RunStart start;
+    std::string outcome;
+    Ert seen(double sclk_s) const {
+        return {start.correlation.scet_of(Sclk{sclk_s}).microseconds +
+                static_cast<std::int64_t>(start.light_time_s * 1e6)};
+    }
+};
+
+/// The events and firings in the recording, which no link has touched.
+void read_truth(const Rehearsal& rehearsal, Told& told) {
+    const auto& dictionary = tests::shipped_dictionary();
+    telemetry::Decommutator decommutator{dictionary};
+    telemetry::Decoded decoded;
+    telemetry::PacketStream recording{rehearsal.landing().recording()};
+    while (const auto packet = recording.next()) {
+        if (decommutator.decode(*packet, decoded)) continue;
+        if (const auto* event = telemetry::event_of(dictionary, decoded))
+            told.events.try_emplace(event->name, decoded.header.time.seconds);
+    }
+    for (const auto& firing : rehearsal.firings()) told.firings.try_emplace(firing.name, firing.triggered_sclk);
+}
+
+Told fly(const simulation::Scenario& scenario, std::uint64_t seed) {
+    test::TemporaryFolder folder;
+    auto archive = std::move(archive::Archive::open(folder / "a.db")).value();
+    pipeline::Pipeline pipeline{archive, tests::shipped_dictionary()};
+    Rehearsal rehearsal{scenario, seed, 0, tests::shipped_dictionary()};
+    Told told;
+    told.start = rehearsal.run_start(0.0);
+    pipeline.on_publish([&](const auto& batch) {
+        for (const auto& item : batch->items)
+            if (!item.has_samples() && !item.has_unit() && !item.has_explanation()) told.items.push_back(item);
+    });
+    REQUIRE(pipeline.begin(told.start).ok());
+    std::vector<Ert> ticks;
+    bool taken = true;
+    const auto take = [&](Result<void> done) { taken = taken && done.ok(); };
+    while (!rehearsal.finished()) {
+        const auto& received = rehearsal.step();
+        for (const auto& packet : received.packets)
+            if (packet.link == telemetry::uhf_live_link) told.live.push_back(packet.ert);
+        take(pipeline.accept(received));
+        for (auto& stage : rehearsal.take_stages()) take(pipeline.accept(std::move(stage)));
+        if (rehearsal.cycles() % 64 == 0) {
+            take(pipeline.accept(telemetry::EarthTime{rehearsal.landing().ert_now()}));
+            ticks.push_back(rehearsal.landing().ert_now());
+        }
+        take(pipeline.commit_if_full());
+    }
+    REQUIRE(taken);
+    told.outcome = rehearsal.outcome();
+    REQUIRE(pipeline.finish({}).ok());
+    const v1::Item* last = nullptr;
+    auto item = told.items.begin();
+    for (const Ert tick : ticks) {
+        for (; item != told.items.end() && !(item->has_situation() && item->ert_us() > tick.microseconds); ++item)
+            if (item->has_situation()) last = &*item;
+        if (last != nullptr) told.seconds.push_back({tick, last->situation(), last->seq()});
+    }
+    read_truth(rehearsal, told);
+    return told;
+}
+
+bool has(const v1::Situation& situation, const std::string& subject) {
+    return std::ranges::any_of(situation.entries(), [&](const auto& entry) { return entry.subject() == subject; });
+}
+const SituationEntry* find(const v1::Situation& situation, const std::string& subject) {
+    const auto found = std::ranges::find(situation.entries(), subject, &SituationEntry::subject);
+    return found == situation.entries().end() ? nullptr : &*found;
+}
+
+/// The list itself: ranked, bounded, in words.
+void check_list(const v1::Situation& situation) {
+    REQUIRE_FALSE(situation.entries().empty());
+    CHECK(situation.entries_size() <= static_cast<int>(telemetry::SituationDesk::entries_max));
+    CHECK(situation.entries(0).rank() >= SituationEntry::calm);
+    for (int i = 0; i + 1 < situation.entries_size(); ++i)
+        CHECK(situation.entries(i).rank() >= situation.entries(i + 1).rank());
+    for (const auto& entry : situation.entries()) {
+        CHECK_FALSE(entry.sentence().empty());
+        CHECK(entry.awaited().empty() != entry.has_at_us());
+    }
+}
+
+/// Countdowns count to what is to come; what is past is overdue.
+void check_countdowns(const Told::Second& at) {
+    const auto late_us = static_cast<std::int64_t>(telemetry::SituationDesk::tone_late_s * 1e6) + second_us;
+    for (const auto& entry : at.situation.entries()) {
+        if (!entry.has_at_us()) continue;
+        CAPTURE(entry.sentence(), entry.awaited(), entry.at_us() - at.now.microseconds, entry.overdue());
+        if (entry.overdue())
+            CHECK(entry.at_us() < at.now.microseconds);
+        else
+            CHECK(entry.at_us() >= at.now.microseconds - late_us);
+    }
+}
+
+/// Who is silent brings nothing.
+void check_silences(const Told& told, const Told::Second& at, const Told::Second* before) {
+    const auto brought = [&](std::int64_t after_us) {
+        return std::ranges::any_of(
+            told.live, [&](Ert ert) { return ert.microseconds > after_us && ert.microseconds <= at.now.microseconds; });
+    };
+    if (before == nullptr) return;
+    const std::int64_t last_second = before->now.microseconds;
+    if (const auto* uhf = find(at.situation, "uhf_live")) {
+        CAPTURE(uhf->sentence());
+        // The last packet of a lock comes with the end of the lock.
+        CHECK_FALSE(brought(std::max(last_second, uhf->since_us() + second_us)));
+    }
+    if (const auto* vehicle = find(at.situation, "vehicle")) {
+        CAPTURE(vehicle->sentence());
+        CHECK_FALSE(brought(std::max(last_second, vehicle->since_us() + second_us)));
+    }
+}
+
+/// Nothing is said to have happened before word of it could be here, and of each step only what the recording has.
+void check_steps(const Told& told, const Told::Second& at) {
+    const auto here = [&](double sclk_s) { return told.seen(sclk_s) <= at.now; };
+    if (const auto* landed = find(at.situation, "landed")) {
+        CAPTURE(landed->sentence());
+        REQUIRE(told.events.contains("TOUCHDOWN"));
+        CHECK(here(told.events.at("TOUCHDOWN")));
+        const double late_s =
+            static_cast<double>(landed->since_us() - told.seen(told.events.at("TOUCHDOWN")).microseconds) * 1e-6;
+        CHECK(late_s > -0.5);
+        CHECK(late_s < (landed->sentence().ends_with("by tone") ? 20.0 : 0.5));
+        CHECK_FALSE(has(at.situation, "vehicle"));
+    }
+    if (const auto* computer = find(at.situation, "computer")) {
+        CAPTURE(computer->sentence());
+        REQUIRE(told.events.contains("SECOND_CHANCE_TAKES_OVER"));
+        CHECK(here(told.events.at("SECOND_CHANCE_TAKES_OVER")));
+    }
+    for (const auto& entry : at.situation.entries()) {
+        const std::string last = "last heard: ";
+        if (!entry.evidence().starts_with(last)) continue;
+        CAPTURE(entry.evidence());
+        const auto name = entry.evidence().substr(last.size(), entry.evidence().find(',') - last.size());
+        const auto flown = std::ranges::find_if(
+            told.firings, [&](const auto& firing) { return telemetry::in_words(firing.first) == name; });
+        REQUIRE(flown != told.firings.end());
+        CHECK(here(flown->second));
+    }
+    if (const auto* step = find(at.situation, "step")) {
+        CAPTURE(step->sentence());
+        const std::string waiting = step->sentence().starts_with("Next: ") ? "Next: " : "Waiting for ";
+        REQUIRE(step->sentence().starts_with(waiting));
+        const auto name =
+            step->sentence().substr(waiting.size(), step->sentence().find_first_of(",;") - waiting.size());
+        CHECK(std::ranges::none_of(told.items, [&](const auto& item) {
+            return item.seq() < at.seq && item.has_timepoint() && item.timepoint().source() == v1::SOURCE_REALTIME &&
+                   telemetry::in_words(item.timepoint().name()) == name;
+        }));
+    }
+    if (has(at.situation, "begin"))
+        CHECK(std::ranges::none_of(told.items, [&](const auto& item) {
+            return item.seq() < at.seq && item.has_event() && item.event().name() == "EDL_BEGUN";
+        }));
+}
+
+void check_all(const Told& told) {
+    REQUIRE(told.seconds.size() > 60);
+    const Told::Second* before = nullptr;
+    for (const auto& at : told.seconds) {
+        CAPTURE(static_cast<double>(at.now.microseconds - told.seen(told.start.entry.seconds).microseconds) * 1e-6,
+                at.situation.ShortDebugString());
+        check_list(at.situation);
+        check_countdowns(at);
+        check_silences(told, at, before);
+        check_steps(told, at);
+        before = &at;
+    }
+}
+
+Told check_landing(const char* name, std::uint64_t seed) {
+    CAPTURE(name, seed);
+    auto told = fly(test::shipped_scenario(name), seed);
+    check_all(told);
+    return told;
+}
+
+const SituationEntry* at_e_s(const Told& told, double e_s, const std::string& subject) {
+    const Ert then = told.seen(told.start.entry.seconds + e_s);
+    const auto found = std::ranges::find_if(told.seconds, [&](const auto& second) { return second.now >= then; });
+    REQUIRE(found != told.seconds.end());
+    return find(found->situation, subject);
+}
+
+}  // namespace
+
+TEST_CASE("nothing that the situation says over a landing is false, and a landing without a fault has no news of one",
+          "[situation][server]") {
+    const auto told = check_landing("nominal_auto", 1);
+    REQUIRE(told.outcome == "touchdown");
+    const auto* blackout = at_e_s(told, 75.0, "uhf_live");
+    REQUIRE(blackout != nullptr);
+    CHECK(blackout->rank() == SituationEntry::silence);
+    CHECK_THAT(blackout->sentence(), Catch::StartsWith("UHF silent: plasma blackout, predicted from E+0:4"));
+    CHECK(blackout->awaited() == "UHF back");
+    for (const auto& at : told.seconds)
+        for (const auto& entry : at.situation.entries()) {
+            CAPTURE(entry.sentence());
+            CHECK(entry.rank() != SituationEntry::danger);
+            const auto known = std::set<std::string>{"landed", "commanding"};
+            if (entry.rank() == SituationEntry::news) CHECK(known.contains(entry.subject()));
+        }
+    CHECK_THAT(find(told.seconds.back().situation, "landed")->sentence(),
+               Catch::StartsWith("Landed: touchdown at E+7:"));
+}
+
+TEST_CASE("when the prime computer fails, the situation says which computer flies, and since when",
+          "[situation][server]") {
+    const auto told = check_landing("second_chance", 1);
+    const auto* computer = at_e_s(told, 200.0, "computer");
+    REQUIRE(computer != nullptr);
+    CHECK(computer->sentence() == "Flying on computer B since E+1:40");
+    CHECK(computer->rank() == SituationEntry::news);
+    CHECK(at_e_s(told, 95.0, "computer") == nullptr);
+    const auto& last = told.seconds.back().situation;
+    CHECK(std::ranges::count(last.entries(), "computer", &SituationEntry::subject) ==
+          2);  // news, and a state that lasts
+}
+
+TEST_CASE("where only tones are heard, the situation says since when nothing is, what was predicted, and when the next "
+          "word comes",
+          "[situation][server]") {
+    const auto told = check_landing("tones_only", 1);
+    const auto* vehicle = at_e_s(told, 3600.0, "vehicle");
+    REQUIRE(vehicle != nullptr);
+    CHECK_THAT(vehicle->sentence(),
+               Catch::StartsWith("Not heard since E+4:") &&
+                   Catch::EndsWith("; landing was predicted at E+7:11; next word when Odyssey rises at E+2:00:00"));
+    CHECK(vehicle->awaited() == "next word");
+    CHECK_FALSE(vehicle->overdue());
+    CHECK(at_e_s(told, 3600.0, "step") == nullptr);
+    CHECK_THAT(find(told.seconds.back().situation, "landed")->sentence(), Catch::EndsWith("by the recording"));
+}
+
+TEST_CASE("over passes of orbiters nothing that the situation says is false", "[situation][server]") {
+    check_landing("relay_passes", 2);
+}
+
+TEST_CASE("no prediction excuses a transmitter that failed before it, or a station that is out within it",
+          "[situation][server][faults]") {
+    auto scenario = test::shipped_scenario("nominal_auto");
+    auto& fault = scenario.device_faults.emplace_back();
+    fault.device = flight::Device::uhf;
+    fault.unit = flight::Unit::a;
+    fault.kind = simulation::DeviceFault::Kind::dropout;
+    fault.begin_before_entry_s = 20.0;  // fails before blackout, and comes back within what is predicted
+    fault.duration_s = 100.0;
+    scenario.station_outages = {{-300.0, 20.0}};
+    const auto told = fly(scenario, 3);
+    check_all(told);
+    for (const double e_s : {-10.0, 20.0, 60.0}) {
+        const auto* uhf = at_e_s(told, e_s, "uhf_live");
+        CAPTURE(e_s);
+        REQUIRE(uhf != nullptr);
+        CAPTURE(uhf->sentence());
+        CHECK(uhf->rank() == SituationEntry::news);
+        CHECK_THAT(uhf->sentence(), Catch::StartsWith("UHF lost since E−0:"));
+        CHECK(uhf->awaited().empty());
+    }
+    const auto* station = at_e_s(told, 310.0, "station");
+    REQUIRE(station != nullptr);
+    CHECK(station->rank() == SituationEntry::news);
+    CHECK(at_e_s(told, 340.0, "station") == nullptr);
+}
+
+TEST_CASE("nothing that the situation says over 100 landings of each scenario is false", "[.long][situation][server]") {
+    for (const char* name :
+         {"nominal_auto", "second_chance", "od137", "tones_only", "relay_passes", "campaign", "bench_wideband",
+          "all_but_gnc", "nominal", "two_persons", "nominal_light_time", "pre_edl"})
+        for (std::uint64_t seed = 1; seed <= 100; ++seed) check_landing(name, seed);
+}
+
+}  // namespace server_situation_landing_test

@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "telemetry/situation_desk.hpp"
+
+#include "tests/support/catch.hpp"
+#include "tests/support/shipped_dictionary.hpp"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace telemetry_situation_desk_test {
+
+using namespace aeolis;
+using namespace aeolis::telemetry;
+using Rank = SituationRank;
+
+namespace {
+
+constexpr Sclk entry{1000.0};
+Ert at(double e_s) {
+    return {static_cast<std::int64_t>(e_s * 1e6) + 1'000'000'000};
+}
+Sclk sclk(double e_s) {
+    return entry + e_s;
+}
+
+SituationDesk desk_at(double light_time_s) {
+    SituationDesk::Clocks clocks;
+    clocks.entry = entry;
+    clocks.correlation = {entry, Scet{1'000'000'000}};
+    clocks.light_time_s = light_time_s;
+    return {tests::shipped_dictionary(), clocks};
+}
+
+/// A desk whose facts are given by seconds from entry.
+struct Ground {
+    SituationDesk desk = desk_at(0.0);
+    std::uint64_t seq = 0;
+
+    SituationDesk::Origin from(double e_s, bool recorded = false) { return {++seq, at(e_s), recorded}; }
+    void up(const Link& link, double e_s) { desk.link({link, at(e_s), true, "nominal"}, from(e_s)); }
+    void down(const Link& link, double e_s, const std::string& reason, bool lost = false,
+              std::optional<double> until_e_s = {}) {
+        desk.link({link, at(e_s), false, reason, lost, until_e_s ? std::optional(at(*until_e_s)) : std::nullopt},
+                  from(e_s));
+    }
+    void event(const std::string& name, double e_s, const std::string& text = "said so", bool recorded = false) {
+        const auto* known = tests::shipped_dictionary().event(name);
+        REQUIRE(known != nullptr);
+        desk.event({name, text, known->level, sclk(e_s)}, from(e_s, recorded));
+    }
+    void fired(const std::string& name, double e_s) {
+        const auto& timeline = tests::shipped_dictionary().timeline;
+        const auto row = std::ranges::find(timeline, name, &dictionary::TimelineRow::name);
+        desk.heard(sclk(e_s));
+        desk.fired(row->id, sclk(e_s), sclk(e_s), from(e_s));
+    }
+    void tone(const std::string& name, double e_s, double likelihood = 0.999) {
+        const auto& tones = tests::shipped_dictionary().tones;
+        const auto row = std::ranges::find(tones, name, &dictionary::ToneRow::name);
+        REQUIRE(row != tones.end());
+        desk.tone(row->id, likelihood, sclk(e_s), from(e_s + 10.0));
+    }
+    SituationEntry first(double e_s) const { return desk.at(at(e_s)).front(); }
+    std::string sentence(double e_s) const { return first(e_s).sentence; }
+    std::optional<SituationEntry> about(const std::string& subject, double e_s) const {
+        const auto all = desk.at(at(e_s));
+        const auto found = std::ranges::find(all, subject, &SituationEntry::subject);
+        return found == all.end() ? std::nullopt : std::optional(*found);
+    }
+};
+
+}  // namespace
+
+TEST_CASE("a silence as predicted says when the link is back, and when it is overdue", "[situation]") {
+    Ground ground;
+    ground.up(x_band_link, -100.0);
+    ground.up(uhf_live_link, -100.0);
+    ground.fired("entry_guidance", 43.0);
+    ground.down(uhf_live_link, 50.0, "plasma blackout: predicted from E+0:45 to E+1:38", false, 98.0);
+    const auto silent = ground.first(75.0);
+    CHECK(silent.rank == Rank::silence);
+    CHECK(silent.sentence == "UHF silent: plasma blackout, predicted from E+0:45 to E+1:38; tones still come");
+    CHECK(silent.awaited == "UHF back");
+    CHECK(silent.at == at(98.0));
+    CHECK_FALSE(silent.overdue);
+    CHECK(ground.first(99.0).overdue);
+    // It outlasts what was predicted.
+    ground.down(uhf_live_link, 134.0, "unexplained: nothing is predicted to silence it now", true);
+    const auto late = ground.first(135.0);
+    CHECK(late.rank == Rank::news);
+    CHECK(late.sentence == "UHF silent since E+0:50, longer than predicted (plasma blackout until E+1:38)");
+    CHECK(late.overdue);
+    ground.up(uhf_live_link, 140.0);
+    CHECK(ground.first(140.0).rank == Rank::waiting);
+}
+
+TEST_CASE("no prediction excuses a silence that began without one", "[situation]") {
+    Ground ground;
+    ground.up(x_band_link, -100.0);
+    ground.up(uhf_live_link, -100.0);
+    ground.down(uhf_live_link, -20.0, "unexplained: nothing is predicted to silence it now", true);
+    CHECK(ground.sentence(-19.0) == "UHF lost since E−0:20: nothing predicted it");
+    ground.down(uhf_live_link, 10.0, "plasma blackout: predicted from E+0:45 to E+1:38", false, 98.0);
+    const auto lost = ground.first(60.0);
+    CHECK(lost.rank == Rank::news);
+    CHECK(lost.sentence == "UHF lost since E−0:20, before what was predicted (plasma blackout)");
+    CHECK(lost.awaited.empty());
+    CHECK_FALSE(lost.at);
+}
+
+TEST_CASE("a fault that the station knows is said, within a predicted silence too, and ends with the fault",
+          "[situation]") {
+    Ground ground;
+    ground.up(uhf_live_link, -100.0);
+    ground.down(uhf_live_link, 50.0, "plasma blackout: predicted from E+0:45 to E+1:38", false, 98.0);
+    ground.down(uhf_live_link, 60.0, "plasma blackout: predicted from E+0:45 to E+1:38; nothing comes from the station",
+                true, 98.0);
+    CHECK(ground.first(61.0).rank == Rank::news);
+    CHECK_THAT(ground.sentence(61.0),
+               Catch::Equals("A fault on the ground: nothing comes from the station (UHF silent since E+0:50)"));
+    ground.fired("entry_guidance", 43.0);
+    CHECK(ground.about("vehicle", 61.0)->sentence ==
+          "Not heard since E+0:43; landing is predicted at E+7:11; when the next word comes is not predicted");
+    ground.up(x_band_link, 65.0);
+    ground.down(uhf_live_link, 70.0, "plasma blackout: predicted from E+0:45 to E+1:38", false, 98.0);
+    CHECK_FALSE(ground.about("station", 71.0));
+    CHECK(ground.about("uhf_live", 71.0)->rank == Rank::silence);
+}
+
+TEST_CASE("the backup's take-over is news, and a state that lasts; by tone its time is that of the tone",
+          "[situation]") {
+    Ground ground;
+    ground.up(x_band_link, -100.0);
+    ground.fired("entry_guidance", 43.0);
+    ground.tone("sc_taken_over", 105.0);
+    CHECK(ground.sentence(116.0) == "Flying on computer B, by tone at E+1:45");
+    ground.event("SECOND_CHANCE_TAKES_OVER", 100.3);
+    const auto all = ground.desk.at(at(120.0));
+    CHECK(all.front().rank == Rank::news);
+    CHECK(all.front().sentence == "Flying on computer B since E+1:40");
+    CHECK(all.front().evidence == "event SECOND_CHANCE_TAKES_OVER");
+    const auto lasting = std::ranges::find(all, Rank::lasting, &SituationEntry::rank);
+    REQUIRE(lasting != all.end());
+    CHECK(std::ranges::count(all, "Flying on computer B since E+1:40", &SituationEntry::sentence) == 2);
+}
+
+TEST_CASE("landed is said by touchdown's own evidence alone; until then landing was predicted", "[situation]") {
+    Ground ground;
+    ground.up(x_band_link, -100.0);
+    ground.down(uhf_live_link, -100.0, "no orbiter in view: odyssey rises at E+2:00:00", false, 7200.0);
+    ground.tone("heatshield_separation", 283.0);
+    ground.down(x_band_link, 298.0, "Earth set: predicted at E+4:58");
+    CHECK(ground.sentence(300.0) ==
+          "Not heard since E+4:43; landing is predicted at E+7:11; next word when Odyssey rises at E+2:00:00");
+    const auto later = ground.first(3600.0);
+    CHECK(later.sentence ==
+          "Not heard since E+4:43; landing was predicted at E+7:11; next word when Odyssey rises at E+2:00:00");
+    CHECK(later.rank == Rank::silence);
+    CHECK(later.at == at(7200.0));
+    CHECK(later.evidence == "last heard: heatshield separation, by tone");
+    CHECK(ground.first(7201.0).overdue);
+    CHECK_FALSE(ground.about("landed", 7201.0));
+    ground.up(relay_link, 7210.0);
+    ground.event("TOUCHDOWN", 433.0, "Touchdown", true);
+    CHECK(ground.sentence(7300.0) == "Landed: touchdown at E+7:13, by the recording");
+}
+
+TEST_CASE("what the ground awaits is the next step, with the condition that is missing, and overdue when it is late",
+          "[situation]") {
+    Ground ground;
+    ground.up(uhf_live_link, -100.0);
+    CHECK(ground.first(-50.0).sentence == "“Do EDL” is not confirmed: the timeline does not run");
+    CHECK(ground.first(-50.0).awaited == "entry");
+    CHECK(ground.first(10.0).awaited.empty());  // what is past is not counted to
+    ground.fired("sufr", 240.0);
+    ground.fired("balance_3", 244.0);
+    const auto waiting = ground.first(250.0);
+    CHECK(waiting.rank == Rank::waiting);
+    CHECK(waiting.sentence == "Waiting for parachute deploy");
+    REQUIRE(waiting.at);
+    CHECK(static_cast<double>(waiting.at->microseconds - at(0.0).microseconds) * 1e-6 == Approx(255.9 + 1.0));
+    Explanation held;
+    held.decision = "parachute";
+    held.verdict = "held";
+    held.conditions = {{"radar_ready", 1.0, "==", 1.0, true}, {"speed_mps", 420.0, "<=", 405.0, false}};
+    ground.desk.explained(held, ground.from(251.0));
+    CHECK(ground.sentence(251.0) == "Waiting for parachute deploy, not yet speed ≤ 405.0 m/s");
+    CHECK_FALSE(ground.first(258.0).overdue);
+    CHECK(ground.first(263.0).overdue);
+    ground.event("TIMEPOINT_OFFSET_CHANGED", 264.0);
+    CHECK_FALSE(ground.first(264.0).at);  // what was predicted may no longer hold
+}
+
+TEST_CASE("news stays until something follows it: a command that failed, until one of its name is done",
+          "[situation]") {
+    Ground ground;
+    ground.up(uhf_live_link, -900.0);
+    ground.desk.stage({1, "EDL_DO_EDL", "refused: not in late cruise", true, false}, ground.from(-800.0));
+    CHECK(ground.sentence(-700.0) == "EDL_DO_EDL failed: refused: not in late cruise");
+    ground.desk.stage({2, "NO_OP", "cancelled by Ann", true, false}, ground.from(-790.0));
+    CHECK_FALSE(ground.about("command NO_OP", -700.0));
+    ground.desk.stage({3, "EDL_DO_EDL", "event EDL_BEGUN", false, true}, ground.from(-600.0));
+    CHECK_FALSE(ground.about("command EDL_DO_EDL", -500.0));
+    ground.event("TIMEPOINT_UNVERIFIED", -400.0, "Timepoint 3: no reply in time, unverified");
+    CHECK(ground.sentence(-399.0) == "E−6:40: Timepoint 3: no reply in time, unverified");
+    ground.event("TIMEPOINT_VERIFIED_LATE", -390.0);
+    CHECK(ground.first(-389.0).rank == Rank::waiting);
+}
+
+TEST_CASE("danger is above all news: a failed check on board, a limit that is critical", "[situation]") {
+    Ground ground;
+    ground.up(uhf_live_link, -900.0);
+    ground.event("FATAL_CHECK_FAILED", -500.0, "A check on board failed");
+    ground.event("TIMEPOINT_UNVERIFIED", -400.0);
+    CHECK(ground.first(-399.0).rank == Rank::danger);
+    ground.event("COMPUTER_STARTED", -470.0);
+    CHECK(ground.first(-399.0).rank == Rank::news);
+    const auto& channel = *tests::shipped_dictionary().channel("sensed_deceleration_g");
+    ground.desk.alarm(channel.id, dictionary::Severity::critical, "> 16 g", sclk(70.0), ground.from(70.0));
+    CHECK(ground.sentence(71.0) == "Sensed deceleration > 16 g: critical since E+1:10");
+    ground.desk.alarm(channel.id, dictionary::Severity::warning, "> 14.5 g", sclk(80.0), ground.from(80.0));
+    CHECK(ground.first(81.0).rank == Rank::news);
+}
+
+TEST_CASE("a tone that is not sure enough says nothing, and what went wrong is told by tone only without UHF",
+          "[situation]") {
+    Ground ground;
+    ground.up(x_band_link, -900.0);
+    ground.tone("touchdown", 431.0, 0.6);
+    CHECK_FALSE(ground.about("landed", 450.0));
+    ground.tone("pyro_not_fired", 260.0);
+    CHECK(ground.sentence(271.0) == "E+4:20, by tone: A pyro did not fire");
+    Ground with_uhf;
+    with_uhf.up(uhf_live_link, -900.0);
+    with_uhf.tone("pyro_not_fired", 260.0);
+    CHECK_FALSE(with_uhf.about("tone pyro_not_fired", 271.0));
+}
+
+TEST_CASE("commanding closes when nothing sent now can precede a planned step, a light time each way before it",
+          "[situation]") {
+    const SituationDesk desk = desk_at(100.0);
+    const auto closed = [&](double seen_e_s) {
+        const auto all = desk.at({at(seen_e_s).microseconds + 100'000'000});
+        return std::ranges::any_of(all, [](const auto& entry) {
+            return entry.rank == Rank::lasting && entry.sentence.starts_with("Commanding closed since E−3:20");
+        });
+    };
+    CHECK_FALSE(closed(-201.0));
+    CHECK(closed(-200.0));
+}
+
+TEST_CASE("the list is bounded, and keeps what is most important and what lasts", "[situation]") {
+    Ground ground;
+    ground.up(uhf_live_link, -900.0);
+    for (int i = 0; i < 100; ++i)
+        ground.desk.stage({static_cast<std::uint64_t>(i), "COMMAND_" + std::to_string(i), "refused", true, false},
+                          ground.from(-800.0 + i));
+    const auto all = ground.desk.at(at(10.0));
+    CHECK(all.size() == SituationDesk::entries_max);
+    CHECK(std::ranges::any_of(all, [](const auto& entry) { return entry.rank == Rank::lasting; }));
+    CHECK_THAT(all.front().sentence, Catch::Contains("Commanding closed") || Catch::Contains("COMMAND_99"));
+}
+
+TEST_CASE("of another mission, whose entry nobody knows, times are of day, and nothing is awaited", "[situation]") {
+    dictionary::Dictionary other;
+    SituationDesk desk{other, {}};
+    CHECK(desk.at(Ert{0}).front().sentence == "Nothing comes yet");
+    desk.link({downlink_link, Ert{0}, true, "connected"}, {1, Ert{0}});
+    CHECK(desk.at(Ert{0}).front().rank == Rank::calm);
+    desk.link({downlink_link, Ert{60'000'000}, false, "ground fault: refused", true}, {2, Ert{60'000'000}});
+    const auto all = desk.at(Ert{61'000'000});
+    CHECK(all.front().rank == Rank::news);
+    CHECK_THAT(all.front().sentence, Catch::Contains("2000-001T12:01:00.000"));
+}
+
+}  // namespace telemetry_situation_desk_test

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+// The banner: the one thing that matters most now, as a sentence, with what it counts down to.
+import { STATUS } from '../design/status';
+import { runNow } from '../run/shown';
+import { fromEntry } from '../run/time';
+import { aside, listShown, lookOf, pointAt, putAside, situationNow, toggleList } from './model';
+import type { Line } from './model';
+import './style.css';
+
+/** The evidence of an entry, which leads to its instant. */
+function Evidence({ line, words }: { line: Line; words: string }) {
+  if (Number.isNaN(line.since_e_s)) return null;
+  const told = `${line.evidence === '' ? '' : `${line.evidence}, `}${fromEntry(line.since_e_s)}`;
+  return (
+    <button
+      type="button"
+      class="quiet"
+      title={`${told}: show this instant`}
+      aria-label={`evidence: ${told}`}
+      onClick={() => pointAt(line.since_e_s)}
+    >
+      {words || told}
+    </button>
+  );
+}
+
+function Entry({ line }: { line: Line }) {
+  const { shape, token } = STATUS[lookOf(line)];
+  return (
+    <li>
+      <span aria-hidden="true" style={{ color: `var(--${token})` }}>
+        {shape}
+      </span>{' '}
+      <span>{line.sentence}</span>
+      <output>{line.countdown}</output>
+      {line.aside && <small>put aside</small>}
+      <Evidence line={line} words="" />
+    </li>
+  );
+}
+
+export function Situation() {
+  const run = runNow();
+  const { first, more } = situationNow(run);
+  if (!run && !first) return null;
+  const look = first ? lookOf(first) : 'never';
+  const waiting = more.filter((line) => !line.aside).length;
+  return (
+    <section
+      class={`situation ${first?.rank === 'lost' ? 'situation-lost' : ''}`}
+      style={{ '--look': `var(--${STATUS[look].token})` }}
+      data-testid="situation"
+      data-rank={first?.rank}
+      aria-label="situation"
+    >
+      <span class="situation-shape" aria-hidden="true">
+        {STATUS[look].shape}
+      </span>
+      <b aria-live={first?.rank === 'lost' ? 'assertive' : 'polite'} data-testid="situation-sentence">
+        {first?.sentence ?? 'Nothing has been told yet'}
+      </b>
+      <output data-testid="situation-countdown">{first?.countdown}</output>
+      {first && <Evidence line={first} words="why" />}
+      {first?.rank === 'news' && (
+        <button type="button" class="quiet" onClick={() => putAside(first)}>
+          put aside <kbd>x</kbd>
+        </button>
+      )}
+      {more.length > 0 && (
+        <button
+          type="button"
+          class="quiet"
+          aria-expanded={listShown.value}
+          onClick={toggleList}
+          data-testid="situation-more"
+        >
+          {waiting > 0 ? `+${waiting} more` : `${aside.value.size} put aside`} <kbd>m</kbd>
+        </button>
+      )}
+      {listShown.value && more.length > 0 && (
+        <ol data-testid="situation-list">
+          {first && [first, ...more].map((line) => <Entry key={line.key} line={line} />)}
+        </ol>
+      )}
+    </section>
+  );
+}
+
+/** The states that last, beside the badge. */
+export function Lasting() {
+  const { lasting } = situationNow(runNow());
+  if (lasting.length === 0) return null;
+  return (
+    <ul class="lasting" data-testid="lasting" aria-label="states that last">
+      {lasting.map(({ words, sentence }) => (
+        <li key={words} title={sentence}>
+          {words}
+        </li>
+      ))}
+    </ul>
+  );
+}
