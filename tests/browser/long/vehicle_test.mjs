@@ -102,7 +102,7 @@ test('at four moments of a landing the picture and its text show what was told, 
   await shows('touchdown', /Touchdown reported/);
   await page.getByTestId('descent-result').click();
   await page.getByTestId('descent-canvas').waitFor();
-  await page.keyboard.press('m'); // the picture as a tab, of its result
+  await page.keyboard.press('b'); // the picture as a tab, of its result
   await waitFor(() => page.getByTestId('vehicle').innerText(), /the result/);
   assert.deepEqual(problems, []);
   await page.close();

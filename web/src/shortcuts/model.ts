@@ -31,7 +31,7 @@ export type Tab =
 export const tab = signal<Tab>('channels');
 export const TABS: { id: Tab; title: string; key: string; words: string }[] = [
   { id: 'channels', title: 'Channels', key: 'c', words: 'channels: values, ages, limits' },
-  { id: 'vehicle', title: 'Vehicle', key: 'm', words: 'the moving picture of the vehicle' },
+  { id: 'vehicle', title: 'Vehicle', key: 'b', words: 'the moving picture of the vehicle' },
   { id: 'alarms', title: 'Alarms', key: 'a', words: 'alarms: acknowledge, shelve, reset' },
   { id: 'notes', title: 'Notes', key: 'n', words: 'shift log: write, search' },
   { id: 'packets', title: 'Packets', key: 'k', words: 'packets: octets and fields' },
