@@ -56,11 +56,11 @@ describe('a touchdown', () => {
   it('is told by tone too, with every source named', () => {
     const sclk = ENTRY_SCLK + DOWN;
     expect(words(DOWN + 1, [tone({ tone: 9, name: 'touchdown', sclk })], 0)).toBe(
-      'E+07:10.0: timepoint touchdown by tone',
+      'E+7:10.0: timepoint touchdown by tone',
     );
     expect(
       words(DOWN + 1, [fired(), event({ name: 'TOUCHDOWN', sclk }), told(DOWN + 1, { touchdown_declared: 1 })], 0),
-    ).toBe('E+07:10.0: timepoint touchdown by UHF, event TOUCHDOWN by UHF, touchdown_declared is 1');
+    ).toBe('E+7:10.0: timepoint touchdown by UHF, event TOUCHDOWN by UHF, touchdown_declared is 1');
     expect(words(DOWN + 1, [fired(true)], 0)).toMatch(/by the recording/);
   });
   it('is contradicted by a newer flag that says no, not by one of the same moment', () => {
@@ -84,7 +84,7 @@ describe('the rover’s stillness', () => {
       'waiting',
     );
     expect(words(DOWN + 8, [fired(), ...still(DOWN, DOWN + 3), moves, ...still(DOWN + 5, DOWN + 8)], 1)).toBe(
-      'still for 3.0 s of 5 s; last moved: rover_x 3.000 °/s at E+07:14.0',
+      'still for 3.0 s of 5 s; last moved: rover_x 3.000 °/s at E+7:14.0',
     );
     expect(states(DOWN + 9, [fired(), ...still(DOWN, DOWN + 3), ...still(DOWN + 7, DOWN + 9)])?.[2]).toBe('waiting');
   });
@@ -116,17 +116,17 @@ describe('UHF after a touchdown', () => {
       uhf(DOWN + 5, now, false, 'orbiter below the horizon'),
     ];
     expect(words(now, items, 2)).toBe(
-      'not known: no UHF since E+07:15.0: orbiter below the horizon; 3.0 s had come without a break',
+      'not known: no UHF since E+7:15.0: orbiter below the horizon; 3.0 s had come without a break',
     );
     expect(words(now, [uhf(0, now, true), fired(), uhf(DOWN, now, false, 'lost')], 2)).toBe(
-      'not known: no UHF since E+07:10.0: lost',
+      'not known: no UHF since E+7:10.0: lost',
     );
-    expect(words(now, [fired()], 2)).toBe('not known: no UHF since touchdown at E+07:10.0');
+    expect(words(now, [fired()], 2)).toBe('not known: no UHF since touchdown at E+7:10.0');
   });
   it('starts anew after a break, and then suffices', () => {
     const items = [fired(), ...heard(DOWN, DOWN + 5), ...heard(DOWN + 12, DOWN + 24)];
     expect(words(DOWN + 24, items, 2)).toBe(
-      'E+07:32.0: edl_phase came over uhf_live each second or more often since E+07:22.0',
+      'E+7:32.0: edl_phase came over uhf_live each second or more often since E+7:22.0',
     );
     expect(states(DOWN + 18, items.slice(0, -6))?.[3]).toBe('waiting');
   });
@@ -190,7 +190,7 @@ it('the card says the verdict, each step with its evidence, and leads on', () =>
     timepoints.value = vehiclePlan;
     render(<Touchdown />, root);
   });
-  expect(root.querySelector('h3')?.textContent).toBe('▲ Touchdown reported E+07:10.0, 2 of 3 signals');
+  expect(root.querySelector('h3')?.textContent).toBe('▲ Touchdown reported E+7:10.0, 2 of 3 signals');
   expect([...root.querySelectorAll('.touchdown-steps li')].map((each) => (each as HTMLElement).dataset.state)).toEqual([
     'done',
     'unknown',

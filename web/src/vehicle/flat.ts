@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The flat picture, from the side, across the approach: where there is no WebGL, or on request. It shows the same
 // scene by the same measures.
+import { TYPE } from '../design/type';
 import type { Surface } from '../draw/canvas';
 import {
   AEROSHELL,
@@ -218,7 +219,7 @@ function arrow(
   c.lineTo(tx - dy * 5, ty + dx * 5);
   c.lineTo(tx + dy * 5, ty - dx * 5);
   c.fill();
-  c.font = `600 13px ${font}`;
+  c.font = `600 ${TYPE.body}px ${font}`;
   c.textAlign = dx < -0.2 ? 'right' : 'left';
   c.textBaseline = 'middle';
   c.fillText(words, tx + dx * 16 + (dx < -0.2 ? -4 : 4), ty + dy * 16);

@@ -79,7 +79,7 @@ describe('what the vehicle looks like', () => {
     const byTone = lookAt(10, [tone({ tone: 7, name: 'parachute_deploy', sclk: ENTRY_SCLK + 4 })]);
     expect(happened(byTone, 'parachuteOut')).toEqual({
       state: 'yes',
-      why: 'timepoint parachute_deploy by tone at E+00:04.0',
+      why: 'timepoint parachute_deploy by tone at E+0:04.0',
     });
     expect(partsOf(configurationOf(byTone)).heatshield).toBe('unknown');
   });
@@ -90,7 +90,7 @@ describe('what the vehicle looks like', () => {
     expect(at(11).state).toBe('yes');
     expect(at(13)).toEqual({
       state: 'contradicted',
-      why: 'timepoint heatshield_separation fired at E+00:09.0, but heatshield_gone is 0 at E+00:13.0',
+      why: 'timepoint heatshield_separation fired at E+0:09.0, but heatshield_gone is 0 at E+0:13.0',
     });
   });
   it('says a refused pyro beside a flag that believes it fired, and draws neither there nor gone', () => {
@@ -174,9 +174,9 @@ describe('the same as text', () => {
     expect(figuresOf(...lookAndMotion(lookAt(0, [])))[0]).toMatchObject({ value: '—', note: 'not received yet' });
   });
   it('never counts down to what is overdue, or to what is not predicted', () => {
-    expect(dueWords(100, 88)).toEqual({ value: '≈ 12 s', note: '≈ E+01:40' });
+    expect(dueWords(100, 88)).toEqual({ value: '≈ 12 s', note: '≈ E+1:40' });
     expect(dueWords(100, 100.4).value).toBe('due');
-    expect(dueWords(100, 103)).toEqual({ value: '+3 s', note: 'overdue since ≈ E+01:40' });
+    expect(dueWords(100, 103)).toEqual({ value: '+3 s', note: 'overdue since ≈ E+1:40' });
     expect(dueWords(undefined, 3)).toEqual({ value: '—', note: 'time not predicted' });
   });
 });

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The vehicle's parts as simple shapes, built in code, in B. Each part is made once and shown, hidden or hollow.
+import { TYPE } from '../design/type';
 import {
   AdditiveBlending,
   BoxGeometry,
@@ -293,7 +294,7 @@ class Arrow {
     const canvas = new OffscreenCanvas(256, 48);
     const context = canvas.getContext('2d');
     if (!context) return;
-    context.font = `600 30px ${font}`;
+    context.font = `600 ${TYPE.matter}px ${font}`;
     context.textBaseline = 'middle';
     context.fillStyle = colour;
     context.fillText(this.words, 4, 24);
