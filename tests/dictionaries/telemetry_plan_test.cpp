@@ -15,7 +15,7 @@ TEST_CASE("each broken rule of the telemetry plan gives one line, and nothing is
          "packet 'Gnc': there is no such packet", 1},
         {"packet in a plan twice", "telemetry_plan.csv", "mission,Wideband,",
          "mission,EdlStatus,high,0,0,0,0,0,\nmission,Wideband,",
-         "packet 'EdlStatus': plan 'mission' has it already, in line 7"},
+         "packet 'EdlStatus': plan 'mission' has it already, in line 8"},
         {"unknown priority", "telemetry_plan.csv", "mission,Wideband,normal", "mission,Wideband,middling",
          "priority 'middling' is none of first, high, normal, low"},
         {"thinned, yet first", "telemetry_plan.csv", "ToneSelected,first,1,1", "ToneSelected,first,1,2",

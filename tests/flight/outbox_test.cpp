@@ -12,8 +12,8 @@ using namespace aeolis::flight;
 TEST_CASE("sending returns nothing, and what finds no room is counted", "[kernel][R6]") {
     static_assert(std::is_void_v<decltype(std::declval<Outbox>().send(ModuleId::edl, Tick{}))>);
     test::OutboxRecorder recorder;
-    for (int i = 0; i < 60; ++i) recorder.out.send(ModuleId::edl, Tick{Sclk{1.0}});
-    CHECK(recorder.out.sent().size() + recorder.out.dropped() == 60);
+    for (int i = 0; i < 80; ++i) recorder.out.send(ModuleId::edl, Tick{Sclk{1.0}});
+    CHECK(recorder.out.sent().size() + recorder.out.dropped() == 80);
     CHECK(recorder.out.dropped() > 0);
 }
 

@@ -187,7 +187,7 @@ TEST_CASE("facts read yes or no, modes and events by name, and no number stands 
     CHECK(text_of("command", "refused", 0x0104, {{"unsafe_timepoint", 0, 0, true}}) ==
           "command EDL_SET_TIMEPOINT_OFFSET refused: unsafe timepoint " + in_words(dictionary.timeline[0].name));
     CHECK(text_of("command", "refused", 0x0107, {{"staged_parameter", 0, 0, true}}) ==
-          "command EDL_STAGE_PARAMETER refused: (staged parameter " + in_words(dictionary.parameters[0].name) + ")");
+          "command EDL_STAGE_PARAMETER refused: staged parameter " + in_words(dictionary.parameters[0].name));
     CHECK(text_of("gnc_mode", "changed", 3, {{"mode_event", 999, 999, true}, {"next_tone", -7, -7, true}}) ==
           "GNC mode changed to range control: mode event 999; next tone -7");
 }
