@@ -11,10 +11,7 @@ import { Descent } from './descent/view';
 import { Events } from './events/view';
 import { guideNow } from './guide/model';
 import { Guide } from './guide/view';
-import { Links } from './links/view';
 import { PastBar, Tape } from './mode/view';
-import { Notes } from './notes/view';
-import { Packets } from './packets/view';
 import { Panel } from './design/panel';
 import { openedLater } from './design/opened_later';
 import { Phases } from './phases/view';
@@ -33,11 +30,11 @@ import { WaitingFor } from './waiting/view';
 const DATA = {
   channels: Channels,
   alarms: Alarms,
-  notes: Notes,
+  notes: openedLater(async () => (await import('./notes/view')).Notes),
   users: openedLater(async () => (await import('./users/view')).Users),
-  packets: Packets,
+  packets: openedLater(async () => (await import('./packets/view')).Packets),
   verdicts: openedLater(async () => (await import('./verdicts/view')).Verdicts),
-  links: Links,
+  links: openedLater(async () => (await import('./links/view')).Links),
   flown: openedLater(async () => (await import('./flown/view')).Flown),
   recorded: openedLater(async () => (await import('./recorded/view')).Recorded),
   rehearsal: Rehearsal,
