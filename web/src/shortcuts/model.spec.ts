@@ -103,3 +103,19 @@ it('a word that is typed fires no shortcut: it goes into the command line if the
   expect(tab.value).toBe('links');
   document.removeEventListener('keydown', onKey);
 });
+
+it('figures, signs and arrows act in the empty command line, and are text once a word stands in it', () => {
+  useForTest(aStore(), aDictionary);
+  document.body.innerHTML = '<input data-testid="command-line">';
+  const input = document.querySelector('input') as HTMLInputElement;
+  input.addEventListener('keydown', onKey);
+  const taken = (key: string) => {
+    const event = new KeyboardEvent('keydown', { key, bubbles: true, cancelable: true });
+    Object.defineProperty(event, 'timeStamp', { value: 1e9 }); // long after any word
+    return !input.dispatchEvent(event);
+  };
+  expect(['?', 'ArrowLeft', '1', 'w'].map(taken)).toEqual([true, true, true, false]);
+  expect(helpShown.value).toBe(true);
+  input.value = 'do edl';
+  expect(['?', 'ArrowLeft', '1'].map(taken)).toEqual([false, false, false]);
+});

@@ -199,7 +199,10 @@ function onLetter(event: KeyboardEvent, act: (() => void) | undefined): void {
 export function onKey(event: KeyboardEvent): void {
   if (event.ctrlKey || event.metaKey || event.altKey || event.defaultPrevented) return;
   const target = event.target as HTMLElement | null;
-  if (target?.matches('input:not([type=range], [type=checkbox]), select, textarea')) {
+  // No command begins with a figure, a sign or an arrow: in the empty command line those act as anywhere.
+  const isEmptyLine = target instanceof HTMLInputElement && target.dataset.testid === 'command-line' && !target.value;
+  const acts = isEmptyLine && event.key !== 'Escape' && !/^\p{L}$/u.test(event.key);
+  if (!acts && target?.matches('input:not([type=range], [type=checkbox]), select, textarea')) {
     if (event.key !== 'Escape') return;
     target.blur();
     takeBackArmed();

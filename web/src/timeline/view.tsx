@@ -87,6 +87,7 @@ function drawTimeline({ context: c, width: width_px, height: height_px, colours 
   hits = [];
 
   const now_px = run ? x(pastRange.value?.to ?? run.seenE) : -1000; // its flag is where labels would be
+  const flag_px = pastRange.value ? 112 : 58; // a long flag leans inwards at the edge
   const pointed_px = cursor.value === undefined ? -1000 : x(cursor.value);
   const step = timeStep(to - from, Math.floor((width - GUTTER) / 90));
   c.textAlign = 'center';
@@ -96,7 +97,8 @@ function drawTimeline({ context: c, width: width_px, height: height_px, colours 
     c.strokeStyle = e_s === 0 ? colours.edge : colours.line;
     line(c, Math.round(x(e_s)) + 0.5, TOP - 6, Math.round(x(e_s)) + 0.5, bottom);
     c.fillStyle = colours.dim;
-    if ([now_px, pointed_px].every((px) => Math.abs(x(e_s) - px) > 58)) c.fillText(axisTime(e_s, step), x(e_s), 11);
+    if ([now_px, pointed_px].every((px) => Math.abs(x(e_s) - px) > flag_px))
+      c.fillText(axisTime(e_s, step), x(e_s), 11);
   }
   c.font = `${TYPE.table}px ${colours.sans}`;
   c.textAlign = 'left';
