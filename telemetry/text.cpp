@@ -33,6 +33,7 @@ constexpr double kilometres_from_m = 100'000.0;
 constexpr double metres_in_km = 1000.0;
 constexpr double slow_below_mps = 10.0;
 constexpr double tenths_from_s = 100.0;
+constexpr double hours_in_day = 24.0;
 constexpr double seconds_in_hour = 3600.0;
 constexpr double seconds_in_minute = 60.0;
 
@@ -74,18 +75,23 @@ std::string trimmed(std::string number) {
     return number;
 }
 
-/// "14.016 s", "4 h 59 min 24 s"
+/// "14.016 s", "4 h 59 min 24 s", from two days on "6 d 2 h"
 std::string duration_text(double value_s) {
     double left_s = std::abs(value_s);
     const int decimals = left_s >= tenths_from_s ? 1 : 3;
     if (left_s < seconds_in_hour || left_s > 1e12) return trimmed(digits(value_s, decimals)) + " s";
     const double scale = std::pow(10.0, decimals);
     left_s = std::round(left_s * scale) / scale;
-    const double hours = std::floor(left_s / seconds_in_hour);
+    double hours = std::floor(left_s / seconds_in_hour);
     left_s -= hours * seconds_in_hour;
+    const double days = hours >= 2.0 * hours_in_day ? std::floor(hours / hours_in_day) : 0.0;
+    hours -= days * hours_in_day;
     const double minutes = std::floor(left_s / seconds_in_minute);
     left_s -= minutes * seconds_in_minute;
-    std::string text = (value_s < 0.0 ? "-" : "") + digits(hours, 0) + " h";
+    std::string text = value_s < 0.0 ? "-" : "";
+    if (days > 0.0) text += digits(days, 0) + " d";
+    if (days > 0.0 && hours > 0.0) text += " ";
+    if (days == 0.0 || hours > 0.0) text += digits(hours, 0) + " h";
     if (minutes > 0.0) text += " " + digits(minutes, 0) + " min";
     if (left_s > 0.0) text += " " + trimmed(digits(left_s, decimals)) + " s";
     return text;

@@ -54,6 +54,9 @@ TEST_CASE("names, distances and times read as people say them", "[text][R38]") {
     CHECK(named_value_text("time_to_entry_s", 1189.515625) == "1189.5 s");
     CHECK(named_value_text("time_to_entry_s", 17964.25) == "4 h 59 min 24.3 s");
     CHECK(named_value_text("time_to_entry_s", 7199.9999) == "2 h");
+    CHECK(named_value_text("time_to_entry_s", 86400.0) == "24 h");
+    CHECK(named_value_text("time_to_entry_s", 604800.0) == "7 d");
+    CHECK(named_value_text("time_to_entry_s", -525600.0) == "-6 d 2 h");
     CHECK(named_value_text("descent_rate_mps", 0.83) == "0.83 m/s");
     CHECK(named_value_text("time_to_separation_s", -3601.0) == "-1 h 1 s");
 }
