@@ -174,6 +174,7 @@ std::vector<std::string> items_flown(const archive::CutOffRun& cut, archive::Seq
                 for (auto& stage : rehearsal.take_stages()) delivery.entries.emplace_back(std::move(stage));
             }
             delivery.add(rehearsal.step());
+            delivery.pass(rehearsal.cycles(), rehearsal.landing().ert_now());
             for (auto& stage : rehearsal.take_stages()) delivery.entries.emplace_back(std::move(stage));
             REQUIRE(pipeline.deliver(std::move(delivery)));
             if (rehearsal.cycles() % 640 != 0) continue;
