@@ -34,7 +34,7 @@ constexpr TaskLimits limits_of(ModuleId id) {
     case ModuleId::units: return {tick_s, 200.0, 16 * kilo};
     case ModuleId::cruise_attitude: return {tick_s, 200.0, 16 * kilo};
     case ModuleId::system_fault_protection: return {tick_s, 200.0, 16 * kilo};
-    case ModuleId::cross_string: return {tick_s, 500.0, 16 * kilo};
+    case ModuleId::cross_string: return {tick_s, 500.0, 40 * kilo};
     case ModuleId::command_dispatcher: return {tick_s, 500.0, 16 * kilo};
     case ModuleId::edl_bg: return {1.0, 1000.0, 20 * kilo};
     case ModuleId::mfsk: return {1.0, 500.0, 16 * kilo};
