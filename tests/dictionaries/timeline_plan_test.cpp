@@ -261,7 +261,7 @@ TEST_CASE("the landing can begin until the first timepoint on an anchor, less wh
     CHECK_FALSE(predict(t.dictionary, t.known).latest_begin_e_s);
 }
 
-TEST_CASE("a timepoint that may be late does not bound \"do edl\", and then follows it at once", "[timeline][R23]") {
+TEST_CASE("a timepoint that may be late does not bound do edl, and then follows it at once", "[timeline][R23]") {
     const auto& dictionary = tests::shipped_dictionary();
     const auto heaters = row_of(dictionary, "catbed_heaters");
     REQUIRE(dictionary.timeline[heaters].may_be_late);

@@ -17,7 +17,7 @@ constexpr Approach late_cruise{.late_cruise = true}, begun{.late_cruise = true, 
 
 }  // namespace
 
-TEST_CASE("the phase follows GNC's mode, and before GNC \"do edl\" and the clock", "[edl][R48]") {
+TEST_CASE("the phase follows GNC's mode, and before GNC do edl and the clock", "[edl][R23][R48]") {
     gnc::Configuration configuration;
     Phase phase;
     CHECK(phase.state() == EdlPhase::pre_edl);
@@ -58,7 +58,7 @@ TEST_CASE("the phase follows GNC's mode, and before GNC \"do edl\" and the clock
     }
 }
 
-TEST_CASE("\"do edl\" in the last hours begins the approach and the main part of EDL at once", "[edl]") {
+TEST_CASE("do edl in the last hours begins the approach and the main part of EDL at once", "[edl]") {
     Phase phase;
     CHECK(phase.follow(gnc::Mode::off, {}, all_over).size() == 3);
     CHECK(phase.state() == EdlPhase::edl_main);
