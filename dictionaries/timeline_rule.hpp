@@ -98,8 +98,8 @@ constexpr MaybeTime anchor_time(MaybeTime parent, MaybeOffset offset_s) {
 }
 
 /// The latest acceptance of "do edl" with which nothing is overdue that may not be late. R23
-/// It is the desired time of the first timepoint with an anchor that may not be late, less the durations of those before
-/// it. Undefined while that anchor is undefined, or when there is no such timepoint.
+/// It is the desired time of the first timepoint that has an anchor and may not be late, less the durations of those
+/// before it. Undefined while that anchor is undefined, or when there is no such timepoint.
 /// @param offsets_of  Offsets of a row         @param reply_timeout_of  of a row, if any
 /// @param anchor_time_of  MaybeTime of an AnchorId
 constexpr MaybeTime latest_begin(std::size_t rows, const auto& offsets_of, const auto& reply_timeout_of,

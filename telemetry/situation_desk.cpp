@@ -91,6 +91,11 @@ int weight_of(std::string_view subject) {
     return subject == commanding ? -1 : 0;
 }
 
+/// @param name  "A" or "B"; empty: a designation told of neither
+std::string flying_on(std::string_view name, std::string_view role) {
+    return name.empty() ? fmt::format("Flying on {}", role) : fmt::format("Flying on computer {}", name);
+}
+
 double seconds_from(Ert from, Ert to) {
     return static_cast<double>(to.microseconds - from.microseconds) * 1e-6;
 }
@@ -171,8 +176,9 @@ void SituationDesk::heard(Sclk sclk) {
 
 void SituationDesk::take_over(std::string_view how, Ert at, const Origin& origin, std::string evidence) {
     if (backup_ && (!how.empty() || backup_->evidence.starts_with("event"))) return;  // an event knows better
-    const std::string sentence = how.empty() ? fmt::format("Flying on computer {} since {}", backup_name_, when(at))
-                                             : fmt::format("Flying on computer {}, {} {}", backup_name_, how, when(at));
+    const std::string flying = flying_on(backup_name_, "the backup computer");
+    const std::string sentence =
+        how.empty() ? fmt::format("{} since {}", flying, when(at)) : fmt::format("{}, {} {}", flying, how, when(at));
     SituationEntry entry{SituationRank::news, std::string(computer), sentence, std::move(evidence), origin.seq, at, {}};
     add_news(entry);
     entry.rank = SituationRank::lasting;
@@ -199,16 +205,12 @@ void SituationDesk::event(const EventFact& event, const Origin& origin) {
     if (event.name == touchdown_event) touch_down(at, origin.recorded ? "by the recording" : "", origin, evidence);
     if (event.name == take_over_event && !origin.recorded) take_over("", at, origin, evidence);
     if (origin.recorded) return;  // the rest is of the present
-    if (event.name == designate_event) {
-        const bool b = event.text.find("Computer 1") != std::string_view::npos;
-        prime_ = b ? "B" : "A";
-        backup_name_ = b ? "A" : "B";
-    }
+    if (event.name == designate_event) designate(event.text);
     if (event.name == resume_event) {
         backup_.reset();
         add_news({SituationRank::news,
                   std::string(computer),
-                  fmt::format("Flying on computer {} since {}", prime_, when(at)),
+                  fmt::format("{} since {}", flying_on(prime_, "the prime computer"), when(at)),
                   evidence,
                   origin.seq,
                   at,
@@ -227,6 +229,15 @@ void SituationDesk::event(const EventFact& event, const Origin& origin) {
               origin.seq,
               at,
               {}});
+}
+
+// The event's only value stands in its text where the dictionary's format has a brace.
+void SituationDesk::designate(std::string_view text) {
+    const auto event = std::ranges::find(dictionary_->events, designate_event, &dictionary::Event::name);
+    const auto brace = event == dictionary_->events.end() ? std::string::npos : event->format.find('{');
+    const char number = brace < text.size() ? text[brace] : '?';
+    prime_ = number == '0' ? "A" : number == '1' ? "B" : "";
+    backup_name_ = number == '0' ? "B" : number == '1' ? "A" : "";
 }
 
 void SituationDesk::fired(TimepointId timepoint, Sclk triggered, Sclk fired, const Origin& origin) {
@@ -576,7 +587,8 @@ void SituationDesk::add_lasting(Entries& all, Ert now) const {
     SituationEntry closed{
         SituationRank::lasting,
         std::string(commanding),
-        fmt::format("Commanding closed since {}: nothing sent now comes before a planned step", when(*closes_)),
+        fmt::format("Too late for planned steps since {}: what is sent now comes after the last of them",
+                    when(*closes_)),
         "the plan and the light time",
         0,
         *closes_,

@@ -100,6 +100,7 @@ class SituationDesk {
     std::string when(Ert ert) const;
     void add_news(SituationEntry entry);
     void follow(std::string_view subject);
+    void designate(std::string_view text);
     void take_over(std::string_view how, Ert at, const Origin& origin, std::string evidence);
     void touch_down(Ert at, std::string_view how, const Origin& origin, std::string evidence);
     bool up(std::string_view link) const;

@@ -223,6 +223,21 @@ TEST_CASE("danger is above all news: a failed check on board, a limit that is cr
     CHECK(ground.first(81.0).rank == Rank::news);
 }
 
+TEST_CASE("after a designation the other computer is the backup; a designation of neither names none", "[situation]") {
+    const auto flying_after = [](const std::string& number) {
+        Ground ground;
+        ground.up(uhf_live_link, -900.0);
+        std::string text = tests::shipped_dictionary().event("PRIME_DESIGNATED")->format;
+        text.replace(text.find('{'), std::string("{string_number}").size(), number);
+        ground.event("PRIME_DESIGNATED", -880.0, text);
+        ground.event("SECOND_CHANCE_TAKES_OVER", 100.3);
+        return ground.sentence(116.0);
+    };
+    CHECK(flying_after("1") == "Flying on computer A since E+1:40");
+    CHECK(flying_after("0") == "Flying on computer B since E+1:40");
+    CHECK(flying_after("?") == "Flying on the backup computer since E+1:40");
+}
+
 TEST_CASE("a tone that is not sure enough says nothing, and what went wrong is told by tone only without UHF",
           "[situation]") {
     Ground ground;
@@ -237,13 +252,14 @@ TEST_CASE("a tone that is not sure enough says nothing, and what went wrong is t
     CHECK_FALSE(with_uhf.about("tone pyro_not_fired", 271.0));
 }
 
-TEST_CASE("commanding closes when nothing sent now can precede a planned step, a light time each way before it",
+TEST_CASE("it is too late for planned steps when nothing sent now can precede a planned step, a light time each way "
+          "before it",
           "[situation]") {
     const SituationDesk desk = desk_at(100.0);
     const auto closed = [&](double seen_e_s) {
         const auto all = desk.at({at(seen_e_s).microseconds + 100'000'000});
         return std::ranges::any_of(all, [](const auto& entry) {
-            return entry.rank == Rank::lasting && entry.sentence.starts_with("Commanding closed since E−3:20");
+            return entry.rank == Rank::lasting && entry.sentence.starts_with("Too late for planned steps since E−3:20");
         });
     };
     CHECK_FALSE(closed(-201.0));
@@ -259,7 +275,7 @@ TEST_CASE("the list is bounded, and keeps what is most important and what lasts"
     const auto all = ground.desk.at(at(10.0));
     CHECK(all.size() == SituationDesk::entries_max);
     CHECK(std::ranges::any_of(all, [](const auto& entry) { return entry.rank == Rank::lasting; }));
-    CHECK_THAT(all.front().sentence, Catch::Contains("Commanding closed") || Catch::Contains("COMMAND_99"));
+    CHECK_THAT(all.front().sentence, Catch::Contains("Too late for planned steps") || Catch::Contains("COMMAND_99"));
 }
 
 TEST_CASE("of another mission, whose entry nobody knows, times are of day, and nothing is awaited", "[situation]") {

@@ -21,7 +21,7 @@ const BACKUP = {
   evidenceSeq: 7n,
   since: '2012-219T04:59:50.000',
 };
-const CLOSED = { rank: 'lasting' as const, subject: 'commanding', sentence: 'Commanding closed since E−2:00: nothing' };
+const CLOSED = { rank: 'lasting' as const, subject: 'commanding', sentence: 'Too late for planned steps since E−2:00: what' };
 
 describe('the banner', () => {
   it('says what the server put first, with the others behind it, and the states that last beside the badge', () => {
@@ -29,7 +29,7 @@ describe('the banner', () => {
     const now = situationOf(store, Infinity, undefined);
     expect(now.first).toMatchObject({ sentence: BACKUP.sentence, since_e_s: -110, countdown: '' });
     expect(now.more.map((line) => [line.rank, line.countdown])).toEqual([['silence', 'UHF back in ≈ 40 s']]);
-    expect(now.lasting).toEqual([{ words: 'Commanding closed', sentence: CLOSED.sentence }]);
+    expect(now.lasting).toEqual([{ words: 'Too late for planned steps', sentence: CLOSED.sentence }]);
   });
   it('puts news aside but loses nothing, and shows it again when it changes; a silence cannot be put aside', () => {
     const store = aStore([situation('2012-219T04:59:55.0', BACKUP, BLACKOUT)]);

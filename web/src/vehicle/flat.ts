@@ -8,23 +8,17 @@ import {
   BACKSHELL_PROFILE,
   CRUISE_STAGE,
   PARACHUTE,
+  RAISED,
   ROVER,
   STAGE,
+  VIEWS,
   heatshieldProfile,
   wheelsBelow_m,
 } from './geometry';
-import type { Presence, Scene, Scenery } from './model';
+import type { Presence, Scene } from './model';
 import { rotated, unit } from './vectors';
 import type { Vector } from './vectors';
 
-const VIEWS: Record<Scenery, { tall: number; below: number; arrow: number }> = {
-  cruise: { tall: 9, below: -0.3, arrow: 0.3 },
-  entry: { tall: 10, below: 0, arrow: 0.36 },
-  parachute: { tall: PARACHUTE.lines + 34, below: -PARACHUTE.lines / 2 - 1, arrow: 0.11 },
-  descent: { tall: 11, below: 0.9, arrow: 0.3 },
-  crane: { tall: 17.5, below: 4.2, arrow: 0.13 },
-};
-const RAISED = 0.07; // chosen: the vehicle stands so much of the height above the middle, over the figures
 const GROUND = {
   dark: ['#5f3e30', '#0d131c', '#6b5243', '#4d3228'],
   light: ['#c79f84', '#dfe7f0', '#ecdccb', '#b1886e'],

@@ -3,6 +3,8 @@
 // From [facts] are the aeroshell's diameter and cone, the parachute, the bridle and the number of engines;
 // the engines' places are those of flight's own mounts. The rest is our drawing, marked "drawn".
 
+import type { Scenery } from './model';
+
 export const AEROSHELL = {
   radius: 2.25, // [facts] 4.5 m across
   cone_deg: 70, // [facts] 70° sphere-cone
@@ -60,3 +62,17 @@ export const BACKSHELL_PROFILE: readonly (readonly [number, number])[] = [
 
 /** How far below the vehicle's centre the wheels are, with so much of the bridle paid out. */
 export const wheelsBelow_m = (bridle_m: number): number => bridle_m + ROVER.stowed_z + ROVER.height / 2;
+
+/**
+ * What the view holds, in metres: how tall, and how far below the vehicle's centre its middle is along its axis.
+ * `arrow`: the length of the vectors, as a part of the height.
+ */
+export const VIEWS: Record<Scenery, { tall: number; below: number; arrow: number }> = {
+  cruise: { tall: 9, below: -0.3, arrow: 0.3 },
+  entry: { tall: 10, below: 0, arrow: 0.36 },
+  parachute: { tall: PARACHUTE.lines + 34, below: -PARACHUTE.lines / 2 - 1, arrow: 0.11 },
+  descent: { tall: 11, below: 0.9, arrow: 0.3 },
+  crane: { tall: 17.5, below: 4.2, arrow: 0.13 },
+};
+
+export const RAISED = 0.07; // chosen: the vehicle stands so much of the height above the middle, over the figures

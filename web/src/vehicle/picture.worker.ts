@@ -11,10 +11,9 @@ import {
   Vector3,
   WebGLRenderer,
 } from 'three';
-import { PARACHUTE, wheelsBelow_m } from './geometry';
+import { RAISED, VIEWS, wheelsBelow_m } from './geometry';
 import { Ground, RADIUS_M } from './ground';
 import type { FromPicture, ToPicture } from './messages';
-import type { Scenery } from './model';
 import { Vehicle } from './shapes';
 
 type Wanted = Extract<ToPicture, { type: 'scene' }>;
@@ -24,19 +23,6 @@ const FRAME_MS = 33;
 const FRAME_EARLY_MS = 4; // frames are not exact to the millisecond
 const SOFTWARE_FRAME_MS = 120; // chosen: without a graphics processor a frame costs the processors that all else needs
 const FIELD_DEG = 32;
-const RAISED = 0.07; // chosen: the vehicle stands so much of the height above the middle, over the figures
-
-/**
- * What the view holds, in metres: how tall, and how far below the vehicle's centre its middle is along its axis.
- * `arrow`: the length of the vectors, as a part of the height.
- */
-const VIEWS: Record<Scenery, { tall: number; below: number; arrow: number }> = {
-  cruise: { tall: 9, below: -0.3, arrow: 0.3 },
-  entry: { tall: 9.4, below: 0, arrow: 0.36 },
-  parachute: { tall: PARACHUTE.lines + 34, below: -PARACHUTE.lines / 2 - 1, arrow: 0.11 },
-  descent: { tall: 11, below: 0.9, arrow: 0.3 },
-  crane: { tall: 17.5, below: 4.2, arrow: 0.13 },
-};
 
 const say = (message: FromPicture) => self.postMessage(message);
 
