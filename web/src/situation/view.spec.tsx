@@ -21,7 +21,11 @@ const BACKUP = {
   evidenceSeq: 7n,
   since: '2012-219T04:59:50.000',
 };
-const CLOSED = { rank: 'lasting' as const, subject: 'commanding', sentence: 'Too late for planned steps since E−2:00: what' };
+const CLOSED = {
+  rank: 'lasting' as const,
+  subject: 'commanding',
+  sentence: 'Too late for planned steps since E−2:00: what',
+};
 
 describe('the banner', () => {
   it('says what the server put first, with the others behind it, and the states that last beside the badge', () => {
