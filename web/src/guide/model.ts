@@ -29,6 +29,8 @@ export interface Press {
   key?: string;
   type?: string;
   words: string;
+  /** Unseen, in its room: nothing below it moves when the focus does. */
+  done?: boolean;
 }
 interface GuideStep {
   number: number;
@@ -61,7 +63,7 @@ function commandPress(step: FirstStep, at: Step, opened: boolean): Press[] {
       return [{ words: 'It is on its way.' }];
     default:
       return [
-        ...(opened ? [] : [{ key: '/', words: 'opens the command line' }]),
+        { key: '/', words: 'opens the command line', done: opened },
         { type: step.words, words: '' },
         { key: 'Enter', words: 'shows what would be sent; nothing is sent yet' },
       ];

@@ -24,7 +24,7 @@ export function Guide() {
       {step.press.length > 0 && (
         <ol>
           {step.press.map((press) => (
-            <li key={`${press.key} ${press.type} ${press.words}`}>
+            <li key={`${press.key} ${press.type} ${press.words}`} class={press.done ? 'unseen' : ''}>
               {press.key && <kbd>{press.key}</kbd>}
               {press.type && (
                 <>

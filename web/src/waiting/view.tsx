@@ -29,9 +29,13 @@ function LineFor({ command, run }: { command: string; run: number }) {
   useEffect(() => {
     if (document.activeElement === document.body && step.value === 'type') openCommandLine();
   }, [command, run]);
-  if (lineFocused.value || step.value !== 'type') return null;
+  if (step.value !== 'type') return null;
   return (
-    <button type="button" class="primary" onClick={() => openCommandLine(command)}>
+    <button
+      type="button"
+      class={`primary ${lineFocused.value ? 'unseen' : ''}`}
+      onClick={() => openCommandLine(command)}
+    >
       Open the command line <kbd>/</kbd>
     </button>
   );
@@ -67,7 +71,9 @@ export function WaitingFor() {
       data-testid="waiting"
     >
       <ModeMark />
-      <h2 aria-live="polite">{waiting.type === undefined ? waiting.title : toDo(waiting.title)}</h2>
+      <h2 aria-live="polite" data-room={waiting.title}>
+        <span>{waiting.type === undefined ? waiting.title : toDo(waiting.title)}</span>
+      </h2>
       <p>{waiting.words}</p>
       <ul>
         {waiting.lines.map((line) => {
