@@ -17,8 +17,8 @@ using Matchers::VectorContains;
 
 inline constexpr const char* list_names = "--list-tests --verbosity quiet";  ///< the option that prints only names
 
-inline auto Contains(const std::string& text) {
-    return Matchers::ContainsSubstring(text);
+inline auto Contains(const std::string& text, CaseSensitive sensitive = CaseSensitive::Yes) {
+    return Matchers::ContainsSubstring(text, sensitive);
 }
 
 }  // namespace Catch
