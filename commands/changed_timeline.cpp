@@ -31,15 +31,22 @@ TimelineChanges changes_of(std::vector<TimelineCommand> commands) {
     return changes;
 }
 
-void ChangedTimeline::change(const std::string& command, std::span<const NamedValue> arguments) {
-    apply_offsets(dictionary_, command, arguments);
-    key_ += command + ' ' + arguments_text(arguments) + '\n';
+Result<void> ChangedTimeline::change(const std::string& command, std::span<const NamedValue> given) {
+    const auto* const known = dictionary_.command(command);
+    if (known == nullptr) return Error{"the dictionary has no command " + command};
+    const auto packet = encode(*known, given, 0);
+    if (!packet) return packet.error();
+    change({.name = command, .packet = *packet});
+    return {};
 }
 
 void ChangedTimeline::change(const TimelineCommand& command) {
     const auto* const known = dictionary_.command(command.name);
     if (known == nullptr) return;
-    if (const auto arguments = decode(*known, command.packet)) change(command.name, *arguments);
+    const auto arguments = decode(*known, command.packet);
+    if (!arguments) return;
+    apply_offsets(dictionary_, command.name, *arguments);
+    key_ += command.name + ' ' + arguments_text(*arguments) + '\n';
 }
 
 Result<std::string> verdict_on(const dictionary::Dictionary& changed, const dictionary::TimelineAnalysis& analysis) {

@@ -35,7 +35,8 @@ class ChangedTimeline {
   public:
     explicit ChangedTimeline(const dictionary::Dictionary& dictionary) : dictionary_(dictionary) {}
 
-    void change(const std::string& command, std::span<const NamedValue> arguments);
+    /// Defaults stand for arguments not given. Fails when they cannot be encoded, with the reason.
+    Result<void> change(const std::string& command, std::span<const NamedValue> given);
     /// Does nothing when the command is of another dictionary.
     void change(const TimelineCommand& command);
 

@@ -170,7 +170,6 @@ struct Command {
 
 // ---- timeline, tones, parameters -------------------------------------------------------------------------------
 
-/// A row of timeline.csv. R11, R13
 /// Assumption about an action whose reply did not come in time. R50
 enum class IfUnverified { done, not_done, done_unless_imu };
 constexpr const char* name_of(IfUnverified taken) {
@@ -182,6 +181,7 @@ constexpr const char* name_of(IfUnverified taken) {
     return "done";
 }
 
+/// A row of timeline.csv. R11, R13
 struct TimelineRow {
     TimepointId id;
     std::string name;

@@ -624,10 +624,6 @@ std::span<const std::uint8_t> Landing::recording() const {
     return state_->recorder.octets();
 }
 
-bool Landing::recording_closed() const {
-    return state_->recording().closed;
-}
-
 bool Landing::relaying() const {
     return state_->relaying();
 }

@@ -191,7 +191,6 @@ class Landing {
     SeparationReport separation() const;
     flight::Computer::Counters counters() const;
     std::span<const std::uint8_t> recording() const;  ///< NVM so far: whole packets, one after another
-    bool recording_closed() const;                    ///< nothing will be added
     bool relaying() const;                            ///< the recording is being, or was, relayed
 
   private:

@@ -70,7 +70,8 @@ class Rehearsal {
     const telemetry::GroundStation& station() const { return flight_.station(); }
     /// Totals of each UHF link so far.
     std::vector<archive::LinkTotals> link_totals() const;
-    double recording_progress() const { return flight_.recording_progress(); }  ///< fraction that is down, 0 … 1
+    /// See telemetry::RecordingProgress::fraction.
+    double recording_progress() const { return flight_.recording_progress(); }
     std::uint64_t seed() const { return seed_; }
     std::uint64_t cycles() const { return cycles_; }
 

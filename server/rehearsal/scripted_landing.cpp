@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/rehearsal/scripted_landing.hpp"
 
+#include "commands/changed_timeline.hpp"
+#include "commands/timeline_change.hpp"
+#include "dictionaries/analysis/timeline_analysis.hpp"
 #include "server/rehearsal/predict_silences.hpp"
 #include "server/rehearsal/predicted_doppler.hpp"
 #include "telemetry/text.hpp"
@@ -8,6 +11,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <fmt/format.h>
+#include <functional>
 #include <utility>
 
 namespace aeolis::server {
@@ -74,6 +78,33 @@ std::vector<commands::NamedValue> solution_arguments(const simulation::Navigatio
     };
 }
 
+std::deque<ScriptedRequest> script_of(const simulation::Scenario& scenario, const dictionary::Dictionary& dictionary) {
+    std::deque<ScriptedRequest> script;
+    for (const auto& command : scenario.commands) {
+        commands::Request request;
+        request.command = command.command;
+        request.from_solution = command.from_solution;
+        for (const auto& [name, value] : command.arguments) request.arguments.push_back({name, value});
+        // The scenario's author has armed and confirmed the command.
+        request.armed = true;
+        request.confirmation = command.command;
+        script.push_back({command.send_before_entry_s, std::move(request), {}});
+    }
+    std::ranges::stable_sort(script, std::greater{}, &ScriptedRequest::send_before_entry_s);
+    commands::ChangedTimeline timeline{dictionary};
+    for (ScriptedRequest& each : script) {
+        if (!commands::changes_offsets(each.request.command)) continue;
+        auto changed = timeline;
+        if (!changed.change(each.request.command, each.request.arguments)) continue;  // the gateway says what is wrong
+        if (const auto verdict =
+                commands::verdict_on(changed.dictionary(), dictionary::analyse_bounds(changed.dictionary())))
+            timeline = std::move(changed);
+        else
+            each.refused = verdict.error().message;
+    }
+    return script;
+}
+
 ScriptedLanding::ScriptedLanding(const simulation::Scenario& scenario, std::uint64_t seed, std::uint64_t case_number,
                                  const dictionary::Dictionary& dictionary, const std::optional<ClockCorrelation>& clock)
     : dictionary_(dictionary), entry_(scenario.entry_sclk),
@@ -81,7 +112,8 @@ ScriptedLanding::ScriptedLanding(const simulation::Scenario& scenario, std::uint
       station_(landing_.light_time_s()),
       gateway_(dictionary, landing_.light_time_s(), solution_arguments(landing_.solution()), scenario.second_person,
                stations_of(scenario), landing_.correlation().scet_of(scenario.entry_sclk), landing_.correlation()),
-      script_(scenario.commands), dispersed_(landing_.dispersed()), decommutator_(dictionary) {}
+      script_(script_of(scenario, dictionary)), dispersed_(landing_.dispersed()), decommutator_(dictionary),
+      progress_(dictionary) {}
 
 void ScriptedLanding::equip_station(const simulation::Scenario& scenario, std::uint64_t seed, std::uint64_t case_number,
                                     const dictionary::Dictionary& dictionary) {
@@ -116,8 +148,9 @@ void ScriptedLanding::hear(const telemetry::Received& received) {
 
 void ScriptedLanding::receive(const telemetry::ReceivedPacket& packet) {
     const bool live = packet.link == telemetry::uhf_live_link;
-    if (!live && !gateway_.awaits_answers()) return;
+    if (!live && !gateway_.awaits_answers() && !progress_.may_close(packet.octets)) return;
     if (decommutator_.decode(packet.octets, decoded_)) return;
+    progress_.note(decoded_, live);
     const auto* event = telemetry::event_of(dictionary_, decoded_);
     gateway_.receive({decoded_, packet.octets, live, packet.ert, event,
                       event != nullptr ? telemetry::event_text(dictionary_, *event, decoded_) : ""},
@@ -125,26 +158,22 @@ void ScriptedLanding::receive(const telemetry::ReceivedPacket& packet) {
 }
 
 void ScriptedLanding::send_script() {
-    while (!script_.empty()) {
-        // The earliest command due; at equal times the first in the scenario.
-        const auto next = std::ranges::max_element(script_, {}, &simulation::ScriptedCommand::send_before_entry_s);
-        if (landing_.sclk() < entry_ - next->send_before_entry_s) return;
-        const auto command = std::move(*next);
-        script_.erase(next);
-        commands::Request request;
-        request.command = command.command;
-        request.from_solution = command.from_solution;
-        for (const auto& [name, value] : command.arguments) request.arguments.push_back({name, value});
-        // The scenario's author has armed and confirmed the command.
-        request.armed = true;
-        request.confirmation = command.command;
-        const auto reply =
-            gateway_.submit(request, landing_.ert_now(), stages_, commands::CommandGateway::Asker::script);
-        radiate();
-        if (reply.accepted) continue;
-        script_refusals_.push_back(reply.reason);
-        gateway_.note_refused(request, reply.reason, landing_.ert_now(), stages_);
+    for (; !script_.empty() && landing_.sclk() >= entry_ - script_.front().send_before_entry_s; script_.pop_front()) {
+        const ScriptedRequest& due = script_.front();
+        if (due.refused.empty()) {
+            const auto reply =
+                gateway_.submit(due.request, landing_.ert_now(), stages_, commands::CommandGateway::Asker::script);
+            radiate();
+            if (!reply.accepted) refuse(due.request, reply.reason);
+        } else {
+            refuse(due.request, due.refused);
+        }
     }
+}
+
+void ScriptedLanding::refuse(const commands::Request& request, const std::string& reason) {
+    script_refusals_.push_back(reason);
+    gateway_.note_refused(request, reason, landing_.ert_now(), stages_);
 }
 
 commands::Reply ScriptedLanding::submit(const commands::Request& request) {
@@ -164,12 +193,7 @@ void ScriptedLanding::radiate() {
 }
 
 double ScriptedLanding::recording_progress() const {
-    const std::size_t recorded = landing_.recording().size();
-    if (recorded == 0 || !landing_.relaying()) return 0.0;
-    const double part = static_cast<double>(station_.recording().received_octets()) / static_cast<double>(recorded);
-    const bool whole = landing_.recording_closed() && station_.recording().files_under_way() == 0;
-    // Until the computer stops recording and every file is complete, the recording is not all down.
-    return whole ? part : std::min(part, 0.999);
+    return progress_.fraction(station_.recording());
 }
 
 std::string text_of_bug(const CheckFailed& bug) {

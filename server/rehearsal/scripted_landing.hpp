@@ -7,8 +7,10 @@
 #include "simulation/landing.hpp"
 #include "telemetry/decommutator.hpp"
 #include "telemetry/station/ground_station.hpp"
+#include "telemetry/station/recording_progress.hpp"
 
 #include <cstdint>
+#include <deque>
 #include <memory>
 #include <optional>
 #include <span>
@@ -16,6 +18,16 @@
 #include <vector>
 
 namespace aeolis::server {
+
+/// A command of a scenario's script.
+struct ScriptedRequest {
+    double send_before_entry_s = 0.0;
+    commands::Request request;
+    std::string refused;  ///< the constraint that it would break, after the changes before it; empty: none
+};
+/// The script in the order of sending. Each change of the timeline is analysed as one by hand is: a second of one
+/// processor each. R19, R51
+std::deque<ScriptedRequest> script_of(const simulation::Scenario& scenario, const dictionary::Dictionary& dictionary);
 
 /// A landing with its command path and the scenario's own script, which is sent through that path.
 ///
@@ -65,11 +77,13 @@ class ScriptedLanding {
     const simulation::Landing& landing() const { return landing_; }
     const commands::CommandGateway& gateway() const { return gateway_; }
     const telemetry::GroundStation& station() const { return station_; }
-    double recording_progress() const;  ///< fraction of the recording that is down, 0 … 1
+    /// See telemetry::RecordingProgress::fraction.
+    double recording_progress() const;
 
   private:
     void receive(const telemetry::ReceivedPacket& packet);
     void send_script();
+    void refuse(const commands::Request& request, const std::string& reason);
     void radiate();
 
     const dictionary::Dictionary& dictionary_;
@@ -77,12 +91,13 @@ class ScriptedLanding {
     simulation::Landing landing_;
     telemetry::GroundStation station_;
     commands::CommandGateway gateway_;
-    std::vector<simulation::ScriptedCommand> script_;  ///< not yet sent
+    std::deque<ScriptedRequest> script_;  ///< not yet sent, in the order of sending
     std::vector<commands::StageReport> stages_;
     std::vector<std::string> script_refusals_;
     bool dispersed_;
     std::uint64_t cycles_ = 0;
     telemetry::Decommutator decommutator_;
+    telemetry::RecordingProgress progress_;
     telemetry::Decoded decoded_;
 };
 

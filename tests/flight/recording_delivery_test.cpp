@@ -3,8 +3,10 @@
 
 #include "common/proximity_frame.hpp"
 #include "common/space_packet.hpp"
+#include "telemetry/station/recording_progress.hpp"
 #include "telemetry/station/recording_receiver.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/shipped_dictionary.hpp"
 
 #include <algorithm>
 #include <random>
@@ -78,6 +80,39 @@ TEST_CASE("the recording arrives as files of whole packets, and both ends know i
     CHECK(delivery.received() == delivery.recording);
     CHECK(delivery.ground.received_octets() == delivery.recording.size());
     CHECK(delivery.ground.files_under_way() == 0);
+}
+
+TEST_CASE("how much of the recording is down is told by the size that the vehicle told, and whole is it by its last "
+          "packet alone",
+          "[file_delivery][R29][R53]") {
+    const auto& dictionary = tests::shipped_dictionary();
+    const auto telling = [&](std::string_view packet, std::string_view field, std::uint64_t octets) {
+        dictionary::Decoded decoded;
+        const auto found = std::ranges::find(dictionary.packets, packet, &dictionary::Packet::name);
+        REQUIRE(found != dictionary.packets.end());
+        decoded.packet = static_cast<std::size_t>(found - dictionary.packets.begin());
+        decoded.raw.resize(found->fields.size());
+        decoded.raw[dictionary::field_index(*found, field).value()] = octets;
+        return decoded;
+    };
+    Delivery delivery;
+    telemetry::RecordingProgress progress{dictionary};
+    const auto size = delivery.recording.size();
+    for (int i = 0; i < 4; ++i) delivery.second();
+    REQUIRE(delivery.ground.received_octets() > 0);
+    CHECK(progress.fraction(delivery.ground) == 0.0);
+    progress.note(telling("CommStatus", "nvm_used_octets", 1000), false);
+    CHECK(progress.fraction(delivery.ground) == 0.0);
+    progress.note(telling("CommStatus", "nvm_used_octets", 2 * size), true);
+    progress.note(telling("CommStatus", "nvm_used_octets", size), true);
+    CHECK(progress.fraction(delivery.ground) ==
+          Approx(0.5 * static_cast<double>(delivery.ground.received_octets()) / static_cast<double>(size)));
+    while (!delivery.done()) delivery.second();
+    CHECK(progress.fraction(delivery.ground) == 0.5);
+    progress.note(telling("RECORDING_CLOSED", "used_octets", size), false);
+    CHECK(progress.fraction(delivery.ground) == 0.999);
+    progress.note(telling("RECORDING_CLOSED", "used_octets", size - 30), false);
+    CHECK(progress.fraction(delivery.ground) == 1.0);
     for (const auto& file : delivery.files) CHECK(read_primary_header(file));
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "commands/encoder.hpp"
 #include "dictionaries/analysis/timeline_analysis.hpp"
+#include "server/rehearsal/scripted_landing.hpp"
 #include "server/rehearsal/timeline_check.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/shipped_dictionary.hpp"
@@ -135,6 +136,28 @@ TEST_CASE("what still waits is looked at again with what remains", "[gateway][R1
     CHECK_THAT(reanalysis.known[0].words, Catch::Contains("breaks a constraint"));
     CHECK(reanalysis.not_known.empty());
     CHECK(reanalysis.undone == 1);
+}
+
+TEST_CASE("a scenario's script is analysed as commands by hand are, each change after those sent before it",
+          "[gateway][R19][R51]") {
+    const auto scripted = [](double send_before_entry_s, const v1::CommandRequest& request) {
+        simulation::ScriptedCommand command{send_before_entry_s, request.command(), {}, false};
+        for (const auto& argument : request.arguments())
+            command.arguments.emplace_back(argument.name(), argument.value());
+        return command;
+    };
+    simulation::Scenario scenario;
+    scenario.commands = {
+        scripted(900.0, later_separation()), scripted(950.0, later_detumble()), {1000.0, "NO_OP", {}, false}};
+    auto script = script_of(scenario, one_constraint());
+    REQUIRE(script.size() == 3);
+    CHECK(script.front().request.command == "NO_OP");
+    for (const auto& each : script) CHECK(each.refused.empty());
+
+    std::swap(scenario.commands[0].send_before_entry_s, scenario.commands[1].send_before_entry_s);
+    script = script_of(scenario, one_constraint());
+    CHECK_THAT(script[1].refused, Catch::Contains("breaks a constraint: cruise_stage_separation"));
+    CHECK(script[2].refused.empty());
 }
 
 TEST_CASE("an analysis that does not end in its time is no answer, and nothing is said of what waits",
