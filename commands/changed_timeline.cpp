@@ -36,7 +36,10 @@ Result<void> ChangedTimeline::change(const std::string& command, std::span<const
     if (known == nullptr) return Error{"the dictionary has no command " + command};
     const auto packet = encode(*known, given, 0);
     if (!packet) return packet.error();
-    change({.name = command, .packet = *packet});
+    TimelineCommand encoded;
+    encoded.name = command;
+    encoded.packet = *packet;
+    change(encoded);
     return {};
 }
 

@@ -49,6 +49,11 @@ std::string name_in(const Rows& rows, double number) {
     return row != nullptr && !row->name.empty() ? row->name : named_value_text("number", number);
 }
 
+/// Words as a name: “late cruise”.
+std::string quoted(const std::string& name) {
+    return "“" + in_words(name) + "”";
+}
+
 /// The label of a number in the enumerated fields of that name, "edl_phase"; none where no packet has such a field.
 std::optional<std::string> label_in(const dictionary::Dictionary& dictionary, std::string_view name, double number) {
     for (const dictionary::Packet& packet : dictionary.packets) {
@@ -82,7 +87,9 @@ std::string subject_of(const dictionary::Dictionary& dictionary, std::string_vie
 /// What a condition names rather than measures, by the ending of its quantity; none for an amount.
 std::optional<std::string> named_by(const dictionary::Dictionary& dictionary, std::string_view quantity,
                                     double number) {
-    if (quantity.ends_with("_tone")) return name_in(dictionary.tones, number);
+    if (quantity.ends_with("_tone"))
+        return row_of(dictionary.tones, number) != nullptr ? quoted(name_in(dictionary.tones, number))
+                                                           : named_value_text("number", number);
     if (quantity.ends_with("_timepoint")) return name_in(dictionary.timeline, number);
     if (quantity == "staged_parameter") return name_in(dictionary.parameters, number);
     if (quantity == "unsafe_anchor") return name_in(dictionary.anchors, number);
@@ -109,14 +116,25 @@ bool is_fact(const Condition& condition) {
     return condition.comparison == "==" && is_bit(condition.value) && is_bit(condition.bound);
 }
 
-std::string sentence_of(const dictionary::Dictionary& dictionary, const Condition& condition) {
+/// The name by whose ending an explanation's amounts are written: of a parameter's value the parameter's own.
+std::string name_of_amount(const dictionary::Dictionary& dictionary, const Explanation& explanation,
+                           const std::string& quantity) {
+    if (quantity != "parameter_value") return quantity;
+    const auto& conditions = explanation.conditions;
+    const auto staged = std::ranges::find(conditions, "staged_parameter", &Condition::quantity);
+    return staged != conditions.end() ? name_in(dictionary.parameters, staged->value) : quantity;
+}
+
+std::string sentence_of(const dictionary::Dictionary& dictionary, const Explanation& explanation,
+                        const Condition& condition) {
     const std::string& quantity = condition.quantity;
     if (const auto name = named_by(dictionary, quantity, condition.value))
         return in_words(quantity) + " " + in_words(*name);
     if (is_fact(condition)) return in_words(quantity) + (condition.value != 0.0 ? ": yes" : ": no");
-    return in_words(without_unit(quantity)) + " " + named_value_text(quantity, condition.value) + " " +
+    const std::string amount = name_of_amount(dictionary, explanation, quantity);
+    return in_words(without_unit(quantity)) + " " + named_value_text(amount, condition.value) + " " +
            (condition.holds ? condition.comparison : opposite_of(condition.comparison)) + " " +
-           named_value_text(quantity, condition.bound);
+           named_value_text(amount, condition.bound);
 }
 
 /// All conditions in order; of a decision that was held or refused first the unmet ones, then in brackets the others.
@@ -126,7 +144,7 @@ std::string sentences_of(const dictionary::Dictionary& dictionary, const Explana
     std::string there;
     for (const Condition& condition : explanation.conditions) {
         std::string& into = unmet_first && condition.holds ? there : text;
-        into += (into.empty() ? "" : "; ") + sentence_of(dictionary, condition);
+        into += (into.empty() ? "" : "; ") + sentence_of(dictionary, explanation, condition);
     }
     if (there.empty()) return text;
     return text.empty() ? there : text + " (" + there + ")";
@@ -137,7 +155,9 @@ std::string opening_of(const Explanation& explanation) {
     const std::string decision = in_words(explanation.decision);
     if (explanation.subject.empty()) return decision + " " + explanation.verdict;
     const bool mnemonic = explanation.decision == "command";
-    const std::string subject = mnemonic ? explanation.subject : in_words(explanation.subject);
+    const std::string subject = mnemonic                         ? explanation.subject
+                                : explanation.decision == "tone" ? quoted(explanation.subject)
+                                                                 : in_words(explanation.subject);
     if (explanation.verdict == "changed") return decision + " changed to " + subject;
     return decision + " " + subject + " " + explanation.verdict;
 }
@@ -171,7 +191,7 @@ std::optional<Explanation> explain(const dictionary::Dictionary& dictionary, con
     if (!explanation.conditions.empty()) explanation.text += ": " + sentences_of(dictionary, explanation);
     explanation.suppressed = static_cast<std::uint32_t>(std::max(reader.number("suppressed"), 0.0));
     if (explanation.suppressed > 0)
-        explanation.text += "; held " + std::to_string(explanation.suppressed) + " more cycles since last told";
+        explanation.text += "; held " + std::to_string(explanation.suppressed) + " cycles untold";
     return explanation;
 }
 

@@ -235,7 +235,7 @@ bool EdlMain::pre_edl(Sclk now) const {
     return !(now >= timeline_.anchor_time(anchor::pre_edl_end));
 }
 
-// The moment may come late, or be moved ahead of its anchor: what was fired counts, and what should have been.
+// The separation may be fired late, or before its anchor: it counts once it is due or fired, whichever is first.
 bool EdlMain::separated(Sclk now) const {
     return now >= timeline_.anchor_time(anchor::cruise_stage_separation) ||
            timeline_.triggered(timepoint::cruise_stage_separation);

@@ -3,7 +3,6 @@
 
 #include "flight/edl/parameter_table.hpp"
 #include "flight/edl/solution.hpp"
-#include "flight/kernel/parameter_parts.hpp"
 
 namespace aeolis::flight {
 
@@ -18,7 +17,7 @@ void EdlBg::on(const NavigatedAttitude& attitude, Outbox& out) {
     navigated_ = true;
     attitude_at_ = out.now();
     radar_locked_ = attitude.radar_locked;
-    batch_.on(parameters_, latest_.now, latest_.beams.span(),
+    batch_.on(parameters_.values(), latest_.now, latest_.beams.span(),
               gnc::Quaternion{attitude.q_MB[0], attitude.q_MB[1], attitude.q_MB[2], attitude.q_MB[3]},
               gnc::Vector3{attitude.up_M[0], attitude.up_M[1], attitude.up_M[2]});
     latest_.beams.clear();
@@ -55,12 +54,12 @@ void EdlBg::on(const DumpParametersCommand& command, Outbox& out) {
 }
 
 void EdlBg::on(const ParameterPart& part, Outbox&) {
-    take(parameters_, part);
+    parameters_.on(part);
 }
 
 void EdlBg::on(const ClockTick& tick, Outbox& out) {
     if (at_resolution(tick.now, 1) != tick.now || !navigated_) return;
-    const auto solution = batch_.solve(parameters_, tick.now);
+    const auto solution = batch_.solve(parameters_.values(), tick.now);
     if (!solution) return watch_radar(tick.now, out);
     solved_at_ = tick.now;
     radar_lost_ = false;
@@ -80,7 +79,8 @@ void EdlBg::watch_radar(Sclk now, Outbox& out) {
     const double gap_s = now - solved_at_;
     // Under the parachute the vehicle may first swing so far that its beams miss the ground: the first solution may
     // take longer.
-    const double most_s = solutions_ > 0 ? parameters_.radar_gap_max_s : parameters_.radar_patience_s;
+    const Parameters& parameters = parameters_.values();
+    const double most_s = solutions_ > 0 ? parameters.radar_gap_max_s : parameters.radar_patience_s;
     if (!wanted || radar_lost_ || gap_s < most_s) return;
     radar_lost_ = true;
     out.event(evr::RADAR_LOST{.gap_s = gap_s});

@@ -3,6 +3,7 @@
 
 #include "flight/gnc/navigation/radar_batch.hpp"
 #include "flight/kernel/outbox.hpp"
+#include "flight/kernel/parameter_parts.hpp"
 #include "flight/load.hpp"
 
 #include <optional>
@@ -17,8 +18,8 @@ namespace aeolis::flight {
 ///         ParameterPart
 /// Out     RadarSolution to Edl at 1 Hz, GncRadar; ParametersUpdate to Edl, or the outcome "refused". Commands of the
 ///         table of parameters go on to Edl in their order, a change that may not be staged is refused
-/// Faults  five consecutive solutions missing, while Edl wants them, are reported once (RADAR_LOST). The averages
-///         outlive the last beam by 5 s; navigation then continues without radar
+/// Faults  no solution for radar_gap_max_s (the first: radar_patience_s), while Edl wants them, is reported once
+///         (RADAR_LOST). The averages outlive the last beam by 5 s; navigation then continues without radar
 class EdlBg {
   public:
     explicit EdlBg(const Load& load) : parameters_(load.parameters) {}
@@ -36,7 +37,7 @@ class EdlBg {
   private:
     void watch_radar(Sclk now, Outbox& out);
 
-    Parameters parameters_;
+    ReceivedParameters parameters_;
     gnc::RadarBatch batch_;
     RadarReturns latest_;  ///< of this cycle; their attitude arrives after them
     bool navigated_ = false;

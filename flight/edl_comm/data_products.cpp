@@ -3,7 +3,6 @@
 
 #include "common/crc.hpp"
 #include "flight/edl_comm/sensor_tables.hpp"
-#include "flight/kernel/parameter_parts.hpp"
 
 #include <algorithm>
 
@@ -76,8 +75,8 @@ void DataProducts::on(const PhaseChanged& change) {
 }
 
 void DataProducts::on(const ParameterPart& part) {
-    if (!take(table_, part)) return;
-    table_rows_ = rows_of(table_);
+    if (!table_.on(part)) return;
+    table_rows_ = rows_of(table_.values());
     if (sending_ && sending_->part.product_kind == ProductKind::parameter_table) sending_.reset();
     if (!table_due_) table_due_ = due_.try_push(ProductKind::parameter_table);
 }

@@ -5,6 +5,7 @@
 #include "common/fixed_vector.hpp"
 #include "flight/edl/parameter_table.hpp"
 #include "flight/kernel/outbox.hpp"
+#include "flight/kernel/parameter_parts.hpp"
 #include "flight/timeline/timeline.hpp"
 
 #include <array>
@@ -78,7 +79,7 @@ class DataProducts {
 
     AsFlown as_flown_;
     ImuBurst imu_burst_;
-    Parameters table_;
+    ReceivedParameters table_;
     std::array<std::uint8_t, parameter_rows_octets> table_rows_{};
     bool table_due_ = false;
     EdlPhase phase_{};

@@ -20,15 +20,15 @@ void HeldExplanations::held(Decision decision, std::uint16_t subject, std::span<
         told_in_second_ = 0;
     }
     Told& told = of(decision);
-    const bool same = told.when.defined() && told.subject == subject;
-    if ((same && now - *told.when.get() < again_after_s) || told_in_second_ == each_second_max) {
+    if (told.subject != subject) told = {MaybeTime{}, subject, 0};
+    const bool told_lately = told.when.defined() && now - *told.when.get() < again_after_s;
+    if (told_lately || told_in_second_ == each_second_max) {
         if (told.suppressed < std::numeric_limits<std::uint16_t>::max()) ++told.suppressed;
         return;
     }
     ++told_in_second_;
     out.record(explanation(decision, ExplanationVerdict::held, subject, conditions, take_suppressed(decision)));
     told.when = now;
-    told.subject = subject;
 }
 
 std::uint16_t HeldExplanations::take_suppressed(Decision decision) {

@@ -13,9 +13,9 @@ namespace aeolis::flight {
 ///
 /// In       a decision that is held in this cycle, with its conditions          Out   Explanation, verdict held
 /// Limit    once in 4 s for a decision (chosen: the console shows one for 5 s), two a second over all decisions
-///          (chosen: a quarter of the 8 kb/s link). Suppressed explanations are counted, and the decision's next
-///          explanation gives the count
-/// Memory   fixed; a decision's count stays until it is reported
+///          (chosen: a quarter of the 8 kb/s link). Suppressed explanations are counted, and the next one of the decision
+///          and its subject gives the count
+/// Memory   fixed; one subject a decision, whose count stays until it is reported or another subject is held
 class HeldExplanations {
   public:
     static constexpr double again_after_s = 4.0;

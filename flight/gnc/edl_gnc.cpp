@@ -20,7 +20,7 @@ namespace {
 
 constexpr double cycle_s = seconds_per_tick;
 
-/// Of a fact that has a time: both are known, or neither.
+/// A fact and its time: both become known together.
 void set(bool& known, std::optional<Sclk>& when, Sclk since) {
     known = true;
     if (!when) when = since;
@@ -106,6 +106,7 @@ void EdlGnc::take_cruise_attitude() {
 std::optional<RadarDecision> EdlGnc::on(const RadarSolution& solution) {
     if (!navigating_ || solution.altitude_m > parameters().radar_altitude_max_m) return std::nullopt;
     last_radar_beams_ = solution.beams;
+    last_radar_altitude_m_ = solution.altitude_m;
     const RadarJudgement judged = radar_filter_.on(parameters(), solution, measured_at_, measured_.up_M, belief_);
     if (judged.accepted()) {
         if (radar_filter_.accepted() == 1) radar_first_ = true;
@@ -117,8 +118,8 @@ std::optional<RadarDecision> EdlGnc::on(const RadarSolution& solution) {
     return RadarDecision{believed, judged.conditions};
 }
 
-// Where attitude is off by a tilt, gravity is taken off in a wrong direction, and the radar sees navigation drift away
-// across it: r grows by tilt × g. Only after a silence of the IMU: else attitude is better than radar is quiet.
+// A tilt of the attitude subtracts gravity in a wrong direction, and velocity drifts sideways by tilt × g, which the radar
+// shows. Used only after a silence of the IMU: otherwise the attitude is better than the noise of the radar can tell.
 void EdlGnc::level_by(const RadarCorrection& correction) {
     if (belief_.attitude_rad() > 0.0 && correction.gain < 1.0) {
         const Vector3 residual_mps = correction.v_M_mps / correction.gain;
@@ -229,7 +230,9 @@ void EdlGnc::cycle(const DeviceInputs& in, const Configuration& configuration, O
     if (configuration.radar_on) {
         radar_filter_.remember(in.now, measured_.altitude_m, strapdown_.state().v_MB_M);
         Conditions first;
-        if (radar_first_) first.push_back(at_least(Quantity::radar_beams, last_radar_beams_, 1.0));
+        if (radar_first_)
+            first.push_back(
+                at_most(Quantity::radar_altitude_m, last_radar_altitude_m_, parameters().radar_altitude_max_m));
         fire(Trigger::radar_lock, first, out);
     }
     follow_configuration(configuration, in.now, out);
@@ -313,7 +316,7 @@ void EdlGnc::decide_on_engines(const Configuration& configuration, Sclk now, Out
     Conditions conditions;
     if (mode() == Mode::free_fall) {
         conditions.push_back(
-            at_least(Quantity::time_in_mode_s, since(mode_since_), parameters().powered_approach_delay_s));
+            at_least(Quantity::time_since_backshell_s, since(mode_since_), parameters().powered_approach_delay_s));
         if (!fire(Trigger::powered_approach, conditions, out)) return;
         take(GncModeEvent::fallen_clear, now, out);
         approach_.start(parameters(), m.altitude_m, m.descent_rate_mps);

@@ -243,7 +243,7 @@ class EdlGnc {
                  fired_, due_for_parachute_, low_for_backshell_, radar_first_, lateral_, bank_command_rad_,
                  bank_at_sufr_rad_, bank_allowed_rad_, predicted_range_m_, lift_to_drag_command_, mass_kg_,
                  thrust_command_N_, approach_, divert_, divert_from_M_, deceleration_, rate_control_, touchdown_logic_,
-                 last_radar_beams_);
+                 last_radar_beams_, last_radar_altitude_m_);
     }
 
     Mode mode() const { return mode_machine_.state(); }
@@ -327,6 +327,7 @@ class EdlGnc {
     sky_crane::RateControl rate_control_;
     sky_crane::TouchdownLogic touchdown_logic_;
     std::uint16_t last_radar_beams_ = 0;
+    double last_radar_altitude_m_ = 0.0;
 };
 static_assert(std::is_trivially_destructible_v<EdlGnc>);  // copying it is a snapshot
 

@@ -20,13 +20,33 @@ void parameter_parts(const Parameters& parameters, Send&& send) {
     }
 }
 
-/// Takes a part into a table. True with the last part: the table is whole.
-inline bool take(Parameters& parameters, const ParameterPart& part) {
-    const std::size_t first = std::min<std::size_t>(part.first, parameter_count);
-    const std::size_t count = std::min({std::size_t{part.count}, part_parameters_max, parameter_count - first});
-    for (std::size_t i = 0; i < count; ++i)
-        set_value(parameters, ParameterId{static_cast<std::uint16_t>(first + i)}, part.values[i]);
-    return count > 0 && first + count == parameter_count;
-}
+/// A table of parameters that comes in parts. It changes as a whole, with the last part: when one was lost or is out of
+/// order, the table stays as it was until all come again.
+class ReceivedParameters {
+  public:
+    explicit ReceivedParameters(const Parameters& first = {}) : values_(first) {}
+
+    /// True: a whole table has come.
+    bool on(const ParameterPart& part) {
+        if (part.first == 0) next_ = 0;
+        const bool fits = part.first == next_ && part.count <= part_parameters_max &&
+                          std::size_t{part.first} + part.count <= parameter_count;
+        if (!fits || part.count == 0) {
+            next_ = parameter_count;  // until the first part comes again
+            return false;
+        }
+        for (std::size_t i = 0; i < part.count; ++i)
+            set_value(coming_, ParameterId{static_cast<std::uint16_t>(next_ + i)}, part.values[i]);
+        next_ += part.count;
+        if (next_ < parameter_count) return false;
+        values_ = coming_;
+        return true;
+    }
+    const Parameters& values() const { return values_; }
+
+  private:
+    Parameters values_, coming_{};
+    std::size_t next_ = 0;
+};
 
 }  // namespace aeolis::flight

@@ -2,7 +2,6 @@
 #include "flight/mfsk/tone_selector.hpp"
 
 #include "flight/explanation/explanation.hpp"
-#include "flight/kernel/parameter_parts.hpp"
 
 #include <initializer_list>
 
@@ -78,7 +77,7 @@ void ToneSelector::on(const StandBy& stand_by, Outbox& out) {
 }
 
 void ToneSelector::on(const ParameterPart& part, Outbox&) {
-    take(parameters_, part);
+    parameters_.on(part);
 }
 
 void ToneSelector::on(const ClockTick& tick, Outbox& out) {
@@ -95,7 +94,7 @@ void ToneSelector::on(const ClockTick& tick, Outbox& out) {
         outstanding_.erase_at(chosen);
         send(request, out);
         explain_choice(request, out);
-    } else if (!sending_ && heartbeat_ && tick.now - quiet_since_ >= parameters_.heartbeat_after_s) {
+    } else if (!sending_ && heartbeat_ && tick.now - quiet_since_ >= parameters_.values().heartbeat_after_s) {
         send({*heartbeat_, tick.now}, out);
     }
     if (at_resolution(tick.now, 1) == tick.now)

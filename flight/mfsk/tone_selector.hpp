@@ -2,6 +2,7 @@
 #pragma once
 
 #include "flight/kernel/outbox.hpp"
+#include "flight/kernel/parameter_parts.hpp"
 #include "flight/load.hpp"
 #include "flight/timeline/timepoint.hpp"
 
@@ -50,7 +51,7 @@ class ToneSelector {
     std::int16_t priority(ToneId tone) const { return tones_[tone.value].priority; }
     double expires_s(ToneId tone) const { return tones_[tone.value].expires_s; }
 
-    Parameters parameters_;
+    ReceivedParameters parameters_;
     std::span<const ToneSpec> tones_;
     Role role_;
     FixedVector<ToneRequest, 64> outstanding_;

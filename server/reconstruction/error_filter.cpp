@@ -4,13 +4,14 @@
 #include "flight/gnc/mars.hpp"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 
 namespace aeolis::reconstruction {
 namespace {
 
-constexpr double range_noise_min_m = 0.1;  // chosen: what numbers and times are rounded to
-constexpr double gate_sigmas = 6.0;        // chosen: no honest reading of a landing is that far off
+constexpr double range_noise_min_m = 0.1;  // chosen: from the rounding of numbers and times
+constexpr double gate_sigmas = 6.0;        // chosen: none of a landing's good readings deviates as much
 
 Matrix3 cross(const Vector3& a) {
     Matrix3 m;
@@ -49,10 +50,6 @@ ErrorFilter::ErrorFilter(const SensorErrors& errors, double accelerometer_bias_s
 ErrorFilter::Covariance ErrorFilter::transition(const Motion& motion) const {
     const double dt = motion.seconds;
     Covariance f = Covariance::Identity();
-    if (motion.broken) {
-        f.topLeftCorner<bias, bias>().setZero();
-        return f;
-    }
     const Matrix3 spin = cross({0.0, 0.0, flight::gnc::mars_spin_rps});
     const Matrix3 gradient = gravity_gradient(motion.p_MoB_M);
     const Matrix3 tilt = -cross(motion.sensed_M_mps);
@@ -69,12 +66,6 @@ ErrorFilter::Covariance ErrorFilter::transition(const Motion& motion) const {
 }
 
 void ErrorFilter::add_noise(const Motion& motion, bool sees_ground) {
-    if (motion.broken) {
-        covariance_.block<3, 3>(p, p) = squared(errors_.position_m) * Matrix3::Identity();
-        covariance_.block<3, 3>(v, v) = squared(errors_.velocity_mps) * Matrix3::Identity();
-        covariance_.block<3, 3>(angle, angle) = squared(errors_.attitude_rad) * Matrix3::Identity();
-        return;
-    }
     const double felt = squared(errors_.accelerometer_noise_mps) * motion.readings +
                         squared(errors_.unmodelled_mps_per_root_s) * motion.seconds;
     const double turned =
@@ -84,8 +75,9 @@ void ErrorFilter::add_noise(const Motion& motion, bool sees_ground) {
     if (sees_ground) covariance_(ground, ground) += squared(errors_.ground_relief_m) * motion.seconds;
 }
 
-void ErrorFilter::step(const Motion& motion, const std::vector<Sighting>& sightings) {
+void ErrorFilter::step(const Motion& motion, const std::vector<Sighting>& sightings, bool whole) {
     Step now;
+    now.whole = whole;
     now.transition = transition(motion);
     error_ = now.transition * error_;
     covariance_ = now.transition * covariance_ * now.transition.transpose();
@@ -95,6 +87,32 @@ void ErrorFilter::step(const Motion& motion, const std::vector<Sighting>& sighti
     for (const Sighting& sighting : sightings) take(sighting);
     now.filtered = covariance_;
     now.filtered_error = error_;
+    steps_.push_back(now);
+}
+
+void ErrorFilter::pass(const Gap& gap) {
+    Step now;
+    now.whole = false;
+    Motion motion;
+    motion.seconds = gap.seconds;
+    motion.p_MoB_M = gap.p_MoB_M;
+    motion.sensed_M_mps = gap.sensed_M_mps;
+    now.transition = transition(motion);
+    if (gap.radar) {
+        covariance_.diagonal().segment<3>(p) += gap.p_M_m.cwiseAbs2();
+        covariance_.diagonal().segment<3>(v) += gap.v_M_mps.cwiseAbs2();
+        covariance_.diagonal().segment<3>(angle) += gap.angle_M_rad.cwiseAbs2();
+    }
+    error_.segment<3>(p) += gap.p_M_m;
+    error_.segment<3>(v) += gap.v_M_mps;
+    error_.segment<3>(angle) += gap.angle_M_rad;
+    error_ = now.transition * error_;
+    covariance_ = now.transition * covariance_ * now.transition.transpose();
+    covariance_.block<3, 3>(p, p) += squared(gap.altitude_m) * Matrix3::Identity();
+    covariance_.block<3, 3>(v, v) += squared(gap.velocity_mps) * Matrix3::Identity();
+    covariance_.block<3, 3>(angle, angle) += squared(gap.attitude_rad) * Matrix3::Identity();
+    now.predicted = now.filtered = covariance_;
+    now.predicted_error = now.filtered_error = error_;
     steps_.push_back(now);
 }
 
@@ -146,15 +164,16 @@ void ErrorFilter::observe(const State& row, double residual, double sigma) {
 }
 
 std::vector<PathError> ErrorFilter::smoothed() const {
-    std::vector<PathError> all(steps_.size());
+    std::vector<PathError> all;
+    all.reserve(steps_.size());
     State error = error_;
     Covariance covariance = covariance_;
     for (std::size_t i = steps_.size(); i-- > 0;) {
         const Step& step = steps_[i];
-        PathError& out = all[i];
         const State sigma = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
-        out = {error.segment<3>(p), error.segment<3>(v), error.segment<3>(angle),
-               sigma.segment<3>(p), sigma.segment<3>(v), sigma.segment<3>(angle)};
+        if (step.whole)
+            all.push_back({error.segment<3>(p), error.segment<3>(v), error.segment<3>(angle), sigma.segment<3>(p),
+                           sigma.segment<3>(v), sigma.segment<3>(angle)});
         if (i == 0) break;
         // Gain = filtered Fᵀ predicted⁻¹, with the states scaled to one: metres and radians differ by nine decades.
         const Step& before = steps_[i - 1];
@@ -165,6 +184,7 @@ std::vector<PathError> ErrorFilter::smoothed() const {
         error = before.filtered_error + gain * (error - step.predicted_error);
         covariance = before.filtered + gain * (covariance - step.predicted) * gain.transpose();
     }
+    std::ranges::reverse(all);
     return all;
 }
 

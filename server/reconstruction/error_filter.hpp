@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <vector>
 
-// Estimates what an inertial path is wrong by, from radar readings along it: a Kalman filter forward, and a smoother
-// back (Rauch, Tung and Striebel), so that the radar of the last two minutes tells about the entry too.
+// Estimates the error of an inertial path from radar readings along it: a Kalman filter forward, and a smoother back
+// (Rauch, Tung and Striebel), so that the radar of the last two minutes tells about the entry too.
 //
 //   truth = path ⊕ error:  p + δp,  v + δv,  Exp(ψ) · R_MB
 //   δṗ = δv        δv̇ = ψ × R f − R (b + s ∘ f) + G δp − 2 ω × δv        ψ̇ = −ω × ψ
@@ -23,23 +23,23 @@ using flight::gnc::Quaternion;
 using flight::gnc::Vector3;
 
 /// One standard deviation of each error of ground's solution and of the sensors, on each axis.
-/// [facts] Dispersed landings gives three of them; those marked ours are our assumptions.
+/// [facts] Dispersed landings gives three of them; those marked (A) are our assumptions.
 struct SensorErrors {
     double position_m = 930.0;     ///< of navigation as it begins
     double velocity_mps = 0.67;    ///< the same
     double attitude_rad = 1.5e-3;  ///< the same
     double accelerometer_bias_mps2 = 3.3e-4;
-    double accelerometer_scale = 1.0e-4;      ///< ours
-    double accelerometer_noise_mps = 5.0e-5;  ///< of each reading; ours
-    double gyro_noise_rad = 2.0e-6;           ///< of each reading; ours
-    double imu_misalignment_rad = 1.0e-4;     ///< of the gyros' axes: added for each radian that is turned; ours
-    /// What the filter does not model, in m/s for the root of a second: the centre of mass jumps when a part leaves.
-    /// Ours, from landings without any other error.
+    double accelerometer_scale = 1.0e-4;      ///< (A)
+    double accelerometer_noise_mps = 5.0e-5;  ///< of each reading (A)
+    double gyro_noise_rad = 2.0e-6;           ///< of each reading (A)
+    double imu_misalignment_rad = 1.0e-4;     ///< of the gyros' axes: added for each radian that is turned (A)
+    /// What the filter does not model, per √s: the centre of mass jumps when a part leaves. (A), from landings without
+    /// any other error.
     double unmodelled_mps_per_root_s = 0.01;
     double radar_range_fraction = 0.0067;  ///< as scale error, and as noise of each reading
     double radar_velocity_mps = 0.033;     ///< as bias of each beam, and as noise of each reading
-    double ground_height_m = 10.0;         ///< of the map, where the radar first sees the ground; ours
-    double ground_relief_m = 1.0;  ///< of the ground below, for the root of a second: a slope of some degrees; ours
+    double ground_height_m = 10.0;         ///< of the map, where the radar first sees the ground (A)
+    double ground_relief_m = 1.0;          ///< of the ground below, per √s: a slope of some degrees (A)
 };
 
 /// What moved the vehicle over one step of the path.
@@ -51,7 +51,18 @@ struct Motion {
     Matrix3 turned = Matrix3::Zero();         ///< [s] Σ R_MB Δt
     Matrix3 turned_sensed = Matrix3::Zero();  ///< [m/s] Σ R_MB diag(Δv)
     double turned_rad = 0.0;                  ///< Σ |Δθ|
-    bool broken = false;                      ///< the path begins anew with it: what was known is void
+};
+
+/// A time without readings, after which the path goes on from the state that flight navigated.
+struct Gap {
+    double seconds = 0.0;
+    Vector3 p_MoB_M = Vector3::Zero();       ///< [m] at its end
+    Vector3 sensed_M_mps = Vector3::Zero();  ///< as flight navigated over it
+    /// Path less navigated state, before the gap: what the error grows by when the path changes over.
+    Vector3 p_M_m = Vector3::Zero(), v_M_mps = Vector3::Zero(), angle_M_rad = Vector3::Zero();
+    bool radar = false;  ///< may have mended the navigated state meanwhile: the difference then counts as unknown, too
+    /// What flight takes itself to be wrong by, for silences of the IMU.
+    double attitude_rad = 0.0, velocity_mps = 0.0, altitude_m = 0.0;
 };
 
 /// One beam's reading, with the inertial path at its tick.
@@ -75,10 +86,14 @@ class ErrorFilter {
 
     ErrorFilter(const SensorErrors& errors, double accelerometer_bias_sigma_mps2, double target_radius_m);
 
-    /// Moves the error over a step, then takes in the readings of its time.
-    void step(const Motion& motion, const std::vector<Sighting>& sightings);
+    /// Moves the error over a step, then takes in the readings of its time. `whole`: smoothed() tells the error at its
+    /// end.
+    void step(const Motion& motion, const std::vector<Sighting>& sightings, bool whole = true);
+    /// Goes on with the error of the navigated state: that of the path before the gap and what they differed by, known no
+    /// better than before, and worse by what flight believes.
+    void pass(const Gap& gap);
 
-    /// The smoothed error at the end of each step.
+    /// The smoothed error at the end of each whole step.
     std::vector<PathError> smoothed() const;
 
     std::uint64_t taken() const { return taken_; }
@@ -92,6 +107,7 @@ class ErrorFilter {
     struct Step {
         Covariance transition, predicted, filtered;
         State predicted_error, filtered_error;
+        bool whole = true;
     };
 
     Covariance transition(const Motion& motion) const;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/reconstruction/path.hpp"
 
+#include "flight/gnc/mars.hpp"
 #include "flight/gnc/navigation/strapdown.hpp"
 
 #include <algorithm>
@@ -18,10 +19,10 @@ using flight::gnc::NavigatedState;
 using flight::gnc::Strapdown;
 using flight::gnc::to_vector;
 
-constexpr double before_entry_s = 30.0;        // chosen: free fall still, and close to what the path is wanted for
+constexpr double before_entry_s = 30.0;        // chosen: still in free fall, and shortly before entry
 constexpr std::uint32_t readings_a_step = 25;  // of 1/200 s: path_step_s
-constexpr double tick_part = 0.01;             // of a tick: readings end on the grid of ticks but for rounding
-constexpr double median_deviation = 1.2533;    // of the median of normal numbers against that of their mean: √(π/2)
+constexpr double tick_part = 0.01;             // tolerance for rounding, in ticks
+constexpr double median_deviation = 1.2533;  // standard deviation of a median over that of a mean, normal noise: √(π/2)
 
 struct Reading {
     Sclk end;
@@ -87,15 +88,14 @@ class Integration {
         motion_.turned_sensed += count * (R_MB * delta_v.asDiagonal());
         motion_.turned_rad += count * to_vector(sample.delta_angle_rad).norm();
     }
-    /// The path goes on from another state: what was known of the error is void.
-    void restart(const NavigatedState& state) {
+    /// Goes over a gap, on to the state that flight navigated at its end.
+    void go_on(const NavigatedState& state, const Gap& gap) {
+        if (motion_.readings > 0) end_step(false);
         strapdown_ = {};
         strapdown_.start(state);
-        motion_ = {};
-        motion_.broken = true;
-        sightings_.clear();
+        filter_.pass(gap);
     }
-    /// Takes beams at a tick within the last reading, `before_end_s` before its end.
+    /// Takes the beams of a tick that lies `before_end_s` before the end of the last reading.
     void see(const BeamsAt& at, double before_end_s) {
         const double part = std::clamp(1.0 - before_end_s / imu_period_s, 0.0, 1.0);
         const NavigatedState then = between(before_, strapdown_.state(), part);
@@ -105,10 +105,10 @@ class Integration {
                                       beam.range_rate_mps, then.p_MoB_M, then.v_MB_M, before_end_s - motion_.seconds});
     }
     bool step_is_full() const { return motion_.readings >= readings_a_step; }
-    void end_step() {
+    void end_step(bool whole = true) {
         motion_.p_MoB_M = strapdown_.state().p_MoB_M;
         for (Sighting& sighting : sightings_) sighting.before_end_s += motion_.seconds;
-        filter_.step(motion_, sightings_);
+        filter_.step(motion_, sightings_, whole);
         motion_ = {};
         sightings_.clear();
     }
@@ -116,13 +116,13 @@ class Integration {
     std::uint32_t filled() const { return filled_; }
 
   private:
-    flight::Parameters parameters_;  ///< of learning a bias, which is not done: every reading is taken as felt
+    flight::Parameters parameters_;  ///< as built. Only learning a bias would use them, and none is learned here
     Strapdown strapdown_;
     Vector3 bias_mps2_;
     ErrorFilter& filter_;
     NavigatedState before_;
     Motion motion_;
-    std::vector<Sighting> sightings_;  ///< before_end_s: so far less the step's length
+    std::vector<Sighting> sightings_;  ///< before_end_s counts from the step's start, negative, until the step ends
     std::uint32_t filled_ = 0;
 };
 
@@ -134,7 +134,32 @@ std::optional<NavigatedState> navigated_at(std::span<const Navigated> navigated,
     return found->state;
 }
 
-/// The path with its error taken off.
+/// The gap from the last point of the path that flight's navigation can be held against, to `again`.
+Gap gap_to(const Navigated& again, Sclk last_reading, const Path& path, const RecordedLanding& recorded) {
+    Gap gap;
+    gap.seconds = again.at - last_reading;
+    gap.p_MoB_M = again.state.p_MoB_M;
+    const auto last = std::ranges::find_if(path.points.rbegin(), path.points.rend(),
+                                           [](const PathPoint& point) { return point.navigated.has_value(); });
+    if (last != path.points.rend()) {
+        const NavigatedState& said = *last->navigated;
+        const double radius_m = gap.p_MoB_M.norm();
+        const Vector3 gravity_mps2 = -flight::gnc::mars_gm_m3ps2 / (radius_m * radius_m * radius_m) * gap.p_MoB_M;
+        gap.sensed_M_mps = again.state.v_MB_M - said.v_MB_M - (again.at - last->at) * gravity_mps2;
+        gap.p_M_m = last->state.p_MoB_M - said.p_MoB_M;
+        gap.v_M_mps = last->state.v_MB_M - said.v_MB_M;
+        const Eigen::AngleAxisd turn{last->state.q_MB * said.q_MB.conjugate()};
+        gap.angle_M_rad = turn.angle() * turn.axis();
+    }
+    if (const auto belief = recorded.believed(again.at)) {
+        gap.attitude_rad = belief->attitude_rad;
+        gap.velocity_mps = belief->velocity_mps;
+        gap.altitude_m = belief->altitude_m;
+    }
+    return gap;
+}
+
+/// Adds the estimated error, truth less path, to the path.
 void correct(Path& path, std::span<const PathError> errors) {
     for (std::size_t i = 0; i < path.points.size(); ++i) {
         PathPoint& point = path.points[i];
@@ -184,7 +209,10 @@ Result<Path> reconstruct(const RecordedLanding& recorded, const SensorErrors& er
         if (next->sample.count - last_count > gap_max) {
             const auto again = std::ranges::lower_bound(navigated, next->end, {}, &Navigated::at);
             if (again == navigated.end()) break;
-            integration.restart(again->state);
+            const Sclk last_reading = next == readings.begin() ? start->at : std::prev(next)->end;
+            Gap gap = gap_to(*again, last_reading, path, recorded);
+            gap.radar = !beams.empty() && beams.front().at < again->at;
+            integration.go_on(again->state, gap);
             ++path.breaks;
             next = after(again->at);
             if (next == readings.end()) break;

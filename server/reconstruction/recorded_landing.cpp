@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
+#include <numbers>
 
 namespace aeolis::reconstruction {
 
@@ -38,6 +39,7 @@ Result<RecordedLanding> RecordedLanding::with(const dictionary::Dictionary& dict
     find(made.navigation_, "GncNavigation",
          {"nav_position_x_m", "nav_position_y_m", "nav_position_z_m", "nav_velocity_x_mps", "nav_velocity_y_mps",
           "nav_velocity_z_mps", "nav_attitude_w", "nav_attitude_x", "nav_attitude_y", "nav_attitude_z"});
+    find(made.belief_, "GncBelief", {"attitude_uncertainty_deg", "velocity_uncertainty_mps", "altitude_uncertainty_m"});
     find(made.solution_, "ParametersHeld", {"entry_sclk", "target_radius_m"});
     if (!missing.empty()) return Error{"the dictionary lacks what a path is made of: " + missing};
     return made;
@@ -61,6 +63,7 @@ void RecordedLanding::add(std::span<const std::uint8_t> packet) {
     }
     if (decoded_.packet == imu_table_.packet || decoded_.packet == radar_table_.packet) return add_rows(packet);
     if (decoded_.packet == navigation_.packet) return add_navigated();
+    if (decoded_.packet == belief_.packet) return add_belief();
     if (decoded_.packet == solution_.packet) add_solution();
 }
 
@@ -88,7 +91,7 @@ void RecordedLanding::add_imu_row(Sclk packet_time) {
         sample.delta_v_mps[axis] = value(imu_row_, 1 + axis);
         sample.delta_angle_rad[axis] = value(imu_row_, 4 + axis);
     }
-    const Sclk latest = packet_time + -imu_period_s * sample.count;  // it had ended by then
+    const Sclk latest = packet_time + -imu_period_s * sample.count;  // time at which reading 0 can have ended
     imu_began_ = imu_.empty() ? latest : std::min(imu_began_, latest);
     imu_.emplace(sample.count, sample);
 }
@@ -110,6 +113,18 @@ void RecordedLanding::add_navigated() {
     state.v_MB_M = {number(3), number(4), number(5)};
     state.q_MB = flight::gnc::to_quaternion({number(6), number(7), number(8), number(9)});
     navigated_.emplace(decoded_.header.time.ticks(), state);
+}
+
+void RecordedLanding::add_belief() {
+    constexpr double degree = std::numbers::pi / 180.0;
+    const Sclk at = decoded_.header.time;
+    beliefs_.emplace(at.ticks(), Believed{at, degree * value(belief_, 0), value(belief_, 1), value(belief_, 2)});
+}
+
+std::optional<Believed> RecordedLanding::believed(Sclk time) const {
+    if (beliefs_.empty()) return std::nullopt;
+    const auto from_then = beliefs_.lower_bound(time.ticks());
+    return from_then != beliefs_.end() ? from_then->second : std::prev(from_then)->second;
 }
 
 void RecordedLanding::add_solution() {

@@ -22,6 +22,12 @@ struct Navigated {
     flight::gnc::NavigatedState state;
 };
 
+/// What flight takes its navigation to be wrong by, for silences of the IMU; nought before the first.
+struct Believed {
+    Sclk at;
+    double attitude_rad = 0.0, velocity_mps = 0.0, altitude_m = 0.0;
+};
+
 /// Readings of the radar's beams with one tick.
 struct BeamsAt {
     Sclk at;
@@ -48,8 +54,10 @@ class RecordedLanding {
     const std::map<std::uint32_t, flight::ImuSample>& imu() const { return imu_; }  ///< by their count
     std::vector<BeamsAt> beams() const;
     std::vector<Navigated> navigated() const;
-    /// When the reading with count 0 ended: SCLK of the first tick to which a packet's last reading was new, less 5 ms
-    /// a reading. Exact to 1/1600 s, the grid of ticks and readings, after two dozen packets.
+    /// The belief recorded first from `time` on, else the last before it; none: nothing was recorded of it.
+    std::optional<Believed> believed(Sclk time) const;
+    /// When the reading with count 0 ended. A packet's time is the first tick after its last reading, so the earliest of
+    /// all packets' times, each less 5 ms a reading, is right to 1/1600 s: ticks and readings meet on that grid.
     Sclk imu_began() const { return imu_began_; }
     std::optional<double> target_radius_m() const { return target_radius_m_; }
     std::optional<Sclk> entry() const { return entry_; }  ///< of the last parameters
@@ -75,15 +83,17 @@ class RecordedLanding {
     void add_imu_row(Sclk packet_time);
     void add_beam();
     void add_navigated();
+    void add_belief();
     void add_solution();
 
     const dictionary::Dictionary* dictionary_;
     telemetry::Decommutator decommutator_;
     telemetry::Decoded decoded_;
-    Fields imu_table_, radar_table_, imu_row_, beam_row_, navigation_, solution_;
+    Fields imu_table_, radar_table_, imu_row_, beam_row_, navigation_, belief_, solution_;
     std::map<std::uint32_t, flight::ImuSample> imu_;
     std::map<std::int64_t, std::map<std::uint8_t, flight::RadarBeam>> beams_;  ///< by tick and beam
     std::map<std::int64_t, flight::gnc::NavigatedState> navigated_;            ///< by tick
+    std::map<std::int64_t, Believed> beliefs_;                                 ///< by tick
     Sclk imu_began_;
     std::optional<double> target_radius_m_;
     std::optional<Sclk> entry_;

@@ -123,6 +123,13 @@ TEST_CASE("a radar that brings nothing while Edl wants it is reported once, and 
     };
     CHECK(losses(1000.0, 55, true) == 0);  // the first may take its time
     CHECK(losses(1055.0, 30, true) == 1);
+    // By another table it may take less.
+    f = {};
+    Parameters sooner;
+    sooner.radar_patience_s = parameter_specs[parameter::radar_patience_s.value].min;
+    parameter_parts(sooner, [&](const ParameterPart& part) { f.handle(part, 1000.0); });
+    CHECK(losses(1000.0, static_cast<int>(sooner.radar_patience_s) - 1, true) == 0);
+    CHECK(losses(1000.0 + sooner.radar_patience_s - 1.0, 3, true) == 1);
     Fixture quiet;
     std::swap(f, quiet);
     CHECK(losses(1000.0, 3, true) == 0);

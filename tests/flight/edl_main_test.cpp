@@ -243,7 +243,7 @@ TEST_CASE("two decisions of one cycle have each its own conditions", "[edl][R17]
     f.set_parameters(entry_s - 1190);
     gnc::Output told;
     gnc::JudgedTrigger lock{gnc::Trigger::radar_lock, {}}, priming{gnc::Trigger::engine_priming, {}};
-    lock.conditions.push_back(gnc::at_least(Quantity::radar_beams, 28.0, 1.0));
+    lock.conditions.push_back(gnc::at_most(Quantity::radar_altitude_m, 7900.0, 9000.0));
     priming.conditions.push_back(gnc::at_most(Quantity::time_to_backshell_s, 15.25, 15.5));
     told.triggers.push_back(lock);
     told.triggers.push_back(priming);

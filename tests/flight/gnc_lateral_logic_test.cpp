@@ -24,7 +24,7 @@ bool reverses(LateralLogic& logic, Sclk at, double crossrange_m, double velocity
 TEST_CASE("the deadband shrinks with velocity and is halved when lift is saturated", "[gnc][R27]") {
     CHECK(crossrange_deadband_m(parameters, 5000.0, false) > crossrange_deadband_m(parameters, 2000.0, false));
     CHECK(crossrange_deadband_m(parameters, 2000.0, true) ==
-          Approx(0.5 * crossrange_deadband_m(parameters, 2000.0, false)));
+          Approx(parameters.saturated_deadband_fraction * crossrange_deadband_m(parameters, 2000.0, false)));
 }
 
 TEST_CASE("bank reverses when the target has left the deadband on the side away from lift", "[gnc][R27]") {

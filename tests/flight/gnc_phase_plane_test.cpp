@@ -8,7 +8,7 @@ namespace flight_gnc_phase_plane_test {
 using namespace aeolis::flight::gnc;
 
 TEST_CASE("a turn by the phase plane ends in its deadband without going past it, whatever its size", "[gnc][R27]") {
-    const TurnLimits limits{0.35, 0.07, 0.01, 1.0};
+    const TurnLimits limits{0.35, 0.07, 0.01, 1.0, 0.7};
     for (const double start_rad : {0.05, 0.4, 1.5, 3.1, -2.0}) {
         double left_rad = start_rad, rate_rps = 0.0, fastest_rps = 0.0;
         for (int cycle = 0; cycle < 64 * 60; ++cycle) {
@@ -26,7 +26,7 @@ TEST_CASE("a turn by the phase plane ends in its deadband without going past it,
 }
 
 TEST_CASE("within the deadband no rate is wanted, just outside hardly any", "[gnc][R27]") {
-    const TurnLimits limits{0.35, 0.07, 0.01, 1.0};
+    const TurnLimits limits{0.35, 0.07, 0.01, 1.0, 0.7};
     CHECK(rate_to_turn(0.01, limits) == 0.0);
     CHECK(rate_to_turn(-0.0099, limits) == 0.0);
     CHECK(rate_to_turn(0.0101, limits) == Approx(1.0e-4));

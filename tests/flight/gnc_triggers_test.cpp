@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "flight/gnc/powered_descent/vertical_profile.hpp"
 #include "flight/gnc/triggers/triggers.hpp"
 #include "tests/support/catch.hpp"
+
+#include <string>
 
 namespace flight_gnc_triggers_test {
 
@@ -68,6 +71,22 @@ TEST_CASE("the descent rate that ground expects at the backshell moves the altit
     CHECK(backshell_altitude_needed_m(parameters, {1660.0, 80.1}, 80.1) == Approx(1660.0));
 }
 
+TEST_CASE("a decision that has alternatives is held by all of them, and is made by one", "[gnc][R38]") {
+    const auto quantities = [](const Conditions& conditions) {
+        std::string all;
+        for (const auto& condition : conditions)
+            all +=
+                std::string(condition.holds ? "+" : "-") + std::to_string(static_cast<int>(condition.quantity)) + " ";
+        return all;
+    };
+    const auto number = [](Quantity quantity) { return std::to_string(static_cast<int>(quantity)) + " "; };
+    const double end_m = powered_descent::approach_end_altitude_m(parameters);
+    const std::string rate = number(Quantity::descent_rate_mps), altitude = number(Quantity::altitude_m);
+    CHECK(quantities(constant_velocity(parameters, end_m + 10.0, 33.6)) == "-" + rate + "-" + altitude);
+    CHECK(quantities(constant_velocity(parameters, end_m - 0.1, 33.6)) == "+" + altitude);
+    CHECK(quantities(constant_velocity(parameters, end_m + 10.0, 31.9)) == "+" + rate);
+}
+
 TEST_CASE("a decision is near when its subject holds or is within a twentieth of its bound", "[gnc][R38]") {
     CHECK(near(parameters, parachute(parameters, {407.1, 12000.0, 110.0}, bounds, 0)));
     CHECK(near(parameters, parachute(parameters, {425.0, 12000.0, 110.0}, bounds, 0)));
@@ -75,6 +94,11 @@ TEST_CASE("a decision is near when its subject holds or is within a twentieth of
     CHECK(near(parameters, heatshield(parameters, {120.0, 9000.0, 90.0}, 142.0, 12.0)));
     CHECK_FALSE(near(parameters, heatshield(parameters, {200.0, 9000.0, 90.0}, 142.0,
                                             25.0)));  // the speed is its subject, not the time
+    // Nor is the patience far from its end; near its end it is told, and so is the altitude.
+    CHECK(
+        near(parameters, heatshield(parameters, {200.0, 9000.0, 90.0}, 142.0, parameters.heatshield_patience_s - 1.0)));
+    CHECK(near(parameters,
+               heatshield(parameters, {200.0, parameters.heatshield_altitude_min_m + 50.0, 90.0}, 142.0, 25.0)));
     CHECK_FALSE(near(parameters, {}));
     Conditions timer;
     timer.push_back(at_least(Quantity::time_in_mode_s, 3.15, 3.2));

@@ -33,7 +33,7 @@ TEST_CASE("an error of rate dies out with its gain", "[gnc][R27]") {
     ApproachProfile profile;
     profile.start(parameters, 1400.0, 92.0);
     CHECK(profile.acceleration_mps2(parameters, 1400.0, 94.0) - profile.acceleration_mps2(parameters, 1400.0, 92.0) ==
-          Approx(2.0 * parameters.descent_rate_gain_per_s));
+          Approx(parameters.deceleration_rate_gain_per_s));
 }
 
 TEST_CASE("constant deceleration takes 120 m from 32 m/s and ends at 0.75 m/s", "[gnc][R27]") {

@@ -82,7 +82,9 @@ TEST_CASE("another timepoint is told at once, though one was told just before", 
     Fixture f;
     CHECK(f.at(100.0, Decision::timepoint, 3));
     CHECK_FALSE(f.at(100.5, Decision::timepoint, 3));
-    CHECK(f.at(101.0, Decision::timepoint, 4));
+    const auto other = f.at(101.0, Decision::timepoint, 4);
+    REQUIRE(other);
+    CHECK(suppressed_in(*other) == 0);  // what was not told of the other is not its own
 }
 
 TEST_CASE("when the decision is made its explanation carries what was left untold", "[explanation][R38]") {

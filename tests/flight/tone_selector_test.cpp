@@ -113,6 +113,23 @@ TEST_CASE("the most important outstanding request is sent first, and the choice 
     CHECK(f.tick(20) == ToneId{10});
 }
 
+TEST_CASE("the heartbeat comes after the silence of the table that was received whole", "[mfsk][parameters][R25]") {
+    Parameters changed;
+    changed.heartbeat_after_s = parameters.heartbeat_after_s + 3.0;
+    const auto beats_after_s = [&](std::size_t parts) {
+        Fixture f;
+        parameter_parts(changed, [&](const ParameterPart& part) {
+            if (parts-- > 0) f.selector.on(part, f.recorder.out);
+        });
+        f.phase(EdlPhase::range_control, 0);
+        for (double at_s = 0.0;; at_s += seconds_per_tick)
+            if (f.tick(at_s)) return at_s;
+    };
+    const std::size_t all = (parameter_count + part_parameters_max - 1) / part_parameters_max;
+    CHECK(beats_after_s(all) == changed.heartbeat_after_s);
+    CHECK(beats_after_s(all - 1) == parameters.heartbeat_after_s);
+}
+
 TEST_CASE("a tone that is being sent is not cut short by a more important one", "[mfsk][R31]") {
     Fixture f;
     f.request(1, 0);

@@ -105,15 +105,15 @@ TEST_CASE("how often flight held its tongue is said, and a tone in a condition h
     const auto explanation = explain(dictionary, decoded);
     REQUIRE(explanation);
     CHECK(explanation->suppressed == 316);
-    CHECK(explanation->text == "tone " + in_words(dictionary.tones[46].name) + " dropped: overtaking tone " +
-                                   in_words(dictionary.tones[47].name) + "; held 316 more cycles since last told");
+    CHECK(explanation->text == "tone “" + in_words(dictionary.tones[46].name) + "” dropped: overtaking tone “" +
+                                   in_words(dictionary.tones[47].name) + "”; held 316 cycles untold");
 }
 
 TEST_CASE("the subject is told by name", "[explanation][R38]") {
     const Ground ground;
     CHECK(ground.explained(ground.packet(1, 1, 2, 0))->text == "timepoint coolant vent held");
     CHECK(ground.explained(ground.packet(1, 1, 9, 0))->text == "timepoint 9 held");
-    CHECK(ground.explained(ground.packet(2, 2, 37, 0))->text == "tone parachute out chosen");
+    CHECK(ground.explained(ground.packet(2, 2, 37, 0))->text == "tone “parachute out” chosen");
     CHECK(ground.explained(ground.packet(3, 3, 0x0103, 0))->text == "command EDL_DO_EDL refused");
     CHECK(ground.explained(ground.packet(4, 4, 1, 0))->text == "EDL phase changed to parachute descent");
 }
@@ -188,6 +188,10 @@ TEST_CASE("facts read yes or no, modes and events by name, and no number stands 
           "command EDL_SET_TIMEPOINT_OFFSET refused: unsafe timepoint " + in_words(dictionary.timeline[0].name));
     CHECK(text_of("command", "refused", 0x0107, {{"staged_parameter", 0, 0, true}}) ==
           "command EDL_STAGE_PARAMETER refused: staged parameter " + in_words(dictionary.parameters[0].name));
+    REQUIRE(dictionary.parameters[0].name.ends_with("_s"));
+    CHECK(text_of("command", "refused", 0x0107, {{"staged_parameter", 0, 0, true}, {"parameter_value", 5, 5, true}}) ==
+          "command EDL_STAGE_PARAMETER refused: staged parameter " + in_words(dictionary.parameters[0].name) +
+              "; parameter value 5 s == 5 s");
     CHECK(text_of("gnc_mode", "changed", 3, {{"mode_event", 999, 999, true}, {"next_tone", -7, -7, true}}) ==
           "GNC mode changed to range control: mode event 999; next tone -7");
 }

@@ -9,17 +9,17 @@ namespace {
 
 TurnLimits bank_limits(const Parameters& parameters) {
     return {parameters.bank_rate_max_dps * degree, parameters.bank_acceleration_max_dps2 * degree,
-            parameters.bank_deadband_deg * degree, parameters.bank_gain_per_s};
+            parameters.bank_deadband_deg * degree, parameters.bank_gain_per_s, parameters.turn_braking_fraction};
 }
 
 TurnLimits turn_limits(const Parameters& parameters) {
     return {parameters.turn_rate_max_dps * degree, parameters.turn_acceleration_max_dps2 * degree,
-            parameters.turn_deadband_deg * degree, parameters.turn_gain_per_s};
+            parameters.turn_deadband_deg * degree, parameters.turn_gain_per_s, parameters.turn_braking_fraction};
 }
 
 TurnLimits tilt_limits(const Parameters& parameters) {
     return {parameters.tilt_rate_max_dps * degree, parameters.tilt_acceleration_max_dps2 * degree, 0.0,
-            parameters.tilt_gain_per_s};
+            parameters.tilt_gain_per_s, parameters.turn_braking_fraction};
 }
 
 /// `v`, shortened to length `most` if longer.

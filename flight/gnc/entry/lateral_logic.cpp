@@ -6,7 +6,7 @@ namespace aeolis::flight::gnc {
 double crossrange_deadband_m(const Parameters& parameters, double velocity_mps, bool saturated) {
     const double deadband_m =
         parameters.crossrange_deadband_m + parameters.crossrange_deadband_s2pm * velocity_mps * velocity_mps;
-    return saturated ? 0.5 * deadband_m : deadband_m;
+    return saturated ? parameters.saturated_deadband_fraction * deadband_m : deadband_m;
 }
 
 Conditions LateralLogic::on(const Parameters& parameters, Sclk now, double crossrange_m, double velocity_mps,

@@ -37,8 +37,8 @@ RadarJudgement RadarFilter::on(const Parameters& parameters, const RadarSolution
         if (newest == nullptr || past_[i].time > newest->time) newest = &past_[i];
         samples += 1.0;
     }
-    // At least half of the span must be covered, otherwise averages over different times would be compared.
-    if (samples < std::max(1.0, 0.5 * remembered_hz * solution.span_s)) return {};
+    // Otherwise averages over different times would be compared.
+    if (samples < std::max(1.0, parameters.radar_covered_fraction * remembered_hz * solution.span_s)) return {};
 
     // The remaining difference between the mean times of the history and of the radar is removed by the mean rates.
     const double late_s = time_sum_s / samples;

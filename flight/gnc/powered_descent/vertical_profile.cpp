@@ -70,15 +70,14 @@ void DecelerationProfile::aim(const Parameters& parameters, double altitude_m) {
 
 void DecelerationProfile::advance(const Parameters& parameters, double altitude_m, double dt_s) {
     const double sky_crane_mps = parameters.sky_crane_descent_rate_mps;
-    // The radar brings a correction once a second (R25): in the last second it can no longer be flown out.
     const double left_s = (rate_mps_ - sky_crane_mps) / deceleration_mps2_;
-    if (left_s > 1.0) aim(parameters, altitude_m);
+    if (left_s > parameters.deceleration_aim_last_s) aim(parameters, altitude_m);
     rate_mps_ = std::max(rate_mps_ - deceleration_mps2_ * dt_s, sky_crane_mps);
 }
 
 double DecelerationProfile::acceleration_mps2(const Parameters& parameters, double descent_rate_mps) const {
     const double planned_mps2 = rate_mps_ > parameters.sky_crane_descent_rate_mps ? deceleration_mps2_ : 0.0;
-    return planned_mps2 + 2.0 * parameters.descent_rate_gain_per_s * (descent_rate_mps - rate_mps_);
+    return planned_mps2 + parameters.deceleration_rate_gain_per_s * (descent_rate_mps - rate_mps_);
 }
 
 }  // namespace aeolis::flight::gnc::powered_descent

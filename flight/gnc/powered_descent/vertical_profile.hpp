@@ -71,7 +71,7 @@ class DecelerationProfile {
   private:
     void aim(const Parameters& parameters, double altitude_m);
 
-    double rate_mps_ = Parameters{}.constant_velocity_mps;  ///< until it starts, and the next
+    double rate_mps_ = Parameters{}.constant_velocity_mps;  ///< until it starts; so is the next
     double deceleration_mps2_ = Parameters{}.constant_deceleration_mps2;
 };
 

@@ -17,7 +17,7 @@ Conditions TouchdownLogic::on(const Parameters& parameters, double thrust_comman
     conditions.push_back(above);
     conditions.push_back(not_above);
     conditions.push_back(
-        at_least(Quantity::cycles_held, settled_cycles_, std::floor(parameters.touchdown_settle_s / seconds_per_tick)));
+        at_least(Quantity::cycles_true, settled_cycles_, std::floor(parameters.touchdown_settle_s / seconds_per_tick)));
     return conditions;
 }
 

@@ -31,15 +31,17 @@ Conditions list(const Condition& a, const Condition& b, const Condition& c) {
 
 bool near(const Parameters& parameters, const Conditions& conditions) {
     if (conditions.empty()) return false;
-    const Condition& first = conditions[0];
-    if (first.quantity == Quantity::time_in_mode_s) return false;  // a timer alone is not a decision
-    return first.holds || std::abs(first.value - first.bound) <= parameters.held_near_fraction * std::abs(first.bound);
+    if (conditions[0].quantity == Quantity::time_in_mode_s) return false;  // a timer alone is not a decision
+    return conditions[0].holds || std::ranges::any_of(conditions, [&](const Condition& condition) {
+               const double margin = parameters.held_near_fraction * std::abs(condition.bound);
+               return !condition.holds && std::abs(condition.value - condition.bound) <= margin;
+           });
 }
 
 Conditions worth_telling(const Conditions& conditions) {
     Conditions told;
     for (const Condition& condition : conditions)
-        if (condition.quantity != Quantity::cycles_held || condition.value > 0.0) told.push_back(condition);
+        if (condition.quantity != Quantity::cycles_true || condition.value > 0.0) told.push_back(condition);
     return told;
 }
 
@@ -61,22 +63,24 @@ Conditions sufr_start(const Parameters& parameters, const InAir& at, double dece
                                 at_most(Quantity::speed_mps, at.speed_mps, parameters.sufr_low_speed_mps));
     if (all_hold(low)) return low;
     const double to_parachute_s = (at.speed_mps - bounds.speed_mps) / std::max(deceleration_mps2, 1.0e-3);
-    return list(at_most(Quantity::time_to_parachute_s, to_parachute_s, parameters.sufr_lead_s),
-                at_most(Quantity::speed_mps, at.speed_mps, bounds.speed_mps + parameters.sufr_near_mps));
+    Conditions slow = list(at_most(Quantity::time_to_parachute_s, to_parachute_s, parameters.sufr_lead_s),
+                           at_most(Quantity::speed_mps, at.speed_mps, bounds.speed_mps + parameters.sufr_near_mps));
+    if (!all_hold(slow)) slow.push_back(last[0]);
+    return slow;
 }
 
 Conditions parachute(const Parameters& parameters, const InAir& at, const ParachuteBounds& bounds,
-                     std::uint32_t cycles_held) {
-    const Condition held = at_least(Quantity::cycles_held, cycles_held, std::floor(parameters.parachute_cycles));
+                     std::uint32_t cycles_true) {
+    const Condition held = at_least(Quantity::cycles_true, cycles_true, std::floor(parameters.parachute_cycles));
     const Condition last = at_most(Quantity::altitude_m, at.altitude_m, parameters.parachute_altitude_last_m);
     if (last.holds) return list(last, held);
     const Condition slow = at_most(Quantity::speed_mps, at.speed_mps, bounds.speed_mps);
     const Condition low = at_most(Quantity::altitude_m, at.altitude_m, bounds.altitude_min_m);
-    Conditions conditions =
-        list(low.holds && !slow.holds ? low : slow,
-             at_most(Quantity::dynamic_pressure_Pa, at.dynamic_pressure_Pa, parameters.parachute_pressure_max_Pa),
-             at_most(Quantity::mach, at.mach, parameters.parachute_mach_max));
-    conditions.push_back(held);
+    const Condition pressure =
+        at_most(Quantity::dynamic_pressure_Pa, at.dynamic_pressure_Pa, parameters.parachute_pressure_max_Pa);
+    const Condition mach = at_most(Quantity::mach, at.mach, parameters.parachute_mach_max);
+    Conditions conditions = list(low.holds && !slow.holds ? low : slow, pressure, mach);
+    conditions.push_back(slow.holds || low.holds ? held : low);
     return conditions;
 }
 
@@ -94,7 +98,8 @@ Conditions heatshield(const Parameters& parameters, const InAir& at, double heat
     const Condition slow = at_most(Quantity::speed_mps, at.speed_mps, heatshield_speed_mps);
     if (slow.holds) return list(slow, delay);
     if (late.holds) return list(late);
-    return low.holds ? list(low, delay) : list(slow, delay);
+    if (low.holds) return list(low, delay);
+    return list(slow, low, late);
 }
 
 double backshell_altitude_needed_m(const Parameters& parameters, const BackshellBounds& bounds,
@@ -114,15 +119,16 @@ Conditions constant_velocity(const Parameters& parameters, double altitude_m, do
     const Condition slow = at_most(Quantity::descent_rate_mps, descent_rate_mps, parameters.constant_velocity_mps);
     const Condition low =
         at_most(Quantity::altitude_m, altitude_m, powered_descent::approach_end_altitude_m(parameters));
-    return list(low.holds && !slow.holds ? low : slow);
+    if (slow.holds) return list(slow);
+    return low.holds ? list(low) : list(slow, low);
 }
 
 Conditions backshell(const Parameters& parameters, double altitude_m, double descent_rate_mps,
-                     const BackshellBounds& bounds, std::uint32_t cycles_held) {
+                     const BackshellBounds& bounds, std::uint32_t cycles_true) {
     return list(
         at_most(Quantity::altitude_m, altitude_m, backshell_altitude_needed_m(parameters, bounds, descent_rate_mps)),
         at_least(Quantity::descent_rate_mps, descent_rate_mps, 1.0),
-        at_least(Quantity::cycles_held, cycles_held, std::floor(parameters.backshell_cycles)));
+        at_least(Quantity::cycles_true, cycles_true, std::floor(parameters.backshell_cycles)));
 }
 
 }  // namespace aeolis::flight::gnc::triggers

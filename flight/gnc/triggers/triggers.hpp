@@ -29,8 +29,8 @@ class Persistence {
 };
 
 /// Whether a decision that is held is near enough to be reported with the conditions that hold it.
-/// Its first condition, the subject, must hold or be within a part of its bound (held_near_fraction). A timer alone is
-/// never near.
+/// Its first condition, the subject, must hold, or one that does not must be within a part of its bound
+/// (held_near_fraction). A timer alone is never near. A decision that has alternatives lists all of them while none holds.
 bool near(const Parameters& parameters, const Conditions& conditions);
 
 /// Conditions without a cycle count of zero: that repeats the condition it counts.
@@ -64,7 +64,7 @@ Conditions sufr_start(const Parameters& parameters, const InAir& at, double dece
 /// Below a last altitude it is due at any speed.
 bool parachute_due(const Parameters& parameters, const InAir& at, const ParachuteBounds& bounds);
 Conditions parachute(const Parameters& parameters, const InAir& at, const ParachuteBounds& bounds,
-                     std::uint32_t cycles_held);
+                     std::uint32_t cycles_true);
 /// Slow enough; or so low, or so long after the mortar, that the radar must see the ground at last.
 Conditions heatshield(const Parameters& parameters, const InAir& at, double heatshield_speed_mps,
                       double since_parachute_s);
@@ -89,6 +89,6 @@ Conditions constant_velocity(const Parameters& parameters, double altitude_m, do
 Conditions engine_priming(const Parameters& parameters, double altitude_m, double descent_rate_mps,
                           double backshell_altitude_m);
 Conditions backshell(const Parameters& parameters, double altitude_m, double descent_rate_mps,
-                     const BackshellBounds& bounds, std::uint32_t cycles_held);
+                     const BackshellBounds& bounds, std::uint32_t cycles_true);
 
 }  // namespace aeolis::flight::gnc::triggers
