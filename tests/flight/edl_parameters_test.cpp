@@ -59,13 +59,13 @@ TEST_CASE("parameters are staged one by one and activated together, and every us
     CHECK(f.edl.parameter_table().values().heartbeat_after_s == 30.0);
     CHECK(f.report().parameter_version == 7);
     for (const ModuleId module : {ModuleId::edl_bg, ModuleId::mfsk}) {
-        Parameters told;
+        ReceivedParameters told;
         bool whole = false;
         for (const Envelope& envelope : f.recorder.out.sent())
             if (const auto* part = std::get_if<ParameterPart>(&envelope.message); part && envelope.to == module)
-                whole = take(told, *part);
+                whole = told.on(*part);
         CHECK(whole);
-        CHECK(told == f.edl.parameter_table().values());
+        CHECK(told.values() == f.edl.parameter_table().values());
     }
 }
 
@@ -131,15 +131,15 @@ TEST_CASE("a dump hands the whole table to EdlComm and changes nothing", "[edl][
     REQUIRE(f.stage(parameter::guidance_gain, 4.0));
     const auto before = f.report();
     REQUIRE(f.takes(DumpParametersCommand{}));
-    Parameters dumped;
+    ReceivedParameters dumped;
     bool whole = false;
     for (const Envelope& envelope : f.recorder.out.sent())
         if (const auto* part = std::get_if<ParameterPart>(&envelope.message)) {
             CHECK(envelope.to == ModuleId::edl_comm);
-            whole = take(dumped, *part);
+            whole = dumped.on(*part);
         }
     CHECK(whole);
-    CHECK(dumped == f.edl.parameter_table().values());
+    CHECK(dumped.values() == f.edl.parameter_table().values());
     CHECK(f.report() == before);
 }
 

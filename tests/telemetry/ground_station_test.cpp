@@ -80,7 +80,7 @@ TEST_CASE("decisions of a modelled receiver pass through the station as they are
     GroundStation station{0.0};
     Downlink landed;
     landed.tones.emplace_back().tone = ToneId{42};
-    const auto& received = receive(station, landed, Ert{1000});
+    const Received received = receive(station, landed, Ert{1000});
     REQUIRE(received.tones.size() == 1);
     CHECK(received.tones[0].tone == ToneId{42});
 }

@@ -117,8 +117,7 @@ TEST_CASE("a fault that the station knows is said, within a predicted silence to
     ground.down(uhf_live_link, 60.0, "plasma blackout: predicted from E+0:45 to E+1:38; nothing comes from the station",
                 true, 98.0);
     CHECK(ground.first(61.0).rank == Rank::news);
-    CHECK_THAT(ground.sentence(61.0),
-               Catch::Equals("A fault on the ground: nothing comes from the station (UHF silent since E+0:50)"));
+    CHECK(ground.sentence(61.0) == "A fault on the ground: nothing comes from the station (UHF silent since E+0:50)");
     ground.fired("entry_guidance", 43.0);
     CHECK(ground.about("vehicle", 61.0)->sentence ==
           "Not heard since E+0:43; landing is predicted at E+7:11; when the next word comes is not predicted");
