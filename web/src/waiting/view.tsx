@@ -5,6 +5,7 @@ import { chosen, lineFocused, openCommandLine, previewNow, step } from '../comma
 import { mayRehearse, whyNotRehearse } from '../access/model';
 import { EndRun } from '../rehearsal/view';
 import { isLost } from '../run/connection';
+import type { Dictionary } from '../run/dictionary';
 import { cutoff, dictionary, modeNow, runNow, takesCommands, timepoints } from '../run/shown';
 import { ModeMark } from '../mode/view';
 import { focusPanel } from '../shortcuts/model';
@@ -36,6 +37,10 @@ function LineFor({ command, run }: { command: string; run: number }) {
     </button>
   );
 }
+
+/** The menu of a condition: of the channel that it is about, if it has the name of one. */
+const menuOf = (words: Dictionary, quantity = ''): string | undefined =>
+  words.pick([quantity]) && `channel ${quantity}`;
 
 export function WaitingFor() {
   const run = runNow();
@@ -73,7 +78,7 @@ export function WaitingFor() {
         {waiting.lines.map((line) => {
           const look = held(isOld ? undefined : line.holds);
           return (
-            <li key={line.words} class={look}>
+            <li key={line.words} class={look} data-menu={menuOf(words, line.quantity)}>
               <span title={STATUS[look].word}>{STATUS[look].shape}</span>
               <span>{line.words}</span>
               <output>{line.value}</output>
