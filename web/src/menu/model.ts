@@ -89,7 +89,7 @@ export function focusValue(): void {
 /** From one value to the next: ↑ ↓ within a panel, ← → to the next panel. */
 function move(from: HTMLElement, key: string): void {
   const all = allValues();
-  const panelOf = (value: HTMLElement | undefined) => value?.closest('.panel, header') ?? null;
+  const panelOf = (value: HTMLElement | undefined) => value?.closest('.panel') ?? null;
   const own = all.filter((each) => panelOf(each) === panelOf(from));
   const at = own.indexOf(from);
   const panels = [...new Set(all.map(panelOf))];
@@ -135,7 +135,8 @@ function onContextMenu(event: MouseEvent): void {
 
 function onPoint(event: PointerEvent): void {
   if (event.pointerType !== 'mouse') return;
-  const on = menuAt(event.target);
+  const under = menuAt(event.target);
+  const on = under?.matches('.panel-head[data-menu^="panel"]') ? undefined : under; // its right end has controls
   if (on === pointed.peek()?.on || (event.target instanceof Element && event.target.closest('.menu-button'))) return;
   const box = on?.getBoundingClientRect();
   pointed.value = on && box ? { on, x: box.right / scale(), y: (box.top + box.height / 2) / scale() } : undefined;

@@ -33,7 +33,7 @@ beforeEach(() => {
   pastRange.value = undefined;
   useForTest(aStore(), aDictionary);
   page.innerHTML = `
-    <section class="panel" id="one"><h2 tabindex="-1"></h2><p data-menu="channel altitude_m">1</p><p data-menu="channel speed_mps">2</p></section>
+    <section class="panel" id="one"><header data-menu="panel one">0</header><p data-menu="channel altitude_m">1</p><p data-menu="channel speed_mps">2</p></section>
     <section class="panel" id="two"><p data-menu="packet Status">3</p></section><div id="root"></div>`;
   for (const each of page.querySelectorAll('[data-menu]'))
     each.getBoundingClientRect = () => ({ width: 10, height: 10, left: 0, top: 0, bottom: 10 }) as DOMRect;
@@ -65,12 +65,15 @@ const press = (key: string) =>
 describe('the menu of a value', () => {
   it('is opened by key from the value in focus, gone through by arrows and letters, and gives the focus back', () => {
     focusValue();
+    expect(document.activeElement).toBe(value('0'));
+    press('ArrowDown');
     expect(document.activeElement).toBe(value('1'));
     press('ArrowDown');
     expect(document.activeElement).toBe(value('2'));
     press('ArrowRight');
     expect(document.activeElement).toBe(value('3'));
     press('ArrowLeft');
+    press('ArrowDown');
     press('Enter');
     expect(openedMenu.value).toMatchObject({ kind: 'channel', name: 'altitude_m' });
     act(() => render(<MenuView />, page.querySelector('#root')!));

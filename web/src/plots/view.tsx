@@ -391,7 +391,7 @@ export function Plots() {
   if (!words) return null;
   if (plots.value) {
     return (
-      <div class="plots plots-named" data-panel="plots">
+      <div class="plots plots-named" data-panel="plots" tabIndex={0} role="region" aria-label="plots">
         {plots.value.map((names) => {
           const [channel, ...over] = names.flatMap((name) => words.pick([name]) ?? []);
           if (!channel) return null;

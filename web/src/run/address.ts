@@ -67,7 +67,7 @@ function readSpan(text: string): Span | undefined {
     : undefined;
 }
 
-/** Reads an address; `problems` has a line for each part that is none. Parts of other names are left alone. */
+/** Reads an address; `problems` has a line for each part that is none. Parts of other names mean nothing. */
 export function pictureOf(query: string): { picture: Picture; problems: string[] } {
   const asked = new URLSearchParams(query);
   const picture: Picture = { run: 0 };

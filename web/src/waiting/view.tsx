@@ -70,6 +70,7 @@ export function WaitingFor() {
     <section
       class={`panel waiting waiting-${waiting.kind} ${waiting.late || waiting.type !== undefined ? 'waiting-said' : ''}`}
       data-testid="waiting"
+      data-panel="waiting"
     >
       <ModeMark />
       <h2 aria-live="polite">{waiting.type === undefined ? waiting.title : toDo(waiting.title)}</h2>
