@@ -97,7 +97,7 @@ test('with accounts: a log-in in place, an end of the session in the middle that
   ])
     assert.equal((await administer('POST', '/users', { user, role, password: 'given by another' })).status, 201);
 
-  const { page, problems, text, shows } = await open(server.address);
+  const { page, problems, text, shows } = await open(`${server.address}/?run=1&data=links`);
   const logIn = async (name, password) => {
     await page.getByTestId('log-in-user').fill(name);
     await page.getByTestId('log-in-password').fill(password);
@@ -128,6 +128,11 @@ test('with accounts: a log-in in place, an end of the session in the middle that
   await shows('who', /ann[^]*director/);
   await shows('waiting', /set edl parameters/);
   await waitFor(() => page.getByTestId('timepoints-fired').innerText(), /of \d+/);
+  assert.equal(
+    await page.getByTestId('tab-links').getAttribute('aria-selected'),
+    'true',
+    'the link holds after the log-in',
+  );
 
   await page.keyboard.press('n');
   await waitFor(() => focused(page), /note-text/);

@@ -128,19 +128,19 @@ export function Header() {
           through={run?.completeThrough}
         />
         <Who />
-        <button
-          type="button"
-          class="quiet"
-          data-testid="display-menu"
-          aria-label="this display: link, sound, layouts"
-          aria-haspopup="menu"
-          aria-expanded={openedMenu.value?.kind === 'display'}
-          title="this display: link, sound, layouts"
-          onClick={() => openMenu('display')}
-        >
-          {sound.value === 'off' ? '' : '♪'} ⋮
-        </button>
       </div>
+      <button
+        type="button"
+        class="quiet"
+        data-testid="display-menu"
+        aria-label="this display: link, sound, layouts"
+        aria-haspopup="menu"
+        aria-expanded={openedMenu.value?.kind === 'display'}
+        title="this display: link, sound, layouts"
+        onClick={() => openMenu('display')}
+      >
+        {sound.value === 'off' ? '⋮' : '♪'}
+      </button>
     </header>
   );
 }

@@ -14,7 +14,7 @@ import { aDictionary, aStore, alarm, samples, tone } from '../testing/fixtures';
 import { aServer } from '../testing/server';
 import { itemsOf } from './items';
 import type { Item } from './items';
-import { closeMenu, focusValue, openOn, onValueKey, openedMenu } from './model';
+import { closeMenu, focusValue, listenForMenus, openOn, onValueKey, openedMenu } from './model';
 import { MenuView } from './view';
 import { limitLines, sampleLines } from './why';
 
@@ -214,5 +214,37 @@ describe('the bytes of a value', () => {
         ?.click(),
     );
     await vi.waitFor(() => expect(heard[0]).toMatch(/packets\?name=Navigation&from=849\.999&to=850\.001/));
+  });
+});
+
+describe('by touch and by mouse', () => {
+  it('a long press opens the menu, a shorter one, a moving finger and a field do not; a right click does', () => {
+    listenForMenus();
+    vi.useFakeTimers({ toFake: ['setTimeout', 'clearTimeout'] });
+    const field = document.createElement('input');
+    value('2').append(field);
+    const touch = (type: string, on: Element, x = 0) =>
+      on.dispatchEvent(new PointerEvent(type, { pointerType: 'touch', clientX: x, clientY: 0, bubbles: true }));
+    const opens = (act_: () => void) => {
+      openedMenu.value = undefined;
+      act_();
+      return openedMenu.peek()?.name;
+    };
+    const press_ = (on: Element, ms: number, moves = 0) => {
+      touch('pointerdown', on);
+      if (moves > 0) touch('pointermove', on, moves);
+      vi.advanceTimersByTime(ms);
+      touch('pointerup', on);
+      vi.advanceTimersByTime(1000);
+    };
+    expect(opens(() => press_(value('2'), 600))).toBe('speed_mps');
+    expect(opens(() => press_(value('2'), 300))).toBeUndefined();
+    expect(opens(() => press_(value('2'), 600, 30))).toBeUndefined();
+    expect(opens(() => press_(field, 600))).toBeUndefined();
+    const click = (on: Element) => on.dispatchEvent(new MouseEvent('contextmenu', { bubbles: true, cancelable: true }));
+    expect(opens(() => void click(value('1')))).toBe('altitude_m');
+    expect(opens(() => void click(field))).toBeUndefined();
+    expect(opens(() => void click(page))).toBeUndefined();
+    vi.useRealTimers();
   });
 });
