@@ -134,6 +134,7 @@ test('with accounts: a log-in in place, an end of the session in the middle that
     'the link holds after the log-in',
   );
 
+  await page.keyboard.press('Escape'); // leaves the command line
   await page.keyboard.press('n');
   await waitFor(() => focused(page), /note-text/);
   await page.keyboard.type('<b>the radar</b> is late');
@@ -281,6 +282,7 @@ test('alarms are acknowledged with a note, shelved and taken back by keyboard, a
   t.after(() => way.close());
   const { page, problems, shows } = await open(way.address);
   await shows('alarms-waiting', /2 to acknowledge/);
+  await page.keyboard.press('Escape'); // leaves the command line
   await page.keyboard.press('a');
   await waitFor(() => focused(page), /alarm-note/);
   await page.keyboard.type('seen, known');
