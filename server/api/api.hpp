@@ -102,6 +102,11 @@ class Api {
     using Annotated = std::variant<archive::Annotation, HttpResponse>;  ///< the latter says why not
     using Annotating = std::function<Annotated(archive::Reader&, archive::RunId, Ert now)>;
     void annotate(const ApiRequest& call, Annotating annotating);
+    // layout_routes.cpp
+    void list_layouts(const ApiRequest& call);
+    void put_layout(const ApiRequest& call);
+    void remove_layout(const ApiRequest& call);
+    void change_layout(const ApiRequest& call, archive::LayoutChange change);
     // campaign_routes.cpp
     void list_campaigns(const ApiRequest& call);
     void start_campaign(const ApiRequest& call);

@@ -297,6 +297,16 @@ Result<void> Archive::append_audit(std::span<const AuditRecord> records) {
     return transaction->commit();
 }
 
+Result<LayoutOutcome> Archive::change_layout(const LayoutChange& change) {
+    if (auto done = state_->in_place(); !done) return done.error();
+    auto transaction = sqlite::Transaction::begin_write(state_->database);
+    if (!transaction) return transaction.error();
+    auto outcome = archive::change_layout(state_->database, change);
+    if (!outcome) return outcome;
+    if (auto done = transaction->commit(); !done) return done.error();
+    return outcome;
+}
+
 Result<Annotation> Archive::annotate(RunId run, Annotation annotation) {
     if (auto done = state_->in_place(); !done) return done.error();
     auto transaction = sqlite::Transaction::begin_write(state_->database);

@@ -4,6 +4,7 @@
 #include "common/result.hpp"
 #include "dictionaries/dictionary.hpp"
 #include "server/archive/audit.hpp"
+#include "server/archive/layouts.hpp"
 #include "server/archive/records.hpp"
 
 #include <filesystem>
@@ -44,6 +45,8 @@ class Archive {
 
     /// Stores all records or none; durable when it returns.
     Result<void> append_audit(std::span<const AuditRecord> records);
+    /// Saves or removes a layout of the console; durable when it returns.
+    Result<LayoutOutcome> change_layout(const LayoutChange& change);
     /// Adds the last item of a run that is not in progress; durable when it returns. @return the annotation with its
     /// number
     Result<Annotation> annotate(RunId run, Annotation annotation);

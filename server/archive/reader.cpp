@@ -121,6 +121,10 @@ Result<std::vector<AuditEntry>> Reader::audit(std::uint64_t after, std::size_t l
     return audit_entries(state_->database, after, limit);
 }
 
+Result<std::vector<LayoutRecord>> Reader::layouts(const std::string& owner) {
+    return layouts_of(state_->database, owner);
+}
+
 namespace {
 
 /// The clock correlation in a row. Columns: correlation_sclk, correlation_scet_us, clock_rate, leap_seconds,

@@ -7,6 +7,7 @@
 #include "dictionaries/dictionary.hpp"
 #include "dictionaries/timeline_plan.hpp"
 #include "server/archive/audit.hpp"
+#include "server/archive/layouts.hpp"
 #include "server/archive/records.hpp"
 #include "telemetry/alarm_desk.hpp"
 #include "telemetry/other_mission.hpp"
@@ -214,6 +215,8 @@ class Reader {
 
     /// The entries after `after`, in order.
     Result<std::vector<AuditEntry>> audit(std::uint64_t after, std::size_t limit);
+    /// The layouts of the owner, by name.
+    Result<std::vector<LayoutRecord>> layouts(const std::string& owner);
 
     struct State;  ///< reader_state.hpp: shared by the reader's parts
 

@@ -3,6 +3,7 @@
 
 #include "server/archive/archive.hpp"
 #include "server/archive/item_rows.hpp"
+#include "server/archive/layouts.hpp"
 
 #include <string_view>
 
@@ -10,7 +11,7 @@ namespace aeolis::archive {
 
 namespace {
 
-// All tables except those of items (item_tables.hpp), explained in docs/archive.md. *_sclk: seconds of the spacecraft
+// All tables except those of items (item_tables.hpp) and of layouts (layouts.hpp), explained in docs/archive.md. *_sclk: seconds of the spacecraft
 // clock; *_us: microseconds since 2000-01-01T12:00:00 UTC. key = run << 40 | seq.
 const char* const tables_sql = R"sql(
 CREATE TABLE dictionaries (
@@ -278,7 +279,7 @@ const char* last_key_sql() {
 Result<void> prepare_for_writing(sqlite::Database& database) {
     auto empty = is_empty(database);
     if (!empty) return empty.error();
-    if (!*empty) return {};
+    if (!*empty) return prepare_layouts(database);
     if (auto done = database.execute(page_size_sql); !done) return done;
     // One transaction, before WAL is switched on: after a crash the file is empty or a whole archive.
     auto transaction = sqlite::Transaction::begin_write(database);
@@ -288,6 +289,7 @@ Result<void> prepare_for_writing(sqlite::Database& database) {
     for (const std::string& sql :
          {marks, item_tables_sql(), std::string(tables_sql), std::string(views_sql), search_sql()})
         if (auto done = database.execute(sql.c_str()); !done) return done;
+    if (auto done = prepare_layouts(database); !done) return done;
     return transaction->commit();
 }
 

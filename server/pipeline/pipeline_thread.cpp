@@ -237,6 +237,13 @@ bool PipelineThread::annotate(archive::RunId run, archive::Annotation annotation
     }});
 }
 
+bool PipelineThread::change_layout(archive::LayoutChange change,
+                                   std::function<void(Result<archive::LayoutOutcome>)> done) {
+    return !blocked() && jobs_.try_push(Action{[this, change = std::move(change), done = std::move(done)] {
+        done(archive_.change_layout(change));
+    }});
+}
+
 std::string PipelineThread::fault() const {
     const std::scoped_lock lock{fault_mutex_};
     return fault_;

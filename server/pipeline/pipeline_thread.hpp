@@ -83,6 +83,10 @@ class PipelineThread {
     bool annotate(archive::RunId run, archive::Annotation annotation,
                   std::function<void(Result<archive::Annotation>)> done);
 
+    /// Saves or removes a layout. Calls `done` on this thread once that is durable, or with an Error: nothing was
+    /// changed. False, and nothing done, when too much waits.
+    bool change_layout(archive::LayoutChange change, std::function<void(Result<archive::LayoutOutcome>)> done);
+
     void want_items(bool wanted) { items_wanted_ = wanted; }
     /// Sets the callback, called on this thread, for each change of fault(). Call before the first run.
     void on_fault(std::function<void(const std::string& fault)> told) { on_fault_ = std::move(told); }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page: the whole console or, at ?panel=NAME, one panel of it for another monitor.
+import type { FunctionComponent } from 'preact';
 import { access } from './access/model';
 import { ExpiredBar, LogIn } from './access/view';
-import { Alarms } from './alarms/view';
 import { Channels } from './channels/view';
 import { Header } from './clocks/view';
 import { step } from './commands/line';
@@ -20,8 +20,11 @@ import { PaceBar, Rehearsal } from './rehearsal/view';
 import { ReplayBar } from './replay/view';
 import { stream } from './run/connection';
 import { dismissNotice, modeNow, notices, runNow } from './run/shown';
-import { TABS, helpShown, ignoreHeldEnter, tab } from './shortcuts/model';
+import type { Tab } from './places/model';
+import { TABS, full, low, middle, showAt, tab } from './places/model';
+import { helpShown, ignoreHeldEnter } from './shortcuts/model';
 import { Help } from './shortcuts/view';
+import { Menu } from './menu/shown';
 import { Situation } from './situation/view';
 import { Timeline } from './timeline/view';
 import { Tones } from './tones/view';
@@ -30,7 +33,7 @@ import { WaitingFor } from './waiting/view';
 /** The tabs of the data panel. */
 const DATA = {
   channels: Channels,
-  alarms: Alarms,
+  alarms: openedLater(async () => (await import('./alarms/view')).Alarms),
   notes: openedLater(async () => (await import('./notes/view')).Notes),
   users: openedLater(async () => (await import('./users/view')).Users),
   packets: openedLater(async () => (await import('./packets/view')).Packets),
@@ -62,7 +65,7 @@ function Data() {
               key={each.id}
               aria-selected={tab.value === each.id}
               data-testid={`tab-${each.id}`}
-              onClick={() => (tab.value = each.id)}
+              onClick={() => showAt('data', each.id)}
             >
               {each.title} <kbd>{each.key}</kbd>
             </button>
@@ -106,7 +109,7 @@ const inPanel = (name: keyof typeof DATA, title: string) => {
   );
 };
 
-/** The panels and tabs that ?panel=NAME can show alone. */
+/** The panels and tabs by their names: what ?panel=NAME shows alone, and the places of the grid. */
 const ALONE = {
   timeline: Timeline,
   tones: Tones,
@@ -117,8 +120,33 @@ const ALONE = {
   data: Data,
   waiting: WaitingFor,
   phases: () => null, // the strip at the top of every page shows the phases already
-  ...Object.fromEntries(TABS.map(({ id, title }) => [id, inPanel(id, title)])),
+  ...(Object.fromEntries(TABS.map(({ id, title }) => [id, inPanel(id, title)])) as unknown as Record<
+    Tab,
+    FunctionComponent
+  >),
 };
+
+/** The places on the left, or the one panel that has all their room. */
+function Pictures() {
+  if (full.value !== undefined) {
+    const Whole = ALONE[full.value as keyof typeof ALONE];
+    return Whole ? <Whole /> : null;
+  }
+  const [Middle, Low] = [ALONE[middle.value], ALONE[low.value]];
+  return (
+    <>
+      <Timeline />
+      <div class="middle">
+        <Middle key={middle.value} />
+        <Plots />
+      </div>
+      <div class="bottom">
+        <Low key={low.value} />
+        <Data />
+      </div>
+    </>
+  );
+}
 
 export function App({ panel }: { panel?: string | undefined }) {
   const mode = modeNow();
@@ -151,27 +179,20 @@ export function App({ panel }: { panel?: string | undefined }) {
           <Alone />
         </main>
       ) : (
-        <main class="grid">
+        <main class={`grid ${full.value === undefined ? '' : 'has-full'}`}>
           <div class="left">
-            <Timeline />
-            <div class="middle">
-              <Descent />
-              <Plots />
-            </div>
-            <div class="bottom">
-              <Tones />
-              <Data />
-            </div>
+            <Pictures />
           </div>
           <div class="right">
-            <WaitingFor />
+            {full.value !== 'waiting' && <WaitingFor />}
             <Guide />
-            <Events />
-            <Commands />
+            {full.value !== 'events' && <Events />}
+            {full.value !== 'commands' && <Commands />}
           </div>
         </main>
       )}
       <Help />
+      <Menu />
     </div>
   );
 }

@@ -4,23 +4,34 @@ import { render } from 'preact';
 import { access } from './access/model';
 import { App } from './app';
 import { startLoop } from './draw/loop';
+import { listenForMenus } from './menu/model';
 import { printLight } from './design/print';
+import { keepAddress, openPicture } from './picture/model';
 import { refineWhatIsLookedAt } from './run/detail';
+import { opened } from './run/address';
 import { begin } from './run/session';
 import { dictionary } from './run/shown';
 import { onKey } from './shortcuts/model';
+import { listenForCalls } from './sound/model';
 import './style.css';
 import './design/print.css';
 
+const SOON_MS = 3000; // chosen: after the first pictures
 const EMPTY_MS = 150; // chosen: without an answer by then, the page shows itself empty and says so
 
 void begin(); // first of all, to use the time in which the server answers
 document.documentElement.dataset.theme = localStorage.getItem('aeolis-theme') === 'light' ? 'light' : 'dark';
-const panel = new URL(location.href).searchParams.get('panel') ?? undefined;
 window.addEventListener('keydown', onKey);
 startLoop();
 printLight();
 refineWhatIsLookedAt();
+openPicture();
+keepAddress();
+listenForMenus();
+listenForCalls();
+
+/** What is opened in a hurry, perhaps when there is no connection any more, is loaded before that. */
+const loadSoon = () => Promise.all([import('./alarms/view'), import('./menu/view')]).catch(() => undefined); // then when it is opened
 
 /** Resolves once the content is known or a log-in is needed. */
 const known = new Promise<void>(
@@ -35,4 +46,5 @@ const known = new Promise<void>(
 const root = document.getElementById('console');
 const typeThere = Promise.all(['Inter', 'JetBrains Mono'].map((family) => document.fonts.load(`16px "${family}"`)));
 await Promise.race([Promise.all([known, typeThere]), new Promise((resolve) => setTimeout(resolve, EMPTY_MS))]);
-if (root) render(<App panel={panel} />, root);
+setTimeout(() => void loadSoon(), SOON_MS);
+if (root) render(<App panel={opened.picture.panel} />, root);

@@ -97,7 +97,7 @@ test('with accounts: a log-in in place, an end of the session in the middle that
   ])
     assert.equal((await administer('POST', '/users', { user, role, password: 'given by another' })).status, 201);
 
-  const { page, problems, text, shows } = await open(server.address);
+  const { page, problems, text, shows } = await open(`${server.address}/?run=1&data=links`);
   const logIn = async (name, password) => {
     await page.getByTestId('log-in-user').fill(name);
     await page.getByTestId('log-in-password').fill(password);
@@ -128,7 +128,13 @@ test('with accounts: a log-in in place, an end of the session in the middle that
   await shows('who', /ann[^]*director/);
   await shows('waiting', /set edl parameters/);
   await waitFor(() => page.getByTestId('timepoints-fired').innerText(), /of \d+/);
+  assert.equal(
+    await page.getByTestId('tab-links').getAttribute('aria-selected'),
+    'true',
+    'the link holds after the log-in',
+  );
 
+  await page.keyboard.press('Escape'); // leaves the command line
   await page.keyboard.press('n');
   await waitFor(() => focused(page), /note-text/);
   await page.keyboard.type('<b>the radar</b> is late');
@@ -276,6 +282,7 @@ test('alarms are acknowledged with a note, shelved and taken back by keyboard, a
   t.after(() => way.close());
   const { page, problems, shows } = await open(way.address);
   await shows('alarms-waiting', /2 to acknowledge/);
+  await page.keyboard.press('Escape'); // leaves the command line
   await page.keyboard.press('a');
   await waitFor(() => focused(page), /alarm-note/);
   await page.keyboard.type('seen, known');

@@ -31,6 +31,7 @@ const BODY = {
   'post /api/v1/session': { user: 'ann', password: 'x' },
   'post /api/v1/users': { user: 'ann', role: 'observer', password: 'x' },
   'patch /api/v1/users/{user}': { role: 'observer' },
+  'put /api/v1/layouts/{layout}': { view: 'data=links' },
   'post /api/v1/tokens': { name: 'reader', role: 'observer' },
 };
 

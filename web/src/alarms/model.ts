@@ -60,7 +60,7 @@ export function lookOf(alarm: AlarmState): Status {
   return isWorst(severity) ? 'alarm' : 'caution';
 }
 
-const wantsLook = (alarm: AlarmState) =>
+export const wantsLook = (alarm: AlarmState) =>
   !alarm.acknowledged && ['unacknowledged', 'returned', 'latched'].includes(alarm.state);
 
 /** The alarms that no one has acknowledged first, the worst of them on top. */
@@ -84,12 +84,13 @@ export function actionsOn(alarm: AlarmState): Action[] {
   ];
 }
 
-/** The sound for new alarms that need attention, by the worst of them; undefined: none. */
-export function calls(before: readonly AlarmState[], after: readonly AlarmState[]): 'alarm' | 'caution' | undefined {
+/** Alarms that need attention and are new, or have grown worse. */
+export function newAmong(before: readonly AlarmState[], after: readonly AlarmState[]): AlarmState[] {
   const known = new Map(before.filter(wantsLook).map((alarm) => [alarm.name, alarm.worst]));
-  const fresh = after.filter((alarm) => wantsLook(alarm) && known.get(alarm.name) !== alarm.worst);
-  return fresh.some((alarm) => isWorst(alarm.worst)) ? 'alarm' : fresh.length > 0 ? 'caution' : undefined;
+  return after.filter((alarm) => wantsLook(alarm) && known.get(alarm.name) !== alarm.worst);
 }
+/** Those that the last answer brought, for call-outs. */
+export const fresh = signal<readonly AlarmState[]>([]);
 
 let asking = false;
 
@@ -103,8 +104,7 @@ export async function refreshAlarms(): Promise<void> {
     if (store.value !== run) return;
     const before = alarms.value?.run === run.id ? alarms.value.all : all;
     alarms.value = { run: run.id, all };
-    const call_ = calls(before, all);
-    if (call_ && sound.value) beep(call_);
+    fresh.value = newAmong(before, all);
   } catch {
     // The header reports a lost connection, a bar a lost session; the next round asks again.
   } finally {
@@ -134,41 +134,13 @@ export async function act(name: string, action: Action): Promise<void> {
   }
 }
 
-/** Acknowledges all that the list shows and no one has looked at; ends with the first that fails. */
-export async function acknowledgeAll(): Promise<void> {
+/** Acknowledges those of the alarms that no one has looked at; ends with the first that fails. */
+export async function acknowledgeAll(of: readonly AlarmState[] = toAcknowledge.value): Promise<void> {
   const [words, run] = [note.value, store.value];
-  for (const { name } of toAcknowledge.value) {
+  for (const { name } of of.filter(wantsLook)) {
     if (store.value !== run) return;
     note.value = words; // each has the note
     await act(name, 'acknowledge');
     if (problem.value !== '') return;
-  }
-}
-
-export const sound = signal(false);
-let audio: AudioContext | undefined;
-
-/**
- * Turns the sound on or off. It is off at first and after each reload, since a browser lets no page make sound by
- * itself.
- */
-export function toggleSound(): void {
-  sound.value = !sound.value;
-  if (sound.value) {
-    audio ??= new AudioContext();
-    beep('caution');
-  }
-}
-
-function beep(kind: 'alarm' | 'caution'): void {
-  if (!audio) return;
-  for (const [i, hertz] of (kind === 'alarm' ? [880, 660, 880] : [523]).entries()) {
-    const tone = audio.createOscillator();
-    const volume = audio.createGain();
-    volume.gain.value = 0.15;
-    tone.frequency.value = hertz;
-    tone.connect(volume).connect(audio.destination);
-    tone.start(audio.currentTime + i * 0.22);
-    tone.stop(audio.currentTime + i * 0.22 + 0.18);
   }
 }

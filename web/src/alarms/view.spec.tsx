@@ -14,9 +14,9 @@ import {
   act,
   actionsOn,
   alarms,
-  calls,
   listed,
   lookOf,
+  newAmong,
   note,
   problem,
   refreshAlarms,
@@ -100,10 +100,11 @@ describe('alarms', () => {
     ).toEqual([['acknowledge', 'shelve'], ['shelve'], ['unshelve'], ['acknowledge', 'shelve', 'reset']]);
   });
   it('call once for what is new or has grown worse, and never again for the same', () => {
-    expect(calls([], [an({})])).toBe('caution');
-    expect(calls([an({})], [an({})])).toBeUndefined();
-    expect(calls([an({})], [an({ worst: 'critical' })])).toBe('alarm');
-    expect(calls([], [an({ state: 'shelved' })])).toBeUndefined();
+    const [one, worse] = [an({}), an({ worst: 'critical' })];
+    expect(newAmong([], [one])).toEqual([one]);
+    expect(newAmong([one], [one])).toEqual([]);
+    expect(newAmong([one], [worse])).toEqual([worse]);
+    expect(newAmong([], [an({ state: 'shelved' })])).toEqual([]);
   });
   it('are acted upon once, with the note, and are then what the server says', async () => {
     server.routes[CURRENT] = { json: { alarms: [an({})] } };

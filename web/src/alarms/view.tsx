@@ -4,8 +4,9 @@ import { mayAct } from '../access/model';
 import { Signature } from '../commands/signature';
 import { STATUS } from '../design/status';
 import { numberText } from '../run/dictionary';
-import { dictionary, pastRange, runNow } from '../run/shown';
+import { dictionary, pastRange, runNow, signalOfRun } from '../run/shown';
 import { duration, fromEntry } from '../run/time';
+import { nextSound, sound } from '../sound/model';
 import {
   acknowledgeAll,
   act,
@@ -17,20 +18,78 @@ import {
   note,
   problem,
   shelveFor,
-  sound,
   toAcknowledge,
-  toggleSound,
+  wantsLook,
 } from './model';
+import { grouped, worstOf } from './causes';
+import type { Group } from './causes';
 import type { AlarmState } from './model';
 import './style.css';
 
+const packetOf = (channel: string): string | undefined => dictionary.value?.pick([channel])?.packet || undefined;
+
 const SHELVES = ['60', '300', '900', '3600'];
 
-function Row({ alarm, entry_sclk }: { alarm: AlarmState; entry_sclk: number }) {
+const opened = signalOfRun<ReadonlySet<string>>(new Set());
+
+function toggle(key: string): void {
+  const next = new Set(opened.value);
+  if (!next.delete(key)) next.add(key);
+  opened.value = next;
+}
+
+/** Several alarms as one line, which opens. */
+function GroupRow({ group, entry_sclk }: { group: Group; entry_sclk: number }) {
+  const { key, alarms: all } = group;
+  const worst = worstOf(group);
+  const look = STATUS[lookOf(worst)];
+  const waiting = all.filter(wantsLook).length;
+  const isOpen = opened.value.has(key);
+  return (
+    <>
+      <tr data-testid="alarm-group" data-state={waiting > 0 ? 'unacknowledged' : 'acknowledged'}>
+        <td class={`status-${look.token}`}>
+          <span aria-hidden="true">{look.shape}</span> {worst.severity}
+        </td>
+        <td colSpan={waiting > 0 && mayAct() ? 1 : 2}>
+          <button type="button" class="alarm-opens" aria-expanded={isOpen} onClick={() => toggle(key)}>
+            <span aria-hidden="true">{isOpen ? '▾' : '▸'}</span> {group.words}
+          </button>
+        </td>
+        {waiting > 0 && mayAct() && (
+          <td>
+            <button
+              type="button"
+              disabled={acting.value !== undefined}
+              aria-label={`acknowledge ${group.words}`}
+              onClick={() => void acknowledgeAll(all)}
+            >
+              acknowledge {waiting}
+            </button>
+          </td>
+        )}
+        <td class="alarm-state" colSpan={4}>
+          {group.cause ? group.cause.reason : waiting > 0 ? `${waiting} to acknowledge` : 'acknowledged'}
+        </td>
+      </tr>
+      {isOpen && all.map((alarm) => <Row key={alarm.name} alarm={alarm} entry_sclk={entry_sclk} inGroup />)}
+    </>
+  );
+}
+
+/** What the menu of an alarm is about. */
+const KINDS: Record<string, string> = { limit: 'channel', staleness: 'packet', link: 'link' };
+
+function Row({ alarm, entry_sclk, inGroup = false }: { alarm: AlarmState; entry_sclk: number; inGroup?: boolean }) {
   const look = STATUS[lookOf(alarm)];
   const unit = dictionary.value?.pick([alarm.name])?.unit ?? '';
   return (
-    <tr data-alarm={alarm.name} data-state={alarm.state}>
+    <tr
+      class={inGroup ? 'in-group' : ''}
+      data-alarm={alarm.name}
+      data-state={alarm.state}
+      data-menu={`${KINDS[alarm.kind] ?? alarm.kind} ${alarm.name}`}
+    >
       <td class={`status-${look.token}`}>
         <span aria-hidden="true">{look.shape}</span> {alarm.severity === 'none' ? `was ${alarm.worst}` : alarm.severity}
       </td>
@@ -113,8 +172,8 @@ export function Alarms() {
           </select>
         </label>
         <Signature />
-        <button type="button" aria-pressed={sound.value} data-testid="alarm-sound" onClick={toggleSound}>
-          {sound.value ? '♪ sound on' : '♪ sound off'}
+        <button type="button" aria-pressed={sound.value !== 'off'} data-testid="alarm-sound" onClick={nextSound}>
+          ♪ call-outs: {sound.value}
         </button>
         {mayAct() && toAcknowledge.value.length > 1 && (
           <button
@@ -156,9 +215,13 @@ export function Alarms() {
               </tr>
             </thead>
             <tbody>
-              {listed.value.map((alarm) => (
-                <Row key={alarm.name} alarm={alarm} entry_sclk={run.entrySclk} />
-              ))}
+              {grouped(listed.value, packetOf, run.entrySclk).map((group) =>
+                group.words === undefined ? (
+                  <Row key={group.key} alarm={group.alarms[0] as AlarmState} entry_sclk={run.entrySclk} />
+                ) : (
+                  <GroupRow key={group.key} group={group} entry_sclk={run.entrySclk} />
+                ),
+              )}
             </tbody>
           </table>
         )}

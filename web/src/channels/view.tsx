@@ -20,7 +20,7 @@ function Row({ channel, place }: { channel: DictionaryChannel; place: number }) 
   whenDue(place);
   const row = channelRow(shownRun(), channel, context.peek(), cutoff.value, isLost.value);
   return (
-    <tr class={`look-${row.look}`} data-testid={`channel-${row.name}`}>
+    <tr class={`look-${row.look}`} data-testid={`channel-${row.name}`} data-menu={`channel ${row.name}`}>
       <td title={STATUS[row.look].word}>
         <span class="shape" role="img" aria-label={STATUS[row.look].word}>
           {STATUS[row.look].shape}

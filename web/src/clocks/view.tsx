@@ -11,8 +11,10 @@ import type { LinkLine } from './model';
 import { access } from '../access/model';
 import { Who } from '../access/view';
 import { severitiesNow, toAcknowledge } from '../alarms/model';
+import { openMenu, openedMenu } from '../menu/model';
 import { focusPanel } from '../shortcuts/model';
 import { Lasting } from '../situation/view';
+import { sound } from '../sound/model';
 import './style.css';
 
 function Link({ line, testId }: { line: LinkLine; testId: string }) {
@@ -127,6 +129,18 @@ export function Header() {
         />
         <Who />
       </div>
+      <button
+        type="button"
+        class="quiet"
+        data-testid="display-menu"
+        aria-label="this display: link, sound, layouts"
+        aria-haspopup="menu"
+        aria-expanded={openedMenu.value?.kind === 'display'}
+        title="this display: link, sound, layouts"
+        onClick={() => openMenu('display')}
+      >
+        {sound.value === 'off' ? '⋮' : '♪'}
+      </button>
     </header>
   );
 }

@@ -437,7 +437,7 @@ function Picture({ choose }: { choose: ComponentChildren }) {
         />
         {h !== undefined && (
           <dl class={`descent-now ${stale ? 'stale' : ''}`} title={`${altitude?.text ?? ''}; ${speed?.text ?? ''}`}>
-            <div>
+            <div data-menu={`channel ${altitude?.name}`}>
               <dt>high</dt>
               <dd>
                 <output data-testid="altitude">
@@ -446,7 +446,7 @@ function Picture({ choose }: { choose: ComponentChildren }) {
                 {inKm ? 'km' : 'm'}
               </dd>
             </div>
-            <div>
+            <div data-menu={`channel ${speed?.name}`}>
               <dt>fast</dt>
               <dd>
                 <output data-testid="speed">

@@ -7,13 +7,20 @@ interface Properties {
   name: string;
   title: ComponentChildren;
   extra?: ComponentChildren;
+  /** What the menu of its head is about; left out: the panel. */
+  head?: string;
   children: ComponentChildren;
 }
 
-export function Panel({ name, title, extra, children }: Properties) {
+export function Panel({ name, title, extra, head, children }: Properties) {
   return (
-    <section class={`panel panel-${name}`} data-testid={`panel-${name}`} aria-label={name}>
-      <header class="panel-head">
+    <section
+      class={`panel panel-${name}`}
+      data-testid={`panel-${name}`}
+      data-panel={name.startsWith('plot-') ? 'plots' : name}
+      aria-label={name}
+    >
+      <header class="panel-head" data-menu={head ?? `panel ${name}`}>
         <h2>{title}</h2>
         <div class="panel-extra">{extra}</div>
         <ModeMark />

@@ -65,7 +65,13 @@ export function Events() {
         {lines.map((line) => {
           const source = sourceWords(line);
           return (
-            <li key={line.key} class={`event level-${line.level}`} data-event={line.name}>
+            <li
+              key={line.key}
+              class={`event level-${line.level}`}
+              data-event={line.name}
+              data-menu={`timepoint ${line.name}`}
+              data-at={line.e_s}
+            >
               <time>{fromEntry(line.e_s, { tenths: true })}</time>
               <span class="shape" title={line.explanation ? 'explanation' : levelWords(line.level)}>
                 {levelShape(line.level)}

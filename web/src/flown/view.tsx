@@ -73,7 +73,7 @@ export function Flown() {
               {inOrder(of.timepoints, order.value)
                 .map(flownRow)
                 .map((row) => (
-                  <tr key={row.name} data-flown={row.name}>
+                  <tr key={row.name} data-flown={row.name} data-menu={`timepoint ${row.name}`}>
                     <td>{row.name}</td>
                     <td class="number">{row.planned}</td>
                     <td class="number">{row.predicted}</td>
@@ -106,7 +106,7 @@ export function Flown() {
               </thead>
               <tbody>
                 {of.events.map(flownEvent).map((row) => (
-                  <tr key={row.name} data-flown-event={row.name}>
+                  <tr key={row.name} data-flown-event={row.name} data-menu={`timepoint ${row.name}`}>
                     <td>{row.name}</td>
                     <td class="number">{row.predicted}</td>
                     <td class="number">{row.uhf}</td>

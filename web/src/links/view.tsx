@@ -18,7 +18,7 @@ function Row({ view }: { view: LinkView }) {
   const { counters, judged } = view;
   const kept = counters && framesKept(counters);
   return (
-    <tr data-testid={`link-row-${view.link}`} data-state={view.state}>
+    <tr data-testid={`link-row-${view.link}`} data-state={view.state} data-menu={`link ${view.link}`}>
       <td>
         <b>
           <span class={`status-${look.token}`} aria-hidden="true">

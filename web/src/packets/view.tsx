@@ -7,7 +7,7 @@ import type { Unit } from '../gen/aeolis/v1/items_pb';
 import type { PacketList, PacketRow } from '../gen/aeolis/v1/run_pb';
 import { linkTitle } from '../links/model';
 import { ask } from '../run/connection';
-import { cutoff, notify, pastRange, replay, runNow, signalOfRun, store, withRecording } from '../run/shown';
+import { cutoff, dictionary, notify, pastRange, replay, runNow, signalOfRun, store, withRecording } from '../run/shown';
 import type { RunStore } from '../run/store';
 import { fromEntry } from '../run/time';
 import { Mark } from '../verdicts/mark';
@@ -23,6 +23,7 @@ import {
   placeWords,
 } from './model';
 import type { Rate } from './model';
+import { wish } from './open';
 import './style.css';
 
 const SHOWN = 100;
@@ -71,6 +72,25 @@ async function show(line: Line, lines: Line[]): Promise<void> {
   if (current.value !== line.fact.unit) return;
   opened.value = row;
   lit.value = undefined;
+}
+
+/** Shows what was asked for from elsewhere. */
+function take({ name, row, field }: NonNullable<typeof wish.value>): void {
+  const run = store.value;
+  wish.value = undefined;
+  opened.value = row;
+  if (!row?.unit || !run) {
+    wanted.value = name;
+    held.value = undefined;
+    return;
+  }
+  current.value = row.unit.unit;
+  held.value = { run: run.id, lines: [{ fact: row.unit, seq: 0, row }] };
+  const at = row.fields.findIndex((each) => each.name === field);
+  lit.value = at < 0 ? undefined : { field: at };
+  requestAnimationFrame(() =>
+    document.querySelectorAll('[data-testid="packet-fields"] tr')[at]?.scrollIntoView({ block: 'nearest' }),
+  );
 }
 
 function close(): void {
@@ -154,7 +174,11 @@ function Streams({ whole }: { whole: boolean }) {
         </thead>
         <tbody>
           {(run ? packetStreams(run, !whole) : []).map((row) => (
-            <tr key={`${row.apid} ${row.name}`} class={wanted.value === row.name ? 'shown' : ''}>
+            <tr
+              key={`${row.apid} ${row.name}`}
+              class={wanted.value === row.name ? 'shown' : ''}
+              data-menu={`packet ${row.name}`}
+            >
               <td class="number">0x{row.apid.toString(16).padStart(3, '0')}</td>
               <td>
                 <button
@@ -303,6 +327,7 @@ function Contents({ packet }: { packet: PacketRow }) {
                 key={index}
                 class={fields.includes(index) ? 'lit' : ''}
                 data-field={field.name}
+                data-menu={dictionary.value?.pick([field.name]) && `channel ${field.name}`}
                 title={placeWords(field)}
                 onMouseEnter={() => (lit.value = { field: index })}
               >
@@ -391,6 +416,10 @@ export function Packets() {
       current = false;
     };
   }, [past, name, begin]);
+  const wished = wish.value;
+  useEffect(() => {
+    if (wished) take(wished);
+  }, [wished]);
   const run = runNow();
   if (!run) return null;
   if (moving)

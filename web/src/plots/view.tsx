@@ -16,15 +16,15 @@ import { staleWords } from '../channels/model';
 import { cursor } from '../run/cursor';
 import { inWords, numberText } from '../run/dictionary';
 import { isWorst, limitsOver } from '../run/limits';
-import { namedChannels } from '../run/address';
 import { isLost } from '../run/connection';
-import { cutoff, dictionary, shownRun, tick } from '../run/shown';
+import { cutoff, dictionary, plots, shownRun, tick } from '../run/shown';
 import type { Series } from '../run/series';
 import { fromEntry } from '../run/time';
 import { whoseAt } from '../run/whose';
 import { outages, shortReason } from '../timeline/model';
 import { plotSpan } from '../run/window';
 import { align, gapOf, readingAt } from './model';
+import { drawOver, extremes, overVersions } from './over';
 import type { Aligned } from './model';
 import './style.css';
 
@@ -33,6 +33,8 @@ interface Properties {
   channel: DictionaryChannel;
   unit: string;
   per: number;
+  /** Further channels, drawn over it. */
+  over?: readonly DictionaryChannel[];
   /** Of the reading; left out: those that fit the value. */
   digits?: number | undefined;
 }
@@ -43,7 +45,7 @@ const RIGHT_PX = 20;
 /** The room for labels of time. The plot's own box still has its former size while ticks are chosen. */
 const wideOf = (plot: uPlot): number => plot.width - Y_AXIS_PX - RIGHT_PX;
 
-function options(width: number, height: number, channel: DictionaryChannel, per: number): uPlot.Options {
+function options(width: number, height: number, { channel, per, over }: Properties): uPlot.Options {
   const colours = palette();
   const axis = {
     stroke: colours.dim,
@@ -87,6 +89,7 @@ function options(width: number, height: number, channel: DictionaryChannel, per:
     ],
     hooks: {
       drawClear: [(plot) => shadeSilence(plot), (plot) => alarmBands(plot, channel, per)],
+      draw: [(plot) => drawOver(plot, over ?? [], channel.unit, per)],
     },
   };
 }
@@ -199,7 +202,8 @@ function alarmBands(plot: uPlot, channel: DictionaryChannel, per: number): void 
   ctx.restore();
 }
 
-function Plot({ title, channel, unit, per, digits }: Properties) {
+function Plot(properties: Properties) {
+  const { title, channel, unit, per, digits, over = [] } = properties;
   const box = useRef<HTMLDivElement>(null);
   const mark = useRef<HTMLElement>(null);
   const drawn = useRef<uPlot | undefined>(undefined);
@@ -228,10 +232,10 @@ function Plot({ title, channel, unit, per, digits }: Properties) {
       const recorded = run?.recorded.get(channel.id);
       const live = run?.live.get(channel.id);
       const span = plotSpan(run);
-      const newShape = `${palette().name} ${channel.id}`;
+      const newShape = `${palette().name} ${channel.id} ${over.map(({ id }) => id).join()}`;
       const silences = run?.links.get('uhf_live') ?? []; // a present silence grows with the clock, without new samples
       const silent = silences.at(-1)?.fact.up === false ? run?.seenSclk.toFixed(0) : '';
-      const key = `${run?.id} ${silences.length} ${silent} ${recorded?.version} ${live?.version} ${span.from.toFixed(1)} ${span.to.toFixed(1)} ${cutoff.value} ${width} ${height} ${newShape}`;
+      const key = `${run?.id} ${silences.length} ${silent} ${recorded?.version} ${live?.version} ${span.from.toFixed(1)} ${span.to.toFixed(1)} ${cutoff.value} ${width} ${height} ${newShape} ${overVersions(run, over)}`;
       if (key === shown && traces[0] === recorded && traces[1] === live)
         return cursor.peek() === placed ? undefined : placeCursor;
       shown = key;
@@ -240,7 +244,7 @@ function Plot({ title, channel, unit, per, digits }: Properties) {
         if (!plot || newShape !== shape) {
           plot?.destroy();
           shape = newShape;
-          plot = drawn.current = new uPlot(options(width, height, channel, per), [[], [], []], element);
+          plot = drawn.current = new uPlot(options(width, height, properties), [[], [], []], element);
         } else if (plot.width !== width || plot.height !== height) {
           plot.setSize({ width, height });
         }
@@ -263,7 +267,10 @@ function Plot({ title, channel, unit, per, digits }: Properties) {
         plot.batch(() => {
           plot?.setData(data as uPlot.AlignedData, false);
           plot?.setScale('x', { min: span.from, max: span.to });
-          const [low, high] = bounds(data);
+          const [low, high] = bounds(
+            data,
+            run ? extremes(run, over, channel.unit, span).map((each) => each / per) : [],
+          );
           plot?.setScale('y', { min: low, max: high });
         });
         placeCursor();
@@ -273,7 +280,7 @@ function Plot({ title, channel, unit, per, digits }: Properties) {
       stop();
       plot?.destroy();
     };
-  }, [channel.id, per]);
+  }, [channel.id, per, over.length]);
 
   void tick.value;
   const run = shownRun();
@@ -297,7 +304,8 @@ function Plot({ title, channel, unit, per, digits }: Properties) {
   return (
     <Panel
       name={`plot-${name}`}
-      title={title}
+      head={`channel ${channel.name}`}
+      title={[title, ...over.map((each) => each.name)].join(', ')}
       extra={
         <span class={`reading ${at !== undefined ? 'at-cursor' : stale ? 'stale' : ''}`}>
           {stale && <span data-testid={`stale-${name}`}>{stale} </span>}
@@ -363,9 +371,9 @@ function holesOf([x, silent, lit]: Aligned): number {
   return holes;
 }
 
-function bounds(data: readonly (readonly (number | null | undefined)[])[]): [number, number] {
-  let low = Infinity;
-  let high = -Infinity;
+function bounds(data: readonly (readonly (number | null | undefined)[])[], also: number[]): [number, number] {
+  let low = Math.min(Infinity, ...also);
+  let high = Math.max(-Infinity, ...also);
   for (const values of data.slice(1)) {
     for (const value of values) {
       if (value === null || value === undefined) continue;
@@ -378,24 +386,26 @@ function bounds(data: readonly (readonly (number | null | undefined)[])[]): [num
   return [low - margin, high + margin];
 }
 
-/** Channels named at ?panel=plots&channels=one,two. */
-const NAMED = namedChannels();
-const MOST_NAMED = 16; // chosen: more are not legible
-
 export function Plots() {
   const words = dictionary.value;
   if (!words) return null;
-  if (NAMED.length > 0) {
+  if (plots.value) {
     return (
-      <div class="plots plots-named">
-        {NAMED.slice(0, MOST_NAMED).map((name) => {
-          const channel = words.pick([name]);
-          return channel ? (
-            <Plot key={name} channel={channel} title={name} unit={channel.unit} per={1} />
-          ) : (
-            <p class="none" key={name}>
-              no channel {name} in the dictionary
-            </p>
+      <div class="plots plots-named" data-panel="plots" tabIndex={0} role="region" aria-label="plots">
+        {plots.value.map((names) => {
+          const [channel, ...over] = names.flatMap((name) => words.pick([name]) ?? []);
+          if (!channel) return null;
+          const pick = LAYOUT.plots.find((each) => (each.channel as readonly string[]).includes(channel.name));
+          return (
+            <Plot
+              key={names.join()}
+              channel={channel}
+              over={over}
+              title={pick?.title ?? channel.name}
+              unit={pick?.unit ?? channel.unit}
+              per={pick?.per ?? 1}
+              digits={pick?.digits}
+            />
           );
         })}
       </div>
@@ -403,7 +413,7 @@ export function Plots() {
   }
   const taken = new Set<number>();
   return (
-    <div class="plots">
+    <div class="plots" data-panel="plots">
       {LAYOUT.plots.map((pick) => {
         const known = words.pick(pick.channel);
         const channel =

@@ -41,7 +41,7 @@ export function giveUpReads(): void {
 
 /** Sends a request. `within_ms` of Infinity waits without a limit. */
 export async function call<T>(
-  method: 'GET' | 'POST' | 'PATCH' | 'DELETE',
+  method: 'GET' | 'POST' | 'PUT' | 'PATCH' | 'DELETE',
   path: string,
   body?: object,
   within_ms = ANSWER_WITHIN_MS,

@@ -48,7 +48,7 @@ async function refine(): Promise<void> {
 export function refineWhatIsLookedAt(): void {
   effect(() => {
     const span = zoomedTo(); // live data and a whole range already have the right resolution
-    wanted = span ? `${store.value?.id} ${span.from} ${span.to} ${asHeard.value}` : '';
+    wanted = span ? `${store.value?.id} ${span.from} ${span.to} ${asHeard.value} ${plottedChannels().join()}` : '';
     if (span) untracked(() => void refine());
     else done = wanted; // a later view of the same stretch asks again
   });

@@ -5,7 +5,7 @@ import type { RunState } from '../gen/aeolis/v1/run_pb';
 import { LAYOUT } from '../layout';
 import { columnsOf, readSeriesList } from '../stream/series_answer';
 import type { Column } from '../stream/messages';
-import { namedChannels, wantedRun } from './address';
+import { opened } from './address';
 import { askRuns, isGoing } from './start';
 
 const POINTS = 1000; // chosen: per channel
@@ -51,7 +51,7 @@ export function askFirst(): void {
   asked = {
     runs,
     look: runs.then(
-      (all) => firstLook(all, wantedRun(), namedChannels()),
+      (all) => firstLook(all, opened.picture.run, opened.picture.plots?.flat() ?? []),
       () => undefined,
     ),
   };

@@ -12,7 +12,12 @@ export class Series {
   /** Counts changes, so that a drawing knows whether it is current. */
   version = 0;
 
-  constructor(private readonly limit = LIMIT) {}
+  constructor(private limit = LIMIT) {}
+
+  /** From now on it is drawn, and holds as much as any that is. */
+  widen(): void {
+    this.limit = LIMIT;
+  }
 
   append(sclk: Float64Array, value: Float64Array): void {
     ++this.version;

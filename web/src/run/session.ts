@@ -9,15 +9,17 @@ import { refreshAlarms } from '../alarms/model';
 import { Refused, call, giveUpReads, wordsFor } from './api';
 import { ask, giveUpCommands, inDoubt, post, sendBy, stream, takeAnswer } from './connection';
 import { Dictionary } from './dictionary';
-import { wantedRun } from './address';
+import { opened } from './address';
 import { firstAnswers } from './first_look';
 import type { FirstLook } from './first_look';
 import { isSameRun } from './same';
 import {
   asHeard,
+  asked,
   dictionary,
   notify,
   pastRange,
+  isPlotted,
   plottedChannels,
   replay,
   runs,
@@ -74,13 +76,9 @@ export async function startRehearsal(
 }
 
 export function watch(run: number): void {
-  watched.value = run;
+  [watched.value, asked.value] = [run, run];
   begun = undefined;
   backToLive();
-  const url = new URL(location.href);
-  if (run === 0) url.searchParams.delete('run');
-  else url.searchParams.set('run', String(run));
-  history.replaceState(null, '', url);
   store.value = undefined;
   timepoints.value = [];
   post({ type: 'watch', run });
@@ -161,7 +159,7 @@ function takeOtherArchive(): void {
     `The server has another archive now${run ? `: run ${run.id}, ${run.run.scenario}, which was shown here, is not in it` : ''}.`,
   );
   const url = new URL(location.href);
-  url.searchParams.delete('run');
+  for (const part of ['run', 'past', 'with', 'span', 'at']) url.searchParams.delete(part);
   history.replaceState(null, '', url);
   location.reload();
 }
@@ -179,9 +177,8 @@ function takeRun(run: RunState | undefined): void {
   } else if (watched.value === 0 && known && pastRange.value) {
     staysInThePast(known, run);
   } else if (watched.value === 0 || watched.value === Number(run.run)) {
-    const drawn = new Set(plottedChannels().map((name) => dictionary.value?.pick([name])?.id));
     inDoubt.value = false;
-    store.value = new RunStore(run, (channel) => drawn.has(channel));
+    store.value = new RunStore(run, isPlotted);
     backToLive();
   } else {
     return;
@@ -255,12 +252,21 @@ function startWorker(): void {
   sendBy(worker);
 }
 
+/** The channels whose history has many points, and the others. */
+function channelsOf(words: Dictionary): { plotted: string[]; others: string[] } {
+  const plotted = plottedChannels();
+  return {
+    plotted,
+    others: words.channels.map((channel) => channel.name).filter((name) => !plotted.includes(name)),
+  };
+}
+
 /** Loads the dictionary, chooses the current or the newest run, takes a first look at it, and connects. */
 export async function begin(): Promise<void> {
   const left = sessionStorage.getItem(LEFT);
   if (left !== null) notify(left);
   sessionStorage.removeItem(LEFT);
-  const wanted = wantedRun();
+  const wanted = opened.picture.run;
   let first: Promise<FirstLook | undefined> | undefined;
   const startFrom = () => {
     const { runs, look } = firstAnswers();
@@ -296,11 +302,9 @@ export async function begin(): Promise<void> {
     notify(
       `Run ${wanted} is not in this archive; what is shown is ${chosen === 0 ? 'the run that goes on' : chosen > 0 ? `run ${chosen}` : 'nothing'}.`,
     );
-  watched.value = chosen;
+  [watched.value, asked.value] = [chosen, chosen === wanted ? wanted : 0];
   knowing.catch((error: unknown) => notify(`the server does not say who you are: ${wordsFor(error)}`));
   const words = dictionary.value as Dictionary;
-  const plotted = plottedChannels();
-  const others = words.channels.map((channel) => channel.name).filter((name) => !plotted.includes(name));
   const lookAt = runs.value.find((run) => (chosen === 0 ? isGoing(run) : Number(run.run) === chosen));
   takeRun(lookAt);
   const looked = first?.then((look) => {
@@ -311,7 +315,13 @@ export async function begin(): Promise<void> {
   await Promise.race([looked, passed(FIRST_LOOK_MS)]);
   await known; // the answer carries the cookie by which the stream's server knows this browser
   startWorker();
-  post({ type: 'open', run: chosen, packets: Object.fromEntries(words.packets), plotted, others });
+  post({ type: 'open', run: chosen, packets: Object.fromEntries(words.packets), ...channelsOf(words) });
+  let before = plottedChannels().join();
+  effect(() => {
+    const now = plottedChannels().join();
+    if (now !== before) post({ type: 'plot', ...channelsOf(words), live: asHeard.peek() });
+    before = now;
+  });
   ask<ScenarioList>('scenarios', '/scenarios').then(
     (list) => (scenarios.value = list.scenarios),
     () => undefined,

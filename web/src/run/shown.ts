@@ -7,7 +7,7 @@ import { LAYOUT } from '../layout';
 import { modeOf } from '../mode/model';
 import type { Mode } from '../mode/model';
 import { mayAct } from '../access/model';
-import { namedChannels } from './address';
+import { opened } from './address';
 import type { Dictionary } from './dictionary';
 import type { RunStore } from './store';
 
@@ -28,6 +28,8 @@ export const runs = signal<RunState[]>([]);
 export const scenarios = signal<{ name: string; title: string }[]>([]);
 /** The requested run; 0: the current one. */
 export const watched = signal(0);
+/** The run that was asked for by its number; 0: none was, whichever is shown. */
+export const asked = signal(0);
 /** Changes five times a second if the data have changed. Numbers on the screen follow it and nothing faster. */
 export const tick = signal(0);
 /** Follows `tick` one frame later, for tables so long that they need a frame of their own. */
@@ -93,10 +95,13 @@ export function lookAtPast(range: { from: number; to: number }, recorded: boolea
   pastRange.value = range;
 }
 
+/** The plots from top to bottom, each with the channels that share it; undefined: those of the layout. */
+export const plots = signal(opened.picture.plots);
+
 /** Channels that are plotted over time; their history has more points. */
 export function plottedChannels(): string[] {
   const picks = [
-    ...namedChannels().map((name) => [name]),
+    ...(plots.value ?? []).flat().map((name) => [name]),
     ...LAYOUT.plots.map((plot) => plot.channel),
     LAYOUT.altitude,
     LAYOUT.speed,
@@ -104,3 +109,6 @@ export function plottedChannels(): string[] {
   ];
   return [...new Set(picks.map((names) => dictionary.value?.pick(names)?.name).filter((name) => name !== undefined))];
 }
+
+const drawn = computed(() => new Set(plottedChannels().map((name) => dictionary.value?.pick([name])?.id)));
+export const isPlotted = (channel: number): boolean => drawn.peek().has(channel);

@@ -323,7 +323,7 @@ export class RunStore {
     if (!series) {
       series = new Series(this.isDrawn(column.id) ? undefined : LIMIT_NOT_DRAWN);
       all.set(column.id, series);
-    }
+    } else if (this.isDrawn(column.id)) series.widen();
     return series;
   }
 

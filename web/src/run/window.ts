@@ -24,11 +24,15 @@ export function zoomedTo(): Span | undefined {
   return typeof choice.value === 'object' ? choice.value : undefined;
 }
 
-/** Keeps a stretch within a fixed range. */
-function look(from: number, to: number): void {
+/** Shows a stretch; within a fixed range it stays inside. */
+export function look(from: number, to: number): void {
   const range = fixedRange();
   if (!range) {
     choice.value = { from, to };
+    return;
+  }
+  if (from >= range.from && to <= range.to) {
+    inRange.value = { of: range, span: { from, to } };
     return;
   }
   const width = Math.min(to - from, range.to - range.from);

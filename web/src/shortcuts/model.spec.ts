@@ -7,7 +7,8 @@ import { step } from '../commands/line';
 import { useForTest } from '../run/session';
 import { lookAtPast, pastRange, withRecording } from '../run/shown';
 import { aDictionary, aStore } from '../testing/fixtures';
-import { SHORTCUTS, WORD_MS, focusPanel, helpShown, onKey, tab } from './model';
+import { tab } from '../places/model';
+import { SHORTCUTS, WORD_MS, focusPanel, helpShown, onKey } from './model';
 
 beforeEach(() => void vi.useFakeTimers({ toFake: ['setTimeout', 'clearTimeout', 'performance'] }));
 afterEach(() => {

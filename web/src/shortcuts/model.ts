@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // The keys in one table, used by both the help and the page.
 import { signal } from '@preact/signals';
+import { TABS, bringUp, closeFull, full, placeOf, toggleFull } from '../places/model';
+import type { Tab } from '../places/model';
 import { backFile, stage } from '../commands/file';
 import { back, openCommandLine, step, typeIntoLine } from '../commands/line';
 import { changePace, togglePause } from '../rehearsal/view';
 import { toggleGuide } from '../guide/model';
 import { toggleRecording, toggleReplay } from '../replay/model';
 import { backToLive } from '../run/session';
+import { focusValue, openMenu } from '../menu/model';
+import { nextSound } from '../sound/model';
 import { dismissNotice, pastRange, store, takesCommands } from '../run/shown';
 import { closeCursor, stepCursor } from '../run/cursor';
 import { closeList, putAside, toggleList } from '../situation/model';
@@ -15,55 +19,17 @@ import { focusTones } from '../tones/view';
 import { choice, pan, zoom } from '../run/window';
 
 export const helpShown = signal(false);
-export type Tab =
-  | 'channels'
-  | 'packets'
-  | 'verdicts'
-  | 'links'
-  | 'flown'
-  | 'recorded'
-  | 'rehearsal'
-  | 'campaigns'
-  | 'alarms'
-  | 'notes'
-  | 'users'
-  | 'vehicle';
-export const tab = signal<Tab>('channels');
-export const TABS: { id: Tab; title: string; key: string; words: string }[] = [
-  { id: 'channels', title: 'Channels', key: 'c', words: 'channels: values, ages, limits' },
-  { id: 'vehicle', title: 'Vehicle', key: 'b', words: 'the moving picture of the vehicle' },
-  { id: 'alarms', title: 'Alarms', key: 'a', words: 'alarms: acknowledge, shelve, reset' },
-  { id: 'notes', title: 'Notes', key: 'n', words: 'shift log: write, search' },
-  { id: 'packets', title: 'Packets', key: 'k', words: 'packets: octets and fields' },
-  { id: 'verdicts', title: 'Verdicts', key: 'v', words: 'verdicts: live against recorded' },
-  { id: 'links', title: 'Links', key: 'l', words: 'links: states, silences, counters' },
-  {
-    id: 'flown',
-    title: 'As flown',
-    key: 'f',
-    words: 'as flown: every timepoint and event by plan, prediction at entry, tone, UHF and recording',
-  },
-  { id: 'recorded', title: 'Range', key: 'r', words: 'a recorded range, in every panel' },
-  { id: 'rehearsal', title: 'Runs', key: 's', words: 'runs, and starting a rehearsal' },
-  {
-    id: 'campaigns',
-    title: 'Campaigns',
-    key: 'd',
-    words: 'campaigns of dispersed landings: start, watch the ellipse fill',
-  },
-  { id: 'users', title: 'Users', key: 'u', words: 'users, tokens, audit: for administrators' },
-];
-
 /**
  * Opens a panel and focuses its first control: as soon as the panel is there, since some are loaded when first opened;
  * not when the focus has gone elsewhere meanwhile.
  */
 export function focusPanel(which: Tab): void {
-  const panel = '[data-testid="panel-data"]';
   const before = document.activeElement;
-  tab.value = which;
+  bringUp(which);
+  const place = placeOf(which);
+  const panel = `[data-testid="panel-${place === 'data' && ['data', undefined].includes(full.value) ? 'data' : which}"]`;
   const focusFirst = () => {
-    if (tab.value !== which || document.activeElement !== before) return;
+    if (placeOf(which) !== place || document.activeElement !== before) return;
     const first = document.querySelector<HTMLElement>(`${panel} .table-box :is(input, select, button, [tabindex])`);
     if (first) {
       first.focus();
@@ -71,6 +37,14 @@ export function focusPanel(which: Tab): void {
     } else if (document.querySelector(`${panel} [data-loading]`)) requestAnimationFrame(focusFirst);
   };
   requestAnimationFrame(focusFirst);
+}
+
+/** Gives the panel in focus, else that under the mouse, the room of all pictures; or takes it back. */
+function zoomPanel(): void {
+  if (closeFull()) return;
+  const under = (selector: string) => document.querySelector<HTMLElement>(selector)?.dataset.panel;
+  const panel = under('.panel:focus-within') ?? under('.panel:hover') ?? 'plots';
+  if (document.querySelector('.console.alone') === null) toggleFull(panel);
 }
 
 function toggleTheme(): void {
@@ -131,7 +105,15 @@ export const SHORTCUTS: Shortcut[] = [
   },
   { keys: [','], shown: ',', words: 'timepoint before', act: () => stepTimepoint(-1) },
   { keys: ['h'], shown: 'h', words: 'anchors: parent, offset, what defined each', act: toggleAnchors },
-  { keys: ['o'], shown: 'o', words: 'tones: ← → choose a symbol, its evidence and spectrum', act: focusTones },
+  {
+    keys: ['o'],
+    shown: 'o',
+    words: 'tones: ← → choose a symbol, its evidence and spectrum',
+    act: () => {
+      bringUp('tones');
+      requestAnimationFrame(focusTones);
+    },
+  },
   {
     keys: ['e'],
     shown: 'e',
@@ -139,6 +121,11 @@ export const SHORTCUTS: Shortcut[] = [
     act: () => document.querySelector<HTMLElement>('[data-testid="event-search"]')?.focus(),
   },
   ...TABS.map(({ id, key, words }) => ({ keys: [key], shown: key, words, act: () => focusPanel(id) })),
+  { keys: ['i'], shown: 'i', words: 'values: ↑ ↓ ← → from one to the next, Enter opens its menu', act: focusValue },
+  { keys: ['z'], shown: 'z', words: 'full size: the panel in focus, or under the mouse; again: back', act: zoomPanel },
+  { keys: ['j'], shown: 'j', words: 'this display: link, sound, layouts', act: () => openMenu('display') },
+  { keys: ['q'], shown: 'q', words: 'copy a link to what is shown', act: () => openMenu('link') },
+  { keys: ['0'], shown: '0', words: 'call-outs: off, tones, words', act: nextSound },
   { keys: ['g'], shown: 'g', words: 'the guide for a first landing', act: toggleGuide },
   { keys: ['t'], shown: 't', words: 'dark or light', act: toggleTheme },
   { keys: ['?'], shown: '?', words: 'these keys', act: () => (helpShown.value = !helpShown.value) },
@@ -149,7 +136,7 @@ export const SHORTCUTS: Shortcut[] = [
     act: () => {
       if (takeBackArmed()) return;
       if (helpShown.value) helpShown.value = false;
-      else if (closeList() || closeCursor() || closeDetail()) return;
+      else if (closeList() || closeCursor() || closeDetail() || closeFull()) return;
       else if (step.value !== 'type' && takesCommands()) back();
       else if (pastRange.value) backToLive();
       else dismissNotice();

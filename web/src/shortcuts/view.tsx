@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-import { SHORTCUTS, TABS, helpShown } from './model';
+import { TABS } from '../places/model';
+import { SHORTCUTS, helpShown } from './model';
 import './style.css';
 
 const PANELS = [

@@ -85,6 +85,8 @@ export type QueueAction = 'release' | 'hold' | 'cancel' | 'approve';
 
 export type ToWorker =
   | { type: 'open'; run: number; packets: Record<number, number[]>; plotted: string[]; others: string[] }
+  // other channels are plotted from now on; live: as for refresh_history
+  | { type: 'plot'; plotted: string[]; others: string[]; live: boolean }
   | { type: 'watch'; run: number }
   | { type: 'reconnect' } // at once, after a log-in
   // live: only live samples, as densely as if there were no others

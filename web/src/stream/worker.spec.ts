@@ -139,3 +139,19 @@ it('takes samples up where their subscription is welcomed: what comes before lac
   expect(through()).toBe(5);
   expect(socket?.sent, 'nothing was missing').toBe(2);
 });
+
+it('fetches the history of a channel that is plotted from now on, of live samples too where a past as heard is shown', () => {
+  const tell = (data: ToWorker) =>
+    (self as unknown as { onmessage: (event: { data: ToWorker }) => void }).onmessage({ data });
+  const asked = () =>
+    vi.mocked(fetch).mock.calls.flatMap(([path]) => /\/runs\/1\/channels\?(\S+)/.exec(String(path))?.[1] ?? []);
+  sockets[0]?.opens();
+  sockets[0]?.welcome('running');
+  tell({ type: 'plot', plotted: ['mach'], others: [], live: false });
+  expect(asked()).toEqual(['names=mach&points=6000&format=protobuf']);
+  tell({ type: 'plot', plotted: ['mach', 'bank_deg'], others: [], live: true });
+  expect(asked().slice(1)).toEqual([
+    'names=bank_deg&points=6000&format=protobuf',
+    'names=bank_deg&points=6000&format=protobuf&source=realtime',
+  ]);
+});

@@ -292,17 +292,21 @@ function goOnWithSamples(): void {
 function fetchDueHistory(): void {
   if (!historyDue) return;
   historyDue = false;
-  void fetchHistory();
+  void fetchHistory(questions(true), false);
 }
 
-async function fetchHistory(all = true, live = false): Promise<void> {
+/** Channels, and the points of each. */
+type Questions = readonly (readonly [names: readonly string[], points: number])[];
+const questions = (all: boolean): Questions => [
+  [plotted, PLOTTED_POINTS],
+  [all ? others : [], OTHER_POINTS],
+];
+
+async function fetchHistory(of: Questions, live: boolean): Promise<void> {
   const run = currentRun;
   if (run === 0) return;
   try {
-    for (const [names, points] of [
-      [plotted, PLOTTED_POINTS],
-      [all ? others : [], OTHER_POINTS],
-    ] as const) {
+    for (const [names, points] of of) {
       for (let i = 0; i < names.length; i += CHANNELS_A_QUESTION) {
         const some = names.slice(i, i + CHANNELS_A_QUESTION);
         const columns = columnsOf(
@@ -366,6 +370,14 @@ self.onmessage = (event: MessageEvent<ToWorker>) => {
       connect();
       setInterval(() => void watchSilence(), LOOK_EVERY_MS);
       break;
+    case 'plot': {
+      const before = new Set(plotted);
+      ({ plotted, others } = message);
+      const added = plotted.filter((name) => !before.has(name));
+      void fetchHistory([[added, PLOTTED_POINTS]], false);
+      if (message.live) void fetchHistory([[added, PLOTTED_POINTS]], true);
+      break;
+    }
     case 'watch':
       wantedRun = message.run;
       exact = false;
@@ -379,7 +391,7 @@ self.onmessage = (event: MessageEvent<ToWorker>) => {
       }
       break;
     case 'refresh_history':
-      void fetchHistory(message.all, message.live);
+      void fetchHistory(questions(message.all), message.live);
       break;
     case 'command':
       if (

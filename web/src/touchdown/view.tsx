@@ -5,7 +5,7 @@ import { toggleReplay } from '../replay/model';
 import { isLost } from '../run/connection';
 import { cutoff, dictionary, pastRange, runNow, timepoints } from '../run/shown';
 import { focusPanel } from '../shortcuts/model';
-import type { Tab } from '../shortcuts/model';
+import type { Tab } from '../places/model';
 import { fromEntry } from '../run/time';
 import { Path } from '../vehicle/path';
 import { missOf, restOf, resultsOf, touchdownOf } from './model';

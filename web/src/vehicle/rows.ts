@@ -2,6 +2,7 @@
 // The facts of the picture as text: what it shows is never only there. Each with the age of an old value.
 import { staleWords } from '../channels/model';
 import { LAYOUT } from '../layout';
+import type { Dictionary } from '../run/dictionary';
 import { inWords } from '../run/dictionary';
 import { duration, fromEntry } from '../run/time';
 import { heardOf, lastHeard } from '../timeline/heard';
@@ -18,6 +19,17 @@ export interface Row {
   text: string;
   /** "◌ 41 s" for a value that is old. */
   age: string | undefined;
+}
+/** The channel of a row or figure, where it is of one. */
+export function channelOf(words: Dictionary, name: string): string | undefined {
+  const names: Record<string, readonly string[]> = {
+    altitude: LAYOUT.altitude,
+    speed: LAYOUT.speed,
+    mode: LAYOUT.phase,
+    bank: VEHICLE.bank,
+    thrust: VEHICLE.thrust,
+  };
+  return words.pick(names[name] ?? [])?.name;
 }
 export interface Figure {
   name: string;

@@ -16,7 +16,7 @@ import type { FromPicture, ToPicture } from './messages';
 import { missingOf, motionOf, pathOf, sceneOf, staleOf, targetOf } from './model';
 import type { Look } from './model';
 import { Path } from './path';
-import { figuresOf, rowsOf } from './rows';
+import { channelOf, figuresOf, rowsOf } from './rows';
 import './style.css';
 
 /** Who draws: 'asking' until the worker has answered. `why`: why it is flat. */
@@ -114,6 +114,11 @@ function Flat() {
   );
 }
 
+const menuOf = (look: Look, name: string): string | undefined => {
+  const channel = channelOf(look.words, name);
+  return channel && `channel ${channel}`;
+};
+
 function Stage({ look }: { look: Look }) {
   const scene = sceneOf(look);
   const stale = staleOf(look);
@@ -132,7 +137,7 @@ function Stage({ look }: { look: Look }) {
       </ul>
       <dl class="vehicle-figures" data-testid="vehicle-figures">
         {figuresOf(look, scene.motion).map(({ name, value, unit, note, age }) => (
-          <div key={name} class={age ? 'old' : ''}>
+          <div key={name} class={age ? 'old' : ''} data-menu={menuOf(look, name)}>
             <dt>{unit === '' ? name : `${name}, ${unit}`}</dt>
             <dd>
               <output>{value}</output>
@@ -158,7 +163,7 @@ function Facts({ look }: { look: Look }) {
       <table data-testid="vehicle-rows">
         <tbody>
           {rowsOf(look, motion).map(({ name, text, age }) => (
-            <tr key={name} class={age ? 'old' : ''}>
+            <tr key={name} class={age ? 'old' : ''} data-menu={menuOf(look, name)}>
               <th scope="row">{name}</th>
               <td class="wraps">{text}</td>
               <td>{age ?? ''}</td>

@@ -38,6 +38,8 @@ export interface Line {
   words: string;
   value: string;
   holds: boolean | undefined;
+  /** What is compared, by flight's name. */
+  quantity?: string;
 }
 export interface Waiting {
   kind: 'begin' | 'waiting' | 'ended';
@@ -93,11 +95,12 @@ export function conditionLine({
   const { words, unit } = quantityWords(quantity);
   const [fact, wanted] = [YES_OR_NO[value], YES_OR_NO[bound]];
   if (comparison === '==' && fact !== undefined && wanted !== undefined)
-    return { words: `${words}: ${wanted}`, value: fact, holds };
+    return { words: `${words}: ${wanted}`, value: fact, holds, quantity };
   return {
     words: `${words} ${RELATIONS[comparison] ?? comparison} ${numberText(bound)}${unit}`,
     value: `${numberText(value)}${unit}`,
     holds,
+    quantity,
   };
 }
 

@@ -192,8 +192,8 @@ describe('waiting for', () => {
       ]);
     const watched = (sclk: number) => waitingFor(store(sclk), words, aPlan, Infinity).lines.at(-1);
     expect([watched(899), watched(859)]).toEqual([
-      { words: 'speed ≤ 405 m/s', value: '400 m/s', holds: true },
-      { words: 'speed ≤ 405 m/s', value: '400 m/s, ◌ 41 s', holds: undefined },
+      { words: 'speed ≤ 405 m/s', value: '400 m/s', holds: true, quantity: 'speed_mps' },
+      { words: 'speed ≤ 405 m/s', value: '400 m/s, ◌ 41 s', holds: undefined, quantity: 'speed_mps' },
     ]);
     const root = document.createElement('div');
     act(() => {
@@ -319,12 +319,18 @@ describe('waiting for', () => {
     expect(waitingFor(store, aDictionary, aPlan, Infinity).lines).toContainEqual({
       words: 'speed ≤ 405 m/s',
       value: '450 m/s',
+      quantity: 'speed_mps',
       holds: false,
     });
   });
   it('has a fact as yes or no', () => {
     const locked = create(ConditionSchema, { quantity: 'radar_locked', value: 0, comparison: '==', bound: 1 });
-    expect(conditionLine(locked)).toEqual({ words: 'radar locked: yes', value: 'no', holds: false });
+    expect(conditionLine(locked)).toEqual({
+      words: 'radar locked: yes',
+      value: 'no',
+      holds: false,
+      quantity: 'radar_locked',
+    });
   });
   it('takes no other decision’s conditions for its own', () => {
     const condition = create(ConditionSchema, {

@@ -5,6 +5,7 @@ import { chosen, lineFocused, openCommandLine, previewNow, step } from '../comma
 import { mayRehearse, whyNotRehearse } from '../access/model';
 import { EndRun } from '../rehearsal/view';
 import { isLost } from '../run/connection';
+import type { Dictionary } from '../run/dictionary';
 import { cutoff, dictionary, modeNow, runNow, takesCommands, timepoints } from '../run/shown';
 import { ModeMark } from '../mode/view';
 import { focusPanel } from '../shortcuts/model';
@@ -41,6 +42,10 @@ function LineFor({ command, run }: { command: string; run: number }) {
   );
 }
 
+/** The menu of a condition: of the channel that it is about, if it has the name of one. */
+const menuOf = (words: Dictionary, quantity = ''): string | undefined =>
+  words.pick([quantity]) && `channel ${quantity}`;
+
 export function WaitingFor() {
   const run = runNow();
   const words = dictionary.value;
@@ -69,6 +74,7 @@ export function WaitingFor() {
     <section
       class={`panel waiting waiting-${waiting.kind} ${waiting.late || waiting.type !== undefined ? 'waiting-said' : ''}`}
       data-testid="waiting"
+      data-panel="waiting"
     >
       <ModeMark />
       <h2 aria-live="polite" data-room={waiting.title}>
@@ -79,7 +85,7 @@ export function WaitingFor() {
         {waiting.lines.map((line) => {
           const look = held(isOld ? undefined : line.holds);
           return (
-            <li key={line.words} class={look}>
+            <li key={line.words} class={look} data-menu={menuOf(words, line.quantity)}>
               <span title={STATUS[look].word}>{STATUS[look].shape}</span>
               <span>{line.words}</span>
               <output>{line.value}</output>
