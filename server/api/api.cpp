@@ -144,6 +144,7 @@ std::span<const Api::Route> Api::routes() {
         {"POST", "/api/v1/runs/{run}/notes", Right::command, &Api::post_note, Query::none, "note"},
         {"GET", "/api/v1/runs/{run}", Right::watch, &Api::run_question, Query::own},
         {"GET", "/api/v1/runs/{run}/samples", Right::watch, &Api::export_samples, Query::own},
+        {"GET", "/api/v1/runs/{run}/prediction", Right::watch, &Api::prediction, Query::own},
         {"GET", "/api/v1/runs/{run}/{question}", Right::watch, &Api::run_question, Query::own},
         {"GET", "/api/v1/scenarios", Right::watch, &Api::list_scenarios},
         {"GET", "/api/v1/dictionary", Right::watch, &Api::dictionary},
