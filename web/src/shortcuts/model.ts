@@ -12,6 +12,7 @@ import { closeCursor, stepCursor } from '../run/cursor';
 import { closeList, putAside, toggleList } from '../situation/model';
 import { closeDetail, stepTimepoint, toggleAnchors } from '../timeline/view';
 import { focusTones } from '../tones/view';
+import { toggleDifference } from '../plots/view';
 import { choice, pan, zoom } from '../run/window';
 
 export const helpShown = signal(false);
@@ -123,6 +124,7 @@ export const SHORTCUTS: Shortcut[] = [
     act: () => stepCursor(-1),
   },
   { keys: ['Shift+ArrowRight'], shown: 'Shift →', words: 'cursor: later', act: () => stepCursor(1) },
+  { keys: ['j'], shown: 'j', words: 'plots: observed less predicted; again: as observed', act: toggleDifference },
   {
     keys: ['.'],
     shown: '.',
