@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <exception>
 #include <fmt/format.h>
 #include <limits>
 #include <utility>
@@ -196,16 +197,18 @@ Result<NominalFlight> fly_nominally(const simulation::Scenario& expected, const 
         flight.outcome = simulation::name_of(landing.landing().outcome());
         if (landing.landing().outcome() != simulation::Outcome::touchdown)
             return Error{fmt::format("the nominal flight of this scenario does not land ({})", flight.outcome)};
+        flight.windows = windows_of(predict_silences(expected, dictionary), -expected.start_before_entry_s,
+                                    expected.radio.uhf_hand_over_s);
     } catch (const CheckFailed& bug) {
         return Error{text_of_bug(bug)};
+    } catch (const std::exception& error) {
+        return Error{std::string{"the simulation ended: "} + error.what()};
     }
     flight.samples = telemetry.take_samples();
     flight.events = telemetry.take_events();
     for (const auto& firing : firings.all())
         flight.events.push_back({firing.name, true, firing.fired_sclk - flown.entry_sclk.seconds});
     std::ranges::stable_sort(flight.events, {}, &NominalFlight::Event::e_s);
-    flight.windows = windows_of(predict_silences(expected, dictionary), -expected.start_before_entry_s,
-                                expected.radio.uhf_hand_over_s);
     return flight;
 }
 

@@ -37,7 +37,6 @@ import {
 import { predicted } from '../timeline/now';
 import { align, difference, gapOf, less, readingAt } from './model';
 import type { Aligned } from './model';
-import { drawAhead, drawPredictedLine, predictedBounds, samplesAhead } from './predicted';
 import type { PredictedLine } from './predicted';
 import './style.css';
 
@@ -56,10 +55,26 @@ const RIGHT_PX = 20;
 /** The room for labels of time. The plot's own box still has its former size while ticks are chosen. */
 const wideOf = (plot: uPlot): number => plot.width - Y_AXIS_PX - RIGHT_PX;
 
+/** What draws a prediction: loaded once there is one, so that the page's first load stays small. */
+let drawing: typeof import('./predicted') | undefined;
+let isLoading = false;
+function loadDrawing(): void {
+  if (isLoading || !isPredicted()) return;
+  isLoading = true;
+  import('./predicted').then(
+    (loaded) => {
+      drawing = loaded;
+      predictedVersion.value += 1;
+    },
+    () => (isLoading = false), // the next draw asks again
+  );
+}
+
 /** What is predicted of a channel, as of the instant shown. */
 function lineOf(channel: DictionaryChannel, per: number): PredictedLine | undefined {
+  loadDrawing();
   const [run, series] = [shownRun(), predictedSeries(channel)];
-  if (!run || !series || series.length === 0) return undefined;
+  if (!run || !series || series.length === 0 || !drawing) return undefined;
   const gap_s = gapOf(channel.expectedRateHz);
   return { channel, series, entry_sclk: run.entrySclk, per, gap_s, now_e_s: nowOf() };
 }
@@ -82,8 +97,8 @@ function underlay(plot: uPlot, channel: DictionaryChannel, per: number): void {
 /** Draws what is predicted, over the grid and under the samples. */
 function drawPredicted(plot: uPlot, channel: DictionaryChannel, per: number): void {
   const line = lineOf(channel, per);
-  if (isAhead()) drawAhead(plot, nowOf());
-  if (line) drawPredictedLine(plot, line, showsDifference(channel));
+  if (isAhead()) drawing?.drawAhead(plot, nowOf());
+  if (line) drawing?.drawPredictedLine(plot, line, showsDifference(channel));
 }
 
 function options(width: number, height: number, channel: DictionaryChannel, per: number): uPlot.Options {
@@ -317,12 +332,15 @@ function Plot({ title, channel, unit, per, digits }: Properties) {
         const data =
           isDifference && line && run ? less(observed, channel, line.series, run.entrySclk, per, line.gap_s) : observed;
         element.dataset.holes = String(holesOf(data));
-        element.dataset.predicted = String(line ? samplesAhead(line, span.to) : 0);
+        element.dataset.predicted = String((line && drawing?.samplesAhead(line, span.to)) ?? 0);
         element.dataset.newest = String(Math.max(recorded?.newestSclk ?? -Infinity, live?.newestSclk ?? -Infinity));
         plot.batch(() => {
           plot?.setData(data as uPlot.AlignedData, false);
           plot?.setScale('x', { min: span.from, max: span.to });
-          const [low, high] = bounds(data, isDifference ? [0, 0] : line && predictedBounds(line, span.from, span.to));
+          const [low, high] = bounds(
+            data,
+            isDifference ? [0, 0] : line && drawing?.predictedBounds(line, span.from, span.to),
+          );
           plot?.setScale('y', { min: low, max: high });
         });
         placeCursor();
@@ -402,10 +420,10 @@ function Plot({ title, channel, unit, per, digits }: Properties) {
             {inDifference ? signed(off, per, digits) : textOfValue(value, per, digits)}
           </output>{' '}
           {unit}
-          {line && hasDifference(channel) && (
+          {hasDifference(channel) && (line || prediction.value?.state !== 'none') && (
             <button
               type="button"
-              class="quiet plot-difference"
+              class={`quiet plot-difference ${line ? '' : 'is-due'}`}
               aria-pressed={inDifference}
               title={`key j: observed less predicted, by ${prediction.value?.basis ?? ''}`}
               aria-label={`${title}: observed less predicted`}
