@@ -144,6 +144,7 @@ std::span<const Api::Route> Api::routes() {
         {"POST", "/api/v1/runs/{run}/notes", Right::command, &Api::post_note, Query::none, "note"},
         {"GET", "/api/v1/runs/{run}", Right::watch, &Api::run_question, Query::own},
         {"GET", "/api/v1/runs/{run}/samples", Right::watch, &Api::export_samples, Query::own},
+        {"GET", "/api/v1/runs/{run}/prediction", Right::watch, &Api::prediction, Query::own},
         {"GET", "/api/v1/runs/{run}/{question}", Right::watch, &Api::run_question, Query::own},
         {"GET", "/api/v1/layouts", Right::watch, &Api::list_layouts},
         {"PUT", "/api/v1/layouts/{layout}", Right::watch, &Api::put_layout, Query::none, "layout"},

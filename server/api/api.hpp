@@ -9,6 +9,7 @@
 #include "server/api/stream_hub.hpp"
 #include "server/campaign/campaign_desk.hpp"
 #include "server/pipeline/pipeline_thread.hpp"
+#include "server/rehearsal/prediction_desk.hpp"
 #include "server/rehearsal/rehearsal_desk.hpp"
 #include "server/scenario/scenario_library.hpp"
 
@@ -44,6 +45,7 @@ class Api {
         const ScenarioLibrary& scenarios;
         QueryThreads& queries;
         RehearsalDesk& desk;
+        PredictionDesk& predictions;
         campaign::CampaignDesk& campaigns;
         StreamHub& hub;
         PipelineThread& pipeline;
@@ -86,6 +88,8 @@ class Api {
     void health(const ApiRequest& call);
     // sample_export.cpp
     void export_samples(const ApiRequest& call);
+    // prediction_routes.cpp
+    void prediction(const ApiRequest& call);
     // metrics.cpp
     void metrics(const ApiRequest& call);
     // rehearsal_routes.cpp

@@ -167,6 +167,20 @@ Result<v1::InterventionList> Reader::interventions(RunId run) {
     return list;
 }
 
+Result<std::string> Reader::scenario_text(RunId run) {
+    const auto instant = state_->instant(run);
+    if (!instant) return instant.error();
+    if (auto same = state_->same_dictionary(instant->run); !same) return same.error();
+    auto rows = state_->query("SELECT scenario_text FROM runs WHERE run = ?");
+    if (!rows) return rows.error();
+    auto& row = **rows;
+    row.bind(1, std::int64_t{run.value});
+    if (auto found = row.step(); !found) return found.error();
+    auto text = std::string(row.text(0));
+    if (text.empty()) return Error{"run " + std::to_string(run.value) + " has no scenario: it follows another mission"};
+    return text;
+}
+
 Result<CutOffRun> Reader::cut_off(RunId run) {
     auto snapshot = sqlite::Transaction::begin_read(state_->database);
     if (!snapshot) return snapshot.error();

@@ -163,6 +163,8 @@ class Reader {
     Result<Sequence> last_seq(RunId run);
     /// What is needed to continue an interrupted run. Fails when the run was not interrupted.
     Result<CutOffRun> cut_off(RunId run);
+    /// The scenario of a run of this dictionary, as Protobuf text. The Error says why there is none.
+    Result<std::string> scenario_text(RunId run);
 
     /// Live and recorded samples as one series in order of SCLK, each sample once. Undefined values are left out: gaps.
     Result<v1::ChannelSeriesList> series(RunId run, const SeriesQuery& query);

@@ -40,7 +40,7 @@ Result<void> check_reach(const ConsoleBackend::Settings& settings) {
 
 ConsoleBackend::ConsoleBackend(Settings settings, const dictionary::Dictionary& dictionary)
     : settings_(std::move(settings)), dictionary_(dictionary), timeline_check_(dictionary),
-      scenarios_(settings_.scenarios), console_(settings_.web) {}
+      scenarios_(settings_.scenarios), console_(settings_.web), predictions_(dictionary) {}
 
 Result<std::unique_ptr<ConsoleBackend>> ConsoleBackend::open(Settings settings,
                                                              const dictionary::Dictionary& dictionary) {
@@ -98,8 +98,8 @@ Result<std::unique_ptr<ConsoleBackend>> ConsoleBackend::open(Settings settings,
     backend->campaigns_ =
         std::make_unique<campaign::CampaignDesk>(chosen.archive.parent_path(), backend->scenarios_, dictionary);
     backend->api_ = std::make_unique<Api>(
-        Api::Parts{dictionary, backend->scenarios_, *backend->queries_, *backend->desk_, *backend->campaigns_,
-                   *backend->hub_, *backend->pipeline_, backend->console_, *backend->access_,
+        Api::Parts{dictionary, backend->scenarios_, *backend->queries_, *backend->desk_, backend->predictions_,
+                   *backend->campaigns_, *backend->hub_, *backend->pipeline_, backend->console_, *backend->access_,
                    backend->server_->secure(), [self] { return self->server_->connections(); }});
     backend->adopt_newest_run();
     backend->note_resets();

@@ -17,7 +17,7 @@ namespace aeolis::server {
 /// All of `aeolis serve`: archive, pipeline, rehearsals, queries, stream and web server.
 ///
 /// Threads  docs/decisions/0006-threads-and-stream.md: network (run()), pipeline, three query threads, one per
-///          rehearsal; a campaign has its own
+///          rehearsal; a campaign has its own, and the nominal flights have one
 class ConsoleBackend {
   public:
     struct Settings {
@@ -63,6 +63,7 @@ class ConsoleBackend {
     std::unique_ptr<QueryThreads> queries_;
     std::unique_ptr<PipelineThread> pipeline_;
     std::unique_ptr<RehearsalDesk> desk_;
+    PredictionDesk predictions_;
     std::unique_ptr<campaign::CampaignDesk> campaigns_;
     std::unique_ptr<DownlinkFollower> downlink_;
     std::unique_ptr<Api> api_;

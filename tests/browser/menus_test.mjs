@@ -129,7 +129,7 @@ test('a layout is saved, chosen in another browser and removed, by key alone; a 
     () => page.locator('.left > *').count(),
     (count) => count === 1,
   );
-  await page.keyboard.press('j');
+  await page.keyboard.press('9');
   await shows('menu', /Layout: as the console comes/);
   await page.keyboard.press('End');
   await page.keyboard.press('Enter');
@@ -146,12 +146,12 @@ test('a layout is saved, chosen in another browser and removed, by key alone; a 
 
   const other = await open(server.address, { width: 390, height: 700 });
   await other.shows('stream-state', /connected/);
-  await other.page.keyboard.press('j');
+  await other.page.keyboard.press('9');
   await waitFor(() => menu(other.page).innerText(), /Layout: Timeline 1/);
   await other.page.getByRole('menuitemradio', { name: 'Layout: Timeline 1' }).press('Enter');
   await waitFor(() => new URL(other.page.url()).search, /full=timeline&data=links/);
   assert.equal(await other.page.getByTestId('command-line').isVisible(), true);
-  await other.page.keyboard.press('j');
+  await other.page.keyboard.press('9');
   await other.page.getByRole('menuitem', { name: /^Save or remove/ }).press('Enter');
   await other.page.getByRole('button', { name: 'remove Timeline 1' }).press('Enter');
   await waitFor(

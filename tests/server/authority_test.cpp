@@ -81,6 +81,7 @@ const Row rows[] = {
     {"POST", "/api/v1/runs/{run}/alarms", "controller", "/api/v1/runs/latest/alarms", "{", 400},
     {"POST", "/api/v1/runs/{run}/notes", "controller", "/api/v1/runs/latest/notes", "{", 400},
     {"GET", "/api/v1/runs/{run}", "observer", "/api/v1/runs/latest", "", 404},
+    {"GET", "/api/v1/runs/{run}/prediction", "observer", "/api/v1/runs/latest/prediction", "", 404},
     {"GET", "/api/v1/runs/{run}/samples", "observer", "/api/v1/runs/latest/samples", "", 404},
     {"GET", "/api/v1/runs/{run}/{question}", "observer", "/api/v1/runs/latest/events", "", 404},
     {"GET", "/api/v1/layouts", "observer", "/api/v1/layouts", "", 200},

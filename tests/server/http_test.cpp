@@ -68,6 +68,8 @@ TEST_CASE("every route answers what it can and refuses the rest by name", "[http
         {"GET", "/api/v1/runs/1/commands", "", 200, "\"commands\":["},
         {"GET", "/api/v1/runs/1/timepoints", "", 200, "\"timepoints\":["},
         {"GET", "/api/v1/runs/1/explanations", "", 200, "\"explanations\":["},
+        {"GET", "/api/v1/runs/1/prediction", "", 200, "\"state\":\"flying\""},
+        {"GET", "/api/v1/runs/1/prediction?channels=altitud_m", "", 400, "the nearest name is 'altitude_m'"},
         {"GET", "/api/v1/runs?format=csv", "", 200, "run,scenario,title,"},
         {"GET", "/api/v1/runs?format=xml", "", 400, "format: 'xml' is none of json, csv, jsonl"},
         {"GET", "/api/v1/runs?colour=red", "", 400, "colour"},

@@ -20,16 +20,15 @@ export const LAYOUT = {
   ],
 
   /**
-   * The strip of phases: the values of the phase channel that belong to each, and its predicted beginning (entry by
-   * definition, the others published [od137]). `untilEntry`: a value that belongs to this phase before entry and to the
-   * next one after it. `from`: the timepoint that begins the phase, for when only tones are heard.
+   * The strip of phases: the values of the phase channel that belong to each. `untilEntry`: a value that belongs to this
+   * phase before entry and to the next one after it. `from`: the timepoint that begins the phase: for its prediction, and
+   * for when only tones are heard.
    */
   phases: [
     {
       title: 'Cruise',
       of: ['pre_edl', 'late_cruise', 'edl_approach', 'edl_main', 'exo_atmospheric'],
       untilEntry: 'wait_for_guidance',
-      predicted_e_s: undefined,
       from: undefined,
       plain:
         'The vehicle coasts towards Mars. It drops its cruise stage and turns the heat shield forward. From “do edl” on it follows its own timeline.',
@@ -38,7 +37,6 @@ export const LAYOUT = {
       title: 'Entry',
       of: ['wait_for_guidance', 'range_control', 'heading_alignment', 'straighten_up', 'wait_for_parachute'],
       untilEntry: undefined,
-      predicted_e_s: 0,
       from: 'entry_interface',
       plain:
         'It brakes in the thin air, from 5.8 km/s, and steers by rolling left and right. Around the hottest minute the radio is silent: that is expected, and the timeline names it.',
@@ -47,7 +45,6 @@ export const LAYOUT = {
       title: 'Parachute',
       of: ['parachute_descent'],
       untilEntry: undefined,
-      predicted_e_s: 255.9,
       from: 'parachute_deploy',
       plain: 'The parachute is open. The heat shield drops away, and the radar looks for the ground.',
     },
@@ -55,7 +52,6 @@ export const LAYOUT = {
       title: 'Powered descent',
       of: ['powered_descent', 'sky_crane'],
       untilEntry: undefined,
-      predicted_e_s: 378.2,
       from: 'powered_approach',
       plain:
         'It let go of parachute and shell and brakes with eight engines. Twenty metres up, it lets the rover down on a bridle.',
@@ -64,14 +60,11 @@ export const LAYOUT = {
       title: 'Landed',
       of: ['landed', 'flyaway'],
       untilEntry: undefined,
-      predicted_e_s: 431.5,
       from: 'touchdown',
       plain:
         'The rover is on the ground, the descent stage has flown away. Now the recording comes down: all that could not be heard live.',
     },
   ],
-  /** The mission of the predicted corridor and phases. */
-  predictedFor: 'MSL',
   /**
    * Parts of a timepoint's note that are left out of sentences: marks of a number's quality, (H), (M) and (L), and the
    * prediction, which has its own lane.
@@ -161,19 +154,17 @@ export const LAYOUT = {
   words: { sufr: 'straighten up and fly right (SUFR)', sufr_start: 'straighten up and fly right' },
   /**
    * Moments between timepoints that people wait for, each announced by an event and a tone of that name. `before`: the
-   * next timepoint. `predicted_e_s` is published [od137].
+   * next timepoint.
    */
   moments: [
     {
       name: 'peak_deceleration',
       before: 'sufr',
-      predicted_e_s: 79.35,
       plain: 'The hottest and hardest half minute; flight says so once it has passed.',
     },
     {
       name: 'heading_alignment',
       before: 'sufr',
-      predicted_e_s: undefined,
       plain: 'From then on it steers straight at the target.',
     },
   ],

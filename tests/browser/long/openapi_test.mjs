@@ -19,7 +19,10 @@ const YAML = fromValidator('yaml');
 const { serve } = workplace();
 
 /** What a call needs beyond its path; other routes are called without parameters. */
-const QUERY = { '/api/v1/runs/{run}/channels': '?names=altitude_m&points=10&provenance=true' };
+const QUERY = {
+  '/api/v1/runs/{run}/channels': '?names=altitude_m&points=10&provenance=true',
+  '/api/v1/runs/{run}/prediction': '?channels=altitude_m',
+};
 const BODY = {
   'post /api/v1/runs/{run}/commands': { command: 'NO_OP', dry_run: true },
   'post /api/v1/runs/{run}/sequences': { dry_run: true, commands: [{ command: 'NO_OP' }] },

@@ -399,6 +399,7 @@ TEST_CASE("a run of another dictionary shows its packets, and says why it shows 
     REQUIRE(reader.ok());
     CHECK(refusal(reader->series(RunId{1}, {{"altitude_m"}, {}, {}}).error()).find("dictionary 4711") !=
           std::string::npos);
+    CHECK(refusal(reader->scenario_text(RunId{1}).error()).find("dictionary 4711") != std::string::npos);
     CHECK(reader->packets(RunId{1}, {})->packets_size() == 100);
     const auto page = reader->items(RunId{1}, 0, 10);
     REQUIRE(page.ok());

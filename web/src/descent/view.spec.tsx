@@ -6,13 +6,34 @@ import { act } from 'preact/test-utils';
 import { describe, expect, it } from 'vitest';
 import { TimepointRowSchema } from '../gen/aeolis/v1/run_pb';
 import { LAYOUT } from '../layout';
-import { Dictionary } from '../run/dictionary';
+import { PredictionSchema } from '../gen/aeolis/v1/prediction_pb';
+import { predictForTest } from '../prediction/model';
+import { Series } from '../run/series';
 import { useForTest } from '../run/session';
 import { timepoints } from '../run/shown';
 import { aDictionary, aStore, firing, samples } from '../testing/fixtures';
-import { CORRIDOR } from './corridor';
-import { LEAST_M, fraction, halfWidth, isClear, placeIn, wayOf } from './model';
+import { SPREAD } from './corridor';
+import { LEAST_M, corridorOf, fraction, halfWidth, isClear, pathOf, placeIn, wayOf } from './model';
 import { Descent } from './view';
+
+/** [e_s, altitude, speed] of a made-up descent: fast and high, a brake, a parachute, a landing. */
+const PREDICTED: [number, number, number][] = Array.from({ length: 460 }, (_, i) => {
+  const e_s = i - 25;
+  const altitude_m = e_s < 100 ? 130000 - 1100 * e_s : Math.max(8, 20000 * ((430 - e_s) / 330) ** 1.5);
+  const braked_mps = e_s < 60 ? 5800 : Math.max(80, 5800 * Math.exp(-(e_s - 60) / 42));
+  const speed_mps = e_s < 380 ? braked_mps : Math.max(0.75, (80 * (430 - e_s)) / 50);
+  return [e_s, altitude_m, speed_mps];
+});
+function seriesOf(of: 1 | 2): Series {
+  const series = new Series();
+  series.append(
+    Float64Array.from(PREDICTED, ([e_s]) => 1000 + e_s),
+    Float64Array.from(PREDICTED, (point) => point[of]),
+  );
+  return series;
+}
+const PATH = pathOf(seriesOf(1), seriesOf(2), 1000, 430);
+const CORRIDOR = corridorOf(PATH);
 
 describe('the descent picture', () => {
   it('gives the last ten metres as much room as the last hundred kilometres have for each factor of ten', () => {
@@ -20,11 +41,13 @@ describe('the descent picture', () => {
     expect(height(100) - height(10)).toBeCloseTo(height(100000) - height(10000));
     expect([height(0), height(200000)]).toEqual([0, 1]);
   });
-  it('has a corridor that goes down from entry to touchdown', () => {
-    expect(CORRIDOR.length).toBeGreaterThan(10);
-    for (let i = 1; i < CORRIDOR.length; ++i)
-      expect(CORRIDOR[i]?.altitude_m).toBeLessThan(CORRIDOR[i - 1]?.altitude_m ?? 0);
-    expect(CORRIDOR.at(-1)?.speed_mps).toBeLessThan(1);
+  it('has the corridor along the predicted path down to the touchdown, with few points, as wide as it was measured', () => {
+    expect([PATH[0]?.e_s, PATH.at(-1)?.e_s]).toEqual([-15, 430]);
+    expect([CORRIDOR[0]?.e_s, CORRIDOR.at(-1)?.e_s]).toEqual([-15, 430]);
+    expect(CORRIDOR.length).toBeLessThan(60);
+    for (const point of PATH) expect(placeIn(CORRIDOR, point.altitude_m, point.speed_mps)).not.toBe('above');
+    expect(CORRIDOR[0]?.half_decades).toBe(SPREAD[0]?.half_decades);
+    expect(corridorOf(pathOf(undefined, undefined, 1000, 430))).toEqual([]);
   });
   it('calls the prediction itself inside, twice its width to a side above or below', () => {
     for (const point of CORRIDOR.slice(1)) expect(placeIn(CORRIDOR, point.altitude_m, point.speed_mps)).toBe('inside');
@@ -51,10 +74,13 @@ describe('the descent picture', () => {
 
 it('figures that nothing has come for are dim, with their age, and where they were is no verdict; at touchdown they are of then', () => {
   const root = document.createElement('div');
-  const msl = new Dictionary({ ...aDictionary.reply, mission: LAYOUT.predictedFor });
   const shown = (sclk: number, more: Parameters<typeof aStore>[0] = []) => {
     act(() => {
-      useForTest(aStore([samples(sclk, { 3: 60000, 4: 5800 }), ...more]), msl);
+      useForTest(aStore([samples(sclk, { 3: 60000, 4: 5800 }), ...more]), aDictionary);
+      predictForTest(create(PredictionSchema, { state: 'ready' }), {
+        3: PREDICTED.map(([e_s, altitude]) => [e_s, altitude]),
+        4: PREDICTED.map(([e_s, , speed]) => [e_s, speed]),
+      });
       timepoints.value = [create(TimepointRowSchema, { id: 9, name: LAYOUT.landed })];
       render(<Descent />, root);
     });

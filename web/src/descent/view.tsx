@@ -15,23 +15,49 @@ import type { RunStore } from '../run/store';
 import { landedSclk } from '../run/whose';
 import { resultShown, touchedDown } from '../touchdown/shown';
 import { isImportant, outages, shortTitle } from '../timeline/model';
+import { predicted } from '../timeline/now';
 import { phaseSteps } from '../phases/model';
 import { GAP_S } from '../plots/model';
-import { CORRIDOR } from './corridor';
-import { LEAST_M, LEAST_MPS, fraction, halfWidth, isClear, pairs, placeIn, wayOf } from './model';
-import type { Box } from './model';
+import { isPredicted, predictedAt, predictedEvent, predictedSeries, predictedVersion } from '../prediction/model';
+import { LEAST_M, LEAST_MPS, corridorOf, fraction, halfWidth, isClear, pairs, pathOf, placeIn, wayOf } from './model';
+import type { Box, CorridorPoint, PathPoint } from './model';
 import './style.css';
 
 const LEFT = 66;
 const RIGHT = 22;
 const BOTTOM = 40;
+const PREDICTED_DASH = [2, 4];
 const TOP_M = 200000;
 const FASTEST_MPS = 8000;
 
 /** The picture ends at touchdown; the later flight of the descent stage is not part of the landing. */
 const lastInstant = (run: RunStore | undefined, end: number) => Math.min(end, landedSclk(run));
 
-const corridorNow = () => (dictionary.value?.reply.mission === LAYOUT.predictedFor ? CORRIDOR : []);
+/** The predicted path and corridor of the run shown; empty until the prediction is there, and where there is none. */
+let kept: { key: string; path: PathPoint[]; corridor: CorridorPoint[] } = { key: '', path: [], corridor: [] };
+function predictedNow(): typeof kept {
+  const run = shownRun();
+  const [altitude, speed] = [LAYOUT.altitude, LAYOUT.speed].map((names) =>
+    predictedSeries(dictionary.value?.pick(names)),
+  );
+  const key = `${run?.id} ${predictedVersion.value} ${isPredicted()}`;
+  if (key !== kept.key) {
+    const path = run ? pathOf(altitude, speed, run.entrySclk, predictedEvent(LAYOUT.landed) ?? Infinity) : [];
+    kept = { key, path, corridor: corridorOf(path) };
+  }
+  return kept;
+}
+
+/** Where the vehicle is expected to be at the instant shown. */
+function expectedNow(run: RunStore): { altitude: number; speed: number } | undefined {
+  const sclk = Math.min(run.seenSclk, cutoff.value);
+  const [altitude, speed] = [LAYOUT.altitude, LAYOUT.speed].map((names) => {
+    const channel = dictionary.value?.pick(names);
+    return channel && predictedAt(channel, predictedSeries(channel), sclk, GAP_S);
+  });
+  const over = sclk - run.entrySclk > (predictedEvent(LAYOUT.landed) ?? Infinity);
+  return altitude === undefined || speed === undefined || over ? undefined : { altitude, speed };
+}
 
 const isFree = (box: Box, taken: readonly Box[]) =>
   !taken.some((b) => box[0] < b[2] && box[2] > b[0] && box[1] < b[3] && box[3] > b[1]);
@@ -80,7 +106,7 @@ function drawAxes({ context: c, width, height, colours }: Surface, { x, y }: Sca
 
 /** Draws the corridor first and widest, so that the expected place of the dot is obvious. */
 function drawCorridor({ context: c, width, height, colours }: Surface, { x, y, decade_px }: Scales): void {
-  const corridor = corridorNow();
+  const { corridor, path } = predictedNow();
   const middle = corridor.map((point) => [x(point.speed_mps), y(point.altitude_m)] as const);
   const last = middle[middle.length - 1];
   if (!last) return;
@@ -109,6 +135,15 @@ function drawCorridor({ context: c, width, height, colours }: Surface, { x, y, d
   around.rect(LEFT, 0, width - LEFT - RIGHT, height - BOTTOM);
   c.clip(around);
   c.fill();
+  c.stroke();
+  c.restore();
+  c.save();
+  c.clip(around);
+  c.strokeStyle = colours.dim;
+  c.lineWidth = 1;
+  c.setLineDash(PREDICTED_DASH);
+  c.beginPath();
+  for (const point of path) c.lineTo(x(point.speed_mps), y(point.altitude_m));
   c.stroke();
   c.restore();
   // The expected end.
@@ -154,9 +189,9 @@ function drawPhases(surface: Surface, { x, y }: Scales): Box[] {
   const { context: c, width, height, colours } = surface;
   const taken = figures(surface);
   const words = dictionary.value;
-  const corridor = corridorNow();
-  if (!words || corridor.length === 0) return taken;
-  const steps = phaseSteps(shownRun(), words, timepoints.value, cutoff.value);
+  const { path } = predictedNow();
+  if (!words || path.length === 0) return taken;
+  const steps = phaseSteps(shownRun(), words, timepoints.value, cutoff.value, predicted.value);
   c.textBaseline = 'middle';
   const order = steps
     .map((step, index) => ({ step, index }))
@@ -165,7 +200,7 @@ function drawPhases(surface: Surface, { x, y }: Scales): Box[] {
     const from = step.predicted_e_s;
     const to = steps[index + 1]?.predicted_e_s;
     if (from === undefined || to === undefined) continue;
-    const at = corridor.reduce((best, point) =>
+    const at = path.reduce((best, point) =>
       Math.abs(point.e_s - (from + to) / 2) < Math.abs(best.e_s - (from + to) / 2) ? point : best,
     );
     c.font = `${step.state === 'now' ? 800 : 600} ${Math.round(Math.min(26, width / 26, height / 13))}px ${colours.sans}`;
@@ -238,6 +273,7 @@ function draw(surface: Surface): void {
   }
   c.stroke();
   moments(c, points, x, y, width, height - BOTTOM, taken, colours);
+  drawExpected(surface, scales, run);
   const now = points[points.length - 1];
   if (!now) {
     c.fillStyle = colours.dim;
@@ -261,6 +297,20 @@ function draw(surface: Surface): void {
   c.beginPath();
   c.arc(x(now.speed), y(now.altitude), 16, 0, 7);
   c.stroke();
+}
+
+/** A small hollow ring where the vehicle is expected now: through blackout, Earth set and while only tones are heard. */
+function drawExpected({ context: c, colours }: Surface, { x, y }: Scales, run: RunStore): void {
+  const at = expectedNow(run);
+  if (!at || at.altitude > TOP_M) return;
+  c.save();
+  c.strokeStyle = colours.text;
+  c.lineWidth = 1.5;
+  c.setLineDash([3, 2]);
+  c.beginPath();
+  c.arc(x(at.speed), y(at.altitude), 7, 0, 7);
+  c.stroke();
+  c.restore();
 }
 
 /** Draws a gap without reception: dashed, not a trace. */
@@ -405,7 +455,8 @@ function Picture({ choose }: { choose: ComponentChildren }) {
   const inKm = (h ?? 0) >= 10000;
   const whose = whoseWords(run);
   const stale = staleNow(run);
-  const place = stale !== undefined || h === undefined || v === undefined ? undefined : placeIn(corridorNow(), h, v);
+  const place =
+    stale !== undefined || h === undefined || v === undefined ? undefined : placeIn(predictedNow().corridor, h, v);
   return (
     <Panel
       name="descent"
@@ -432,7 +483,7 @@ function Picture({ choose }: { choose: ComponentChildren }) {
           draw={draw}
           testId="descent-canvas"
           keyOf={() =>
-            `${shownRun()?.id} ${withRecording.value} ${tick.value} ${timepoints.value.length} ${cutoff.value} ${isLost.value}`
+            `${shownRun()?.id} ${withRecording.value} ${tick.value} ${timepoints.value.length} ${cutoff.value} ${isLost.value} ${predictedVersion.value} ${isPredicted()}`
           }
         />
         {h !== undefined && (

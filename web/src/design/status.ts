@@ -65,3 +65,5 @@ export const SOURCES = {
   uhf: { shape: '◆', token: 'by-uhf', word: 'by UHF, live' },
   recording: { shape: '▣', token: 'by-recording', word: 'by recording' },
 } as const;
+/** What is expected: dashed and faint wherever it is drawn. */
+export const PREDICTED = { shape: '┄', token: 'dim', word: 'predicted' } as const;

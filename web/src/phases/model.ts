@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import { LAYOUT } from '../layout';
+import { predictedEvent } from '../prediction/model';
 import { inWords } from '../run/dictionary';
 import type { Dictionary } from '../run/dictionary';
 import type { TimepointRow } from '../gen/aeolis/v1/run_pb';
@@ -24,7 +25,6 @@ interface Group {
   title: string;
   of: readonly string[];
   untilEntry?: string | undefined;
-  predicted_e_s?: number | undefined;
   from?: string | undefined;
 }
 
@@ -50,10 +50,11 @@ export function phaseSteps(
       (group) => label !== undefined && (group.of.includes(label) || (group.untilEntry === label && e_s < 0)),
     );
   const entryKnown = store?.entryKnown !== false;
-  // As in the timeline and "waiting for"; without a plan, the published times.
-  const published = entryKnown && dictionary.reply.mission === LAYOUT.predictedFor;
+  // As in the timeline and "waiting for"; without a plan, as the nominal flight has it.
   const predicted = (group: Group | undefined) =>
-    published ? (predictions.find((each) => each.name === group?.from)?.e_s ?? group?.predicted_e_s) : undefined;
+    entryKnown
+      ? (predictions.find((each) => each.name === group?.from)?.e_s ?? predictedEvent(group?.from))
+      : undefined;
   const seen_e_s = store ? Math.min(store.seenSclk, cutoff) - store.entrySclk : NaN;
   const now = channel && store?.latest(channel.id, cutoff);
   const label = now && labels.get(now.value);

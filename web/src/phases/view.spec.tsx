@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 import { describe, expect, it } from 'vitest';
 import { aDictionary, aPlan, aRun, aStore, samples, tone } from '../testing/fixtures';
-import { Dictionary } from '../run/dictionary';
+import { create } from '@bufbuild/protobuf';
+import { PredictionSchema } from '../gen/aeolis/v1/prediction_pb';
+import { predictForTest } from '../prediction/model';
 import { nextWords, phaseSteps } from './model';
 
 describe('the strip of phases', () => {
@@ -25,18 +27,27 @@ describe('the strip of phases', () => {
       since_e_s: 255,
     });
   });
-  it('is predicted as timeline and “waiting for” are, so that what a command moved is moved here, too; without a plan as it was published', () => {
+  it('is predicted as timeline and “waiting for” are, so that what a command moved is moved here, too; without a plan as the nominal flight has it', () => {
     const store = aStore([samples(1000, { 1: 4 })], aRun({ clocks: undefined as never, startSclk: 1100 }));
-    const msl = new Dictionary({ ...aDictionary.reply, mission: 'MSL' });
     const steps = (...predicted: [name: string, e_s: number][]) =>
       phaseSteps(
         store,
-        msl,
+        aDictionary,
         aPlan,
         Infinity,
         predicted.map(([name, e_s], id) => ({ id, name, e_s, fired: false })),
       );
-    expect(steps().map((step) => step.predicted_e_s)).toEqual([undefined, 0, 255.9, 378.2, 431.5]);
+    expect(steps().map((step) => step.predicted_e_s)).toEqual(Array(5).fill(undefined));
+    const events = Object.entries({
+      entry_interface: 0,
+      parachute_deploy: 255,
+      powered_approach: 378,
+      touchdown: 431.5,
+    });
+    predictForTest(
+      create(PredictionSchema, { state: 'ready', events: events.map(([name, eS]) => ({ name, eS, timepoint: true })) }),
+    );
+    expect(steps().map((step) => step.predicted_e_s)).toEqual([undefined, 0, 255, 378, 431.5]);
     const moved = steps(['parachute_deploy', 400], ['powered_approach', 522]);
     expect(moved.map((step) => step.predicted_e_s)).toEqual([undefined, 0, 400, 522, 431.5]);
     expect(moved[1]?.part, 'of what is going on').toBeCloseTo(0.25);

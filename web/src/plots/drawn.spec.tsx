@@ -4,10 +4,14 @@ import { render } from 'preact';
 import { act } from 'preact/test-utils';
 import { expect, it, vi } from 'vitest';
 import { cursor } from '../run/cursor';
+import { create } from '@bufbuild/protobuf';
+import { PredictionSchema } from '../gen/aeolis/v1/prediction_pb';
+import { predictForTest } from '../prediction/model';
 import { backToLive, useForTest } from '../run/session';
 import { lookAtPast } from '../run/shown';
+import { difference } from './model';
 import { aDictionary, aStore, samples, unit } from '../testing/fixtures';
-import { Plots } from './view';
+import { Plots, toggleDifference } from './view';
 
 const { looks, sizes } = vi.hoisted(() => ({ looks: [] as (() => (() => void) | undefined)[], sizes: [] as number[] }));
 vi.mock('../draw/loop', () => ({
@@ -78,4 +82,46 @@ it('the figure beside a plot goes stale as the channel does, and not under the c
   expect(shown()).toEqual(['◌ 41 s', '65.10', '65.10']);
   expect(shown(-141)).toEqual([undefined, undefined, '65.10']);
   cursor.value = undefined;
+});
+
+it('at the cursor stands what was observed, what was predicted and the difference; a key puts the difference in place of the values', async () => {
+  const root = document.createElement('div');
+  act(() => {
+    useForTest(aStore([samples(899, { 3: 65100 })]), aDictionary);
+    predictForTest(create(PredictionSchema, { state: 'ready', basis: 'the nominal flight' }), {
+      3: [
+        [-102, 65000],
+        [-101, 64000],
+        [-100, 63000],
+      ],
+    });
+    render(<Plots />, root);
+  });
+  await act(async () => vi.dynamicImportSettled());
+  const text = (id: string) => root.querySelector(`[data-testid=${id}]`)?.textContent?.trim();
+  expect([text('reading-altitude'), text('tip-altitude')]).toEqual(['65.10', undefined]);
+  const button = root.querySelector<HTMLElement>('.panel-plot-altitude .plot-difference');
+  expect([button?.getAttribute('aria-pressed'), button?.title]).toEqual([
+    'false',
+    'key j: observed less predicted, by the nominal flight',
+  ]);
+  act(() => {
+    cursor.value = -101;
+  });
+  expect(text('tip-altitude')).toBe('observed65.10predicted64.00difference+1.10');
+  act(() => {
+    cursor.value = -101.5;
+  });
+  expect(text('tip-altitude'), 'nothing was observed yet').toBe('predicted64.50');
+  act(() => {
+    cursor.value = undefined;
+    button?.click();
+  });
+  expect([text('reading-altitude'), button?.getAttribute('aria-pressed')]).toEqual(['+1.10', 'true']);
+  expect(
+    root.querySelector('.panel-plot-speed .plot-difference:not(.is-due)'),
+    'nothing is predicted of it',
+  ).toBeNull();
+  act(toggleDifference);
+  expect([difference.value, text('reading-altitude')]).toEqual([false, '65.10']);
 });

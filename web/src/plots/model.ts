@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Converts series to the data of a plot: one time axis, with recording and real time side by side.
+import { signal } from '@preact/signals';
+import type { DictionaryChannel } from '../gen/aeolis/v1/run_pb';
+import { differenceOf, predictedAt } from '../prediction/model';
 import type { Series } from '../run/series';
 import type { RunStore, Sample } from '../run/store';
 
@@ -8,6 +11,9 @@ import type { RunStore, Sample } from '../run/store';
  * they are one trace; samples known from the recording only have another colour. null breaks a line.
  */
 export type Aligned = [number[], (number | null)[], (number | null)[]];
+
+/** Whether plots show what was observed less what was predicted. */
+export const difference = signal(false);
 
 export interface Silence {
   from: number;
@@ -72,6 +78,24 @@ export function align(
     if (!(reached > (of.until[at] as number))) reached = of.until[at] as number;
   }
   return aligned;
+}
+
+/** What was observed less what was predicted; a gap where nothing was predicted. */
+export function less(
+  [xs, silent, lit]: Aligned,
+  channel: DictionaryChannel,
+  predicted: Series,
+  entry_sclk: number,
+  per: number,
+  gap_s: number,
+): Aligned {
+  const off = (values: (number | null)[]) =>
+    values.map((value, i) => {
+      const expected =
+        value === null ? undefined : predictedAt(channel, predicted, entry_sclk + (xs[i] as number), gap_s);
+      return value === null || expected === undefined ? null : differenceOf(channel, value * per, expected) / per;
+    });
+  return [xs, off(silent), off(lit)];
 }
 
 /**

@@ -4,7 +4,9 @@ import { axisNumber } from '../draw/axis';
 import { Series } from '../run/series';
 import { aDictionary, aStore, samples } from '../testing/fixtures';
 import { shortStep, shortTime, ticks, valueTicks } from '../draw/axis';
-import { align, gapOf, readingAt } from './model';
+import { create } from '@bufbuild/protobuf';
+import { DictionaryChannelSchema } from '../gen/aeolis/v1/run_pb';
+import { align, gapOf, less, readingAt } from './model';
 
 function series(...points: [number, number][]): Series {
   const made = new Series();
@@ -40,6 +42,27 @@ describe('a plot', () => {
   it('breaks at an undefined value, and scales units', () => {
     const [, , lit] = align(undefined, series([1, 1000], [2, NaN], [3, 3000]), [], 0, 0, 10, Infinity, 1000, 1000);
     expect(lit).toEqual([1, null, 3]);
+  });
+  it('less its prediction is the difference in the same unit, with a gap where nothing was predicted', () => {
+    const height = create(DictionaryChannelSchema, { id: 3, unit: 'm' });
+    const predicted = series([0, 1000], [10, 2000], [50, 2000]);
+    const observed = align(
+      undefined,
+      series([5, 1600], [10, 2000], [12, NaN], [30, 9]),
+      [],
+      0,
+      0,
+      60,
+      Infinity,
+      1000,
+      1000,
+      20,
+    );
+    expect(less(observed, height, predicted, 0, 1000, 20)).toEqual([
+      [5, 10, 12, 30],
+      [null, null, null, null],
+      [0.1, 0, null, null],
+    ]);
   });
   it('shows nothing after the end of a past view', () => {
     const [x] = align(undefined, series([1, 1], [2, 2], [3, 3]), [], 0, 0, 10, 2, 1, 1000);

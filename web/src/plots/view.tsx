@@ -11,21 +11,33 @@ import { palette } from '../draw/palette';
 import { LAYOUT } from '../layout';
 import type { DictionaryChannel } from '../gen/aeolis/v1/run_pb';
 import { Panel } from '../design/panel';
-import { SOURCES, silenceStatus } from '../design/status';
+import { PREDICTED, SOURCES, silenceStatus } from '../design/status';
 import { staleWords } from '../channels/model';
 import { cursor } from '../run/cursor';
-import { inWords, numberText } from '../run/dictionary';
+import { inWords, numberText, valueText } from '../run/dictionary';
 import { isWorst, limitsOver } from '../run/limits';
 import { isLost } from '../run/connection';
-import { cutoff, dictionary, plots, shownRun, tick } from '../run/shown';
+import { cutoff, dictionary, notify, plots, shownRun, tick } from '../run/shown';
 import type { Series } from '../run/series';
+import type { RunStore } from '../run/store';
 import { fromEntry } from '../run/time';
 import { whoseAt } from '../run/whose';
 import { outages, shortReason } from '../timeline/model';
 import { plotSpan } from '../run/window';
-import { align, gapOf, readingAt } from './model';
+import {
+  differenceOf,
+  hasDifference,
+  isPredicted,
+  predictedAt,
+  predictedSeries,
+  predictedVersion,
+  prediction,
+} from '../prediction/model';
+import { predicted } from '../timeline/now';
+import { align, difference, gapOf, less, readingAt } from './model';
 import { drawOver, extremes, overVersions } from './over';
 import type { Aligned } from './model';
+import type { PredictedLine } from './predicted';
 import './style.css';
 
 interface Properties {
@@ -44,6 +56,52 @@ const Y_AXIS_PX = 48;
 const RIGHT_PX = 20;
 /** The room for labels of time. The plot's own box still has its former size while ticks are chosen. */
 const wideOf = (plot: uPlot): number => plot.width - Y_AXIS_PX - RIGHT_PX;
+
+/** What draws a prediction: loaded once there is one, so that the page's first load stays small. */
+let drawing: typeof import('./predicted') | undefined;
+let isLoading = false;
+function loadDrawing(): void {
+  if (isLoading || !isPredicted()) return;
+  isLoading = true;
+  import('./predicted').then(
+    (loaded) => {
+      drawing = loaded;
+      predictedVersion.value += 1;
+    },
+    () => (isLoading = false), // the next draw asks again
+  );
+}
+
+/** What is predicted of a channel, as of the instant shown. */
+function lineOf(channel: DictionaryChannel, per: number): PredictedLine | undefined {
+  loadDrawing();
+  const [run, series] = [shownRun(), predictedSeries(channel)];
+  if (!run || !series || series.length === 0 || !drawing) return undefined;
+  const gap_s = gapOf(channel.expectedRateHz);
+  return { channel, series, entry_sclk: run.entrySclk, per, gap_s, now_e_s: nowOf() };
+}
+/** The instant shown, in seconds from entry. */
+function nowOf(): number {
+  const run = shownRun();
+  return run ? Math.min(run.seenSclk, cutoff.value) - run.entrySclk : Infinity;
+}
+/** Whether the plot of this channel shows the difference. */
+const showsDifference = (channel: DictionaryChannel) => difference.value && hasDifference(channel);
+
+/** Whether the time ahead of now is shown: a difference has nothing there. */
+const isAhead = () => isPredicted() && !difference.value;
+
+/** Draws what lies under grid and samples. */
+function underlay(plot: uPlot, channel: DictionaryChannel, per: number): void {
+  shadeSilence(plot);
+  if (!lineOf(channel, per) || !showsDifference(channel)) alarmBands(plot, channel, per);
+}
+/** Draws what is predicted, over the grid and under the samples. */
+function drawPredicted(plot: uPlot, channel: DictionaryChannel, per: number): void {
+  const line = lineOf(channel, per);
+  if (isAhead()) drawing?.drawAhead(plot, nowOf());
+  if (line) drawing?.drawPredictedLine(plot, line, showsDifference(channel));
+}
 
 function options(width: number, height: number, { channel, per, over }: Properties): uPlot.Options {
   const colours = palette();
@@ -88,8 +146,9 @@ function options(width: number, height: number, { channel, per, over }: Properti
       { stroke: colours.uhf, width: 1, points: { show: false } },
     ],
     hooks: {
-      drawClear: [(plot) => shadeSilence(plot), (plot) => alarmBands(plot, channel, per)],
-      draw: [(plot) => drawOver(plot, over ?? [], channel.unit, per)],
+      drawClear: [(plot) => underlay(plot, channel, per)],
+      drawAxes: [(plot) => drawPredicted(plot, channel, per)],
+      draw: [(plot) => drawOver(plot, showsDifference(channel) ? [] : (over ?? []), channel.unit, per)],
     },
   };
 }
@@ -202,6 +261,16 @@ function alarmBands(plot: uPlot, channel: DictionaryChannel, per: number): void 
   ctx.restore();
 }
 
+export function toggleDifference(): void {
+  if (isPredicted()) difference.value = !difference.value;
+  else
+    notify(
+      prediction.value?.state === 'none'
+        ? `nothing is predicted of this run: ${prediction.value.reason}`
+        : 'the prediction is being made: it is there in a few seconds',
+    );
+}
+
 function Plot(properties: Properties) {
   const { title, channel, unit, per, digits, over = [] } = properties;
   const box = useRef<HTMLDivElement>(null);
@@ -231,11 +300,13 @@ function Plot(properties: Properties) {
       const run = shownRun();
       const recorded = run?.recorded.get(channel.id);
       const live = run?.live.get(channel.id);
-      const span = plotSpan(run);
+      const span = plotSpan(run, isAhead());
+      const isDifference = showsDifference(channel);
+      const line = lineOf(channel, per);
       const newShape = `${palette().name} ${channel.id} ${over.map(({ id }) => id).join()}`;
       const silences = run?.links.get('uhf_live') ?? []; // a present silence grows with the clock, without new samples
       const silent = silences.at(-1)?.fact.up === false ? run?.seenSclk.toFixed(0) : '';
-      const key = `${run?.id} ${silences.length} ${silent} ${recorded?.version} ${live?.version} ${span.from.toFixed(1)} ${span.to.toFixed(1)} ${cutoff.value} ${width} ${height} ${newShape} ${overVersions(run, over)}`;
+      const key = `${run?.id} ${silences.length} ${silent} ${recorded?.version} ${live?.version} ${span.from.toFixed(1)} ${span.to.toFixed(1)} ${cutoff.value} ${width} ${height} ${newShape} ${overVersions(run, over)} ${line ? `${predictedVersion.value} ${line.now_e_s.toFixed(1)}` : ''} ${isPredicted()} ${isDifference} ${predicted.value.length}`;
       if (key === shown && traces[0] === recorded && traces[1] === live)
         return cursor.peek() === placed ? undefined : placeCursor;
       shown = key;
@@ -248,7 +319,7 @@ function Plot(properties: Properties) {
         } else if (plot.width !== width || plot.height !== height) {
           plot.setSize({ width, height });
         }
-        const data = run
+        const observed = run
           ? align(
               recorded,
               live,
@@ -262,14 +333,22 @@ function Plot(properties: Properties) {
               gapOf(channel.expectedRateHz),
             )
           : ([[], [], []] as Aligned);
+        const data =
+          isDifference && line && run ? less(observed, channel, line.series, run.entrySclk, per, line.gap_s) : observed;
         element.dataset.holes = String(holesOf(data));
+        element.dataset.predicted = String((line && drawing?.samplesAhead(line, span.to)) ?? 0);
         element.dataset.newest = String(Math.max(recorded?.newestSclk ?? -Infinity, live?.newestSclk ?? -Infinity));
         plot.batch(() => {
           plot?.setData(data as uPlot.AlignedData, false);
           plot?.setScale('x', { min: span.from, max: span.to });
           const [low, high] = bounds(
             data,
-            run ? extremes(run, over, channel.unit, span).map((each) => each / per) : [],
+            isDifference
+              ? [0, 0]
+              : [
+                  ...((line && drawing?.predictedBounds(line, span.from, span.to)) ?? []),
+                  ...(run ? extremes(run, over, channel.unit, span).map((each) => each / per) : []),
+                ],
           );
           plot?.setScale('y', { min: low, max: high });
         });
@@ -299,6 +378,21 @@ function Plot(properties: Properties) {
       channel.name,
       at === undefined ? (run.latest(channel.id, cutoff.value)?.sclk ?? -Infinity) : run.entrySclk + at,
     );
+  const line = lineOf(channel, per);
+  const sample_sclk = run && (at === undefined ? run.latest(channel.id, cutoff.value)?.sclk : run.entrySclk + at);
+  const expected =
+    line && sample_sclk !== undefined ? predictedAt(channel, line.series, sample_sclk, line.gap_s) : undefined;
+  const off =
+    value === undefined || Number.isNaN(value) || expected === undefined || !hasDifference(channel)
+      ? undefined
+      : differenceOf(channel, value, expected);
+  const inDifference = line !== undefined && showsDifference(channel);
+  const textOf = (of: number | undefined) =>
+    of === undefined || Number.isNaN(of)
+      ? '—'
+      : hasDifference(channel)
+        ? reading(of / per, digits)
+        : valueText(channel, of);
   const stale = at === undefined ? staleWords(run, channel, cutoff.value, isLost.value) : undefined;
   const name = title.toLowerCase();
   return (
@@ -309,6 +403,7 @@ function Plot(properties: Properties) {
       extra={
         <span class={`reading ${at !== undefined ? 'at-cursor' : stale ? 'stale' : ''}`}>
           {stale && <span data-testid={`stale-${name}`}>{stale} </span>}
+          {now === undefined && line && at === undefined && <span class="cursor-time">none has come yet </span>}
           {whose && (
             <span class="whose" data-testid={`whose-${name}`} title={whose}>
               <i>{whose.replace(/\S+$/, '')}</i>
@@ -332,15 +427,28 @@ function Plot(properties: Properties) {
             )
           )}{' '}
           <output data-testid={`reading-${name}`}>
-            {value === undefined || Number.isNaN(value) ? '—' : reading(value / per, digits)}
+            {inDifference ? signed(off, per, digits) : textOfValue(value, per, digits)}
           </output>{' '}
           {unit}
+          {hasDifference(channel) && (line || prediction.value?.state !== 'none') && (
+            <button
+              type="button"
+              class={`quiet plot-difference ${line ? '' : 'is-due'}`}
+              aria-pressed={inDifference}
+              title={`key j: observed less predicted, by ${prediction.value?.basis ?? ''}`}
+              aria-label={`${title}: observed less predicted`}
+              onClick={toggleDifference}
+            >
+              {PREDICTED.shape}
+              <i> {inDifference ? 'less predicted' : PREDICTED.word}</i>
+            </button>
+          )}
         </span>
       }
     >
-      {now === undefined && <span class="plot-empty">no {channel.name} has come yet</span>}
+      {now === undefined && !line && <span class="plot-empty">no {channel.name} has come yet</span>}
       <div
-        class={`plot ${now === undefined ? 'is-empty' : ''}`}
+        class={`plot ${now === undefined && !line ? 'is-empty' : ''}`}
         ref={box}
         role="img"
         aria-label={`${title} in ${unit} over time from entry`}
@@ -354,11 +462,41 @@ function Plot(properties: Properties) {
         }}
         onMouseLeave={() => (cursor.value = undefined)}
       >
-        <i class="plot-cursor" ref={mark} hidden />
+        <i class="plot-cursor" ref={mark} hidden>
+          {at !== undefined && line && expected !== undefined && (
+            <dl class={`plot-tip ${isRight(at, run) ? 'at-left' : ''}`} data-testid={`tip-${name}`}>
+              {shown && (
+                <>
+                  <dt>observed</dt>
+                  <dd>{textOf(shown.value)}</dd>
+                </>
+              )}
+              <dt>predicted</dt>
+              <dd>{textOf(expected)}</dd>
+              {off !== undefined && (
+                <>
+                  <dt>difference</dt>
+                  <dd>{signed(off, per, digits)}</dd>
+                </>
+              )}
+            </dl>
+          )}
+        </i>
       </div>
     </Panel>
   );
 }
+
+/** Whether an instant lies in the right half of the plots, where a box beside it stands to its left. */
+function isRight(at: number, run: RunStore | undefined): boolean {
+  const { from, to } = plotSpan(run, isAhead());
+  return at > (from + to) / 2;
+}
+
+const textOfValue = (value: number | undefined, per: number, digits: number | undefined): string =>
+  value === undefined || Number.isNaN(value) ? '—' : reading(value / per, digits);
+const signed = (off: number | undefined, per: number, digits: number | undefined): string =>
+  off === undefined ? '—' : `${off > 0 ? '+' : ''}${textOfValue(off, per, digits)}`;
 
 /** Formats a value, without a minus sign on zero. */
 const reading = (value: number, digits: number | undefined): string =>
@@ -371,7 +509,8 @@ function holesOf([x, silent, lit]: Aligned): number {
   return holes;
 }
 
-function bounds(data: readonly (readonly (number | null | undefined)[])[], also: number[]): [number, number] {
+/** The range of the axis: all data, and what else must be in sight. */
+function bounds(data: readonly (readonly (number | null | undefined)[])[], also: readonly number[]): [number, number] {
   let low = Math.min(Infinity, ...also);
   let high = Math.max(-Infinity, ...also);
   for (const values of data.slice(1)) {

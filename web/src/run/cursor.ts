@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The instant pointed at, shared by plots, tones and timeline; by mouse where it is drawn, by key anywhere.
 import { effect, signal } from '@preact/signals';
+import { isPredicted } from '../prediction/model';
 import { cutoff, shownRun, store } from './shown';
 import { plotSpan } from './window';
 
@@ -19,9 +20,10 @@ const STEPS = 100; // chosen: a held key crosses the shown range in a few second
 export function stepCursor(direction: 1 | -1): void {
   const run = shownRun();
   if (!run) return;
-  const { from, to } = plotSpan(run);
+  const { from, to } = plotSpan(run, isPredicted());
   const newest = Math.min(to, run.seenE, cutoff.value - run.entrySclk);
-  cursor.value = Math.max(from, Math.min(newest, (cursor.value ?? newest) + (direction * (to - from)) / STEPS));
+  const last = isPredicted() ? to : newest;
+  cursor.value = Math.max(from, Math.min(last, (cursor.value ?? newest) + (direction * (to - from)) / STEPS));
 }
 
 export function closeCursor(): boolean {

@@ -31,6 +31,7 @@ import {
 } from './shown';
 import { askDictionary, askRuns, isGoing } from './start';
 import { RunStore } from './store';
+import { refreshPrediction } from '../prediction/model';
 import { refreshAgainst } from '../waiting/told';
 import { TimelinePace, timelineAnswer, timelineQuestion } from '../timeline/asked';
 
@@ -346,6 +347,9 @@ export async function begin(): Promise<void> {
     if (!run || stream.value.state !== 'live' || (run.alarmsVersion === told && ++since < ALARMS_EVERY_S)) return;
     [told, since] = [run.alarmsVersion, 0];
     await refreshAlarms();
+  });
+  void everySeconds(1, async () => {
+    if (stream.value.state === 'live') await refreshPrediction();
   });
   void everySeconds(3, refreshRuns);
   void everySeconds(1, refreshAgainst);

@@ -54,10 +54,13 @@ export function spanNow(store: RunStore | undefined): Span {
   return { from: LAYOUT.window.from, to: Math.max(LAYOUT.window.to, Math.min(seen + 5, LAYOUT.window.to + 120)) };
 }
 
-/** The stretch of the plots ends shortly after the newest sample, so that they are not half empty. */
-export function plotSpan(store: RunStore | undefined): Span {
+/**
+ * The stretch of plots and tones ends shortly after the newest sample, so that they are not half empty; with a prediction
+ * drawn ahead it is that of the timeline.
+ */
+export function plotSpan(store: RunStore | undefined, isAhead = false): Span {
   const span = spanNow(store);
-  if (zoomedTo() || fixedRange() || !store) return span;
+  if (isAhead || zoomedTo() || fixedRange() || !store) return span;
   const to = Math.min(span.to, Math.max((pastRange.value?.to ?? store.seenE) + 8, span.from + 60));
   return { from: span.from, to };
 }

@@ -16,6 +16,7 @@ import { closeCursor, stepCursor } from '../run/cursor';
 import { closeList, putAside, toggleList } from '../situation/model';
 import { closeDetail, stepTimepoint, toggleAnchors } from '../timeline/view';
 import { focusTones } from '../tones/view';
+import { toggleDifference } from '../plots/view';
 import { choice, pan, zoom } from '../run/window';
 
 export const helpShown = signal(false);
@@ -97,6 +98,7 @@ export const SHORTCUTS: Shortcut[] = [
     act: () => stepCursor(-1),
   },
   { keys: ['Shift+ArrowRight'], shown: 'Shift →', words: 'cursor: later', act: () => stepCursor(1) },
+  { keys: ['j'], shown: 'j', words: 'plots: observed less predicted; again: as observed', act: toggleDifference },
   {
     keys: ['.'],
     shown: '.',
@@ -123,7 +125,7 @@ export const SHORTCUTS: Shortcut[] = [
   ...TABS.map(({ id, key, words }) => ({ keys: [key], shown: key, words, act: () => focusPanel(id) })),
   { keys: ['i'], shown: 'i', words: 'values: ↑ ↓ ← → from one to the next, Enter opens its menu', act: focusValue },
   { keys: ['z'], shown: 'z', words: 'full size: the panel in focus, or under the mouse; again: back', act: zoomPanel },
-  { keys: ['j'], shown: 'j', words: 'this display: link, sound, layouts', act: () => openMenu('display') },
+  { keys: ['9'], shown: '9', words: 'this display: link, sound, layouts', act: () => openMenu('display') },
   { keys: ['q'], shown: 'q', words: 'copy a link to what is shown', act: () => openMenu('link') },
   { keys: ['0'], shown: '0', words: 'call-outs: off, tones, words', act: nextSound },
   { keys: ['g'], shown: 'g', words: 'the guide for a first landing', act: toggleGuide },

@@ -57,6 +57,7 @@ export type ControlAction = { action: 'pause'; pause: boolean } | { action: 'pac
 
 export type Question =
   | 'timepoints'
+  | 'prediction'
   | 'scenarios'
   | 'series'
   | 'packets'

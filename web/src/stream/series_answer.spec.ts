@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import { create, toBinary } from '@bufbuild/protobuf';
 import { describe, expect, it } from 'vitest';
+import { PredictionSchema } from '../gen/aeolis/v1/prediction_pb';
 import { ChannelSeriesListSchema } from '../gen/aeolis/v1/run_pb';
 import { readSeriesList } from './series_answer';
 
@@ -31,6 +32,16 @@ describe('samples in Protobuf', () => {
       { id: 7, recorded: false, sclk: Float64Array.of(1, 3), value: Float64Array.of(10, 30) },
       { id: 7, recorded: true, sclk: Float64Array.of(2), value: Float64Array.of(20) },
     ]);
+  });
+  it('of a prediction have no source, and are read by the same reader', () => {
+    const answer = create(PredictionSchema, {
+      state: 'ready',
+      channels: [{ id: 7, name: 'x', sclk: [1, 2], value: [5, 6] }],
+    });
+    expect(readSeriesList(toBinary(PredictionSchema, answer))[0]).toMatchObject({
+      name: 'x',
+      columns: [{ id: 7, recorded: false, sclk: Float64Array.of(1, 2), value: Float64Array.of(5, 6) }],
+    });
   });
   it('of a channel without any are no column, and of no channel no series', () => {
     expect(readSeriesList(octetsOf([{ name: 'quiet' }]))).toMatchObject([{ id: 0, name: 'quiet', columns: [] }]);

@@ -58,7 +58,8 @@ function readSeries(octets: Uint8Array): SeriesAnswer {
 const doubles = (part: Uint8Array) => new Float64Array(part.slice().buffer);
 
 function bySource(id: number, sclk: Float64Array, value: Float64Array, source: Uint8Array): Column[] {
-  if (value.length !== sclk.length || source.length !== sclk.length)
+  // a prediction has no source
+  if (value.length !== sclk.length || (source.length > 0 && source.length !== sclk.length))
     throw new Error(`samples of channel ${id}: ${sclk.length} times, ${value.length} values, ${source.length} sources`);
   const recorded = source.reduce((count, each) => count + (each === SOURCE_RECORDED ? 1 : 0), 0);
   if (sclk.length === 0) return [];

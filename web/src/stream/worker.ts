@@ -8,6 +8,7 @@
 // is no seam, and no million samples pass through the socket.
 import { create, fromBinary, fromJson, toBinary } from '@bufbuild/protobuf';
 import type { DescMessage, MessageInitShape } from '@bufbuild/protobuf';
+import { PredictionSchema } from '../gen/aeolis/v1/prediction_pb';
 import {
   AsFlownReportSchema,
   CommandListSchema,
@@ -327,6 +328,7 @@ async function fetchHistory(of: Questions, live: boolean): Promise<void> {
 
 const ANSWERS: Record<Exclude<Question, 'series'>, DescMessage> = {
   timepoints: TimepointListSchema,
+  prediction: PredictionSchema,
   scenarios: ScenarioListSchema,
   packets: PacketListSchema,
   recording: RecordingSummarySchema,

@@ -2,7 +2,7 @@
 // Moments that people wait for but that are no timepoints; flight reports each by an event and a tone of the same name.
 import type { TimepointRow } from '../gen/aeolis/v1/run_pb';
 import { LAYOUT } from '../layout';
-import type { Dictionary } from '../run/dictionary';
+import { predictedEvent } from '../prediction/model';
 import type { RunStore } from '../run/store';
 import { BELIEVED, heardOf, lastHeard } from './heard';
 
@@ -17,20 +17,15 @@ export interface Moment {
 }
 
 /** The moments of the plan shown, in order. */
-export function momentsOf(
-  store: RunStore,
-  dictionary: Dictionary,
-  plan: readonly TimepointRow[],
-  cutoff: number,
-): Moment[] {
+export function momentsOf(store: RunStore, plan: readonly TimepointRow[], cutoff: number): Moment[] {
   const last = lastHeard(plan, heardOf(store, plan, cutoff));
-  return LAYOUT.moments.flatMap(({ name, before, plain, predicted_e_s }) => {
+  return LAYOUT.moments.flatMap(({ name, before, plain }) => {
     const at = plan.findIndex((row) => row.name === before);
     if (at < 0) return [];
     const told =
       store.events.find(({ fact }) => fact.name.toLowerCase() === name && fact.sclk <= cutoff)?.fact.sclk ??
       store.tonesBy(cutoff).find(({ fact }) => fact.name === name && fact.likelihood >= BELIEVED)?.fact.sclk;
-    const predicted = dictionary.reply.mission === LAYOUT.predictedFor && at > last ? predicted_e_s : undefined;
+    const predicted = at > last ? predictedEvent(name) : undefined;
     return {
       name,
       before,

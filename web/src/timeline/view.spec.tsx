@@ -138,7 +138,7 @@ describe('the timeline', () => {
   it('knows a moment between timepoints by event or tone, and as passed once the timepoint after it is', () => {
     const plan = [...aPlan, { ...aPlan[1], id: 9, name: 'sufr', anchor: 'sufr_start' } as (typeof aPlan)[number]];
     const moments = (...items: Parameters<typeof aStore>[0] & object) =>
-      momentsOf(aStore(items), aDictionary, plan, Infinity).map(({ e_s, done }) => [e_s, done]);
+      momentsOf(aStore(items), plan, Infinity).map(({ e_s, done }) => [e_s, done]);
     expect(moments(event({ name: 'PEAK_DECELERATION', sclk: 1080 }))).toEqual([
       [80, true],
       [undefined, false],
@@ -151,7 +151,7 @@ describe('the timeline', () => {
       [undefined, true],
       [undefined, true],
     ]);
-    expect(momentsOf(aStore(), aDictionary, aPlan, Infinity)).toEqual([]);
+    expect(momentsOf(aStore(), aPlan, Infinity)).toEqual([]);
   });
   it('as it was heard has nothing that only the recording told, and a tone once it was decided', () => {
     const store = aStore([

@@ -14,6 +14,7 @@ import { cursor } from '../run/cursor';
 import { fromEntry } from '../run/time';
 import { choice, pan, spanNow, zoom } from '../run/window';
 import type { Choice } from '../run/window';
+import { isPredicted, passes, windowWords, windowsOf } from '../prediction/model';
 import { timelineKnown } from './asked';
 import { anchorLines, moved, predicted, predictedAsOf } from './now';
 import { STATUS, SOURCES, held, silenceStatus } from '../design/status';
@@ -115,6 +116,7 @@ function drawTimeline({ context: c, width: width_px, height: height_px, colours 
   c.beginPath();
   c.rect(GUTTER - 6, 0, width - GUTTER, height);
   c.clip();
+  drawWindows(c, x, y, width, Math.min(run.seenE, pastRange.value?.to ?? Infinity), colours);
   drawOutages(c, lanes, x, y, width, colours);
   if (lanes.recorded.length === 0 && !pastRange.value) {
     c.fillStyle = colours.dim;
@@ -157,6 +159,62 @@ function drawTimeline({ context: c, width: width_px, height: height_px, colours 
       bottom,
       width - 8,
     );
+  c.restore();
+}
+
+/**
+ * Draws what is predicted of the links: silences hollow, and passes as a line under the lane. What comes is drawn over
+ * it. Words stand ahead of now only.
+ */
+function drawWindows(
+  c: CanvasRenderingContext2D,
+  x: (e: number) => number,
+  y: (lane: number) => number,
+  width: number,
+  now_e_s: number,
+  colours: Surface['colours'],
+): void {
+  const edge = width - 14;
+  c.save();
+  c.strokeStyle = c.fillStyle = colours.dim;
+  c.textAlign = 'left';
+  c.font = `${TYPE.mark}px ${colours.sans}`;
+  const write = (all: readonly string[], from: number, to: number, at_y: number) => {
+    const begin = Math.max(GUTTER, from, x(now_e_s));
+    const words = all.find((each) => c.measureText(each).width + 8 <= to - begin);
+    if (words !== undefined) c.fillText(words, begin + 5, at_y);
+  };
+  for (const [lane, link] of [
+    [2, 'x_band'],
+    [3, 'uhf_live'],
+  ] as const) {
+    const all = windowsOf('silence', link);
+    for (const [i, silence] of all.entries()) {
+      const from = Math.max(GUTTER, x(silence.fromES));
+      const to = Math.min(edge, x(silence.toES ?? Infinity));
+      if (to < GUTTER || from > edge) continue;
+      c.setLineDash([3, 3]);
+      if (to - from < 2) line(c, Math.round(from) + 0.5, y(lane) - 8, Math.round(from) + 0.5, y(lane) + 8);
+      else c.strokeRect(from + 0.5, y(lane) - 7.5, to - from - 1, 15);
+      c.setLineDash([]);
+      const next = Math.min(edge, x(all[i + 1]?.fromES ?? Infinity));
+      if (to - from >= 2 || silence.fromES > now_e_s)
+        write(windowWords(silence), from, to - from < 2 ? next : to, y(lane) + 0.5);
+    }
+  }
+  for (const pass of passes()) {
+    const lane = pass.link === 'uhf_live' ? 3 : 4;
+    const [from, to] = [Math.max(GUTTER, x(pass.fromES)), Math.min(edge, x(pass.toES ?? Infinity))];
+    if (to - from < 2) continue;
+    c.globalAlpha = 0.4;
+    c.fillRect(from, y(lane) + 9, to - from, 1);
+    c.globalAlpha = 1;
+    const times = `${fromEntry(pass.fromES)} to ${pass.toES === undefined ? '' : fromEntry(pass.toES)}`;
+    if (lane === 4 && pass.fromES > now_e_s)
+      write([`${pass.words} in view, records, ${times}`, `${pass.words} records`], from, to, y(lane) + 0.5);
+    else if (pass.fromES > now_e_s)
+      write([`${pass.words} in view ${times}`, `${pass.words} in view`], from, to, y(lane) + 0.5);
+  }
   c.restore();
 }
 
@@ -275,8 +333,8 @@ function labels(
   for (const { id, name, e_s, fired } of predicted.value)
     if (!fired) known.set(id, { mark: { id, name, e_s, important: isImportant(name), bad: false }, done: false });
   for (const mark of [...lanes.heardByTone, ...lanes.recorded, ...lanes.live]) known.set(mark.id, { mark, done: true });
-  const [run, dict] = [shownRun(), dictionary.value];
-  const moments = run && dict ? momentsOf(run, dict, timepoints.value, cutoff.value) : [];
+  const run = shownRun();
+  const moments = run ? momentsOf(run, timepoints.value, cutoff.value) : [];
   for (const [i, { name, e_s, done }] of moments.entries()) {
     if (e_s !== undefined) known.set(-1 - i, { mark: { id: -1 - i, name, e_s, important: true, bad: false }, done });
   }
@@ -630,7 +688,7 @@ export function Timeline() {
         testId="timeline-canvas"
         keyOf={() => {
           const span = shown(shownRun());
-          return `${shownRun()?.id} ${withRecording.value} ${tick.value} ${span.from} ${span.to} ${timepoints.value.length} ${cutoff.value} ${selected.value} ${cursor.value} ${JSON.stringify(moved.value)} ${timelineKnown.value?.at_ms}`;
+          return `${shownRun()?.id} ${withRecording.value} ${tick.value} ${span.from} ${span.to} ${timepoints.value.length} ${cutoff.value} ${selected.value} ${cursor.value} ${JSON.stringify(moved.value)} ${timelineKnown.value?.at_ms} ${isPredicted()}`;
         }}
         draw={drawTimeline}
         onPoint={selectAt}

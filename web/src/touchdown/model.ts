@@ -2,6 +2,7 @@
 // A touchdown in the three steps that flown landings used, each with its evidence: reported until all three are there,
 // then confirmed. Pure; from what was received by the instant shown.
 import { LAYOUT } from '../layout';
+import { predictedEvent } from '../prediction/model';
 import { outages } from '../timeline/model';
 import { heardOf } from '../timeline/heard';
 import { duration, fromEntry } from '../run/time';
@@ -268,16 +269,13 @@ export function resultsOf(look: Look, touchdown: number): Result[] {
   };
   const miss = missOf(look, touchdown);
   const e_s = touchdown - run.entrySclk;
-  const predicted = plan.find((row) => row.name === TOUCHDOWN.timepoint)?.predictedES;
-  const design =
-    words.reply.mission === LAYOUT.predictedFor
-      ? LAYOUT.phases.find(({ from }) => from === TOUCHDOWN.timepoint)
-      : undefined;
+  const nominal = predictedEvent(TOUCHDOWN.timepoint);
+  const last = plan.find((row) => row.name === TOUCHDOWN.timepoint)?.predictedES;
   const against = (at: number) => `${e_s - at < 0 ? '−' : '+'}${Math.abs(e_s - at).toFixed(1)}`;
-  const byDesign =
-    design?.predicted_e_s === undefined
+  const byLast =
+    last === undefined
       ? ''
-      : `; ${against(design.predicted_e_s)} s on the design’s ${fromEntry(design.predicted_e_s)}`;
+      : `; ${against(last)} s on the last prediction before it, ${fromEntry(last, { tenths: true })}`;
   return [
     figure('down', VEHICLE.descentRate, 'm/s', 2),
     figure('across', VEHICLE.horizontalSpeed, 'm/s', 2),
@@ -297,9 +295,9 @@ export function resultsOf(look: Look, touchdown: number): Result[] {
     figure('propellant left', VEHICLE.propellant, 'kg', 1),
     {
       name: 'against predicted',
-      value: predicted === undefined ? '—' : against(predicted),
-      unit: predicted === undefined ? '' : 's',
-      note: `${predicted === undefined ? 'not known: the server has no prediction' : `of ${fromEntry(predicted, { tenths: true })}, the last before it`}${byDesign}`,
+      value: nominal === undefined ? '—' : against(nominal),
+      unit: nominal === undefined ? '' : 's',
+      note: `${nominal === undefined ? 'not known: the server has no nominal flight of this run' : `of ${fromEntry(nominal, { tenths: true })} in the nominal flight`}${byLast}`,
     },
   ];
 }

@@ -25,26 +25,66 @@ const GROUND = {
 } as const; // ground far off, space, haze, ground below the vehicle
 const AIR_M = 18000; // as in the other picture: how much of the air is still above
 
-export function drawFlat({ context: c, width, height, colours }: Surface, scene: Scene): void {
-  const { parts, motion, scenery } = scene;
-  const view = VIEWS[scenery];
+/** The vehicle before sky and ground, with its vectors. */
+export function drawFlat(surface: Surface, scene: Scene): void {
+  const { context: c, width, height, colours } = surface;
+  const { motion } = scene;
+  const { px, at, flat } = stand(surface, scene, 0.5);
+  const wheels_m = wheelsBelow_m(scene.bridle_m ?? 0);
   const known = motion.attitude !== undefined;
+  drawBackground(c, width, height, colours.name === 'light', known ? motion.altitude_m : undefined, () => {
+    const altitude = Math.max(motion.altitude_m ?? Infinity, scene.bridle_m ? wheels_m : 0);
+    return altitude * px < height * 3 ? at[1] + altitude * px : undefined;
+  });
+  drawBody(surface, scene, 0.5, !known);
+  const view = VIEWS[scene.scenery];
+  const reach = view.tall * view.arrow * px;
+  arrow(
+    c,
+    at,
+    motion.velocity && known ? flat(unit(motion.velocity)) : undefined,
+    reach,
+    colours.accent,
+    'velocity',
+    colours.sans,
+  );
+  arrow(
+    c,
+    at,
+    motion.lift && known && scene.scenery === 'entry' ? flat(motion.lift) : undefined,
+    reach,
+    colours.text,
+    'lift',
+    colours.sans,
+  );
+}
+
+/** The same vehicle hollow, over another picture: as it is predicted. `part`: how far from the left. */
+export const drawOutline = (surface: Surface, scene: Scene, part: number): void => drawBody(surface, scene, part, true);
+
+/** Where the vehicle stands in the picture, and how it is turned. */
+function stand({ width, height }: Surface, { motion, scenery, heading }: Scene, part: number) {
+  const view = VIEWS[scenery];
   const px = Math.min(height, width * 1.15) / view.tall;
-  const ahead: Vector = [Math.sin(scene.heading), 0, -Math.cos(scene.heading)];
+  const ahead: Vector = [Math.sin(heading), 0, -Math.cos(heading)];
   const flat = (v: Vector): [number, number] => [v[0] * ahead[0] + v[2] * ahead[2], -v[1]];
   const down: [number, number] = motion.attitude ? flat(rotated(motion.attitude, [0, 0, 1])) : [0, 1];
   const turn = Math.atan2(down[1], down[0]);
-  const wheels_m = wheelsBelow_m(scene.bridle_m ?? 0);
-  const [x0, y0] = [
-    width / 2 - Math.cos(turn) * view.below * px,
+  const at: [number, number] = [
+    width * part - Math.cos(turn) * view.below * px,
     height * (0.5 - RAISED) - Math.sin(turn) * view.below * px,
   ];
+  return { px, flat, turn, at };
+}
 
-  drawBackground(c, width, height, colours.name === 'light', known ? motion.altitude_m : undefined, () => {
-    const altitude = Math.max(motion.altitude_m ?? Infinity, scene.bridle_m ? wheels_m : 0);
-    return altitude * px < height * 3 ? y0 + altitude * px : undefined;
-  });
-
+function drawBody(surface: Surface, scene: Scene, part: number, isHollow: boolean): void {
+  const { context: c, colours } = surface;
+  const { parts } = scene;
+  const {
+    px,
+    turn,
+    at: [x0, y0],
+  } = stand(surface, scene, part);
   c.save();
   c.translate(x0, y0);
   c.rotate(turn - Math.PI / 2);
@@ -54,7 +94,7 @@ export function drawFlat({ context: c, width, height, colours }: Surface, scene:
     c.beginPath();
     for (const [r, z] of points) c.lineTo(r * px, z * px); // the first one moves there
     c.closePath();
-    const hollow = presence === 'unknown' || !known;
+    const hollow = presence === 'unknown' || isHollow;
     c.setLineDash(hollow ? [4, 4] : []);
     c.strokeStyle = hollow ? colours.dim : colours.edge;
     c.fillStyle = fill;
@@ -139,26 +179,6 @@ export function drawFlat({ context: c, width, height, colours }: Surface, scene:
   for (const [i, mass] of parts.cruiseMasses.entries())
     shape(box(0.12, -0.2 + 0.3 * i, 0.3 * i, 0.2 - AEROSHELL.radius), mass, '#5d6a78');
   c.restore();
-
-  const reach = view.tall * view.arrow * px;
-  arrow(
-    c,
-    [x0, y0],
-    motion.velocity && known ? flat(unit(motion.velocity)) : undefined,
-    reach,
-    colours.accent,
-    'velocity',
-    colours.sans,
-  );
-  arrow(
-    c,
-    [x0, y0],
-    motion.lift && known && scenery === 'entry' ? flat(motion.lift) : undefined,
-    reach,
-    colours.text,
-    'lift',
-    colours.sans,
-  );
 }
 
 function drawBackground(

@@ -15,7 +15,8 @@ const POINTS = 6000; // chosen: live navigation of 50 minutes
 const WINDOW_S = 20; // of the recording: 64 samples a second, within the 2048 that such a channel may hold
 const AT_ONCE = 8; // channels a question
 
-const NAMES: readonly string[] = [
+/** The channels of which the picture is made, besides height and speed. */
+export const NAMES: readonly string[] = [
   ...VEHICLE.attitude,
   ...VEHICLE.position,
   ...VEHICLE.velocity,

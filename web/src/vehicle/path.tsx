@@ -8,6 +8,8 @@ interface Place {
 }
 interface Properties {
   points: readonly (Place & { recorded: boolean })[];
+  /** The path that is expected, dashed. */
+  predicted?: readonly (Place & { recorded: boolean })[];
   /** The newest known place; undefined: not known. */
   now: Place | undefined;
   stale: boolean;
@@ -53,7 +55,7 @@ function lines(points: Properties['points'], reach: number): { recorded: boolean
   return all;
 }
 
-export function Path({ points, now, stale, label }: Properties) {
+export function Path({ points, predicted = [], now, stale, label }: Properties) {
   const reach = reachOf(now);
   const bar = scaleBar_m(reach);
   const x = (m: number) => (m / reach) * HALF;
@@ -69,6 +71,9 @@ export function Path({ points, now, stale, label }: Properties) {
       <circle r={x(bar)} class="path-ring" />
       <circle r={x(2 * bar)} class="path-ring" />
       <path d="M-6 0H6M0-6V6" class="path-target" />
+      {lines(predicted, reach).map(({ d }, i) => (
+        <path key={i} d={d} class="path-predicted" />
+      ))}
       {lines(points, reach).map(({ recorded, d }, i) => (
         <path key={i} d={d} class={recorded ? 'path-recorded' : 'path-live'} />
       ))}

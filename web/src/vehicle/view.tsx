@@ -2,20 +2,23 @@
 // The vehicle as it is known: a picture, the same facts as text, and its path from above.
 import { signal } from '@preact/signals';
 import { useEffect, useLayoutEffect, useRef } from 'preact/hooks';
-import { STATUS } from '../design/status';
+import { PREDICTED, STATUS } from '../design/status';
 import { Canvas, grownBy } from '../draw/canvas';
 import { onDraw } from '../draw/loop';
 import { palette } from '../draw/palette';
+import { isPredicted, predictedVersion } from '../prediction/model';
 import { isLost } from '../run/connection';
 import { asHeard, cutoff, dictionary, pastRange, runNow, shownRun, timepoints } from '../run/shown';
+import { fromEntry } from '../run/time';
 import { resultShown, touchedDown } from '../touchdown/shown';
 import { Touchdown } from '../touchdown/view';
-import { drawFlat } from './flat';
+import { drawFlat, drawOutline } from './flat';
 import { useHistory } from './history';
 import type { FromPicture, ToPicture } from './messages';
 import { missingOf, motionOf, pathOf, sceneOf, staleOf, targetOf } from './model';
 import type { Look } from './model';
 import { Path } from './path';
+import { predictedLook, predictedTouchdown } from './predicted';
 import { channelOf, figuresOf, rowsOf } from './rows';
 import './style.css';
 
@@ -118,17 +121,48 @@ const menuOf = (look: Look, name: string): string | undefined => {
   const channel = channelOf(look.words, name);
   return channel && `channel ${channel}`;
 };
+/** Whether the predicted vehicle is drawn; undefined: while what is told is old. */
+const outlineChosen = signal<boolean | undefined>(undefined);
+const showsOutline = (look: Look): boolean => outlineChosen.value ?? staleOf(look) !== undefined;
+const BESIDE = 0.82; // of the width, where there is a reported vehicle in the middle
+
+/** The predicted vehicle, hollow, over the picture of the reported one. */
+function Predicted({ look, part }: { look: Look; part: number }) {
+  return (
+    <div class="vehicle-predicted">
+      <Canvas
+        label="The vehicle as it is predicted, hollow"
+        testId="vehicle-predicted"
+        keyOf={() => `${keyNow()} ${predictedVersion.value} ${look.cutoff} ${part}`}
+        draw={(surface) => {
+          const scene = sceneOf(look);
+          const reported = lookNow();
+          if (scene.motion.attitude)
+            drawOutline(surface, reported ? { ...scene, heading: sceneOf(reported).heading } : scene, part);
+        }}
+      />
+    </div>
+  );
+}
 
 function Stage({ look }: { look: Look }) {
   const scene = sceneOf(look);
   const stale = staleOf(look);
   const missing = missingOf(scene);
   const empty = scene.parts.descentStage === 'unknown';
+  const predicted = showsOutline(look) ? predictedLook(look) : undefined;
+  const expected = predicted && figuresOf(predicted, motionOf(predicted));
   return (
     <div class={`vehicle-stage ${stale ? 'is-old' : ''}`} data-testid="vehicle-stage" data-scenery={scene.scenery}>
       {!empty && (renderer.value.kind === 'flat' ? <Flat /> : <Space />)}
+      {predicted && <Predicted look={predicted} part={empty ? 0.5 : BESIDE} />}
       <ul class="vehicle-said" data-testid="vehicle-said">
         {stale && <li>{`${STATUS.stale.shape} as last heard, ${stale.replace(STATUS.stale.shape, '').trim()} ago`}</li>}
+        {predicted && (
+          <li data-testid="vehicle-predicted-words">
+            {PREDICTED.shape} dashed: as predicted for {fromEntry(predicted.cutoff - predicted.run.entrySclk)}
+          </li>
+        )}
         {missing.map((words) => (
           <li key={words}>
             {STATUS.unknown.shape} {words}
@@ -136,12 +170,15 @@ function Stage({ look }: { look: Look }) {
         ))}
       </ul>
       <dl class="vehicle-figures" data-testid="vehicle-figures">
-        {figuresOf(look, scene.motion).map(({ name, value, unit, note, age }) => (
+        {figuresOf(look, scene.motion).map(({ name, value, unit, note, age }, i) => (
           <div key={name} class={age ? 'old' : ''} data-menu={menuOf(look, name)}>
             <dt>{unit === '' ? name : `${name}, ${unit}`}</dt>
             <dd>
               <output>{value}</output>
-              <small>{age ?? note}</small>
+              <small>
+                {age ?? note}
+                {unit !== '' && expected?.[i] && ` predicted ${expected[i].value} ${expected[i].unit}`}
+              </small>
             </dd>
           </div>
         ))}
@@ -153,6 +190,7 @@ function Stage({ look }: { look: Look }) {
 function Facts({ look }: { look: Look }) {
   const motion = motionOf(look);
   const stale = staleOf(look) !== undefined;
+  const expected = predictedLook(look);
   return (
     <div
       class="vehicle-facts table-scroll"
@@ -172,7 +210,13 @@ function Facts({ look }: { look: Look }) {
         </tbody>
       </table>
       <figure>
-        <Path points={pathOf(look)} now={motion.over} stale={stale} label="Path from above" />
+        <Path
+          points={pathOf(look)}
+          predicted={expected ? pathOf({ ...expected, cutoff: predictedTouchdown(look) }) : []}
+          now={motion.over}
+          stale={stale}
+          label="Path from above"
+        />
         <figcaption>
           {targetOf(look.run) ? '' : 'No target is known: the middle is where it is. '}
           Path over ground by navigation on board. No ellipse: the server gives none for this run. The ground in the
@@ -210,6 +254,17 @@ export function Vehicle() {
             data-testid="vehicle-renderer-choice"
           >
             {renderer.value.kind === 'flat' ? 'draw it in 3-D' : 'draw it flat'}
+          </button>
+        )}
+        {!result && (
+          <button
+            type="button"
+            disabled={!isPredicted()}
+            aria-pressed={isPredicted() && showsOutline(look)}
+            onClick={() => (outlineChosen.value = !showsOutline(look))}
+            data-testid="vehicle-outline"
+          >
+            {PREDICTED.shape} predicted
           </button>
         )}
         <button type="button" onClick={() => void box.current?.requestFullscreen?.().catch(() => undefined)}>

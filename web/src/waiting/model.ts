@@ -144,7 +144,7 @@ export function waitingFor(
   }
   const { main, first } = waited;
   const lastWas = last && heard.get(last.id);
-  const moment = momentsOf(store, dictionary, plan, cutoff).find((each) => !each.done && each.before === main.name);
+  const moment = momentsOf(store, plan, cutoff).find((each) => !each.done && each.before === main.name);
   return {
     kind: 'waiting',
     title: `Waiting for ${inWords((moment ?? main).name)}`,

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is predicted, drawn faint under the samples of a plot: the line of the nominal flight, and ahead of now the
+// silences and the moments that come.
+import type uPlot from 'uplot';
+import { TYPE } from '../design/type';
+import { palette } from '../draw/palette';
+import type { DictionaryChannel } from '../gen/aeolis/v1/run_pb';
+import { predictedAt, windowWords, windowsOf } from '../prediction/model';
+import type { Series } from '../run/series';
+import { fromEntry } from '../run/time';
+import { isImportant, shortTitle } from '../timeline/model';
+import { predicted } from '../timeline/now';
+
+const DASH = [2, 4]; // of the line; in pixels
+const EDGE_DASH = [4, 4];
+const RADIUS = 3.5;
+const TICK = 5;
+const FAINT = 0.75;
+
+export interface PredictedLine {
+  channel: DictionaryChannel;
+  series: Series;
+  entry_sclk: number;
+  per: number;
+  gap_s: number;
+  now_e_s: number;
+}
+
+/** The least and the largest predicted value between two times, as plotted. */
+export function predictedBounds(
+  { series, entry_sclk, per }: PredictedLine,
+  from_e_s: number,
+  to_e_s: number,
+): [number, number] | undefined {
+  let [low, high] = [Infinity, -Infinity];
+  const end = series.firstAfter(entry_sclk + to_e_s);
+  for (let i = series.firstAfter(entry_sclk + from_e_s); i < end; ++i) {
+    const value = (series.value[i] as number) / per;
+    if (value < low) low = value;
+    if (value > high) high = value;
+  }
+  return low > high ? undefined : [low, high];
+}
+
+/** The number of predicted samples after now, for observers that cannot see a canvas. */
+export const samplesAhead = ({ series, entry_sclk, now_e_s }: PredictedLine, to_e_s: number): number =>
+  Math.max(0, series.firstAfter(entry_sclk + to_e_s) - series.firstAfter(entry_sclk + now_e_s));
+
+/** Draws the predicted line, and a hollow dot on it for now; of a difference the line is zero. */
+export function drawPredictedLine(plot: uPlot, line: PredictedLine, isDifference: boolean): void {
+  const { ctx } = plot;
+  const { left, top, width, height } = plot.bbox;
+  const { min: from, max: to } = plot.scales.x ?? {};
+  if (from === undefined || to === undefined) return;
+  const ratio = window.devicePixelRatio || 1;
+  const colours = palette();
+  const x = (e_s: number) => plot.valToPos(e_s, 'x', true);
+  const y = (value: number) => plot.valToPos(value, 'y', true);
+  ctx.save();
+  ctx.beginPath();
+  ctx.rect(left, top, width, height);
+  ctx.clip();
+  ctx.strokeStyle = colours.dim;
+  ctx.globalAlpha = FAINT;
+  ctx.lineWidth = ratio;
+  ctx.setLineDash(DASH.map((each) => each * ratio));
+  ctx.beginPath();
+  if (isDifference) {
+    ctx.moveTo(left, y(0));
+    ctx.lineTo(left + width, y(0));
+    ctx.stroke();
+    ctx.restore();
+    return;
+  }
+  const { series, entry_sclk, per, gap_s, channel, now_e_s } = line;
+  const end = Math.min(series.length, series.firstAfter(entry_sclk + to) + 1);
+  let before = -Infinity;
+  for (let i = Math.max(0, series.firstAfter(entry_sclk + from) - 1); i < end; ++i) {
+    const e_s = (series.sclk[i] as number) - entry_sclk;
+    const [px, py] = [x(e_s), y((series.value[i] as number) / per)];
+    if (e_s - before > gap_s) ctx.moveTo(px, py);
+    else ctx.lineTo(px, py);
+    before = e_s;
+  }
+  ctx.stroke();
+  const now = predictedAt(channel, series, entry_sclk + now_e_s, gap_s);
+  if (now !== undefined) {
+    ctx.setLineDash([]);
+    ctx.globalAlpha = 1;
+    ctx.beginPath();
+    ctx.arc(x(now_e_s), y(now / per), RADIUS * ratio, 0, 7);
+    ctx.stroke();
+  }
+  ctx.restore();
+}
+
+/** Draws what is predicted after now: silences of UHF as hollow boxes, and ticks for moments, the next one named. */
+export function drawAhead(plot: uPlot, now_e_s: number): void {
+  const { ctx } = plot;
+  const { left, top, width, height } = plot.bbox;
+  const [right, bottom] = [left + width, top + height];
+  const { min: from = 0, max: to = 0 } = plot.scales.x ?? {};
+  const ratio = window.devicePixelRatio || 1;
+  const colours = palette();
+  const x = (e_s: number) => plot.valToPos(e_s, 'x', true);
+  ctx.save();
+  ctx.beginPath();
+  ctx.rect(left, top, width, height);
+  ctx.clip();
+  ctx.font = `${TYPE.mark * ratio}px ${colours.sans}`;
+  ctx.fillStyle = ctx.strokeStyle = colours.dim;
+  ctx.lineWidth = ratio;
+  ctx.textAlign = 'center';
+  ctx.textBaseline = 'bottom';
+  for (const silence of windowsOf('silence', 'uhf_live')) {
+    const end = silence.toES ?? Infinity;
+    if (end < now_e_s || silence.fromES > to || end < from) continue;
+    const [x1, x2] = [Math.max(left, x(Math.max(silence.fromES, now_e_s))), Math.min(right, x(Math.min(end, to)))];
+    if (end - silence.fromES < 1) {
+      ctx.fillRect(Math.round(x1), bottom - TICK * ratio, ratio, TICK * ratio); // as short as a hand-over
+      continue;
+    }
+    ctx.setLineDash(EDGE_DASH.map((each) => each * ratio));
+    ctx.globalAlpha = FAINT;
+    ctx.beginPath();
+    for (const [e_s, px] of [
+      [silence.fromES, x1],
+      [end, x2],
+    ] as const) {
+      if (e_s <= now_e_s || e_s > to) continue;
+      ctx.moveTo(px, top);
+      ctx.lineTo(px, bottom);
+    }
+    ctx.stroke();
+    const words = windowWords(silence).find((each) => ctx.measureText(each).width + 8 * ratio <= x2 - x1);
+    if (words !== undefined) ctx.fillText(words, (x1 + x2) / 2, bottom - 4 * ratio);
+  }
+  ctx.setLineDash([]);
+  ctx.textBaseline = 'top';
+  const coming = predicted.value
+    .filter(({ name, e_s, fired }) => !fired && e_s > now_e_s && e_s <= to && isImportant(name))
+    .sort((one, other) => one.e_s - other.e_s);
+  for (const { e_s } of coming) {
+    ctx.globalAlpha = FAINT;
+    ctx.fillRect(Math.round(x(e_s)), top, ratio, TICK * ratio);
+  }
+  const next = coming[0];
+  const words = next ? `${shortTitle(next.name)} ${fromEntry(next.e_s)}` : '';
+  const half = ctx.measureText(words).width / 2;
+  if (next && 2 * half < width) {
+    const at = Math.max(left + half + 2, Math.min(right - half - 2, x(next.e_s)));
+    ctx.globalAlpha = 1;
+    ctx.strokeStyle = colours.panel; // an outline against the lines behind it
+    ctx.lineWidth = 3 * ratio;
+    ctx.lineJoin = 'round';
+    ctx.strokeText(words, at, top + (TICK + 1) * ratio);
+    ctx.fillText(words, at, top + (TICK + 1) * ratio);
+  }
+  ctx.restore();
+}
