@@ -62,6 +62,6 @@ export type Verdict = keyof typeof VERDICTS;
 export const SOURCES = {
   plan: { shape: '○', token: 'dim', word: 'plan' },
   tone: { shape: '■', token: 'by-tone', word: 'by tone' },
-  uhf: { shape: '◆', token: 'by-uhf', word: 'by UHF, live' },
+  uhf: { shape: '◆', token: 'by-uhf', word: 'by telemetry, live' },
   recording: { shape: '▣', token: 'by-recording', word: 'by recording' },
 } as const;
