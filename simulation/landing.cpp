@@ -9,6 +9,7 @@
 #include "simulation/links/error_bursts.hpp"
 #include "simulation/links/in_flight.hpp"
 #include "simulation/links/orbiter_pass.hpp"
+#include "simulation/links/transmitter.hpp"
 #include "simulation/links/uhf_link.hpp"
 #include "simulation/links/x_band_link.hpp"
 #include "simulation/mars/earth.hpp"
@@ -84,6 +85,7 @@ struct Landing::State {
     flight::OctetBuffer<16384> radiated;  // by either computer in this cycle
     Recorder recorder;
     UhfLink uhf;
+    Transmitter x_band_telemetry;
     XBandLink x_band;
     std::vector<OrbiterPass> passes;
     RelayRadio relay_radio;
@@ -99,7 +101,7 @@ struct Landing::State {
     InFlight<LinkTruth> links;
     InFlight<std::vector<std::uint8_t>> forwards;
     LinkTeller uhf_told{.link = telemetry::uhf_live_link}, x_band_told{.link = telemetry::x_band_link},
-        relay_told{.link = telemetry::relay_link};
+        x_band_telemetry_told{.link = telemetry::x_band_telemetry_link}, relay_told{.link = telemetry::relay_link};
     std::vector<StoredLinks> stored_told;  ///< one a pass
     InFlight<telemetry::ReceivedOctets> octets;
     std::vector<LinkTruth> at_station;   ///< each link's latest state that has reached Earth
@@ -118,6 +120,7 @@ struct Landing::State {
           std::vector<EventReportName> names, const std::optional<ClockCorrelation>& known_clock)
         : scenario(s), clock(known_clock.value_or(clock_of_scenario(s))), reports(std::move(names)),
           world(s, seed_in, case_number_in), computers(load, world.sclk()), uhf(s.radio),
+          x_band_telemetry(s.radio.uhf_rate_bps),
           x_band(s.radio, Random{seed_in, links_case(s, case_number_in), Stream::x_band}),
           passes(passes_of(s, seed_in, links_case(s, case_number_in))), relay_radio(s.radio.light_time_s),
           light_time_us(microseconds(s.radio.light_time_s)),
@@ -157,7 +160,10 @@ struct Landing::State {
     /// The commands of this cycle that go out on the buses; null: nobody runs them.
     const flight::DeviceOutputs* run_computers(bool skipped);
     const flight::DeviceOutputs* run_gnc_alone();
+    /// Sends telemetry by X-band while that is its mode and its antenna for it is there, then by UHF; never by both. The
+    /// other carries idle frames, which bring no octets. X-band ends the frame under way before it goes over to tones.
     void radiate(std::span<const std::uint8_t> pltus, std::int64_t cycle_start_us);
+    void radiate_by_x_band(std::int64_t cycle_start_us);
     void receive_tone(std::optional<ToneId> sent, std::int64_t cycle_start_us);
     void relay_recording(std::int64_t cycle_start_us);
     /// Sends octets that leave Mars with this cycle.
@@ -266,7 +272,11 @@ const flight::DeviceOutputs* Landing::State::run_gnc_alone() {
 
 void Landing::State::radiate(std::span<const std::uint8_t> pltus, std::int64_t cycle_start_us) {
     const TruthState truth = world.truth();
-    uhf.offer(pltus);
+    if (world.cruise_stage_on() && !world.x_band_sends_tones())
+        (void)x_band_telemetry.offer(pltus);
+    else
+        uhf.offer(pltus);
+    radiate_by_x_band(cycle_start_us);
     const auto left = uhf.cycle(
         {truth.e_s, truth.altitude_m, truth.speed_mps, computer_on && world.uhf_on(), world.parachute_antenna_on()});
     OrbiterPass* live = first_in_view(false);
@@ -280,6 +290,17 @@ void Landing::State::radiate(std::span<const std::uint8_t> pltus, std::int64_t c
          : uhf.up() && !up                  ? "no orbiter in view"
                                             : uhf.reason(),
          cycle_start_us);
+}
+
+/// At UHF's rate, without losses, and Earth hears it whenever it is above the horizon: our assumptions, as the cruise
+/// stage's antenna points at Earth.
+void Landing::State::radiate_by_x_band(std::int64_t cycle_start_us) {
+    const bool sends =
+        computer_on && world.cruise_stage_on() && (!world.x_band_sends_tones() || !x_band_telemetry.idle());
+    const bool up = sends && world.earth_view().up;
+    const auto left = x_band_telemetry.cycle();
+    if (up) send_octets(telemetry::x_band_telemetry_link, left, cycle_start_us);
+    tell(x_band_telemetry_told, up, up ? "nominal" : sends ? "Earth set" : "not switched on", cycle_start_us);
 }
 
 void Landing::State::send_octets(const telemetry::Link& link, std::span<const std::uint8_t> what,
@@ -318,7 +339,11 @@ void Landing::State::receive_tone(std::optional<ToneId> sent, std::int64_t cycle
     const TruthState truth = world.truth();
     const double range_rate_mps = earth_range_rate_mps(vector3(truth.p_MoB_M_m), vector3(truth.v_MB_M_mps), truth.e_s);
     const double doppler_hz = -range_rate_mps / light_mps * x_band_hz;
-    const World::EarthView earth = world.earth_view();
+    World::EarthView earth = world.earth_view();
+    if (!world.x_band_sends_tones() || !x_band_telemetry.idle()) {
+        sent.reset();
+        earth.gain.reset();  // left out: the carrier of telemetry, which the tones' receiver is not set to
+    }
     const auto ended = x_band.cycle(sent, {truth.sclk, truth.e_s, doppler_hz, earth.up, earth.gain});
     if (tones_from_samples()) {
         XBandField field;
@@ -485,7 +510,8 @@ const CycleReport& Landing::step() {
         s.fly();
     } else {
         ++s.ticks_without_computer;
-        for (LinkTeller* told : {&s.uhf_told, &s.x_band_told})  // the transmitters have no driver any more
+        for (LinkTeller* told :
+             {&s.uhf_told, &s.x_band_told, &s.x_band_telemetry_told})  // the transmitters have no driver any more
             if (told->up) s.tell(*told, false, "computer off", cycle_start_us);
     }
     s.relay_recording(cycle_start_us);

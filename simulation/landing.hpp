@@ -95,7 +95,7 @@ struct TouchdownReport {
 struct CycleReport {
     int ticks_skipped = 0;                   ///< lost in it beyond its own; nil except with a venue's real-time clock
     std::span<const std::uint8_t> recorded;  ///< whole packets appended to NVM in this cycle
-    std::span<const std::uint8_t> radiated;  ///< PLTUs given to the UHF transmitter
+    std::span<const std::uint8_t> radiated;  ///< PLTUs given to the radio
     telemetry::Downlink earth;               ///< reaches Earth by the end of this cycle: all that ground is given
     std::vector<XBandField> x_band;          ///< arrives instead of decisions when tones are samples
     std::vector<SentSymbol> symbols;         ///< whose end arrives in this cycle

@@ -446,6 +446,12 @@ bool World::uhf_on() const {
 bool World::parachute_antenna_on() const {
     return state_->buses.parachute_antenna_on();
 }
+bool World::x_band_sends_tones() const {
+    return state_->buses.x_band_sends_tones();
+}
+bool World::cruise_stage_on() const {
+    return state_->vehicle.configuration().cruise_stage;
+}
 World::EarthView World::earth_view() const {
     const State& s = *state_;
     const double e_s = s.sclk() - s.scenario.entry_sclk;

@@ -84,6 +84,8 @@ class World {
     const NavigationSolution& solution() const;
     bool uhf_on() const;                ///< the selected transmitter radiates through an antenna
     bool parachute_antenna_on() const;  ///< false: the entry antenna
+    bool x_band_sends_tones() const;    ///< commanded to; false: to send telemetry, through the cruise stage's antenna
+    bool cruise_stage_on() const;
     /// The X-band path to Earth: whether it is above the terrain, and the gain of the selected antenna (none: none
     /// selected).
     struct EarthView {

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 // The port: everything that reaches a station on Earth, simulated or real. A rehearsal's landing and another mission's
@@ -18,14 +19,20 @@ namespace aeolis::telemetry {
 /// A link to Earth, by name.
 ///
 /// "uhf_live" is through a bent pipe, "uhf_<orbiter>" recorded by one; "relay" and "relay_<orbiter>" are the same for
-/// files after landing; "x_band"; "downlink" of another mission.
+/// files after landing; "x_band_telemetry" and, after it, "x_band" with tones come straight to Earth; "downlink" of
+/// another mission.
 struct Link {
     std::string name;
     bool recorded = false;  ///< it delivers the recording; false: what was sent live, however late
     bool operator==(const Link&) const = default;
 };
 inline const Link uhf_live_link{"uhf_live", false}, relay_link{"relay", true}, x_band_link{"x_band", false},
-    downlink_link{"downlink", false};
+    x_band_telemetry_link{"x_band_telemetry", false}, downlink_link{"downlink", false};
+
+/// Whether a link brings telemetry the moment that it reaches Earth.
+inline bool is_live_telemetry(std::string_view link) {
+    return link == uhf_live_link.name || link == x_band_telemetry_link.name || link == downlink_link.name;
+}
 
 /// Octets of a link, in order, not yet decoded.
 struct ReceivedOctets {

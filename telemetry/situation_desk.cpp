@@ -42,7 +42,7 @@ constexpr std::array<Follower, 9> followers{{{"FAULT_PROTECTION_INHIBITS_EDL", "
                                              {"FATAL_CHECK_FAILED", "COMPUTER_STARTED"},
                                              {"fault_inhibit", "fault_inhibit_over"},
                                              {"check_failed", "computer_started"}}};
-/// Tones of what went wrong. They are news where UHF does not tell the same with more words.
+/// Tones of what went wrong. They are news where telemetry does not tell the same with more words.
 constexpr std::array<std::string_view, 14> bad_tones{
     "check_failed", "fault_inhibit",   "command_refused", "action_unverified",   "action_refused",
     "action_held",  "recording_fault", "overrun",         "constraint_violated", "radar_lost",
@@ -70,6 +70,7 @@ std::string capitalised(std::string text) {
 std::string title_of(std::string_view link) {
     if (link == uhf_live_link.name) return "UHF";
     if (link == x_band_link.name) return "X-band";
+    if (link == x_band_telemetry_link.name) return "X-band telemetry";
     if (link == relay_link.name) return "Relay";
     if (link == downlink_link.name) return "Downlink";
     if (link.starts_with("uhf_")) return "UHF by " + capitalised(std::string(link.substr(4)));
@@ -154,6 +155,11 @@ void SituationDesk::follow(std::string_view subject) {
 bool SituationDesk::up(std::string_view link) const {
     const auto found = links_.find(link);
     return found != links_.end() && found->second.up;
+}
+
+bool SituationDesk::telemetry_comes() const {
+    return std::ranges::any_of(links_,
+                               [](const auto& link) { return link.second.up && is_live_telemetry(link.first); });
 }
 
 bool SituationDesk::anything_up() const {
@@ -267,7 +273,7 @@ void SituationDesk::tone(ToneId tone, double likelihood, Sclk start, const Origi
     }
     for (const auto& follower : followers)
         if (follower.by == name) follow(fmt::format("tone {}", follower.news));
-    if (up(uhf_live_link.name) || std::ranges::find(bad_tones, name) == bad_tones.end()) return;
+    if (telemetry_comes() || std::ranges::find(bad_tones, name) == bad_tones.end()) return;
     add_news({name == fatal_tone ? SituationRank::danger : SituationRank::news,
               fmt::format("tone {}", name),
               fmt::format("{}, by tone: {}", when(at), row.meaning),
@@ -390,7 +396,7 @@ void SituationDesk::add_links(Entries& all, Ert now, bool not_heard) const {
         }
         if (link.lost_since)
             add_lost(all, name, link);
-        else if (!not_heard && (name == uhf_live_link.name || name == x_band_link.name || name == downlink_link.name))
+        else if (!not_heard && (is_live_telemetry(name) || name == x_band_link.name))
             add_silent(all, name, link, now);
     }
 }
@@ -398,7 +404,10 @@ void SituationDesk::add_links(Entries& all, Ert now, bool not_heard) const {
 void SituationDesk::add_lost(Entries& all, const std::string& name, const LinkRow& link) const {
     const std::string title = title_of(name);
     SituationEntry entry{SituationRank::news, name, {}, "link " + name, link.lost_seq, *link.lost_since, {}};
-    if (link.outlasted && link.outlasted_until) {
+    if (link.outlasted == SilenceClass::not_begun && link.outlasted_until) {
+        entry.sentence = fmt::format("{} not heard: due since {}{}", name == x_band_link.name ? "X-band tones" : title,
+                                     when(*link.outlasted_until), begun_ ? "" : "; “Do EDL” is not confirmed");
+    } else if (link.outlasted && link.outlasted_until) {
         entry.sentence = fmt::format("{} silent since {}, longer than predicted ({} until {})", title, when(link.since),
                                      name_of(*link.outlasted), when(*link.outlasted_until));
         entry.awaited = title + " back";
@@ -414,7 +423,7 @@ void SituationDesk::add_lost(Entries& all, const std::string& name, const LinkRo
 }
 
 void SituationDesk::add_silent(Entries& all, const std::string& name, const LinkRow& link, Ert now) const {
-    if (!link.silence || is_over(*link.silence)) return;
+    if (!link.silence || is_over(*link.silence) || *link.silence == SilenceClass::not_begun) return;
     const std::string title = title_of(name);
     const bool uhf = name == uhf_live_link.name;
     if (*link.silence == SilenceClass::light_time) {
@@ -428,7 +437,7 @@ void SituationDesk::add_silent(Entries& all, const std::string& name, const Link
     entry.sentence = fmt::format("{} silent: {}{}{}{}", title, name_of(*link.silence), link.words.empty() ? "" : ", ",
                                  link.words, uhf && tones_come() ? "; tones still come" : "");
     const bool other_tells =
-        uhf ? tones_come() && link.until && seconds_from(now, *link.until) > orbiter_soon_s : up(uhf_live_link.name);
+        telemetry_comes() || (uhf && tones_come() && link.until && seconds_from(now, *link.until) > orbiter_soon_s);
     if (other_tells) entry.rank = SituationRank::calm;  // the landing is followed by the other link
     if (link.until) {
         entry.awaited = *link.silence == SilenceClass::orbiter_records ? "delivery" : title + " back";
@@ -443,7 +452,7 @@ bool SituationDesk::add_not_heard(Entries& all, Ert now) const {
     const LinkRow* next = nullptr;
     bool lost = links_.empty(), down = false;
     for (const auto& [name, link] : links_) {
-        down = down || name == uhf_live_link.name || name == x_band_link.name;
+        down = down || name == uhf_live_link.name || name == x_band_telemetry_link.name || name == x_band_link.name;
         lost = lost || link.lost_since || link.station;
         if (link.lost_since || link.station) continue;  // what was predicted for it no longer holds
         if (link.until && (next == nullptr || *link.until < *next->until)) next = &link;
@@ -505,7 +514,7 @@ void SituationDesk::add_waiting(Entries& all, Ert now) const {
         all.push_back(std::move(entry));
         return;
     }
-    const bool live = up(uhf_live_link.name);
+    const bool live = telemetry_comes();
     const auto next = timeline_.next(live ? 0 : tone_sure);
     const bool only_recording = up(relay_link.name) && !live && !tones_come();
     if (next && !only_recording)
@@ -523,7 +532,7 @@ void SituationDesk::add_step(Entries& all, std::size_t next, Ert now) const {
                          0,
                          last_change(),
                          {}};
-    const bool live = up(uhf_live_link.name);
+    const bool live = telemetry_comes();
     if (const auto e_s = timeline_.predicted_e_s(next); e_s && !offsets_changed_) {
         entry.awaited = in_words(row.name);
         entry.at = seen(*clocks_.entry + *e_s);

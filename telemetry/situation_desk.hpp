@@ -31,7 +31,7 @@ class SituationDesk {
   public:
     static constexpr std::size_t entries_max = 12;  ///< chosen: more is a list of alarms, which has its own panel
     static constexpr std::size_t news_max = 32;     ///< chosen: kept at once; the oldest are dropped first
-    static constexpr double uhf_late_s = 5.0;       ///< chosen: over UHF a step may be told this much after it
+    static constexpr double uhf_late_s = 5.0;       ///< chosen: over telemetry a step may be told this much after it
     static constexpr double tone_late_s = 25.0;     ///< a symbol under way, one of its own, and its decision
     static constexpr int tone_sure = 80;            ///< chosen: a tone of less priority may be dropped for others
     static constexpr double tone_believed = 0.9;    ///< chosen: of a decision that a sentence rests on
@@ -104,6 +104,7 @@ class SituationDesk {
     void take_over(std::string_view how, Ert at, const Origin& origin, std::string evidence);
     void touch_down(Ert at, std::string_view how, const Origin& origin, std::string evidence);
     bool up(std::string_view link) const;
+    bool telemetry_comes() const;  ///< live, whichever link brings it
     bool anything_up() const;
     Ert last_change() const;  ///< of a link
     bool tones_come() const { return up("x_band"); }

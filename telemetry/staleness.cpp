@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "telemetry/staleness.hpp"
 
+#include "telemetry/port.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -13,7 +15,7 @@ double seconds_between(Ert from, Ert to) {
 }
 
 bool brings_packets(std::string_view link) {
-    return link.starts_with("uhf") || link == "downlink";
+    return link.starts_with("uhf") || is_live_telemetry(link);
 }
 
 }  // namespace

@@ -58,7 +58,8 @@ class StalenessMonitor {
     explicit StalenessMonitor(const dictionary::Dictionary& dictionary);
 
     void heard(std::size_t packet, Ert ert, std::vector<StalenessChange>& out);
-    /// @param name  "uhf_live", "uhf_<orbiter>", "downlink" bring packets in real time; other links are ignored
+    /// @param name  "uhf_live", "x_band_telemetry", "uhf_<orbiter>", "downlink" bring packets in real time; others are
+    ///              ignored
     void link(std::string_view name, LinkIs is, std::string_view reason, Ert ert, std::vector<StalenessChange>& out);
     /// @param label  of EdlPhase
     void phase(std::string_view label, Ert ert, std::vector<StalenessChange>& out);

@@ -162,11 +162,17 @@ std::string named_value_text(std::string_view name, double value) {
 }
 
 std::string in_words(std::string_view name) {
+    constexpr std::string_view x_band = "x_band";
     std::string words;
     while (!name.empty()) {
-        const std::string_view word = name.substr(0, name.find('_'));
+        const bool band = name == x_band || name.starts_with("x_band_");
+        const std::string_view word = band ? x_band : name.substr(0, name.find('_'));
         name.remove_prefix(std::min(name.size(), word.size() + 1));
         if (!words.empty()) words += ' ';
+        if (band) {
+            words += "X-band";
+            continue;
+        }
         const bool acronym = std::ranges::find(acronyms, word) != acronyms.end();
         for (const char c : word) words += acronym ? static_cast<char>(std::toupper(static_cast<unsigned char>(c))) : c;
     }

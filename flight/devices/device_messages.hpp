@@ -99,11 +99,20 @@ struct PyroReply {
     bool fired = false;
     Unit unit = Unit::a;  ///< the unit that answered
 };
-enum class SwitchId : std::uint8_t { radar, uhf, descent_imu, entry_antenna, parachute_antenna, thruster_heaters };
-inline constexpr std::size_t switch_count = 6;
+enum class SwitchId : std::uint8_t {
+    radar,
+    uhf,
+    descent_imu,
+    entry_antenna,
+    parachute_antenna,
+    thruster_heaters,
+    x_band_tones,  ///< X-band sends tones; off: telemetry
+};
+inline constexpr std::size_t switch_count = 7;
 /// Whether the telecom units hold the switch; the power unit holds the others.
 constexpr bool is_telecom(SwitchId id) {
-    return id == SwitchId::uhf || id == SwitchId::entry_antenna || id == SwitchId::parachute_antenna;
+    return id == SwitchId::uhf || id == SwitchId::entry_antenna || id == SwitchId::parachute_antenna ||
+           id == SwitchId::x_band_tones;
 }
 /// The device whose unit is commanded to switch `id`.
 constexpr Device switched_by(SwitchId id) {
@@ -215,9 +224,9 @@ struct DeviceOutputs {
     ThrusterCommand thrusters;
     EngineCommand engines;
     bool pay_out_bridle = false;
-    std::optional<ToneId> tone;             ///< sent by X-band during this cycle; none: carrier only
+    std::optional<ToneId> tone;  ///< for X-band in this cycle, on the air while it sends tones; none: carrier only
     OctetBuffer<nvm_octets_per_cycle> nvm;  ///< packets to append to the recording, in order
-    OctetBuffer<uhf_octets_per_cycle> uhf;  ///< PLTUs to radiate; their packets are a subset of the recorded ones
+    OctetBuffer<uhf_octets_per_cycle> uhf;  ///< PLTUs to radiate, by X-band in cruise; their packets are recorded too
     StateOctets cross_string;               ///< to the other computer; empty: nothing in this cycle
     StateOctets restart_record;             ///< replaces the stored record; empty: keep that
     std::optional<bool> designate_b_prime;  ///< sets the latch

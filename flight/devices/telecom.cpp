@@ -17,7 +17,8 @@ void TelecomManager::on(const SwitchReply& reply, Outbox& out) {
 void TelecomManager::record(Outbox& out) {
     const packet::TelecomStatus status{.switch_uhf = replies_.state(SwitchId::uhf),
                                        .switch_entry_antenna = replies_.state(SwitchId::entry_antenna),
-                                       .switch_parachute_antenna = replies_.state(SwitchId::parachute_antenna)};
+                                       .switch_parachute_antenna = replies_.state(SwitchId::parachute_antenna),
+                                       .switch_x_band_tones = replies_.state(SwitchId::x_band_tones)};
     if (status != recorded_) out.record(status);
     recorded_ = status;
 }

@@ -6,7 +6,7 @@
 
 namespace aeolis::flight {
 
-/// Manager of telecom settings, on the 8 Hz bus: UHF transmitter, and antenna of UHF and X-band.
+/// Manager of telecom settings, on the 8 Hz bus: UHF transmitter, X-band's mode, and antenna of UHF and X-band.
 /// The X-band unit selects the antenna. Separate from power: power decides whether a box has current, telecom what the
 /// radio does with it. Outside the rate group. R5, R10, R28
 ///

@@ -18,7 +18,7 @@ namespace aeolis::flight {
 ///
 /// In      Record (any module), ImuReadings, RadarReturns, PhaseChanged, NvmStatus, ToneStatus, UplinkStatus,
 ///         ParameterPart, CloseRecording, ClockTick (64 Hz)
-/// Out     packets to NVM, in order; PLTUs with some of them to the UHF transmitter, within its rate; CommStatus at 1
+/// Out     packets to NVM, in order; PLTUs with some of them for the radio, within UHF's rate; CommStatus at 1
 ///         Hz; tables of all readings of IMU and radar; data products
 /// Memory  192 packets wait for the link; RealtimeQueue decides which are dropped. Neither recording nor cycle suffers
 /// Faults  a full link queue is reported once per episode (UHF_QUEUE_FULL), and drops are counted by priority in

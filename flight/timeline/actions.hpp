@@ -87,6 +87,8 @@ inline constexpr std::array actions{
     Action{"select_parachute_antenna", ModuleId::telecom,
            [](ActionContext& on) { on.set_switch(SwitchId::parachute_antenna, true); }},
     Action{"start_uhf", ModuleId::telecom, [](ActionContext& on) { on.set_switch(SwitchId::uhf, true); }},
+    Action{"start_x_band_tones", ModuleId::telecom,
+           [](ActionContext& on) { on.set_switch(SwitchId::x_band_tones, true); }},
     Action{"stop_uhf", ModuleId::telecom, [](ActionContext& on) { on.set_switch(SwitchId::uhf, false); }},
     Action{"close_recording", ModuleId::edl_comm, [](ActionContext& on) { on.close_recording(); }},
 

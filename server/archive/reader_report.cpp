@@ -44,7 +44,7 @@ bool executed_by(const v1::CommandHistory& command, Ert by) {
     });
 }
 
-/// Adds the predictions as of entry interface: from firings received by UHF and changes executed.
+/// Adds the predictions as of entry interface: from firings received live and changes executed.
 void add_predictions(const dictionary::Dictionary& dictionary, const v1::TimepointList& timeline,
                      const v1::CommandList& commands, const v1::RunState& run, v1::AsFlownReport& report) {
     std::optional<dictionary::Dictionary> changed;

@@ -3,6 +3,7 @@
 
 #include "server/archive/path_comparison.hpp"
 #include "telemetry/staleness.hpp"
+#include "telemetry/station/silence_classifier.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -95,12 +96,18 @@ struct Outage {
     double from_s, to_s;
     std::string words;
 };
+/// Whether the plan has the other link bring live telemetry meanwhile: X-band in cruise, UHF from then on.
+bool hands_over(const v1::Silence& silence) {
+    const auto why = telemetry::silence_class(silence.reason());
+    return why == telemetry::SilenceClass::not_begun ||
+           (silence.link() == telemetry::x_band_telemetry_link.name && why == telemetry::SilenceClass::switched_off);
+}
 Result<std::vector<Outage>> live_outages(Reader::State& reader, const RunInfo& run) {
     const auto silences = reader.silences(run.run);
     if (!silences) return silences.error();
     std::vector<Outage> outages;
     for (const v1::Silence& silence : *silences) {
-        if (silence.link() != "uhf_live" && silence.link() != "downlink") continue;
+        if (!telemetry::is_live_telemetry(silence.link()) || hands_over(silence)) continue;
         const double to_e_s = silence.has_to_e_s() ? silence.to_e_s() : std::numeric_limits<double>::infinity();
         outages.push_back({run.entry.seconds + silence.from_e_s(), run.entry.seconds + to_e_s,
                            silence.link() + ": " + silence.reason()});

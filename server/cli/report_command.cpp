@@ -30,7 +30,7 @@ std::string from_entry(bool known, double e_s) {
 
 void print_timepoints(const v1::AsFlownReport& report) {
     fmt::print("\n{:<28}{:>10}{:>10}{:>10}{:>10}{:>10}{:>9}  {}\n", "timepoint", "planned", "predicted", "by tone",
-               "by UHF", "recorded", "margin", "verdict");
+               "live", "recorded", "margin", "verdict");
     for (const auto& row : report.timepoints())
         fmt::print("{:<28}{:>10}{:>10}{:>10}{:>10}{:>10}{:>9}  {}\n", row.name(),
                    from_entry(row.has_planned_e_s(), row.planned_e_s()),
@@ -44,7 +44,7 @@ void print_timepoints(const v1::AsFlownReport& report) {
 }
 
 void print_events(const v1::AsFlownReport& report) {
-    fmt::print("\n{:<30}{:>10}{:>10}{:>10}  {}\n", "event", "predicted", "by UHF", "recorded", "as flight reported it");
+    fmt::print("\n{:<30}{:>10}{:>10}{:>10}  {}\n", "event", "predicted", "live", "recorded", "as flight reported it");
     for (const auto& row : report.events())
         fmt::print("{:<30}{:>10}{:>10}{:>10}  {}\n", row.name(),
                    from_entry(row.has_predicted_e_s(), row.predicted_e_s()),
@@ -153,7 +153,7 @@ int report(const ReportOptions& options) {
 void add_report_command(CLI::App& program, int& exit_code) {
     const auto options = std::make_shared<ReportOptions>();
     auto& command = *program.add_subcommand(
-        "report", "prints a run as it was flown: each timepoint and event by plan, tone, UHF and "
+        "report", "prints a run as it was flown: each timepoint and event by plan, tone, live telemetry and "
                   "recording, the silences, and the proof");
     add_archive_file(command, options->of.archive);
     command.add_option("--dictionary", options->of.shared.dictionary, "directory of the mission's dictionary")

@@ -141,11 +141,17 @@ std::vector<NominalFlight::Window> windows_of(const telemetry::PredictedSilences
     const auto add = [&](const std::string& link, SilenceClass why, double begin_s, std::optional<double> end_s) {
         windows.push_back({false, link, telemetry::name_of(why), begin_s, end_s});
     };
+    if (silences.uhf_start_s) add(live, SilenceClass::not_begun, from_s, silences.uhf_start_s);
+    if (silences.x_band_tones_s) {
+        add(x_band, SilenceClass::not_begun, from_s, silences.x_band_tones_s);
+        add(telemetry::x_band_telemetry_link.name, SilenceClass::switched_off, *silences.x_band_tones_s, {});
+    }
     if (silences.blackout) add(live, SilenceClass::blackout, silences.blackout->from_s, silences.blackout->to_s);
     if (silences.hand_over_s)
         add(live, SilenceClass::hand_over, *silences.hand_over_s, *silences.hand_over_s + hand_over_s);
     if (silences.uhf_stop_s) add(live, SilenceClass::switched_off, *silences.uhf_stop_s, {});
-    if (silences.carrier_weak) add(x_band, SilenceClass::weak_carrier, from_s, silences.earth_set_s);
+    if (silences.carrier_weak)
+        add(x_band, SilenceClass::weak_carrier, silences.x_band_tones_s.value_or(from_s), silences.earth_set_s);
     if (silences.earth_set_s) add(x_band, SilenceClass::earth_set, *silences.earth_set_s, {});
     add_passes(silences, from_s, windows);
     std::ranges::stable_sort(windows, {}, &NominalFlight::Window::from_s);

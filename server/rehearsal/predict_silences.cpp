@@ -86,7 +86,9 @@ telemetry::PredictedSilences predict_silences(const simulation::Scenario& scenar
     PredictedSilences silences;
     silences.blackout = entry.blackout;
     silences.hand_over_s = timepoint_s("select_parachute_antenna");
+    silences.uhf_start_s = timepoint_s("start_uhf");
     silences.uhf_stop_s = timepoint_s("stop_uhf");
+    silences.x_band_tones_s = timepoint_s("start_x_band_tones");
     silences.earth_set_s = earth_set_s(scenario, entry, backshell_s);
     silences.carrier_weak = !simulation::XBandLink::can_lock(scenario.radio.x_band_c_n0_dbhz);
     for (const simulation::RelayPass& pass : scenario.radio.relay_passes)

@@ -147,7 +147,7 @@ void ScriptedLanding::hear(const telemetry::Received& received) {
 }
 
 void ScriptedLanding::receive(const telemetry::ReceivedPacket& packet) {
-    const bool live = packet.link == telemetry::uhf_live_link;
+    const bool live = telemetry::is_live_telemetry(packet.link.name);
     if (!live && !gateway_.awaits_answers() && !progress_.may_close(packet.octets)) return;
     if (decommutator_.decode(packet.octets, decoded_)) return;
     progress_.note(decoded_, live);

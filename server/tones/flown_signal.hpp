@@ -26,7 +26,8 @@ struct FlownSignal {
     std::vector<Outage> outages;
 };
 
-/// Flies the scenario's case with the whole flight software to its end. Doppler starts at `from_before_entry_s`.
+/// Flies the scenario's case with the whole flight software to its end. Doppler starts at `from_before_entry_s`, and
+/// not before X-band sends tones.
 FlownSignal fly_signal(simulation::Scenario scenario, std::uint64_t seed, std::uint64_t case_number,
                        const dictionary::Dictionary& dictionary, double from_before_entry_s = 900.0);
 

@@ -20,7 +20,8 @@ constexpr bool on_64_hz(Device device) {
 Buses::Buses(const Scenario& scenario, std::uint64_t seed, std::uint64_t case_number)
     : bus_64_hz_(1, scenario.bus_message_error_fraction, Random{seed, case_number, Stream::bus_64_hz}),
       bus_8_hz_(8, scenario.bus_message_error_fraction, Random{seed, case_number, Stream::bus_8_hz}),
-      faults_(scenario.device_faults, scenario.entry_sclk), devices_(Random{seed, case_number, Stream::devices}),
+      faults_(scenario.device_faults, scenario.entry_sclk),
+      devices_(scenario.start_before_entry_s, Random{seed, case_number, Stream::devices}),
       imu_link_(seed, case_number, Stream::imu_link) {}
 
 void Buses::disperse(std::uint64_t seed, std::uint64_t case_number) {
@@ -60,7 +61,6 @@ void Buses::take_switches(const flight::SwitchCommands& commands) {
         const Device device = flight::switched_by(wanted.id);
         const flight::Unit switched = wanted.id == SwitchId::radar         ? addressed_[Device::radar]
                                       : wanted.id == SwitchId::descent_imu ? addressed_[Device::imu]
-                                      : wanted.id == SwitchId::uhf         ? addressed_[Device::uhf]
                                                                            : flight::Unit::a;
         bus_8_hz_.queue({.device = device,
                          .unit = addressed_[device],
@@ -153,7 +153,7 @@ void Buses::reply(flight::DeviceInputs& in) const {
 bool Buses::uhf_radiates() const {
     using flight::SwitchId;
     const flight::Unit uhf = addressed_[Device::uhf];
-    return devices_.on(SwitchId::uhf, uhf) &&
+    return devices_.on(SwitchId::uhf) &&
            (devices_.on(SwitchId::entry_antenna) || devices_.on(SwitchId::parachute_antenna)) &&
            !faults_.has(Kind::dropout, Device::uhf, uhf);
 }

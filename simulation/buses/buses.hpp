@@ -48,7 +48,8 @@ class Buses {
     bool engines_were_read() const { return engines_were_read_; }
     bool uhf_radiates() const;
     bool parachute_antenna_on() const { return devices_.on(flight::SwitchId::parachute_antenna); }
-    std::optional<XBandAntenna> x_band_antenna() const;  ///< the one selected
+    bool x_band_sends_tones() const { return devices_.on(flight::SwitchId::x_band_tones); }  ///< false: telemetry
+    std::optional<XBandAntenna> x_band_antenna() const;                                      ///< the one selected
     /// Whether the sample now on the IMU's link arrives.
     bool imu_sample_arrives();
     flight::Unit unit(flight::Device device) const { return addressed_[device]; }

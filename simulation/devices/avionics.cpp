@@ -16,7 +16,8 @@ constexpr std::int64_t switch_ticks(SwitchId id) {
     case SwitchId::uhf: return 32;
     case SwitchId::descent_imu: return 8;
     case SwitchId::entry_antenna:
-    case SwitchId::parachute_antenna: return 6;
+    case SwitchId::parachute_antenna:
+    case SwitchId::x_band_tones: return 6;
     case SwitchId::thruster_heaters: return 4;
     }
     return 1;
@@ -32,6 +33,14 @@ std::int64_t work_ticks(const BusCommand& command) {
 }
 
 }  // namespace
+
+Avionics::Avionics(double start_before_entry_s, Random random) : random_(random) {
+    const auto start_on = [&](SwitchId id) { on_[static_cast<std::size_t>(id)] = {true, true}; };
+    start_on(SwitchId::descent_imu);
+    start_on(SwitchId::entry_antenna);
+    if (start_before_entry_s < uhf_start_before_entry_s) start_on(SwitchId::uhf);
+    if (start_before_entry_s < x_band_tones_before_entry_s) start_on(SwitchId::x_band_tones);
+}
 
 bool Avionics::execute(const BusCommand& command, std::int64_t tick, const DeviceFaults& faults) {
     bool first_firing = false;

@@ -9,12 +9,16 @@ namespace aeolis::simulation {
 /// The devices behind the remote terminals: switch positions, fired pyros, and pending replies.
 ///
 /// A command acts when it reaches its terminal; the reply is ready a fixed time later, plus up to 2 ticks of jitter.
-/// Our assumptions: pyro 2 ticks (31 ms), thrusters 3, heaters 4, antenna 6, IMU 8, radar 12 (0.19 s), UHF 32 (0.5 s);
-/// at start thrusters enabled, both IMUs and UHF transmitters on, entry antenna selected, radar and heaters off. An
-/// antenna that is switched on replaces the other. Both units of a device drive the same hardware.
+/// Our assumptions: pyro 2 ticks (31 ms), thrusters 3, heaters 4, antenna and X-band's mode 6, IMU 8, radar 12
+/// (0.19 s), UHF 32 (0.5 s); at start thrusters enabled, both IMUs on, entry antenna selected, radar and heaters off. An
+/// antenna that is switched on replaces the other. Both units of a device drive the same hardware; one switch powers
+/// the UHF transmitters of both.
+/// UHF is off, and X-band sends telemetry, in a run that starts before the timeline changes that; later runs start as
+/// if it had.
 class Avionics {
   public:
-    explicit Avionics(Random random) : random_(random) {}
+    Avionics(double start_before_entry_s, Random random);
+    static constexpr double uhf_start_before_entry_s = 800.0, x_band_tones_before_entry_s = 750.0;  ///< timeline.csv
 
     /// Draws jitter from `random` from here on.
     void disperse(Random random) { random_ = random; }
@@ -45,10 +49,7 @@ class Avionics {
     Reply obey(const BusCommand& command, bool& first_firing);
     Reply refuse(const BusCommand& command) const;
 
-    // Telemetry flows in cruise: the mission's came over X-band; here UHF stands in for it from the start, so that
-    // ground sees the answers to its commands. Both transmitters are on, and the selected one gets the data. Our
-    // assumption.
-    std::array<std::array<bool, 2>, 6> on_{{{}, {true, true}, {true, true}, {true, true}, {}, {}}};
+    std::array<std::array<bool, 2>, flight::switch_count> on_{};
     std::array<bool, flight::pyro_count> fired_{};
     bool thrusters_enabled_ = true;
     FixedVector<Reply, 64> replies_;

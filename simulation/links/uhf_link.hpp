@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "simulation/links/transmitter.hpp"
 #include "simulation/scenario.hpp"
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
 namespace aeolis::simulation {
 
-/// The vehicle's UHF transmitter during landing: octets leave it at the link's rate.
+/// The vehicle's UHF link during landing: octets leave its transmitter at the link's rate.
 ///
 /// Octets sent in plasma, or while the antenna is switched, are lost. The link knows neither frames nor receivers
 /// (orbiter_pass.hpp).
 ///
-/// Memory   our assumption: 64 KiB of waiting octets; what finds no room is lost and counted
+/// Memory   the transmitter's; what finds no room is counted
 /// Plasma   from below the scenario's altitude or speed of its start, whichever comes first after entry, to its end
 ///          speed
 /// Left out: antenna patterns
@@ -29,10 +29,10 @@ class UhfLink {
         bool parachute_antenna = false;  ///< false: the entry antenna
     };
 
-    explicit UhfLink(const Radio& radio) : radio_(radio) {}
+    explicit UhfLink(const Radio& radio) : radio_(radio), transmitter_(radio.uhf_rate_bps) {}
 
     /// Gives octets to the transmitter at the start of a cycle.
-    void offer(std::span<const std::uint8_t> octets);
+    void offer(std::span<const std::uint8_t> octets) { lost_octets_ += transmitter_.offer(octets); }
 
     /// Runs one cycle of 1/64 s; returns the octets that can be heard, valid until the next call.
     std::span<const std::uint8_t> cycle(const Surroundings& at);
@@ -45,10 +45,9 @@ class UhfLink {
     const char* why_down(const Surroundings& at);
 
     Radio radio_;
-    std::vector<std::uint8_t> waiting_, arrived_;
+    Transmitter transmitter_;
     double hand_over_left_s_ = 0.0;
     bool parachute_antenna_ = false;
-    double credit_octets_ = 0.0;
     bool blackout_over_ = false;
     bool up_ = false;
     const char* reason_ = "not switched on";

@@ -12,9 +12,10 @@
 namespace aeolis::telemetry {
 namespace {
 
-constexpr std::array<std::string_view, 12> class_names{
-    "light time", "switched off",     "plasma blackout", "antenna hand-over",  "no orbiter in view", "orbiter records",
-    "Earth set",  "carrier too weak", "delivered",       "recording complete", "ground fault",       "unexplained"};
+constexpr std::array<std::string_view, 13> class_names{
+    "light time",         "not begun",       "switched off", "plasma blackout",  "antenna hand-over",
+    "no orbiter in view", "orbiter records", "Earth set",    "carrier too weak", "delivered",
+    "recording complete", "ground fault",    "unexplained"};
 static_assert(class_names.size() == static_cast<std::size_t>(SilenceClass::unexplained) + 1);
 
 bool holds(const PredictedSilences::Window& window, double e_s) {
@@ -60,12 +61,14 @@ std::vector<LinkState> SilenceClassifier::tell(const std::vector<LinkState>& cha
     std::vector<LinkState> all;
     if (!std::exchange(begun_, true) && predicted_.light_time_s > 0.0) {
         const Ert first{start_ert_.microseconds + static_cast<std::int64_t>(predicted_.light_time_s * 1e6)};
-        for (const Link& link : {uhf_live_link, x_band_link})
+        for (const Link& link : {uhf_live_link, x_band_telemetry_link, x_band_link}) {
+            if (link == x_band_telemetry_link && !predicted_.x_band_tones_s) continue;
             all.push_back(
                 told(silent_.emplace_back(Silence{link}),
                      {SilenceClass::light_time,
                       "what leaves the vehicle at the start is here at " + day_of_year_text(first), e_s(first)},
                      start_ert_, station));
+        }
     }
     for (const LinkState& change : changes) {
         const auto known = std::ranges::find(silent_, change.link, &Silence::link);
@@ -120,9 +123,17 @@ SilenceClassifier::Explanation SilenceClassifier::explain(const Silence& silence
 SilenceClassifier::Explanation SilenceClassifier::explain_by_link(const Link& link, double e_s,
                                                                   const Station& station) const {
     if (link == x_band_link) return explain_x_band(e_s);
+    if (link == x_band_telemetry_link) return explain_x_band_telemetry(e_s);
     if (link == relay_link) return explain_relay(e_s, station);
     if (link == uhf_live_link) return explain_uhf(e_s);
     return {SilenceClass::delivered, "nothing more comes until the orbiter's next pass"};
+}
+
+/// The explanation before a transmitter is due; none from then on.
+std::optional<SilenceClassifier::Explanation> SilenceClassifier::not_begun(std::string_view words,
+                                                                           std::optional<double> begin_s, double e_s) {
+    if (!begin_s || e_s >= *begin_s + margin_s) return {};
+    return Explanation{SilenceClass::not_begun, fmt::format("{} {}", words, from_entry_text(*begin_s)), begin_s};
 }
 
 /// The explanation by passes; none while a bent pipe is in view.
@@ -149,9 +160,12 @@ std::optional<SilenceClassifier::Explanation> SilenceClassifier::explain_by_pass
 SilenceClassifier::Explanation SilenceClassifier::explain_uhf(double e_s) const {
     const auto& blackout = predicted_.blackout;
     const auto hand_over_s = predicted_.hand_over_s, stop_s = predicted_.uhf_stop_s;
+    const auto begins = not_begun("planned at", predicted_.uhf_start_s, e_s);
+    if (begins && e_s < *predicted_.uhf_start_s) return *begins;
     if (stop_s && e_s >= *stop_s - margin_s)
         return {SilenceClass::switched_off, "planned at " + from_entry_text(*stop_s)};
     if (const auto why = explain_by_passes(e_s)) return *why;
+    if (begins) return *begins;
     if (blackout && holds(*blackout, e_s))
         return {
             SilenceClass::blackout,
@@ -169,10 +183,18 @@ SilenceClassifier::Explanation SilenceClassifier::explain_relay(double e_s, cons
 }
 
 SilenceClassifier::Explanation SilenceClassifier::explain_x_band(double e_s) const {
+    if (const auto why = not_begun("X-band sends telemetry until", predicted_.x_band_tones_s, e_s)) return *why;
     if (predicted_.earth_set_s && e_s >= *predicted_.earth_set_s - margin_s)
         return {SilenceClass::earth_set, "predicted at " + from_entry_text(*predicted_.earth_set_s)};
     if (predicted_.carrier_weak)
         return {SilenceClass::weak_carrier, "the link's budget has it below what a lock needs"};
+    return {SilenceClass::unexplained, "nothing is predicted to silence it now"};
+}
+
+SilenceClassifier::Explanation SilenceClassifier::explain_x_band_telemetry(double e_s) const {
+    const auto tones_s = predicted_.x_band_tones_s;
+    if (tones_s && e_s >= *tones_s - pass_margin_s)
+        return {SilenceClass::switched_off, "X-band sends tones from " + from_entry_text(*tones_s)};
     return {SilenceClass::unexplained, "nothing is predicted to silence it now"};
 }
 

@@ -14,6 +14,7 @@ namespace aeolis::telemetry {
 /// The cause that a link's silence is attributed to.
 enum class SilenceClass : std::uint8_t {
     light_time,    ///< nothing can have arrived yet
+    not_begun,     ///< the plan has yet to switch the transmitter to it
     switched_off,  ///< the plan has switched the transmitter off
     blackout,
     hand_over,        ///< between antennas of the vehicle
@@ -43,9 +44,10 @@ std::optional<SilenceClass> silence_class(std::string_view words);
 /// In       changes of links as they reach Earth (name, up or down), time on Earth
 /// Out      the same changes, with ground's reason and whether the link is lost
 /// Rate     any; each call judges silences anew: when an explanation ends, another replaces it
-/// Margin   a prediction counts for `margin_s` on both sides, since dispersed landings come that much earlier or later
-/// Rules    in this order: the plan's switching, passes, blackout, hand-over; X-band: Earth set, link budget; the
-///          recording: complete, passes. If none holds: the station's fault, or unexplained. A fault of the station
+/// Margin   a prediction counts for `margin_s` on both sides, since dispersed landings come that much earlier or later.
+///          The clock alone ends X-band's telemetry: that counts from `pass_margin_s` before
+/// Rules    in this order: the plan's switching, passes, blackout, hand-over; X-band: the plan's switching, Earth set,
+///          link budget; the recording: complete, passes. If none holds: the station's fault, or unexplained. A fault of the station
 ///          is told beside a prediction too, and the link is then lost: what is predicted excuses no fault
 /// Memory   a row a link
 /// A value, like the landing.
@@ -87,7 +89,9 @@ class SilenceClassifier {
     Explanation explain_uhf(double e_s) const;
     Explanation explain_relay(double e_s, const Station& station) const;
     Explanation explain_x_band(double e_s) const;
+    Explanation explain_x_band_telemetry(double e_s) const;
     std::optional<Explanation> explain_by_passes(double e_s) const;
+    static std::optional<Explanation> not_begun(std::string_view words, std::optional<double> begin_s, double e_s);
     LinkState told(Silence& silence, const Explanation& why, Ert ert, const Station& station) const;
     double e_s(Ert ert) const;
     Ert ert_of(double e_s) const;

@@ -23,6 +23,8 @@ test('two commands by keyboard land it; a reload has all of it; a range can be a
   await waitFor(() => stage(page, 'EDL_SET_PARAMETERS', 'verified'), /ok/); // flight reports its parameters every 8 s
   await shows('waiting', /ype “do edl”/);
   await shows('command-history', /EDL_SET_PARAMETERS #1/);
+  await shows('tone-evidence', /tones have not begun: X-band sends telemetry until E−12:30/);
+  await shows('link-X-band telemetry', /●/);
 
   await waitFor(() => focused(page), /command-line/);
   await page.keyboard.type('do edl');

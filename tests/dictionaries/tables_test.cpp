@@ -27,7 +27,7 @@ TEST_CASE("each broken rule of the spreadsheets gives one line, and nothing is l
         {"offset left empty", "timeline.csv", "-519.40625", "", "'' is neither a number nor undefined"},
         {"dangling reference", "timeline.csv", "gnc_enable,entry", "gnc_enable,exit",
          "reference 'exit' is neither previous nor an anchor"},
-        {"timepoint twice", "timeline.csv", "\ndetumble,", "\ngnc_enable,", "is there twice, first in line 16", 1},
+        {"timepoint twice", "timeline.csv", "\ndetumble,", "\ngnc_enable,", "is there twice, first in line 17", 1},
         {"dangling tone", "timeline.csv", ",yes,no,touchdown,,", ",yes,no,touchup,,", "there is no tone 'touchup'"},
         {"tone of Second Chance", "timeline.csv", ",yes,no,touchdown,,", ",yes,no,sc_touchdown,,",
          "is not one of prime's"},

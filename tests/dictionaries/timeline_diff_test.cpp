@@ -100,11 +100,11 @@ TEST_CASE("two versions are compared row by row: added, removed, moved, and each
     const SheetDiff& timeline = diff.sheets[0];
     CHECK(timeline.file == "timeline.csv");
     CHECK(timeline.rows.size() == 4);
-    CHECK(change_of(timeline, "bogie_release").before == 48);
+    CHECK(change_of(timeline, "bogie_release").before == 49);
     CHECK_FALSE(change_of(timeline, "bogie_release").after);
     CHECK_FALSE(change_of(timeline, "quiet").before);
     REQUIRE(change_of(timeline, "quiet").after);
-    CHECK(*change_of(timeline, "quiet").after == 55);
+    CHECK(*change_of(timeline, "quiet").after == 56);
     CHECK(change_of(timeline, "radar_off").moved);
     CHECK(change_of(timeline, "radar_off").cells.empty());
     const RowChange& changed = change_of(timeline, "gnc_enable");

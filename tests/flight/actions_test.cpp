@@ -58,13 +58,15 @@ TEST_CASE("the timeline powers devices and sets telecom", "[timeline][R28]") {
     action_named<"power_on_radar">().run(f.context);
     action_named<"start_uhf">().run(f.context);
     action_named<"select_entry_antenna">().run(f.context);
+    action_named<"start_x_band_tones">().run(f.context);
     const auto switches = f.recorder.sent<SetSwitch>();
-    REQUIRE(switches.size() == 3);
+    REQUIRE(switches.size() == 4);
     CHECK(switches[0].id == SwitchId::radar);
     CHECK(switches[1].id == SwitchId::uhf);
     CHECK(switches[2].id == SwitchId::entry_antenna);
+    CHECK(switches[3].id == SwitchId::x_band_tones);
     CHECK(f.context.awaited() ==
-          ActionReply{ReplyKind::device_switch, static_cast<std::uint8_t>(SwitchId::entry_antenna), Evidence::none});
+          ActionReply{ReplyKind::device_switch, static_cast<std::uint8_t>(SwitchId::x_band_tones), Evidence::none});
 }
 
 }  // namespace flight_actions_test

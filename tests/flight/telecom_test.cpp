@@ -27,6 +27,8 @@ TEST_CASE("UHF and X-band are addressed each by its own selected unit", "[device
     CHECK(telecom.recorder.bus->units[Device::x_band] == Unit::b);
     telecom.on(SetSwitch{SwitchId::uhf, true});
     telecom.on(SetSwitch{SwitchId::entry_antenna, true});
+    telecom.on(SetSwitch{SwitchId::x_band_tones, true});
+    CHECK(telecom.on(SwitchReply{SwitchId::x_band_tones, true, Unit::b}).sent<ActionReply>().size() == 1);
     CHECK(telecom.on(SwitchReply{SwitchId::entry_antenna, true, Unit::a}).events<evr::REPLY_UNEXPECTED>() == 1);
     CHECK(telecom.on(SwitchReply{SwitchId::entry_antenna, true, Unit::b}).sent<ActionReply>().size() == 1);
     CHECK(telecom.on(SwitchReply{SwitchId::uhf, true, Unit::a}).sent<ActionReply>().size() == 1);

@@ -158,6 +158,8 @@ TEST_CASE("where nothing can be predicted the reason is said, and a flight that 
 TEST_CASE("predicted silences and passes are windows by their beginning; between passes no orbiter is in view",
           "[prediction][silence]") {
     telemetry::PredictedSilences silences;
+    silences.uhf_start_s = -800.0;
+    silences.x_band_tones_s = -750.0;
     silences.blackout = {45.0, 98.0};
     silences.hand_over_s = 256.0;
     silences.uhf_stop_s = 900.0;
@@ -169,7 +171,10 @@ TEST_CASE("predicted silences and passes are windows by their beginning; between
         told.push_back(fmt::format("{} {} {}: {} to {}", window.pass ? "pass" : "silence", window.link, window.words,
                                    window.from_s, window.to_s ? fmt::format("{}", *window.to_s) : "the end"));
     CHECK(told == std::vector<std::string>{
+                      "silence uhf_live not begun: -1200 to -800",
+                      "silence x_band not begun: -1200 to -750",
                       "pass uhf_live odyssey: -1200 to 640",
+                      "silence x_band_telemetry switched off: -750 to the end",
                       "pass uhf_mro mro: -300 to 720",
                       "silence uhf_live plasma blackout: 45 to 98",
                       "silence uhf_live antenna hand-over: 256 to 256.25",

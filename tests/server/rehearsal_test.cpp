@@ -89,7 +89,8 @@ TEST_CASE("over three orbiters a unit keeps one identity, and the recording come
     CHECK(seen["uhf_mex"] > 1000);
     CHECK(again > 0);
     CHECK(units.counts().realtime > seen["uhf_live"]);  // what the bent pipe lost another orbiter had
-    CHECK(units.counts().realtime + again == seen["uhf_live"] + seen["uhf_mro"] + seen["uhf_mex"]);
+    CHECK(units.counts().realtime + again ==
+          seen["uhf_live"] + seen["uhf_mro"] + seen["uhf_mex"] + seen["x_band_telemetry"]);
     CHECK(rehearsal.recording_progress() == 1.0);
     CHECK(rehearsal.station().recording().asked() > 0);
     const auto proof = rehearsal.proof();

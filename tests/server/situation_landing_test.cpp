@@ -37,7 +37,7 @@ struct Told {
     };
     std::vector<Second> seconds;
     std::vector<v1::Item> items;
-    std::vector<Ert> live;                                       ///< packets in real time, by UHF itself
+    std::map<std::string, std::vector<Ert>> live;                ///< packets in real time, by X-band or UHF itself
     std::map<std::string, double, std::less<>> events, firings;  ///< truth, by name: SCLK of the first
     archive::RunStart start;
     std::string outcome;
@@ -79,7 +79,7 @@ Told fly(const simulation::Scenario& scenario, std::uint64_t seed) {
     while (!rehearsal.finished()) {
         const auto& received = rehearsal.step();
         for (const auto& packet : received.packets)
-            if (packet.link == telemetry::uhf_live_link) told.live.push_back(packet.ert);
+            if (telemetry::is_live_telemetry(packet.link.name)) told.live[packet.link.name].push_back(packet.ert);
         take(pipeline.accept(received));
         for (auto& stage : rehearsal.take_stages()) take(pipeline.accept(std::move(stage)));
         if (rehearsal.cycles() % 64 == 0) {
@@ -138,20 +138,24 @@ void check_countdowns(const Told::Second& at) {
 
 /// Who is silent brings nothing.
 void check_silences(const Told& told, const Told::Second& at, const Told::Second* before) {
-    const auto brought = [&](std::int64_t after_us) {
-        return std::ranges::any_of(
-            told.live, [&](Ert ert) { return ert.microseconds > after_us && ert.microseconds <= at.now.microseconds; });
+    const auto brought_by = [&](const std::string& link, std::int64_t after_us) {
+        const auto live = told.live.find(link);
+        return live != told.live.end() && std::ranges::any_of(live->second, [&](Ert ert) {
+                   return ert.microseconds > after_us && ert.microseconds <= at.now.microseconds;
+               });
     };
     if (before == nullptr) return;
     const std::int64_t last_second = before->now.microseconds;
-    if (const auto* uhf = find(at.situation, "uhf_live")) {
-        CAPTURE(uhf->sentence());
-        // The last packet of a lock comes with the end of the lock.
-        CHECK_FALSE(brought(std::max(last_second, uhf->since_us() + second_us)));
-    }
+    for (const auto* name : {"uhf_live", "x_band_telemetry"})
+        if (const auto* link = find(at.situation, name)) {
+            CAPTURE(link->sentence());
+            // The last packet of a lock comes with the end of the lock.
+            CHECK_FALSE(brought_by(name, std::max(last_second, link->since_us() + second_us)));
+        }
     if (const auto* vehicle = find(at.situation, "vehicle")) {
         CAPTURE(vehicle->sentence());
-        CHECK_FALSE(brought(std::max(last_second, vehicle->since_us() + second_us)));
+        for (const auto* name : {"uhf_live", "x_band_telemetry"})
+            CHECK_FALSE(brought_by(name, std::max(last_second, vehicle->since_us() + second_us)));
     }
 }
 
@@ -234,6 +238,8 @@ TEST_CASE("nothing that the situation says over a landing is false, and a landin
           "[situation][server]") {
     const auto told = check_landing("nominal_auto", 1);
     REQUIRE(told.outcome == "touchdown");
+    for (const double e_s : {-1100.0, -810.0, -760.0, -740.0})
+        for (const char* link : {"uhf_live", "x_band", "x_band_telemetry"}) CHECK(at_e_s(told, e_s, link) == nullptr);
     const auto* blackout = at_e_s(told, 75.0, "uhf_live");
     REQUIRE(blackout != nullptr);
     CHECK(blackout->rank() == SituationEntry::silence);

@@ -185,7 +185,7 @@ TEST_CASE("a rehearsal is started, paused, paced and stopped over the stream", "
 TEST_CASE("UHF packets and decoded tones are streamed while the vehicle flies, and are in the archive",
           "[stream][R41][R42][R43]") {
     auto scenario = shipped_scenario("nominal_auto");
-    scenario.start_before_entry_s = 900.0;  // just before the first timepoint; UHF begins at 600
+    scenario.start_before_entry_s = 900.0;  // just before the first timepoint; tones begin at 750
     scenario.commands[0].send_before_entry_s = 895.0;
     scenario.commands[1].send_before_entry_s = 885.0;
     RunningServer server{scenario, 300.0};
@@ -211,9 +211,13 @@ TEST_CASE("UHF packets and decoded tones are streamed while the vehicle flies, a
 }
 
 TEST_CASE("a run that is over comes again over the socket at a pace, and not while it goes on", "[stream][R42][R45]") {
-    RunningServer server{shipped_scenario("nominal_auto"), 100.0};
+    auto scenario = shipped_scenario("nominal_auto");
+    scenario.start_before_entry_s = 900.0;
+    scenario.commands[0].send_before_entry_s = 895.0;
+    scenario.commands[1].send_before_entry_s = 885.0;
+    RunningServer server{scenario, 100.0};
     Follower client{server.port(), false};
-    client.read_through(1200);  // some tones long
+    client.read_through(1700);  // some tones long
     v1::ClientMessage replay;
     replay.mutable_subscribe()->set_run(1);
     replay.mutable_subscribe()->set_pace(1.0);

@@ -48,6 +48,7 @@ const std::vector<Row> rows{
     {point::catbed_heaters, Device::power},
     {point::coolant_vent, Device::pyro},
     {point::uhf_start, Device::uhf},
+    {point::x_band_tones, Device::x_band},
     {point::entry_antenna, Device::x_band},
     {point::pressurant_valve_1, Device::pyro},
     {point::thermal_batteries, Device::pyro},

@@ -158,6 +158,42 @@ TEST_CASE("a silence that is predicted to end says when: blackout, the next pass
     CHECK_FALSE(until(relay_link, 9000.0, silences));
 }
 
+TEST_CASE("what the plan has yet to switch on is no loss, and what it does not bring when due is one",
+          "[station][silence]") {
+    auto silences = predicted();
+    silences.uhf_start_s = -800.0;
+    silences.x_band_tones_s = -750.0;
+    const std::string uhf = "not begun: planned at E−13:20", tones = "not begun: X-band sends telemetry until E−12:30";
+    CHECK(words(uhf_live_link, -1200.0, silences) == uhf);
+    CHECK(words(x_band_link, -1200.0, silences) == tones);
+    auto without_orbiter = silences;
+    without_orbiter.passes = {{"odyssey", 7200.0, 7800.0, 7800.0, false}};
+    CHECK(words(uhf_live_link, -801.0, without_orbiter) == uhf);
+    CHECK(class_of(words(uhf_live_link, -799.0, without_orbiter)) == "no orbiter in view");
+    CHECK(class_of(words(x_band_telemetry_link, -1200.0, silences)) == "unexplained");
+    SilenceClassifier classifier{silences, at(-1200.0), entry};
+    const auto begun = classifier.tell({down(uhf_live_link, -1200.0), down(x_band_link, -1200.0)}, at(-1200.0), {});
+    REQUIRE(begun.size() == 2);
+    CHECK(begun[0].until == at(-800.0));
+    CHECK(begun[1].until == at(-750.0));
+    CHECK(classifier.tell({}, at(-800.0 + SilenceClassifier::margin_s - 0.1), {}).empty());
+    const auto missed = classifier.tell({}, at(-800.0 + SilenceClassifier::margin_s), {});
+    REQUIRE(missed.size() == 1);
+    CHECK(missed[0].link == uhf_live_link);
+    CHECK(missed[0].lost);
+    CHECK(classifier.tell({{x_band_link, at(-749.0), true, "nominal"}}, at(-749.0), {}).size() == 1);
+}
+
+TEST_CASE("X-band's telemetry ends by the clock, with the tones, and is lost when it ends earlier",
+          "[station][silence]") {
+    auto silences = predicted();
+    silences.x_band_tones_s = -750.0;
+    constexpr double margin_s = SilenceClassifier::pass_margin_s;
+    CHECK(words(x_band_telemetry_link, -749.9, silences) == "switched off: X-band sends tones from E−12:30");
+    CHECK(class_of(words(x_band_telemetry_link, -750.0 - margin_s, silences)) == "switched off");
+    CHECK(class_of(words(x_band_telemetry_link, -750.1 - margin_s, silences)) == "unexplained");
+}
+
 TEST_CASE("the class of a silence is read from the words that tell it", "[station][silence]") {
     CHECK(silence_class("plasma blackout: predicted from E+0:45 to E+1:38") == SilenceClass::blackout);
     CHECK(silence_class("recording complete") == SilenceClass::recording_complete);

@@ -95,6 +95,47 @@ TEST_CASE("a silence as predicted says when the link is back, and when it is ove
     CHECK(ground.first(140.0).rank == Rank::waiting);
 }
 
+TEST_CASE("UHF and tones that the plan has yet to switch on are not said to be silent, and are missed when overdue",
+          "[situation]") {
+    Ground ground;
+    ground.up(x_band_telemetry_link, -1200.0);
+    ground.down(uhf_live_link, -1200.0, "not begun: planned at E−13:20", false, -800.0);
+    ground.down(x_band_link, -1200.0, "not begun: X-band sends telemetry until E−12:30", false, -750.0);
+    ground.event("EDL_BEGUN", -1150.0);
+    CHECK_FALSE(ground.about("uhf_live", -1000.0));
+    CHECK_FALSE(ground.about("x_band", -1000.0));
+    CHECK(ground.first(-1000.0).rank == Rank::waiting);
+    ground.down(uhf_live_link, -765.0, "unexplained: nothing is predicted to silence it now", true);
+    CHECK(ground.sentence(-764.0) == "UHF not heard: due since E−13:20");
+    ground.down(x_band_telemetry_link, -749.9, "switched off: X-band sends tones from E−12:30", false);
+    ground.up(x_band_link, -749.9);
+    CHECK_FALSE(ground.about("x_band_telemetry", -740.0));  // its end was planned
+    ground.tone("action_unverified", -740.0);
+    CHECK(ground.about("tone action_unverified", -729.0)->sentence ==
+          "E−12:20, by tone: An action got no reply in time: unverified");
+    ground.up(uhf_live_link, -700.0);
+    CHECK_FALSE(ground.about("uhf_live", -700.0));
+}
+
+TEST_CASE("of a transmitter that a timeline which does not run has not switched on, the situation says so",
+          "[situation]") {
+    Ground ground;
+    ground.up(x_band_telemetry_link, -1200.0);
+    ground.down(x_band_link, -1200.0, "not begun: X-band sends telemetry until E−12:30", false, -750.0);
+    ground.down(x_band_link, -715.0, "unexplained: nothing is predicted to silence it now", true);
+    CHECK(ground.sentence(-714.0) == "X-band tones not heard: due since E−12:30; “Do EDL” is not confirmed");
+}
+
+TEST_CASE("what X-band's telemetry tells is not told again by tone, and its loss is news", "[situation]") {
+    Ground ground;
+    ground.up(x_band_telemetry_link, -900.0);
+    ground.tone("pyro_not_fired", -890.0);
+    CHECK_FALSE(ground.about("tone pyro_not_fired", -880.0));
+    ground.down(x_band_telemetry_link, -870.0, "unexplained: nothing is predicted to silence it now", true);
+    CHECK(ground.about("x_band_telemetry", -869.0)->sentence ==
+          "X-band telemetry lost since E−14:30: nothing predicted it");
+}
+
 TEST_CASE("no prediction excuses a silence that began without one", "[situation]") {
     Ground ground;
     ground.up(x_band_link, -100.0);

@@ -43,6 +43,7 @@ TEST_CASE("names, distances and times read as people say them", "[text][R38]") {
     CHECK(in_words("parachute_deploy") == "parachute deploy");
     CHECK(in_words("gnc_mode") == "GNC mode");
     CHECK(in_words("sufr_start") == "SUFR start");
+    CHECK(in_words("x_band_tones") == "X-band tones");
     CHECK(in_words("") == "");
     CHECK(named_value_text("altitude_m", 99'999.9) == "99999.9 m");
     CHECK(named_value_text("solution_radius_m", 3'522'249.0) == "3522.2 km");

@@ -151,7 +151,11 @@ export const LAYOUT = {
   },
 
   /** Common words for jargon. A picture shows only the short form in brackets. */
-  words: { sufr: 'straighten up and fly right (SUFR)', sufr_start: 'straighten up and fly right' },
+  words: {
+    sufr: 'straighten up and fly right (SUFR)',
+    sufr_start: 'straighten up and fly right',
+    x_band_tones: 'X-band tones',
+  },
   /**
    * Moments between timepoints that people wait for, each announced by an event and a tone of that name. `before`: the
    * next timepoint.

@@ -83,6 +83,21 @@ TEST_CASE("before the recording is down a series tells its links and names its g
     CHECK(text_of(landing.series({1036.0, {}})) == "4 live uhf_mro pending 1036-1039; ");
 }
 
+TEST_CASE("a gap is named by the link that the plan had bring telemetry then, not by the other, which was off",
+          "[reader][archive][R43]") {
+    Landing landing;
+    const auto tell = [&](const telemetry::Link& link, std::int64_t e_s, const char* reason) {
+        REQUIRE(landing.pipeline.accept(telemetry::LinkState{link, Landing::heard(e_s), false, reason}).ok());
+    };
+    tell(telemetry::x_band_telemetry_link, 0, "switched off: X-band sends tones from E−12:30");
+    CHECK_THAT(text_of(landing.series()),
+               Catch::Contains("gap 1019-1035 uhf_live: plasma blackout: predicted from E+19 s to E+36 s; "));
+    tell(telemetry::x_band_telemetry_link, 40, "unexplained: nothing is predicted to silence it now");
+    tell(telemetry::uhf_live_link, 40, "not begun: planned at E+1:20");
+    CHECK_THAT(text_of(landing.series({1036.0, 1060.0})),
+               Catch::Contains("gap 1039-1060 x_band_telemetry: unexplained"));
+}
+
 TEST_CASE("when the recording is down every sample has its path and its verdict, and they add up",
           "[reader][archive][R43]") {
     Landing landing;

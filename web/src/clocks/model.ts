@@ -3,6 +3,7 @@ import { linkLook } from '../design/status';
 import type { LinkLook } from '../design/status';
 import { dayOfYear, duration, fromEntry, secondsOfDayOfYear } from '../run/time';
 import { linkTitle } from '../links/model';
+import { notBegun, shortReason } from '../timeline/model';
 import { MODES, isReal, modeOf } from '../mode/model';
 import type { RunStore } from '../run/store';
 import type { StreamState } from '../stream/messages';
@@ -63,6 +64,10 @@ export interface LinkLine {
   detail: string;
 }
 
+/** A link that the plan has off: it stands in the header once it is due, and X-band's telemetry until tones follow it. */
+const isOff = (link: string, { look, detail }: LinkLine): boolean =>
+  look === 'down' && (notBegun(detail) || (link === 'x_band_telemetry' && shortReason(detail) === 'switched off'));
+
 /** Without a connection the present state of a link is unknown; a past view still knows it. */
 export function linksOf(store: RunStore, cutoff: number, lost = false): LinkLine[] {
   return [...store.links].map(([link, changes]) => {
@@ -92,12 +97,16 @@ export function headerLinks(store: RunStore, cutoff: number, lost = false): Link
   ];
 }
 
+const OWN = ['uhf_live', 'x_band_telemetry', 'x_band'];
+
 function radioLinks(store: RunStore, cutoff: number, lost: boolean): LinkLine[] {
-  const all = linksOf(store, cutoff, lost);
-  if (all.length <= FEW) return all;
   const names = [...store.links.keys()];
+  const on = linksOf(store, cutoff, lost).map((line, i) => ({ link: names[i] ?? '', line }));
+  const shown = on.filter(({ link, line }) => !isOff(link, line));
+  const all = shown.map(({ line }) => line);
+  if (all.length <= FEW) return all;
   const [own, others] = [[] as LinkLine[], [] as LinkLine[]];
-  for (const [i, line] of all.entries()) (['uhf_live', 'x_band'].includes(names[i] ?? '') ? own : others).push(line);
+  for (const { link, line } of shown) (OWN.includes(link) ? own : others).push(line);
   const [missed, up, down] = (['lost', 'up', 'down'] as const).map((look) =>
     others.filter((line) => line.look === look),
   ) as [LinkLine[], LinkLine[], LinkLine[]];

@@ -73,6 +73,22 @@ describe('the header', () => {
     expect(linksOf(store, Infinity)).toEqual([{ name: 'UHF live', look: 'down', detail: 'plasma outage' }]);
     expect(streamLine('lost', 3, 0)).toMatchObject({ look: 'lost', detail: 'what is shown is old; attempt 3' });
   });
+  it('keeps a link that the plan has off out of the header, until it is due or lost', () => {
+    const of = (uhf: string, telemetry: string) =>
+      headerLinks(
+        aStore([
+          link({ link: 'uhf_live', up: uhf === '', reason: uhf, ert: '2012-219T04:59:00.0' }),
+          link({ link: 'x_band_telemetry', up: telemetry === '', reason: telemetry, ert: '2012-219T04:59:00.0' }),
+        ]),
+        Infinity,
+      ).map((line) => line.name);
+    expect(of('not begun: planned at E−13:20', '')).toEqual(['X-band telemetry']);
+    expect(of('', 'switched off: X-band sends tones from E−12:30')).toEqual(['UHF live']);
+    expect(of('switched off: planned at E+7:30', 'unexplained: nothing is predicted to silence it now')).toEqual([
+      'UHF live',
+      'X-band telemetry',
+    ]);
+  });
   it('has room for the links of a pass: those of orbiters are one entry that names what is up', () => {
     const ert = '2012-219T04:59:00.0';
     const store = aStore(

@@ -14,7 +14,7 @@ import { cutoff, dictionary, runNow, shownRun, tick, timepoints, withRecording }
 import type { RunStore } from '../run/store';
 import { landedSclk } from '../run/whose';
 import { resultShown, touchedDown } from '../touchdown/shown';
-import { isImportant, outages, shortTitle } from '../timeline/model';
+import { isImportant, liveOutages, shortTitle } from '../timeline/model';
 import { predicted } from '../timeline/now';
 import { phaseSteps } from '../phases/model';
 import { GAP_S } from '../plots/model';
@@ -249,7 +249,7 @@ function draw(surface: Surface): void {
   const points = [...recorded, ...live]
     .sort((one, other) => one.sclk - other.sclk)
     .filter((point) => point.altitude <= TOP_M);
-  const silences = outages(run, 'uhf_live', Infinity, cutoff.value);
+  const silences = liveOutages(run, Infinity, cutoff.value);
   let before: (typeof points)[number] | undefined;
   let colour = '';
   c.lineWidth = 2;

@@ -62,7 +62,7 @@ export type Verdict = keyof typeof VERDICTS;
 export const SOURCES = {
   plan: { shape: '○', token: 'dim', word: 'plan' },
   tone: { shape: '■', token: 'by-tone', word: 'by tone' },
-  uhf: { shape: '◆', token: 'by-uhf', word: 'by UHF, live' },
+  uhf: { shape: '◆', token: 'by-uhf', word: 'by telemetry, live' },
   recording: { shape: '▣', token: 'by-recording', word: 'by recording' },
 } as const;
 /** What is expected: dashed and faint wherever it is drawn. */

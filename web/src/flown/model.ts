@@ -18,7 +18,7 @@ interface FlownRow {
 
 const time = (e_s: number | undefined) => (e_s === undefined ? '' : fromEntry(e_s, { tenths: true }));
 
-/** When it was flown, by the best that is known: the recording, else UHF, else a tone. */
+/** When it was flown, by the best that is known: the recording, else live telemetry, else a tone. */
 const flownAt = (row: {
   recordedES?: number | undefined;
   realtimeES?: number | undefined;
@@ -42,7 +42,7 @@ export const FLOWN_ORDER = {
   planned: (row: AsFlownTimepoint) => row.plannedES,
   predicted: (row: AsFlownTimepoint) => row.predictedES,
   'by tone': (row: AsFlownTimepoint) => row.toneES,
-  'by UHF': (row: AsFlownTimepoint) => row.realtimeES,
+  'by telemetry': (row: AsFlownTimepoint) => row.realtimeES,
   recorded: (row: AsFlownTimepoint) => row.recordedES,
   'Δ plan, s': (row: AsFlownTimepoint) => apart(flownAt(row), row.plannedES),
   'Δ prediction, s': (row: AsFlownTimepoint) => apart(flownAt(row), row.predictedES),
@@ -103,7 +103,7 @@ export function summaryOf(report: AsFlownReport): string {
   const count = (known: (row: AsFlownTimepoint) => boolean) => report.timepoints.filter(known).length;
   const fired = count((row) => row.recordedES !== undefined || row.realtimeES !== undefined);
   return (
-    `${fired} of ${all} timepoints fired: ${count((row) => row.realtimeES !== undefined)} told by UHF, ${count((row) => row.toneES !== undefined)} by tones, ` +
+    `${fired} of ${all} timepoints fired: ${count((row) => row.realtimeES !== undefined)} told by telemetry, ${count((row) => row.toneES !== undefined)} by tones, ` +
     `${count((row) => row.recordedES !== undefined)} in the recording. ${report.tonesDecoded} tones were decoded, ${report.tonesErased} were lost.`
   );
 }

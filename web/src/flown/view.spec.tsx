@@ -81,7 +81,7 @@ describe('the report', () => {
       tonesErased: 3n,
     });
     expect(summaryOf(report)).toBe(
-      '2 of 3 timepoints fired: 1 told by UHF, 1 by tones, 2 in the recording. 40 tones were decoded, 3 were lost.',
+      '2 of 3 timepoints fired: 1 told by telemetry, 1 by tones, 2 in the recording. 40 tones were decoded, 3 were lost.',
     );
   });
   it('tells a silence from when to when, and why', () => {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A run as flown: the time of each timepoint by plan, prediction, tone, UHF and recording, the events between them, and
+// A run as flown: the time of each timepoint by plan, prediction, tone, live telemetry and recording, the events between them, and
 // the silences.
 import { signal } from '@preact/signals';
 import type { AsFlownReport } from '../gen/aeolis/v1/run_pb';
@@ -99,7 +99,7 @@ export function Flown() {
                   <th class="number" title="by the anchor of that name, when the run began">
                     predicted
                   </th>
-                  <th class="number">by UHF</th>
+                  <th class="number">by telemetry</th>
                   <th class="number">recorded</th>
                   <th>as flight reported it</th>
                 </tr>

@@ -11,6 +11,7 @@ import type { Outage } from '../timeline/model';
 /** "uhf_mro" → "UHF MRO", "relay" → "Relay". */
 export function linkTitle(link: string): string {
   if (link === 'x_band') return 'X-band';
+  if (link === 'x_band_telemetry') return 'X-band telemetry';
   const [kind = '', ...rest] = link.split('_');
   const title = kind === 'uhf' ? 'UHF' : kind === 'relay' ? 'Relay' : kind;
   return [title, ...rest.map((part) => (part === 'live' ? part : part.toUpperCase()))].join(' ').trim();
@@ -65,7 +66,7 @@ export function linkViews(store: RunStore, proof: ProofReport | undefined, cutof
   });
 }
 
-const ORDER = ['uhf_live', 'uhf', 'x', 'relay'];
+const ORDER = ['uhf_live', 'x_band_telemetry', 'uhf', 'x', 'relay'];
 function byImportance(a: string, b: string): number {
   const rank = (name: string) => ORDER.findIndex((each) => name === each || name.startsWith(`${each}_`));
   return rank(a) - rank(b) || a.localeCompare(b);

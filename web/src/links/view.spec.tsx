@@ -7,14 +7,9 @@ import { framesKept, linkTitle, linkViews } from './model';
 
 describe('the links', () => {
   it('have names that people say', () => {
-    expect(['uhf_live', 'uhf_mro', 'relay', 'relay_mex', 'x_band', 'downlink'].map(linkTitle)).toEqual([
-      'UHF live',
-      'UHF MRO',
-      'Relay',
-      'Relay MEX',
-      'X-band',
-      'downlink',
-    ]);
+    expect(
+      ['uhf_live', 'uhf_mro', 'relay', 'relay_mex', 'x_band', 'x_band_telemetry', 'downlink'].map(linkTitle),
+    ).toEqual(['UHF live', 'UHF MRO', 'Relay', 'Relay MEX', 'X-band', 'X-band telemetry', 'downlink']);
   });
   it('take a silence that nothing predicted for a loss, and say why', () => {
     const store = aStore([

@@ -11,6 +11,11 @@ import './style.css';
 
 const count = (value: bigint | number) => Number(value).toLocaleString('en').replaceAll(',', ' ');
 
+/** What a link without counted frames carries. */
+const NO_FRAMES: Record<string, string> = {
+  x_band: 'carries tones, not frames: see the strip of tones',
+};
+
 const hurt = (value: bigint) => (value > 0n ? 'number status-caution' : 'number');
 
 function Row({ view }: { view: LinkView }) {
@@ -58,7 +63,7 @@ function Row({ view }: { view: LinkView }) {
         </>
       ) : (
         <td colSpan={10} class="status-dim">
-          {view.link === 'x_band' ? 'carries tones, not frames: see the strip of tones' : 'no frames counted'}
+          {NO_FRAMES[view.link] ?? 'no frames counted'}
         </td>
       )}
       <td class="number">

@@ -31,7 +31,7 @@ export const TABS: { id: Tab; title: string; key: string; words: string }[] = [
     id: 'flown',
     title: 'As flown',
     key: 'f',
-    words: 'as flown: every timepoint and event by plan, prediction at entry, tone, UHF and recording',
+    words: 'as flown: every timepoint and event by plan, prediction at entry, tone, live telemetry and recording',
   },
   { id: 'recorded', title: 'Range', key: 'r', words: 'a recorded range, in every panel' },
   { id: 'rehearsal', title: 'Runs', key: 's', words: 'runs, and starting a rehearsal' },

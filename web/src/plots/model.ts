@@ -7,7 +7,7 @@ import type { Series } from '../run/series';
 import type { RunStore, Sample } from '../run/store';
 
 /**
- * [e_s, values while UHF was silent, values while it was live], cut to the range with one sample of margin. Together
+ * [e_s, values while telemetry was silent, values while it was live], cut to the range with one sample of margin. Together
  * they are one trace; samples known from the recording only have another colour. null breaks a line.
  */
 export type Aligned = [number[], (number | null)[], (number | null)[]];

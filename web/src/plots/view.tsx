@@ -22,7 +22,7 @@ import type { Series } from '../run/series';
 import type { RunStore } from '../run/store';
 import { fromEntry } from '../run/time';
 import { whoseAt } from '../run/whose';
-import { outages, shortReason } from '../timeline/model';
+import { LIVE_LINKS, liveOutages, shortReason } from '../timeline/model';
 import { plotSpan } from '../run/window';
 import {
   differenceOf,
@@ -153,14 +153,14 @@ function options(width: number, height: number, { channel, per, over }: Properti
   };
 }
 
-/** Shades the times in which UHF was silent, instead of drawing a line that was never measured. */
+/** Shades the times without live telemetry, instead of drawing a line that was never measured. */
 function shadeSilence(plot: uPlot): void {
   const run = shownRun();
   if (!run) return;
   const { left, top, width, height } = plot.bbox;
   const now = Math.min(run.seenSclk, cutoff.value) - run.entrySclk;
   plot.ctx.save();
-  for (const outage of outages(run, 'uhf_live', now, cutoff.value)) {
+  for (const outage of liveOutages(run, now, cutoff.value)) {
     const from = Math.max(left, plot.valToPos(outage.from, 'x', true));
     const to = Math.min(left + width, plot.valToPos(outage.to, 'x', true));
     if (to <= from) continue;
@@ -304,9 +304,11 @@ function Plot(properties: Properties) {
       const isDifference = showsDifference(channel);
       const line = lineOf(channel, per);
       const newShape = `${palette().name} ${channel.id} ${over.map(({ id }) => id).join()}`;
-      const silences = run?.links.get('uhf_live') ?? []; // a present silence grows with the clock, without new samples
-      const silent = silences.at(-1)?.fact.up === false ? run?.seenSclk.toFixed(0) : '';
-      const key = `${run?.id} ${silences.length} ${silent} ${recorded?.version} ${live?.version} ${span.from.toFixed(1)} ${span.to.toFixed(1)} ${cutoff.value} ${width} ${height} ${newShape} ${overVersions(run, over)} ${line ? `${predictedVersion.value} ${line.now_e_s.toFixed(1)}` : ''} ${isPredicted()} ${isDifference} ${predicted.value.length}`;
+      const changes = LIVE_LINKS.map((link) => run?.links.get(link) ?? []);
+      const silences = changes.reduce((all, each) => all + each.length, 0);
+      // a present silence grows with the clock, without new samples
+      const silent = changes.every((each) => each.at(-1)?.fact.up !== true) ? run?.seenSclk.toFixed(0) : '';
+      const key = `${run?.id} ${silences} ${silent} ${recorded?.version} ${live?.version} ${span.from.toFixed(1)} ${span.to.toFixed(1)} ${cutoff.value} ${width} ${height} ${newShape} ${overVersions(run, over)} ${line ? `${predictedVersion.value} ${line.now_e_s.toFixed(1)}` : ''} ${isPredicted()} ${isDifference} ${predicted.value.length}`;
       if (key === shown && traces[0] === recorded && traces[1] === live)
         return cursor.peek() === placed ? undefined : placeCursor;
       shown = key;
@@ -323,7 +325,7 @@ function Plot(properties: Properties) {
           ? align(
               recorded,
               live,
-              outages(run, 'uhf_live', span.to, cutoff.value),
+              liveOutages(run, span.to, cutoff.value),
               run.entrySclk,
               span.from,
               span.to,

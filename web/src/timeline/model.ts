@@ -95,7 +95,7 @@ export function lanesOf(store: RunStore, plan: readonly TimepointRow[], cutoff: 
     before = fact.tone ?? before;
   }
   const now = Math.min(store.seenSclk, cutoff) - entry;
-  lanes.liveOutages = outages(store, 'uhf_live', now, cutoff);
+  lanes.liveOutages = liveOutages(store, now, cutoff);
   lanes.toneOutages = outages(store, 'x_band', now, cutoff);
   return lanes;
 }
@@ -126,6 +126,29 @@ export function outages(store: RunStore, link: string, now_e_s: number, cutoff: 
   if (open) all.push({ ...open, to: Math.max(open.from, now_e_s) });
   return all;
 }
+
+export const LIVE_LINKS = ['uhf_live', 'x_band_telemetry'] as const;
+
+/**
+ * The silences of live telemetry, which X-band brings in cruise and UHF from then on: those that both links share, with
+ * the reason of the one that the plan has on.
+ */
+export function liveOutages(store: RunStore, now_e_s: number, cutoff: number): Outage[] {
+  const [uhf, xBand] = LIVE_LINKS.map((link) => outages(store, link, now_e_s, cutoff)) as [Outage[], Outage[]];
+  if (!store.links.has(LIVE_LINKS[1])) return uhf;
+  return uhf.flatMap((one) =>
+    xBand
+      .map((other) => ({
+        from: Math.max(one.from, other.from),
+        to: Math.min(one.to, other.to),
+        words: notBegun(one.words) ? other.words : one.words,
+      }))
+      .filter((both) => both.to > both.from),
+  );
+}
+
+/** Whether a link is silent because the plan has yet to switch it on. */
+export const notBegun = (reason: string): boolean => shortReason(reason) === 'not begun';
 
 /** "plasma outage, as predicted" → "plasma outage": the reason without its details. */
 export function shortReason(words: string): string {

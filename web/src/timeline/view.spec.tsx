@@ -6,7 +6,7 @@ import { ConditionSchema } from '../gen/aeolis/v1/items_pb';
 import { DictionaryReplySchema } from '../gen/aeolis/v1/run_pb';
 import { Dictionary } from '../run/dictionary';
 import { silenceStatus } from '../design/status';
-import { firedCount, lanesOf, nextTimepoint, outages, pointDetail, shortTitle } from './model';
+import { firedCount, lanesOf, nextTimepoint, liveOutages, outages, pointDetail, shortTitle } from './model';
 import { momentsOf } from './moments';
 
 describe('the timeline', () => {
@@ -33,6 +33,25 @@ describe('the timeline', () => {
     expect(outages(store, 'uhf_live', -100, Infinity)).toEqual([
       { from: expect.closeTo(-160), to: expect.closeTo(-130), words: 'plasma' },
     ]);
+  });
+  it('has live telemetry silent where the link that the plan has on is, with its reason', () => {
+    const change = (name: string, up: boolean, at: string, reason = '') =>
+      link({ link: name, up, reason, ert: `2012-219T04:${at}.0` });
+    const store = aStore([
+      change('uhf_live', false, '50:00', 'not begun: planned at E−13:20'),
+      change('x_band_telemetry', true, '50:00'),
+      change('x_band_telemetry', false, '51:00', 'ground fault: nothing comes from the station'),
+      change('x_band_telemetry', true, '52:00'),
+      change('uhf_live', true, '54:00'),
+      change('x_band_telemetry', false, '55:00', 'switched off: X-band sends tones from E−12:30'),
+      change('uhf_live', false, '59:00', 'plasma blackout'),
+    ]);
+    expect(liveOutages(store, -100, Infinity)).toEqual([
+      { from: -640, to: -580, words: 'ground fault: nothing comes from the station' },
+      { from: -160, to: -100, words: 'plasma blackout' },
+    ]);
+    const older = aStore([change('uhf_live', false, '59:00', 'plasma blackout')]);
+    expect(liveOutages(older, -100, Infinity)).toEqual([{ from: -160, to: -100, words: 'plasma blackout' }]);
   });
   it('shows a silence that nothing predicted as an alarm, as its link does', () => {
     expect(

@@ -29,7 +29,7 @@ const GUTTER = 118;
 const TOP = 26;
 const CLOSE_UP_S = 180; // chosen: in a shorter stretch every timepoint has room for its name
 const LABELS = 42; // at least two rows of names
-const LANES = ['plan', 'predicted', 'by tone', 'by UHF, live', 'by recording'] as const;
+const LANES = ['plan', 'predicted', 'by tone', 'by telemetry, live', 'by recording'] as const;
 const selected = signal<number | undefined>(undefined);
 const anchorsShown = signal(false);
 
@@ -553,7 +553,7 @@ function Detail() {
         )}
         {detail.firedLive_e_s !== undefined && (
           <>
-            <dt>fired, by UHF</dt>
+            <dt>fired, by telemetry</dt>
             <dd>{at(detail.firedLive_e_s)}</dd>
           </>
         )}
@@ -684,7 +684,7 @@ export function Timeline() {
       }
     >
       <Canvas
-        label="Timepoints by plan, prediction, tone, live UHF and recording, over time from entry"
+        label="Timepoints by plan, prediction, tone, live telemetry and recording, over time from entry"
         testId="timeline-canvas"
         keyOf={() => {
           const span = shown(shownRun());

@@ -2,6 +2,7 @@
 import type { RunStore } from '../run/store';
 import { fromEntry, secondsOfErt } from '../run/time';
 import type { NamedTone } from '../stream/names';
+import { notBegun } from '../timeline/model';
 
 interface ToneBar {
   from_e_s: number;
@@ -26,6 +27,10 @@ export function toneBars(store: RunStore, cutoff: number): ToneBar[] {
   }
   return bars;
 }
+
+/** Why X-band sends no tones, by the last report of its link; empty: it does, or nothing is known. */
+export const toneSilence = (store: RunStore, cutoff: number): string =>
+  store.links.get('x_band')?.findLast((change) => !(store.sclkSeenAt(change.ert_s) > cutoff))?.fact.reason ?? '';
 
 export function latestTone(store: RunStore, cutoff: number): NamedTone | undefined {
   return store.tonesBy(cutoff).at(-1)?.fact;
@@ -92,7 +97,9 @@ export function toneSpectrum(tone: NamedTone | undefined): SpectrumLine[] {
   return Array.from(tone?.spectrum ?? [], (octet, index) => ({ tone: 2 * index, level_db: octet / 2 - 30 }));
 }
 
-export function toneEvidence(tone: NamedTone | undefined): string {
+/** `reason`: of the silence of X-band's tones, as ground gives it. */
+export function toneEvidence(tone: NamedTone | undefined, reason = ''): string {
+  if (!tone && notBegun(reason)) return `tones have not begun${reason.slice(reason.indexOf(':'))}`;
   if (!tone) return 'one of 256, each for 10 s';
   const parts: string[] = [];
   if (tone.tone !== undefined) parts.push(`likelihood ${tone.likelihood.toFixed(3)}`);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // @vitest-environment happy-dom
 import { describe, expect, it } from 'vitest';
-import { aStore, tone } from '../testing/fixtures';
+import { aStore, link, tone } from '../testing/fixtures';
 import type { Palette } from '../draw/palette';
 import { named } from '../stream/names';
 import type { NamedTone } from '../stream/names';
@@ -14,6 +14,7 @@ import {
   shownTone,
   toneBars,
   toneEvidence,
+  toneSilence,
   toneSpectrum,
   toneTitle,
 } from './model';
@@ -24,6 +25,14 @@ describe('tones', () => {
     expect(toneTitle(latestTone(store, Infinity))).toBe('Tone not decoded');
     expect(toneBars(store, Infinity)[0]).toMatchObject({ tone: undefined, from_e_s: -300, to_e_s: -290 });
     expect(toneEvidence(latestTone(store, Infinity))).toContain('no lock');
+  });
+  it('are not lost before X-band goes over to them: they have not begun', () => {
+    const reason = 'not begun: X-band sends telemetry until E−12:30';
+    const store = aStore([link({ link: 'x_band', up: false, reason, ert: '2012-219T04:40:00.0' })]);
+    expect(toneEvidence(latestTone(store, Infinity), toneSilence(store, Infinity))).toBe(
+      'tones have not begun: X-band sends telemetry until E−12:30',
+    );
+    expect(toneEvidence(undefined, '')).toBe('one of 256, each for 10 s');
   });
   it('give the evidence with the meaning', () => {
     const store = aStore([

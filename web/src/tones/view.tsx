@@ -11,7 +11,17 @@ import { cursor } from '../run/cursor';
 import { cutoff, shownRun, tick } from '../run/shown';
 import { fromEntry } from '../run/time';
 import { plotSpan } from '../run/window';
-import { bestTones, isOld, neighbour, shownTone, toneBars, toneEvidence, toneSpectrum, toneTitle } from './model';
+import {
+  bestTones,
+  isOld,
+  neighbour,
+  shownTone,
+  toneBars,
+  toneEvidence,
+  toneSilence,
+  toneSpectrum,
+  toneTitle,
+} from './model';
 import './style.css';
 
 const LEFT = 42;
@@ -196,7 +206,7 @@ export function Tones() {
             <b>at {fromEntry(at_e_s)}</b> ·{' '}
           </>
         )}
-        {toneEvidence(tone)}
+        {toneEvidence(tone, run && toneSilence(run, cutoff.value))}
         {back && bestTones(tone) !== '' && ` · likeliest ${bestTones(tone)}`}
       </p>
       <div

@@ -263,7 +263,7 @@ export function missingStep(
 
 const firstSteps = (dictionary: Dictionary) => LAYOUT.firstSteps.filter((step) => dictionary.command(step.command));
 
-const ANSWERS = 'It answers by a tone of 10 s, which is decided up to 20 s after its end, or by UHF once that is on.';
+const ANSWERS = 'It answers by telemetry, and once X-band sends tones also by a tone of 10 s.';
 
 /**
  * Why this run can no longer begin, with the latest time of departure: the last of the first steps has not been sent,
