@@ -232,8 +232,8 @@ TEST_CASE("packets in frames with garbage between, over TCP in odd pieces, are a
     CHECK_THAT(words, Catch::Contains("\"name\":\"BUS_VOLTAGE\""));
     CHECK_THAT(follower.ask("/runs/1"), Catch::Contains("\"venue\":\"downlink\"") && Catch::Contains("pltu by m.xml"));
     CHECK_THAT(follower.ask("/runs/1/state"), Catch::Contains("\"BUS_VOLTAGE\""));
-    CHECK_THAT(follower.ask("/runs/1/prediction"), Catch::Contains("\"state\":\"none\"") &&
-                                                       Catch::Contains("run 1 has no scenario: it follows another"));
+    CHECK_THAT(follower.ask("/runs/1/prediction"),
+               Catch::Contains("\"state\":\"none\"") && Catch::Contains("run 1 has no scenario: it follows another"));
 }
 
 TEST_CASE("a link that drops is connected again, and nothing that came is lost or doubled", "[server][downlink]") {

@@ -5,7 +5,7 @@ import type uPlot from 'uplot';
 import { TYPE } from '../design/type';
 import { palette } from '../draw/palette';
 import type { DictionaryChannel } from '../gen/aeolis/v1/run_pb';
-import { predictedAt, windowWords, windowsOf } from '../prediction/model';
+import { predictedAt, predictedVersion, windowWords, windowsOf } from '../prediction/model';
 import type { Series } from '../run/series';
 import { fromEntry } from '../run/time';
 import { isImportant, shortTitle } from '../timeline/model';
@@ -46,6 +46,29 @@ export function predictedBounds(
 export const samplesAhead = ({ series, entry_sclk, now_e_s }: PredictedLine, to_e_s: number): number =>
   Math.max(0, series.firstAfter(entry_sclk + to_e_s) - series.firstAfter(entry_sclk + now_e_s));
 
+const paths = new WeakMap<uPlot, { key: string; path: Path2D }>();
+
+/** The predicted line between two times in the pixels of the plot, kept while neither it nor the axes change. */
+function pathOf(plot: uPlot, { series, entry_sclk, per, gap_s }: PredictedLine, from: number, to: number): Path2D {
+  const [x0, y0] = [plot.valToPos(from, 'x', true), plot.valToPos(0, 'y', true)];
+  const [x_px, y_px] = [(plot.valToPos(to, 'x', true) - x0) / (to - from), plot.valToPos(1, 'y', true) - y0];
+  const key = `${predictedVersion.peek()} ${entry_sclk} ${per} ${from} ${to} ${x0} ${y0} ${x_px} ${y_px}`;
+  const kept = paths.get(plot);
+  if (kept?.key === key) return kept.path;
+  const path = new Path2D();
+  const end = Math.min(series.length, series.firstAfter(entry_sclk + to) + 1);
+  let before = -Infinity;
+  for (let i = Math.max(0, series.firstAfter(entry_sclk + from) - 1); i < end; ++i) {
+    const e_s = (series.sclk[i] as number) - entry_sclk;
+    const [px, py] = [x0 + (e_s - from) * x_px, y0 + ((series.value[i] as number) / per) * y_px];
+    if (e_s - before > gap_s) path.moveTo(px, py);
+    else path.lineTo(px, py);
+    before = e_s;
+  }
+  paths.set(plot, { key, path });
+  return path;
+}
+
 /** Draws the predicted line, and a hollow dot on it for now; of a difference the line is zero. */
 export function drawPredictedLine(plot: uPlot, line: PredictedLine, isDifference: boolean): void {
   const { ctx } = plot;
@@ -73,16 +96,7 @@ export function drawPredictedLine(plot: uPlot, line: PredictedLine, isDifference
     return;
   }
   const { series, entry_sclk, per, gap_s, channel, now_e_s } = line;
-  const end = Math.min(series.length, series.firstAfter(entry_sclk + to) + 1);
-  let before = -Infinity;
-  for (let i = Math.max(0, series.firstAfter(entry_sclk + from) - 1); i < end; ++i) {
-    const e_s = (series.sclk[i] as number) - entry_sclk;
-    const [px, py] = [x(e_s), y((series.value[i] as number) / per)];
-    if (e_s - before > gap_s) ctx.moveTo(px, py);
-    else ctx.lineTo(px, py);
-    before = e_s;
-  }
-  ctx.stroke();
+  ctx.stroke(pathOf(plot, line, from, to));
   const now = predictedAt(channel, series, entry_sclk + now_e_s, gap_s);
   if (now !== undefined) {
     ctx.setLineDash([]);
