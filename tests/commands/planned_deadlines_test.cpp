@@ -74,8 +74,8 @@ TEST_CASE("a command that changes an offset must be there before what it moves, 
 TEST_CASE("what is planned while a command waits and is on its way is what it is too late for", "[gateway][R44]") {
     const PlannedDeadlines deadlines{tests::shipped_dictionary(), entry, light_time_s};
     const auto missed = deadlines.missed(before_entry(830.0), before_entry(640.0 + light_time_s));
-    CHECK(missed == std::vector<std::string>{"pyros_armed_vent", "coolant_vent", "pyros_safe_vent", "uhf_start", "x_band_tones",
-                                             "entry_antenna"});
+    CHECK(missed == std::vector<std::string>{"pyros_armed_vent", "coolant_vent", "pyros_safe_vent", "uhf_start",
+                                             "x_band_tones", "entry_antenna"});
     CHECK(deadlines.missed(before_entry(2000.0), before_entry(2000.0)).empty());
 }
 

@@ -75,9 +75,9 @@ TEST_CASE(
         const auto fly_until = [&](double until_e_s) {
             while (e_s < until_e_s) std::this_thread::sleep_for(std::chrono::milliseconds{1});
         };
-        fly_until(-870.0);
+        fly_until(-735.0);  // within the first tones
         CHECK(runner.order(PaceRun{0.0}));
-        fly_until(-640.0);
+        fly_until(-500.0);
         CHECK(runner.order(StopRun{}));
         while (!runner.over()) std::this_thread::sleep_for(std::chrono::milliseconds{1});
     }
@@ -87,7 +87,7 @@ TEST_CASE(
     scenario.radio.tones_from_samples = true;
     Rehearsal undisturbed{scenario, 1, 0, dictionary};
     std::vector<telemetry::ReceivedTone> expected;
-    while (undisturbed.landing().sclk() < scenario.entry_sclk - 640.0)
+    while (undisturbed.landing().sclk() < scenario.entry_sclk - 500.0)
         for (const auto& tone : undisturbed.step().tones) expected.push_back(tone);
 
     auto reader = archive::Reader::open(file, dictionary);
