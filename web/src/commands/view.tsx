@@ -2,10 +2,10 @@
 // Commands: one line with completion; below it the review, the queue and the history.
 import type { ComponentChildren } from 'preact';
 import { mayAct } from '../access/model';
+import { openedLater } from '../design/opened_later';
 import { Panel } from '../design/panel';
 import { hasNoCommands, pastRange, takesCommands } from '../run/shown';
 import './disarm';
-import { CommandFile } from './file_view';
 import { History, Queue } from './history';
 import {
   back,
@@ -26,6 +26,8 @@ import {
 import { isHazardous, rangeText, unitText } from './model';
 import { Armed, Review } from './review';
 import './style.css';
+
+const CommandFile = openedLater(async () => (await import('./file_view')).CommandFile);
 
 function onKey(event: KeyboardEvent): void {
   if (event.key === 'Enter') void forward();

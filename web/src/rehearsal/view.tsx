@@ -3,6 +3,7 @@
 import { signal } from '@preact/signals';
 import { mayRehearse, whyNotRehearse } from '../access/model';
 import { outcomeWords } from '../clocks/model';
+import { openedLater } from '../design/opened_later';
 import { STATUS } from '../design/status';
 import { canContinue, isReal } from '../mode/model';
 import { changeReplayPace, playOrHold } from '../replay/model';
@@ -13,8 +14,9 @@ import { modeNow, pastRange, replay, runNow, runs, scenarios, store } from '../r
 import { isGoing } from '../run/start';
 import { InstructorDesk } from './desk';
 import { PACES, attainedText, nextPace, paceText } from './model';
-import { Review } from './review';
 import './style.css';
+
+const Review = openedLater(async () => (await import('./review')).Review);
 
 export function changePace(direction: 1 | -1): void {
   const run = store.value;
@@ -216,7 +218,7 @@ export function Rehearsal() {
       {going && run?.going && !isReal(run.run) && !past && <InstructorDesk />}
       {past && <p class="not-past">▲ The list is of now; of the run that is shown it says nothing that came later.</p>}
       <div class="table-scroll" tabIndex={0} role="group" aria-label="runs">
-        <Review />
+        {store.value?.run.state === 'finished' && !isReal(store.value.run) && <Review />}
         <table data-testid="run-list">
           <thead>
             <tr>
