@@ -16,6 +16,7 @@ test('a replay shows what had been heard then; with the recording it shows what 
   await page.keyboard.press('y');
   await shows('reading-of-past', /As it was heard then/); // and 0.3 s, or two letters are a word
   await page.keyboard.press('p');
+  await shows('replay-play', /play/);
   const seek = async (e_s) => {
     await page.getByLabel('where the replay is').evaluate((input, to) => {
       input.value = to;

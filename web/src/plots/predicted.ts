@@ -108,8 +108,11 @@ export function drawPredictedLine(plot: uPlot, line: PredictedLine, isDifference
   ctx.restore();
 }
 
-/** Draws what is predicted after now: silences of UHF as hollow boxes, and ticks for moments, the next one named. */
-export function drawAhead(plot: uPlot, now_e_s: number): void {
+/**
+ * Draws what is predicted after now: silences of UHF as hollow boxes, and ticks for moments. The next one is named, where
+ * no limit has its name: `taken`, left, right and row of each.
+ */
+export function drawAhead(plot: uPlot, now_e_s: number, taken: readonly (readonly [number, number, number])[]): void {
   const { ctx } = plot;
   const { left, top, width, height } = plot.bbox;
   const [right, bottom] = [left + width, top + height];
@@ -163,12 +166,18 @@ export function drawAhead(plot: uPlot, now_e_s: number): void {
   const half = ctx.measureText(words).width / 2;
   if (next && 2 * half < width) {
     const at = Math.max(left + half + 2, Math.min(right - half - 2, x(next.e_s)));
+    const row = top + (TICK + 1) * ratio;
+    const isFree = !taken.some(
+      ([begin, end, base]) => begin < at + half && end > at - half && base > row && base < row + 22 * ratio,
+    );
     ctx.globalAlpha = 1;
     ctx.strokeStyle = colours.panel; // an outline against the lines behind it
     ctx.lineWidth = 3 * ratio;
     ctx.lineJoin = 'round';
-    ctx.strokeText(words, at, top + (TICK + 1) * ratio);
-    ctx.fillText(words, at, top + (TICK + 1) * ratio);
+    if (isFree) {
+      ctx.strokeText(words, at, row);
+      ctx.fillText(words, at, row);
+    }
   }
   ctx.restore();
 }

@@ -99,7 +99,7 @@ function underlay(plot: uPlot, channel: DictionaryChannel, per: number): void {
 /** Draws what is predicted, over the grid and under the samples. */
 function drawPredicted(plot: uPlot, channel: DictionaryChannel, per: number): void {
   const line = lineOf(channel, per);
-  if (isAhead()) drawing?.drawAhead(plot, nowOf());
+  if (isAhead()) drawing?.drawAhead(plot, nowOf(), namesTaken.get(plot) ?? []);
   if (line) drawing?.drawPredictedLine(plot, line, showsDifference(channel));
 }
 
@@ -179,6 +179,10 @@ function shadeSilence(plot: uPlot): void {
   plot.ctx.restore();
 }
 
+/** Left, right and row of the limits' names in a plot, as drawn last. */
+type NamesTaken = [number, number, number][];
+const namesTaken = new WeakMap<uPlot, NamesTaken>();
+
 /**
  * Shades the area outside each limit while the limit was in force, with its name. The worst limit is named first, so
  * that it has its name where room is short.
@@ -240,7 +244,8 @@ function alarmBands(plot: uPlot, channel: DictionaryChannel, per: number): void 
   ctx.font = `${TYPE.mark * ratio}px ${colours.sans}`;
   ctx.textAlign = 'left';
   ctx.textBaseline = 'alphabetic';
-  const taken: [number, number, number][] = []; // left, right, row
+  const taken: NamesTaken = [];
+  namesTaken.set(plot, taken);
   for (const { words: whole, x, y, room, colour } of named.sort(
     (one, other) => Number(other.colour === colours.alarm) - Number(one.colour === colours.alarm),
   )) {
@@ -405,7 +410,7 @@ function Plot(properties: Properties) {
       extra={
         <span class={`reading ${at !== undefined ? 'at-cursor' : stale ? 'stale' : ''}`}>
           {stale && <span data-testid={`stale-${name}`}>{stale} </span>}
-          {now === undefined && line && at === undefined && <span class="cursor-time">none has come yet </span>}
+          {now === undefined && line && at === undefined && <span class="cursor-time none-yet">none has come yet </span>}
           {whose && (
             <span class="whose" data-testid={`whose-${name}`} title={whose}>
               <i>{whose.replace(/\S+$/, '')}</i>
