@@ -111,6 +111,7 @@ void ErrorFilter::pass(const Gap& gap) {
     covariance_.block<3, 3>(p, p) += squared(gap.altitude_m) * Matrix3::Identity();
     covariance_.block<3, 3>(v, v) += squared(gap.velocity_mps) * Matrix3::Identity();
     covariance_.block<3, 3>(angle, angle) += squared(gap.attitude_rad) * Matrix3::Identity();
+    attitude_considered_ = attitude_considered_ || gap.attitude_rad > 0.0;
     now.predicted = now.filtered = covariance_;
     now.predicted_error = now.filtered_error = error_;
     steps_.push_back(now);
@@ -159,8 +160,10 @@ void ErrorFilter::observe(const State& row, double residual, double sigma) {
         return;
     }
     ++taken_;
-    error_ += residual / variance * seen;
-    covariance_ -= seen * seen.transpose() / variance;
+    State gain = seen / variance;
+    if (attitude_considered_) gain.segment<3>(angle).setZero();
+    error_ += residual * gain;
+    covariance_ += variance * gain * gain.transpose() - gain * seen.transpose() - seen * gain.transpose();
 }
 
 std::vector<PathError> ErrorFilter::smoothed() const {

@@ -119,6 +119,9 @@ class ErrorFilter {
     double target_radius_m_;
     State error_ = State::Zero();
     Covariance covariance_ = Covariance::Zero();
+    /// The attitude is not mended by the radar any more, but counts as unknown as it is (Schmidt's filter): after a
+    /// silence of the IMU the radar would narrow it to less than it is worth, by what this filter does not model.
+    bool attitude_considered_ = false;
     std::vector<Step> steps_;
     std::uint64_t taken_ = 0, refused_ = 0;
 };

@@ -255,7 +255,7 @@ TEST_CASE("two decisions of one cycle have each its own conditions", "[edl][R17]
     REQUIRE(decisions.size() == 2);
     CHECK(decisions[0].decision == Decision::radar_lock);
     REQUIRE(decisions[0].conditions.size() == 1);
-    CHECK(decisions[0].conditions[0].value == 28.0);
+    CHECK(decisions[0].conditions[0].value == 7900.0);
     CHECK(decisions[1].decision == Decision::engine_priming);
     REQUIRE(decisions[1].conditions.size() == 1);
     CHECK(decisions[1].conditions[0].value == 15.25);
