@@ -15,11 +15,13 @@ const wanted = new Set(process.argv.slice(2));
 const { folder, remove } = await temporaryFolder();
 const chrome = await browser();
 
-/** A page on its server, with what a moment needs. */
+let plays = 0;
+
+/** A page on a server of its own, with what the moments need. */
 async function play(scenario, moments) {
   if (wanted.size > 0 && !moments.some(([name]) => wanted.has(name))) return;
   const server = await serve({
-    archive: path.join(folder, `${scenario}.db`),
+    archive: path.join(folder, `${(plays += 1)}.db`),
     more: ['--scenario', scenario, '--pace', '1'],
   });
   const { page, shows } = await open(chrome, server.address, SIZES[0]);
