@@ -54,6 +54,7 @@ constexpr std::string_view landing = "landed", computer = "computer", station_fa
 
 constexpr std::size_t sentence_octets_max = 240;  ///< chosen: two lines of the console
 constexpr double orbiter_soon_s = 600.0;          ///< chosen: nobody looks at a countdown to a pass beyond it
+constexpr double held_known_s = 5.0;              ///< flight tells a held decision again after 4 s
 
 std::string shortened(std::string text) {
     if (text.size() <= sentence_octets_max) return text;
@@ -351,7 +352,7 @@ void SituationDesk::explained(const Explanation& explanation, const Origin& orig
     const auto unmet = std::ranges::find(explanation.conditions, false, &Condition::holds);
     if (unmet == explanation.conditions.end()) return;
     held_ = Held{explanation.decision == "timepoint" ? explanation.subject : explanation.decision, requirement(*unmet),
-                 origin.seq};
+                 origin.seq, origin.ert};
 }
 
 // ---- the situation -----------------------------------------------------------------------------------------------
@@ -435,7 +436,7 @@ void SituationDesk::add_silent(Entries& all, const std::string& name, const Link
     }
     SituationEntry entry{SituationRank::silence, name, {}, "predicted before the landing", link.seq, link.since, {}};
     entry.sentence = fmt::format("{} silent: {}{}{}{}", title, name_of(*link.silence), link.words.empty() ? "" : ", ",
-                                 link.words, uhf && tones_come() ? "; tones still come" : "");
+                                 link.words, uhf && tones_come() ? "; X-band is received" : "");
     const bool other_tells =
         telemetry_comes() || (uhf && tones_come() && link.until && seconds_from(now, *link.until) > orbiter_soon_s);
     if (other_tells) entry.rank = SituationRank::calm;  // the landing is followed by the other link
@@ -542,8 +543,8 @@ void SituationDesk::add_step(Entries& all, std::size_t next, Ert now) const {
     const bool at_anchor = row.anchor && row.desired_offset_s == 0.0;
     const bool of_step = held_ && (held_->decision == row.name ||
                                    (at_anchor && held_->decision == dictionary_->anchors[row.anchor->value].name));
-    if (of_step && live && !entry.overdue) {
-        entry.sentence += ", not yet " + held_->condition;
+    if (of_step && live && !entry.overdue && seconds_from(held_->at, now) <= held_known_s) {
+        entry.sentence += fmt::format(", not yet {} at {}", held_->condition, when(held_->at));
         entry.evidence_seq = held_->seq;
         entry.evidence = "as the vehicle explained";
     }

@@ -93,6 +93,7 @@ class SituationDesk {
     struct Held {
         std::string decision, condition;
         std::uint64_t seq = 0;
+        Ert at;
     };
 
     Ert seen(Sclk sclk) const;

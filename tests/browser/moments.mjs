@@ -20,8 +20,9 @@ let plays = 0;
 /** A page on a server of its own, with what the moments need. */
 async function play(scenario, moments) {
   if (wanted.size > 0 && !moments.some(([name]) => wanted.has(name))) return;
+  plays += 1;
   const server = await serve({
-    archive: path.join(folder, `${(plays += 1)}.db`),
+    archive: path.join(folder, `${plays}.db`),
     more: ['--scenario', scenario, '--pace', '1'],
   });
   const { page, shows } = await open(chrome, server.address, SIZES[0]);
@@ -89,7 +90,7 @@ try {
     ['blackout', on(70)],
     ['parachute', on(264)],
     ['powered_descent', on(385)],
-    ['touchdown', on(434)],
+    ['touchdown', on(441)],
     [
       'recording_comes_down',
       async ({ server, page }) => {

@@ -80,7 +80,7 @@ TEST_CASE("a silence as predicted says when the link is back, and when it is ove
     ground.down(uhf_live_link, 50.0, "plasma blackout: predicted from E+0:45 to E+1:38", false, 98.0);
     const auto silent = ground.first(75.0);
     CHECK(silent.rank == Rank::silence);
-    CHECK(silent.sentence == "UHF silent: plasma blackout, predicted from E+0:45 to E+1:38; tones still come");
+    CHECK(silent.sentence == "UHF silent: plasma blackout, predicted from E+0:45 to E+1:38; X-band is received");
     CHECK(silent.awaited == "UHF back");
     CHECK(silent.at == at(98.0));
     CHECK_FALSE(silent.overdue);
@@ -225,7 +225,8 @@ TEST_CASE("what the ground awaits is the next step, with the condition that is m
     held.verdict = "held";
     held.conditions = {{"radar_ready", 1.0, "==", 1.0, true}, {"speed_mps", 420.0, "<=", 405.0, false}};
     ground.desk.explained(held, ground.from(251.0));
-    CHECK(ground.sentence(251.0) == "Waiting for parachute deploy, not yet speed ≤ 405.0 m/s");
+    CHECK(ground.sentence(251.0) == "Waiting for parachute deploy, not yet speed ≤ 405.0 m/s at E+4:11");
+    CHECK(ground.sentence(257.0) == "Waiting for parachute deploy");  // it would have been told again
     CHECK_FALSE(ground.first(258.0).overdue);
     CHECK(ground.first(263.0).overdue);
     ground.event("TIMEPOINT_OFFSET_CHANGED", 264.0);

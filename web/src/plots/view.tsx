@@ -410,7 +410,9 @@ function Plot(properties: Properties) {
       extra={
         <span class={`reading ${at !== undefined ? 'at-cursor' : stale ? 'stale' : ''}`}>
           {stale && <span data-testid={`stale-${name}`}>{stale} </span>}
-          {now === undefined && line && at === undefined && <span class="cursor-time none-yet">none has come yet </span>}
+          {now === undefined && line && at === undefined && (
+            <span class="cursor-time none-yet">none has come yet </span>
+          )}
           {whose && (
             <span class="whose" data-testid={`whose-${name}`} title={whose}>
               <i>{whose.replace(/\S+$/, '')}</i>
