@@ -56,9 +56,10 @@ struct Server {
                         [](archive::RunId, const auto& done) { done(TimelineCheck::Reanalysis{}); }},
                        {[](const auto&) {}, [](const auto&) {}}};
     campaign::CampaignDesk campaigns{recorded.folder / "campaigns", scenarios, recorded.dictionary};
+    PredictionDesk predictions{recorded.dictionary};
     std::unique_ptr<Access> access = std::move(Access::open({})).value();
-    Api api{{recorded.dictionary, scenarios, *queries, desk, campaigns, hub, pipeline, console, *access, false,
-             [] { return std::size_t{1}; }}};
+    Api api{{recorded.dictionary, scenarios, *queries, desk, predictions, campaigns, hub, pipeline, console, *access,
+             false, [] { return std::size_t{1}; }}};
 };
 
 HttpResponse ask(Server& server, const HttpRequest& request) {
