@@ -11,6 +11,8 @@ RecordingProgress::RecordingProgress(const dictionary::Dictionary& dictionary) {
     for (std::size_t i = 0; i < dictionary.packets.size(); ++i)
         for (const char* name : {"nvm_used_octets", "nvm_used_octets_b"})
             if (const auto field = dictionary::field_index(dictionary.packets[i], name)) sizes_.emplace_back(i, *field);
+    const auto touchdown = std::ranges::find(dictionary.events, "TOUCHDOWN", &dictionary::Event::name);
+    if (touchdown != dictionary.events.end()) touchdown_ = touchdown->packet;
     const auto event = std::ranges::find(dictionary.events, "RECORDING_CLOSED", &dictionary::Event::name);
     if (event == dictionary.events.end()) return;
     const dictionary::Packet& packet = dictionary.packets[event->packet];
@@ -28,6 +30,8 @@ bool RecordingProgress::may_close(std::span<const std::uint8_t> packet) const {
 void RecordingProgress::note(const dictionary::Decoded& packet, bool live) {
     if (closed_ && packet.packet == closed_->first) closed_octets_ = packet.raw[closed_->second];
     if (!live) return;
+    landed_ = landed_ || touchdown_ == packet.packet;
+    if (!landed_) return;
     for (const auto& [index, field] : sizes_)
         if (packet.packet == index) told_octets_ = std::max<std::uint64_t>(told_octets_, packet.raw[field]);
 }

@@ -17,8 +17,8 @@ class RecordingReceiver;
 /// How much of the recording is down, by what the vehicle told of its size.
 ///
 /// In       decoded packets; what was received of the recording        Out   a fraction
-/// Rule     while it records, live telemetry tells the size so far (CommStatus). RECORDING_CLOSED, its last packet, tells
-///          the whole size; before that packet is down nothing is called whole
+/// Rule     once TOUCHDOWN was heard live, telemetry tells nearly the size (CommStatus); what it told earlier was a
+///          part. RECORDING_CLOSED, the last packet, tells the whole size; before it is down nothing is called whole
 /// Faults   no size told: the fraction is not known, and is 0
 class RecordingProgress {
   public:
@@ -36,6 +36,8 @@ class RecordingProgress {
     std::vector<Place> sizes_;
     std::optional<Place> closed_;
     std::optional<Apid> closed_apid_;
+    std::optional<std::size_t> touchdown_;  ///< packet
+    bool landed_ = false;
     std::uint64_t told_octets_ = 0;
     std::optional<std::uint64_t> closed_octets_;  ///< without the last packet
 };

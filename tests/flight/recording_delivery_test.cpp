@@ -86,6 +86,11 @@ TEST_CASE("how much of the recording is down is told by the size that the vehicl
           "packet alone",
           "[file_delivery][R29][R53]") {
     const auto& dictionary = tests::shipped_dictionary();
+    const auto heard = [&](std::string_view event) {
+        dictionary::Decoded decoded;
+        decoded.packet = std::ranges::find(dictionary.events, event, &dictionary::Event::name)->packet;
+        return decoded;
+    };
     const auto telling = [&](std::string_view packet, std::string_view field, std::uint64_t octets) {
         dictionary::Decoded decoded;
         const auto found = std::ranges::find(dictionary.packets, packet, &dictionary::Packet::name);
@@ -103,6 +108,10 @@ TEST_CASE("how much of the recording is down is told by the size that the vehicl
     CHECK(progress.fraction(delivery.ground) == 0.0);
     progress.note(telling("CommStatus", "nvm_used_octets", 1000), false);
     CHECK(progress.fraction(delivery.ground) == 0.0);
+    progress.note(telling("CommStatus", "nvm_used_octets", 1000), true);  // in cruise: far from what it will be
+    progress.note(heard("TOUCHDOWN"), false);
+    CHECK(progress.fraction(delivery.ground) == 0.0);
+    progress.note(heard("TOUCHDOWN"), true);
     progress.note(telling("CommStatus", "nvm_used_octets", 2 * size), true);
     progress.note(telling("CommStatus", "nvm_used_octets", size), true);
     CHECK(progress.fraction(delivery.ground) ==

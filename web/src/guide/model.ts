@@ -178,7 +178,14 @@ export function guideStep(
   const press: Press[] = paused
     ? [{ key: 'p', words: 'goes on' }]
     : down
-      ? [{ words: `${Math.round(run.run.relayProgress * 100)} % of the recording is down.` }]
+      ? [
+          {
+            words:
+              run.run.relayProgress > 0
+                ? `${Math.floor(run.run.relayProgress * 100)} % of the recording is down.`
+                : 'How much of the recording is down is not told.',
+          },
+        ]
       : pace > FAST
         ? [{ key: '−', words: 'to 10× or less, to see it happen' }]
         : [{ words: 'Watch the dot: it should stay inside the grey corridor.' }];

@@ -320,7 +320,7 @@ export function restOf({ run, cutoff }: Look, present: boolean): { words: string
       words:
         part >= 1
           ? 'The recording is complete.'
-          : `${Math.floor(part * 100)} % of the recording has come.${run.going ? pass : ' The run has ended: no more comes.'}`,
+          : `${part > 0 ? `${Math.floor(part * 100)} % of the recording has come.` : 'How much of the recording has come is not told.'}${run.going ? pass : ' The run has ended: no more comes.'}`,
       part,
     },
   ];

@@ -134,7 +134,7 @@ export function waitingFor(
       title: 'The timeline is complete',
       words:
         cutoff === Infinity && store.run.relayProgress > 0 && store.run.relayProgress < 1
-          ? `The recording is coming down: ${Math.round(store.run.relayProgress * 100)} %`
+          ? `The recording is coming down: ${Math.floor(store.run.relayProgress * 100)} %`
           : 'Every timepoint has fired.',
       lines: [],
       ...(cutoff === Infinity &&
@@ -204,7 +204,9 @@ function ended(store: RunStore): Waiting {
   const complete =
     run.relayProgress >= 1
       ? 'The recording is complete.'
-      : `${Math.round(run.relayProgress * 100)} % of the recording came down.`;
+      : run.relayProgress > 0
+        ? `${Math.floor(run.relayProgress * 100)} % of the recording came down.`
+        : 'How much of the recording came down is not told.';
   return {
     kind: 'ended',
     title: run.outcome === 'touchdown' ? 'Landed' : run.state === 'interrupted' ? 'Interrupted' : 'Ended',
