@@ -63,6 +63,45 @@ test('each panel shows what it is for, and says that it is of an ended rehearsal
   await page.close();
 });
 
+test('the table of channels has names, aliases, descriptions and units as msl.xml has them', async () => {
+  const xml = await readFile(path.join(root, 'dictionaries/msl/msl.xml'), 'utf8');
+  const units = new Map(
+    [...xml.matchAll(/<\w+ParameterType name="(\w+)"[^>]*>\s*<UnitSet><Unit>([^<]*)<\/Unit><\/UnitSet>/g)].map(
+      ([, type, unit]) => [type, unit],
+    ),
+  );
+  const written = new Map(
+    [
+      ...xml.matchAll(
+        /<Parameter name="(\w+)" parameterTypeRef="(\w+)" shortDescription="([^"]*)">\s*<AliasSet><Alias nameSpace="channel" alias="([\w-]+)"/g,
+      ),
+    ].map(([, name, type, description, alias]) => [name, { alias, description, unit: units.get(type) ?? '' }]),
+  );
+  const { page, problems, shows } = await open(server.address);
+  await page.goto(`${server.address}/?panel=channels`);
+  await shows('badge', /ENDED RUN/);
+  for (const prefix of ['gnc-', 'ent-', 'par-', 'pyr-']) {
+    await page.getByTestId('channel-filter').fill(prefix);
+    await shows('channel-table', new RegExp(prefix, 'i'));
+    const rows = await page.getByTestId('channel-table').evaluate((table) =>
+      [...table.querySelectorAll('tbody tr')].map((row) => ({
+        name: row.dataset.testid.replace('channel-', ''),
+        alias: row.cells[1].querySelector('.alias').textContent,
+        title: row.cells[1].title.split('\n')[0],
+        unit: row.cells[3].textContent,
+      })),
+    );
+    assert.ok(rows.length > 5, `${prefix}: ${rows.length} rows`);
+    for (const { name, alias, title, unit } of rows) {
+      const is = written.get(name);
+      assert.ok(is, `msl.xml has no channel ${name}`);
+      assert.deepEqual({ alias, title, unit }, { alias: is.alias, title: `${name}: ${is.description}`, unit: is.unit });
+    }
+  }
+  assert.deepEqual(problems, []);
+  await page.close();
+});
+
 test('the console, its timeline and plots, its channels and its command line come to look as stored', async () => {
   const { page, problems, shows } = await open(server.address, { width: 1000, height: 640 });
   const different = [];
