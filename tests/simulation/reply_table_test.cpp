@@ -54,7 +54,7 @@ const std::vector<Row> rows{
     {point::thermal_batteries, Device::pyro},
     {point::cruise_cables_cut, Device::pyro},
     {point::pressurant_valve_2, Device::pyro},
-    {point::cruise_stage_separation, Device::pyro, Outcome::not_commanded, Outcome::not_commanded},
+    {point::cruise_stage_separation, Device::pyro, Outcome::lost, Outcome::lost},
     {point::thruster_warm_up, Device::power},
     {point::thrusters_enable, Device::thrusters, lands, lands, true},
     {point::cruise_balance_1, Device::pyro, Outcome::lost, Outcome::lost},
