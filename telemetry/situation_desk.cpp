@@ -79,6 +79,11 @@ std::string title_of(std::string_view link) {
     return std::string(link);
 }
 
+/// Of a link that the plan has yet to begin.
+std::string not_begun_title(std::string_view link) {
+    return link == x_band_link.name ? "X-band tones" : title_of(link);
+}
+
 /// The station's fault, told behind the prediction that it stands beside.
 std::string fault_of(const std::string& words) {
     const auto behind = words.rfind("; ");
@@ -395,6 +400,7 @@ void SituationDesk::add_links(Entries& all, Ert now, bool not_heard) const {
                                {}});
             continue;
         }
+        if (awaits_begin(link)) continue;
         if (link.lost_since)
             add_lost(all, name, link);
         else if (!not_heard && (is_live_telemetry(name) || name == x_band_link.name))
@@ -402,12 +408,17 @@ void SituationDesk::add_links(Entries& all, Ert now, bool not_heard) const {
     }
 }
 
+// The timeline switches it on, and telemetry would have told that the timeline runs: that is said where "do EDL" is.
+bool SituationDesk::awaits_begin(const LinkRow& link) const {
+    return !begun_ && telemetry_comes() && link.lost_since && link.outlasted == SilenceClass::not_begun;
+}
+
 void SituationDesk::add_lost(Entries& all, const std::string& name, const LinkRow& link) const {
     const std::string title = title_of(name);
     SituationEntry entry{SituationRank::news, name, {}, "link " + name, link.lost_seq, *link.lost_since, {}};
     if (link.outlasted == SilenceClass::not_begun && link.outlasted_until) {
-        entry.sentence = fmt::format("{} not heard: due since {}{}", name == x_band_link.name ? "X-band tones" : title,
-                                     when(*link.outlasted_until), begun_ ? "" : "; “Do EDL” is not confirmed");
+        entry.sentence = fmt::format("{} not heard: due since {}{}", not_begun_title(name), when(*link.outlasted_until),
+                                     begun_ ? "" : "; “Do EDL” is not confirmed");
     } else if (link.outlasted && link.outlasted_until) {
         entry.sentence = fmt::format("{} silent since {}, longer than predicted ({} until {})", title, when(link.since),
                                      name_of(*link.outlasted), when(*link.outlasted_until));
@@ -512,6 +523,10 @@ void SituationDesk::add_waiting(Entries& all, Ert now) const {
             entry.awaited = "entry", entry.at = entry_at;
         else
             entry.sentence = fmt::format("“Do EDL” was never confirmed; entry was predicted at {}", when(entry_at));
+        for (const auto& [name, link] : links_)
+            if (awaits_begin(link) && link.outlasted_until)
+                entry.sentence +=
+                    fmt::format("; {} not heard, due since {}", not_begun_title(name), when(*link.outlasted_until));
         all.push_back(std::move(entry));
         return;
     }

@@ -110,6 +110,7 @@ class SituationDesk {
     Ert last_change() const;  ///< of a link
     bool tones_come() const { return up("x_band"); }
 
+    bool awaits_begin(const LinkRow& link) const;  ///< not heard because the timeline does not run
     void add_links(std::vector<SituationEntry>& all, Ert now, bool not_heard) const;
     void add_lost(std::vector<SituationEntry>& all, const std::string& name, const LinkRow& link) const;
     void add_silent(std::vector<SituationEntry>& all, const std::string& name, const LinkRow& link, Ert now) const;

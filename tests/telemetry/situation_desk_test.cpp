@@ -123,7 +123,20 @@ TEST_CASE("of a transmitter that a timeline which does not run has not switched 
     ground.up(x_band_telemetry_link, -1200.0);
     ground.down(x_band_link, -1200.0, "not begun: X-band sends telemetry until E−12:30", false, -750.0);
     ground.down(x_band_link, -715.0, "unexplained: nothing is predicted to silence it now", true);
-    CHECK(ground.sentence(-714.0) == "X-band tones not heard: due since E−12:30; “Do EDL” is not confirmed");
+    CHECK(ground.sentence(-714.0) ==
+          "“Do EDL” is not confirmed: the timeline does not run; X-band tones not heard, due since E−12:30");
+    CHECK(ground.first(-714.0).rank == Rank::waiting);
+    CHECK_FALSE(ground.about("x_band", -714.0));  // its cause is told: no news of its own
+    ground.down(uhf_live_link, -1200.0, "not begun: planned at E−13:20", false, -800.0);
+    ground.down(uhf_live_link, -700.0, "unexplained: nothing is predicted to silence it now", true);
+    CHECK(ground.sentence(-699.0) == "“Do EDL” is not confirmed: the timeline does not run; UHF not heard, due since "
+                                     "E−13:20; X-band tones not heard, due since E−12:30");
+    // Without telemetry nobody knows whether the timeline runs.
+    ground.down(x_band_telemetry_link, -600.0, "unexplained: nothing is predicted to silence it now", true);
+    CHECK(ground.about("x_band", -599.0)->sentence ==
+          "X-band tones not heard: due since E−12:30; “Do EDL” is not confirmed");
+    CHECK(ground.about("uhf_live", -599.0)->rank == Rank::news);
+    CHECK(ground.first(-599.0).sentence == "X-band telemetry lost since E−10:00: nothing predicted it");
 }
 
 TEST_CASE("what X-band's telemetry tells is not told again by tone, and its loss is news", "[situation]") {
