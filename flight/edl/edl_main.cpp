@@ -99,7 +99,9 @@ void EdlMain::run_timeline(Sclk now, Outbox& out) {
     ActionContext context{out, configuration_};
     Firings firings;
     const bool waited = timeline_.waiting().has_value();
+    const bool navigated = configuration_.enabled;
     timeline_.pass(now, context, firings);
+    if (configuration_.enabled && !navigated) tell_not_activated(out);
     // What was triggered is kept for a restart at once: its reply may be seconds away.
     if (!firings.empty() || timeline_.waiting().has_value() != waited) ++revision_;
     constraint_monitor_.watch(timeline_, firings.span());

@@ -111,6 +111,8 @@ class EdlMain {
     bool may_change_table(const CommandTag& tag, Outbox& out) const;
     void table_changed(Outbox& out);
     void fly_by_table(Outbox& out);
+    /// Once GNC is enabled: what is still staged stays staged.
+    void tell_not_activated(Outbox& out) const;
     std::uint8_t reset_count() const {
         return static_cast<std::uint8_t>(
             std::min<std::uint32_t>(load_.resets, std::numeric_limits<std::uint8_t>::max()));

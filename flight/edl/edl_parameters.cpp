@@ -21,6 +21,11 @@ void EdlMain::table_changed(Outbox& out) {
     out.record(table_.report());
 }
 
+void EdlMain::tell_not_activated(Outbox& out) const {
+    const auto staged = static_cast<std::uint16_t>(table_.staged());
+    if (staged > 0) out.event(evr::PARAMETERS_NOT_ACTIVATED{.parameters_staged = staged});
+}
+
 void EdlMain::fly_by_table(Outbox& out) {
     gnc_.set_parameters(table_.values());
     for (const ModuleId module : {ModuleId::edl_bg, ModuleId::mfsk})
@@ -57,6 +62,8 @@ void EdlMain::on(const ActivateParametersCommand& command, Outbox& out) {
                                      ? at_least(Quantity::staged_changes, staged, arguments.parameter_changes)
                                      : at_most(Quantity::staged_changes, staged, arguments.parameter_changes));
     outcome.conditions.push_back(is(Quantity::parameter_version_new, arguments.parameter_version != table_.version()));
+    outcome.conditions.push_back(
+        is(Quantity::parameter_crc_as_sent, arguments.parameter_crc == table_.crc_with_staged()));
     if (!all_hold(outcome.conditions)) outcome.refused = CommandRefusal::bad_argument;
     if (!outcome.refused) {
         table_.activate(arguments.parameter_version);

@@ -57,9 +57,19 @@ void ParameterTable::stage(ParameterId id, double value) {
     staged_[place] = {id.value, value};
 }
 
-void ParameterTable::activate(std::uint16_t version) {
+Parameters ParameterTable::with_staged() const {
+    Parameters values = values_;
     for (const Change& change : std::span{staged_}.first(staged_count_))
-        set_value(values_, ParameterId{change.id}, change.value);
+        set_value(values, ParameterId{change.id}, change.value);
+    return values;
+}
+
+std::uint16_t ParameterTable::crc_with_staged() const {
+    return crc16(rows_of(with_staged()));
+}
+
+void ParameterTable::activate(std::uint16_t version) {
+    values_ = with_staged();
     version_ = version;
     changes_ = staged_count_;
     discard();

@@ -54,6 +54,8 @@ class ParameterTable {
     bool has_room(ParameterId id) const;
     void stage(ParameterId id, double value);
     void discard() { staged_count_ = 0; }
+    /// CRC of the table that activation would make.
+    std::uint16_t crc_with_staged() const;
     /// Takes all staged changes into the table.
     void activate(std::uint16_t version);
 
@@ -76,6 +78,7 @@ class ParameterTable {
         }
     };
     const Change* staged_of(ParameterId id) const;
+    Parameters with_staged() const;
 
     Parameters values_, built_in_;
     std::uint16_t version_ = 0;

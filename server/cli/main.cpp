@@ -48,6 +48,7 @@ int main(int argc, char** argv) {
     add_modules_command(program, exit_code);
     add_decode_command(program, exit_code);
     add_dictionary_command(program, exit_code);
+    add_parameters_command(program, exit_code);
     add_timeline_command(program, exit_code);
     add_tones_command(program, exit_code);
     add_export_command(program, exit_code);

@@ -81,7 +81,7 @@ TEST_CASE("the shipped dictionary reports the parameters that it is sent", "[rea
     CHECK(read_back_packet(dictionary, *command) == dictionary.packet("ParametersHeld"));
 }
 
-TEST_CASE("an activated table of parameters is read back by its version, and a staged change by the activation only",
+TEST_CASE("an activated table of parameters is read back by version, number and CRC, a staged change by the activation",
           "[read_back][R25][R48]") {
     const auto& dictionary = tests::shipped_dictionary();
     const auto report_of = [&](const char* command) {
@@ -89,6 +89,18 @@ TEST_CASE("an activated table of parameters is read back by its version, and a s
     };
     CHECK(report_of("EDL_ACTIVATE_PARAMETERS") == dictionary.packet("ParameterTable"));
     CHECK(report_of("EDL_STAGE_PARAMETER") == nullptr);
+    const auto& activation = *dictionary.command("EDL_ACTIVATE_PARAMETERS");
+    const auto sent = *encode(
+        activation,
+        std::vector<NamedValue>{{"parameter_version", 3}, {"parameter_changes", 1}, {"parameter_crc", 0x1234}}, 1);
+    for (const std::uint64_t crc : {0x1234, 0x1235}) {
+        const auto held = PacketFiller{dictionary, "ParameterTable"}
+                              .raw("parameter_version", 3)
+                              .raw("parameter_changes", 1)
+                              .raw("parameter_crc", crc)
+                              .seal(0, Sclk{397'500'100.0});
+        CHECK(compare(activation, sent, *dictionary.packet("ParameterTable"), held).equal() == (crc == 0x1234));
+    }
 }
 
 }  // namespace commands_read_back_test

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "commands/parameter_table.hpp"
 #include "flight/edl/edl_main.hpp"
 #include "flight/kernel/parameter_parts.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/outbox.hpp"
+#include "tests/support/shipped_dictionary.hpp"
 
+#include <cmath>
 #include <random>
 
 namespace flight_edl_parameters_test {
@@ -38,8 +41,13 @@ struct Fixture {
     bool stage(ParameterId id, double value) {
         return takes(StageParameterCommand{{}, {.parameter = id.value, .value = value}});
     }
-    bool activate(std::uint16_t version, std::uint16_t changes) {
-        return takes(ActivateParametersCommand{{}, {.parameter_version = version, .parameter_changes = changes}});
+    /// With the CRC of what is staged, unless one is given.
+    bool activate(std::uint16_t version, std::uint16_t changes, std::optional<std::uint16_t> crc = {}) {
+        return takes(
+            ActivateParametersCommand{{},
+                                      {.parameter_version = version,
+                                       .parameter_changes = changes,
+                                       .parameter_crc = crc.value_or(edl.parameter_table().crc_with_staged())}});
     }
     packet::ParameterTable report() const { return edl.parameter_table().report(); }
 };
@@ -91,6 +99,25 @@ TEST_CASE("an activation needs the number of changes that ground staged, and a n
     CHECK(f.edl.parameter_table().values().guidance_gain == 4.0);
     CHECK(f.activate(2, 1));
     CHECK_FALSE(f.activate(3, 1));  // nothing is staged any more
+}
+
+TEST_CASE("an activation of another table than ground means is refused, though number and version are right",
+          "[edl][parameters][R25][R38][R48]") {
+    Fixture f;
+    commands::ParameterTable meant{tests::shipped_dictionary()};
+    REQUIRE(meant.set(parameter::guidance_gain, 4.0));
+    REQUIRE(f.stage(parameter::sufr_lead_s, 19.0));  // by somebody else, and ours was refused or lost
+    CHECK_FALSE(f.activate(1, 1, meant.crc()));
+    CHECK(f.refused == CommandRefusal::bad_argument);
+    CHECK(f.why[2].quantity == Quantity::parameter_crc_as_sent);
+    CHECK_FALSE(f.why[2].holds);
+    CHECK(f.edl.parameter_table().values() == Parameters{});
+    REQUIRE(f.takes(DiscardParametersCommand{}));
+    REQUIRE(f.stage(parameter::guidance_gain, std::nextafter(4.0, 5.0)));  // one bit off
+    CHECK_FALSE(f.activate(1, 1, meant.crc()));
+    REQUIRE(f.stage(parameter::guidance_gain, 4.0));
+    REQUIRE(f.activate(1, 1, meant.crc()));
+    CHECK(f.report().parameter_crc == meant.crc());
 }
 
 TEST_CASE("what may not be staged is refused with the reason: range, fixed, unknown, no room",

@@ -134,6 +134,16 @@ TEST_CASE("the CRC reported is that of the table as dumped: it tells one bit of 
     }
 }
 
+TEST_CASE("the CRC with what is staged is that of the table once it is activated", "[parameters][R25]") {
+    ParameterTable table{Parameters{}};
+    CHECK(table.crc_with_staged() == table.report().parameter_crc);
+    table.stage(parameter::guidance_gain, 4.0);
+    const std::uint16_t announced = table.crc_with_staged();
+    CHECK(announced != table.report().parameter_crc);
+    table.activate(1);
+    CHECK(table.report().parameter_crc == announced);
+}
+
 TEST_CASE("the table, its version and what is staged go to the other computer", "[parameters][R32][R33]") {
     ParameterTable ours{Parameters{}}, theirs{Parameters{}};
     ours.stage(parameter::guidance_gain, 4.0);

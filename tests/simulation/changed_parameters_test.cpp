@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "commands/parameter_table.hpp"
 #include "flight/edl/parameter_table.hpp"
 #include "simulation/limits.hpp"
 #include "tests/simulation/gale.hpp"
@@ -39,12 +40,19 @@ Landing before_gnc(double until_e_s = -600.0) {
     return landing;
 }
 
+/// The CRC of the table that the changes make of the one built in, as ground computes it.
+std::uint16_t crc_of(const std::vector<Change>& changes) {
+    commands::ParameterTable table{tests::shipped_dictionary()};
+    for (const Change& one : changes) REQUIRE(table.set(one.id, one.value));
+    return table.crc();
+}
+
 void change(Landing& landing, const std::vector<Change>& changes) {
     for (const Change& one : changes) {
         landing.uplink(test::stage_parameter(one.id, one.value));
         step(landing, 16);
     }
-    landing.uplink(test::activate_parameters(1, static_cast<std::uint16_t>(changes.size())));
+    landing.uplink(test::activate_parameters(1, static_cast<std::uint16_t>(changes.size()), crc_of(changes)));
     step(landing, 32);
     REQUIRE(tests::count_recorded<evr::PARAMETERS_ACTIVATED>(landing.recording()) == 1);
 }
@@ -96,16 +104,29 @@ TEST_CASE("a changed parameter changes the flight, and only once it is activated
     CHECK(landing.touchdown()->vertical_mps < 0.70);
 }
 
-TEST_CASE("once GNC is enabled a parameter is refused, and the table can still be dumped",
-          "[simulation][parameters][R25][R30]") {
-    Landing landing = before_gnc(-500.0);
+TEST_CASE(
+    "once GNC is enabled no parameter is staged, activated or discarded, what is staged is told, and the table can "
+    "still be dumped",
+    "[simulation][parameters][R25][R30]") {
+    Landing landing = before_gnc();
     landing.uplink(test::stage_parameter(slower_parachute.id, slower_parachute.value));
-    step(landing, 32);
-    CHECK(tests::count_recorded<evr::COMMAND_REFUSED>(landing.recording()) == 1);
-    CHECK(tests::count_recorded<evr::PARAMETER_STAGED>(landing.recording()) == 0);
+    while (landing.truth().e_s < -500.0) landing.step();
+    CHECK(tests::count_recorded<evr::PARAMETER_STAGED>(landing.recording()) == 1);
+    CHECK(tests::count_recorded<evr::PARAMETERS_NOT_ACTIVATED>(landing.recording()) == 1);
+    int refused = 0;
+    for (const auto& command :
+         {test::stage_parameter(parameter::guidance_gain, 4.0),
+          test::activate_parameters(1, 1, crc_of({slower_parachute})), test::discard_parameters()}) {
+        landing.uplink(command);
+        step(landing, 32);
+        CHECK(tests::count_recorded<evr::COMMAND_REFUSED>(landing.recording()) == ++refused);
+    }
+    CHECK(tests::count_recorded<evr::PARAMETER_STAGED>(landing.recording()) == 1);
+    CHECK(tests::count_recorded<evr::PARAMETERS_ACTIVATED>(landing.recording()) == 0);
+    CHECK(tests::count_recorded<evr::PARAMETERS_DISCARDED>(landing.recording()) == 0);
     landing.uplink(test::dump_parameters());
     step(landing, 64);
-    CHECK(tests::count_recorded<evr::COMMAND_REFUSED>(landing.recording()) == 1);
+    CHECK(tests::count_recorded<evr::COMMAND_REFUSED>(landing.recording()) == refused);
     std::size_t parts = 0;
     telemetry::PacketStream packets{landing.recording()};
     while (const auto packet = packets.next())

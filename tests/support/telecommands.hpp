@@ -76,13 +76,19 @@ inline std::vector<std::uint8_t> stage_parameter(ParameterId parameter, double v
     seal_tc_packet(packet, Apid{1}, 2, Command::opcode);
     return cltu_of(packet);
 }
-inline std::vector<std::uint8_t> activate_parameters(std::uint16_t version, std::uint16_t changes) {
+inline std::vector<std::uint8_t> activate_parameters(std::uint16_t version, std::uint16_t changes, std::uint16_t crc) {
     using Command = flight::command::EDL_ACTIVATE_PARAMETERS;
     std::vector<std::uint8_t> packet(tc_overhead_octets + Command::argument_octets);
     BitWriter arguments{std::span{packet}.subspan(tc_arguments_offset_octets)};
     arguments.put(version, 16);
     arguments.put(changes, 16);
+    arguments.put(crc, 16);
     seal_tc_packet(packet, Apid{1}, 2, Command::opcode);
+    return cltu_of(packet);
+}
+inline std::vector<std::uint8_t> discard_parameters() {
+    std::vector<std::uint8_t> packet(tc_overhead_octets);
+    seal_tc_packet(packet, Apid{1}, 2, flight::command::EDL_DISCARD_PARAMETERS::opcode);
     return cltu_of(packet);
 }
 inline std::vector<std::uint8_t> dump_parameters() {

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "commands/parameter_table.hpp"
+
+#include "commands/number.hpp"
+#include "common/bytes.hpp"
+#include "common/crc.hpp"
+
+#include <array>
+
+namespace aeolis::commands {
+
+ParameterTable::ParameterTable(const dictionary::Dictionary& dictionary) : dictionary_(dictionary) {
+    for (const dictionary::ParameterRow& row : dictionary.parameters) values_.push_back(row.default_value);
+}
+
+Result<void> ParameterTable::set(ParameterId id, double value) {
+    if (id.value >= values_.size()) return Error{"parameters.csv has no row " + std::to_string(id.value)};
+    const dictionary::ParameterRow& row = dictionary_.parameters[id.value];
+    if (row.change == dictionary::ParameterRow::Change::build)
+        return Error{row.name + " is fixed when flight is built"};
+    if (!(value >= row.min && value <= row.max))
+        return Error{row.name + ": " + shortest_text(value) + " is outside " + shortest_text(row.min) + " to " +
+                     shortest_text(row.max) + (row.unit == "1" ? "" : " " + row.unit)};
+    values_[id.value] = value;
+    return {};
+}
+
+std::uint16_t ParameterTable::crc() const {
+    constexpr std::size_t row_octets = 10;
+    std::vector<std::uint8_t> octets(values_.size() * row_octets);
+    BitWriter writer{octets};
+    for (std::size_t row = 0; row < values_.size(); ++row) {
+        writer.put(row, 16);
+        writer.put_double(values_[row]);
+    }
+    return crc16(octets);
+}
+
+}  // namespace aeolis::commands

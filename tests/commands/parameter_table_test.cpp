@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "commands/parameter_table.hpp"
+
+#include "flight/edl/parameter_table.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/shipped_dictionary.hpp"
+
+#include <limits>
+
+namespace commands_parameter_table_test {
+
+using namespace aeolis;
+namespace parameter = flight::parameter;
+
+TEST_CASE("ground's CRC of a parameter table is flight's: as built, and with any one parameter changed",
+          "[commands][parameters][R25][R48]") {
+    const commands::ParameterTable as_built{tests::shipped_dictionary()};
+    CHECK(as_built.crc() == flight::ParameterTable{flight::Parameters{}}.report().parameter_crc);
+    for (const dictionary::ParameterRow& row : tests::shipped_dictionary().parameters) {
+        if (row.change == dictionary::ParameterRow::Change::build) continue;
+        INFO(row.name);
+        const double value = row.min < row.default_value ? row.min : row.max;
+        commands::ParameterTable ground{tests::shipped_dictionary()};
+        REQUIRE(ground.set(row.id, value));
+        flight::ParameterTable table{flight::Parameters{}};
+        table.stage(row.id, value);
+        CHECK(ground.crc() == table.crc_with_staged());
+        CHECK(ground.crc() != as_built.crc());
+    }
+}
+
+TEST_CASE("ground refuses the changes of parameters that flight would refuse, and says why",
+          "[commands][parameters][R25]") {
+    commands::ParameterTable table{tests::shipped_dictionary()};
+    const std::uint16_t before = table.crc();
+    const auto why = [&](ParameterId id, double value) {
+        const auto set = table.set(id, value);
+        REQUIRE_FALSE(set);
+        return set.error().message;
+    };
+    CHECK_THAT(why(parameter::guidance_gain, 1.0e9), Catch::StartsWith("guidance_gain: 1e+09 is outside "));
+    CHECK_THAT(why(parameter::guidance_gain, std::numeric_limits<double>::quiet_NaN()), Catch::Contains("is outside"));
+    CHECK(why(parameter::entry_moved_max_s, 10.0) == "entry_moved_max_s is fixed when flight is built");
+    CHECK(why(ParameterId{60000}, 1.0) == "parameters.csv has no row 60000");
+    CHECK(table.crc() == before);
+}
+
+}  // namespace commands_parameter_table_test
