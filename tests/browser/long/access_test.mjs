@@ -155,7 +155,7 @@ test('with accounts: a log-in in place, an end of the session in the middle that
   await shows('dry-run', /✖ It would be refused: ann is observer/);
   await page.keyboard.type(name.slice(4));
   await page.keyboard.press('Enter');
-  await shows('command-message', /SELECT_PRIME refused: ann is observer[^]*nothing was sent/);
+  await shows('command-message', /nothing was sent: ann is observer: this needs the right to command/);
   await shows('who', /ann[^]*observer, only looks/);
   await waitFor(
     () => page.getByTestId('command-line').isDisabled(),
