@@ -44,6 +44,7 @@ async function whatObserverDoes(page) {
   );
   await page.reload();
   await waitFor(() => page.getByTestId('stream-state').innerText(), /connected/);
+  await page.evaluate(() => (Element.prototype.requestFullscreen = async () => undefined)); // it would cover the tabs
   const under_way = new Set();
   page.on('request', (request) => under_way.add(request));
   for (const end of ['requestfinished', 'requestfailed']) page.on(end, (request) => under_way.delete(request));
