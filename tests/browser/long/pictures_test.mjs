@@ -55,6 +55,10 @@ test('each panel comes to look as its stored picture does, within a tolerance, a
       if (panel === 'campaigns') await shows('campaign-ellipse', /azimuth/);
       if (panel === 'channels') await waitFor(() => page.getByTestId('channel-altitude_m').innerText(), /\d/);
       const what = page.locator(panel === 'phases' ? '.strip' : 'main');
+      await waitFor(
+        () => what.innerText(),
+        (all) => !/asking…/.test(all),
+      );
       await compare(`${panel}_${theme}`, what);
       if (process.env.AEOLIS_RENEW_PICTURES) continue;
       // A late update may draw the removed part again, once.
