@@ -27,8 +27,7 @@ function toDo(title: string): string {
  * there; not before all of the run has come, since until then its commands are not known. The button opens it for who
  * has left it.
  */
-function LineFor({ command, run }: { command: string; run: number }) {
-  const isWhole = stream.value.state === 'live';
+function LineFor({ command, run, isWhole }: { command: string; run: number; isWhole: boolean }) {
   useEffect(() => {
     if (isWhole && document.activeElement === document.body && step.value === 'type') openCommandLine();
   }, [command, run, isWhole]);
@@ -69,6 +68,7 @@ export function WaitingFor() {
       </section>
     );
   }
+  const isWhole = stream.value.state === 'live';
   const waiting = waitingFor(run, words, timepoints.value, cutoff.value, predicted.value, told.value);
   // the clocks stand still, so the conditions are old
   const isOld = isLost.value && cutoff.value === Infinity && waiting.kind === 'waiting';
@@ -118,7 +118,9 @@ export function WaitingFor() {
           Go to the runs <kbd>s</kbd>
         </button>
       )}
-      {waiting.type !== undefined && takesCommands() && <LineFor command={waiting.type} run={run.id} />}
+      {waiting.type !== undefined && takesCommands() && (
+        <LineFor command={waiting.type} run={run.id} isWhole={isWhole} />
+      )}
     </section>
   );
 }
