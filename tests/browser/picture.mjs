@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Compares pictures of panels with stored ones, both as averages of tiles, so that the edge of a letter does not count
 // but a moved panel or lost colours do. A trace is one pixel thin and would vanish in a tile, so the columns of pixels
-// with a trace's colour are counted for each canvas. AEOLIS_RENEW_PICTURES=1 stores new pictures: look at them before
-// you commit.
+// with a trace's colour are counted for each canvas. AEOLIS_RENEW_PICTURES=1 stores new pictures, and whole ones in
+// build/test/pictures: look at those before you commit.
 import { existsSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import path from 'node:path';
 import { root } from './support.mjs';
@@ -20,6 +20,7 @@ const COLUMNS = 0.1; // relative deviation from the stored count
 const COLUMNS_LEAST = 8; // chosen: variation at the end of a letter
 
 const folder = path.join(root, 'tests/browser/pictures');
+const wholeFolder = path.join(root, 'build/test/pictures');
 
 const tracesFile = path.join(folder, 'traces.json');
 const storedTraces = () => (existsSync(tracesFile) ? JSON.parse(readFileSync(tracesFile, 'utf8')) : {});
@@ -40,7 +41,8 @@ export async function comparePicture(page, name, screenshot) {
   const file = path.join(folder, `${name}.png`);
   const traces = await page.evaluate(columnsOfTraces, TRACES);
   if (process.env.AEOLIS_RENEW_PICTURES) {
-    mkdirSync(folder, { recursive: true });
+    for (const each of [folder, wholeFolder]) mkdirSync(each, { recursive: true });
+    writeFileSync(path.join(wholeFolder, `${name}.png`), screenshot);
     writeFileSync(
       file,
       Buffer.from((await page.evaluate(inPage, { png: screenshot.toString('base64'), tile: TILE_PX })).png, 'base64'),

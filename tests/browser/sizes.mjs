@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The states in which the console is measured at each size of a window, and the measurement.
-import { comesToRest, flyTo, focused, landed, stageLook, waitFor } from './support.mjs';
+import { comesToRest, control, flyTo, focused, landed, stageLook, waitFor } from './support.mjs';
 import { keepWhatIsWritten, notWhole } from './texts.mjs';
 
 /** Inner sizes of browser windows that people have, scrollbars shown. */
@@ -15,14 +15,11 @@ export const SIZES = [
   [390, 700],
 ];
 
-const pause = ({ address }) =>
-  fetch(`${address}/api/v1/rehearsals/current`, { method: 'POST', body: JSON.stringify({ pause: true }) });
-
 /** Each state: a server in it, and the way of a page to it. */
 export const STATES = {
   'first open': async (serve, t) => {
     const server = await serve(t, 'first', ['--scenario', 'nominal']);
-    await pause(server);
+    await control(server, { pause: true });
     return { server, reach: ({ shows }) => shows('waiting', /set edl parameters/) };
   },
   armed: async (serve, t) => {
@@ -38,7 +35,7 @@ export const STATES = {
         await page.keyboard.press('Enter');
         await waitFor(() => stageLook(page, 'EDL_SET_PARAMETERS', 'verified'), /ok/);
         await shows('waiting', /ype “do edl”/);
-        await pause(server);
+        await control(server, { pause: true });
         await page.keyboard.type('do edl');
         await page.keyboard.press('Enter');
         await shows('dry-run', /✓ It would be sent once it is armed/);

@@ -131,14 +131,21 @@ export async function landed(serve, t) {
   return server;
 }
 
+/** Orders one thing of the rehearsal of `server`: its pace, or a pause. */
+export async function control(server, order) {
+  const answer = await fetch(`${server.address}/api/v1/rehearsals/current`, {
+    method: 'POST',
+    body: JSON.stringify(order),
+  });
+  if (!answer.ok) throw new Error(`${JSON.stringify(order)}: ${answer.status} ${await answer.text()}`);
+}
+
 /**
  * Brings the rehearsal of `server` to `e_s` seconds from entry and holds it there. It slows down on approach, so that a
  * busy machine does not overshoot.
  */
 export async function flyTo(server, e_s) {
-  const control = (body) =>
-    fetch(`${server.address}/api/v1/rehearsals/current`, { method: 'POST', body: JSON.stringify(body) });
-  await control({ pause: false });
+  await control(server, { pause: false });
   let pace;
   await waitFor(
     async () => {
@@ -146,13 +153,13 @@ export async function flyTo(server, e_s) {
       const wanted = [100, 50, 20, 10, 5, 2, 1].find((each) => each * 2 <= left_s) ?? 1;
       if (left_s > 0 && wanted !== pace) {
         pace = wanted;
-        await control({ pace });
+        await control(server, { pace });
       }
       return left_s;
     },
     (left_s) => left_s <= 0,
   );
-  await control({ pause: true });
+  await control(server, { pause: true });
 }
 
 /** A page that fails the test when its scripts do. */

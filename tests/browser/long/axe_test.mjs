@@ -5,7 +5,7 @@ import assert from 'node:assert/strict';
 import { before, test } from 'node:test';
 import { madeUpCampaign } from '../made_up_campaign.mjs';
 import { PANELS } from '../panels.mjs';
-import { comesToRest, findings, landed, workplace } from '../support.mjs';
+import { breakable, comesToRest, findings, landed, workplace } from '../support.mjs';
 
 const { open, serve } = workplace();
 let server;
@@ -106,4 +106,55 @@ test('at every width axe finds nothing, live and ended, in both themes', async (
     await page.close();
   }
   assert.deepEqual(found, []);
+});
+
+test('with a command that is refused, with one that is armed and without connection axe finds nothing, in both themes', async (t) => {
+  const going = await serve(t, 'states', ['--scenario', 'nominal']);
+  const way = await breakable(going.port);
+  t.after(() => way.close());
+  const { page, problems, shows } = await open(way.address, { width: 1440, height: 790 });
+  await shows('waiting', /set edl parameters/);
+  const found = [];
+  const review = async (words) => {
+    await page.getByTestId('command-line').fill(words);
+    await page.getByTestId('command-line').press('Enter');
+  };
+  for (const [state, reach] of [
+    [
+      'refused',
+      async () => {
+        await review('do edl');
+        await shows('dry-run', /✖ It would be refused/);
+      },
+    ],
+    [
+      'armed',
+      async () => {
+        await page.keyboard.press('Escape');
+        await review('select_prime computer=b');
+        await shows('dry-run', /✓ It would be sent once it is armed/);
+        await page.keyboard.press('Enter');
+        await shows('command-armed', /ARMED/);
+      },
+    ],
+    [
+      'lost',
+      async () => {
+        way.cut();
+        await shows('situation-sentence', /NO CONNECTION/);
+      },
+    ],
+  ]) {
+    await reach();
+    for (const theme of ['dark', 'light']) {
+      await page.evaluate((name) => (document.documentElement.dataset.theme = name), theme);
+      found.push(...(await findings(page, theme)).map((line) => `${state}, ${theme}: ${line}`));
+    }
+  }
+  assert.deepEqual(found, []);
+  assert.deepEqual(
+    problems.filter((problem) => !/Failed to fetch|ERR_/.test(problem)),
+    [],
+  );
+  await page.close();
 });

@@ -12,6 +12,8 @@ test('a campaign is started by keyboard, its dots come one after the other, it i
   const server = await serve(t, 'campaigns', ['--scenario', 'nominal']);
   const { page, problems, text, shows } = await open(server.address);
   await shows('badge', /REHEARSAL/);
+  await waitFor(() => focused(page), /command-line/); // of a run that waits for its first command
+  await page.keyboard.press('Escape');
   await page.keyboard.press('d');
   await waitFor(() => focused(page), /campaign-scenario/);
   await page.getByTestId('campaign-scenario').selectOption('gnc_alone');

@@ -105,8 +105,13 @@ test('now at Mars and now as seen on Earth stand a light time apart on the timel
 test('after landing height and speed say whose they are, and no word of the descent picture lies over another', async () => {
   const { page, problems, shows } = await open(server.address, undefined, keepWhatIsWritten);
   await shows('waiting', /Landed/);
-  await shows('whose-altitude', /descent stage/);
-  await shows('whose-speed', /descent stage/);
+  for (const whose of ['whose-altitude', 'whose-speed']) {
+    await shows(whose, /^(descent )?stage/); // a narrow head has one word of it, and all under the mouse
+    assert.equal(await page.getByTestId(whose).getAttribute('title'), 'descent stage');
+    await page.setViewportSize({ width: 3840, height: 2160 });
+    await shows(whose, /^descent stage/);
+    await page.setViewportSize({ width: 1920, height: 1080 });
+  }
   await page.getByTestId('descent-result').click(); // from the result back to the picture
   await shows('descent-whose', /descent stage, the rover hangs below it/);
   await shows('channel-altitude_m', /altitude_m, descent stage/);

@@ -129,25 +129,34 @@ test('an export tells how much has come, is cancelled where it was asked for and
     });
   await cdp.send('Network.enable');
   await download_Bps(100_000);
-  const button = page.getByTestId('range-export').getByRole('button');
-  await button.press('Enter');
+  const button = (name) => page.getByTestId('range-export').getByRole('button', { name, exact: true });
+  await button('long').press('Enter');
   await shows('range-export', /0\.[1-9]\d.*MB have come|[1-9]\.\d+.*MB have come|0\.0[1-9].*MB have come/);
   assert.equal(await page.getByTestId('range-export').locator('progress').count(), 1);
-  assert.match(await button.innerText(), /cancel/);
-  await button.press('Enter');
+  await button('cancel').press('Enter');
   await shows('range-export', /take these samples as CSV/);
   await download_Bps(-1);
   await shows('range-message', /cancelled: no file was made/);
   assert.equal(files.length, 0, 'a cancelled export made a file');
 
-  await button.press('Enter');
-  await waitFor(
-    async () => files.length,
-    (count) => count === 1,
-  );
-  const lines = (await readFile(await files[0].path(), 'utf8')).trimEnd().split(/\r?\n/);
+  /** The lines of the file of this shape, which is the only one that came since. */
+  const taken = async (shape) => {
+    files.length = 0;
+    await button(shape).press('Enter');
+    await shows('range-message', new RegExp(`✓ nominal_auto_run-1_E-1m00s_E\\+7m00s_${shape}\\.csv`));
+    await waitFor(
+      async () => files.length,
+      (count) => count === 1,
+    );
+    assert.equal(files[0].suggestedFilename(), `nominal_auto_run-1_E-1m00s_E+7m00s_${shape}.csv`);
+    return (await readFile(await files[0].path(), 'utf8')).trimEnd().split(/\r?\n/);
+  };
+  const lines = await taken('long');
   assert.ok(lines.length > 1000 && lines.length >= samples / 4, `${lines.length} lines of ${samples} samples`);
   assert.equal(files.length, 1, 'the cancelled one came after all');
+  const wide = await taken('wide');
+  assert.match(wide[0], /altitude_m,/, 'a column a channel');
+  assert.ok(wide.length > 100 && wide.length < lines.length, `${wide.length} lines`);
   assert.deepEqual(
     problems.filter((problem) => !/abort/i.test(problem)),
     [],

@@ -49,11 +49,16 @@ test('each panel comes to look as its stored picture does, within a tolerance, a
       await page.goto(`${server.address}/?panel=${panel}`);
       await shows('badge', /ENDED RUN/);
       await shows('stream-state', /connected/);
+      if (panel === 'descent' || panel === 'vehicle') await shows('touchdown-figures', /in the nominal flight/);
       if (panel === 'verdicts') await shows('verdict-sentence', /bit for bit/);
       if (panel === 'flown') await shows('flown-summary', /timepoints fired/);
       if (panel === 'campaigns') await shows('campaign-ellipse', /azimuth/);
       if (panel === 'channels') await waitFor(() => page.getByTestId('channel-altitude_m').innerText(), /\d/);
       const what = page.locator(panel === 'phases' ? '.strip' : 'main');
+      await waitFor(
+        () => what.innerText(),
+        (all) => !/asking…/.test(all),
+      );
       await compare(`${panel}_${theme}`, what);
       if (process.env.AEOLIS_RENEW_PICTURES) continue;
       // A late update may draw the removed part again, once.
@@ -69,12 +74,19 @@ test('each panel comes to look as its stored picture does, within a tolerance, a
       await waitFor(async () => (await found(blank)).join(), /tiles with content differ/);
     }
   }
+  // The result of the touchdown has the descent picture's place until that is asked for.
+  await page.evaluate(() => localStorage.setItem('aeolis-theme', 'dark'));
+  await page.goto(`${server.address}/?panel=descent`);
+  await page.getByTestId('descent-result').click();
+  await page.getByTestId('descent-canvas').waitFor();
+  await compare('descent_picture_dark', page.locator('main'));
   await page.setViewportSize({ width: 1600, height: 900 });
   for (const theme of ['dark', 'light']) {
     await page.evaluate((wanted) => localStorage.setItem('aeolis-theme', wanted), theme);
     await page.goto(server.address);
     await shows('waiting', /Landed/);
     await shows('stream-state', /connected/);
+    await shows('touchdown-figures', /from the target\s+\d/);
     await compare(`console_${theme}`, page);
   }
 

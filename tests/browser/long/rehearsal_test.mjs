@@ -3,12 +3,15 @@
 // score that is the sum of its terms.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { findings, secondsFromEntry, waitFor, workplace } from '../support.mjs';
+import { control, findings, flyTo, waitFor, workplace } from '../support.mjs';
 
 const { open, serve } = workplace();
 
 test('an instructor’s fault and note are folded away while a rehearsal goes on, and stand in its review with a score that can be checked', async (t) => {
   const server = await serve(t, 'rehearsal', ['--scenario', 'nominal_auto', '--pace', '10']);
+  await flyTo(server, -1150); // the scenario has sent its own two commands
+  await control(server, { pace: 1 });
+  await control(server, { pause: false });
   const { page, problems, text, shows } = await open(server.address, { width: 1600, height: 900 });
   await waitFor(() => text('stream-state'), /connected/);
   await page.keyboard.press('s');
@@ -17,10 +20,6 @@ test('an instructor’s fault and note are folded away while a rehearsal goes on
   await page.locator('[data-testid="instructor"] > summary').click();
   await shows('instructor', /no accounts: whoever opens this fold can read it/);
 
-  await waitFor(
-    () => text('clock-entry'),
-    (clock) => secondsFromEntry(clock) > -1160,
-  ); // the scenario has sent its own two commands
   await page.getByTestId('fault-what').selectOption('DEVICE_RADAR');
   await page.getByTestId('fault-unit').selectOption('B'); // a unit not in use, so that the landing does not fail
   await page.getByTestId('fault-inject').click();
@@ -49,7 +48,7 @@ test('an instructor’s fault and note are folded away while a rehearsal goes on
     ).status,
     202,
   );
-  await fetch(`${server.address}/api/v1/rehearsals/current`, { method: 'POST', body: JSON.stringify({ pace: 0 }) });
+  await control(server, { pace: 0 });
   await shows('review', /Review of run 1/);
   await page.locator('[data-testid="review"] > summary').click();
   await shows('review-facts', /landing\s+E\+7:\d\d\.\d\s+touchdown/);

@@ -3,7 +3,7 @@
 // that dies.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { breakable, findings, flyTo, waitFor, workplace } from '../support.mjs';
+import { breakable, control, findings, flyTo, waitFor, workplace } from '../support.mjs';
 
 const { open, serve } = workplace();
 
@@ -27,9 +27,13 @@ test('with tones alone the next moment, the phase, the count and the details go 
   assert.ok(Number(toned) > 12 && Number(all) > Number(toned), await text('timepoints-fired'));
   await page.keyboard.press('.');
   await shows('timepoint-detail', /next|waiting for reply/);
-  for (let steps = 0; steps < 12 && !/parachute deploy\s/.test(await text('timepoint-detail')); ++steps)
+  const opened = async () => (await text('timepoint-detail')).split('\n')[0];
+  for (let steps = 0, now = await opened(); steps < 12 && !/^parachute deploy /.test(now); ++steps) {
     await page.keyboard.press(',');
-  assert.match(await text('timepoint-detail'), /parachute deploy\s+fired, ■ by tone[^]*its tone began\s+E\+4:\d\d/);
+    const before = now;
+    now = await waitFor(opened, (title) => title !== before);
+  }
+  await shows('timepoint-detail', /^parachute deploy\s+fired, ■ by tone[^]*its tone began\s+E\+4:\d\d/);
   assert.deepEqual(await findings(page, 'dark'), []);
   await page.keyboard.press('Escape');
   if (process.env.AEOLIS_SHOTS) await page.screenshot({ path: `${process.env.AEOLIS_SHOTS}/tones_only.png` });
@@ -72,7 +76,7 @@ test('a connection that dies without a word is lost within seconds, and comes ba
   way.thaw();
   await shows('stream-state', /NO CONNECTION/);
   await goesOn();
-  await page.keyboard.press('p');
+  await control(server, { pause: true });
   await shows('badge', /paused/);
   await page.waitForTimeout(12_000); // a paused run is silent, and its connection is not lost
   assert.match(await text('stream-state'), /● connected/);

@@ -152,6 +152,11 @@ export function complete(): boolean {
   return line.value !== before;
 }
 
+/** Asks anew what the user may do: the refusal may be because rights were withdrawn meanwhile. */
+function learnRights(): void {
+  void learnAccess().catch(() => undefined);
+}
+
 /** Takes one step forward. `step` and `message` hold the result. */
 export async function forward(): Promise<void> {
   const command = chosen.value;
@@ -175,6 +180,7 @@ export async function forward(): Promise<void> {
   }
   if (!previewNow.value.accepted) {
     message.value = { good: false, text: `nothing was sent: ${previewNow.value.reason}` };
+    learnRights();
     return;
   }
   if (step.value === 'armed' && confirmation.value.trim().toUpperCase() !== command.name) {
@@ -197,7 +203,7 @@ export async function forward(): Promise<void> {
         }
       : { good: false, text: `${command.name} refused: ${reply.reason}; nothing was sent` };
     if (reply.accepted) done();
-    else void learnAccess().catch(() => undefined); // the user's rights may have been withdrawn meanwhile
+    else learnRights();
   } catch (error) {
     message.value = { good: false, text: `${command.name}: ${error instanceof Error ? error.message : String(error)}` };
     if (error instanceof OutcomeUnknown) done(); // so that another Enter does not send it again
@@ -225,6 +231,7 @@ async function arm(): Promise<void> {
   }
   if (!reply.accepted) {
     message.value = { good: false, text: `not armed: ${reply.reason}` };
+    learnRights();
     return;
   }
   step.value = 'armed';

@@ -140,6 +140,18 @@ it('takes samples up where their subscription is welcomed: what comes before lac
   expect(socket?.sent, 'nothing was missing').toBe(2);
 });
 
+it('says that a run is followed live when the page has been given all that came before, and not earlier', () => {
+  sockets[0]?.opens();
+  sockets[0]?.says({ case: 'welcome', value: { runState: aRun('running'), lastSeq: 2n } });
+  expect(states().at(-1)).toBe('catching_up');
+  sockets[0]?.says({
+    case: 'batch',
+    value: { run: 1n, afterSeq: 0n, completeThrough: 2n, items: [{ seq: 2n }] },
+  });
+  expect(said.slice(-2).map(({ type }) => type)).toEqual(['batch', 'stream']);
+  expect(states().at(-1)).toBe('live');
+});
+
 it('fetches the history of a channel that is plotted from now on, of live samples too where a past as heard is shown', () => {
   const tell = (data: ToWorker) =>
     (self as unknown as { onmessage: (event: { data: ToWorker }) => void }).onmessage({ data });

@@ -77,6 +77,7 @@ let welcomed = false;
 let exact = false;
 
 function say(next: StreamState): void {
+  if (next === 'live') flush(); // the page then has all that it is said to have
   state = next;
   if (next === 'live' && lost) {
     post({ type: 'resumed', run: currentRun, ...lost, through: check.completeThrough });
@@ -274,6 +275,7 @@ function postSoon(samples: boolean): void {
 }
 
 function flush(): void {
+  clearTimeout(posting?.timer);
   posting = undefined;
   const now = performance.now();
   posts.took(now);

@@ -2,7 +2,7 @@
 // A touchdown in the three steps that flown landings used, each with its evidence: reported until all three are there,
 // then confirmed. Pure; from what was received by the instant shown.
 import { LAYOUT } from '../layout';
-import { predictedEvent } from '../prediction/model';
+import { predictedEvent, prediction } from '../prediction/model';
 import { outages } from '../timeline/model';
 import { heardOf } from '../timeline/heard';
 import { duration, fromEntry } from '../run/time';
@@ -297,7 +297,7 @@ export function resultsOf(look: Look, touchdown: number): Result[] {
       name: 'against predicted',
       value: nominal === undefined ? '—' : against(nominal),
       unit: nominal === undefined ? '' : 's',
-      note: `${nominal === undefined ? 'not known: the server has no nominal flight of this run' : `of ${fromEntry(nominal, { tenths: true })} in the nominal flight`}${byLast}`,
+      note: `${nominal === undefined ? (prediction.value ? 'not known: the server has no nominal flight of this run' : 'not known yet: the nominal flight is asked for') : `of ${fromEntry(nominal, { tenths: true })} in the nominal flight`}${byLast}`,
     },
   ];
 }

@@ -4,7 +4,7 @@ import { useEffect } from 'preact/hooks';
 import { chosen, lineFocused, openCommandLine, previewNow, step } from '../commands/line';
 import { mayRehearse, whyNotRehearse } from '../access/model';
 import { EndRun } from '../rehearsal/view';
-import { isLost } from '../run/connection';
+import { isLost, stream } from '../run/connection';
 import type { Dictionary } from '../run/dictionary';
 import { cutoff, dictionary, modeNow, runNow, takesCommands, timepoints } from '../run/shown';
 import { ModeMark } from '../mode/view';
@@ -24,12 +24,13 @@ function toDo(title: string): string {
 
 /**
  * A run that waits for its first command has the command line in focus, so that who types words at once types them
- * there. The button opens it for who has left it.
+ * there; not before all of the run has come, since until then its commands are not known. The button opens it for who
+ * has left it.
  */
-function LineFor({ command, run }: { command: string; run: number }) {
+function LineFor({ command, run, isWhole }: { command: string; run: number; isWhole: boolean }) {
   useEffect(() => {
-    if (document.activeElement === document.body && step.value === 'type') openCommandLine();
-  }, [command, run]);
+    if (isWhole && document.activeElement === document.body && step.value === 'type') openCommandLine();
+  }, [command, run, isWhole]);
   if (step.value !== 'type') return null;
   return (
     <button
@@ -67,6 +68,7 @@ export function WaitingFor() {
       </section>
     );
   }
+  const isWhole = stream.value.state === 'live';
   const waiting = waitingFor(run, words, timepoints.value, cutoff.value, predicted.value, told.value);
   // the clocks stand still, so the conditions are old
   const isOld = isLost.value && cutoff.value === Infinity && waiting.kind === 'waiting';
@@ -116,7 +118,9 @@ export function WaitingFor() {
           Go to the runs <kbd>s</kbd>
         </button>
       )}
-      {waiting.type !== undefined && takesCommands() && <LineFor command={waiting.type} run={run.id} />}
+      {waiting.type !== undefined && takesCommands() && (
+        <LineFor command={waiting.type} run={run.id} isWhole={isWhole} />
+      )}
     </section>
   );
 }
