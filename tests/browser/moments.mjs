@@ -40,6 +40,9 @@ async function play(scenario, moments) {
           (all) => !/asking…|has not answered|connecting/.test(all),
           60_000,
         );
+        // what is predicted of the time ahead, where there is any
+        const isThere = () => Number(document.querySelector('.plot')?.dataset.predicted) > 0;
+        await page.waitForFunction(isThere, undefined, { timeout: 8000 }).catch(() => undefined);
         await page.waitForTimeout(1500); // for what is asked after a resize, and a draw after it
         await page.screenshot({
           path: path.join(pictures, `${name}_${size.width}.png`),

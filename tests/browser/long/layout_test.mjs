@@ -104,7 +104,7 @@ test('now at Mars and now as seen on Earth stand a light time apart on the timel
 
 test('after landing height and speed say whose they are, and no word of the descent picture lies over another', async () => {
   const { page, problems, shows } = await open(server.address, undefined, keepWhatIsWritten);
-  await shows('waiting', /Landed/);
+  await shows('waiting', /Touchdown reported/);
   await shows('whose-altitude', /descent stage/);
   await shows('whose-speed', /descent stage/);
   await page.getByTestId('descent-result').click(); // from the result back to the picture
@@ -224,7 +224,7 @@ test('nothing in the header lies over another or is cut off, with alarms standin
 
 test('the strip of phases is as high before a phase is known as after, so that nothing below it moves', async () => {
   const { page, shows } = await open(server.address);
-  await shows('phases', /▶\s*Landed/);
+  await shows('phases', /▶\s*Touchdown/);
   for (const [width, height] of [
     [1366, 768],
     [1600, 900],

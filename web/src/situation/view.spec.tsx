@@ -45,6 +45,14 @@ describe('the banner', () => {
     const changed = aStore([situation('2012-219T04:59:55.0', { ...BACKUP, evidenceSeq: 9n }, BLACKOUT)]);
     expect(situationOf(changed, Infinity, undefined, put).first?.rank).toBe('news');
   });
+  it('lets danger be put aside only where it also stands beside the badge', () => {
+    const danger = { ...BACKUP, rank: 'danger' as const };
+    const lasting = { ...BACKUP, rank: 'lasting' as const };
+    const [alone, beside] = [[danger], [danger, lasting]].map(
+      (entries) => situationOf(aStore([situation('2012-219T04:59:55.0', ...entries)]), Infinity, undefined).first,
+    );
+    expect([alone?.mayGo, beside?.mayGo, beside && lookOf(beside)]).toEqual([false, true, 'alarm']);
+  });
   it('has a lost connection above everything, also before there is a run', () => {
     const store = aStore([situation('2012-219T04:59:55.0', { ...BACKUP, rank: 'danger' })]);
     const lost = situationOf(store, Infinity, { attempt: 3 });
