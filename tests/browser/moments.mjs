@@ -30,6 +30,11 @@ async function play(scenario, moments) {
     fetch(`${server.address}/api/v1/rehearsals/current`, { method: 'POST', body: JSON.stringify(body) });
   try {
     await shows('stream-state', /connected[^]*complete through [1-9]/, 60_000);
+    await waitFor(
+      () => server.get('/runs/latest/prediction'),
+      ({ state }) => state !== 'flying',
+      120_000,
+    );
     for (const [name, bring] of moments) {
       await bring({ server, page, shows, control });
       if (wanted.size > 0 && !wanted.has(name)) continue;

@@ -32,7 +32,7 @@ export interface Situation {
   /** The others, those put aside last. */
   more: Line[];
   /** States that last, in two or three words. */
-  lasting: { words: string; sentence: string }[];
+  lasting: { subject: string; words: string; sentence: string }[];
 }
 
 export const LOOKS: Record<Rank, Status> = {
@@ -112,7 +112,8 @@ export function situationOf(
     more: [...all.slice(1), ...lines.filter((line) => line.aside)],
     lasting: told
       .filter(({ rank }) => rank === 'lasting')
-      .map(({ sentence }) => ({
+      .map(({ subject, sentence }) => ({
+        subject,
         words: (sentence.split(/ since | from |, |: /)[0] ?? sentence).replace(/^Flying on/, 'on'),
         sentence,
       })),

@@ -33,7 +33,9 @@ describe('the banner', () => {
     const now = situationOf(store, Infinity, undefined);
     expect(now.first).toMatchObject({ sentence: BACKUP.sentence, since_e_s: -110, countdown: '' });
     expect(now.more.map((line) => [line.rank, line.countdown])).toEqual([['silence', 'UHF back in ≈ 40 s']]);
-    expect(now.lasting).toEqual([{ words: 'Too late for planned steps', sentence: CLOSED.sentence }]);
+    expect(now.lasting).toEqual([
+      { subject: 'commanding', words: 'Too late for planned steps', sentence: CLOSED.sentence },
+    ]);
   });
   it('puts news aside but loses nothing, and shows it again when it changes; a silence cannot be put aside', () => {
     const store = aStore([situation('2012-219T04:59:55.0', BACKUP, BLACKOUT)]);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The banner: the one thing that matters most now, as a sentence, with what it counts down to.
 import { STATUS } from '../design/status';
-import { runNow } from '../run/shown';
+import { modeNow, runNow } from '../run/shown';
 import { fromEntry } from '../run/time';
 import { aside, listShown, lookOf, pointAt, putAside, situationNow, toggleList } from './model';
 import type { Line } from './model';
@@ -97,7 +97,10 @@ export function Situation() {
 
 /** The states that last, beside the badge. */
 export function Lasting() {
-  const { lasting } = situationNow(runNow());
+  // Where nothing can be sent, nobody needs to know that it would be too late.
+  const lasting = situationNow(runNow()).lasting.filter(
+    ({ subject }) => subject !== 'commanding' || ['live', 'rehearsal'].includes(modeNow()),
+  );
   if (lasting.length === 0) return null;
   return (
     <ul class="lasting" data-testid="lasting" aria-label="states that last">

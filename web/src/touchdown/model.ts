@@ -321,13 +321,15 @@ export function restOf({ run, cutoff }: Look, present: boolean): { words: string
         ? ` The relay is received${run.run.state === 'paused' ? '; the rehearsal is paused' : ''}.`
         : relay?.reason
           ? ` Relay: ${relay.reason}.`
-          : ' When the next pass is has not been told.';
+          : part > 0
+            ? ' When the next pass is has not been told.'
+            : '';
   return [
     {
       words:
         part >= 1
           ? 'The recording is complete.'
-          : `${part > 0 ? `${Math.floor(part * 100)} % of the recording has come.` : 'How much of the recording has come is not told.'}${run.going ? pass : ' The run has ended: no more comes.'}`,
+          : `${part > 0 ? `${Math.floor(part * 100)} % of the recording has come.` : 'Nothing is told of the recording yet.'}${run.going ? pass : ' The run has ended: no more comes.'}`,
       part,
     },
   ];

@@ -190,7 +190,7 @@ it('the card says the verdict, each step with its evidence, and leads on', () =>
     timepoints.value = vehiclePlan;
     render(<Touchdown />, root);
   });
-  expect(root.querySelector('h3')?.textContent).toBe('✓ Touchdown reported E+7:10.0, 2 of 3 signals, 1 is never told');
+  expect(root.querySelector('h3')?.textContent).toBe('✓ Touchdown reported E+7:10.0, 2 of 3 signals, 1 never told');
   expect([...root.querySelectorAll('.touchdown-steps li')].map((each) => (each as HTMLElement).dataset.state)).toEqual([
     'done',
     'never',

@@ -68,7 +68,7 @@ export function Touchdown() {
           {verdict.shape} {verdict.words}{' '}
           <span class="touchdown-when">
             {fromEntry(of.sclk - look.run.entrySclk, { tenths: true })}, {done} of {of.steps.length} signals
-            {never > 0 && `, ${never} is never told`}
+            {never > 0 && `, ${never} never told`}
           </span>
         </h3>
         <dl class="touchdown-figures" data-testid="touchdown-figures">

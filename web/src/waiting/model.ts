@@ -207,16 +207,19 @@ export function waitingFor(
     }),
     ...(named &&
       !isImportant(main.name) && {
-        after: {
-          ...(conditions(store, dictionary, plan, named, cutoff, predicted)[0] ?? { words: '', value: '' }),
-          name: inWords(named.name),
-        },
+        after: neighbour(named.name, conditions(store, dictionary, plan, named, cutoff, predicted)[0]),
       }),
     ...(last &&
       lastWas?.by === 'tone' && {
         byTone: `${inWords(last.name)}, ${fromEntry(lastWas.triggered_sclk - store.entrySclk)}`,
       }),
   };
+}
+
+/** What says no more than the name is left out: "at cruise stage separation". */
+function neighbour(name: string, line: Line | undefined): Neighbour {
+  const [words, of] = [inWords(name), line?.words ?? ''];
+  return { name: words, words: of === `at ${words}` ? '' : of, value: line?.value ?? '' };
 }
 
 /** After the last step that is awaited: the recording, and the timepoints that only it can tell. */
