@@ -100,7 +100,8 @@ int weight_of(std::string_view subject) {
 
 /// @param name  "A" or "B"; empty: a designation told of neither
 std::string flying_on(std::string_view name, std::string_view role) {
-    return name.empty() ? fmt::format("Flying on {}", role) : fmt::format("Flying on computer {}", name);
+    return name.empty() ? fmt::format("Flying on the {} computer", role)
+                        : fmt::format("Flying on {} computer {}", role, name);
 }
 
 double seconds_from(Ert from, Ert to) {
@@ -188,10 +189,16 @@ void SituationDesk::heard(Sclk sclk) {
 
 void SituationDesk::take_over(std::string_view how, Ert at, const Origin& origin, std::string evidence) {
     if (backup_ && (!how.empty() || backup_->evidence.starts_with("event"))) return;  // an event knows better
-    const std::string flying = flying_on(backup_name_, "the backup computer");
-    const std::string sentence =
-        how.empty() ? fmt::format("{} since {}", flying, when(at)) : fmt::format("{}, {} {}", flying, how, when(at));
-    SituationEntry entry{SituationRank::news, std::string(computer), sentence, std::move(evidence), origin.seq, at, {}};
+    const std::string flying = flying_on(backup_name_, "backup");
+    const std::string sentence = how.empty() ? fmt::format("{} since {}: it took over the timeline", flying, when(at))
+                                             : fmt::format("{}, {} {}", flying, how, when(at));
+    SituationEntry entry{landed_ ? SituationRank::news : SituationRank::danger,
+                         std::string(computer),
+                         sentence,
+                         std::move(evidence),
+                         origin.seq,
+                         at,
+                         {}};
     add_news(entry);
     entry.rank = SituationRank::lasting;
     backup_ = std::move(entry);
@@ -202,12 +209,13 @@ void SituationDesk::touch_down(Ert at, std::string_view how, const Origin& origi
     if (landed_) return;
     landed_ = SituationEntry{SituationRank::news,
                              std::string(landing),
-                             how.empty() ? fmt::format("Landed: touchdown at {}", when(at))
-                                         : fmt::format("Landed: touchdown at {}, {}", when(at), how),
+                             fmt::format("Touchdown reported at {}{}{}", when(at), how.empty() ? "" : ", ", how),
                              std::move(evidence),
                              origin.seq,
                              at,
                              {}};
+    for (auto& news : news_)
+        if (news.subject == computer) news.rank = SituationRank::news;  // the landing is what matters now
 }
 
 void SituationDesk::event(const EventFact& event, const Origin& origin) {
@@ -222,7 +230,7 @@ void SituationDesk::event(const EventFact& event, const Origin& origin) {
         backup_.reset();
         add_news({SituationRank::news,
                   std::string(computer),
-                  fmt::format("{} since {}", flying_on(prime_, "the prime computer"), when(at)),
+                  fmt::format("{} since {}", flying_on(prime_, "prime"), when(at)),
                   evidence,
                   origin.seq,
                   at,
@@ -292,6 +300,7 @@ void SituationDesk::tone(ToneId tone, double likelihood, Sclk start, const Origi
 void SituationDesk::link(const LinkState& state, const Origin& origin) {
     LinkRow& row = links_[state.link.name];
     if (state.up) {
+        note_loss(state.link.name, row, state.ert, origin);
         row = LinkRow{};
         row.up = true;
         row.since = state.ert;
@@ -304,11 +313,13 @@ void SituationDesk::link(const LinkState& state, const Origin& origin) {
         row.since = state.ert;
     }
     const bool unexplained = state.lost && (!silence || *silence == SilenceClass::unexplained);
+    if (row.station && (!state.lost || unexplained)) note_loss(state.link.name, row, state.ert, origin);
     if (unexplained && !row.lost_since && !row.station) {
         row.lost_since = row.silence ? state.ert : row.since;
         row.lost_seq = origin.seq;
         if (row.silence && row.until) row.outlasted = row.silence, row.outlasted_until = row.until;
     }
+    if (!row.station) row.station_since = state.ert;
     row.station = state.lost && !unexplained;
     row.lost = state.lost;
     row.silence = silence;
@@ -317,6 +328,20 @@ void SituationDesk::link(const LinkState& state, const Origin& origin) {
     row.until = state.until;
     row.seq = origin.seq;
     if (silence == SilenceClass::no_orbiter && state.until) pass_ = {*state.until, row.words};
+}
+
+void SituationDesk::note_loss(const std::string& link, const LinkRow& row, Ert to, const Origin& origin) {
+    if (!row.station && (!row.lost_since || row.outlasted)) return;
+    const std::string_view of = row.station ? station_fault : std::string_view(link);
+    auto loss = std::ranges::find(losses_, of, &Loss::of);
+    if (loss == losses_.end()) {
+        if (losses_.size() == losses_max) losses_.erase(losses_.begin());
+        loss = losses_.insert(losses_.end(), Loss{std::string(of)});
+    }
+    const Ert from = row.station ? row.station_since : *row.lost_since;
+    if (loss->times == 0 || from > loss->to) ++loss->times, loss->from = from;  // each link tells the station's fault
+    loss->to = to;
+    loss->seq = origin.seq;
 }
 
 void SituationDesk::stage(const StageFact& stage, const Origin& origin) {
@@ -446,8 +471,13 @@ void SituationDesk::add_silent(Entries& all, const std::string& name, const Link
         return;
     }
     SituationEntry entry{SituationRank::silence, name, {}, "predicted before the landing", link.seq, link.since, {}};
-    entry.sentence = fmt::format("{} silent: {}{}{}{}", title, name_of(*link.silence), link.words.empty() ? "" : ", ",
-                                 link.words, uhf && tones_come() ? "; X-band is received" : "");
+    constexpr std::string_view window = "predicted from ";
+    const bool in_window = link.words.starts_with(window);  // its cause is not known, only that it was predicted
+    entry.sentence = in_window ? fmt::format("{} silent within the predicted {}, {}", title, name_of(*link.silence),
+                                             link.words.substr(window.find(' ') + 1))
+                               : fmt::format("{} silent: {}{}{}", title, name_of(*link.silence),
+                                             link.words.empty() ? "" : ", ", link.words);
+    if (uhf && tones_come()) entry.sentence += "; X-band is received";
     const bool other_tells =
         telemetry_comes() || (uhf && tones_come() && link.until && seconds_from(now, *link.until) > orbiter_soon_s);
     if (other_tells) entry.rank = SituationRank::calm;  // the landing is followed by the other link
@@ -608,6 +638,19 @@ void SituationDesk::add_recording(Entries& all, Ert now) const {
 
 void SituationDesk::add_lasting(Entries& all, Ert now) const {
     if (backup_) all.push_back(*backup_);
+    for (const Loss& loss : losses_) {
+        const bool station = loss.of == station_fault;
+        const std::string times = loss.times == 1 ? "" : fmt::format(" {} times, last", loss.times);
+        all.push_back(
+            {SituationRank::lasting,
+             "loss of " + loss.of,
+             fmt::format("{} was lost{} from {} to {}: {}", station ? "Station" : title_of(loss.of), times,
+                         when(loss.from), when(loss.to), station ? "a fault on the ground" : "nothing predicted it"),
+             station ? "the station" : "link " + loss.of,
+             loss.seq,
+             loss.from,
+             {}});
+    }
     if (!closes_ || now < *closes_) return;
     SituationEntry closed{
         SituationRank::lasting,

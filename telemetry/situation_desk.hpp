@@ -24,13 +24,14 @@ namespace aeolis::telemetry {
 /// In       facts, each with the number of its item; the time on Earth
 /// Out      the ranked list for that time, the most important first
 /// Rules    News stays until something follows it. A prediction excuses neither a silence that began without one nor a
-///          fault that the station knows. Landed is said by touchdown's own evidence alone. A predicted time that has
+///          fault that the station knows. A touchdown is reported by its own evidence alone. A predicted time that has
 ///          passed is overdue, and none is given where nothing is predicted
 /// Memory   bounded: entries_max entries; a row a link, a timepoint, a command under way
 class SituationDesk {
   public:
     static constexpr std::size_t entries_max = 12;  ///< chosen: more is a list of alarms, which has its own panel
     static constexpr std::size_t news_max = 32;     ///< chosen: kept at once; the oldest are dropped first
+    static constexpr std::size_t losses_max = 6;    ///< chosen: told at once, one a link; the oldest are dropped first
     static constexpr double uhf_late_s = 5.0;       ///< chosen: over telemetry a step may be told this much after it
     static constexpr double tone_late_s = 25.0;     ///< a symbol under way, one of its own, and its decision
     static constexpr int tone_sure = 80;            ///< chosen: a tone of less priority may be dropped for others
@@ -88,7 +89,15 @@ class SituationDesk {
         std::uint64_t lost_seq = 0;
         std::optional<SilenceClass> outlasted;  ///< the prediction that this silence has outlasted
         std::optional<Ert> outlasted_until;
-        bool station = false;  ///< was lost for the station's fault
+        bool station = false;  ///< is lost for the station's fault
+        Ert station_since;
+    };
+    /// A link's, or the station's, last loss that is over: no prediction had it.
+    struct Loss {
+        std::string of;  ///< the link, or "station"
+        Ert from{}, to{};
+        std::uint64_t seq = 0;
+        int times = 0;
     };
     struct Held {
         std::string decision, condition;
@@ -103,6 +112,7 @@ class SituationDesk {
     void follow(std::string_view subject);
     void designate(std::string_view text);
     void take_over(std::string_view how, Ert at, const Origin& origin, std::string evidence);
+    void note_loss(const std::string& link, const LinkRow& row, Ert to, const Origin& origin);
     void touch_down(Ert at, std::string_view how, const Origin& origin, std::string evidence);
     bool up(std::string_view link) const;
     bool telemetry_comes() const;  ///< live, whichever link brings it
@@ -124,6 +134,7 @@ class SituationDesk {
     Clocks clocks_;
     TimelineWatch timeline_;
     std::map<std::string, LinkRow, std::less<>> links_;
+    std::vector<Loss> losses_;          ///< that are over: one a link at most, and the station's
     std::vector<SituationEntry> news_;  ///< news and danger, the oldest first
     std::optional<SituationEntry> backup_, landed_;
     std::optional<Ert> last_heard_;

@@ -31,7 +31,7 @@ test('two commands by keyboard land it; a reload has all of it; a range can be a
   await page.keyboard.press('Enter');
   await shows(
     'command-review',
-    /✓ It would be sent[^]*arms it; nothing is sent yet[^]*✓ parameters_received == 1 is 1/,
+    /✓ It would be sent[^]*arms it; nothing is sent yet[^]*✓ parameters received: must be yes is yes/,
   );
   await page.keyboard.press('Enter');
   await shows('command-armed', /ARMED/);
@@ -44,7 +44,7 @@ test('two commands by keyboard land it; a reload has all of it; a range can be a
   await page.keyboard.press('Escape');
 
   await pace(page, 100);
-  await shows('waiting', /Waiting for (pyros armed vent|coolant vent)/);
+  await shows('waiting', /Next: (pyros armed vent|coolant vent)/);
   await shows('timepoints-fired', /^[1-9]/);
   await flyTo(server, 266);
   await shows('badge', /paused/);
@@ -59,7 +59,7 @@ test('two commands by keyboard land it; a reload has all of it; a range can be a
     () => page.locator('[data-event="TOUCHDOWN"]').count(),
     (count) => count === 1,
   );
-  await shows('waiting', /Landed/);
+  await shows('waiting', /Touchdown reported/);
   await shows('badge', /ENDED RUN.*touchdown/s);
   // The end of the run may be reported before its last items: the page is complete once it has all items of the server
   // and neither count grows.
@@ -83,7 +83,7 @@ test('two commands by keyboard land it; a reload has all of it; a range can be a
   };
 
   await page.reload();
-  await shows('waiting', /Landed/);
+  await shows('waiting', /Touchdown reported/);
   await waitFor(
     () => text('timepoints-fired'),
     (value) => value === seen.fired,

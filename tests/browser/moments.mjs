@@ -30,6 +30,11 @@ async function play(scenario, moments) {
     fetch(`${server.address}/api/v1/rehearsals/current`, { method: 'POST', body: JSON.stringify(body) });
   try {
     await shows('stream-state', /connected[^]*complete through [1-9]/, 60_000);
+    await waitFor(
+      () => server.get('/runs/latest/prediction'),
+      ({ state }) => state !== 'flying',
+      120_000,
+    );
     for (const [name, bring] of moments) {
       await bring({ server, page, shows, control });
       if (wanted.size > 0 && !wanted.has(name)) continue;
@@ -40,6 +45,9 @@ async function play(scenario, moments) {
           (all) => !/asking…|has not answered|connecting/.test(all),
           60_000,
         );
+        // what is predicted of the time ahead, where there is any
+        const isThere = () => Number(document.querySelector('.plot')?.dataset.predicted) > 0;
+        await page.waitForFunction(isThere, undefined, { timeout: 8000 }).catch(() => undefined);
         await page.waitForTimeout(1500); // for what is asked after a resize, and a draw after it
         await page.screenshot({
           path: path.join(pictures, `${name}_${size.width}.png`),

@@ -16,7 +16,7 @@ const TYPE_KB = 120;
 const SHOWN = {
   timeline: /(\d+) of \1 timepoints fired/,
   descent: /Touchdown reported[^]*2 of 3 signals/,
-  phases: /✓ Cruise[^]*▶ Landed/,
+  phases: /✓ Cruise[^]*▶ Touchdown/,
   tones: /Last tone, E\+\d+:\d\d/,
   plots: /Altitude[^]*\d km[^]*Deceleration[^]*\d g/,
   events: /The EDL recording is closed/,
@@ -27,7 +27,7 @@ const SHOWN = {
   notes: /nothing is written down yet/,
   packets: /EdlStatus\s+\d/,
   verdicts: /✓ All .* bit for bit/,
-  links: /UHF live[^]*%/,
+  links: /UHF[^]*%/,
   flown: /(\d+) of \1 timepoints fired[^]*descent_imu_power/,
   recorded: /A range of this run/,
   rehearsal: /Review of run 1/,
@@ -57,7 +57,7 @@ test('each panel shows what it is for, and says that it is of an ended rehearsal
     await waitFor(() => what.innerText(), SHOWN[panel]);
   }
   await page.goto(server.address);
-  await shows('waiting', /Landed/);
+  await shows('waiting', /Touchdown reported/);
   assert.deepEqual(await findings(page, 'dark'), []);
   assert.deepEqual(problems, []);
   await page.close();
@@ -112,7 +112,7 @@ test('the console, its timeline and plots, its channels and its command line com
   }
   await page.setViewportSize({ width: 1600, height: 900 });
   await page.goto(server.address);
-  await shows('waiting', /Landed/);
+  await shows('waiting', /Touchdown reported/);
   await shows('touchdown-figures', /from the target\s+\d/);
   different.push(...(await comesToLook(page, 'console_dark', page)));
   assert.deepEqual(different, []);

@@ -115,7 +115,7 @@ try {
     (count) => count === 1,
     180_000,
   );
-  await shows('waiting', /Landed/, 180_000);
+  await shows('waiting', /Touchdown reported/, 180_000);
   await page.keyboard.press('v');
   await shows('verdict-sentence', /bit for bit/, 30_000);
   await shows('verdict-count', /^none$/);
@@ -133,7 +133,7 @@ try {
   await take('review.png', page.locator('main > .panel'));
 
   await page.goto(`${server.address}/?panel=packets`);
-  await shows('phases', /▶\s*Landed/, 60_000);
+  await shows('phases', /▶\s*Touchdown/, 60_000);
   await page.setViewportSize({ width: 1600, height: 760 });
   await page.getByRole('button', { name: 'GncNavigation', exact: true }).click();
   await page.keyboard.press('ArrowDown');

@@ -11,7 +11,7 @@ test('a replay shows what had been heard then; with the recording it shows what 
   const way = await breakable(server.port);
   t.after(() => way.close());
   const { page, text, shows } = await open(way.address);
-  await shows('waiting', /Landed/);
+  await shows('waiting', /Touchdown reported/);
   await shows('stream-state', /connected/);
   await page.keyboard.press('y');
   await shows('reading-of-past', /As it was heard then/); // and 0.3 s, or two letters are a word
@@ -68,7 +68,7 @@ test('while nothing comes no link is green and no channel up to date', async (t)
   );
   way.cut();
   await shows('stream-state', /NO CONNECTION/);
-  for (const link of ['link-UHF live', 'link-X-band']) assert.match(await text(link), /\?[^]*no connection/);
+  for (const link of ['link-UHF', 'link-X-band']) assert.match(await text(link), /\?[^]*no connection/);
   await waitFor(
     () => page.locator('[data-testid="channel-table"] tr.look-good').count(),
     (rows) => rows === 0,

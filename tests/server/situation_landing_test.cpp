@@ -243,7 +243,7 @@ TEST_CASE("nothing that the situation says over a landing is false, and a landin
     const auto* blackout = at_e_s(told, 75.0, "uhf_live");
     REQUIRE(blackout != nullptr);
     CHECK(blackout->rank() == SituationEntry::silence);
-    CHECK_THAT(blackout->sentence(), Catch::StartsWith("UHF silent: plasma blackout, predicted from E+0:4"));
+    CHECK_THAT(blackout->sentence(), Catch::StartsWith("UHF silent within the predicted plasma blackout, from E+0:4"));
     CHECK(blackout->awaited() == "UHF back");
     for (const auto& at : told.seconds)
         for (const auto& entry : at.situation.entries()) {
@@ -253,7 +253,7 @@ TEST_CASE("nothing that the situation says over a landing is false, and a landin
             if (entry.rank() == SituationEntry::news) CHECK(known.contains(entry.subject()));
         }
     CHECK_THAT(find(told.seconds.back().situation, "landed")->sentence(),
-               Catch::StartsWith("Landed: touchdown at E+7:"));
+               Catch::StartsWith("Touchdown reported at E+7:"));
 }
 
 TEST_CASE("when the prime computer fails, the situation says which computer flies, and since when",
@@ -261,8 +261,8 @@ TEST_CASE("when the prime computer fails, the situation says which computer flie
     const auto told = check_landing("second_chance", 1);
     const auto* computer = at_e_s(told, 200.0, "computer");
     REQUIRE(computer != nullptr);
-    CHECK(computer->sentence() == "Flying on computer B since E+1:40");
-    CHECK(computer->rank() == SituationEntry::news);
+    CHECK(computer->sentence() == "Flying on backup computer B since E+1:40: it took over the timeline");
+    CHECK(computer->rank() == SituationEntry::danger);
     CHECK(at_e_s(told, 95.0, "computer") == nullptr);
     const auto& last = told.seconds.back().situation;
     CHECK(std::ranges::count(last.entries(), "computer", &SituationEntry::subject) ==
@@ -313,6 +313,8 @@ TEST_CASE("no prediction excuses a transmitter that failed before it, or a stati
     REQUIRE(station != nullptr);
     CHECK(station->rank() == SituationEntry::news);
     CHECK(at_e_s(told, 340.0, "station") == nullptr);
+    CHECK_THAT(find(told.seconds.back().situation, "loss of station")->sentence(),
+               Catch::StartsWith("Station was lost from E+5:0"));
 }
 
 TEST_CASE("nothing that the situation says over 100 landings of each scenario is false", "[.long][situation][server]") {

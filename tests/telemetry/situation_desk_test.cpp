@@ -80,7 +80,8 @@ TEST_CASE("a silence as predicted says when the link is back, and when it is ove
     ground.down(uhf_live_link, 50.0, "plasma blackout: predicted from E+0:45 to E+1:38", false, 98.0);
     const auto silent = ground.first(75.0);
     CHECK(silent.rank == Rank::silence);
-    CHECK(silent.sentence == "UHF silent: plasma blackout, predicted from E+0:45 to E+1:38; X-band is received");
+    CHECK(silent.sentence ==
+          "UHF silent within the predicted plasma blackout, from E+0:45 to E+1:38; X-band is received");
     CHECK(silent.awaited == "UHF back");
     CHECK(silent.at == at(98.0));
     CHECK_FALSE(silent.overdue);
@@ -149,6 +150,24 @@ TEST_CASE("what X-band's telemetry tells is not told again by tone, and its loss
           "X-band telemetry lost since E−14:30: nothing predicted it");
 }
 
+TEST_CASE(
+    "a link that was lost is heard again: that it was lost lasts, with how often; a silence as predicted is no loss",
+    "[situation]") {
+    Ground ground;
+    ground.up(uhf_live_link, -100.0);
+    ground.down(uhf_live_link, -50.0, "plasma blackout: predicted from E-0:50 to E-0:40", false, -40.0);
+    ground.up(uhf_live_link, -40.0);
+    CHECK_FALSE(ground.about("loss of uhf_live", -39.0));
+    for (const double e_s : {-20.0, 10.0}) {
+        ground.down(uhf_live_link, e_s, "unexplained: nothing is predicted to silence it now", true);
+        ground.up(uhf_live_link, e_s + 5.0);
+    }
+    const auto loss = ground.about("loss of uhf_live", 20.0);
+    REQUIRE(loss);
+    CHECK(loss->rank == Rank::lasting);
+    CHECK(loss->sentence == "UHF was lost 2 times, last from E+0:10 to E+0:15: nothing predicted it");
+}
+
 TEST_CASE("no prediction excuses a silence that began without one", "[situation]") {
     Ground ground;
     ground.up(x_band_link, -100.0);
@@ -178,27 +197,33 @@ TEST_CASE("a fault that the station knows is said, within a predicted silence to
     ground.up(x_band_link, 65.0);
     ground.down(uhf_live_link, 70.0, "plasma blackout: predicted from E+0:45 to E+1:38", false, 98.0);
     CHECK_FALSE(ground.about("station", 71.0));
+    CHECK(ground.about("loss of station", 71.0)->sentence ==
+          "Station was lost from E+1:00 to E+1:10: a fault on the ground");
     CHECK(ground.about("uhf_live", 71.0)->rank == Rank::silence);
 }
 
-TEST_CASE("the backup's take-over is news, and a state that lasts; by tone its time is that of the tone",
-          "[situation]") {
+TEST_CASE(
+    "the backup's take-over is danger until touchdown, and a state that lasts; by tone its time is that of the tone",
+    "[situation]") {
     Ground ground;
     ground.up(x_band_link, -100.0);
     ground.fired("entry_guidance", 43.0);
     ground.tone("sc_taken_over", 105.0);
-    CHECK(ground.sentence(116.0) == "Flying on computer B, by tone at E+1:45");
+    CHECK(ground.sentence(116.0) == "Flying on backup computer B, by tone at E+1:45");
     ground.event("SECOND_CHANCE_TAKES_OVER", 100.3);
     const auto all = ground.desk.at(at(120.0));
-    CHECK(all.front().rank == Rank::news);
-    CHECK(all.front().sentence == "Flying on computer B since E+1:40");
+    CHECK(all.front().rank == Rank::danger);
+    CHECK(all.front().sentence == "Flying on backup computer B since E+1:40: it took over the timeline");
     CHECK(all.front().evidence == "event SECOND_CHANCE_TAKES_OVER");
     const auto lasting = std::ranges::find(all, Rank::lasting, &SituationEntry::rank);
     REQUIRE(lasting != all.end());
-    CHECK(std::ranges::count(all, "Flying on computer B since E+1:40", &SituationEntry::sentence) == 2);
+    CHECK(std::ranges::count(all, all.front().sentence, &SituationEntry::sentence) == 2);
+    ground.event("TOUCHDOWN", 433.0, "Touchdown");
+    CHECK(ground.sentence(440.0) == "Touchdown reported at E+7:13");
+    CHECK(ground.about("computer", 440.0)->rank == Rank::news);
 }
 
-TEST_CASE("landed is said by touchdown's own evidence alone; until then landing was predicted", "[situation]") {
+TEST_CASE("a touchdown is reported by its own evidence alone; until then landing was predicted", "[situation]") {
     Ground ground;
     ground.up(x_band_link, -100.0);
     ground.down(uhf_live_link, -100.0, "no orbiter in view: odyssey rises at E+2:00:00", false, 7200.0);
@@ -216,7 +241,7 @@ TEST_CASE("landed is said by touchdown's own evidence alone; until then landing 
     CHECK_FALSE(ground.about("landed", 7201.0));
     ground.up(relay_link, 7210.0);
     ground.event("TOUCHDOWN", 433.0, "Touchdown", true);
-    CHECK(ground.sentence(7300.0) == "Landed: touchdown at E+7:13, by the recording");
+    CHECK(ground.sentence(7300.0) == "Touchdown reported at E+7:13, by the recording");
 }
 
 TEST_CASE("what the ground awaits is the next step, with the condition that is missing, and overdue when it is late",
@@ -287,9 +312,9 @@ TEST_CASE("after a designation the other computer is the backup; a designation o
         ground.event("SECOND_CHANCE_TAKES_OVER", 100.3);
         return ground.sentence(116.0);
     };
-    CHECK(flying_after("1") == "Flying on computer A since E+1:40");
-    CHECK(flying_after("0") == "Flying on computer B since E+1:40");
-    CHECK(flying_after("?") == "Flying on the backup computer since E+1:40");
+    CHECK(flying_after("1") == "Flying on backup computer A since E+1:40: it took over the timeline");
+    CHECK(flying_after("0") == "Flying on backup computer B since E+1:40: it took over the timeline");
+    CHECK(flying_after("?") == "Flying on the backup computer since E+1:40: it took over the timeline");
 }
 
 TEST_CASE("a tone that is not sure enough says nothing, and what went wrong is told by tone only without UHF",

@@ -57,29 +57,30 @@ export const LAYOUT = {
         'It let go of parachute and shell and brakes with eight engines. Twenty metres up, it lets the rover down on a bridle.',
     },
     {
-      title: 'Landed',
+      title: 'Touchdown',
       of: ['landed', 'flyaway'],
       untilEntry: undefined,
       from: 'touchdown',
       plain:
-        'The rover is on the ground, the descent stage has flown away. Now the recording comes down: all that could not be heard live.',
+        'The vehicle has reported touchdown, and the descent stage flies away. Then the recording comes down: all that could not be heard live.',
     },
   ],
   /**
-   * Parts of a timepoint's note that are left out of sentences: marks of a number's quality, (H), (M) and (L), and the
-   * prediction, which has its own lane.
+   * Parts of a timepoint's note that are left out of sentences: marks of a number's quality, (H), (M) and (L), the
+   * prediction, which has its own lane, and whose choice a number is.
    */
-  noteMarks: [/\s*\([^()]*\b[HML]\b[^()]*\)/g, /;\s*OD137 .*$/],
+  noteMarks: [
+    /\s*\([^()]*\b[HML]\b[^()]*\)/g,
+    /^OD137\b.*$|[;:]\s*OD137 .*$/,
+    /^ours\b:?\s*|(^|[;,.]?\s+)(time |spacing )?ours\b/gi,
+  ],
   /**
-   * The comparison that the vehicle makes for a timepoint or moment, shown until flight itself explains what holds it.
-   * `bound` is a channel of its report, or a parameter that it does not report (dictionaries/msl/parameters.csv).
-   * `since`: the time since that timepoint.
+   * The comparison that the vehicle makes for a timepoint, shown until flight itself explains what holds it. `bound` is
+   * a channel of its report.
    */
   watches: [
-    { timepoint: 'heading_alignment', channel: 'speed_mps', comparison: '<=', bound: 1100 },
     { timepoint: 'parachute_deploy', channel: 'speed_mps', comparison: '<=', bound: 'parachute_speed_mps' },
     { timepoint: 'heatshield_separation', channel: 'speed_mps', comparison: '<=', bound: 'heatshield_speed_mps' },
-    { timepoint: 'heatshield_separation', since: 'parachute_deploy', bound: 20 },
   ],
   /** Arguments of commands that number a row of the timeline. */
   numbered: [
@@ -161,16 +162,8 @@ export const LAYOUT = {
    * next timepoint.
    */
   moments: [
-    {
-      name: 'peak_deceleration',
-      before: 'sufr',
-      plain: 'The hottest and hardest half minute; flight says so once it has passed.',
-    },
-    {
-      name: 'heading_alignment',
-      before: 'sufr',
-      plain: 'From then on it steers straight at the target.',
-    },
+    { name: 'peak_deceleration', before: 'sufr' },
+    { name: 'heading_alignment', before: 'sufr' },
   ],
 
   /** Seconds from entry that the timeline shows by default. */

@@ -104,7 +104,7 @@ test('now at Mars and now as seen on Earth stand a light time apart on the timel
 
 test('after landing height and speed say whose they are, and no word of the descent picture lies over another', async () => {
   const { page, problems, shows } = await open(server.address, undefined, keepWhatIsWritten);
-  await shows('waiting', /Landed/);
+  await shows('waiting', /Touchdown reported/);
   for (const whose of ['whose-altitude', 'whose-speed']) {
     await shows(whose, /^(descent )?stage/); // a narrow head has one word of it, and all under the mouse
     assert.equal(await page.getByTestId(whose).getAttribute('title'), 'descent stage');
@@ -229,7 +229,7 @@ test('nothing in the header lies over another or is cut off, with alarms standin
 
 test('the strip of phases is as high before a phase is known as after, so that nothing below it moves', async () => {
   const { page, shows } = await open(server.address);
-  await shows('phases', /▶\s*Landed/);
+  await shows('phases', /▶\s*Touchdown/);
   for (const [width, height] of [
     [1366, 768],
     [1600, 900],

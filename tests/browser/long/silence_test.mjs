@@ -11,7 +11,7 @@ test('with tones alone the next moment, the phase, the count and the details go 
   const server = await serve(t, 'tones_only', ['--scenario', 'tones_only']);
   const { page, problems, text, shows } = await open(server.address);
   await flyTo(server, -60);
-  await shows('waiting', /Waiting for entry interface[^]*■ by tone, the last that was heard of: wait for guidance/);
+  await shows('waiting', /Next: entry interface[^]*■ by tone, the last that was heard of: wait for guidance/);
   await flyTo(server, 258);
   await shows('phase-now', /Entry[^]*■ by tone/);
   await waitFor(

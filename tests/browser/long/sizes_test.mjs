@@ -104,7 +104,7 @@ test('alone on a large screen what is waited for, the lanes of the timeline and 
 
 test('what is opened stands beside the timeline, and a link’s reason takes no second row of the header', async () => {
   const { page, shows } = await open(blackout.address);
-  await shows('link-UHF live', /plasma/);
+  await shows('link-UHF', /plasma/);
   assert.ok((await page.locator('.links').evaluate((links) => links.getBoundingClientRect().height)) < 45);
   for (const [key, opened] of [
     ['.', 'timepoint-detail'],

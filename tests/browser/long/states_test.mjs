@@ -171,7 +171,7 @@ test('a command that is reviewed or armed and a file that the ground has looked 
   await review('select_prime computer=b');
   await shows('dry-run', /✓ It would be sent once it is armed/);
   await page.keyboard.press('Enter');
-  await shows('command-armed', /ARMED: SELECT_PRIME[^]*✓ It is sent once its name is typed/);
+  await shows('command-armed', /ARMED: SELECT_PRIME[^]*✓ Its checks hold/);
   await page.keyboard.type('SELECT');
   flaws.push(...(await flawsOf(page, 'commands_armed')));
   await page.keyboard.press('Escape');

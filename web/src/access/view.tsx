@@ -158,7 +158,7 @@ export function Who() {
   const now = access.value;
   if (now.state === 'open')
     return (
-      <div class="link" data-testid="who">
+      <div class="link who-nobody" data-testid="who">
         <b>no accounts</b>
         <small>this machine only</small>
       </div>

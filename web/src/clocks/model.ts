@@ -3,7 +3,7 @@ import { linkLook } from '../design/status';
 import type { LinkLook } from '../design/status';
 import { dayOfYear, duration, fromEntry, secondsOfDayOfYear } from '../run/time';
 import { linkTitle } from '../links/model';
-import { notBegun, shortReason } from '../timeline/model';
+import { shortReason } from '../timeline/model';
 import { MODES, isReal, modeOf } from '../mode/model';
 import type { RunStore } from '../run/store';
 import type { StreamState } from '../stream/messages';
@@ -25,7 +25,11 @@ export function clocksOf(store: RunStore, past: number | undefined): { entry: st
     { id: 'scet', label: 'at Mars (SCET)', value: dayOfYear(ert - lightTime) },
     { id: 'ert', label: 'on Earth (ERT)', value: dayOfYear(ert) },
     { id: 'sclk', label: 'SCLK', value: Number.isFinite(sclk) && sclk !== 0 ? sclk.toFixed(3) : '—' },
-    { id: 'light-time', label: 'light time', value: lightTime === 0 && isReal(store.run) ? '—' : duration(lightTime) },
+    {
+      id: 'light-time',
+      label: 'light time',
+      value: lightTime > 0 ? duration(lightTime) : isReal(store.run) ? '—' : 'not rehearsed',
+    },
   ];
   if (lightTime > 0 && past === undefined && clocks?.ert) {
     others.push({ id: 'mars-now', label: 'the vehicle is at', value: fromEntry(clocks.eS) });
@@ -61,25 +65,33 @@ export function latestSend(store: RunStore): LatestSend | undefined {
 export interface LinkLine {
   name: string;
   look: LinkLook;
+  /** Its state and why, whole; `short`: as far as the header has room. */
   detail: string;
+  short: string;
+}
+
+const STATES = { up: 'received', down: 'silent', lost: 'lost', unknown: 'not known' } as const;
+/** "silent: plasma blackout: predicted from …" */
+function lineOf(name: string, look: LinkLook, reason: string): LinkLine {
+  const state = STATES[look];
+  const why = look === 'up' && reason === 'nominal' ? '' : reason;
+  return { name, look, detail: why ? `${state}: ${why}` : state, short: why ? `${state}: ${shortReason(why)}` : state };
 }
 
 /** A link that the plan has off: it stands in the header once it is due, and X-band's telemetry until tones follow it. */
-const isOff = (link: string, { look, detail }: LinkLine): boolean =>
-  look === 'down' && (notBegun(detail) || (link === 'x_band_telemetry' && shortReason(detail) === 'switched off'));
+const isOff = (link: string, { look, short }: LinkLine): boolean =>
+  look === 'down' &&
+  (short === 'silent: not begun' || (link === 'x_band_telemetry' && short === 'silent: switched off'));
 
 /** Without a connection the present state of a link is unknown; a past view still knows it. */
 export function linksOf(store: RunStore, cutoff: number, lost = false): LinkLine[] {
   return [...store.links].map(([link, changes]) => {
-    if (lost && cutoff === Infinity && store.going)
-      return { name: linkTitle(link), look: 'unknown', detail: 'no connection' };
+    if (lost && cutoff === Infinity && store.going) return lineOf(linkTitle(link), 'unknown', 'no connection');
     const until = changes.filter((change) => !(store.sclkSeenAt(change.ert_s) > cutoff));
     const last = until[until.length - 1]?.fact;
-    return {
-      name: linkTitle(link),
-      look: last === undefined ? 'unknown' : linkLook(last.up, last.reason),
-      detail: last?.reason || (last === undefined ? 'not yet' : last.up ? 'receiving' : 'silent'),
-    };
+    return last
+      ? lineOf(linkTitle(link), linkLook(last.up, last.reason), last.reason)
+      : lineOf(linkTitle(link), 'unknown', 'not heard of yet');
   });
 }
 
@@ -92,7 +104,7 @@ const FEW = 3;
 export function headerLinks(store: RunStore, cutoff: number, lost = false): LinkLine[] {
   const fault = store.run.archiveFault;
   return [
-    ...(fault ? [{ name: 'NOT STORED', look: 'lost', detail: fault } as const] : []),
+    ...(fault ? [{ name: 'NOT STORED', look: 'lost', detail: fault, short: fault } as const] : []),
     ...radioLinks(store, cutoff, lost),
   ];
 }
@@ -111,13 +123,11 @@ function radioLinks(store: RunStore, cutoff: number, lost: boolean): LinkLine[] 
     others.filter((line) => line.look === look),
   ) as [LinkLine[], LinkLine[], LinkLine[]];
   const name = `${others.length} relay links`;
-  if (missed.length > 0)
-    return [...own, { name, look: 'lost', detail: missed.map((line) => `${line.name}: ${line.detail}`).join('; ') }];
-  if (up.length > 0) return [...own, { name, look: 'up', detail: `up: ${up.map((line) => line.name).join(', ')}` }];
-  return [
-    ...own,
-    { name, look: down.length > 0 ? 'down' : 'unknown', detail: (down.at(-1) ?? others.at(-1))?.detail ?? 'not yet' },
-  ];
+  const whole = (look: LinkLook, detail: string): LinkLine[] => [...own, { name, look, detail, short: detail }];
+  if (missed.length > 0) return whole('lost', missed.map((line) => `${line.name} ${line.detail}`).join('; '));
+  if (up.length > 0) return whole('up', `received: ${up.map((line) => line.name).join(', ')}`);
+  const last = down.at(-1) ?? others.at(-1);
+  return last ? [...own, { ...last, name }] : own;
 }
 
 const STREAM_WORDS: Record<StreamState, string> = {
@@ -130,6 +140,7 @@ const STREAM_WORDS: Record<StreamState, string> = {
 export function streamLine(state: StreamState, attempt: number, gaps: number): LinkLine {
   return {
     name: STREAM_WORDS[state],
+    short: '',
     look: state === 'live' ? 'up' : state === 'lost' ? 'lost' : 'unknown',
     detail: state === 'lost' ? `what is shown is old; attempt ${attempt}` : gaps > 0 ? `gaps ${gaps}` : '',
   };

@@ -54,7 +54,7 @@ describe('the header', () => {
   it('knows nothing of a link while nothing comes, but of the past what it was', () => {
     const store = aStore([link({ link: 'uhf_live', up: true, ert: '2012-219T04:59:00.0' })]);
     expect([linksOf(store, Infinity, true)[0], linksOf(store, 890, true)[0]?.look]).toEqual([
-      { name: 'UHF live', look: 'unknown', detail: 'no connection' },
+      { name: 'UHF', look: 'unknown', detail: 'not known: no connection', short: 'not known: no connection' },
       'up',
     ]);
   });
@@ -70,7 +70,16 @@ describe('the header', () => {
   });
   it('says why a link is silent, and that a lost connection shows old things', () => {
     const store = aStore([link({ link: 'uhf_live', up: false, reason: 'plasma outage', ert: '2012-219T04:59:00.0' })]);
-    expect(linksOf(store, Infinity)).toEqual([{ name: 'UHF live', look: 'down', detail: 'plasma outage' }]);
+    expect(linksOf(store, Infinity)).toEqual([
+      { name: 'UHF', look: 'down', detail: 'silent: plasma outage', short: 'silent: plasma outage' },
+    ]);
+    const [whole] = linksOf(
+      aStore([
+        link({ link: 'uhf_live', up: false, reason: 'Earth set: predicted at E+4:57', ert: '2012-219T04:59:00.0' }),
+      ]),
+      Infinity,
+    );
+    expect([whole?.short, whole?.detail]).toEqual(['silent: Earth set', 'silent: Earth set: predicted at E+4:57']);
     expect(streamLine('lost', 3, 0)).toMatchObject({ look: 'lost', detail: 'what is shown is old; attempt 3' });
   });
   it('keeps a link that the plan has off out of the header, until it is due or lost', () => {
@@ -83,9 +92,9 @@ describe('the header', () => {
         Infinity,
       ).map((line) => line.name);
     expect(of('not begun: planned at E−13:20', '')).toEqual(['X-band telemetry']);
-    expect(of('', 'switched off: X-band sends tones from E−12:30')).toEqual(['UHF live']);
+    expect(of('', 'switched off: X-band sends tones from E−12:30')).toEqual(['UHF']);
     expect(of('switched off: planned at E+7:30', 'unexplained: nothing is predicted to silence it now')).toEqual([
-      'UHF live',
+      'UHF',
       'X-band telemetry',
     ]);
   });
@@ -102,9 +111,9 @@ describe('the header', () => {
       ),
     );
     expect(headerLinks(store, Infinity).map((line) => [line.name, line.look, line.detail])).toEqual([
-      ['UHF live', 'up', 'receiving'],
-      ['X-band', 'up', 'receiving'],
-      ['3 relay links', 'up', 'up: UHF MRO'],
+      ['UHF', 'up', 'received'],
+      ['X-band', 'up', 'received'],
+      ['3 relay links', 'up', 'received: UHF MRO'],
     ]);
     const failed = aStore(
       ['uhf_live', 'x_band', 'relay', 'uhf_mro', 'uhf_mex'].map((name) =>
@@ -119,12 +128,13 @@ describe('the header', () => {
     expect(headerLinks(failed, Infinity)[2], 'one that is missed comes before those that are up').toEqual({
       name: '3 relay links',
       look: 'lost',
-      detail: 'Relay: ground fault: the station is silent',
+      detail: 'Relay lost: ground fault: the station is silent',
+      short: 'Relay lost: ground fault: the station is silent',
     });
   });
   it('says first that nothing is stored, in the words of the disk', () => {
     expect(headerLinks(aStore([], aRun({ archiveFault: 'a.db: the disk is full' })), Infinity)).toEqual([
-      { name: 'NOT STORED', look: 'lost', detail: 'a.db: the disk is full' },
+      { name: 'NOT STORED', look: 'lost', detail: 'a.db: the disk is full', short: 'a.db: the disk is full' },
     ]);
   });
   it('of a run of the day before, which has no clocks any more, go by what it holds', () => {

@@ -23,7 +23,7 @@ function Link({ line, testId }: { line: LinkLine; testId: string }) {
       <b>
         <span aria-hidden="true">{STATUS[LINK_STATUS[line.look]].shape}</span> {line.name}
       </b>
-      <small title={line.detail}>{line.detail}</small>
+      <small title={line.detail}>{line.short}</small>
     </div>
   );
 }

@@ -241,7 +241,7 @@ export function History() {
                 title={`${cell.stage}: ${STAGE_LOOKS[cell.look].word}. ${cell.evidence} ${cell.at}`}
               >
                 <i>{STAGE_LOOKS[cell.look].shape}</i>
-                <span>{cell.stage}</span>
+                <span>{cell.look === 'absent' ? 'no check' : cell.stage}</span>
               </li>
             ))}
           </ol>

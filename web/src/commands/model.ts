@@ -240,10 +240,21 @@ export function arrivalOf(
   };
 }
 
-/** Splits the server's words of a precondition at its value: "parameters_received == 1: is 0". */
+const RELATIONS: Record<string, string> = { '==': '=', '!=': '≠', '<=': '≤', '>=': '≥' };
+const FACTS: Record<string, string> = { '0': 'no', '1': 'yes' };
+
+/**
+ * The server's words of a precondition, with its value apart: "parameters_received == 1: is 0" is "parameters received:
+ * must be yes" and "is no".
+ */
 export function conditionWords(text: string): { words: string; value: string } {
-  const at = text.indexOf(': ');
-  return at < 0 ? { words: text, value: '' } : { words: text.slice(0, at), value: text.slice(at + 2) };
+  const [, name, relation = '', bound = '', value = ''] = /^(\w+) (\S+) ([^\s:]+): (.*)$/.exec(text) ?? [];
+  if (name === undefined) return { words: text, value: '' };
+  const fact = relation === '==' ? FACTS[bound] : undefined;
+  const words = name.replaceAll('_', ' ');
+  return fact === undefined
+    ? { words: `${words} ${RELATIONS[relation] ?? relation} ${bound}`, value }
+    : { words: `${words}: must be ${fact}`, value: value.replace(/^is ([01])$/, (_, of: string) => `is ${FACTS[of]}`) };
 }
 
 /** By their numbers in the schema, like STATUSES, so that the page need not load the schema. */
@@ -268,8 +279,13 @@ export interface StageCell {
 
 /** All stages with their evidence, in a past view the evidence known then. A stage without evidence is not green. */
 export function stageCells(row: CommandRow, known: (ert_s: number) => boolean = () => true): StageCell[] {
+  const wordOn = (name: string) => row.stages.get(name)?.findLast((word) => known(word.ert_s));
+  // Once it has left, the ground says of each stage that there is what it awaits.
+  const awaited = wordOn('accepted') !== undefined;
   return STAGES.map((name) => {
-    const stage = row.stages.get(name)?.findLast((word) => known(word.ert_s));
+    const stage = wordOn(name);
+    if (name === 'verified' && !stage && awaited)
+      return { stage: name, look: 'absent', evidence: 'the dictionary names no check beyond its execution', at: '' };
     const look = STATUSES.find((each) => each === stage?.status);
     const at = stage ? dayOfYear(stage.ert_s, 3) : '';
     return { stage: name, look: look ?? 'none', evidence: stage?.evidence ?? 'nothing is known', at };
@@ -281,7 +297,10 @@ export function newestEvidence(cells: readonly StageCell[]): string {
   const failed = cells.find((cell) => cell.look === 'failed');
   const waits = cells.find((cell) => cell.stage === 'released' && cell.look === 'pending');
   const newest =
-    failed ?? waits ?? cells.findLast((cell) => cell.look === 'ok') ?? cells.findLast((cell) => cell.look !== 'none');
+    failed ??
+    waits ??
+    cells.findLast((cell) => cell.look === 'ok') ??
+    cells.findLast(({ look }) => look !== 'none' && look !== 'absent');
   return newest ? `${newest.stage}${newest.look === 'ok' ? '' : ` ${newest.look}`}: ${newest.evidence}` : '';
 }
 

@@ -147,6 +147,28 @@ function Uplink({ onKey }: Pick<Properties, 'onKey'>) {
 
 const CONDITION = { holds: 'holds', fails: 'failed', unknown: 'unknown' } as const;
 
+function Checks({ reply }: { reply: CommandReply }) {
+  if (reply.preconditions.length === 0) return null;
+  return (
+    <ul class="preconditions" aria-label="preconditions">
+      {reply.preconditions.map((condition) => {
+        const look = CONDITION[condition.state as keyof typeof CONDITION] ?? CONDITION.unknown;
+        const { words, value } = conditionWords(condition.text);
+        return (
+          <li key={words} class={look} title={condition.text}>
+            {STATUS[look].shape} {words}{' '}
+            <output>
+              {value}
+              {look === 'unknown' && '; flight decides'}
+            </output>
+          </li>
+        );
+      })}
+    </ul>
+  );
+}
+
+/** When it leaves and arrives, and what it is. */
 function Told({ reply }: { reply: CommandReply }) {
   const run = runNow();
   if (!run) return null;
@@ -154,23 +176,6 @@ function Told({ reply }: { reply: CommandReply }) {
   const octets = reply.octets.length / 2;
   return (
     <>
-      {reply.preconditions.length > 0 && (
-        <ul class="preconditions" aria-label="preconditions">
-          {reply.preconditions.map((condition) => {
-            const look = CONDITION[condition.state as keyof typeof CONDITION] ?? CONDITION.unknown;
-            const { words, value } = conditionWords(condition.text);
-            return (
-              <li key={words} class={look}>
-                {STATUS[look].shape} {words}{' '}
-                <output>
-                  {value}
-                  {look === 'unknown' && '; flight decides'}
-                </output>
-              </li>
-            );
-          })}
-        </ul>
-      )}
       {arrival && (
         <dl class="told">
           <dt>at the latest</dt>
@@ -265,7 +270,7 @@ function Verdict({ command }: { command: DictionaryCommand }) {
         <p class="verdict holds">
           ✓{' '}
           {step.value === 'armed'
-            ? 'It is sent once its name is typed.'
+            ? 'Its checks hold.'
             : isHazardous(command)
               ? 'It would be sent once it is armed and its name is typed.'
               : 'It would be sent as it stands here.'}
@@ -297,9 +302,11 @@ function DryRun({ command, onKey }: Properties) {
   const reply = previewNow.value;
   return (
     <div class="dry-run" data-testid="dry-run">
-      <div aria-live="polite">
-        <Verdict command={command} />
-      </div>
+      {step.value !== 'armed' && (
+        <div aria-live="polite">
+          <Verdict command={command} />
+        </div>
+      )}
       {step.value === 'review' && (
         <p class="next">
           <kbd>Enter</kbd>{' '}
@@ -313,8 +320,9 @@ function DryRun({ command, onKey }: Properties) {
           · <kbd>Tab</kbd> to change · <kbd>Esc</kbd> goes back
         </p>
       )}
-      <Effect onKey={onKey} />
-      {reply && <Told reply={reply} />}
+      {step.value !== 'armed' && <Effect onKey={onKey} />}
+      {reply && <Checks reply={reply} />}
+      {step.value !== 'armed' && reply && <Told reply={reply} />}
     </div>
   );
 }
@@ -362,14 +370,18 @@ function Effect({ onKey }: Pick<Properties, 'onKey'>) {
 
 export function Review({ command, onKey }: Properties) {
   return (
-    <div class="review" data-testid="command-review">
+    <div class={`review ${step.value === 'armed' ? 'review-armed' : ''}`} data-testid="command-review">
       <p>
         <b>{command.name}</b> {command.text}
       </p>
-      {command.reasonForWarning && <p class="caution">▲ {command.reasonForWarning}</p>}
+      {step.value !== 'armed' && command.reasonForWarning && <p class="caution">▲ {command.reasonForWarning}</p>}
       <DryRun command={command} onKey={onKey} />
-      <Fields onKey={onKey} />
-      <Uplink onKey={onKey} />
+      {step.value !== 'armed' && (
+        <>
+          <Fields onKey={onKey} />
+          <Uplink onKey={onKey} />
+        </>
+      )}
     </div>
   );
 }
@@ -377,33 +389,43 @@ export function Review({ command, onKey }: Properties) {
 export function Armed({ command, onKey }: { command: DictionaryCommand; onKey: (event: KeyboardEvent) => void }) {
   const input = useRef<HTMLInputElement>(null);
   useLayoutEffect(() => {
-    input.current?.focus(); // before the next key can be typed
+    // Before the next key can be typed. From the top: its checks are in sight, and the field below them.
+    input.current?.focus({ preventScroll: true });
+    input.current?.closest('.panel-body')?.scrollTo?.(0, 0);
     input.current?.scrollIntoView?.({ block: 'nearest' });
   }, []);
+  const reply = previewNow.value;
   return (
-    <div class="armed" data-testid="command-armed">
-      <b>▲ ARMED: {command.name}</b>
-      {command.reasonForWarning && <p class="caution">▲ {command.reasonForWarning}</p>}
-      <Verdict command={command} />
-      <label>
-        <span>
-          {' '}
-          Type <b>{command.name}</b> and press Enter to send. Esc disarms.
-        </span>
-        <input
-          ref={input}
-          data-testid="command-confirmation"
-          autocomplete="off"
-          spellcheck={false}
-          value={confirmation.value}
-          onInput={(event) => (confirmation.value = event.currentTarget.value)}
-          onKeyDown={(event) => {
-            const escaped = event.key === 'Escape';
-            onKey(event);
-            if (escaped) openCommandLine();
-          }}
-        />
-      </label>
-    </div>
+    <>
+      <div class="armed" data-testid="command-armed">
+        <b>▲ ARMED: {command.name}</b>
+        {command.reasonForWarning && <p class="caution">▲ {command.reasonForWarning}</p>}
+        <Verdict command={command} />
+        <label>
+          <span>
+            {' '}
+            Nothing is sent yet: type <b>{command.name}</b> and press Enter. Esc disarms.
+          </span>
+          <input
+            ref={input}
+            data-testid="command-confirmation"
+            autocomplete="off"
+            spellcheck={false}
+            value={confirmation.value}
+            onInput={(event) => (confirmation.value = event.currentTarget.value)}
+            onKeyDown={(event) => {
+              const escaped = event.key === 'Escape';
+              onKey(event);
+              if (escaped) openCommandLine();
+            }}
+          />
+        </label>
+      </div>
+      {reply && (
+        <div class="review">
+          <Told reply={reply} />
+        </div>
+      )}
+    </>
   );
 }

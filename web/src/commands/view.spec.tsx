@@ -178,9 +178,13 @@ describe('what is asked of the uplink', () => {
   });
   it('shows the ground’s word on a precondition with its value apart', () => {
     expect(conditionWords('parameters_received == 1: is 0')).toEqual({
-      words: 'parameters_received == 1',
-      value: 'is 0',
+      words: 'parameters received: must be yes',
+      value: 'is no',
     });
+    expect(conditionWords('parameters_received == 1: not known, no value has come').value).toBe(
+      'not known, no value has come',
+    );
+    expect(conditionWords('speed_mps <= 405: is 1')).toEqual({ words: 'speed mps ≤ 405', value: 'is 1' });
   });
 });
 
@@ -421,7 +425,7 @@ describe('the command line', () => {
     expect(step.value).toBe('armed');
     // Warning and the ground's answer stay in sight during arming.
     expect(root.querySelector('[data-testid="command-armed"]')?.textContent).toMatch(
-      /ARMED: EDL_DO_EDL.*Starts the timeline.*It is sent once its name is typed.*Type EDL_DO_EDL/,
+      /ARMED: EDL_DO_EDL.*Starts the timeline.*Its checks hold.*Nothing is sent yet: type EDL_DO_EDL/,
     );
     await act(() => forward());
     expect([step.value, message.value?.good]).toEqual(['armed', false]);

@@ -89,6 +89,6 @@ it('figures that nothing has come for are dim, with their age, and where they we
     );
   };
   expect(shown(899)).toEqual([undefined, undefined, expect.stringMatching(/predicted corridor/)]);
-  expect(shown(859)).toEqual([expect.stringContaining('60.0 km'), '◌ 41 s', '']);
+  expect(shown(859)).toEqual([expect.stringContaining('60.0 km'), '◌ 41 s old', '']);
   expect(shown(850, [firing({ timepoint: 9, name: LAYOUT.landed, firedSclk: 850 })])[1]).toBeUndefined();
 });

@@ -279,9 +279,14 @@ function draw(surface: Surface): void {
     c.fillStyle = colours.dim;
     c.font = `${TYPE.table}px ${colours.sans}`;
     c.textAlign = 'left';
-    const words = ['The vehicle is above this picture,', 'or has not told its height yet.'];
-    for (const [i, each] of (width > 560 ? [words.join(' ')] : words).entries())
-      c.fillText(each, LEFT + 14, 30 + i * (TYPE.table + 4));
+    const told = [altitude, speed].every(({ id }) => run.latest(id, until) !== undefined);
+    const words = told ? `above ${TOP_M / 1000} km: above this picture` : 'no height and speed yet';
+    const [left, top, wide] = [LEFT + 14, 30, c.measureText(words).width];
+    c.save();
+    c.fillStyle = colours.panel; // over the grid
+    c.fillRect(left - 4, top - 10, wide + 8, 20);
+    c.restore();
+    c.fillText(words, left, top);
     return;
   }
   const stale = staleNow(run) !== undefined; // hollow, at the last known place
@@ -405,7 +410,7 @@ function moments(
       const fits = box[0] >= LEFT && box[2] <= width - 8 && box[3] <= bottom && box[1] >= 4 && isFree(box, boxes);
       return fits ? [{ dx, dy, align, box }] : [];
     });
-    const place = places.find(({ box }) => isClear(box, way)) ?? places[0];
+    const place = places.find(({ box }) => isClear(box, way));
     if (!place) continue;
     boxes.push(place.box);
     if (Math.abs(place.dy) > 15) {
@@ -513,9 +518,9 @@ function Picture({ choose }: { choose: ComponentChildren }) {
               </div>
             )}
             {stale && (
-              <div class="descent-whose" data-testid="descent-stale">
+              <div class="descent-whose descent-age" data-testid="descent-stale">
                 <dt>how old</dt>
-                <dd>{stale}</dd>
+                <dd>{stale} old</dd>
               </div>
             )}
           </dl>

@@ -11,6 +11,7 @@ export const STATUS = {
   quiet: { shape: '◇', token: 'caution', word: 'silent' },
   stale: { shape: '◌', token: 'dim', word: 'stale' },
   unknown: { shape: '?', token: 'dim', word: 'not known' },
+  next: { shape: '▷', token: 'accent', word: 'awaited' },
   unasked: { shape: '…', token: 'dim', word: 'not asked for yet' },
   never: { shape: '·', token: 'dim', word: 'not received' },
 } as const;
@@ -39,6 +40,7 @@ export const STAGE_LOOKS = {
   failed: { shape: '✖', word: 'failed' },
   unknown: { shape: '?', word: 'not known' },
   pending: { shape: '…', word: 'due' },
+  absent: { shape: '–', word: 'there is none' },
   none: { shape: '', word: 'nothing known' },
 } as const;
 export type StageLook = keyof typeof STAGE_LOOKS;

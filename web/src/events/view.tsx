@@ -9,6 +9,8 @@ import './style.css';
 const from = signal<(typeof LEVELS)[number]>('ACTIVITY_LO');
 const search = signal('');
 const SHOWN = 250;
+/** Levels whose rows are in the alarm's colour. */
+const WORST = new Set<string>(['FATAL', 'WARNING_HI']);
 
 /** Moves the focus from the search into the results and back. */
 function onSearchKey(event: KeyboardEvent): void {
@@ -34,7 +36,7 @@ export function Events() {
             </span>
           )}
           {warnings > 0 && (
-            <b class="warnings">
+            <b class={`warnings ${lines.some(({ level }) => WORST.has(level)) ? 'status-alarm' : ''}`}>
               ▲ {warnings} {warnings === 1 ? 'warning' : 'warnings'}
             </b>
           )}

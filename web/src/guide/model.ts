@@ -45,6 +45,8 @@ export const GUIDE_STEPS = 6;
 const NEAR_ENTRY_S = -90; // chosen: from here on the landing is worth watching
 const FAST = 20; // chosen: a faster pace flies the landing in seconds
 
+const GO_ON: Press = { key: 'p', words: 'lets the paused rehearsal go on' };
+
 type FirstStep = (typeof LAYOUT.firstSteps)[number];
 
 function commandPress(step: FirstStep, at: Step, opened: boolean): Press[] {
@@ -144,7 +146,7 @@ export function guideStep(
       return {
         ...nothing,
         title: 'Taken. Waiting for the vehicle’s status to say so',
-        why: `${against.words.split(' ')[0]} ${against.value}: until it changes, “${step.words}” would be refused. The status comes about once a second.`,
+        why: `${against.words.split(':')[0]} ${against.value}: until it changes, “${step.words}” would be refused. The status comes about once a second.`,
       };
     }
     return {
@@ -168,15 +170,20 @@ export function guideStep(
       why: plain,
       wants: pace < FAST ? 'pace' : 'nothing',
       press: paused
-        ? [{ key: 'p', words: 'goes on' }]
+        ? [GO_ON]
         : pace < FAST
-          ? [{ key: '+', words: 'a few times, to 100×: the minutes before entry pass in seconds' }]
+          ? [
+              {
+                key: '+',
+                words: 'pressed a few times makes it faster, to 100×: the minutes before entry pass in seconds',
+              },
+            ]
           : [{ words: `At ${pace === Infinity ? 'this pace' : `${pace}×`} it is soon there.` }],
     };
   }
   const down = now === phases.length - 1; // nothing is left to watch
   const press: Press[] = paused
-    ? [{ key: 'p', words: 'goes on' }]
+    ? [GO_ON]
     : down
       ? [
           {

@@ -67,14 +67,14 @@ describe('the guide', () => {
     const taken = (received: number) =>
       guideStep(aStore(done(1)), aDictionary, soonPlan, 'rehearsal', 'type', Infinity, false, {
         ...(received === 0 && {
-          against: { command: 'EDL_DO_EDL', words: 'parameters_received == 1', value: 'is 0' },
+          against: { command: 'EDL_DO_EDL', words: 'parameters received: must be yes', value: 'is no' },
         }),
       });
     expect(taken(0)).toMatchObject({
       number: 2,
       press: [],
       wants: 'nothing',
-      why: expect.stringContaining('parameters_received is 0'),
+      why: expect.stringContaining('parameters received is no'),
     });
     expect(keys(taken(1))).toEqual(['/', 'do edl', 'Enter']);
   });
@@ -142,7 +142,7 @@ describe('the guide', () => {
       at(450, { pace: 100, relayProgress: 0.25 }),
     );
     expect(guideStep(landed, aDictionary, aPlan, 'rehearsal', 'type', Infinity)).toMatchObject({
-      title: 'Landed',
+      title: 'Touchdown',
       wants: 'nothing',
       press: [{ words: '25 % of the recording is down.' }],
     });

@@ -8,13 +8,14 @@ import type { RunStore } from '../run/store';
 import { outages } from '../timeline/model';
 import type { Outage } from '../timeline/model';
 
-/** "uhf_mro" → "UHF MRO", "relay" → "Relay". */
+/** "uhf_live" → "UHF", "uhf_mro" → "UHF MRO", "relay" → "Relay". Its state is a word beside it. */
 export function linkTitle(link: string): string {
+  if (link === 'uhf_live') return 'UHF';
   if (link === 'x_band') return 'X-band';
   if (link === 'x_band_telemetry') return 'X-band telemetry';
   const [kind = '', ...rest] = link.split('_');
   const title = kind === 'uhf' ? 'UHF' : kind === 'relay' ? 'Relay' : kind;
-  return [title, ...rest.map((part) => (part === 'live' ? part : part.toUpperCase()))].join(' ').trim();
+  return [title, ...rest.map((part) => part.toUpperCase())].join(' ').trim();
 }
 
 export interface LinkView {

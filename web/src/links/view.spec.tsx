@@ -9,7 +9,7 @@ describe('the links', () => {
   it('have names that people say', () => {
     expect(
       ['uhf_live', 'uhf_mro', 'relay', 'relay_mex', 'x_band', 'x_band_telemetry', 'downlink'].map(linkTitle),
-    ).toEqual(['UHF live', 'UHF MRO', 'Relay', 'Relay MEX', 'X-band', 'X-band telemetry', 'downlink']);
+    ).toEqual(['UHF', 'UHF MRO', 'Relay', 'Relay MEX', 'X-band', 'X-band telemetry', 'downlink']);
   });
   it('take a silence that nothing predicted for a loss, and say why', () => {
     const store = aStore([

@@ -137,6 +137,8 @@ export function itemsOf({ kind, name, e_s }: Pick<Opened, 'kind' | 'name' | 'e_s
       ];
     case 'timepoint':
       return [[pointItem(e_s ?? instantOf(name)), { words: 'Why: what it rests on', opens: 'why' }], [LINK]];
+    case 'instant':
+      return [[pointItem(e_s)], [LINK]];
     case 'panel':
       return panelItems(name);
     case 'display':

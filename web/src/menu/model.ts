@@ -4,7 +4,7 @@
 import { signal } from '@preact/signals';
 import { grownBy } from '../draw/canvas';
 
-/** What a menu is about: "channel altitude_m", "packet Status", "link uhf_live", "timepoint sufr", "panel tones"; "display" and "link" of the page itself. */
+/** What a menu is about: "channel altitude_m", "packet Status", "link uhf_live", "timepoint sufr", "instant of a note", "panel tones"; "display" and "link" of the page itself. */
 export interface Opened {
   kind: string;
   name: string;

@@ -81,7 +81,11 @@ export function Notes() {
       )}
       <ol class="notes table-scroll" tabIndex={0} aria-label="notes, newest first" data-testid="note-list">
         {shown.map((row) => (
-          <li key={row.seq}>
+          <li
+            key={row.seq}
+            data-menu={row.sclk === undefined ? undefined : 'instant of a note'}
+            data-at={row.sclk === undefined ? undefined : row.sclk - run.entrySclk}
+          >
             <time>{dayOfYear(row.ert_s, 3)}</time> <b>{row.by || 'unsigned'}</b>{' '}
             {row.sclk !== undefined && <i>on {fromEntry(row.sclk - run.entrySclk)}</i>}
             <p>{row.text}</p>

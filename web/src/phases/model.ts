@@ -17,6 +17,7 @@ interface PhaseStep {
   detail: string; // the vehicle's own word for its state within the phase
   since_e_s: number | undefined;
   predicted_e_s: number | undefined;
+  overdue?: boolean | undefined;
   /** For the present phase: the elapsed fraction, by the prediction of the next phase, 0 … 1. */
   part: number | undefined;
 }
@@ -51,10 +52,9 @@ export function phaseSteps(
     );
   const entryKnown = store?.entryKnown !== false;
   // As in the timeline and "waiting for"; without a plan, as the nominal flight has it.
+  const listed = (group: Group | undefined) => predictions.find((each) => each.name === group?.from);
   const predicted = (group: Group | undefined) =>
-    entryKnown
-      ? (predictions.find((each) => each.name === group?.from)?.e_s ?? predictedEvent(group?.from))
-      : undefined;
+    entryKnown ? (listed(group)?.e_s ?? predictedEvent(group?.from)) : undefined;
   const seen_e_s = store ? Math.min(store.seenSclk, cutoff) - store.entrySclk : NaN;
   const now = channel && store?.latest(channel.id, cutoff);
   const label = now && labels.get(now.value);
@@ -91,6 +91,7 @@ export function phaseSteps(
             : '',
       since_e_s,
       predicted_e_s: predicted(group),
+      overdue: listed(group)?.overdue,
       part:
         index !== at || since_e_s === undefined || next_e_s === undefined
           ? undefined
@@ -129,5 +130,5 @@ export function nextWords(steps: readonly PhaseStep[], seen_e_s: number): string
   const next = steps[steps.findIndex((step) => step.state === 'now') + 1];
   if (next?.state !== 'ahead' || next.predicted_e_s === undefined) return '';
   const title = next.title.toLowerCase();
-  return countdownWords(title, next.predicted_e_s, seen_e_s, seen_e_s - next.predicted_e_s >= LATE_S);
+  return countdownWords(title, next.predicted_e_s, seen_e_s, next.overdue ?? seen_e_s - next.predicted_e_s >= LATE_S);
 }

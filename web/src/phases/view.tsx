@@ -3,6 +3,7 @@
 import { cutoff, dictionary, runNow, timepoints } from '../run/shown';
 import { fromEntry } from '../run/time';
 import { predicted } from '../timeline/now';
+import { saidOf, withSaid } from '../waiting/model';
 import { nextWords, phaseSteps } from './model';
 import './style.css';
 
@@ -11,7 +12,9 @@ const SHAPES = { done: '✓', now: '▶', ahead: '○' } as const;
 export function Phases() {
   const run = runNow();
   if (!dictionary.value) return null;
-  const steps = phaseSteps(run, dictionary.value, timepoints.value, cutoff.value, predicted.value);
+  const plan = timepoints.value;
+  const foreseen = run ? withSaid(predicted.value, saidOf(run, plan, cutoff.value)) : [];
+  const steps = phaseSteps(run, dictionary.value, plan, cutoff.value, foreseen);
   const seen_e_s = run ? Math.min(run.seenSclk, cutoff.value) - run.entrySclk : NaN;
   return (
     <ol class="phases" data-testid="phases" aria-label="Phases of the landing">

@@ -196,7 +196,8 @@ function alarmBands(plot: uPlot, channel: DictionaryChannel, per: number): void 
   const colours = palette();
   const ratio = window.devicePixelRatio || 1;
   const { ctx } = plot;
-  const named: { words: string; x: number; y: number; room: number; colour: string }[] = [];
+  const named: { words: string; x: number; y: [number, number]; room: number; colour: string }[] = [];
+  const drawn: NamesTaken = []; // the limits' lines
   ctx.save();
   for (const stretch of limitsOver(
     run,
@@ -225,18 +226,9 @@ function alarmBands(plot: uPlot, channel: DictionaryChannel, per: number): void 
         ctx.globalAlpha = 0.8;
         ctx.fillRect(x1, Math.round(edge), x2 - x1, ratio);
         const name = `${limit.severity} ${above ? '>' : '<'} ${+(bound / per).toPrecision(4)}${stretch.context && limit.context ? `, ${inWords(stretch.context)}` : ''}`;
-        named.unshift({
-          words: name,
-          x: x1,
-          room: x2 - x1,
-          y:
-            above && edge - top > 13 * ratio
-              ? edge - 3 * ratio
-              : bottom - edge > 13 * ratio
-                ? edge + 11 * ratio
-                : edge - 3 * ratio,
-          colour,
-        });
+        drawn.push([x1, x2, edge]);
+        const [over, under] = [edge - 3 * ratio, edge + 11 * ratio];
+        named.unshift({ words: name, x: x1, room: x2 - x1, y: above ? [over, under] : [under, over], colour });
       }
     }
   }
@@ -250,18 +242,25 @@ function alarmBands(plot: uPlot, channel: DictionaryChannel, per: number): void 
     (one, other) => Number(other.colour === colours.alarm) - Number(one.colour === colours.alarm),
   )) {
     const short = ctx.measureText(whole).width < room - 6 * ratio ? whole : (whole.split(',')[0] as string);
-    if (y - 9 * ratio < top || y > bottom) continue;
     const wide = ctx.measureText(short).width;
     const at = Math.max(left + 2, Math.min(right - wide - 2, x + 3));
-    if (taken.some(([from_px, to_px, line]) => at < to_px && at + wide > from_px && Math.abs(y - line) < 10 * ratio))
-      continue;
-    taken.push([at, at + wide, y]);
+    const within = ([from_px, to_px]: NamesTaken[number]) => at < to_px && at + wide > from_px;
+    // Beside its line, on no other line and no other name; else it has none here.
+    const free = y.find(
+      (each) =>
+        each - 9 * ratio >= top &&
+        each <= bottom &&
+        !taken.some((name) => within(name) && Math.abs(each - name[2]) < 10 * ratio) &&
+        !drawn.some((line) => within(line) && line[2] > each - 10 * ratio && line[2] < each + 2 * ratio),
+    );
+    if (free === undefined) continue;
+    taken.push([at, at + wide, free]);
     ctx.fillStyle = colour;
     ctx.strokeStyle = colours.panel; // an outline against the lines of other limits; the trace is drawn later, over it
     ctx.lineWidth = 3 * ratio;
     ctx.lineJoin = 'round';
-    ctx.strokeText(short, at, y);
-    ctx.fillText(short, at, y);
+    ctx.strokeText(short, at, free);
+    ctx.fillText(short, at, free);
   }
   ctx.restore();
 }
@@ -275,6 +274,9 @@ export function toggleDifference(): void {
         : 'the prediction is being made: it is there in a few seconds',
     );
 }
+
+/** "altitude_m" is "altitude": the unit stands beside it. */
+const wordsOf = (name: string) => inWords(name).replace(/ (m|km|mps|mps2|g|deg|dps|s|n|kg|pa)$/, '');
 
 function Plot(properties: Properties) {
   const { title, channel, unit, per, digits, over = [] } = properties;
@@ -408,11 +410,9 @@ function Plot(properties: Properties) {
       head={`channel ${channel.name}`}
       title={[title, ...over.map((each) => each.name)].join(', ')}
       extra={
-        <span class={`reading ${at !== undefined ? 'at-cursor' : stale ? 'stale' : ''}`}>
+        <span class={`reading ${at !== undefined ? 'at-cursor' : whose ? 'other' : stale ? 'stale' : ''}`}>
           {stale && <span data-testid={`stale-${name}`}>{stale} </span>}
-          {now === undefined && line && at === undefined && (
-            <span class="cursor-time none-yet">none has come yet </span>
-          )}
+          {now === undefined && line && at === undefined && <span class="cursor-time none-yet">none yet</span>}
           {whose && (
             <span class="whose" data-testid={`whose-${name}`} title={whose}>
               <i>{whose.replace(/\S+$/, '')}</i>
@@ -435,10 +435,10 @@ function Plot(properties: Properties) {
               </span>
             )
           )}{' '}
-          <output data-testid={`reading-${name}`}>
+          <output data-testid={`reading-${name}`} class={now === undefined ? 'unseen' : ''}>
             {inDifference ? signed(off, per, digits) : textOfValue(value, per, digits)}
           </output>{' '}
-          {unit}
+          {now !== undefined && unit}
           {hasDifference(channel) && (line || prediction.value?.state !== 'none') && (
             <button
               type="button"
@@ -455,7 +455,7 @@ function Plot(properties: Properties) {
         </span>
       }
     >
-      {now === undefined && !line && <span class="plot-empty">no {channel.name} has come yet</span>}
+      {now === undefined && !line && <span class="plot-empty">nothing of {wordsOf(channel.name)} has come yet</span>}
       <div
         class={`plot ${now === undefined && !line ? 'is-empty' : ''}`}
         ref={box}

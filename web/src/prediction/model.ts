@@ -10,6 +10,7 @@ import { Series } from '../run/series';
 import { signalOfRun, store } from '../run/shown';
 import type { RunStore } from '../run/store';
 import { fromEntry } from '../run/time';
+import { shortestReason } from '../timeline/model';
 import { columnsOf } from '../stream/series_answer';
 import type { SeriesAnswer } from '../stream/series_answer';
 
@@ -149,7 +150,7 @@ export const passes = (): PredictedWindow[] => prediction.value?.windows.filter(
 /** The words for a predicted silence, the longest first. */
 export function windowWords({ words, fromES, toES }: Pick<PredictedWindow, 'words' | 'fromES' | 'toES'>): string[] {
   const silent = `${silenceStatus(words).shape} ${words}`;
-  const short = `${silenceStatus(words).shape} ${words.replace(/^((no )?\S+).*/, '$1')}`; // "plasma", "no orbiter"
+  const short = `${silenceStatus(words).shape} ${shortestReason(words)}`;
   if (toES !== undefined && fromEntry(toES) === fromEntry(fromES))
     return [`${silent} ${fromEntry(fromES)}`, fromEntry(fromES)];
   const times = toES === undefined ? `from ${fromEntry(fromES)}` : `${fromEntry(fromES)} to ${fromEntry(toES)}`;

@@ -22,6 +22,8 @@ export interface Line {
   evidence: string;
   since_e_s: number;
   countdown: string;
+  /** Whether the reader can put it aside. */
+  mayGo: boolean;
   aside: boolean;
 }
 export interface Situation {
@@ -30,7 +32,7 @@ export interface Situation {
   /** The others, those put aside last. */
   more: Line[];
   /** States that last, in two or three words. */
-  lasting: { words: string; sentence: string }[];
+  lasting: { subject: string; words: string; sentence: string }[];
 }
 
 export const LOOKS: Record<Rank, Status> = {
@@ -38,19 +40,23 @@ export const LOOKS: Record<Rank, Status> = {
   danger: 'alarm',
   news: 'caution',
   silence: 'quiet',
-  waiting: 'unasked',
+  waiting: 'next',
   calm: 'good',
   lasting: 'caution',
 };
-/** Landed is good news; a link that is silent is silent, however calm that leaves people. */
+/** A touchdown is good news; a link that is silent is silent, however calm that leaves people. */
 export function lookOf({ rank, subject, sentence }: Pick<Line, 'rank' | 'subject' | 'sentence'>): Status {
   if (rank === 'news' && subject === 'landed') return 'holds';
-  return rank === 'calm' && / silent: /.test(sentence) ? 'quiet' : LOOKS[rank];
+  return rank === 'calm' && / silent\b/.test(sentence) ? 'quiet' : LOOKS[rank];
 }
 
 /** Keys of the news that the reader has put aside. Nothing is lost: they stay in the list. */
 export const aside = signalOfRun<ReadonlySet<string>>(new Set());
 export const listShown = signal(false);
+
+/** What the server said at `until` (SCLK), the most important first. */
+export const entriesAt = (run: RunStore | undefined, until: number): readonly NamedEntry[] =>
+  run?.situations.findLast(({ ert_s }) => run.knownBy(ert_s, until))?.fact.entries ?? [];
 
 /** The situation of the run at `until` (SCLK), Infinity: now. */
 export function situationOf(
@@ -59,11 +65,13 @@ export function situationOf(
   lost: { attempt: number } | undefined,
   put: ReadonlySet<string> = new Set(),
 ): Situation {
-  const told = run?.situations.findLast(({ ert_s }) => run.knownBy(ert_s, until))?.fact.entries ?? [];
+  const told = entriesAt(run, until);
   const stands = lost !== undefined || !run?.going;
   const now_e_s = run && (until !== Infinity || !stands) ? Math.min(run.seenSclk, until) - run.entrySclk : NaN;
   const e_s = (us: bigint | undefined) =>
     run && us !== undefined && us !== 0n ? run.sclkSeenAt(secondsOfErt(us)) - run.entrySclk : NaN;
+  // What also stands beside the badge can be put aside.
+  const stays = new Set(told.filter(({ rank }) => rank === 'lasting').map(({ subject }) => subject));
   const lines = told
     .filter(({ rank }) => rank !== 'lasting')
     .map((entry): Line => {
@@ -76,9 +84,11 @@ export function situationOf(
         evidence: entry.evidence,
         since_e_s: e_s(entry.sinceUs),
         countdown: countdownWords(entry.awaited, e_s(entry.atUs), now_e_s, entry.overdue),
-        aside: entry.rank === 'news' && put.has(key),
+        mayGo: entry.rank === 'news' || (entry.rank === 'danger' && stays.has(entry.subject)),
+        aside: false,
       };
-    });
+    })
+    .map((line) => ({ ...line, aside: line.mayGo && put.has(line.key) }));
   const all: Line[] = [
     ...(lost
       ? [
@@ -90,6 +100,7 @@ export function situationOf(
             evidence: '',
             since_e_s: NaN,
             countdown: '',
+            mayGo: false,
             aside: false,
           },
         ]
@@ -101,8 +112,9 @@ export function situationOf(
     more: [...all.slice(1), ...lines.filter((line) => line.aside)],
     lasting: told
       .filter(({ rank }) => rank === 'lasting')
-      .map(({ sentence }) => ({
-        words: (sentence.split(/ since |, |: /)[0] ?? sentence).replace(/^Flying on/, 'on'),
+      .map(({ subject, sentence }) => ({
+        subject,
+        words: (sentence.split(/ since | from |, |: /)[0] ?? sentence).replace(/^Flying on/, 'on'),
         sentence,
       })),
   };
@@ -118,7 +130,7 @@ export const situationNow = (run: RunStore | undefined): Situation =>
   );
 
 export function putAside(line = situationNow(shownRun()).first): void {
-  if (line?.rank === 'news') aside.value = new Set([...aside.value, line.key]);
+  if (line?.mayGo) aside.value = new Set([...aside.value, line.key]);
 }
 
 export function toggleList(): void {

@@ -33,7 +33,9 @@ describe('the banner', () => {
     const now = situationOf(store, Infinity, undefined);
     expect(now.first).toMatchObject({ sentence: BACKUP.sentence, since_e_s: -110, countdown: '' });
     expect(now.more.map((line) => [line.rank, line.countdown])).toEqual([['silence', 'UHF back in ≈ 40 s']]);
-    expect(now.lasting).toEqual([{ words: 'Too late for planned steps', sentence: CLOSED.sentence }]);
+    expect(now.lasting).toEqual([
+      { subject: 'commanding', words: 'Too late for planned steps', sentence: CLOSED.sentence },
+    ]);
   });
   it('puts news aside but loses nothing, and shows it again when it changes; a silence cannot be put aside', () => {
     const store = aStore([situation('2012-219T04:59:55.0', BACKUP, BLACKOUT)]);
@@ -44,6 +46,14 @@ describe('the banner', () => {
     expect(after.more.map((line) => [line.sentence, line.aside])).toEqual([[BACKUP.sentence, true]]);
     const changed = aStore([situation('2012-219T04:59:55.0', { ...BACKUP, evidenceSeq: 9n }, BLACKOUT)]);
     expect(situationOf(changed, Infinity, undefined, put).first?.rank).toBe('news');
+  });
+  it('lets danger be put aside only where it also stands beside the badge', () => {
+    const danger = { ...BACKUP, rank: 'danger' as const };
+    const lasting = { ...BACKUP, rank: 'lasting' as const };
+    const [alone, beside] = [[danger], [danger, lasting]].map(
+      (entries) => situationOf(aStore([situation('2012-219T04:59:55.0', ...entries)]), Infinity, undefined).first,
+    );
+    expect([alone?.mayGo, beside?.mayGo, beside && lookOf(beside)]).toEqual([false, true, 'alarm']);
   });
   it('has a lost connection above everything, also before there is a run', () => {
     const store = aStore([situation('2012-219T04:59:55.0', { ...BACKUP, rank: 'danger' })]);

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // The banner: the one thing that matters most now, as a sentence, with what it counts down to.
 import { STATUS } from '../design/status';
-import { runNow } from '../run/shown';
+import { modeNow, runNow } from '../run/shown';
 import { fromEntry } from '../run/time';
 import { aside, listShown, lookOf, pointAt, putAside, situationNow, toggleList } from './model';
 import type { Line } from './model';
 import './style.css';
+
+/** Letters that have room in one line in the large size, at each width; more have the smaller one. */
+const ONE_LINE = 68;
 
 /** The evidence of an entry, which leads to its instant. */
 function Evidence({ line, words }: { line: Line; words: string }) {
@@ -43,11 +46,12 @@ export function Situation() {
   const run = runNow();
   const { first, more } = situationNow(run);
   if (!run && !first) return null;
+  const isLong = first && first.sentence.length + first.countdown.length > ONE_LINE;
   const look = first ? lookOf(first) : 'never';
-  const waiting = more.filter((line) => !line.aside).length;
+  const [next, waiting] = [more.find((line) => !line.aside), more.filter((line) => !line.aside).length];
   return (
     <section
-      class={`situation ${first?.rank === 'lost' ? 'situation-lost' : ''}`}
+      class={`situation ${first?.rank === 'lost' ? 'situation-lost' : ''} ${isLong ? 'situation-long' : ''}`}
       style={{ '--look': `var(--${STATUS[look].token})` }}
       data-testid="situation"
       data-rank={first?.rank}
@@ -61,7 +65,7 @@ export function Situation() {
       </b>
       <output data-testid="situation-countdown">{first?.countdown}</output>
       {first && <Evidence line={first} words="why" />}
-      {first?.rank === 'news' && (
+      {first?.mayGo && (
         <button type="button" class="quiet" onClick={() => putAside(first)}>
           put aside <kbd>x</kbd>
         </button>
@@ -74,6 +78,11 @@ export function Situation() {
           onClick={toggleList}
           data-testid="situation-more"
         >
+          {next && (
+            <span title={next.sentence} style={{ color: `var(--${STATUS[lookOf(next)].token})` }}>
+              {STATUS[lookOf(next)].shape}{' '}
+            </span>
+          )}
           {waiting > 0 ? `+${waiting} more` : `${aside.value.size} put aside`} <kbd>m</kbd>
         </button>
       )}
@@ -88,7 +97,10 @@ export function Situation() {
 
 /** The states that last, beside the badge. */
 export function Lasting() {
-  const { lasting } = situationNow(runNow());
+  // Where nothing can be sent, nobody needs to know that it would be too late.
+  const lasting = situationNow(runNow()).lasting.filter(
+    ({ subject }) => subject !== 'commanding' || ['live', 'rehearsal'].includes(modeNow()),
+  );
   if (lasting.length === 0) return null;
   return (
     <ul class="lasting" data-testid="lasting" aria-label="states that last">

@@ -16,6 +16,8 @@ export interface Prediction {
   /** For a fired timepoint: as predicted before its anchor was heard of. */
   e_s: number;
   fired: boolean;
+  /** Whether word of it is late; left out: after 5 s. */
+  overdue?: boolean;
 }
 /** A timepoint that a command would move. */
 export interface Moved {
@@ -154,6 +156,12 @@ export const notBegun = (reason: string): boolean => shortReason(reason) === 'no
 export function shortReason(words: string): string {
   return words.split(/[,:;(]/)[0]?.trim() ?? words;
 }
+
+/** The same in one word where room is short: "plasma blackout" is "blackout". */
+export const shortestReason = (words: string): string => {
+  const short = shortReason(words);
+  return /^(no|not) /.test(short) ? short : (short.split(' ').at(-1) ?? short);
+};
 
 /** The number of known firings, and how many of them are known by a tone only. */
 export function firedCount(

@@ -9,7 +9,6 @@ import { BELIEVED, heardOf, lastHeard } from './heard';
 export interface Moment {
   name: string;
   before: string;
-  plain: string;
   /** The reported time, else the predicted one. */
   e_s: number | undefined;
   /** Reported, or passed because the next timepoint is known. */
@@ -19,7 +18,7 @@ export interface Moment {
 /** The moments of the plan shown, in order. */
 export function momentsOf(store: RunStore, plan: readonly TimepointRow[], cutoff: number): Moment[] {
   const last = lastHeard(plan, heardOf(store, plan, cutoff));
-  return LAYOUT.moments.flatMap(({ name, before, plain }) => {
+  return LAYOUT.moments.flatMap(({ name, before }) => {
     const at = plan.findIndex((row) => row.name === before);
     if (at < 0) return [];
     const told =
@@ -29,7 +28,6 @@ export function momentsOf(store: RunStore, plan: readonly TimepointRow[], cutoff
     return {
       name,
       before,
-      plain,
       e_s: told === undefined ? predicted : told - store.entrySclk,
       done: told !== undefined || at <= last,
     };

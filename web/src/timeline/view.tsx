@@ -21,7 +21,17 @@ import { STATUS, SOURCES, held, silenceStatus } from '../design/status';
 import { conditionLine, conditions, noteWords } from '../waiting/model';
 import type { Line } from '../waiting/model';
 import { momentsOf } from './moments';
-import { firedCount, isImportant, lanesOf, nextTimepoint, pointDetail, shortReason, shortTitle, title } from './model';
+import {
+  firedCount,
+  isImportant,
+  lanesOf,
+  nextTimepoint,
+  pointDetail,
+  shortReason,
+  shortTitle,
+  shortestReason,
+  title,
+} from './model';
 import type { Lanes, Mark } from './model';
 import './style.css';
 
@@ -117,14 +127,20 @@ function drawTimeline({ context: c, width: width_px, height: height_px, colours 
   c.rect(GUTTER - 6, 0, width - GUTTER, height);
   c.clip();
   drawWindows(c, x, y, width, Math.min(run.seenE, pastRange.value?.to ?? Infinity), colours);
-  drawOutages(c, lanes, x, y, width, colours);
-  if (lanes.recorded.length === 0 && !pastRange.value) {
-    c.fillStyle = colours.dim;
+  drawOutages(c, lanes, x, y, width, run.seenE, colours);
+  if (!pastRange.value && lanes.relay < 1 && !lanes.recorded.some(({ e_s }) => e_s >= from && e_s <= to)) {
     c.textAlign = 'center';
+    const told = `${Math.floor(lanes.relay * 100)} % of the recording has come`;
     const words =
-      lanes.relay > 0
-        ? `the recording is coming down: ${Math.round(lanes.relay * 100)} %`
-        : 'the recording comes down after landing';
+      lanes.recorded.length > 0
+        ? `${told}, up to ${fromEntry(Math.max(...lanes.recorded.map(({ e_s }) => e_s)))}`
+        : lanes.relay > 0
+          ? told
+          : 'the recording comes down after landing';
+    const wide = c.measureText(words).width;
+    c.fillStyle = colours.panel; // not struck through by the lane
+    c.fillRect((GUTTER + width - wide) / 2 - 6, y(4) - 8, wide + 12, 16);
+    c.fillStyle = colours.dim;
     c.fillText(words, (GUTTER + width) / 2, y(4) - 0.5);
   }
   marks(lanes.plan, x, y(0), (px, py) => ring(c, px, py, 3.2, colours.dim), true);
@@ -224,11 +240,12 @@ function drawOutages(
   x: (e: number) => number,
   y: (lane: number) => number,
   width: number,
+  now_e_s: number,
   colours: Surface['colours'],
 ): void {
-  for (const [lane, all] of [
-    [2, lanes.toneOutages],
-    [3, lanes.liveOutages],
+  for (const [lane, all, link] of [
+    [2, lanes.toneOutages, 'x_band'],
+    [3, lanes.liveOutages, 'uhf_live'],
   ] as const) {
     for (const outage of all) {
       const left = Math.max(GUTTER, x(outage.from));
@@ -247,31 +264,23 @@ function drawOutages(
       c.setLineDash([3, 3]);
       c.strokeRect(left + 0.5, y(lane) - 7.5, right - left - 1, 15);
       c.setLineDash([]);
-      c.save();
-      c.beginPath();
-      c.rect(left, y(lane) - 8, right - left, 16);
-      c.clip();
       c.fillStyle = colour;
       c.textAlign = 'left';
       c.font = `${TYPE.mark}px ${colours.sans}`;
-      const words = [`${shape} ${outage.words}`, `${shape} ${shortReason(outage.words)}`].find(
-        (each) => c.measureText(each).width + 8 <= right - left,
+      // As long a name as is whole there, else its mark. The name of a present one may reach into what is predicted of
+      // it, where that has no room for it either.
+      const [shortest = '', ...longer] = [shortestReason(outage.words), shortReason(outage.words), outage.words].map(
+        (each) => `${shape} ${each}`,
       );
-      c.fillText(
-        words ?? cutOff(c, `${shape} ${shortReason(outage.words)}`, right - left - 8),
-        left + 5,
-        y(lane) + 0.5,
-      );
-      c.restore();
+      const fits = (each: string, room: number) => c.measureText(each).width + 8 <= room;
+      const ahead = windowsOf('silence', link).find((each) => each.fromES < now_e_s && (each.toES ?? 0) > now_e_s);
+      const end = outage.to >= now_e_s && ahead ? Math.min(width - 14, x(ahead.toES ?? now_e_s)) : right;
+      const words =
+        [...longer.reverse(), shortest].find((each) => fits(each, right - left)) ??
+        (fits(shortest, end - left) && !fits(shortest, end - right) ? shortest : shape);
+      if (fits(words, end - left)) c.fillText(words, left + 5, y(lane) + 0.5);
     }
   }
-}
-
-/** The part of `words` that fits, with an ellipsis. */
-function cutOff(c: CanvasRenderingContext2D, words: string, room: number): string {
-  let length = words.length;
-  while (length > 0 && c.measureText(`${words.slice(0, length)}…`).width > room) --length;
-  return length > 2 ? `${words.slice(0, length).trimEnd()}…` : '';
 }
 
 /**

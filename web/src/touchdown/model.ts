@@ -12,10 +12,13 @@ import type { Look } from '../vehicle/model';
 import { length, overGround } from '../vehicle/vectors';
 import type { Vector } from '../vehicle/vectors';
 
-/** `unknown`: what would tell does not come, or has not come. `contradicted`: one source says yes, a newer one no. */
+/**
+ * `unknown`: what would tell does not come, or has not come. `never`: nothing of this vehicle tells it. `contradicted`: one
+ * source says yes, a newer one no.
+ */
 export interface Step {
   name: string;
-  state: 'done' | 'waiting' | 'unknown' | 'contradicted';
+  state: 'done' | 'waiting' | 'unknown' | 'never' | 'contradicted';
   words: string;
   /** SCLK from which on it holds. */
   sclk: number | undefined;
@@ -78,7 +81,7 @@ function samplesAfter({ run, words, cutoff }: Look, name: string, from: number):
 }
 
 function stillStep(look: Look, rules: Rules, since: number): Step {
-  const name = 'rover’s own IMU still';
+  const name = 'rover’s own IMU is still';
   const at = (sclk: number) => fromEntry(sclk - look.run.entrySclk, { tenths: true });
   const channels = [
     ...rules.roverRates_dps.map((channel) => ({ channel, middle: 0, bound: rules.stillRate_dps, unit: '°/s' })),
@@ -91,9 +94,13 @@ function stillStep(look: Look, rules: Rules, since: number): Step {
   ];
   const unknown = (words: string): Step => ({ name, state: 'unknown', words: `not known: ${words}`, sclk: undefined });
   if (channels.length === 0 || channels.some(({ channel }) => !look.words.pick([channel])))
-    return unknown(
-      'the vehicle sends no channel of the rover’s own IMU; after touchdown the IMU told of is the descent stage’s',
-    );
+    return {
+      name: `${name}: this vehicle never tells`,
+      state: 'never',
+      words:
+        'flight sends no channel of it; after touchdown the IMU told of is the descent stage’s: so this touchdown stays reported',
+      sclk: undefined,
+    };
   const samples = channels
     .flatMap((each) => samplesAfter(look, each.channel, since).map((sample) => ({ ...each, ...sample })))
     .sort((a, b) => a.sclk - b.sclk);
@@ -145,7 +152,7 @@ function stillStep(look: Look, rules: Rules, since: number): Step {
 
 function linkStep(look: Look, rules: Rules, since: number): Step {
   const { run, words, cutoff } = look;
-  const name = `UHF without a break for ${rules.uhf_s} s`;
+  const name = `UHF came for ${rules.uhf_s} s without a break after it`;
   const now = Math.min(run.seenSclk, cutoff);
   const at = (sclk: number) => fromEntry(sclk - run.entrySclk, { tenths: true });
   const channel = words.pick(LAYOUT.phase);
@@ -311,16 +318,18 @@ export function restOf({ run, cutoff }: Look, present: boolean): { words: string
     part >= 1
       ? ''
       : relay?.up
-        ? ' A pass is on.'
+        ? ` The relay is received${run.run.state === 'paused' ? '; the rehearsal is paused' : ''}.`
         : relay?.reason
           ? ` Relay: ${relay.reason}.`
-          : ' When the next pass is has not been told.';
+          : part > 0
+            ? ' When the next pass is has not been told.'
+            : '';
   return [
     {
       words:
         part >= 1
           ? 'The recording is complete.'
-          : `${part > 0 ? `${Math.floor(part * 100)} % of the recording has come.` : 'How much of the recording has come is not told.'}${run.going ? pass : ' The run has ended: no more comes.'}`,
+          : `${part > 0 ? `${Math.floor(part * 100)} % of the recording has come.` : 'Nothing is told of the recording yet.'}${run.going ? pass : ' The run has ended: no more comes.'}`,
       part,
     },
   ];

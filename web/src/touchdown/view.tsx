@@ -17,12 +17,13 @@ const LOOKS = {
   done: { ...STATUS.holds, word: 'holds' },
   waiting: { ...STATUS.missing, word: 'waited for' },
   unknown: STATUS.unknown,
+  never: { ...STATUS.never, word: 'never told' },
   contradicted: { ...STATUS.failed, word: 'contradicted' },
 } as const satisfies Record<Step['state'], object>;
 
 const VERDICTS = {
-  reported: { ...STATUS.caution, words: 'Touchdown reported' },
-  confirmed: { ...STATUS.holds, words: 'Touchdown confirmed' },
+  reported: { ...STATUS.holds, words: 'Touchdown reported' },
+  confirmed: { ...STATUS.good, words: 'Touchdown confirmed' },
   contradicted: { ...STATUS.failed, words: 'Touchdown contradicted' },
 } as const;
 
@@ -51,6 +52,7 @@ export function Touchdown() {
   if (!look || !of) return <p class="none">No touchdown has been told.</p>;
   const verdict = VERDICTS[of.verdict];
   const done = of.steps.filter(({ state }) => state === 'done').length;
+  const never = of.steps.filter(({ state }) => state === 'never').length;
   const miss = missOf(look, of.sclk);
   return (
     <div class="touchdown-box">
@@ -66,6 +68,7 @@ export function Touchdown() {
           {verdict.shape} {verdict.words}{' '}
           <span class="touchdown-when">
             {fromEntry(of.sclk - look.run.entrySclk, { tenths: true })}, {done} of {of.steps.length} signals
+            {never > 0 && `, ${never} never told`}
           </span>
         </h3>
         <dl class="touchdown-figures" data-testid="touchdown-figures">

@@ -16,6 +16,7 @@ import type { Octet, Row } from './model';
 import './style.css';
 
 const LISTED = 100;
+const ALL = 'all packets';
 const VERDICT_NAMES = Object.keys(VERDICTS) as Verdict[];
 const wanted = signal<Verdict>('differs');
 const listed = signal<{ run: number; verdict: Verdict; packets: PacketRow[]; more: boolean } | undefined>(undefined);
@@ -59,11 +60,13 @@ function Counts({
   rows,
   name,
   testId,
+  kind,
 }: {
   title: string;
   rows: Row[];
   name: (row: Row) => string;
   testId: string;
+  kind: 'packet' | 'link';
 }) {
   return (
     <table data-testid={testId}>
@@ -83,7 +86,7 @@ function Counts({
       </thead>
       <tbody>
         {rows.map((row) => (
-          <tr key={row.name} data-row={row.name}>
+          <tr key={row.name} data-row={row.name} data-menu={row.name === ALL ? undefined : `${kind} ${row.name}`}>
             <td>{name(row)}</td>
             <td>
               <Bar row={row} />
@@ -115,7 +118,7 @@ function Tones({ proof, entry_sclk }: { proof: ProofReport; entry_sclk: number }
       </p>
       <ol>
         {odd.slice(0, 60).map((tone) => (
-          <li key={`${tone.sclk} ${tone.verdict}`}>
+          <li key={`${tone.sclk} ${tone.verdict}`} data-menu="instant of a tone" data-at={tone.sclk - entry_sclk}>
             <time>{fromEntry(tone.sclk - entry_sclk, { tenths: true })}</time> {tone.verdict.replaceAll('_', ' ')}{' '}
             <small>
               decoded {tone.decoded ?? '—'}, sent {tone.recorded ?? '—'}
@@ -215,7 +218,7 @@ function Packets() {
         <table data-testid="verdict-packets">
           <tbody>
             {fits.packets.map((row) => (
-              <tr key={String(row.unit?.unit)}>
+              <tr key={String(row.unit?.unit)} data-menu={`packet ${row.unit?.name}`}>
                 <td class="number">{fromEntry((row.unit?.sclk ?? NaN) - run.entrySclk, { tenths: true })}</td>
                 <td>
                   <button type="button" class="link-button" onClick={() => (opened.value = row)}>
@@ -261,11 +264,18 @@ export function Verdicts() {
         <Packets />
         <Counts
           title="packet"
-          rows={[{ ...totalOf(rows), name: 'all packets' }, ...rows]}
+          rows={[{ ...totalOf(rows), name: ALL }, ...rows]}
           name={(row) => row.name}
           testId="verdicts-by-packet"
+          kind="packet"
         />
-        <Counts title="link" rows={rowsOf(proof.links)} name={(row) => linkTitle(row.name)} testId="verdicts-by-link" />
+        <Counts
+          title="link"
+          rows={rowsOf(proof.links)}
+          name={(row) => linkTitle(row.name)}
+          testId="verdicts-by-link"
+          kind="link"
+        />
         <Tones proof={proof} entry_sclk={run.entrySclk} />
         <p>
           <a href={`api/v1/runs/${run.id}/proof?format=csv`} download="aeolis-proof.csv">

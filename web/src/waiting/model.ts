@@ -10,12 +10,13 @@ import { canContinue } from '../mode/model';
 import { inWords, numberText } from '../run/dictionary';
 import type { Dictionary } from '../run/dictionary';
 import type { CommandRow, RunStore } from '../run/store';
-import { duration, fromEntry } from '../run/time';
+import { duration, fromEntry, secondsOfErt } from '../run/time';
+import { roughly } from '../situation/countdown';
+import { entriesAt } from '../situation/model';
 import { heardOf, lastHeard, speaksOf } from '../timeline/heard';
 import { isImportant, nextTimepoint } from '../timeline/model';
 import type { Prediction } from '../timeline/model';
 import { momentsOf } from '../timeline/moments';
-import type { Moment } from '../timeline/moments';
 
 /**
  * A failing precondition of a command, in the server's words. An unknown state does not count, since flight decides by
@@ -41,14 +42,19 @@ export interface Line {
   /** What is compared, by flight's name. */
   quantity?: string;
 }
+export interface Neighbour {
+  name: string;
+  words: string;
+  value: string;
+}
 export interface Waiting {
   kind: 'begin' | 'waiting' | 'ended';
   title: string;
   words: string;
   lines: Line[];
-  /** The next timepoint if it comes before the named one, with its time. */
-  before?: Line | undefined;
-  beforeName?: string;
+  /** A moment before it, and after an unnamed timepoint the next named one, each with its time. */
+  before?: Neighbour | undefined;
+  after?: Neighbour | undefined;
   /** The last known timepoint, if only a tone reported it. */
   byTone?: string;
   /** Fraction of the recording received after the end of the timeline, 0 … 1. */
@@ -85,13 +91,7 @@ function quantityWords(quantity: string): { words: string; unit: string } {
     : { words: inWords(quantity.slice(0, at)), unit: ` ${unit}` };
 }
 
-export function conditionLine({
-  quantity,
-  value,
-  comparison,
-  bound,
-  holds,
-}: Pick<Condition, 'quantity' | 'value' | 'comparison' | 'bound' | 'holds'>): Line {
+export function conditionLine({ quantity, value, comparison, bound, holds }: Compared): Line {
   const { words, unit } = quantityWords(quantity);
   const [fact, wanted] = [YES_OR_NO[value], YES_OR_NO[bound]];
   if (comparison === '==' && fact !== undefined && wanted !== undefined)
@@ -104,14 +104,72 @@ export function conditionLine({
   };
 }
 
-/** The vehicle's next step that people wait for: the next named timepoint, or the next one if no named one is left. */
-function waitedFor(
+type Compared = Pick<Condition, 'quantity' | 'value' | 'comparison' | 'bound' | 'holds'>;
+
+/** Conditions in words; a lower and an upper bound of one quantity are one range. */
+export function conditionLines(all: readonly Compared[]): Line[] {
+  return all.flatMap((condition) => {
+    const other = all.find((each) => each !== condition && each.quantity === condition.quantity);
+    const isPair = other && new Set([condition.comparison, other.comparison, '<=', '>=']).size === 2;
+    if (!isPair || condition.comparison === other.comparison) return [conditionLine(condition)];
+    if (all.indexOf(other) < all.indexOf(condition)) return [];
+    const [low, high] = condition.comparison === '>=' ? [condition, other] : [other, condition];
+    const { words, unit } = quantityWords(condition.quantity);
+    return [
+      {
+        ...conditionLine(condition),
+        words: `${words} ${numberText(low.bound)} to ${numberText(high.bound)}${unit}`,
+        holds: low.holds && high.holds,
+      },
+    ];
+  });
+}
+
+/** What the server said of the next step, if no newer word has overtaken it. */
+interface Said {
+  step: { row: TimepointRow; prediction: Prediction | undefined } | undefined;
+  /** That the recording is what is awaited now. */
+  recording: string | undefined;
+}
+export function saidOf(store: RunStore, plan: readonly TimepointRow[], cutoff: number): Said {
+  const entries = entriesAt(store, cutoff);
+  const step = entries.find(({ subject }) => subject === 'step');
+  const words = /^(?:Next: |Waiting for )([^,;]+)/.exec(step?.sentence ?? '')?.[1]?.replace('X-band', 'x band');
+  const row = plan.find(({ name }) => name.replaceAll('_', ' ').toLowerCase() === words?.toLowerCase());
+  const e_s = step?.atUs ? store.sclkSeenAt(secondsOfErt(step.atUs)) - store.entrySclk : NaN;
+  return {
+    step:
+      step && row && plan.indexOf(row) > lastHeard(plan, heardOf(store, plan, cutoff))
+        ? {
+            row,
+            prediction: Number.isNaN(e_s)
+              ? undefined
+              : { id: row.id, name: row.name, e_s, fired: false, overdue: step.overdue },
+          }
+        : undefined,
+    recording: entries.find(({ subject }) => subject === 'recording')?.sentence,
+  };
+}
+/** The predictions, with what the server said last of the next step. */
+export function withSaid(predicted: readonly Prediction[], { step }: Pick<Said, 'step'>): readonly Prediction[] {
+  return step?.prediction ? [step.prediction, ...predicted.filter(({ id }) => id !== step.row.id)] : predicted;
+}
+
+/**
+ * The vehicle's next step: as the server says in the banner; without its word the next timepoint, or the next named one
+ * where only a tone told of the last, since nothing reports an unnamed one by tone.
+ */
+function nextStep(
   store: RunStore,
   plan: readonly TimepointRow[],
   cutoff: number,
-): { main: TimepointRow; first: TimepointRow } | undefined {
-  const first = nextTimepoint(store, plan, cutoff);
-  return first && { first, main: plan.slice(plan.indexOf(first)).find((row) => isImportant(row.name)) ?? first };
+  said: Said,
+  isByTone: boolean,
+): TimepointRow | undefined {
+  if (said.step) return said.step.row;
+  const next = nextTimepoint(store, plan, cutoff);
+  const named = next && plan.slice(plan.indexOf(next)).find((row) => isImportant(row.name));
+  return (isByTone && named) || next;
 }
 
 export function waitingFor(
@@ -119,7 +177,7 @@ export function waitingFor(
   dictionary: Dictionary,
   plan: readonly TimepointRow[],
   cutoff: number,
-  predicted: readonly Prediction[] = [],
+  listed: readonly Prediction[] = [],
   told: Told = {},
 ): Waiting {
   if (!store.going && cutoff === Infinity) return ended(store);
@@ -127,37 +185,29 @@ export function waitingFor(
   const heard = heardOf(store, plan, cutoff);
   const last = plan[lastHeard(plan, heard)];
   if (!last && !accepted) return beginning(store, dictionary, told, cutoff);
-  const waited = waitedFor(store, plan, cutoff);
-  if (!waited) {
-    return {
-      kind: 'waiting',
-      title: 'The timeline is complete',
-      words:
-        cutoff === Infinity && store.run.relayProgress > 0 && store.run.relayProgress < 1
-          ? `The recording is coming down: ${Math.floor(store.run.relayProgress * 100)} %`
-          : 'Every timepoint has fired.',
-      lines: [],
-      ...(cutoff === Infinity &&
-        store.run.relayProgress > 0 &&
-        store.run.relayProgress < 1 && { coming: store.run.relayProgress }),
-    };
-  }
-  const { main, first } = waited;
+  const said = saidOf(store, plan, cutoff);
+  const predicted = withSaid(listed, said);
   const lastWas = last && heard.get(last.id);
+  const main = nextStep(store, plan, cutoff, said, lastWas?.by === 'tone');
+  if (!main || said.recording !== undefined)
+    return recordingDown(store, said.recording, plan.slice(last ? plan.indexOf(last) + 1 : 0), cutoff);
   const moment = momentsOf(store, plan, cutoff).find((each) => !each.done && each.before === main.name);
+  const named = plan.slice(plan.indexOf(main) + 1).find((row) => isImportant(row.name));
+  const now = Math.min(store.seenSclk, cutoff);
   return {
     kind: 'waiting',
-    title: `Waiting for ${inWords((moment ?? main).name)}`,
-    words: moment?.plain ?? noteWords(main.note),
-    lines: moment
-      ? momentLines(store, dictionary, plan, moment, cutoff)
-      : conditions(store, dictionary, plan, main, cutoff, predicted),
-    // Nothing reports an unnamed timepoint by tone: it may have fired.
-    ...(first !== main &&
-      !moment &&
-      lastWas?.by !== 'tone' && {
-        before: conditions(store, dictionary, plan, first, cutoff, predicted)[0],
-        beforeName: inWords(first.name),
+    title: `${main.plannedES === undefined ? 'Waiting for' : 'Next:'} ${inWords(main.name)}`,
+    words: noteWords(main.note),
+    lines: conditions(store, dictionary, plan, main, cutoff, predicted),
+    ...(moment?.e_s !== undefined && {
+      before: {
+        ...timeLine(`predicted at ${fromEntry(moment.e_s)}`, undefined, { e_s: moment.e_s }, now, store.entrySclk),
+        name: inWords(moment.name),
+      },
+    }),
+    ...(named &&
+      !isImportant(main.name) && {
+        after: neighbour(named.name, conditions(store, dictionary, plan, named, cutoff, predicted)[0]),
       }),
     ...(last &&
       lastWas?.by === 'tone' && {
@@ -166,38 +216,46 @@ export function waitingFor(
   };
 }
 
-function momentLines(
+/** What says no more than the name is left out: "at cruise stage separation". */
+function neighbour(name: string, line: Line | undefined): Neighbour {
+  const [words, of] = [inWords(name), line?.words ?? ''];
+  return { name: words, words: of === `at ${words}` ? '' : of, value: line?.value ?? '' };
+}
+
+/** After the last step that is awaited: the recording, and the timepoints that only it can tell. */
+function recordingDown(
   store: RunStore,
-  dictionary: Dictionary,
-  plan: readonly TimepointRow[],
-  moment: Moment,
+  title: string | undefined,
+  unheard: readonly TimepointRow[],
   cutoff: number,
-): Line[] {
-  const now = Math.min(store.seenSclk, cutoff);
-  const held =
-    latestHeld(store, (fact) => fact.decision === moment.name, cutoff)?.conditions.map(conditionLine) ??
-    watched(store, dictionary, plan, moment.name, cutoff);
-  return [
-    ...(moment.e_s === undefined
-      ? []
-      : [
-          timeLine(
-            `predicted at ${fromEntry(moment.e_s)}`,
-            undefined,
-            moment.e_s + store.entrySclk,
-            now,
-            store.entrySclk,
-          ),
-        ]),
-    ...held,
-  ];
+): Waiting {
+  const part = cutoff === Infinity ? store.run.relayProgress : 0;
+  const coming = part > 0 && part < 1;
+  return {
+    kind: 'waiting',
+    title: title ?? 'The timeline is complete',
+    words: [
+      coming ? `${Math.floor(part * 100)} % of the recording has come.` : '',
+      unheard.length === 0
+        ? 'Every timepoint has fired.'
+        : `Not heard of yet: ${unheard.map(({ name }) => inWords(name)).join(', ')}.`,
+    ]
+      .join(' ')
+      .trim(),
+    lines: [],
+    ...(coming && { coming: part }),
+  };
 }
 
 /** A note of the plan as a sentence, without marks. */
 export function noteWords(note: string): string {
   const words = LAYOUT.noteMarks.reduce((text, mark) => text.replace(mark, ''), note).trim();
-  return /[^.!?…]$/.test(words) ? `${words}.` : words;
+  const sentence = words.charAt(0).toUpperCase() + words.slice(1);
+  return /[^.!?…]$/.test(sentence) ? `${sentence}.` : sentence;
 }
+
+/** News that is no loss. */
+const OVER = ['landed', 'commanding'];
 
 function ended(store: RunStore): Waiting {
   const run = store.run;
@@ -207,10 +265,15 @@ function ended(store: RunStore): Waiting {
       : run.relayProgress > 0
         ? `${Math.floor(run.relayProgress * 100)} % of the recording came down.`
         : 'How much of the recording came down is not told.';
+  // What was lost on the way, or still is, comes first: a good end does not hide it.
+  const lost = entriesAt(store, Infinity)
+    .filter(({ rank, subject }) => subject.startsWith('loss of ') || (rank === 'news' && !OVER.includes(subject)))
+    .map(({ sentence }) => `▲ ${sentence}. `)
+    .join('');
   return {
     kind: 'ended',
-    title: run.outcome === 'touchdown' ? 'Landed' : run.state === 'interrupted' ? 'Interrupted' : 'Ended',
-    words: `This run: ${outcomeWords(run.outcome, run.state)}. ${run.state !== 'interrupted' ? complete : canContinue(run) ? 'The server stopped in mid-run; the panel Runs continues it from here.' : 'It cannot be continued: what is followed after it is another run.'}`,
+    title: run.outcome === 'touchdown' ? 'Touchdown reported' : run.state === 'interrupted' ? 'Interrupted' : 'Ended',
+    words: `${lost}This run: ${outcomeWords(run.outcome, run.state)}. ${run.state !== 'interrupted' ? complete : canContinue(run) ? 'The server stopped in mid-run; the panel Runs continues it from here.' : 'It cannot be continued: what is followed after it is another run.'}`,
     lines: [],
   };
 }
@@ -378,65 +441,45 @@ export function conditions(
   // History has no undefined samples: an older value is the time of the previous timepoint.
   const desired = itsOwn ? value(LAYOUT.nextDesired, FRESH_S) : undefined;
   const minimum = itsOwn ? value(LAYOUT.nextMinimum, FRESH_S) : undefined;
-  const base = row.anchor ? inWords(row.anchor) : 'the one before';
+  const previous = plan[plan.indexOf(row) - 1];
+  const before = previous ? inWords(previous.name) : 'the one before';
+  const base = row.anchor ? inWords(row.anchor) : before;
   // An anchor that GNC starts has no time in the plan: it depends on the vehicle's own declaration.
   const declared = row.anchor !== '' && row.desiredOffsetS === 0 && row.plannedES === undefined;
   const words = declared
     ? `the vehicle declares “${base}”`
     : row.anchor === '' && row.desiredOffsetS === 0
-      ? 'with the one before'
+      ? `with ${before}`
       : `${offsetWords(row.desiredOffsetS)} ${base}`;
-  const time = timeLine(words, desired, foreseen && foreseen.e_s + store.entrySclk, now, store.entrySclk);
+  const time = timeLine(words, desired, foreseen, now, store.entrySclk);
   // a declaration holds only once it is reported by its firing
-  const lines: Line[] = [declared && time.holds ? { words, value: 'not yet', holds: false } : time];
+  const lines: Line[] = [declared && time.holds ? { words, value: 'is due', holds: false } : time];
   if (itsOwn && row.minimumOffsetS !== undefined && row.minimumOffsetS > 0 && row.anchor !== '') {
-    lines.push(timeLine(`${offsetWords(row.minimumOffsetS)} the one before`, minimum, undefined, now, store.entrySclk));
+    lines.push(timeLine(`${offsetWords(row.minimumOffsetS)} ${before}`, minimum, undefined, now, store.entrySclk));
   }
   const held = latestHeld(store, (fact) => speaksOf(fact, row), cutoff);
-  if (held) return [...lines, ...held.conditions.map(conditionLine)];
-  return [...lines, ...watched(store, dictionary, plan, row.name, cutoff)];
+  if (held) return [...lines, ...conditionLines(held.conditions)];
+  return [...lines, ...watched(store, dictionary, row.name, cutoff)];
 }
 
-/** The known comparisons for the timepoint or moment of this name. A stale value says its age and satisfies nothing. */
-function watched(
-  store: RunStore,
-  dictionary: Dictionary,
-  plan: readonly TimepointRow[],
-  name: string,
-  cutoff: number,
-): Line[] {
-  const now = Math.min(store.seenSclk, cutoff);
+/** The known comparisons for the timepoint of this name. A stale value says its age and satisfies nothing. */
+function watched(store: RunStore, dictionary: Dictionary, name: string, cutoff: number): Line[] {
   const sample = (channel: string) => {
     const known = dictionary.pick([channel]);
     return known && store.latest(known.id, cutoff);
   };
-  return LAYOUT.watches.flatMap((watch): Line[] => {
-    const bound = typeof watch.bound === 'number' ? watch.bound : (sample(watch.bound)?.value ?? NaN);
-    if (watch.timepoint !== name || Number.isNaN(bound)) return [];
-    if ('since' in watch) {
-      const since = heardOf(store, plan, cutoff).get(
-        plan.find((row) => row.name === watch.since)?.id ?? NaN,
-      )?.fired_sclk;
-      return since === undefined
-        ? []
-        : [
-            {
-              words: `since ${inWords(watch.since)} ≥ ${bound} s`,
-              value: duration(now - since),
-              holds: now - since >= bound,
-            },
-          ];
-    }
-    const is = sample(watch.channel);
-    if (!is || Number.isNaN(is.value)) return [];
+  return LAYOUT.watches.flatMap(({ timepoint, channel, comparison, bound: by }): Line[] => {
+    const bound = sample(by)?.value ?? NaN;
+    const is = sample(channel);
+    if (timepoint !== name || Number.isNaN(bound) || !is || Number.isNaN(is.value)) return [];
     const line = conditionLine({
-      quantity: watch.channel,
+      quantity: channel,
       value: is.value,
-      comparison: watch.comparison,
+      comparison,
       bound,
-      holds: compare(is.value, watch.comparison, bound),
+      holds: compare(is.value, comparison, bound),
     });
-    const stale = staleWords(store, dictionary.pick([watch.channel]), cutoff, false);
+    const stale = staleWords(store, dictionary.pick([channel]), cutoff, false);
     return stale === undefined ? [line] : [{ ...line, value: `${line.value}, ${stale}`, holds: undefined }];
   });
 }
@@ -447,30 +490,32 @@ function offsetWords(offset_s: number | undefined): string {
   return offset_s < 0 ? `${numberText(-offset_s)} s before` : `${numberText(offset_s)} s after`;
 }
 
-/** `due_sclk`: the vehicle's own time, NaN while it has none; `foreseen_sclk`: the server's prediction. */
+/** `due_sclk`: the vehicle's own time, NaN while it has none; `foreseen`: the server's prediction. */
 function timeLine(
   words: string,
   due_sclk: number | undefined,
-  foreseen_sclk: number | undefined,
+  foreseen: Pick<Prediction, 'e_s' | 'overdue'> | undefined,
   now_sclk: number,
   entry_sclk: number,
 ): Line {
   const told = due_sclk !== undefined && !Number.isNaN(due_sclk);
-  const left = (told ? due_sclk : (foreseen_sclk ?? NaN)) - now_sclk;
-  if (told)
+  const left = (told ? due_sclk - entry_sclk : (foreseen?.e_s ?? NaN)) - (now_sclk - entry_sclk);
+  if (told && left <= 0) return { words, value: fromEntry(due_sclk - entry_sclk, { tenths: true }), holds: true };
+  if (Number.isNaN(left))
     return {
       words,
-      value: left <= 0 ? fromEntry(due_sclk - entry_sclk, { tenths: true }) : `in ${duration(left)}`,
-      holds: left <= 0,
+      value: due_sclk === undefined ? 'no word yet' : 'not yet',
+      holds: due_sclk === undefined ? undefined : false,
     };
-  if (left > 0) return { words, value: `≈ in ${duration(left)}`, holds: false };
-  if (due_sclk === undefined && foreseen_sclk === undefined) return { words, value: 'no word yet', holds: undefined };
-  const late = foreseen_sclk !== undefined && left < -LATE_S;
-  return {
-    words,
-    value: late ? `overdue since ${fromEntry(foreseen_sclk - entry_sclk)}` : 'not yet',
-    holds: false,
-  };
+  const isOverdue = !told && left <= 0 && (foreseen?.overdue ?? left < -LATE_S);
+  const value = isOverdue
+    ? `overdue since ${fromEntry(foreseen?.e_s ?? NaN)}`
+    : left < 0.5
+      ? 'is due'
+      : told
+        ? `in ${duration(left)}`
+        : `in ≈ ${roughly(left)}`;
+  return { words, value, holds: false };
 }
 
 const LATE_S = 5; // chosen: as the server's, from when on a step that UHF tells is overdue

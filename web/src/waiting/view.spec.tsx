@@ -17,15 +17,18 @@ import {
   explanation,
   firing,
   samples,
+  situation,
   stage,
   tone,
 } from '../testing/fixtures';
 import type { NamedStage } from '../stream/names';
+import { PredictionSchema } from '../gen/aeolis/v1/prediction_pb';
+import { predictForTest } from '../prediction/model';
 import { stream } from '../run/connection';
 import { useForTest } from '../run/session';
 import { timepoints } from '../run/shown';
 import type { ToWorker } from '../stream/messages';
-import { conditionLine, noteWords, waitingFor } from './model';
+import { conditionLine, conditionLines, noteWords, waitingFor } from './model';
 import type { Against } from './model';
 import { WaitingFor } from './view';
 
@@ -55,14 +58,20 @@ describe('waiting for', () => {
     };
     expect(['Tone only (L)', 'GNC says when.', ''].map(words)).toEqual(['Tone only.', 'GNC says when.', '']);
     expect(noteWords('Cables are cut before it (order H; time L)')).toBe('Cables are cut before it.');
+    expect(['Ours (L)', 'Ours (L): armed already', 'Its last use; time ours (L)', 'OD137 (H)'].map(noteWords)).toEqual([
+      '',
+      'Armed already.',
+      'Its last use.',
+      '',
+    ]);
     expect(noteWords('By the clock (see the plan); 75 kg (M)')).toBe('By the clock (see the plan); 75 kg.');
   });
   it('asks for no command that the vehicle’s status still speaks against', () => {
     const waiting = (against?: Against) =>
       waitingFor(aStore(commanded.slice(0, 1)), aDictionary, soonPlan, Infinity, [], { against });
-    const against = { command: 'EDL_DO_EDL', words: 'parameters_received == 1', value: 'is 0' };
+    const against = { command: 'EDL_DO_EDL', words: 'parameters received: must be yes', value: 'is no' };
     expect(waiting(against).title).toBe('Waiting for the vehicle’s status');
-    expect(waiting(against).lines.at(-1)).toMatchObject({ words: against.words, value: 'is 0', holds: false });
+    expect(waiting(against).lines.at(-1)).toMatchObject({ words: against.words, value: 'is no', holds: false });
     expect(waiting().title).toBe('Press / and type “do edl”');
     expect(waiting({ ...against, command: 'NO_OP' }).title).toBe('Press / and type “do edl”');
   });
@@ -148,7 +157,7 @@ describe('waiting for', () => {
     });
     expect(late.type).toBeUndefined();
   });
-  it('names a moment between timepoints, with what is compared for it, until an event or a tone tells of it', () => {
+  it('has a moment that comes before the next timepoint as a line, until an event or a tone tells of it', () => {
     const row = (id: number, name: string, anchor: string) =>
       create(TimepointRowSchema, { id, name, anchor, desiredOffsetS: 0, minimumOffsetS: 0 });
     const plan = [
@@ -168,15 +177,25 @@ describe('waiting for', () => {
         plan,
         Infinity,
       );
+    predictForTest(
+      create(PredictionSchema, {
+        state: 'ready',
+        events: [
+          { name: 'peak_deceleration', eS: -90 },
+          { name: 'heading_alignment', eS: -80 },
+        ],
+      }),
+    );
     const peak = event({ name: 'PEAK_DECELERATION', sclk: 895 });
-    expect(now().title).toBe('Waiting for peak deceleration');
-    expect(now(peak)).toMatchObject({
-      title: 'Waiting for heading alignment',
-      lines: [{ words: 'speed ≤ 1100 m/s', value: '2000 m/s', holds: false }],
+    expect(now()).toMatchObject({
+      title: 'Waiting for straighten up and fly right (SUFR)',
+      before: { name: 'peak deceleration', words: 'predicted at E−1:30', value: 'in ≈ 10 s' },
     });
+    expect(now(peak).before?.name).toBe('heading alignment');
     const aligned = tone({ sclk: 898, tone: 35, name: 'heading_alignment' });
-    expect(now(peak, aligned).title).toBe('Waiting for straighten up and fly right (SUFR)');
+    expect(now(peak, aligned).before).toBeUndefined();
     expect(now(firing({ timepoint: 1, name: 'sufr', firedSclk: 898 })).title).toBe('Waiting for parachute deploy');
+    predictForTest(create(PredictionSchema, {}));
   });
   it('knows nothing of what is compared once it is stale, nor of any condition while nothing comes', () => {
     const words = new Dictionary({
@@ -210,21 +229,6 @@ describe('waiting for', () => {
     useForTest(undefined, undefined);
     timepoints.value = [];
   });
-  it('has how long a timepoint is ago as a condition with its live value', () => {
-    const plan = [
-      ...aPlan,
-      create(TimepointRowSchema, { id: 3, name: 'heatshield_separation', anchor: 'heatshield', desiredOffsetS: 0 }),
-    ];
-    const lines = (firedSclk: number) =>
-      waitingFor(
-        aStore([...commanded, firing({ timepoint: 2, name: 'parachute_deploy', firedSclk }), samples(899, { 4: 150 })]),
-        aDictionary,
-        plan,
-        Infinity,
-      ).lines;
-    expect(lines(887.5)).toContainEqual({ words: 'since parachute deploy ≥ 20 s', value: '12.5 s', holds: false });
-    expect(lines(870).at(-1)).toMatchObject({ value: '30.0 s', holds: true });
-  });
   it('says of a mission whose commands are not here that there is nothing to press', () => {
     const listening = (dictionary: typeof aDictionary, items: Parameters<typeof aStore>[0] = []) => {
       const { title, words, type, lines } = waitingFor(aStore(items), dictionary, [], Infinity);
@@ -244,7 +248,7 @@ describe('waiting for', () => {
       samples(899, { 1: 0, 2: 1000, 5: 1 }),
     ]);
     const waiting = waitingFor(store, aDictionary, aPlan, Infinity);
-    expect(waiting.title).toBe('Waiting for entry interface');
+    expect(waiting.title).toBe('Next: entry interface');
     expect(waiting.lines[0]).toMatchObject({ words: 'at entry', value: 'in 1 m 40 s', holds: false });
   });
   it('says that an anchor has not happened, and not nothing', () => {
@@ -292,14 +296,14 @@ describe('waiting for', () => {
       value: 'E+0:00.0',
       holds: true,
     });
-    expect(first(plan, 1000, 1005.5)).toMatchObject({ value: '≈ in 44.5 s', holds: false });
+    expect(first(plan, 1000, 1005.5)).toMatchObject({ value: 'in ≈ 45 s', holds: false });
     expect(first(aPlan, 1000, 1180)).toMatchObject({
       words: 'the vehicle declares “parachute”',
       value: 'no word yet',
       holds: undefined,
     });
     expect(first(aPlan, 1000, 1001), 'what is declared is heard of by its timepoint').toMatchObject({
-      value: 'not yet',
+      value: 'is due',
       holds: false,
     });
   });
@@ -361,7 +365,7 @@ describe('waiting for', () => {
     ])
       expect(each).toEqual(own);
   });
-  it('has the next moment that people wait for as its title, and what comes before it as the small line', () => {
+  it('has the next timepoint as its title, and after one without a name of its own the next named one', () => {
     const plan = [
       ...aPlan.slice(0, 2),
       create(TimepointRowSchema, {
@@ -379,18 +383,61 @@ describe('waiting for', () => {
       firing({ timepoint: 1, name: 'entry_interface', firedSclk: 890 }),
       samples(899, { 1: 0, 5: 1 }),
     ]);
-    const waiting = waitingFor(store, aDictionary, plan, Infinity, [
+    const predicted = [
       { id: 7, name: '', e_s: 20, fired: false },
       { id: 2, name: '', e_s: 255, fired: false },
-    ]);
-    expect(waiting).toMatchObject({
-      title: 'Waiting for parachute deploy',
-      words: 'GNC says when.',
-      beforeName: 'heartbeat range control',
-      before: { words: '20 s after entry', value: '≈ in 2 m 00 s' },
+    ];
+    expect(waitingFor(store, aDictionary, plan, Infinity, predicted)).toMatchObject({
+      title: 'Next: heartbeat range control',
+      words: 'Tone only.',
+      lines: [{ words: '20 s after entry', value: 'in ≈ 2 m 00 s', holds: false }],
+      after: { name: 'parachute deploy', words: 'the vehicle declares “parachute”', value: 'in ≈ 5 m 55 s' },
     });
-    expect(waiting.lines).toEqual([
-      { words: 'the vehicle declares “parachute”', value: '≈ in 5 m 55 s', holds: false },
+  });
+  it('waits for what the server says in the banner, by its time, until a newer word overtakes it', () => {
+    const said = (sentence: string, more: object = {}) =>
+      situation('2012-219T04:59:55.0', {
+        rank: 'waiting' as const,
+        subject: 'step',
+        sentence,
+        awaited: 'parachute deploy',
+        at: '2012-219T05:00:10.0',
+        ...more,
+      });
+    const now = (...items: Parameters<typeof aStore>[0] & object) =>
+      waitingFor(
+        aStore([...commanded, firing({ timepoint: 0, name: 'coolant_vent', firedSclk: 890 }), ...items]),
+        aDictionary,
+        aPlan,
+        Infinity,
+        [{ id: 2, name: 'parachute_deploy', e_s: 255, fired: false }],
+      );
+    expect(now().title).toBe('Next: entry interface');
+    expect(now(said('Waiting for parachute deploy, not yet speed ≤ 405.0 m/s at E+4:11'))).toMatchObject({
+      title: 'Waiting for parachute deploy',
+      lines: [{ value: 'in ≈ 10 s' }],
+    });
+    expect(
+      now(said('Waiting for parachute deploy', { overdue: true, at: '2012-219T04:59:50.0' })).lines[0]?.value,
+    ).toBe('overdue since E−1:50');
+    const fired = firing({ timepoint: 2, name: 'parachute_deploy', firedSclk: 895 });
+    expect(now(said('Waiting for parachute deploy'), fired).title).toBe('The timeline is complete');
+    const down = situation('2012-219T04:59:55.0', {
+      rank: 'waiting' as const,
+      subject: 'recording',
+      sentence: 'The recording comes down',
+    });
+    expect(now(down)).toMatchObject({
+      title: 'The recording comes down',
+      words: 'Not heard of yet: entry interface, parachute deploy.',
+      lines: [],
+    });
+  });
+  it('has a lower and an upper bound of one quantity as one range', () => {
+    const thrust = (comparison: string, bound: number) =>
+      create(ConditionSchema, { quantity: 'thrust_N', value: 3300, comparison, bound, holds: comparison === '<=' });
+    expect(conditionLines([thrust('>=', 3500), thrust('<=', 4500)])).toEqual([
+      { words: 'thrust 3500 to 4500 N', value: '3300 N', holds: false, quantity: 'thrust_N' },
     ]);
   });
   it('knows by tone what has fired where UHF is silent, and says that it is by tone', () => {
@@ -407,7 +454,7 @@ describe('waiting for', () => {
         plan,
         Infinity,
       ).title,
-    ).toBe('Waiting for coolant vent');
+    ).toBe('Next: coolant vent');
   });
   it('in a past view has the commands as they were known then, and asks for nothing to be pressed', () => {
     const words = (at: string) => [
@@ -429,7 +476,19 @@ describe('waiting for', () => {
         aPlan,
         Infinity,
       ).title,
-    ).toBe('Landed');
+    ).toBe('Touchdown reported');
+    const lost = situation(
+      '2012-219T04:59:55.0',
+      {
+        rank: 'lasting' as const,
+        subject: 'loss of station',
+        sentence: 'Station was lost from E+3:00 to E+4:00: a fault on the ground',
+      },
+      { rank: 'news' as const, subject: 'landed', sentence: 'Touchdown reported at E+7:18' },
+    );
+    expect(
+      waitingFor(aStore([lost], aRun({ state: 'finished', outcome: 'touchdown' })), aDictionary, aPlan, Infinity).words,
+    ).toMatch(/^▲ Station was lost from E\+3:00 to E\+4:00: a fault on the ground\. This run: touchdown/);
     const cutOff = (venue: string) =>
       waitingFor(aStore([], aRun({ state: 'interrupted', venue })), aDictionary, aPlan, Infinity);
     expect([

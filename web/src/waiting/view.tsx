@@ -11,6 +11,7 @@ import { ModeMark } from '../mode/view';
 import { focusPanel } from '../shortcuts/model';
 import { predicted } from '../timeline/now';
 import { waitingFor } from './model';
+import type { Neighbour as NeighbourOf } from './model';
 import { told } from './told';
 import './style.css';
 
@@ -42,6 +43,14 @@ function LineFor({ command, run, isWhole }: { command: string; run: number; isWh
     </button>
   );
 }
+
+/** What comes before or after the step that is awaited. */
+const Neighbour = ({ word, of }: { word: string; of: NeighbourOf }) => (
+  <p class="before" data-testid={`waiting-${word.toLowerCase()}`}>
+    {word} <b>{of.name}</b>
+    {of.words && `, ${of.words}`}: <output>{of.value}</output>
+  </p>
+);
 
 /** The menu of a condition: of the channel that it is about, if it has the name of one. */
 const menuOf = (words: Dictionary, quantity = ''): string | undefined =>
@@ -95,11 +104,8 @@ export function WaitingFor() {
           );
         })}
       </ul>
-      {waiting.before && (
-        <p class="before" data-testid="waiting-before">
-          First <b>{waiting.beforeName}</b>, {waiting.before.words}: <output>{waiting.before.value}</output>
-        </p>
-      )}
+      {waiting.before && <Neighbour word="First" of={waiting.before} />}
+      {waiting.after && <Neighbour word="Then" of={waiting.after} />}
       {waiting.byTone && (
         <p class="by-tone" data-testid="waiting-by-tone">
           ■ by tone, the last that was heard of: {waiting.byTone}
