@@ -37,9 +37,8 @@ const Bindings<simulation::EntryState> entry_fields = {
     AEOLIS_BIND(EntryState, flight_path_deg), AEOLIS_BIND(EntryState, azimuth_deg),
 };
 const Bindings<simulation::Target> target_fields = {
-    AEOLIS_BIND(Target, latitude_deg),
-    AEOLIS_BIND(Target, longitude_deg),
-    AEOLIS_BIND(Target, radius_m),
+    AEOLIS_BIND(Target, latitude_deg),    AEOLIS_BIND(Target, longitude_deg),   AEOLIS_BIND(Target, radius_m),
+    AEOLIS_BIND(Target, ellipse_major_m), AEOLIS_BIND(Target, ellipse_minor_m),
 };
 const Bindings<simulation::Ground> ground_fields = {
     AEOLIS_BIND(Ground, height_m),
