@@ -145,7 +145,7 @@ Operator Access::identify(const Credentials& credentials) {
     if (!accounts()) {
         nobody.accounts = false;
         nobody.role = Role::director;
-        const auto browser = cookie_value(credentials.cookie, browser_cookie);
+        const auto browser = cookie_value(credentials.cookie, browser_cookie());
         nobody.browser = browser.empty() ? std::string{no_browser} : secret_hash(browser);
         return nobody;
     }
@@ -164,7 +164,7 @@ Operator Access::identify(const Credentials& credentials) {
         nobody.commands.assign(token->commands().begin(), token->commands().end());
         return nobody;
     }
-    const auto secret = cookie_value(credentials.cookie, session_cookie);
+    const auto secret = cookie_value(credentials.cookie, session_cookie());
     if (secret.empty()) return nobody;
     const auto session = sessions_.find(secret_hash(secret));
     if (session == sessions_.end()) return nobody;
@@ -178,15 +178,18 @@ Operator Access::identify(const Credentials& credentials) {
     return who;
 }
 
-Result<void> Access::refuse_locked_out(const std::string& user, const std::string& from) {
+std::chrono::seconds Access::lock_out_of(const std::string& user, const std::string& network) const {
     const auto now = settings_.now();
-    for (const auto& key : {from, from + ' ' + user}) {
-        const auto found = failures_.find(key);
-        if (found == failures_.end() || found->second.locked_until <= now) continue;
-        const auto wait = std::chrono::ceil<std::chrono::seconds>(found->second.locked_until - now);
-        return Error{fmt::format("too many wrong log-ins from {}: wait {} s", from, wait.count())};
-    }
-    return {};
+    std::chrono::seconds wait{0};
+    for (const auto& key : {network, network + ' ' + user})
+        if (const auto found = failures_.find(key); found != failures_.end() && found->second.locked_until > now)
+            wait = std::max(wait, std::chrono::ceil<std::chrono::seconds>(found->second.locked_until - now));
+    return wait;
+}
+
+std::chrono::seconds Access::locked_out(const std::string& user, const std::string& from) {
+    const std::scoped_lock lock{mutex_};
+    return lock_out_of(user, network_of(from));
 }
 
 void Access::count_failure(const std::string& key, unsigned allowed) {
@@ -208,7 +211,8 @@ Result<std::string> Access::check_log_in(const std::string& user, const std::str
     {
         const std::scoped_lock lock{mutex_};
         refresh();
-        if (auto free = refuse_locked_out(user, from); !free) return free.error();
+        if (const auto wait = lock_out_of(user, from); wait.count() > 0)
+            return Error{fmt::format("too many wrong log-ins from {}: wait {} s", from, wait.count())};
         if (const auto* account = find_account(file_, user)) hash = account->password_hash();
     }
     const bool matches = password.size() <= password_octets_max && password_matches(hash, password);
@@ -230,7 +234,7 @@ Result<Access::LoggedIn> Access::log_in(const v1::LogIn& asked, const std::strin
     const auto now = settings_.now();
     const std::scoped_lock lock{mutex_};
     const auto* account = find_account(file_, asked.user());
-    // // The account may have changed during the check.
+    // The account may have changed during the check.
     if (account == nullptr || account->password_hash() != *matched) return Error{wrong_log_in};
     std::erase_if(sessions_, [&](const auto& each) { return each.second.expires < now; });
     const auto own = [&](const auto& each) { return each.second.user == asked.user(); };

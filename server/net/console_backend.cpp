@@ -92,7 +92,7 @@ Result<std::unique_ptr<ConsoleBackend>> ConsoleBackend::open(Settings settings,
         RehearsalDesk::Callbacks{[self](v1::RunState state) { self->hub_->run_state(std::move(state)); },
                                  [self](v1::Clocks clocks) { self->hub_->clocks(std::move(clocks)); }});
     // The last step that can fail: the first password is shown once, and only by a server that starts.
-    auto access = Access::open({.file = chosen.accounts});
+    auto access = Access::open({.file = chosen.accounts, .secure = backend->server_->secure()});
     if (!access) return access.error();
     backend->access_ = std::move(*access);
     backend->campaigns_ =

@@ -692,7 +692,7 @@ TEST_CASE("the console's files are served, and nothing outside its folder", "[ht
     std::filesystem::create_directories(web / "assets");
     std::ofstream{web / "index.html"} << "<!doctype html>console";
     std::ofstream{web / "assets/app-1a2b.js"} << "export {}";
-    const auto page = web_request(port, "GET", "/plots/altitude");
+    const auto page = web_request(port, "GET", "/");
     CHECK(page.status == 200);
     CHECK(page.content_type == "text/html; charset=utf-8");
     CHECK(page.cache_control == "no-cache");

@@ -38,7 +38,7 @@ struct Accounts {
         REQUIRE(access->change_user(first->who, "administrator", change));
     }
     void open() {
-        auto opened = Access::open({file, [this] { return now; }});
+        auto opened = Access::open({.file = file, .now = [this] { return now; }});
         REQUIRE(opened);
         access = std::move(*opened);
     }
@@ -320,7 +320,7 @@ TEST_CASE("a server takes over what another program changed in the file, and kee
     std::ofstream{accounts.file} << R"({"accounts": [{"user": "x", "role": "pope"}]})";
     touch();
     CHECK(accounts.log_in("helper", password));
-    const auto opened = Access::open({accounts.file, Access::Clock::now});
+    const auto opened = Access::open({.file = accounts.file});
     REQUIRE_FALSE(opened);
     CHECK_THAT(opened.error().message, Catch::Contains("accounts.json") && Catch::Contains("'pope'"));
 }
