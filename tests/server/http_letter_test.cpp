@@ -136,4 +136,18 @@ TEST_CASE("methods, paths and expectations that are none here are refused by the
     CHECK_THAT(ask("POST /api/v1/session", "Expect: tea\r\nContent-Length: 2\r\n"), Catch::StartsWith("HTTP/1.1 417 "));
 }
 
+TEST_CASE("who is locked out is told for how long, by the status of too many requests", "[http][access][R63]") {
+    RunningServer server{RunningServer::WithAccounts{}};
+    const std::string body = R"({"user":"administrator","password":"wrong"})";
+    const auto log_in = [&] {
+        return raw_exchange(server.port(), fmt::format("POST /api/v1/session HTTP/1.1\r\nHost: localhost\r\n"
+                                                       "Content-Length: {}\r\nConnection: close\r\n\r\n{}",
+                                                       body.size(), body));
+    };
+    for (unsigned i = 0; i < server::Access::tries_of_user; ++i)
+        CHECK_THAT(log_in(), Catch::StartsWith("HTTP/1.1 401 "));
+    CHECK_THAT(log_in(), Catch::StartsWith("HTTP/1.1 429 ") && Catch::Contains("\r\nRetry-After: ") &&
+                             Catch::Contains("too many wrong log-ins"));
+}
+
 }  // namespace server_http_letter_test

@@ -147,7 +147,7 @@ TEST_CASE("with a certificate the server speaks TLS only: routes, cookies and st
     http::read(stream, buffer, response);
     CHECK(response.result_int() == 201);
     const std::string cookie{response[http::field::set_cookie]};
-    CHECK_THAT(cookie, Catch::Contains("; Secure"));
+    CHECK_THAT(cookie, Catch::StartsWith("__Host-aeolis_session=") && Catch::Contains("; Secure"));
 
     request.set(http::field::origin, "http://" + host);  // a page that was not loaded over TLS
     http::write(stream, request);
@@ -171,6 +171,31 @@ TEST_CASE("with a certificate the server speaks TLS only: routes, cookies and st
     response = {};
     http::read(bare, buffer, response, error);
     CHECK(error);
+}
+
+TEST_CASE("a connection beyond the limit is refused inside TLS", "[access][http][bounds]") {
+    const TemporaryFolder folder;
+    write_certificate(folder / "cert.pem", folder / "key.pem");
+    server::WebServer::Settings settings;
+    settings.certificate = folder / "cert.pem";
+    settings.key = folder / "key.pem";
+    settings.streams = 0;
+    const auto server = std::move(server::WebServer::open(settings, {})).value();
+    std::thread network{[&] { server->run(); }};
+
+    asio::io_context io;
+    std::vector<tcp::socket> silent;
+    for (std::size_t i = 0; i < server::WebServer::connections_besides; ++i)
+        silent.emplace_back(io).connect({asio::ip::make_address("127.0.0.1"), server->port()});
+    SecureClient client{folder / "cert.pem"};
+    auto stream = client.connect(server->port());
+    beast::flat_buffer buffer;
+    http::response<http::string_body> response;
+    http::read(stream, buffer, response);
+    CHECK(response.result_int() == 503);
+    CHECK_THAT(response.body(), Catch::Contains("connections are open already"));
+    server->stop();
+    network.join();
 }
 
 TEST_CASE("over TLS, too, a client that leaves is noticed while its question is answered", "[access][http][bounds]") {
