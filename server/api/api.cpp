@@ -4,7 +4,6 @@
 #include "server/access/network.hpp"
 #include "server/api/dictionary_reply.hpp"
 #include "server/api/list_response.hpp"
-#include "server/api/openapi.hpp"
 #include "server/api/query_text.hpp"
 #include "server/api/run_questions.hpp"
 #include "server/base/json.hpp"
@@ -170,6 +169,8 @@ std::span<const Api::Route> Api::routes() {
         {"GET", "/api/v1/scenarios", Right::watch, &Api::list_scenarios},
         {"GET", "/api/v1/dictionary", Right::watch, &Api::dictionary},
         {"GET", "/api/v1/openapi.yaml", Right::open, &Api::openapi},
+        {"GET", "/api/v1/schema", Right::open, &Api::list_schema},
+        {"GET", "/api/v1/schema/{file}", Right::open, &Api::schema},
         {"GET", "/api/v1/rehearsals", Right::watch, &Api::list_rehearsals},
         {"POST", "/api/v1/rehearsals", Right::rehearse, &Api::start_rehearsal, Query::none, "rehearsal", Audited::all,
          Body::whole},
@@ -374,10 +375,6 @@ void Api::list_scenarios(const ApiRequest& call) {
 
 void Api::dictionary(const ApiRequest& call) {
     call.respond({200, "application/json", "no-store", dictionary_json_});
-}
-
-void Api::openapi(const ApiRequest& call) {
-    call.respond({200, "application/yaml", "no-cache", std::string{openapi_text}});
 }
 
 void Api::stream(const ApiRequest& call) {

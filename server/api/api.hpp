@@ -85,13 +85,16 @@ class Api {
     void list_runs(const ApiRequest& call);
     void list_scenarios(const ApiRequest& call);
     void dictionary(const ApiRequest& call);
-    void openapi(const ApiRequest& call);
     void stream(const ApiRequest& call);
     void health(const ApiRequest& call);
     // sample_export.cpp
     void export_samples(const ApiRequest& call);
     // prediction_routes.cpp
     void prediction(const ApiRequest& call);
+    // schema_routes.cpp
+    void openapi(const ApiRequest& call);
+    void list_schema(const ApiRequest& call);
+    void schema(const ApiRequest& call);
     // metrics.cpp
     void metrics(const ApiRequest& call);
     // rehearsal_routes.cpp

@@ -90,6 +90,8 @@ const Row rows[] = {
     {"GET", "/api/v1/scenarios", "observer", "/api/v1/scenarios", "", 200},
     {"GET", "/api/v1/dictionary", "observer", "/api/v1/dictionary", "", 200},
     {"GET", "/api/v1/openapi.yaml", "nobody", "/api/v1/openapi.yaml", "", 200},
+    {"GET", "/api/v1/schema", "nobody", "/api/v1/schema", "", 200},
+    {"GET", "/api/v1/schema/{file}", "nobody", "/api/v1/schema/run.proto", "", 200},
     {"GET", "/api/v1/rehearsals", "observer", "/api/v1/rehearsals", "", 200},
     {"POST", "/api/v1/rehearsals", "director", "/api/v1/rehearsals", "{", 400},
     {"GET", "/api/v1/rehearsals/current", "observer", "/api/v1/rehearsals/current", "", 404},

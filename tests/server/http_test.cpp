@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "aeolis/v1/items.pb.h"
 #include "aeolis/v1/run.pb.h"
 #include "server/access/this_user.hpp"
 #include "server/archive/items.hpp"
@@ -11,6 +12,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <fstream>
+#include <google/protobuf/descriptor.pb.h>
 
 namespace server_http_test {
 
@@ -703,6 +705,27 @@ TEST_CASE("the console's files are served, and nothing outside its folder", "[ht
     for (const char* outside :
          {"/../a.db", "/%2e%2e/a.db", "/assets/../../a.db", "/..%2fa.db", "//etc/passwd.x", "/none.js"})
         CHECK(web_request(port, "GET", outside).status == 404);
+}
+
+TEST_CASE("the server gives the schema that it speaks, as files and as descriptors by which a message is read",
+          "[http][R62]") {
+    RunningServer server;
+    v1::SchemaFileList list;
+    REQUIRE(from_json(web_request(server.port(), "GET", "/api/v1/schema").body, list));
+    CHECK(list.files_size() == 9);
+    for (const auto& file : list.files()) {
+        std::ifstream in{std::filesystem::path{AEOLIS_SOURCE_DIR "/schema"} / list.folder() / file};
+        const auto given = web_request(server.port(), "GET", "/api/v1/schema/" + file);
+        CHECK(given.body == std::string{std::istreambuf_iterator<char>{in}, {}});
+    }
+    google::protobuf::FileDescriptorSet set;
+    REQUIRE(set.ParseFromString(web_request(server.port(), "GET", "/api/v1/schema/" + list.descriptor_set()).body));
+    google::protobuf::DescriptorPool pool;  // knows nothing but what was given, each file after those it imports
+    for (const auto& file : set.file()) CHECK(pool.BuildFile(file) != nullptr);
+    const auto* item = pool.FindMessageTypeByName("aeolis.v1.Item");
+    REQUIRE(item != nullptr);
+    CHECK(item->field_count() == v1::Item::descriptor()->field_count());
+    CHECK(web_request(server.port(), "GET", "/api/v1/schema/openapi.yaml").status == 404);
 }
 
 TEST_CASE("a second server on the port, or another address, is refused in one line", "[http]") {
