@@ -87,7 +87,7 @@ Result<CommandGateway::Prepared> CommandGateway::prepare(const Request& request,
     if (!wanted) return wanted.error();
     std::optional<Ert> release_at;
     if (!request.release_at.empty()) {
-        release_at = ert_from_day_of_year(request.release_at);
+        release_at = ert_from_text(request.release_at);
         if (!release_at)
             return Error{fmt::format("release_at: '{}' is no time as {}", request.release_at, day_of_year_text(now))};
         if (*release_at < now)

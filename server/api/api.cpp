@@ -322,7 +322,7 @@ void Api::run_question(const ApiRequest& call) {
 }
 
 std::function<std::optional<Ert>(archive::RunId)> Api::clock() const {
-    return [current = parts_.hub.current_run(), now = ert_from_day_of_year(parts_.hub.latest_clocks().ert())](
+    return [current = parts_.hub.current_run(), now = ert_from_text(parts_.hub.latest_clocks().ert())](
                archive::RunId run) { return run.value == current ? now : std::nullopt; };
 }
 

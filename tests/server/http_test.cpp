@@ -109,7 +109,7 @@ TEST_CASE("every route answers what it can and refuses the rest by name", "[http
         {"GET", "/api/v1/runs/1/samples?names=altitude_m&to=2012-219T05:00:00", "", 200, "sclk,e_s,"},
         {"GET", "/api/v1/runs/1/state?at=2012-400T05:00:00", "", 400, "at: '2012-400T05:00:00'"},
         {"GET", "/api/v1/runs/1/events?to=noon", "", 400,
-         "to: 'noon' is not a number: seconds of SCLK, or SCET as 2012-219T05:00:00"},
+         "to: 'noon' is no instant: seconds of SCLK, SCET as 2012-219T05:00:00"},
         {"GET", "/api/v1/runs/1/events?from=2012-219T05:00:01&to=2012-219T05:00:00", "", 400, "upside down"},
         {"GET", "/api/v1/runs/1/recording", "", 200, "\"realtime_differs\":\"0\""},
         {"GET", "/api/v1/runs/1/report", "", 200, "\"timepoints\":["},
@@ -215,9 +215,9 @@ TEST_CASE("samples in Protobuf are those in JSON, bit for bit, in less than half
     CHECK(2 * octets.body.size() < json.body.size());
 }
 
-TEST_CASE("an event is found by its SCET, which the run's clock turns into SCLK, and a page says in a header where the "
-          "next begins",
-          "[http][R43]") {
+TEST_CASE("an event is found by its SCET, its ERT or its time from entry, and a page says in a header where the next "
+          "begins",
+          "[http][R43][R62]") {
     RunningServer server{shipped_scenario("nominal_auto"), 100.0};
     const auto ask = [&](const std::string& question) {
         return web_request(server.port(), "GET", "/api/v1/runs/1" + question);
@@ -236,6 +236,15 @@ TEST_CASE("an event is found by its SCET, which the run's clock turns into SCLK,
     REQUIRE(from_json(ask("/events?from=" + scet + "&to=" + scet).body, found).ok());
     REQUIRE(found.events_size() > 0);
     CHECK(found.events(0).SerializeAsString() == first.SerializeAsString());
+    const auto from_entry = fmt::format("E{:+.6f}", first.event().sclk() - run.entry_sclk());
+    const auto sent = Scet{archive::correlation_of(run).scet_of(Sclk{first.event().sclk()}).microseconds +
+                           static_cast<std::int64_t>(run.light_time_s() * 1e6)};
+    for (const auto& instant : {scet + "Z", "ert:" + day_of_year_text(sent), from_entry}) {
+        INFO(instant);
+        REQUIRE(from_json(ask("/events?from=" + instant + "&to=" + instant).body, found).ok());
+        REQUIRE(found.events_size() > 0);
+        CHECK(found.events(0).seq() == first.seq());
+    }
 
     for (const char* format : {"json", "csv", "jsonl"})
         CHECK(ask(std::string{"/events?limit=1&format="} + format).next_after == std::to_string(first.seq()));

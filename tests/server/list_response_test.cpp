@@ -78,7 +78,7 @@ TEST_CASE(
 TEST_CASE("as CSV an SCLK has SCET beside it where the clock of the run is known", "[http][export]") {
     auto list = two_events();
     list.mutable_events(1)->mutable_event()->set_sclk(1e15);  // no date has so many digits
-    const ClockCorrelation clock{Sclk{397000845.0}, *scet_from_day_of_year("2012-219T05:17:57.000")};
+    const ClockCorrelation clock{Sclk{397000845.0}, *scet_from_text("2012-219T05:17:57.000")};
     const auto csv = list_response("csv", list, {"events", {"event"}}, clock).body;
     CHECK_THAT(csv, Catch::Contains(",event.sclk,event.scet,event.ert,") &&
                         Catch::Contains(",397000845.015625,2012-219T05:17:57.015,,recorded"));
