@@ -69,7 +69,7 @@ RehearsalRunner::RehearsalRunner(simulation::Scenario scenario, archive::CutOffR
 }
 
 RehearsalRunner::~RehearsalRunner() {
-    static_cast<void>(order(StopRun{}));
+    static_cast<void>(order(LeaveRun{}));
     thread_.join();
 }
 
@@ -81,7 +81,7 @@ Result<void> RehearsalRunner::order(RunOrder order) {
             ++(intervene->intervention.has_fault() ? faults_taken_ : notes_taken_);
         else if (last_counts(order))
             std::erase_if(orders_, [&](const RunOrder& before) { return before.index() == order.index(); });
-        stop_ = stop_ || std::holds_alternative<StopRun>(order);
+        stop_ = stop_ || std::holds_alternative<StopRun>(order) || std::holds_alternative<LeaveRun>(order);
         orders_.push_back(std::move(order));
         changed_.notify_one();
         return {};
@@ -219,7 +219,7 @@ std::vector<RunOrder> RehearsalRunner::take_orders(std::optional<Clock::time_poi
 void RehearsalRunner::fly(Rehearsal& rehearsal) {
     count_pace_from(rehearsal, Clock::now());
     state_told_ = clocks_told_ = delivered_ = pace_since_;
-    while (!rehearsal.finished() && !stopped_ && !archive_gave_up_) {
+    while (!rehearsal.finished() && !stopped_ && !left_ && !archive_gave_up_) {
         auto now = Clock::now();
         const auto due = next_cycle_due(rehearsal, now);
         const bool wait = due - now >= shortest_wait;
@@ -240,7 +240,16 @@ void RehearsalRunner::fly(Rehearsal& rehearsal) {
         if (now - delivered_ >= delivery_interval || delivery_.entries.size() >= delivery_entries)
             archive_gave_up_ = archive_gave_up_ || !deliver(rehearsal, now);
     }
-    finish(rehearsal);
+    if (left_ && !stopped_ && !rehearsal.finished())
+        leave(rehearsal);
+    else
+        finish(rehearsal);
+}
+
+void RehearsalRunner::leave(const Rehearsal& rehearsal) {
+    deliver(rehearsal, Clock::now());
+    pipeline_.leave();
+    spdlog::info("run {} is left at E{:+.1f} s: it can be continued", run_id_.value, rehearsal.clocks().e_s());
 }
 
 void RehearsalRunner::finish(Rehearsal& rehearsal) {
@@ -280,6 +289,10 @@ void RehearsalRunner::carry_out(Rehearsal& /*rehearsal*/, const PaceRun& order) 
 
 void RehearsalRunner::carry_out(Rehearsal& /*rehearsal*/, const StopRun& /*order*/) {
     stopped_ = true;
+}
+
+void RehearsalRunner::carry_out(Rehearsal& /*rehearsal*/, const LeaveRun& /*order*/) {
+    left_ = true;
 }
 
 void RehearsalRunner::carry_out(Rehearsal& rehearsal, const InterveneRun& order) {

@@ -20,6 +20,8 @@ struct PaceRun {
     double pace = 1.0;  ///< times real time; 0: as fast as possible
 };
 struct StopRun {};
+/// The server ends: nothing more is flown, and the run stays as after a crash, so that it can be continued.
+struct LeaveRun {};
 
 /// A fault to inject, or an instructor's note, which neither vehicle nor ground receives. Stored with the cycle at
 /// which it was received.
@@ -41,6 +43,7 @@ struct SendCommands {
     void refuse(const std::string& reason) const;
 };
 
-using RunOrder = std::variant<PauseRun, PaceRun, StopRun, InterveneRun, SendCommands, commands::TimelineVerdict>;
+using RunOrder =
+    std::variant<PauseRun, PaceRun, StopRun, LeaveRun, InterveneRun, SendCommands, commands::TimelineVerdict>;
 
 }  // namespace aeolis::server
