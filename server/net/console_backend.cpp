@@ -303,6 +303,15 @@ Result<void> ConsoleBackend::follow(DownlinkFollower::Settings settings) {
 void ConsoleBackend::run() {
     server_->run();
 }
+void ConsoleBackend::renew_certificate() {
+    if (!server_->secure()) return;
+    server_->post([this] {
+        if (const auto renewed = server_->renew_certificate(); !renewed)
+            spdlog::error("{}; the certificate of before stays", renewed.error().message);
+        else
+            spdlog::info("new connections get the certificate as it stands now");
+    });
+}
 void ConsoleBackend::stop() {
     server_->stop();
 }

@@ -49,9 +49,10 @@ Result<std::optional<asio::ssl::context>> tls_of(const WebServer::Settings& sett
 }  // namespace
 
 struct WebServer::State {
-    explicit State(const Settings& settings)
-        : connections(settings.streams + connections_besides, connections_each_max), service(settings) {}
+    explicit State(const Settings& given)
+        : settings(given), connections(given.streams + connections_besides, connections_each_max), service(given) {}
 
+    const Settings settings;
     ConnectionCount connections;
     HttpService service;
     asio::io_context& io = service.io;
@@ -208,6 +209,12 @@ void WebServer::post(std::function<void()> action) {
 }
 bool WebServer::secure() const {
     return state_->service.secure;
+}
+Result<void> WebServer::renew_certificate() {
+    auto tls = tls_of(state_->settings);
+    if (!tls) return tls.error();
+    state_->tls = std::move(*tls);
+    return {};
 }
 std::size_t WebServer::connections() const {
     return state_->connections.all();
