@@ -48,6 +48,7 @@ v1::Token token_of(const v1::AccessToken& token) {
     shown.set_role(token.role());
     shown.set_created(token.created());
     shown.set_expires(token.expires());
+    shown.set_owner(token.owner());
     *shown.mutable_commands() = token.commands();
     return shown;
 }
@@ -158,8 +159,12 @@ Operator Access::identify(const Credentials& credentials) {
         const auto token = std::ranges::find(file_.tokens(), hash, &v1::AccessToken::secret_hash);
         if (token == file_.tokens().end() || (!token->expires().empty() && token->expires() < iso_text(now)))
             return nobody;
+        const auto* owner = find_account(file_, token->owner());
+        if (!token->owner().empty() && owner == nullptr) return nobody;
         nobody.user = "token " + token->name();
+        nobody.owner = token->owner();
         nobody.role = role_of(token->role());
+        if (owner != nullptr) nobody.role = std::min(nobody.role, role_of(owner->role()));
         nobody.expires = token->expires();
         nobody.commands.assign(token->commands().begin(), token->commands().end());
         return nobody;
@@ -348,6 +353,10 @@ Result<void> Access::remove_user(const std::string& user) {
         if (found == all.end()) return no_user(user);
         all.erase(found);
         if (std::ranges::none_of(all, is_administrator)) return Error{"one administrator must remain"};
+        auto& tokens = *file.mutable_tokens();
+        tokens.erase(std::remove_if(tokens.begin(), tokens.end(),
+                                    [&](const v1::AccessToken& token) { return token.owner() == user; }),
+                     tokens.end());
         return {};
     });
     if (done) end_sessions(user, "");
@@ -365,13 +374,15 @@ v1::TokenList Access::tokens() {
 Result<v1::Token> Access::add_token(const v1::NewToken& asked) {
     if (!accounts()) return no_accounts();
     if (auto named = check_name(asked.name()); !named) return Error{"name: " + named.error().message};
-    if (!role_of(asked.role())) return no_role(asked.role());
+    const auto role = role_of(asked.role());
+    if (!role) return no_role(asked.role());
     if (asked.days() > token_days_max) return Error{fmt::format("days: {} at most", token_days_max)};
     const auto secret = new_secret();
     const auto now = settings_.now();
     v1::AccessToken token;
     token.set_name(asked.name());
     token.set_role(asked.role());
+    token.set_owner(asked.owner());
     token.set_secret_hash(secret_hash(secret));
     token.set_created(iso_text(now));
     *token.mutable_commands() = asked.commands();
@@ -379,6 +390,11 @@ Result<v1::Token> Access::add_token(const v1::NewToken& asked) {
     const auto done = change_file([&](v1::AccountFile& file) -> Result<void> {
         if (std::ranges::find(file.tokens(), asked.name(), &v1::AccessToken::name) != file.tokens().end())
             return Error{fmt::format("there is a token '{}' already", asked.name())};
+        const auto* owner = find_account(file, asked.owner());
+        if (owner == nullptr) return Error{fmt::format("owner: there is no user '{}'", asked.owner())};
+        if (*role > role_of(owner->role()))
+            return Error{fmt::format("role: {} is more than that of its owner {}, {}", asked.role(), owner->user(),
+                                     owner->role())};
         *file.add_tokens() = token;
         return {};
     });

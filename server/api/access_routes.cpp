@@ -172,6 +172,7 @@ void Api::add_token(const ApiRequest& call) {
         return call.respond(error_response(400, parsed.error()));
     if (const auto known = check_commands(parts_.dictionary, wanted.commands()); !known)
         return call.respond(error_response(422, known.error()));
+    if (wanted.owner().empty()) wanted.set_owner(person_of(call.who));
     answer_on_query_thread(
         call, [this, wanted](archive::Reader&) { return response_of(parts_.access.add_token(wanted), 201); },
         JobPriority::soon);

@@ -105,7 +105,7 @@ HttpResponse refusal_of(const Operator& who, Right right) {
 }
 
 std::string client_of(const Operator& who) {
-    if (!who.user.empty()) return who.user;
+    if (!who.user.empty()) return person_of(who);
     return who.browser.empty() || who.browser == no_browser ? network_of(who.from) : who.browser;
 }
 

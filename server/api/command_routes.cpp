@@ -67,7 +67,7 @@ Result<void> complete(const ApiRequest& call, v1::CommandRequest& command) {
 }  // namespace
 
 void name_asker(const Operator& who, v1::CommandRequest& request) {
-    if (who.accounts) request.set_controller(who.user);
+    if (who.accounts) request.set_controller(person_of(who));
 }
 
 Result<void> may_send(const Operator& who, const dictionary::Dictionary& dictionary, const RehearsalDesk& desk,
