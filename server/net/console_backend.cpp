@@ -153,8 +153,10 @@ StreamSession::Client ConsoleBackend::stream_client(const Credentials& credentia
             reply(answer);
         };
         if (right)
-            return desk_->command(std::move(request),
-                                  {may_still_send(*access_, credentials, dictionary_, *desk_), who.browser}, noted);
+            return desk_->command(
+                std::move(request),
+                {may_still_send(*access_, credentials, dictionary_, *desk_), who.browser, may(who, Right::hazardous)},
+                noted);
         v1::CommandReply refusal;
         refusal.set_request(request.request());
         refusal.set_reason(right.error().message);

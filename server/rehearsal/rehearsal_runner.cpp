@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/rehearsal/rehearsal_runner.hpp"
 
+#include "commands/shares.hpp"
 #include "commands/timeline_change.hpp"
 #include "server/archive/items.hpp"
 #include "server/archive/kept_request.hpp"
@@ -14,6 +15,9 @@
 #include <spdlog/spdlog.h>
 
 namespace aeolis::server {
+
+using commands::may_take;
+
 namespace {
 
 using std::chrono::duration;
@@ -94,9 +98,16 @@ Result<void> RehearsalRunner::order(RunOrder order) {
 }
 
 std::string RehearsalRunner::refusal_of(const RunOrder& order) const {
-    if (std::holds_alternative<SendCommands>(order)) {
+    if (const auto* commands = std::get_if<SendCommands>(&order)) {
         if (over_ || stop_) return over_reason;
-        return commands_waiting() < requests_max ? "" : fmt::format("{} commands wait already", requests_max);
+        const auto own = std::ranges::count_if(orders_, [&](const RunOrder& each) {
+            const auto* other = std::get_if<SendCommands>(&each);
+            return other != nullptr && other->asker() == commands->asker();
+        });
+        const auto taken = commands_waiting();
+        return may_take(static_cast<std::size_t>(own), taken, requests_max)
+                   ? ""
+                   : fmt::format("{} commands wait already, {} of them yours", taken, own);
     }
     const auto* intervene = std::get_if<InterveneRun>(&order);
     if (intervene == nullptr) return {};
@@ -314,7 +325,7 @@ void RehearsalRunner::carry_out(Rehearsal& rehearsal, const SendCommands& order)
     if (!replies.empty()) return order.replies(std::move(replies));
     bool any = false;
     for (const auto& request : order.requests) {
-        auto answer = rehearsal.submit(request, order.browser);
+        auto answer = rehearsal.submit(request, order.browser, order.director);
         const auto what =
             request.action().empty() ? request.command() : fmt::format("{} of {}", request.action(), request.number());
         spdlog::info("run {}: command {} {}", run_id_.value, what,
@@ -325,6 +336,7 @@ void RehearsalRunner::carry_out(Rehearsal& rehearsal, const SendCommands& order)
             v1::KeptRequest kept;
             *kept.mutable_command() = request;
             kept.set_browser(order.browser);
+            kept.set_director(order.director);
             keep(rehearsal, kept);
             take_stages(rehearsal);
         }
@@ -357,7 +369,7 @@ void RehearsalRunner::keep(const Rehearsal& rehearsal, const v1::KeptRequest& re
 bool RehearsalRunner::repeat(Rehearsal& rehearsal, const std::string& request) {
     const auto kept = archive::kept_request(request);
     switch (kept.kept_case()) {
-    case v1::KeptRequest::kCommand: return rehearsal.submit(kept.command(), kept.browser()).accepted();
+    case v1::KeptRequest::kCommand: return rehearsal.submit(kept.command(), kept.browser(), kept.director()).accepted();
     case v1::KeptRequest::kVerdict: return rehearsal.judge(verdict_of(kept.verdict())).ok();
     case v1::KeptRequest::kIntervention:
         return !kept.intervention().has_fault() || rehearsal.inject(kept.intervention().fault()).ok();

@@ -38,6 +38,10 @@ struct SendCommands {
     bool only_check = false;  ///< true: a dry run
     Replies replies;
     std::string browser{};  ///< without accounts: from which they are sent
+    bool director = false;  ///< who sends may send hazardous commands
+
+    /// For whom it counts where places are shared.
+    std::string asker() const { return browser.empty() && !requests.empty() ? requests.front().controller() : browser; }
 
     /// Replies to each command with the same refusal.
     void refuse(const std::string& reason) const;
