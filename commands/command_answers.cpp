@@ -21,6 +21,10 @@ void CommandGateway::receive(const Heard& packet, std::vector<StageReport>& stag
     if (underway_.empty()) return;
     if (packet.event != nullptr) note_answer(packet, stages);
     note_report(packet, stages);
+    forget_finished();
+}
+
+void CommandGateway::forget_finished() {
     std::erase_if(underway_, [](const Underway& underway) { return underway.lifecycle.finished(); });
 }
 

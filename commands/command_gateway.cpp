@@ -4,6 +4,7 @@
 #include "commands/authorise.hpp"
 #include "commands/preconditions.hpp"
 #include "commands/read_back.hpp"
+#include "commands/shares.hpp"
 #include "commands/timeline_change.hpp"
 
 #include <algorithm>
@@ -65,11 +66,16 @@ std::vector<CommandGateway::FieldPlace> CommandGateway::clcw_places(const dictio
     return places;
 }
 
-Result<void> CommandGateway::takes(std::size_t more) const {
-    if (commands_ + more <= commands_max) return {};
-    return Error{commands_ == commands_max
-                     ? fmt::format("this run has had its {} commands", commands_max)
-                     : fmt::format("this run has had {} of its {} commands", commands_, commands_max)};
+Result<void> CommandGateway::takes(std::size_t more, const std::string& asker) const {
+    const auto own = static_cast<std::size_t>(std::ranges::count_if(underway_, [&](const Underway& each) {
+        return (each.browser.empty() ? each.controller : each.browser) == asker;
+    }));
+    const std::size_t taken = underway_.size() + more - 1;
+    if (may_take(own + more - 1, taken, commands_max)) return {};
+    if (taken >= commands_max)
+        return Error{fmt::format("{} commands are under way: no more until one of them is done", underway_.size())};
+    return Error{fmt::format("{} of the {} commands under way are yours: the places left are for others", own,
+                             underway_.size())};
 }
 
 Result<CommandGateway::Prepared> CommandGateway::prepare(const Request& request, Ert now) const {
@@ -77,7 +83,7 @@ Result<CommandGateway::Prepared> CommandGateway::prepare(const Request& request,
     if (command == nullptr)
         return Error{fmt::format("unknown command '{}': the dictionary of {} has none of this name", request.command,
                                  dictionary_.mission)};
-    if (auto room = takes(1); !room) return room.error();
+    if (auto room = takes(1, request.asker()); !room) return room.error();
 
     std::vector<NamedValue> arguments = request.arguments;
     if (request.from_solution) arguments = fill_from_solution(*command, arguments, solution_);
@@ -87,7 +93,7 @@ Result<CommandGateway::Prepared> CommandGateway::prepare(const Request& request,
     if (!wanted) return wanted.error();
     std::optional<Ert> release_at;
     if (!request.release_at.empty()) {
-        release_at = ert_from_day_of_year(request.release_at);
+        release_at = ert_from_text(request.release_at);
         if (!release_at)
             return Error{fmt::format("release_at: '{}' is no time as {}", request.release_at, day_of_year_text(now))};
         if (*release_at < now)
@@ -176,9 +182,10 @@ void CommandGateway::queue(const Prepared& prepared, const Request& request, Ask
         if (condition.state == PreconditionState::State::unknown)
             not_known += (not_known.empty() ? "; left to flight: " : ", ") + condition.text;
     const auto* report = read_back_packet(dictionary_, *prepared.command);
-    auto& underway = underway_.emplace_back(Underway{
-        ++commands_, prepared.packet, prepared.arguments, request.controller, request.browser, "", request.priority,
-        prepared.wanted, report, CommandLifecycle{*prepared.command, count_, light_time_s_, report != nullptr}});
+    auto& underway = underway_.emplace_back(
+        Underway{++commands_, prepared.packet, prepared.arguments, request.controller, request.browser, "",
+                 request.priority, request.director, prepared.wanted, report,
+                 CommandLifecycle{*prepared.command, count_, light_time_s_, report != nullptr}});
     count_ = static_cast<std::uint16_t>((count_ + 1) % count_modulus);
 
     changes_.clear();
@@ -200,7 +207,9 @@ void CommandGateway::queue(const Prepared& prepared, const Request& request, Ask
                                     request.hold,
                                     reply.needs_approval,
                                     changes_offsets(prepared.command->name),
-                                    false};
+                                    false,
+                                    request.director || is_hazardous(*prepared.command),
+                                    request.asker()};
     queue_.add(entry);
     if (request.hold || prepared.release_at || reply.needs_approval || queue_.leaves_after(entry))
         tell_wait(underway, now, stages);
@@ -217,7 +226,7 @@ std::vector<Reply> CommandGateway::look(std::span<const Request> file, Ert now) 
         request.dry_run = true;
         auto& reply = replies.emplace_back(submit(request, now, none));
         if (!reply.accepted || !request.action.empty()) continue;
-        if (const auto room = takes(++more); !room) {
+        if (const auto room = takes(++more, request.asker()); !room) {
             reply.accepted = false;
             reply.reason = room.error().message;
             continue;
@@ -240,8 +249,17 @@ void CommandGateway::note_refused(const Request& request, const std::string& rea
     const auto* command = dictionary_.command(request.command);
     if (command == nullptr) return;  // a script with an unknown command is not started
     auto prepared = prepare(request, now);
-    Underway refused{++commands_, {}, "", "",      "",
-                     "",          0,  {}, nullptr, CommandLifecycle{*command, count_, light_time_s_, false}};
+    Underway refused{++commands_,
+                     {},
+                     "",
+                     "",
+                     "",
+                     "",
+                     0,
+                     false,
+                     {},
+                     nullptr,
+                     CommandLifecycle{*command, count_, light_time_s_, false}};
     if (prepared) {
         refused.packet = std::move(prepared->packet);
         refused.arguments = std::move(prepared->arguments);

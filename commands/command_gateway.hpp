@@ -33,7 +33,8 @@ namespace aeolis::commands {
 /// Order    look up → arguments → encode → preconditions → arming and typed confirmation → queued → authorised →
 ///          released → radiated (commands/command_link); from then on commands/lifecycle follows the evidence in
 ///          telemetry
-/// Memory   at most `commands_max` commands a run, a few kilooctets each; the latest value of each channel
+/// Memory   at most `commands_max` commands under way, a few kilooctets each; the latest value of each channel
+/// Shares   nobody has more commands under way than places are free: commands/shares
 /// Faults   a refused request has no number, changes nothing, and the reply names the check and its values
 /// Timeline commands that change the timeline leave in the order of their numbers, as they were analysed. When one
 ///          fails, those behind it wait until the server has analysed the timeline without it. Each is judged when it is
@@ -43,7 +44,10 @@ namespace aeolis::commands {
 /// progress, so the digest of a run does not change with its pace.
 class CommandGateway {
   public:
-    static constexpr std::size_t commands_max = 4096;  ///< our assumption: a landing needs two
+    static constexpr std::size_t commands_max = 4096;  ///< under way at a time. Our assumption: a landing needs two
+    /// Commands at the uplink, and CLTUs radiated in a cycle: the vehicle's receiver holds eight, and hands two a cycle
+    /// to the flight software (simulation/world).
+    static constexpr std::size_t at_uplink_max = 8, radiated_a_cycle_max = 2;
 
     /// `second_person`: names of commands that need the approval of a controller other than the one who asked.
     /// `stations`: nothing leaves while none of them sees the vehicle. `entry`: predicted when the run begins; without
@@ -70,8 +74,8 @@ class CommandGateway {
     /// Records a refused command of the scenario's script with a number and a history. Nobody waits for its reply.
     void note_refused(const Request& request, const std::string& reason, Ert now, std::vector<StageReport>& stages);
 
-    /// Fails when the run has no room for `more` commands.
-    Result<void> takes(std::size_t more) const;
+    /// Fails when this asker has no place for `more` commands.
+    Result<void> takes(std::size_t more, const std::string& asker) const;
     /// Counts of commands: waiting for a time, a controller, a pass or an analysis; and handed to the uplink, not yet
     /// radiated.
     std::size_t queued() const { return queue_.waiting().size(); }
@@ -106,6 +110,7 @@ class CommandGateway {
         std::string arguments, controller, browser;
         std::string timeline;  ///< verdict of a later analysis; empty: not analysed again
         std::uint32_t priority = 0;
+        bool director = false;
         std::optional<Fop::Service> wanted;
         const dictionary::Packet* report = nullptr;  ///< the packet in which flight reads back this command
         CommandLifecycle lifecycle;
@@ -190,6 +195,7 @@ class CommandGateway {
     void begin_pass(Ert now, std::vector<StageReport>& stages);
     static std::vector<FieldPlace> clcw_places(const dictionary::Dictionary& dictionary);
     Underway* underway(std::optional<std::uint64_t> number);
+    void forget_finished();  ///< and their places are free
     void radiate(Ert now, std::vector<StageReport>& stages);
     void hear_clcw(std::uint32_t word, Ert ert, std::vector<StageReport>& stages);
     void note_frames(Ert now, std::vector<StageReport>& stages);
@@ -220,7 +226,9 @@ class CommandGateway {
         read_backs_;  ///< by the command's name, in the order of sending: those whose values the vehicle may hold
     std::vector<StageChange> changes_;
     std::uint64_t commands_ = 0;
-    std::uint16_t count_ = 0;  ///< packet count of the uplink
+    Ert radiated_at_;                ///< the last cycle in which CLTUs were radiated,
+    std::size_t radiated_then_ = 0;  ///< and their number
+    std::uint16_t count_ = 0;        ///< packet count of the uplink
 };
 
 }  // namespace aeolis::commands

@@ -2,6 +2,9 @@
 #include "commands/command_queue.hpp"
 
 #include <algorithm>
+#include <set>
+#include <string_view>
+#include <tuple>
 #include <utility>
 
 namespace aeolis::commands {
@@ -73,11 +76,23 @@ std::vector<std::uint64_t> CommandQueue::take_all() {
 }
 
 std::optional<std::uint64_t> CommandQueue::take_next(Ert now) {
-    const auto next = std::ranges::find_if(entries_, [&](const Entry& each) { return is_due(each, now); });
+    std::set<std::string_view> seen;  // an asker's first due command is the one to compare
+    const auto rank = [&](const Entry& entry) {
+        const auto turn = last_turn_.find(entry.asker);
+        return std::tuple{!entry.ahead, turn == last_turn_.end() ? 0 : turn->second, ~entry.priority, entry.number};
+    };
+    auto next = entries_.end();
+    for (auto entry = entries_.begin(); entry != entries_.end(); ++entry)
+        if (is_due(*entry, now) && seen.insert(entry->asker).second)
+            if (next == entries_.end() || rank(*entry) < rank(*next)) next = entry;
     if (next == entries_.end()) return {};
-    const auto number = next->number;
+    const Entry taken = *next;
     entries_.erase(next);
-    return number;
+    if (std::ranges::find(entries_, taken.asker, &Entry::asker) == entries_.end())
+        last_turn_.erase(taken.asker);
+    else
+        last_turn_[taken.asker] = ++turns_;
+    return taken.number;
 }
 
 std::vector<std::uint64_t> CommandQueue::postpone_due(Ert now, Ert until) {

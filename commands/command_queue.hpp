@@ -4,26 +4,32 @@
 #include "common/time.hpp"
 
 #include <cstdint>
+#include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace aeolis::commands {
 
 /// Authorised commands that wait for their time, a controller or a second person's approval.
 ///
-/// Order    of due commands the higher priority first, equals by number, as they were requested. Commands that are
-///          `in_order` leave by number alone, because each was judged by the effects of those before it
+/// Order    one asker's due commands: the higher priority first, equals by number, as they were requested. Among the
+///          next commands of all askers: those that pass ahead, then the asker whose turn was longest ago, then the
+///          higher priority. Commands that are `in_order` leave by number alone, because each was judged by the effects of
+///          those before it
 /// Memory   one entry a command; the owner bounds their number
 class CommandQueue {
   public:
     struct Entry {
         std::uint64_t number = 0;
         std::uint32_t priority = 0;
-        std::optional<Ert> release_at;  ///< none: at once
+        std::optional<Ert> release_at{};  ///< none: at once
         bool held = false;
         bool needs_approval = false;  ///< by a second person
         bool in_order = false;        ///< leaves after all others of this kind that have a smaller number
         bool doubted = false;         ///< an earlier command in order failed: it waits until it is judged anew
+        bool ahead = false;           ///< hazardous, or a director's: before others' commands
+        std::string asker{};          ///< for whom it counts
     };
 
     void add(const Entry& entry);
@@ -59,6 +65,8 @@ class CommandQueue {
     Entry* find(std::uint64_t number);
 
     std::vector<Entry> entries_;
+    std::map<std::string, std::uint64_t> last_turn_;  ///< by asker, of those with a command waiting
+    std::uint64_t turns_ = 0;
 };
 
 }  // namespace aeolis::commands

@@ -3,6 +3,7 @@
 // reports say of their frames.
 #include "commands/command_gateway.hpp"
 
+#include "commands/authorise.hpp"
 #include "commands/timeline_change.hpp"
 #include "common/bytes.hpp"
 #include "common/tc_frame.hpp"
@@ -18,7 +19,9 @@ void CommandGateway::release_due(Ert now, std::vector<StageReport>& stages) {
         if (auto* command = underway(number)) tell_wait(*command, now, stages);
     if (!stations_.sees(now)) return await_pass(now, stages);
     begin_pass(now, stages);
-    while (const auto number = queue_.take_next(now)) {
+    while (link_.waiting() < at_uplink_max) {
+        const auto number = queue_.take_next(now);
+        if (!number) break;
         auto* command = underway(*number);
         if (command == nullptr) continue;
         const std::string failing = failing_now(*command, now);
@@ -63,8 +66,15 @@ void CommandGateway::wait_again(std::uint64_t number, std::optional<Ert> until, 
                                 std::vector<StageReport>& stages) {
     auto* command = underway(number);
     if (command == nullptr) return;
-    const CommandQueue::Entry entry{
-        number, command->priority, until, false, false, changes_offsets(command->lifecycle.command().name), false};
+    const CommandQueue::Entry entry{number,
+                                    command->priority,
+                                    until,
+                                    false,
+                                    false,
+                                    changes_offsets(command->lifecycle.command().name),
+                                    false,
+                                    command->director || is_hazardous(command->lifecycle.command()),
+                                    command->browser.empty() ? command->controller : command->browser};
     queue_.add(entry);
     std::vector<StageChange> changes;
     command->lifecycle.taken_back(
@@ -147,7 +157,11 @@ void CommandGateway::radiate(Ert now, std::vector<StageReport>& stages) {
     const bool seen = stations_.sees(now);
     if (seen) begin_pass(now, stages);
     const auto* pass = stations_.pass_at(now);
-    while (auto unit = seen ? link_.next(now) : std::nullopt) {
+    if (std::exchange(radiated_at_, now) != now) radiated_then_ = 0;
+    while (seen && radiated_then_ < radiated_a_cycle_max) {
+        auto unit = link_.next(now);
+        if (!unit) break;
+        ++radiated_then_;
         if (auto* command = underway(unit->tag)) {
             const std::string frame =
                 fmt::format("{} octets left {}, packet {} in frame {}, {}; at the vehicle {:.1f} s later",
@@ -202,6 +216,7 @@ void CommandGateway::pass(Ert now, std::vector<StageReport>& stages) {
     }
     if (stations_.sees(now)) link_.pass(now);  // otherwise unacknowledged frames are sent again in the next pass
     release_due(now, stages);
+    forget_finished();
 }
 
 }  // namespace aeolis::commands

@@ -44,10 +44,12 @@ struct Ert {
 /// Day-of-year text with milliseconds: 2012-219T05:10:47.400.
 std::string day_of_year_text(Scet time);
 std::string day_of_year_text(Ert time);
-/// Parses that form; the fraction of a second is optional.
-/// None for any other text, or for a day that does not exist.
-std::optional<Ert> ert_from_day_of_year(std::string_view text);
-std::optional<Scet> scet_from_day_of_year(std::string_view text);
+/// Reads that form, or the calendar's: 2012-08-06T05:10:47.4. The fraction of a second, of six digits at most, and a Z
+/// at the end are optional. None for any other text, or for a day that does not exist.
+std::optional<Scet> scet_from_text(std::string_view text);
+std::optional<Ert> ert_from_text(std::string_view text);
+/// Reads seconds from entry: E+4:58, E-1:02:03.5, E+298.5, with a hyphen or a minus sign. None for any other text.
+std::optional<double> seconds_from_entry(std::string_view text);
 
 /// Correlation of SCLK and SCET: one instant in both, and the rate of UTC against the onboard clock.
 /// From a row of the dictionary's clock_correlation.csv; version 0 for a clock that only its scenario defines.

@@ -7,6 +7,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 
 namespace aeolis::simulation {
 namespace {
@@ -39,6 +40,8 @@ std::vector<Bounded> bounded_fields(const Scenario& s) {
         {"target.latitude_deg", s.target.latitude_deg, -89.0, 89.0},
         {"target.longitude_deg", s.target.longitude_deg, -180.0, 360.0},
         {"target.radius_m", s.target.radius_m, 3.37e6, 3.42e6},
+        {"target.ellipse_major_m", s.target.ellipse_major_m, 0.0, 300000.0},
+        {"target.ellipse_minor_m", s.target.ellipse_minor_m, 0.0, s.target.ellipse_major_m},
         {"masses.cruise_stage_kg", s.masses.cruise_stage_kg, 0.0, 5000.0},
         {"masses.cruise_balance_each_kg", s.masses.cruise_balance_each_kg, 0.0, 500.0},
         {"masses.entry_kg", s.masses.entry_kg, 100.0, 10000.0},
@@ -351,6 +354,14 @@ Scenario undispersed(Scenario scenario) {
     // Each of its fields is a deviation, so a new field cannot be forgotten.
     scenario.dispersions = std::bit_cast<Dispersions>(std::array<double, sizeof(Dispersions) / sizeof(double)>{});
     return scenario;
+}
+
+double course_at_target_deg(const Scenario& s) {
+    const Vector3 entry = place(s.entry.latitude_deg * degree_rad, s.entry.longitude_deg * degree_rad, 1.0);
+    const Horizon local = horizon(place(s.target.latitude_deg * degree_rad, s.target.longitude_deg * degree_rad, 1.0));
+    // At the target the course leads away from entry.
+    const double azimuth_rad = std::atan2(-entry.dot(local.east), -entry.dot(local.north));
+    return (azimuth_rad < 0.0 ? azimuth_rad + 2.0 * std::numbers::pi : azimuth_rad) / degree_rad;
 }
 
 // Wider than any entry of this design reaches, so that only mistakes are refused.

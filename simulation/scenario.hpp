@@ -30,6 +30,9 @@ struct Target {
     double latitude_deg = -4.6019;
     double longitude_deg = 137.4102;
     double radius_m = 3391148.0;
+    /// Full axes of the ellipse about the target that is to hold 99 % of the landings, the longer one along the course.
+    /// [facts] Dispersed landings (H); 0: there is none
+    double ellipse_major_m = 20000.0, ellipse_minor_m = 7000.0;
 };
 
 struct Masses {
@@ -279,6 +282,9 @@ inline constexpr std::size_t scenario_rows_max = 256;  ///< of any other list
 bool disperses_later(const Scenario& scenario);
 /// The scenario with every seeded error of `dispersions` switched off.
 Scenario undispersed(Scenario scenario);
+
+/// Azimuth of the course from entry to the target, at the target, from north to east, 0 … 360.
+double course_at_target_deg(const Scenario& scenario);
 
 /// Returns one line for each impossible field, as "entry.speed_mps: -3 is outside 1000 … 20000"; empty: none.
 std::vector<std::string> impossible_values(const Scenario& scenario);

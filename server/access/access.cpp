@@ -48,6 +48,7 @@ v1::Token token_of(const v1::AccessToken& token) {
     shown.set_role(token.role());
     shown.set_created(token.created());
     shown.set_expires(token.expires());
+    shown.set_owner(token.owner());
     *shown.mutable_commands() = token.commands();
     return shown;
 }
@@ -145,7 +146,7 @@ Operator Access::identify(const Credentials& credentials) {
     if (!accounts()) {
         nobody.accounts = false;
         nobody.role = Role::director;
-        const auto browser = cookie_value(credentials.cookie, browser_cookie);
+        const auto browser = cookie_value(credentials.cookie, browser_cookie());
         nobody.browser = browser.empty() ? std::string{no_browser} : secret_hash(browser);
         return nobody;
     }
@@ -158,13 +159,17 @@ Operator Access::identify(const Credentials& credentials) {
         const auto token = std::ranges::find(file_.tokens(), hash, &v1::AccessToken::secret_hash);
         if (token == file_.tokens().end() || (!token->expires().empty() && token->expires() < iso_text(now)))
             return nobody;
+        const auto* owner = find_account(file_, token->owner());
+        if (!token->owner().empty() && owner == nullptr) return nobody;
         nobody.user = "token " + token->name();
+        nobody.owner = token->owner();
         nobody.role = role_of(token->role());
+        if (owner != nullptr) nobody.role = std::min(nobody.role, role_of(owner->role()));
         nobody.expires = token->expires();
         nobody.commands.assign(token->commands().begin(), token->commands().end());
         return nobody;
     }
-    const auto secret = cookie_value(credentials.cookie, session_cookie);
+    const auto secret = cookie_value(credentials.cookie, session_cookie());
     if (secret.empty()) return nobody;
     const auto session = sessions_.find(secret_hash(secret));
     if (session == sessions_.end()) return nobody;
@@ -178,15 +183,18 @@ Operator Access::identify(const Credentials& credentials) {
     return who;
 }
 
-Result<void> Access::refuse_locked_out(const std::string& user, const std::string& from) {
+std::chrono::seconds Access::lock_out_of(const std::string& user, const std::string& network) const {
     const auto now = settings_.now();
-    for (const auto& key : {from, from + ' ' + user}) {
-        const auto found = failures_.find(key);
-        if (found == failures_.end() || found->second.locked_until <= now) continue;
-        const auto wait = std::chrono::ceil<std::chrono::seconds>(found->second.locked_until - now);
-        return Error{fmt::format("too many wrong log-ins from {}: wait {} s", from, wait.count())};
-    }
-    return {};
+    std::chrono::seconds wait{0};
+    for (const auto& key : {network, network + ' ' + user})
+        if (const auto found = failures_.find(key); found != failures_.end() && found->second.locked_until > now)
+            wait = std::max(wait, std::chrono::ceil<std::chrono::seconds>(found->second.locked_until - now));
+    return wait;
+}
+
+std::chrono::seconds Access::locked_out(const std::string& user, const std::string& from) {
+    const std::scoped_lock lock{mutex_};
+    return lock_out_of(user, network_of(from));
 }
 
 void Access::count_failure(const std::string& key, unsigned allowed) {
@@ -208,7 +216,8 @@ Result<std::string> Access::check_log_in(const std::string& user, const std::str
     {
         const std::scoped_lock lock{mutex_};
         refresh();
-        if (auto free = refuse_locked_out(user, from); !free) return free.error();
+        if (const auto wait = lock_out_of(user, from); wait.count() > 0)
+            return Error{fmt::format("too many wrong log-ins from {}: wait {} s", from, wait.count())};
         if (const auto* account = find_account(file_, user)) hash = account->password_hash();
     }
     const bool matches = password.size() <= password_octets_max && password_matches(hash, password);
@@ -230,7 +239,7 @@ Result<Access::LoggedIn> Access::log_in(const v1::LogIn& asked, const std::strin
     const auto now = settings_.now();
     const std::scoped_lock lock{mutex_};
     const auto* account = find_account(file_, asked.user());
-    // // The account may have changed during the check.
+    // The account may have changed during the check.
     if (account == nullptr || account->password_hash() != *matched) return Error{wrong_log_in};
     std::erase_if(sessions_, [&](const auto& each) { return each.second.expires < now; });
     const auto own = [&](const auto& each) { return each.second.user == asked.user(); };
@@ -344,6 +353,10 @@ Result<void> Access::remove_user(const std::string& user) {
         if (found == all.end()) return no_user(user);
         all.erase(found);
         if (std::ranges::none_of(all, is_administrator)) return Error{"one administrator must remain"};
+        auto& tokens = *file.mutable_tokens();
+        tokens.erase(std::remove_if(tokens.begin(), tokens.end(),
+                                    [&](const v1::AccessToken& token) { return token.owner() == user; }),
+                     tokens.end());
         return {};
     });
     if (done) end_sessions(user, "");
@@ -361,13 +374,15 @@ v1::TokenList Access::tokens() {
 Result<v1::Token> Access::add_token(const v1::NewToken& asked) {
     if (!accounts()) return no_accounts();
     if (auto named = check_name(asked.name()); !named) return Error{"name: " + named.error().message};
-    if (!role_of(asked.role())) return no_role(asked.role());
+    const auto role = role_of(asked.role());
+    if (!role) return no_role(asked.role());
     if (asked.days() > token_days_max) return Error{fmt::format("days: {} at most", token_days_max)};
     const auto secret = new_secret();
     const auto now = settings_.now();
     v1::AccessToken token;
     token.set_name(asked.name());
     token.set_role(asked.role());
+    token.set_owner(asked.owner());
     token.set_secret_hash(secret_hash(secret));
     token.set_created(iso_text(now));
     *token.mutable_commands() = asked.commands();
@@ -375,6 +390,11 @@ Result<v1::Token> Access::add_token(const v1::NewToken& asked) {
     const auto done = change_file([&](v1::AccountFile& file) -> Result<void> {
         if (std::ranges::find(file.tokens(), asked.name(), &v1::AccessToken::name) != file.tokens().end())
             return Error{fmt::format("there is a token '{}' already", asked.name())};
+        const auto* owner = find_account(file, asked.owner());
+        if (owner == nullptr) return Error{fmt::format("owner: there is no user '{}'", asked.owner())};
+        if (*role > role_of(owner->role()))
+            return Error{fmt::format("role: {} is more than that of its owner {}, {}", asked.role(), owner->user(),
+                                     owner->role())};
         *file.add_tokens() = token;
         return {};
     });

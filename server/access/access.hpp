@@ -42,6 +42,7 @@ class Access {
 
     struct Settings {
         std::filesystem::path file;  ///< empty: no accounts; everybody may do all but administer
+        bool secure = false;         ///< over TLS: cookies have names that only this host can set
         std::function<Clock::time_point()> now = Clock::now;
     };
     /// Reads the accounts file. A missing file is created with one administrator, whose password is first_password().
@@ -49,6 +50,10 @@ class Access {
     static Result<std::unique_ptr<Access>> open(Settings settings);
 
     bool accounts() const { return !settings_.file.empty(); }
+    /// Names of the cookies: of a log-in session and, without accounts, of a browser, which tells a second person from
+    /// the first. Over TLS with the prefix __Host- (RFC 6265bis, 4.1.3.2).
+    std::string session_cookie() const { return (settings_.secure ? "__Host-" : "") + std::string{"aeolis_session"}; }
+    std::string browser_cookie() const { return (settings_.secure ? "__Host-" : "") + std::string{"aeolis_browser"}; }
     /// The password of user "administrator" when open() created the file; else empty.
     const std::string& first_password() const { return first_password_; }
 
@@ -63,6 +68,8 @@ class Access {
     };
     /// Logs a user in. Slow. Fails when user or password is wrong, and while locked out (the error says for how long).
     Result<LoggedIn> log_in(const v1::LogIn& asked, const std::string& from);
+    /// How long this user, from this address, is refused without a look at the password; 0: not locked out.
+    std::chrono::seconds locked_out(const std::string& user, const std::string& from);
     void log_out(const Operator& who);
 
     v1::UserList users();
@@ -91,7 +98,7 @@ class Access {
     void end_sessions(const std::string& user, const std::string& but);  ///< call without mutex_
     // Call with mutex_ held:
     void refresh();
-    Result<void> refuse_locked_out(const std::string& user, const std::string& from);
+    std::chrono::seconds lock_out_of(const std::string& user, const std::string& network) const;
     void count_failure(const std::string& key, unsigned allowed);
     Operator operator_of(const v1::Account& account, const std::string& session, const LiveSession& live) const;
     /// Checks the password and its lock-out. Call without mutex_: the comparison runs while the mutex is free.
@@ -107,9 +114,5 @@ class Access {
     std::map<std::string, LiveSession> sessions_;  ///< by hash of the secret
     std::map<std::string, Failures> failures_;     ///< by network_of(address), and by that and user
 };
-
-/// Names of the cookies: of a log-in session and, without accounts, of a browser. Without accounts the browser's cookie
-/// tells a second person from the first.
-inline constexpr std::string_view session_cookie = "aeolis_session", browser_cookie = "aeolis_browser";
 
 }  // namespace aeolis::server

@@ -39,6 +39,7 @@ inline constexpr std::string_view no_browser = "none";
 /// The identity behind a request.
 struct Operator {
     std::string user;                   ///< empty: not logged in, or no accounts; "token NAME" of a program
+    std::string owner;                  ///< of a token: the account that it counts as; else empty
     std::optional<Role> role;           ///< none: not logged in
     std::string from;                   ///< address of the peer
     std::vector<std::string> commands;  ///< the only commands allowed; empty: all that the role allows
@@ -49,5 +50,9 @@ struct Operator {
     std::string browser;                ///< without accounts: hash of the browser's secret, or no_browser; else empty
 };
 bool may(const Operator& who, Right right);
+/// The account that acts, by itself or by one of its tokens.
+inline const std::string& person_of(const Operator& who) {
+    return who.owner.empty() ? who.user : who.owner;
+}
 
 }  // namespace aeolis::server

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <spdlog/spdlog.h>
 
 // The routes of log-in, users, tokens and audit. Passwords are hashed on the query threads and are in no audit entry.
 namespace aeolis::server {
@@ -28,9 +29,10 @@ v1::Session session_of(const Operator& who) {
 
 constexpr std::chrono::hours browser_length{24 * 365};  // chosen: longer than the preparation of a rehearsal
 
-std::string cookie(std::string_view name, const std::string& value, std::chrono::seconds length, bool secure) {
-    return fmt::format("{}={}; Path=/; Max-Age={}; HttpOnly; SameSite=Strict{}", name, value, length.count(),
-                       secure ? "; Secure" : "");
+void set_cookie(HttpResponse& response, const std::string& name, const std::string& value, std::chrono::seconds length,
+                bool secure) {
+    response.fields.emplace_back("Set-Cookie", fmt::format("{}={}; Path=/; Max-Age={}; HttpOnly; SameSite=Strict{}",
+                                                           name, value, length.count(), secure ? "; Secure" : ""));
 }
 
 template <typename Message>
@@ -49,6 +51,14 @@ Result<void> check_commands(const dictionary::Dictionary& dictionary,
     return {};
 }
 
+/// Says so in the log, too: by it an administrator sees who guesses.
+HttpResponse refused_log_in(Access& access, const std::string& user, const Operator& who, const std::string& why) {
+    if (!who.accounts) return error_response(409, why);
+    spdlog::warn("log-in of '{}' from {} refused: {}", check_name(user) ? user : "?", who.from, why);
+    const auto wait = access.locked_out(user, who.from);
+    return wait.count() > 0 && why != Access::wrong_log_in ? retry_response(429, why, wait) : error_response(401, why);
+}
+
 std::string outcome_of(bool done, const std::string& why) {
     return done ? "done" : "refused: " + why;
 }
@@ -60,7 +70,7 @@ void Api::session(const ApiRequest& call) {
     // Set here, since only the console's page requests this. Set with the page, it would be replaced for every visitor
     // who follows a link from elsewhere: such a request carries no SameSite=Strict cookie.
     if (call.who.browser == no_browser)
-        response.set_cookie = cookie(browser_cookie, new_secret(), browser_length, parts_.secure);
+        set_cookie(response, parts_.access.browser_cookie(), new_secret(), browser_length, parts_.secure);
     call.respond(std::move(response));
 }
 
@@ -69,7 +79,7 @@ void Api::log_in(const ApiRequest& call) {
     if (const auto parsed = from_json(call.request.body, wanted); !parsed)
         return call.respond(error_response(400, parsed.error()));
     answer_on_query_thread(
-        call.respond,
+        call,
         [this, wanted, who = call.who](archive::Reader&) {
             const auto done = parts_.access.log_in(wanted, who.from);
             // Lock-outs and impossible user names are not audited: somebody not logged in must not be able to fill the
@@ -77,9 +87,9 @@ void Api::log_in(const ApiRequest& call) {
             if (done || (who.accounts && done.error().message == Access::wrong_log_in && check_name(wanted.user())))
                 note(done ? done->who : who, "log-in", wanted.user(),
                      outcome_of(done.ok(), done ? "" : done.error().message));
-            if (!done) return error_response(who.accounts ? 401 : 409, done.error().message);
+            if (!done) return refused_log_in(parts_.access, wanted.user(), who, done.error().message);
             auto response = json_response(session_of(done->who), 201);
-            response.set_cookie = cookie(session_cookie, done->secret, Access::session_length, parts_.secure);
+            set_cookie(response, parts_.access.session_cookie(), done->secret, Access::session_length, parts_.secure);
             return response;
         },
         JobPriority::soon);
@@ -89,7 +99,7 @@ void Api::log_out(const ApiRequest& call) {
     parts_.access.log_out(call.who);
     if (!call.who.session.empty()) note(call.who, "log-out", "", "done");
     HttpResponse response{204, "application/json", "no-store", ""};
-    response.set_cookie = cookie(session_cookie, "", std::chrono::seconds{0}, parts_.secure);
+    set_cookie(response, parts_.access.session_cookie(), "", std::chrono::seconds{0}, parts_.secure);
     call.respond(std::move(response));
 }
 
@@ -104,7 +114,7 @@ void Api::add_user(const ApiRequest& call) {
     if (const auto known = check_commands(parts_.dictionary, wanted.commands()); !known)
         return call.respond(error_response(422, known.error()));
     answer_on_query_thread(
-        call.respond,
+        call,
         [this, wanted, who = call.who](archive::Reader&) {
             const auto done = parts_.access.add_user(wanted);
             note(who, "user", fmt::format("add '{}' as {}", wanted.user().substr(0, 64), wanted.role().substr(0, 64)),
@@ -129,7 +139,7 @@ void Api::change_user(const ApiRequest& call) {
     if (const auto known = check_commands(parts_.dictionary, change.commands()); !known)
         return call.respond(error_response(422, known.error()));
     answer_on_query_thread(
-        call.respond,
+        call,
         [this, change, user, who = call.who](archive::Reader&) {
             const auto done = parts_.access.change_user(who, user, change);
             note(who, "user",
@@ -148,8 +158,7 @@ void Api::change_user(const ApiRequest& call) {
 
 void Api::remove_user(const ApiRequest& call) {
     answer_on_query_thread(
-        call.respond,
-        [this, user = call.parts[0]](archive::Reader&) { return response_of(parts_.access.remove_user(user)); },
+        call, [this, user = call.parts[0]](archive::Reader&) { return response_of(parts_.access.remove_user(user)); },
         JobPriority::soon);
 }
 
@@ -163,15 +172,15 @@ void Api::add_token(const ApiRequest& call) {
         return call.respond(error_response(400, parsed.error()));
     if (const auto known = check_commands(parts_.dictionary, wanted.commands()); !known)
         return call.respond(error_response(422, known.error()));
+    if (wanted.owner().empty()) wanted.set_owner(person_of(call.who));
     answer_on_query_thread(
-        call.respond, [this, wanted](archive::Reader&) { return response_of(parts_.access.add_token(wanted), 201); },
+        call, [this, wanted](archive::Reader&) { return response_of(parts_.access.add_token(wanted), 201); },
         JobPriority::soon);
 }
 
 void Api::remove_token(const ApiRequest& call) {
     answer_on_query_thread(
-        call.respond,
-        [this, name = call.parts[0]](archive::Reader&) { return response_of(parts_.access.remove_token(name)); },
+        call, [this, name = call.parts[0]](archive::Reader&) { return response_of(parts_.access.remove_token(name)); },
         JobPriority::soon);
 }
 
@@ -182,7 +191,7 @@ void Api::audit(const ApiRequest& call) {
     if (!after) return call.respond(error_response(400, after.error()));
     if (!limit) return call.respond(error_response(400, limit.error()));
     answer_on_query_thread(
-        call.respond, [after = after->value_or(0), limit = limit->value_or(audit_page_max)](archive::Reader& reader) {
+        call, [after = after->value_or(0), limit = limit->value_or(audit_page_max)](archive::Reader& reader) {
             const auto entries = reader.audit(after, limit);
             if (!entries) return error_response(500, entries.error());
             v1::AuditList list;

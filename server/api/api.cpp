@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/api/api.hpp"
 
+#include "server/access/network.hpp"
 #include "server/api/dictionary_reply.hpp"
 #include "server/api/list_response.hpp"
-#include "server/api/openapi.hpp"
 #include "server/api/query_text.hpp"
 #include "server/api/run_questions.hpp"
 #include "server/base/json.hpp"
@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <charconv>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
 namespace aeolis::server {
@@ -50,6 +51,19 @@ std::optional<std::vector<std::string>> parts_of(std::string_view pattern, std::
 
 }  // namespace
 
+namespace {
+
+/// 405, with the methods that the path has.
+HttpResponse wrong_method(const std::string& method, const std::string& path,
+                          const std::vector<std::string_view>& allowed) {
+    auto response = error_response(405, fmt::format("{} {}: only {} here", method, path, fmt::join(allowed, " and ")));
+    const bool get = std::ranges::find(allowed, "GET") != allowed.end();
+    response.fields.emplace_back("Allow", fmt::format("{}{}", fmt::join(allowed, ", "), get ? ", HEAD" : ""));
+    return response;
+}
+
+}  // namespace
+
 std::optional<archive::RunId> run_id(std::string_view text) {
     std::uint32_t number = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
@@ -64,14 +78,12 @@ HttpResponse json_response(const google::protobuf::Message& message, unsigned st
     return response;
 }
 
-HttpResponse error_response(unsigned status, const std::string& error) {
-    v1::ErrorReply reply;
-    reply.set_error(error);
-    return json_response(reply, status);
-}
-
 HttpResponse error_response(unsigned status, const Error& error) {
     return error_response(error.internal ? 500 : status, error.message);
+}
+
+HttpResponse busy_response() {
+    return retry_response(503, QueryThreads::busy, std::chrono::seconds{1});
 }
 
 HttpResponse stopped_response(std::string_view instead) {
@@ -90,6 +102,11 @@ HttpResponse refusal_of(const Operator& who, Right right) {
                               fmt::format("choose a password of your own first: PATCH /api/v1/users/{}", who.user));
     return error_response(403, fmt::format("{} is {}: this needs the right to {}, which begins with {}", who.user,
                                            name_of(*who.role), name_of(right), name_of(*least_role(right))));
+}
+
+std::string client_of(const Operator& who) {
+    if (!who.user.empty()) return person_of(who);
+    return who.browser.empty() || who.browser == no_browser ? network_of(who.from) : who.browser;
 }
 
 namespace {
@@ -152,6 +169,8 @@ std::span<const Api::Route> Api::routes() {
         {"GET", "/api/v1/scenarios", Right::watch, &Api::list_scenarios},
         {"GET", "/api/v1/dictionary", Right::watch, &Api::dictionary},
         {"GET", "/api/v1/openapi.yaml", Right::open, &Api::openapi},
+        {"GET", "/api/v1/schema", Right::open, &Api::list_schema},
+        {"GET", "/api/v1/schema/{file}", Right::open, &Api::schema},
         {"GET", "/api/v1/rehearsals", Right::watch, &Api::list_rehearsals},
         {"POST", "/api/v1/rehearsals", Right::rehearse, &Api::start_rehearsal, Query::none, "rehearsal", Audited::all,
          Body::whole},
@@ -176,28 +195,40 @@ std::span<const Api::Route> Api::routes() {
 
 Api::Api(Parts parts) : parts_(std::move(parts)), dictionary_json_(to_json(dictionary_reply(parts_.dictionary))) {}
 
-void Api::handle(HttpRequest request, const Respond& respond) {
+Respond Api::counted(std::string route, const Respond& respond) {
+    return [this, route = std::move(route), respond](HttpResponse response) {
+        {
+            const std::scoped_lock lock{counts_mutex_};
+            ++responses_[{route, response.status}];
+        }
+        respond(std::move(response));
+    };
+}
+
+void Api::handle(HttpRequest request, const Respond& give) {
     const std::string_view method = request.method == "HEAD" ? "GET" : std::string_view{request.method};
     const std::string path = request.path;
-    std::string others;
+    std::vector<std::string_view> others;
     for (const auto& route : routes()) {
         auto parts = parts_of(route.path, path);
         if (!parts) continue;
         if (route.method == method) {
             auto who = parts_.access.identify(request.credentials);
-            return answer(route, {std::move(request), std::move(who), std::move(*parts), respond});
+            const auto counts = counted(fmt::format("{} {}", route.method, route.path), give);
+            return answer(route, {std::move(request), std::move(who), std::move(*parts), counts});
         }
-        if (others.find(route.method) == std::string::npos)
-            others += (others.empty() ? "" : " and ") + std::string{route.method};
+        if (std::ranges::find(others, route.method) == others.end()) others.push_back(route.method);
     }
-    if (!others.empty())
-        return respond(error_response(405, fmt::format("{} {}: only {} here", request.method, path, others)));
-    if (path.starts_with(api_prefix))
+    const auto respond = counted("none", give);
+    if (!others.empty()) return respond(wrong_method(request.method, path, others));
+    if (!StaticFiles::may_have(path))
         return respond(
             error_response(404, fmt::format("{}: there is no such route; /api/v1/openapi.yaml lists them", path)));
-    if (method != "GET") return respond(error_response(405, fmt::format("{} {}: only GET here", request.method, path)));
+    if (method != "GET") return respond(wrong_method(request.method, path, {"GET"}));
+    auto who = parts_.access.identify(request.credentials);
     answer_on_query_thread(
-        respond, [this, path](archive::Reader&) { return parts_.console.file(path); }, JobPriority::at_once);
+        {std::move(request), std::move(who), {}, respond},
+        [this, path](archive::Reader&) { return parts_.console.file(path); }, JobPriority::at_once);
 }
 
 std::size_t Api::body_octets(const Credentials& credentials, std::string_view method, std::string_view path) const {
@@ -255,12 +286,12 @@ void Api::note(const Operator& who, std::string_view action, std::string detail,
     parts_.pipeline.audit(audit_record(who, action, std::move(detail), outcome));
 }
 
-void Api::answer_on_query_thread(const Respond& respond, std::function<HttpResponse(archive::Reader&)> answer,
+void Api::answer_on_query_thread(const ApiRequest& call, std::function<HttpResponse(archive::Reader&)> answer,
                                  JobPriority priority) {
-    const auto job = [answer = std::move(answer), respond](archive::Reader& reader) {
+    const auto job = [answer = std::move(answer), respond = call.respond](archive::Reader& reader) {
         respond(answered([&] { return answer(reader); }));
     };
-    if (!parts_.queries.ask(job, {}, priority)) respond(error_response(503, QueryThreads::busy));
+    if (!parts_.queries.ask(job, {client_of(call.who), {}}, priority)) call.respond(busy_response());
 }
 
 void Api::run_question(const ApiRequest& call) {
@@ -291,7 +322,7 @@ void Api::run_question(const ApiRequest& call) {
 }
 
 std::function<std::optional<Ert>(archive::RunId)> Api::clock() const {
-    return [current = parts_.hub.current_run(), now = ert_from_day_of_year(parts_.hub.latest_clocks().ert())](
+    return [current = parts_.hub.current_run(), now = ert_from_text(parts_.hub.latest_clocks().ert())](
                archive::RunId run) { return run.value == current ? now : std::nullopt; };
 }
 
@@ -317,7 +348,7 @@ void Api::ask(const ApiRequest& call, QueryText query, RunQuestion question, Job
         if (reader.stopped()) response = stopped_response("ask for less, by from and to, points or limit");
         respond(std::move(*response));
     };
-    if (!parts_.queries.ask(job, call.request.gone, priority)) call.respond(error_response(503, QueryThreads::busy));
+    if (!parts_.queries.ask(job, {client_of(call.who), call.request.gone}, priority)) call.respond(busy_response());
 }
 
 void Api::list_runs(const ApiRequest& call) {
@@ -326,7 +357,7 @@ void Api::list_runs(const ApiRequest& call) {
     auto format = query->one_of("format", list_formats);
     if (!format) return call.respond(error_response(400, format.error()));
     answer_on_query_thread(
-        call.respond,
+        call,
         [current = current_run(), format = std::move(*format)](archive::Reader& reader) {
             auto runs = reader.runs();
             if (!runs) return error_response(500, runs.error());
@@ -339,15 +370,11 @@ void Api::list_runs(const ApiRequest& call) {
 
 void Api::list_scenarios(const ApiRequest& call) {
     answer_on_query_thread(
-        call.respond, [this](archive::Reader&) { return json_response(parts_.scenarios.list()); }, JobPriority::soon);
+        call, [this](archive::Reader&) { return json_response(parts_.scenarios.list()); }, JobPriority::soon);
 }
 
 void Api::dictionary(const ApiRequest& call) {
     call.respond({200, "application/json", "no-store", dictionary_json_});
-}
-
-void Api::openapi(const ApiRequest& call) {
-    call.respond({200, "application/yaml", "no-cache", std::string{openapi_text}});
 }
 
 void Api::stream(const ApiRequest& call) {

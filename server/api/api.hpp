@@ -15,7 +15,9 @@
 
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <string>
@@ -37,7 +39,7 @@ struct ApiRequest {
 ///
 /// Thread   handle() on the network thread; archive queries run on the query threads
 /// Access   each route names the right it requires; without it: 401 or 403. Every change is written to the audit
-/// Faults   an answer other than 2xx carries ErrorReply: one sentence that names the fault
+/// Faults   an answer other than 2xx is a problem: ErrorReply with one sentence that names the fault
 class Api {
   public:
     struct Parts {
@@ -56,7 +58,7 @@ class Api {
     };
     explicit Api(Parts parts);
 
-    void handle(HttpRequest request, const Respond& respond);
+    void handle(HttpRequest request, const Respond& give);
     /// The largest body accepted from this peer for this path. The body of a request that will be refused is not read,
     /// since reading takes the network thread's time.
     std::size_t body_octets(const Credentials& credentials, std::string_view method, std::string_view path) const;
@@ -83,13 +85,16 @@ class Api {
     void list_runs(const ApiRequest& call);
     void list_scenarios(const ApiRequest& call);
     void dictionary(const ApiRequest& call);
-    void openapi(const ApiRequest& call);
     void stream(const ApiRequest& call);
     void health(const ApiRequest& call);
     // sample_export.cpp
     void export_samples(const ApiRequest& call);
     // prediction_routes.cpp
     void prediction(const ApiRequest& call);
+    // schema_routes.cpp
+    void openapi(const ApiRequest& call);
+    void list_schema(const ApiRequest& call);
+    void schema(const ApiRequest& call);
     // metrics.cpp
     void metrics(const ApiRequest& call);
     // rehearsal_routes.cpp
@@ -141,7 +146,7 @@ class Api {
     void name_latest(ApiRequest& call) const;
     void note(const Operator& who, std::string_view action, std::string detail, const std::string& outcome);
     /// Answers on a query thread; 503 when too many jobs wait.
-    void answer_on_query_thread(const Respond& respond, std::function<HttpResponse(archive::Reader&)> answer,
+    void answer_on_query_thread(const ApiRequest& call, std::function<HttpResponse(archive::Reader&)> answer,
                                 JobPriority priority = JobPriority::in_turn);
     void ask(const ApiRequest& call, QueryText query, RunQuestion question,
              JobPriority priority = JobPriority::in_turn);
@@ -149,14 +154,23 @@ class Api {
     std::function<std::optional<Ert>(archive::RunId)> clock() const;
     v1::RunState current_run() const;  ///< including what only the stream knows; run 0: no run since the server started
 
+    /// Counts the response, by route and status, for the metrics.
+    Respond counted(std::string route, const Respond& respond);
+
     Parts parts_;
     std::string dictionary_json_;
+    std::mutex counts_mutex_;
+    std::map<std::pair<std::string, unsigned>, std::uint64_t> responses_;  ///< by route and status
 };
 
-HttpResponse error_response(unsigned status, const std::string& error);
+/// The response when too many jobs wait for the query threads.
+HttpResponse busy_response();
 /// An error response with `status`; with 500 when the fault is the server's.
 HttpResponse error_response(unsigned status, const Error& error);
 HttpResponse json_response(const google::protobuf::Message& message, unsigned status = 200);
+
+/// The client that a request counts for: an account, without accounts a browser, else the network it comes from.
+std::string client_of(const Operator& who);
 
 /// The response to a question that was stopped because it took too long; `instead` says what to ask.
 HttpResponse stopped_response(std::string_view instead);

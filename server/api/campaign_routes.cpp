@@ -17,8 +17,8 @@ HttpResponse response_or_conflict(const Result<Message>& done, unsigned status =
 }  // namespace
 
 void Api::ask_campaign(const ApiRequest& call, CampaignQuestion question) {
-    answer_on_query_thread(call.respond, [this, name = call.parts[0], gone = call.request.gone,
-                                          question = std::move(question)](archive::Reader&) {
+    answer_on_query_thread(call, [this, name = call.parts[0], gone = call.request.gone,
+                                  question = std::move(question)](archive::Reader&) {
         const auto file = parts_.campaigns.file_of(name);
         if (!file)
             return error_response(404,
@@ -31,14 +31,14 @@ void Api::ask_campaign(const ApiRequest& call, CampaignQuestion question) {
 }
 
 void Api::list_campaigns(const ApiRequest& call) {
-    answer_on_query_thread(call.respond, [this](archive::Reader&) { return json_response(parts_.campaigns.list()); });
+    answer_on_query_thread(call, [this](archive::Reader&) { return json_response(parts_.campaigns.list()); });
 }
 
 void Api::start_campaign(const ApiRequest& call) {
     v1::StartCampaign wanted;
     if (const auto parsed = from_json(call.request.body, wanted); !parsed)
         return call.respond(error_response(400, parsed.error()));
-    answer_on_query_thread(call.respond, [this, wanted](archive::Reader&) {
+    answer_on_query_thread(call, [this, wanted](archive::Reader&) {
         auto order = parts_.campaigns.order_of(wanted);
         if (!order) return error_response(422, order.error());
         return response_or_conflict(parts_.campaigns.start(std::move(*order)), 202);

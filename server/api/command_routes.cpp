@@ -67,7 +67,7 @@ Result<void> complete(const ApiRequest& call, v1::CommandRequest& command) {
 }  // namespace
 
 void name_asker(const Operator& who, v1::CommandRequest& request) {
-    if (who.accounts) request.set_controller(who.user);
+    if (who.accounts) request.set_controller(person_of(who));
 }
 
 Result<void> may_send(const Operator& who, const dictionary::Dictionary& dictionary, const RehearsalDesk& desk,
@@ -105,7 +105,7 @@ void Api::post_command(const ApiRequest& call) {
         return respond(error_response(403, allowed.error()));
     const unsigned refused = parts_.dictionary.command(command.command()) == nullptr ? 422 : 409;
     const auto still = may_still_send(parts_.access, call.request.credentials, parts_.dictionary, parts_.desk);
-    parts_.desk.command(std::move(command), {still, call.who.browser},
+    parts_.desk.command(std::move(command), {still, call.who.browser, may(call.who, Right::hazardous)},
                         [respond, refused](const v1::CommandReply& reply) {
                             respond(json_response(reply, reply.accepted() ? 202 : refused));
                         });
@@ -132,8 +132,8 @@ void Api::post_sequence(const ApiRequest& call) {
     }
     const auto still = may_still_send(parts_.access, call.request.credentials, parts_.dictionary, parts_.desk);
     parts_.desk.sequence(
-        {sequence.commands().begin(), sequence.commands().end()}, sequence.dry_run(), {still, call.who.browser},
-        [respond](std::vector<v1::CommandReply> replies) {
+        {sequence.commands().begin(), sequence.commands().end()}, sequence.dry_run(),
+        {still, call.who.browser, may(call.who, Right::hazardous)}, [respond](std::vector<v1::CommandReply> replies) {
             v1::SequenceReply reply;
             reply.set_accepted(true);
             for (auto& each : replies) {

@@ -4,10 +4,14 @@
 #include "common/result.hpp"
 #include "server/access/access.hpp"
 
+#include <chrono>
 #include <cstddef>
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 namespace aeolis::server {
 
@@ -32,13 +36,20 @@ struct HttpResponse {
     std::string content_type = "application/json";
     std::string cache_control = "no-store";
     std::string body;
-    std::string set_cookie{};  ///< empty: none
-    std::string next_after{};  ///< of a page: the header Aeolis-Next-After; empty: none
+    /// Header fields of this response alone: Set-Cookie, Allow, Retry-After, Aeolis-Next-After.
+    std::vector<std::pair<std::string, std::string>> fields{};
     /// Null: `body` is the whole body. Else `body` is its first part, and this is called for each further part once the
     /// client has taken the one before; the answer may come from any thread. An Error closes the connection, so that
     /// the client sees that the body is incomplete.
     std::function<void(std::function<void(BodyPart)>)> more{};
+
+    std::string field(std::string_view name) const;  ///< of `fields`; empty: absent
 };
+
+/// A problem (RFC 9457), the shape of every error: status, its phrase, and one sentence that names the fault.
+HttpResponse error_response(unsigned status, const std::string& error);
+/// A problem that passes by itself, with the time after which the request may be sent again.
+HttpResponse retry_response(unsigned status, const std::string& error, std::chrono::seconds after);
 
 /// The response callback. Call it once, from any thread.
 using Respond = std::function<void(HttpResponse)>;

@@ -37,7 +37,7 @@ HttpResponse outcome_response(const Result<archive::LayoutOutcome>& outcome, con
 
 void Api::list_layouts(const ApiRequest& call) {
     answer_on_query_thread(
-        call.respond,
+        call,
         [owner = owner_of(call.who)](archive::Reader& reader) {
             const auto layouts = reader.layouts(owner);
             if (!layouts) return error_response(500, layouts.error());

@@ -132,7 +132,8 @@ HttpResponse list_response(std::string_view format, const Message& list, const R
     const auto* field = list.GetDescriptor()->FindFieldByName(std::string{rows.field});
     const auto* next_after = list.GetDescriptor()->FindFieldByName("next_after");
     HttpResponse response;
-    if (next_after != nullptr) response.next_after = std::to_string(reflection.GetUInt64(list, next_after));
+    if (next_after != nullptr)
+        response.fields.emplace_back("Aeolis-Next-After", std::to_string(reflection.GetUInt64(list, next_after)));
     if (format == "json") {
         response.body = to_json(list);
     } else if (format == "jsonl") {

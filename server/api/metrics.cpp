@@ -93,6 +93,13 @@ void Api::metrics(const ApiRequest& call) {
     text.line("build_info", fmt::format("{{version=\"{}\"}}", version), 1);
     write(text, parts_.pipeline.figures());
     write(text, parts_.hub);
+    text.begin("http_responses_total", "counter", "responses, by route and status; none: no route of the API");
+    {
+        const std::scoped_lock lock{counts_mutex_};
+        for (const auto& [of, number] : responses_)
+            text.line("http_responses_total", fmt::format("{{route=\"{}\",status=\"{}\"}}", of.first, of.second),
+                      number);
+    }
     text.gauge("connections", "open HTTP and WebSocket connections", parts_.connections());
     text.counter("queries_total", "questions to the archive", parts_.queries.asked());
     text.gauge("queries_waiting", "questions that wait for a query thread", parts_.queries.waiting());

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <fmt/format.h>
 
 // What the ground predicts of a run's landing: the nominal flight of its scenario, and the predicted silences.
@@ -71,6 +72,14 @@ void add_windows(const NominalFlight& flight, const RunClocks& clocks, v1::Predi
     }
 }
 
+void add_ellipse(const simulation::Scenario& scenario, v1::Prediction& prediction) {
+    if (scenario.target.ellipse_major_m == 0.0) return;
+    auto& ellipse = *prediction.mutable_ellipse();
+    ellipse.set_major_m(scenario.target.ellipse_major_m);
+    ellipse.set_minor_m(scenario.target.ellipse_minor_m);
+    ellipse.set_azimuth_deg(std::fmod(simulation::course_at_target_deg(scenario), 180.0));
+}
+
 void add_series(const NominalFlight& flight, const dictionary::Channel& channel, const RunClocks& clocks,
                 const archive::SclkRange& range, v1::Prediction& prediction) {
     auto& series = *prediction.add_channels();
@@ -120,6 +129,7 @@ void Api::prediction(const ApiRequest& call) {
             if (!text) return none(text.error());
             const auto scenario = scenario_from_text(*text, fmt::format("the scenario of run {}", id.value));
             if (!scenario) return none(scenario.error());
+            add_ellipse(*scenario, prediction);
             const auto predicted = parts_.predictions.prediction(*scenario);
             if (!predicted.none.empty()) return none(Error{predicted.none});
             prediction.set_basis(basis());

@@ -34,7 +34,10 @@ Result<std::unique_ptr<QueryThreads>> QueryThreads::open(const std::filesystem::
 
 QueryThreads::QueryThreads(std::vector<archive::Reader> readers, const Open& open,
                            std::chrono::milliseconds question_max)
-    : readers_(std::move(readers)) {
+    : waiting_{TurnQueue<WaitingJob>{waiting_max[0], of_client_waiting_max},
+               TurnQueue<WaitingJob>{waiting_max[1], of_client_waiting_max},
+               TurnQueue<WaitingJob>{waiting_max[2], of_client_waiting_max}},
+      readers_(std::move(readers)) {
     for (std::size_t i = 0; i < threads; ++i) {
         const auto kinds = i < question_threads ? std::span<const JobPriority>{questions_first}
                                                 : std::span<const JobPriority>{what_is_short};
@@ -49,6 +52,7 @@ void QueryThreads::serve(archive::Reader& reader, std::span<const JobPriority> k
         if (reader.outdated())
             if (auto fresh = open()) reader = std::move(*fresh);
         answer(*asked, reader, question_max);
+        done(*asked);
     }
 }
 
@@ -58,15 +62,55 @@ std::function<bool()> QueryThreads::stop_of_question(std::function<bool()> gone,
     return [this, stop = gone_or_late(std::move(gone), question_max)] { return over_ || stop(); };
 }
 
+void QueryThreads::take_turn(std::unique_lock<std::mutex>& lock) {
+    const auto place = next_place_++;
+    line_.push_back(place);
+    changed_.wait(lock, [&] { return over_ || (running_ < running_max && line_.front() == place); });
+    std::erase(line_, place);
+    ++running_;
+    changed_.notify_all();  // the next in line may have a turn, too
+}
+
+void QueryThreads::give_turn() {
+    {
+        const std::scoped_lock lock{mutex_};
+        --running_;
+    }
+    changed_.notify_all();
+}
+
+void QueryThreads::give_way(Clock::time_point& slice_began) {
+    if (Clock::now() - slice_began < slice) return;
+    std::unique_lock lock{mutex_};
+    if (!line_.empty() && !over_) {
+        --running_;
+        changed_.notify_all();
+        take_turn(lock);
+    }
+    slice_began = Clock::now();
+}
+
 void QueryThreads::answer(const WaitingJob& asked, archive::Reader& reader, std::chrono::milliseconds question_max) {
-    reader.stop_when(asked.priority == JobPriority::in_turn ? stop_of_question(asked.gone, question_max)
-                                                            : gone_or_late(asked.gone, question_max));
+    if (asked.priority == JobPriority::in_turn) {
+        const auto stop = stop_of_question(asked.asker.gone, question_max);
+        {
+            std::unique_lock lock{mutex_};
+            take_turn(lock);
+        }
+        reader.stop_when([this, stop, slice_began = Clock::now()]() mutable {
+            give_way(slice_began);
+            return stop();
+        });
+    } else {
+        reader.stop_when(gone_or_late(asked.asker.gone, question_max));
+    }
     try {
         asked.job(reader);
     } catch (const std::exception& bug) {  // fails only this query
         spdlog::error("a question could not be answered: {}", bug.what());
     }
     reader.stop_when({});
+    if (asked.priority == JobPriority::in_turn) give_turn();
 }
 
 void QueryThreads::end() {
@@ -79,27 +123,45 @@ void QueryThreads::end() {
     threads_.clear();
 }
 
+bool QueryThreads::may_begin(JobPriority kind, const std::string& client) const {
+    if (kind != JobPriority::in_turn || client.empty() || over_) return true;
+    const auto under_way = questions_of_.find(client);
+    return under_way == questions_of_.end() || under_way->second < of_client_max;
+}
+
 std::optional<QueryThreads::WaitingJob> QueryThreads::next(std::span<const JobPriority> kinds) {
+    const auto may = [this](JobPriority kind) {
+        return [this, kind](const std::string& client) { return may_begin(kind, client); };
+    };
     const auto first = [&] {
         return std::ranges::find_if(
-            kinds, [&](JobPriority kind) { return !waiting_[static_cast<std::size_t>(kind)].empty(); });
+            kinds, [&](JobPriority kind) { return waiting_[static_cast<std::size_t>(kind)].has(may(kind)); });
     };
     std::unique_lock lock{mutex_};
     changed_.wait(lock, [&] { return over_ || first() != kinds.end(); });
     const auto kind = first();
     if (kind == kinds.end()) return std::nullopt;
-    auto& waiting = waiting_[static_cast<std::size_t>(*kind)];
-    std::optional<WaitingJob> asked{std::move(waiting.front())};
-    waiting.pop_front();
+    auto asked = waiting_[static_cast<std::size_t>(*kind)].pop(may(*kind));
+    if (*kind == JobPriority::in_turn) ++questions_of_[asked->asker.client];
     return asked;
 }
 
-bool QueryThreads::ask(Job job, std::function<bool()> gone, JobPriority priority) {
-    const auto kind = static_cast<std::size_t>(priority);
+void QueryThreads::done(const WaitingJob& asked) {
+    if (asked.priority != JobPriority::in_turn) return;
     {
         const std::scoped_lock lock{mutex_};
-        if (over_ || waiting_[kind].size() >= waiting_max[kind]) return false;
-        waiting_[kind].push_back({std::move(job), std::move(gone), priority});
+        const auto found = questions_of_.find(asked.asker.client);
+        if (--found->second == 0) questions_of_.erase(found);
+    }
+    changed_.notify_all();
+}
+
+bool QueryThreads::ask(Job job, Asker asker, JobPriority priority) {
+    {
+        const std::scoped_lock lock{mutex_};
+        const std::string client = asker.client;
+        auto& waiting = waiting_[static_cast<std::size_t>(priority)];
+        if (over_ || !waiting.push(client, {std::move(job), std::move(asker), priority})) return false;
     }
     changed_.notify_all();  // all threads: one of them takes this kind
     ++asked_;

@@ -27,6 +27,7 @@ namespace {
 constexpr std::uint64_t seq_max = UINT64_MAX >> 1;  // SQLite's integers are signed
 constexpr std::array<std::string_view, 3> series_formats{"json", "csv", "protobuf"};
 constexpr std::array<std::string_view, 2> report_formats{"json", "csv"};
+constexpr std::string_view ert_prefix = "ert:";
 constexpr double scet_text_s = 1.0e-3;  // day-of-year texts are truncated to it: converts to the tick within it
 
 template <typename Message>
@@ -429,19 +430,29 @@ std::string as_flown_csv(const v1::AsFlownReport& report) {
 
 Result<std::optional<Sclk>> instant_of(const QueryText& query, std::string_view name, archive::Reader& reader,
                                        archive::RunId run) {
-    const auto scet = scet_from_day_of_year(query.text(name).value_or(""));
-    if (!scet) {
+    std::string text = query.text(name).value_or("");
+    if (text.starts_with("E ")) text[1] = '+';  // a plus that was not percent-encoded is a blank
+    const auto entry_s = seconds_from_entry(text);
+    const bool is_ert = text.starts_with(ert_prefix);
+    const auto utc = scet_from_text(std::string_view{text}.substr(is_ert ? ert_prefix.size() : 0));
+    if (!entry_s && !utc) {
         const auto sclk_s = query.number(name);
-        if (!sclk_s) return Error{sclk_s.error().message + ": seconds of SCLK, or SCET as 2012-219T05:00:00"};
+        if (!sclk_s || is_ert)
+            return Error{fmt::format("{}: '{}' is no instant: seconds of SCLK, SCET as 2012-219T05:00:00 or "
+                                     "2012-08-06T05:00:00Z, ert:2012-219T05:13:48, or E+4:58",
+                                     name, text)};
         return *sclk_s ? std::optional{Sclk{**sclk_s}} : std::nullopt;
     }
     const auto state = reader.run(run);
     if (!state) return state.error();
+    if (entry_s) return std::optional{Sclk{state->entry_sclk()} + *entry_s};
     const auto clock = archive::correlation_of(*state);
     if (clock.scet == Scet{})
         return Error{
             fmt::format("{}: nobody knows which SCET run {} has: seconds of SCLK are wanted", name, run.value)};
-    const Sclk exact = clock.sclk_of(*scet), tick = Sclk::from_ticks(std::llround(exact.seconds / seconds_per_tick));
+    const auto light_us = is_ert ? static_cast<std::int64_t>(state->light_time_s() * 1.0e6) : 0;
+    const Sclk exact = clock.sclk_of(Scet{utc->microseconds - light_us}),
+               tick = Sclk::from_ticks(std::llround(exact.seconds / seconds_per_tick));
     return std::optional{std::abs(tick - exact) < scet_text_s ? tick : exact};
 }
 

@@ -25,8 +25,8 @@ struct RunRoute {
     HttpResponse (*answer)(const AnswerContext&, archive::Reader&, archive::RunId, const QueryText&);
 };
 
-/// Reads a parameter that names an instant: seconds of SCLK, or SCET as day_of_year_text() writes it, converted by the
-/// run's clock correlation. None when absent.
+/// Reads a parameter that names an instant: seconds of SCLK; SCET as scet_from_text() reads it, converted by the run's
+/// clock correlation; "ert:" and a UTC time: when what was sent then is received; or a time from entry. None when absent.
 Result<std::optional<Sclk>> instant_of(const QueryText& query, std::string_view name, archive::Reader& reader,
                                        archive::RunId run);
 /// The range given by the parameters "from" and "to".

@@ -21,7 +21,7 @@ struct SampleExport : std::enable_shared_from_this<SampleExport> {
     archive::SclkRange range;
     std::optional<archive::SampleCursor> after;
     bool done = false;
-    std::function<bool()> gone;
+    Asker asker;
 
     /// The next page as text, which may be empty; none at the end.
     BodyPart page(archive::Reader& reader) {
@@ -46,7 +46,7 @@ struct SampleExport : std::enable_shared_from_this<SampleExport> {
         };
         // A page takes milliseconds, and a started answer must not be cut off because many queries wait: so it queues
         // with the stream's pages.
-        if (!queries.ask(job, gone, JobPriority::soon)) tell(Error{"too many questions wait"});
+        if (!queries.ask(job, asker, JobPriority::soon)) tell(Error{"too many questions wait"});
     }
 };
 
@@ -61,7 +61,7 @@ void Api::export_samples(const ApiRequest& call) {
     if (!text) return call.respond(error_response(400, text.error()));
     auto wanted = std::make_shared<SampleExport>(parts_.queries, std::move(*text));
     wanted->channels = std::move(channels);
-    wanted->gone = call.request.gone;
+    wanted->asker = {client_of(call.who), call.request.gone};
     ask(call, std::move(*query),
         [wanted](archive::Reader& reader, archive::RunId run, const QueryText& of) -> std::optional<HttpResponse> {
             const auto range = range_of(of, reader, run);

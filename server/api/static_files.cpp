@@ -53,13 +53,12 @@ HttpResponse StaticFiles::file(std::string_view path) const {
     if (error || !std::filesystem::is_regular_file(root / "index.html", error))
         return {503, "text/html; charset=utf-8", "no-store", not_built_page};
 
-    const bool is_view = path.find('.') == std::string_view::npos;
-    const auto wanted = is_view ? std::filesystem::path{"index.html"} : std::filesystem::path{path.substr(1)};
+    const std::filesystem::path wanted{path == "/" ? "index.html" : path.substr(1)};
     const auto file = std::filesystem::canonical(root / wanted, error);
     const auto [mismatch, unused] = std::mismatch(root.begin(), root.end(), file.begin(), file.end());
     if (error || mismatch != root.end() || !std::filesystem::is_regular_file(file, error) ||
         std::filesystem::file_size(file, error) > file_octets_max)
-        return {404, "text/plain; charset=utf-8", "no-store", "There is no such file in the console.\n"};
+        return error_response(404, std::string{path} + ": there is no such file in the console");
 
     std::ifstream stream{file, std::ios::binary};
     response.body.assign(std::istreambuf_iterator<char>{stream}, {});

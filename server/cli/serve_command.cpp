@@ -8,10 +8,12 @@
 #include "server/net/console_backend.hpp"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <csignal>
 #include <cstdlib>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <memory>
 #include <spdlog/spdlog.h>
 #include <sys/resource.h>
@@ -19,6 +21,9 @@
 
 namespace aeolis::server {
 namespace {
+
+constexpr std::array<std::string_view, 4> log_levels{"debug", "info", "warn", "error"};
+constexpr std::string_view default_log_level = "info";
 
 struct ServeOptions {
     SharedOptions shared;
@@ -35,7 +40,8 @@ struct ServeOptions {
     std::optional<std::string> downlink;  ///< "tcp://HOST:PORT", "udp://HOST:PORT": follow another mission
     std::filesystem::path xtce;           ///< of the followed mission
     PacketStreamFormat format{};
-    std::string log_level = "info", log_format = "text";
+    std::string log_level{default_log_level}, log_format = "text";
+    bool log_level_given = false;  ///< by command line or environment, before which the file gives way
 };
 
 struct Listen {
@@ -112,13 +118,13 @@ FollowedMission followed_mission(const ServeOptions& options) {
     return mission;
 }
 
-/// SIGINT and SIGTERM as something to wait for. Made before any thread: all of them inherit that they are blocked.
-class EndingSignals {
+/// SIGINT, SIGTERM and SIGHUP as something to wait for. Made before any thread: all of them inherit that they are
+/// blocked.
+class Signals {
   public:
-    EndingSignals() {
+    Signals() {
         sigemptyset(&signals_);
-        sigaddset(&signals_, SIGINT);
-        sigaddset(&signals_, SIGTERM);
+        for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&signals_, signal);
         pthread_sigmask(SIG_BLOCK, &signals_, nullptr);
     }
     int wait() const {
@@ -152,9 +158,29 @@ void print_address(const ConsoleBackend& backend, const Listen& listen, const st
     std::fflush(stdout);
 }
 
-void run_until_signal(ConsoleBackend& backend, const EndingSignals& ending) {
+/// SIGHUP: certificate, accounts and, where the file of settings decides it, the log level are read again. What cannot
+/// be read stays as it was.
+void read_again(ConsoleBackend& backend, const ServeOptions& options) {
+    spdlog::info("asked to read certificate, accounts and log level again");
+    if (!options.settings.empty() && !options.log_level_given) {
+        const auto level = setting_in_file(options.settings, "log-level");
+        if (!level)
+            spdlog::error("{}; the log level stays", level.error().message);
+        else if (const auto named = level->value_or(std::string{default_log_level});
+                 std::ranges::find(log_levels, named) == log_levels.end())
+            spdlog::error("{}: log-level: '{}' is none of {}; it stays", options.settings.string(), named,
+                          fmt::join(log_levels, ", "));
+        else
+            spdlog::set_level(spdlog::level::from_str(named));
+    }
+    backend.renew_certificate();
+}
+
+void run_until_signal(ConsoleBackend& backend, const Signals& signals, const ServeOptions& options) {
     std::thread waiter{[&] {
-        spdlog::info("{}: ending", ending.wait() == SIGINT ? "interrupted" : "asked to end");
+        int signal = signals.wait();
+        for (; signal == SIGHUP; signal = signals.wait()) read_again(backend, options);
+        spdlog::info("{}: ending", signal == SIGINT ? "interrupted" : "asked to end");
         backend.stop();
     }};
     backend.run();
@@ -180,7 +206,7 @@ int serve(const ServeOptions& options) {
         scenario = std::move(*given);
     }
 
-    const EndingSignals ending;
+    const Signals signals;
     auto opened = ConsoleBackend::open({.web_server = {.address = listen->address,
                                                        .port = listen->port,
                                                        .names = options.names,
@@ -203,7 +229,7 @@ int serve(const ServeOptions& options) {
                   options.downlink ? "Open it in a browser: it follows " + followed.link.address.text() + "."
                                    : what_to_do(scenario),
                   options);
-    run_until_signal(backend, ending);
+    run_until_signal(backend, signals, options);
     return 0;
 }
 
@@ -227,7 +253,7 @@ void add_backend_options(CLI::App& command, ServeOptions& options) {
     command.add_option("--archive", options.archive, "SQLite file that keeps everything")->capture_default_str();
     command.add_option("--web", options.web, "directory of the built console")->capture_default_str();
     command.add_option("--log-level", options.log_level, "what is logged to standard error")
-        ->check(CLI::IsMember({"debug", "info", "warn", "error"}))
+        ->check(CLI::IsMember(std::vector<std::string>{log_levels.begin(), log_levels.end()}))
         ->capture_default_str();
     command.add_option("--log-format", options.log_format, "text for people, or json: an object a line")
         ->check(CLI::IsMember({"text", "json"}))
@@ -282,7 +308,10 @@ void add_serve_command(CLI::App& program, int& exit_code) {
     add_run_options(command, *options);
     add_shared(command, options->shared);
     name_environment(command);
-    command.callback([options, &exit_code] { exit_code = serve(*options); });
+    command.callback([options, &exit_code, level = command.get_option("--log-level")] {
+        options->log_level_given = level->count() > 0;
+        exit_code = serve(*options);
+    });
 }
 
 }  // namespace aeolis::server

@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace aeolis::server {
 namespace {
@@ -24,14 +25,20 @@ std::optional<std::filesystem::path> settings_given(int argc, char** argv) {
     return std::nullopt;
 }
 
-Result<void> take_file(CLI::App& command, const std::filesystem::path& file) {
+Result<std::vector<CLI::ConfigItem>> lines_of(const std::filesystem::path& file) {
     std::ifstream in{file};
     if (!in) return Error{file.string() + " cannot be read"};
     CLI::ConfigINI reader;
     reader.arrayBounds(
         '\x01',
         '\x01');  // otherwise it splits values at commas and blanks, as options with several values do themselves
-    for (const auto& item : reader.from_config(in)) {
+    return reader.from_config(in);
+}
+
+Result<void> take_file(CLI::App& command, const std::filesystem::path& file) {
+    const auto lines = lines_of(file);
+    if (!lines) return lines.error();
+    for (const auto& item : *lines) {
         auto* option = item.name == "config" ? nullptr : command.get_option_no_throw("--" + item.name);
         if (option == nullptr || item.inputs.size() != 1)
             return Error{fmt::format("{}: '{}' is no option of aeolis {} with one value", file.string(),
@@ -55,6 +62,15 @@ void name_environment(CLI::App& command) {
         for (char& c : variable) c = c == '-' ? '_' : static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
         option->envname(variable);
     }
+}
+
+Result<std::optional<std::string>> setting_in_file(const std::filesystem::path& file, std::string_view option) {
+    const auto lines = lines_of(file);
+    if (!lines) return lines.error();
+    std::optional<std::string> value;
+    for (const auto& item : *lines)
+        if (item.name == option && item.inputs.size() == 1) value = item.inputs.front();
+    return value;
 }
 
 Result<void> take_settings(CLI::App& program, int argc, char** argv) {

@@ -3,6 +3,11 @@
 
 #include "common/result.hpp"
 
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+
 namespace CLI {
 class App;
 }
@@ -15,5 +20,8 @@ void name_environment(CLI::App& command);
 /// Makes the values in the file of `serve --config` the defaults of its options. Environment and command line then take
 /// precedence. Call before parsing the command line. Does nothing without such a file.
 Result<void> take_settings(CLI::App& program, int argc, char** argv);
+
+/// The value of one option in a file of settings; none: the file does not have it.
+Result<std::optional<std::string>> setting_in_file(const std::filesystem::path& file, std::string_view option);
 
 }  // namespace aeolis::server

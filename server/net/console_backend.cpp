@@ -92,7 +92,7 @@ Result<std::unique_ptr<ConsoleBackend>> ConsoleBackend::open(Settings settings,
         RehearsalDesk::Callbacks{[self](v1::RunState state) { self->hub_->run_state(std::move(state)); },
                                  [self](v1::Clocks clocks) { self->hub_->clocks(std::move(clocks)); }});
     // The last step that can fail: the first password is shown once, and only by a server that starts.
-    auto access = Access::open({.file = chosen.accounts});
+    auto access = Access::open({.file = chosen.accounts, .secure = backend->server_->secure()});
     if (!access) return access.error();
     backend->access_ = std::move(*access);
     backend->campaigns_ =
@@ -153,8 +153,10 @@ StreamSession::Client ConsoleBackend::stream_client(const Credentials& credentia
             reply(answer);
         };
         if (right)
-            return desk_->command(std::move(request),
-                                  {may_still_send(*access_, credentials, dictionary_, *desk_), who.browser}, noted);
+            return desk_->command(
+                std::move(request),
+                {may_still_send(*access_, credentials, dictionary_, *desk_), who.browser, may(who, Right::hazardous)},
+                noted);
         v1::CommandReply refusal;
         refusal.set_request(request.request());
         refusal.set_reason(right.error().message);
@@ -302,6 +304,15 @@ Result<void> ConsoleBackend::follow(DownlinkFollower::Settings settings) {
 
 void ConsoleBackend::run() {
     server_->run();
+}
+void ConsoleBackend::renew_certificate() {
+    if (!server_->secure()) return;
+    server_->post([this] {
+        if (const auto renewed = server_->renew_certificate(); !renewed)
+            spdlog::error("{}; the certificate of before stays", renewed.error().message);
+        else
+            spdlog::info("new connections get the certificate as it stands now");
+    });
 }
 void ConsoleBackend::stop() {
     server_->stop();

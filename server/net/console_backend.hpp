@@ -38,6 +38,8 @@ class ConsoleBackend {
     std::uint16_t downlink_port() const { return downlink_ ? downlink_->port() : std::uint16_t{0}; }
     void run();
     void stop();  ///< from any thread
+    /// Reads the certificate again; what comes of it is in the log. From any thread.
+    void renew_certificate();
     std::uint16_t port() const { return server_->port(); }
     bool secure() const { return server_->secure(); }
     /// The administrator's password when the accounts file was just created; else empty.

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/net/http_connection.hpp"
 
-#include "aeolis/v1/run.pb.h"
-#include "server/base/json.hpp"
+#include "server/net/request_head.hpp"
 #include "server/net/request_origin.hpp"
 
 #include <algorithm>
@@ -10,9 +9,9 @@
 #include <boost/asio/post.hpp>
 #include <boost/asio/write.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/core/string.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
-#include <boost/url/parse.hpp>
 #include <fmt/format.h>
 #include <optional>
 #include <string_view>
@@ -57,17 +56,19 @@ const Subprotocol* chosen_subprotocol(const Request& request) {
     return nullptr;
 }
 
-std::string error_body(const std::string& error) {
-    v1::ErrorReply reply;
-    reply.set_error(error);
-    return to_json(reply);
+/// Builds the response, moving the body out of `answer`.
+Response response_of(HttpResponse& answer, unsigned version) {
+    Response response{static_cast<http::status>(answer.status), version};
+    response.set(http::field::content_type, answer.content_type);
+    response.set(http::field::cache_control, answer.cache_control);
+    for (const auto& [name, value] : answer.fields) response.insert(name, value);
+    response.body() = std::move(answer.body);
+    return response;
 }
 
 Response error_reply(const Request& request, http::status status, const std::string& error) {
-    Response response{status, request.version() == 10 ? 10U : 11U};
-    response.set(http::field::content_type, "application/json");
-    response.set(http::field::cache_control, "no-store");
-    response.body() = error_body(error);
+    auto answer = error_response(static_cast<unsigned>(status), error);
+    auto response = response_of(answer, request.version() == 10 ? 10U : 11U);
     response.prepare_payload();
     return response;
 }
@@ -84,21 +85,8 @@ Response broken_reply(const Request& request, const error_code& error, std::size
 }
 
 HttpResponse too_many_answers() {
-    HttpResponse response;
-    response.status = 503;
-    response.body = error_body("too many long answers are under way: try again, or ask for less at once");
-    return response;
-}
-
-/// Builds the response, moving the body out of `answer`.
-Response response_of(HttpResponse& answer, unsigned version) {
-    Response response{static_cast<http::status>(answer.status), version};
-    response.set(http::field::content_type, answer.content_type);
-    response.set(http::field::cache_control, answer.cache_control);
-    if (!answer.set_cookie.empty()) response.set(http::field::set_cookie, answer.set_cookie);
-    if (!answer.next_after.empty()) response.set("Aeolis-Next-After", answer.next_after);
-    response.body() = std::move(answer.body);
-    return response;
+    return retry_response(503, "too many long answers are under way: try again, or ask for less at once",
+                          std::chrono::seconds{1});
 }
 
 /// Awaits the value that `ask` passes to its callback, on any thread.
@@ -144,8 +132,10 @@ class HttpConnection {
 
     Credentials credentials_of(const Request& request) const;
     std::size_t body_octets_max(const Request& request, const Credentials& credentials) const;
+    Task<bool> invite_body(const Parser& parser);
     Task<> answer_broken(const Request& request, error_code error, std::size_t octets_max);
-    std::string refusal_of(const Request& request) const;
+    Task<bool> end_with(Response reply);
+    std::string refusal_of(const Request& request, const std::string& host) const;
     std::optional<Response> refusal_of_stream(const Exchange& exchange) const;
     Task<> become_stream(Exchange& exchange);
     Task<> ask(Exchange& exchange, std::string path, std::string query);
@@ -181,12 +171,16 @@ Task<bool> HttpConnection<AnyStream>::read(Exchange& exchange) {
     lowest_.expires_after(service_.request_max);
     co_await http::async_read_header(stream_, buffer_, parser, asio::redirect_error(awaiting, error));
     std::size_t octets_max = HttpRequest::body_octets_max;
+    if (!error)
+        if (const auto refusal = refusal_of_framing(parser.get()); !refusal.empty())
+            co_return co_await end_with(error_reply(parser.get(), http::status::bad_request, refusal));
     exchange.credentials = credentials_of(parser.get());
     if (!error && !parser.is_done()) octets_max = body_octets_max(parser.get(), exchange.credentials);
     if (octets_max < HttpRequest::body_octets_max) {
         parser.body_limit(octets_max);
         if (parser.content_length().value_or(0) > octets_max) error = http::make_error_code(http::error::body_limit);
     }
+    if (!error && !parser.is_done() && !co_await invite_body(parser)) co_return false;
     if (!error && !parser.is_done())
         co_await http::async_read(stream_, buffer_, parser, asio::redirect_error(awaiting, error));
     if (error) {
@@ -207,9 +201,33 @@ Credentials HttpConnection<AnyStream>::credentials_of(const Request& request) co
 template <typename AnyStream>
 std::size_t HttpConnection<AnyStream>::body_octets_max(const Request& request, const Credentials& credentials) const {
     if (!service_.handlers.body_octets) return HttpRequest::body_octets_max;
-    const auto target = plain(request.target());
-    return service_.handlers.body_octets(credentials, plain(request.method_string()),
-                                         target.substr(0, target.find('?')));
+    const auto target = target_of(request);
+    return service_.handlers.body_octets(credentials, plain(request.method_string()), target ? target->path : "");
+}
+
+/// Answers Expect: 100-continue (RFC 9110, 10.1.1) of a client whose body has not begun to come.
+template <typename AnyStream>
+Task<bool> HttpConnection<AnyStream>::invite_body(const Parser& parser) {
+    const auto& request = parser.get();
+    const auto expected = request.find(http::field::expect);
+    if (expected == request.end() || request.version() == 10) co_return true;
+    if (!beast::iequals(expected->value(), "100-continue"))
+        co_return co_await end_with(
+            error_reply(request, http::status::expectation_failed, "Expect: only 100-continue is known"));
+    if (buffer_.size() > 0) co_return true;
+    error_code error;
+    constexpr std::string_view go_on = "HTTP/1.1 100 Continue\r\n\r\n";
+    co_await asio::async_write(stream_, asio::buffer(go_on), asio::redirect_error(awaiting, error));
+    co_return !error;
+}
+
+/// Sends the last response of the connection; false.
+template <typename AnyStream>
+Task<bool> HttpConnection<AnyStream>::end_with(Response reply) {
+    reply.keep_alive(false);
+    error_code ignored;
+    co_await http::async_write(stream_, reply, asio::redirect_error(awaiting, ignored));
+    co_return false;
 }
 
 /// Answers only errors within HTTP; a broken or silent connection gets no answer.
@@ -217,21 +235,19 @@ template <typename AnyStream>
 Task<> HttpConnection<AnyStream>::answer_broken(const Request& request, error_code error, std::size_t octets_max) {
     const bool is_http = error.category() == http::make_error_code(http::error::bad_method).category();
     if (!is_http || error == http::error::end_of_stream) co_return;
-    auto reply = broken_reply(request, error, octets_max);
-    reply.keep_alive(false);
-    co_await http::async_write(stream_, reply, asio::redirect_error(awaiting, error));
+    co_await end_with(broken_reply(request, error, octets_max));
 }
 
 template <typename AnyStream>
 Task<bool> HttpConnection<AnyStream>::answer(Exchange& exchange) {
     const auto& request = exchange.request;
-    const auto target = boost::urls::parse_origin_form(request.target());
-    if (const auto refusal = refusal_of(request); !refusal.empty()) {
+    auto target = target_of(request);
+    if (!target) {
+        exchange.response = error_reply(request, http::status::bad_request, target.error().message);
+    } else if (const auto refusal = refusal_of(request, target->host); !refusal.empty()) {
         exchange.response = error_reply(request, http::status::forbidden, refusal);
-    } else if (!target) {
-        exchange.response = error_reply(request, http::status::bad_request, "the request's target is not a path");
-    } else if (!websocket::is_upgrade(request) || target->path() != stream_path) {
-        co_await ask(exchange, target->path(), std::string{target->encoded_query()});
+    } else if (!websocket::is_upgrade(request) || target->path != stream_path) {
+        co_await ask(exchange, std::move(target->path), std::move(target->query));
     } else if (auto refused = refusal_of_stream(exchange)) {
         exchange.response = std::move(*refused);
     } else {
@@ -243,10 +259,10 @@ Task<bool> HttpConnection<AnyStream>::answer(Exchange& exchange) {
 
 /// Why the request must be answered with 403; empty: accepted.
 template <typename AnyStream>
-std::string HttpConnection<AnyStream>::refusal_of(const Request& request) const {
+std::string HttpConnection<AnyStream>::refusal_of(const Request& request, const std::string& host) const {
     const auto origin = request.find(http::field::origin);
     const auto given = origin != request.end() ? std::optional{plain(origin->value())} : std::nullopt;
-    return refusal_of_origin(plain(request[http::field::host]), given, service_.names, service_.secure);
+    return refusal_of_origin(host, given, service_.names, service_.secure);
 }
 
 /// The response that denies a stream; none: granted.
@@ -402,12 +418,27 @@ Task<> serve_http(TlsStream& stream, HttpService& service, std::string from) {
     co_await connection.serve();
 }
 
-Task<> refuse_connection(Stream& stream, const std::string& reason) {
-    auto reply = error_reply({}, http::status::service_unavailable, reason);
+namespace {
+
+template <typename AnyStream>
+Task<> refuse(AnyStream& stream, const std::string& reason) {
+    auto answer = retry_response(503, reason, std::chrono::seconds{1});
+    auto reply = response_of(answer, 11);
     reply.keep_alive(false);
+    reply.prepare_payload();
     error_code ignored;
-    stream.expires_after(std::chrono::seconds{1});
+    beast::get_lowest_layer(stream).expires_after(refusal_max);
     co_await http::async_write(stream, reply, asio::redirect_error(awaiting, ignored));
+}
+
+}  // namespace
+
+Task<> refuse_connection(Stream& stream, const std::string& reason) {
+    co_await refuse(stream, reason);
+}
+
+Task<> refuse_connection(TlsStream& stream, const std::string& reason) {
+    co_await refuse(stream, reason);
 }
 
 }  // namespace aeolis::server::net

@@ -36,7 +36,10 @@ struct HttpService {
 Task<> serve_http(Stream& stream, HttpService& service, std::string from);
 Task<> serve_http(TlsStream& stream, HttpService& service, std::string from);
 
+inline constexpr std::chrono::seconds refusal_max{1};  ///< chosen: for a connection beyond the limit to be told so
+
 /// Answers a connection beyond the limit, whatever its request: 503 with the reason.
 Task<> refuse_connection(Stream& stream, const std::string& reason);
+Task<> refuse_connection(TlsStream& stream, const std::string& reason);
 
 }  // namespace aeolis::server::net

@@ -20,7 +20,8 @@ namespace {
 
 using namespace net;
 
-constexpr unsigned peers_poll_ms = 250;  // chosen: longest work on an answer after its client left
+constexpr std::size_t refusing_max = 16;  // chosen: handshakes for connections that are then refused
+constexpr unsigned peers_poll_ms = 250;   // chosen: longest work on an answer after its client left
 
 /// Maps an IPv4 address on an IPv6 socket to plain IPv4.
 asio::ip::address plain_address(const asio::ip::address& address) {
@@ -48,9 +49,10 @@ Result<std::optional<asio::ssl::context>> tls_of(const WebServer::Settings& sett
 }  // namespace
 
 struct WebServer::State {
-    explicit State(const Settings& settings)
-        : connections(settings.streams + connections_besides, connections_each_max), service(settings) {}
+    explicit State(const Settings& given)
+        : settings(given), connections(given.streams + connections_besides, connections_each_max), service(given) {}
 
+    const Settings settings;
     ConnectionCount connections;
     HttpService service;
     asio::io_context& io = service.io;
@@ -64,7 +66,8 @@ struct WebServer::State {
     Task<> repeat(Timer& timer, std::chrono::milliseconds interval, std::function<void()> action);
     Task<> serve(Socket socket);
     Task<> serve_plain(Stream stream, std::string from);
-    Task<> serve_tls(Stream stream, std::string from);
+    Task<> serve_tls(Stream stream, std::string from, const std::string& refused);
+    std::size_t refusing = 0;  ///< connections beyond the limit that are being told so over TLS
 };
 
 Task<> WebServer::State::serve(Socket socket) {
@@ -78,10 +81,10 @@ Task<> WebServer::State::serve(Socket socket) {
                                         }};
     socket.set_option(tcp::no_delay{true}, ignored);
     Stream stream{std::move(socket)};
-    if (!refused.empty())
+    if (tls)
+        co_await serve_tls(std::move(stream), from, refused);
+    else if (!refused.empty())
         co_await refuse_connection(stream, refused);
-    else if (tls)
-        co_await serve_tls(std::move(stream), from);
     else
         co_await serve_plain(std::move(stream), from);
 }
@@ -92,14 +95,21 @@ Task<> WebServer::State::serve_plain(Stream stream, std::string from) {
     if (stream.socket().is_open()) stream.socket().shutdown(tcp::socket::shutdown_send, ignored);
 }
 
-Task<> WebServer::State::serve_tls(Stream stream, std::string from) {
+/// @param refused  why the connection is refused, which the client is told inside TLS; empty: it is served
+Task<> WebServer::State::serve_tls(Stream stream, std::string from, const std::string& refused) {
+    if (!refused.empty() && refusing >= refusing_max) co_return;  // handshakes cost: a flood gets none
+    const std::shared_ptr<void> counted{nullptr, [this, counts = !refused.empty()](void*) { refusing -= counts; }};
+    refusing += !refused.empty();
     TlsStream secure{std::move(stream), *tls};
     auto& lowest = beast::get_lowest_layer(secure);
-    lowest.expires_after(service.request_max);
+    lowest.expires_after(refused.empty() ? service.request_max : std::chrono::milliseconds{refusal_max});
     error_code error;
     co_await secure.async_handshake(asio::ssl::stream_base::server, asio::redirect_error(awaiting, error));
     if (error) co_return;  // the client speaks no TLS, or rejects the certificate
-    co_await serve_http(secure, service, std::move(from));
+    if (refused.empty())
+        co_await serve_http(secure, service, std::move(from));
+    else
+        co_await refuse_connection(secure, refused);
     if (!lowest.socket().is_open()) co_return;
     lowest.expires_after(std::chrono::seconds{1});
     co_await secure.async_shutdown(asio::redirect_error(awaiting, error));
@@ -199,6 +209,12 @@ void WebServer::post(std::function<void()> action) {
 }
 bool WebServer::secure() const {
     return state_->service.secure;
+}
+Result<void> WebServer::renew_certificate() {
+    auto tls = tls_of(state_->settings);
+    if (!tls) return tls.error();
+    state_->tls = std::move(*tls);
+    return {};
 }
 std::size_t WebServer::connections() const {
     return state_->connections.all();

@@ -75,6 +75,9 @@ class WebServer {
     void every(unsigned milliseconds, std::function<void()> action);  ///< on the network thread; call before run()
     std::size_t connections() const;                                  ///< on the network thread
     bool secure() const;                                              ///< over TLS
+    /// Reads certificate and key again, for connections from then on. When it fails, those of before stay. On the
+    /// network thread.
+    Result<void> renew_certificate();
 
   private:
     struct State;

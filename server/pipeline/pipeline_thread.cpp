@@ -116,6 +116,13 @@ void PipelineThread::abandon() {
     perform([&] { pipeline_.abandon(); });
 }
 
+void PipelineThread::leave() {
+    perform([&] {
+        static_cast<void>(pipeline_.commit());  // without it the run is continued from an earlier item
+        pipeline_.abandon();
+    });
+}
+
 void PipelineThread::audit(archive::AuditRecord record, std::function<void()> kept) {
     const bool refuses = !fault().empty();
     {

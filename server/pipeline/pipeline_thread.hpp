@@ -63,6 +63,8 @@ class PipelineThread {
     Result<bool> caught_up();
     /// Gives the run up; in the archive it stays unchanged.
     void abandon();
+    /// Makes what was delivered durable, as far as the disk takes it, and abandons the run, which stays interrupted.
+    void leave();
     /// Waits while the queue is full. False when writing was given up.
     bool deliver(Delivery delivery);
     /// Waits until all deliveries are durable and the run is marked finished.

@@ -7,7 +7,7 @@
 
 namespace aeolis::server {
 
-commands::Request request_of(const v1::CommandRequest& message, const std::string& browser) {
+commands::Request request_of(const v1::CommandRequest& message, const std::string& browser, bool director) {
     commands::Request request;
     request.request = message.request();
     request.command = message.command();
@@ -24,6 +24,7 @@ commands::Request request_of(const v1::CommandRequest& message, const std::strin
     request.number = message.number();
     request.controller = message.controller();
     request.browser = browser;
+    request.director = director;
     return request;
 }
 

@@ -12,7 +12,8 @@
 namespace aeolis::server {
 
 /// `browser`: without accounts, the one that sends it, for the second person.
-commands::Request request_of(const v1::CommandRequest& message, const std::string& browser = {});
+/// `director`: whether its sender may send hazardous commands.
+commands::Request request_of(const v1::CommandRequest& message, const std::string& browser = {}, bool director = false);
 v1::CommandReply message_of(const commands::Reply& reply);
 commands::TimelineVerdict verdict_of(const v1::TimelineVerdict& message);
 v1::TimelineVerdict message_of(const commands::TimelineVerdict& verdict);

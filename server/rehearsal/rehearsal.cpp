@@ -67,8 +67,8 @@ std::vector<v1::CommandReply> Rehearsal::look(std::span<const v1::CommandRequest
     return replies;
 }
 
-v1::CommandReply Rehearsal::submit(const v1::CommandRequest& request, const std::string& browser) {
-    if (takes_commands()) return message_of(flight_.submit(request_of(request, browser)));
+v1::CommandReply Rehearsal::submit(const v1::CommandRequest& request, const std::string& browser, bool director) {
+    if (takes_commands()) return message_of(flight_.submit(request_of(request, browser, director)));
     v1::CommandReply refusal;
     refusal.set_request(request.request());
     refusal.set_reason(fmt::format("the test venue {} has no computer", name_of(scenario_.test_venue)));

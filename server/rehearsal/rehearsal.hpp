@@ -40,7 +40,8 @@ class Rehearsal {
     /// step.
     const telemetry::Received& step();
 
-    v1::CommandReply submit(const v1::CommandRequest& request, const std::string& browser = {});
+    /// See request_of().
+    v1::CommandReply submit(const v1::CommandRequest& request, const std::string& browser = {}, bool director = false);
     /// See commands::CommandGateway::look.
     std::vector<v1::CommandReply> look(std::span<const v1::CommandRequest> file);
     /// See commands::CommandGateway::judge.

@@ -2,6 +2,7 @@
 #include "server/rehearsal/rehearsal_desk.hpp"
 
 #include "commands/command_gateway.hpp"
+#include "commands/shares.hpp"
 #include "server/pipeline/annotations.hpp"
 #include "server/scenario/scenario_text.hpp"
 #include "server/scenario/script_check.hpp"
@@ -198,7 +199,7 @@ void RehearsalDesk::command(v1::CommandRequest request, const Sender& sender, co
 
 void RehearsalDesk::sequence(std::vector<v1::CommandRequest> requests, bool only_check, const Sender& sender,
                              Replies replies) {
-    receive({std::move(requests), only_check, std::move(replies), sender.browser}, sender.authority);
+    receive({std::move(requests), only_check, std::move(replies), sender.browser, sender.director}, sender.authority);
 }
 
 void RehearsalDesk::receive(SendCommands order, const AuthorityCheck& authority) {
@@ -223,9 +224,12 @@ bool RehearsalDesk::waits(const SendCommands& order) const {
 }
 
 void RehearsalDesk::wait(SendCommands order, const AuthorityCheck& authority) {
-    if (waiting_.size() >= RehearsalRunner::requests_max)
+    const auto own = static_cast<std::size_t>(
+        std::ranges::count_if(waiting_, [&](const Waiting& each) { return each.order.asker() == order.asker(); }));
+    if (!commands::may_take(own, waiting_.size(), RehearsalRunner::requests_max))
         return order.refuse(
-            fmt::format("{} commands wait already, until a change of the timeline is decided", waiting_.size()));
+            fmt::format("{} commands wait already until a change of the timeline is decided, {} of them yours",
+                        waiting_.size(), own));
     // Numbers and rights refer to this run, not to one that begins meanwhile.
     for (auto& request : order.requests) request.set_run(state_.run());
     waiting_.push_back({std::move(order), authority});

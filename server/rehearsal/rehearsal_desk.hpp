@@ -58,6 +58,7 @@ class RehearsalDesk {
     struct Sender {
         AuthorityCheck authority;
         std::string browser{};  ///< without accounts: the one that sends, for the second person
+        bool director = false;  ///< may send hazardous commands
     };
 
     RehearsalDesk(const ScenarioLibrary& scenarios, const dictionary::Dictionary& dictionary, PipelineThread& pipeline,

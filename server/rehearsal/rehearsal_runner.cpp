@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/rehearsal/rehearsal_runner.hpp"
 
+#include "commands/shares.hpp"
 #include "commands/timeline_change.hpp"
 #include "server/archive/items.hpp"
 #include "server/archive/kept_request.hpp"
@@ -14,6 +15,9 @@
 #include <spdlog/spdlog.h>
 
 namespace aeolis::server {
+
+using commands::may_take;
+
 namespace {
 
 using std::chrono::duration;
@@ -69,7 +73,7 @@ RehearsalRunner::RehearsalRunner(simulation::Scenario scenario, archive::CutOffR
 }
 
 RehearsalRunner::~RehearsalRunner() {
-    static_cast<void>(order(StopRun{}));
+    static_cast<void>(order(LeaveRun{}));
     thread_.join();
 }
 
@@ -81,7 +85,7 @@ Result<void> RehearsalRunner::order(RunOrder order) {
             ++(intervene->intervention.has_fault() ? faults_taken_ : notes_taken_);
         else if (last_counts(order))
             std::erase_if(orders_, [&](const RunOrder& before) { return before.index() == order.index(); });
-        stop_ = stop_ || std::holds_alternative<StopRun>(order);
+        stop_ = stop_ || std::holds_alternative<StopRun>(order) || std::holds_alternative<LeaveRun>(order);
         orders_.push_back(std::move(order));
         changed_.notify_one();
         return {};
@@ -94,9 +98,16 @@ Result<void> RehearsalRunner::order(RunOrder order) {
 }
 
 std::string RehearsalRunner::refusal_of(const RunOrder& order) const {
-    if (std::holds_alternative<SendCommands>(order)) {
+    if (const auto* commands = std::get_if<SendCommands>(&order)) {
         if (over_ || stop_) return over_reason;
-        return commands_waiting() < requests_max ? "" : fmt::format("{} commands wait already", requests_max);
+        const auto own = std::ranges::count_if(orders_, [&](const RunOrder& each) {
+            const auto* other = std::get_if<SendCommands>(&each);
+            return other != nullptr && other->asker() == commands->asker();
+        });
+        const auto taken = commands_waiting();
+        return may_take(static_cast<std::size_t>(own), taken, requests_max)
+                   ? ""
+                   : fmt::format("{} commands wait already, {} of them yours", taken, own);
     }
     const auto* intervene = std::get_if<InterveneRun>(&order);
     if (intervene == nullptr) return {};
@@ -219,7 +230,7 @@ std::vector<RunOrder> RehearsalRunner::take_orders(std::optional<Clock::time_poi
 void RehearsalRunner::fly(Rehearsal& rehearsal) {
     count_pace_from(rehearsal, Clock::now());
     state_told_ = clocks_told_ = delivered_ = pace_since_;
-    while (!rehearsal.finished() && !stopped_ && !archive_gave_up_) {
+    while (!rehearsal.finished() && !stopped_ && !left_ && !archive_gave_up_) {
         auto now = Clock::now();
         const auto due = next_cycle_due(rehearsal, now);
         const bool wait = due - now >= shortest_wait;
@@ -240,7 +251,16 @@ void RehearsalRunner::fly(Rehearsal& rehearsal) {
         if (now - delivered_ >= delivery_interval || delivery_.entries.size() >= delivery_entries)
             archive_gave_up_ = archive_gave_up_ || !deliver(rehearsal, now);
     }
-    finish(rehearsal);
+    if (left_ && !stopped_ && !rehearsal.finished())
+        leave(rehearsal);
+    else
+        finish(rehearsal);
+}
+
+void RehearsalRunner::leave(const Rehearsal& rehearsal) {
+    deliver(rehearsal, Clock::now());
+    pipeline_.leave();
+    spdlog::info("run {} is left at E{:+.1f} s: it can be continued", run_id_.value, rehearsal.clocks().e_s());
 }
 
 void RehearsalRunner::finish(Rehearsal& rehearsal) {
@@ -282,6 +302,10 @@ void RehearsalRunner::carry_out(Rehearsal& /*rehearsal*/, const StopRun& /*order
     stopped_ = true;
 }
 
+void RehearsalRunner::carry_out(Rehearsal& /*rehearsal*/, const LeaveRun& /*order*/) {
+    left_ = true;
+}
+
 void RehearsalRunner::carry_out(Rehearsal& rehearsal, const InterveneRun& order) {
     const auto& intervention = order.intervention;
     if (intervention.has_fault()) {
@@ -301,7 +325,7 @@ void RehearsalRunner::carry_out(Rehearsal& rehearsal, const SendCommands& order)
     if (!replies.empty()) return order.replies(std::move(replies));
     bool any = false;
     for (const auto& request : order.requests) {
-        auto answer = rehearsal.submit(request, order.browser);
+        auto answer = rehearsal.submit(request, order.browser, order.director);
         const auto what =
             request.action().empty() ? request.command() : fmt::format("{} of {}", request.action(), request.number());
         spdlog::info("run {}: command {} {}", run_id_.value, what,
@@ -312,6 +336,7 @@ void RehearsalRunner::carry_out(Rehearsal& rehearsal, const SendCommands& order)
             v1::KeptRequest kept;
             *kept.mutable_command() = request;
             kept.set_browser(order.browser);
+            kept.set_director(order.director);
             keep(rehearsal, kept);
             take_stages(rehearsal);
         }
@@ -344,7 +369,7 @@ void RehearsalRunner::keep(const Rehearsal& rehearsal, const v1::KeptRequest& re
 bool RehearsalRunner::repeat(Rehearsal& rehearsal, const std::string& request) {
     const auto kept = archive::kept_request(request);
     switch (kept.kept_case()) {
-    case v1::KeptRequest::kCommand: return rehearsal.submit(kept.command(), kept.browser()).accepted();
+    case v1::KeptRequest::kCommand: return rehearsal.submit(kept.command(), kept.browser(), kept.director()).accepted();
     case v1::KeptRequest::kVerdict: return rehearsal.judge(verdict_of(kept.verdict())).ok();
     case v1::KeptRequest::kIntervention:
         return !kept.intervention().has_fault() || rehearsal.inject(kept.intervention().fault()).ok();

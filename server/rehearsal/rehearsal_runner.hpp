@@ -69,7 +69,7 @@ class RehearsalRunner {
     /// Continues a run that was cut off. @param scenario  the one in its row
     RehearsalRunner(simulation::Scenario scenario, archive::CutOffRun cut, double pace,
                     const dictionary::Dictionary& dictionary, PipelineThread& pipeline, Callbacks callbacks);
-    ~RehearsalRunner();  ///< stops the run and waits for its thread
+    ~RehearsalRunner();  ///< leaves the run, to be continued, and waits for its thread
 
     /// Takes an order. The Error says why an intervention is refused; commands are refused in their replies. Replies to
     /// accepted commands are given on the pipeline's thread once their stages are durable, those of a dry run at once.
@@ -98,6 +98,7 @@ class RehearsalRunner {
     void carry_out(Rehearsal& rehearsal, const PauseRun& order);
     void carry_out(Rehearsal& rehearsal, const PaceRun& order);
     void carry_out(Rehearsal& rehearsal, const StopRun& order);
+    void carry_out(Rehearsal& rehearsal, const LeaveRun& order);
     void carry_out(Rehearsal& rehearsal, const InterveneRun& order);
     void carry_out(Rehearsal& rehearsal, const SendCommands& order);
     void carry_out(Rehearsal& rehearsal, const commands::TimelineVerdict& verdict);
@@ -110,6 +111,7 @@ class RehearsalRunner {
     /// When the next cycle is due; always when there is no pace.
     Clock::time_point next_cycle_due(const Rehearsal& rehearsal, Clock::time_point now) const;
     void finish(Rehearsal& rehearsal);
+    void leave(const Rehearsal& rehearsal);
     /// Repeats a request stored with this run.
     static bool repeat(Rehearsal& rehearsal, const std::string& request);
     /// Checks commands. @return the replies of refused commands, or of all in a dry run; empty: each may be accepted
@@ -143,7 +145,7 @@ class RehearsalRunner {
     archive::RunStart start_;
     Delivery delivery_;
     bool timeline_moved_ = false;  ///< by a stage in delivery_
-    bool paused_ = false, finished_ = false, stopped_ = false, archive_gave_up_ = false;
+    bool paused_ = false, finished_ = false, stopped_ = false, left_ = false, archive_gave_up_ = false;
     double pace_ = 1.0, attained_pace_ = 0.0;
     Clock::time_point pace_since_{};  ///< start of counting the pace, at cycle pace_since_cycle_
     std::uint64_t pace_since_cycle_ = 0;

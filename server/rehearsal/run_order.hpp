@@ -20,6 +20,8 @@ struct PaceRun {
     double pace = 1.0;  ///< times real time; 0: as fast as possible
 };
 struct StopRun {};
+/// The server ends: nothing more is flown, and the run stays as after a crash, so that it can be continued.
+struct LeaveRun {};
 
 /// A fault to inject, or an instructor's note, which neither vehicle nor ground receives. Stored with the cycle at
 /// which it was received.
@@ -36,11 +38,16 @@ struct SendCommands {
     bool only_check = false;  ///< true: a dry run
     Replies replies;
     std::string browser{};  ///< without accounts: from which they are sent
+    bool director = false;  ///< who sends may send hazardous commands
+
+    /// For whom it counts where places are shared.
+    std::string asker() const { return browser.empty() && !requests.empty() ? requests.front().controller() : browser; }
 
     /// Replies to each command with the same refusal.
     void refuse(const std::string& reason) const;
 };
 
-using RunOrder = std::variant<PauseRun, PaceRun, StopRun, InterveneRun, SendCommands, commands::TimelineVerdict>;
+using RunOrder =
+    std::variant<PauseRun, PaceRun, StopRun, LeaveRun, InterveneRun, SendCommands, commands::TimelineVerdict>;
 
 }  // namespace aeolis::server

@@ -37,9 +37,8 @@ const Bindings<simulation::EntryState> entry_fields = {
     AEOLIS_BIND(EntryState, flight_path_deg), AEOLIS_BIND(EntryState, azimuth_deg),
 };
 const Bindings<simulation::Target> target_fields = {
-    AEOLIS_BIND(Target, latitude_deg),
-    AEOLIS_BIND(Target, longitude_deg),
-    AEOLIS_BIND(Target, radius_m),
+    AEOLIS_BIND(Target, latitude_deg),    AEOLIS_BIND(Target, longitude_deg),   AEOLIS_BIND(Target, radius_m),
+    AEOLIS_BIND(Target, ellipse_major_m), AEOLIS_BIND(Target, ellipse_minor_m),
 };
 const Bindings<simulation::Ground> ground_fields = {
     AEOLIS_BIND(Ground, height_m),
@@ -363,7 +362,9 @@ Result<Scenario> scenario_from_message(const v1::Scenario& message) {
     if (!message.like().empty()) return Error{"like: only a file can be like another"};
     if (message.entry_scet().empty()) return Error{"entry_scet: missing"};
     const auto entry_scet = scet_from_text(message.entry_scet());
-    if (!entry_scet) return Error{"entry_scet: " + entry_scet.error().message};
+    if (!entry_scet)
+        return Error{fmt::format("entry_scet: '{}' is not a UTC time like 2012-08-06T05:10:47.4 or 2012-219T05:10:47.4",
+                                 message.entry_scet())};
 
     Scenario scenario;
     scenario.name = message.name();

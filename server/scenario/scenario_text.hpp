@@ -30,7 +30,4 @@ std::string scenario_to_text(const simulation::Scenario& scenario);
 /// The fault to inject into a landing of this scenario. The Error names the field at fault.
 Result<simulation::Fault> fault_from_message(const v1::FaultInjection& message, const simulation::Scenario& scenario);
 
-/// Parses UTC: "2012-08-06T05:10:47.4" or, by day of year, "2012-219T05:10:47.4"; at most microseconds.
-Result<Scet> scet_from_text(std::string_view text);
-
 }  // namespace aeolis::server

@@ -324,18 +324,62 @@ TEST_CASE("do edl is left to flight when the parameters were not read back in th
     CHECK(reply.preconditions.back().text == "EDL_SET_PARAMETERS held as sent (command 1): not read back in its time");
 }
 
-TEST_CASE("a run has room for so many commands, and says how many it had", "[gateway][bounds]") {
+TEST_CASE("nobody has more commands under way than places are free, and what is done gives its place back",
+          "[gateway][bounds][R63]") {
     Station station;
-    for (std::size_t i = 0; i < CommandGateway::commands_max; ++i) {
+    const auto ask = [&](const char* who) {
         auto held = request("NO_OP");
         held.hold = true;
-        REQUIRE(station.send(held).accepted);
-        if (i == 0)
-            CHECK(station.gateway.takes(CommandGateway::commands_max).error().message ==
-                  "this run has had 1 of its 4096 commands");
+        held.controller = who;
+        return station.send(held);
+    };
+    const auto fill = [&](const char* who) {
+        std::size_t taken = 0;
+        while (ask(who).accepted) ++taken;
+        return taken;
+    };
+    CHECK(fill("greedy") == CommandGateway::commands_max / 2);
+    CHECK(ask("greedy").reason == "2048 of the 2048 commands under way are yours: the places left are for others");
+    CHECK(fill("greedy too") == CommandGateway::commands_max / 4);
+    REQUIRE(ask("careful").accepted);
+    auto cancel = request("");
+    cancel.action = "cancel";
+    cancel.number = 1;
+    CHECK_FALSE(ask("greedy").accepted);
+    for (cancel.number = 1; cancel.number <= 2048; ++cancel.number) REQUIRE(station.send(cancel).accepted);
+    station.gateway.pass(Ert{now.microseconds + 3600LL * 1'000'000}, station.stages);
+    CHECK(fill("greedy") > 1000);  // no limit lasts as long as the run
+}
+
+TEST_CASE(
+    "a director's command among another's thousand leaves before them, and no cycle radiates more than the vehicle "
+    "takes",
+    "[gateway][bounds][R63]") {
+    Station station;
+    for (int i = 0; i < 1000; ++i) {
+        auto flood = request("NO_OP");
+        flood.controller = "greedy";
+        flood.priority = 4'000'000'000U;
+        REQUIRE(station.send(flood).accepted);
     }
-    CHECK(station.gateway.queued() == CommandGateway::commands_max);
-    CHECK(station.send(request("NO_OP")).reason == "this run has had its 4096 commands");
+    auto wanted = request("NO_OP");
+    wanted.controller = "director";
+    wanted.director = true;
+    const auto reply = station.send(wanted);
+    REQUIRE(reply.accepted);
+    CHECK(station.radiated().size() <= CommandGateway::radiated_a_cycle_max);
+    int cycles = 0;
+    const auto left = [&] {
+        return std::ranges::any_of(station.stages, [&](const StageReport& stage) {
+            return stage.command == reply.command && stage.stage == Stage::radiated;
+        });
+    };
+    for (; cycles < 100 && !left(); ++cycles) {
+        station.gateway.pass(Ert{now.microseconds + (cycles + 1) * 15'625}, station.stages);
+        CHECK(station.radiated().size() <= CommandGateway::radiated_a_cycle_max);
+    }
+    // Only those that were at the uplink already left before it.
+    CHECK(cycles <= static_cast<int>(CommandGateway::at_uplink_max));
 }
 
 TEST_CASE("silence becomes unknown when the window has passed, never ok", "[gateway][R44]") {

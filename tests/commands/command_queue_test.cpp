@@ -31,6 +31,17 @@ TEST_CASE("of commands that are due the more urgent leaves first, of equals the 
     CHECK(leaving(queue, Ert{0}).empty());
 }
 
+TEST_CASE("askers take turns, each in its own order, and what passes ahead does so before all of them",
+          "[commands][queue][R63]") {
+    CommandQueue queue;
+    for (std::uint64_t number = 1; number <= 4; ++number) queue.add({.number = number, .asker = "greedy"});
+    queue.add({.number = 5, .asker = "careful"});
+    queue.add({.number = 6, .asker = "careful"});
+    queue.add({.number = 7, .ahead = true, .asker = "director"});
+    queue.add({.number = 8, .priority = 9, .asker = "greedy"});
+    CHECK(leaving(queue, Ert{0}) == Numbers{7, 8, 5, 1, 6, 2, 3, 4});
+}
+
 TEST_CASE("a command with a time leaves then and not before", "[commands][queue]") {
     CommandQueue queue;
     queue.add({.number = 1, .priority = 9, .release_at = Ert{100}, .held = false});

@@ -64,20 +64,56 @@ TEST_CASE("a clock without drift keeps SCET to the microsecond as by the instant
     }
 }
 
-TEST_CASE("a time in day-of-year form is read back to the microsecond, and nothing else is taken for one", "[common]") {
+TEST_CASE("UTC is read by day of year and by calendar, to the microsecond, and nothing else is taken for it",
+          "[common]") {
     for (const std::int64_t microseconds :
          {std::int64_t{0}, std::int64_t{397'501'847'400'000}, std::int64_t{-1'000'000'000'000}})
-        CHECK(ert_from_day_of_year(day_of_year_text(Ert{microseconds})) == Ert{microseconds});
-    CHECK(ert_from_day_of_year("2012-219T05:10:47") == Ert{397'501'847'000'000});
-    CHECK(ert_from_day_of_year("2012-219T05:10:47.4") == Ert{397'501'847'400'000});
-    CHECK(ert_from_day_of_year("2012-219T05:10:47.400001") == Ert{397'501'847'400'001});
-    CHECK(ert_from_day_of_year("2012-366T00:00:00").has_value());
-    for (const char* text :
-         {"", "tomorrow", "2013-366T00:00:00", "2012-000T00:00:00", "2012-219T24:00:00", "2012-219T05:60:00",
-          "2012-219T05:10:60", "2012-219T05:10:47.", "2012-219T05:10:47.1234567", "2012-219 05:10:47",
-          "2012-08-06T05:10:47", "2012-219T05:10:4x", "-012-219T05:10:47"}) {
+        CHECK(ert_from_text(day_of_year_text(Ert{microseconds})) == Ert{microseconds});
+    CHECK(ert_from_text("2012-219T05:10:47") == Ert{397'501'847'000'000});
+    CHECK(ert_from_text("2012-219T05:10:47.4") == Ert{397'501'847'400'000});
+    CHECK(ert_from_text("2012-219T05:10:47.400001") == Ert{397'501'847'400'001});
+    CHECK(ert_from_text("2012-219T05:10:47.4Z") == Ert{397'501'847'400'000});
+    CHECK(scet_from_text("2012-08-06T05:10:47.4Z") == Scet{397'501'847'400'000});
+    CHECK(scet_from_text("2000-01-01T12:00:00") == Scet{0});
+    CHECK(scet_from_text("2012-02-29T00:00:00.000001") == scet_from_text("2012-060T00:00:00.000001"));
+    CHECK(ert_from_text("2012-366T00:00:00").has_value());
+    for (const char* text : {"",
+                             "2012",
+                             "tomorrow",
+                             "2013-366T00:00:00",
+                             "2012-000T00:00:00",
+                             "2012-367T00:00:00",
+                             "2012-219T24:00:00",
+                             "2012-219T05:60:00",
+                             "2012-219T05:10:60",
+                             "2012-219T05:10:47.",
+                             "2012-219T05:10:47.1234567",
+                             "2012-219 05:10:47",
+                             "2012-219T05:10:4x",
+                             "-012-219T05:10:47",
+                             "2013-02-29T00:00:00",
+                             "2012-13-01T00:00:00",
+                             "2012-08-06 05:10:47",
+                             "2012-08-06T05:10:47z",
+                             "2012-08-06T05:10:47+00:00",
+                             "2012-08-06T05:10:47ZZ",
+                             "-012-08-06T05:10:47",
+                             "2012-8-6T05:10:47"}) {
         INFO(text);
-        CHECK_FALSE(ert_from_day_of_year(text).has_value());
+        CHECK_FALSE(ert_from_text(text).has_value());
+    }
+}
+
+TEST_CASE("a time from entry is read with hours, minutes and seconds or seconds alone, before and after", "[common]") {
+    CHECK(seconds_from_entry("E+4:58") == 298.0);
+    CHECK(seconds_from_entry("E-1:02:03.5") == -3723.5);
+    CHECK(seconds_from_entry("E\u22120:01") == -1.0);
+    CHECK(seconds_from_entry("E+298.25") == 298.25);
+    CHECK(seconds_from_entry("E-518400") == -518400.0);
+    for (const char* text : {"", "E", "E4:58", "E+", "E+4:5", "E+4:60", "E+1:60:00", "E+:30", "E+1:00:00:00", "E+4:58.",
+                             "e+4:58", "E+4:58 ", "E+12345678", "E+-5"}) {
+        INFO(text);
+        CHECK_FALSE(seconds_from_entry(text).has_value());
     }
 }
 

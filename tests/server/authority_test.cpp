@@ -90,6 +90,8 @@ const Row rows[] = {
     {"GET", "/api/v1/scenarios", "observer", "/api/v1/scenarios", "", 200},
     {"GET", "/api/v1/dictionary", "observer", "/api/v1/dictionary", "", 200},
     {"GET", "/api/v1/openapi.yaml", "nobody", "/api/v1/openapi.yaml", "", 200},
+    {"GET", "/api/v1/schema", "nobody", "/api/v1/schema", "", 200},
+    {"GET", "/api/v1/schema/{file}", "nobody", "/api/v1/schema/run.proto", "", 200},
     {"GET", "/api/v1/rehearsals", "observer", "/api/v1/rehearsals", "", 200},
     {"POST", "/api/v1/rehearsals", "director", "/api/v1/rehearsals", "{", 400},
     {"GET", "/api/v1/rehearsals/current", "observer", "/api/v1/rehearsals/current", "", 404},
@@ -341,6 +343,35 @@ TEST_CASE("who may send a command that waits may act on it, and nobody else", "[
             .ask("carl", "POST", "/api/v1/runs/latest/sequences", R"({"commands":[{"action":"release","number":1}]})")
             .body,
         Catch::Contains("action are not for a command of a sequence"));
+}
+
+TEST_CASE("what a person's token asks for that person cannot approve, and another can", "[access][http][R23][R63]") {
+    Guarded guarded;
+    REQUIRE(guarded
+                .ask("administrator", "POST", "/api/v1/users",
+                     R"({"user":"dora","role":"director","password":"given by another"})")
+                .status == 201);
+    guarded.take_over("dora", "given by another");
+    const auto token = guarded
+                           .ask("administrator", "POST", "/api/v1/tokens",
+                                R"({"name":"robot","role":"controller","owner":"director"})")
+                           .body;
+    guarded.as["robot"] = {{"Authorization", "Bearer " + token.substr(token.find(R"("token":")") + 9, 43)}};
+    REQUIRE(guarded.ask("director", "POST", "/api/v1/rehearsals", R"({"scenario":"two_persons","pace":100})").status ==
+            201);
+    const auto send = [&](const char* who, const char* body) {
+        return guarded.ask(who, "POST", "/api/v1/runs/latest/commands", body);
+    };
+    const char* const set = R"({"command":"EDL_SET_PARAMETERS","from_solution":true})";
+    auto asked = send("robot", set);
+    for (int i = 0; i < 3000 && asked.status != 202; ++i) {
+        std::this_thread::sleep_for(std::chrono::milliseconds{20});
+        asked = send("robot", set);
+    }
+    REQUIRE(asked.status == 202);
+    const char* const approve = R"({"action":"approve","number":1})";
+    CHECK_THAT(send("director", approve).body, Catch::Contains("was asked for by director: another controller"));
+    CHECK_THAT(send("dora", approve).body, Catch::Contains(R"("accepted":true)"));
 }
 
 TEST_CASE("the script of an inline scenario is bound by the account's list, by each way to start it",

@@ -266,10 +266,18 @@ TEST_CASE("a settings file may name several hosts with commas between, and a pat
         CHECK(status("second.example") == 200);
         CHECK(status("third.example") == 403);
         CHECK(std::filesystem::exists(archive));
+        // SIGHUP reads the log level again, and a level that is none leaves the one of before.
+        std::ofstream{settings, std::ios::app} << "log-level=loud\n";
+        CHECK(::kill(server, SIGHUP) == 0);
+        while (said.find("it stays") == std::string::npos && std::fgets(line.data(), line.size(), pipe) != nullptr)
+            said += line.data();
+        CHECK(status("first.example") == 200);
         CHECK(::kill(server, SIGTERM) == 0);
     }
-    while (std::fgets(line.data(), line.size(), pipe) != nullptr) {
-    }
+    while (std::fgets(line.data(), line.size(), pipe) != nullptr) said += line.data();
+    CHECK_THAT(said, Catch::Contains("asked to read certificate, accounts and log level again") &&
+                         Catch::Contains("log-level: 'loud' is none of debug, info, warn, error; it stays") &&
+                         Catch::Contains("asked to end: ending"));
     CHECK(pclose(pipe) == 0);
 }
 

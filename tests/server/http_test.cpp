@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "aeolis/v1/items.pb.h"
 #include "aeolis/v1/run.pb.h"
 #include "server/access/this_user.hpp"
 #include "server/archive/items.hpp"
@@ -11,6 +12,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <fstream>
+#include <google/protobuf/descriptor.pb.h>
 
 namespace server_http_test {
 
@@ -107,7 +109,7 @@ TEST_CASE("every route answers what it can and refuses the rest by name", "[http
         {"GET", "/api/v1/runs/1/samples?names=altitude_m&to=2012-219T05:00:00", "", 200, "sclk,e_s,"},
         {"GET", "/api/v1/runs/1/state?at=2012-400T05:00:00", "", 400, "at: '2012-400T05:00:00'"},
         {"GET", "/api/v1/runs/1/events?to=noon", "", 400,
-         "to: 'noon' is not a number: seconds of SCLK, or SCET as 2012-219T05:00:00"},
+         "to: 'noon' is no instant: seconds of SCLK, SCET as 2012-219T05:00:00"},
         {"GET", "/api/v1/runs/1/events?from=2012-219T05:00:01&to=2012-219T05:00:00", "", 400, "upside down"},
         {"GET", "/api/v1/runs/1/recording", "", 200, "\"realtime_differs\":\"0\""},
         {"GET", "/api/v1/runs/1/report", "", 200, "\"timepoints\":["},
@@ -213,9 +215,9 @@ TEST_CASE("samples in Protobuf are those in JSON, bit for bit, in less than half
     CHECK(2 * octets.body.size() < json.body.size());
 }
 
-TEST_CASE("an event is found by its SCET, which the run's clock turns into SCLK, and a page says in a header where the "
-          "next begins",
-          "[http][R43]") {
+TEST_CASE("an event is found by its SCET, its ERT or its time from entry, and a page says in a header where the next "
+          "begins",
+          "[http][R43][R62]") {
     RunningServer server{shipped_scenario("nominal_auto"), 100.0};
     const auto ask = [&](const std::string& question) {
         return web_request(server.port(), "GET", "/api/v1/runs/1" + question);
@@ -234,6 +236,15 @@ TEST_CASE("an event is found by its SCET, which the run's clock turns into SCLK,
     REQUIRE(from_json(ask("/events?from=" + scet + "&to=" + scet).body, found).ok());
     REQUIRE(found.events_size() > 0);
     CHECK(found.events(0).SerializeAsString() == first.SerializeAsString());
+    const auto from_entry = fmt::format("E{:+.6f}", first.event().sclk() - run.entry_sclk());
+    const auto sent = Scet{archive::correlation_of(run).scet_of(Sclk{first.event().sclk()}).microseconds +
+                           static_cast<std::int64_t>(run.light_time_s() * 1e6)};
+    for (const auto& instant : {scet + "Z", "ert:" + day_of_year_text(sent), from_entry}) {
+        INFO(instant);
+        REQUIRE(from_json(ask("/events?from=" + instant + "&to=" + instant).body, found).ok());
+        REQUIRE(found.events_size() > 0);
+        CHECK(found.events(0).seq() == first.seq());
+    }
 
     for (const char* format : {"json", "csv", "jsonl"})
         CHECK(ask(std::string{"/events?limit=1&format="} + format).next_after == std::to_string(first.seq()));
@@ -692,7 +703,7 @@ TEST_CASE("the console's files are served, and nothing outside its folder", "[ht
     std::filesystem::create_directories(web / "assets");
     std::ofstream{web / "index.html"} << "<!doctype html>console";
     std::ofstream{web / "assets/app-1a2b.js"} << "export {}";
-    const auto page = web_request(port, "GET", "/plots/altitude");
+    const auto page = web_request(port, "GET", "/");
     CHECK(page.status == 200);
     CHECK(page.content_type == "text/html; charset=utf-8");
     CHECK(page.cache_control == "no-cache");
@@ -703,6 +714,27 @@ TEST_CASE("the console's files are served, and nothing outside its folder", "[ht
     for (const char* outside :
          {"/../a.db", "/%2e%2e/a.db", "/assets/../../a.db", "/..%2fa.db", "//etc/passwd.x", "/none.js"})
         CHECK(web_request(port, "GET", outside).status == 404);
+}
+
+TEST_CASE("the server gives the schema that it speaks, as files and as descriptors by which a message is read",
+          "[http][R62]") {
+    RunningServer server;
+    v1::SchemaFileList list;
+    REQUIRE(from_json(web_request(server.port(), "GET", "/api/v1/schema").body, list));
+    CHECK(list.files_size() == 9);
+    for (const auto& file : list.files()) {
+        std::ifstream in{std::filesystem::path{AEOLIS_SOURCE_DIR "/schema"} / list.folder() / file};
+        const auto given = web_request(server.port(), "GET", "/api/v1/schema/" + file);
+        CHECK(given.body == std::string{std::istreambuf_iterator<char>{in}, {}});
+    }
+    google::protobuf::FileDescriptorSet set;
+    REQUIRE(set.ParseFromString(web_request(server.port(), "GET", "/api/v1/schema/" + list.descriptor_set()).body));
+    google::protobuf::DescriptorPool pool;  // knows nothing but what was given, each file after those it imports
+    for (const auto& file : set.file()) CHECK(pool.BuildFile(file) != nullptr);
+    const auto* item = pool.FindMessageTypeByName("aeolis.v1.Item");
+    REQUIRE(item != nullptr);
+    CHECK(item->field_count() == v1::Item::descriptor()->field_count());
+    CHECK(web_request(server.port(), "GET", "/api/v1/schema/openapi.yaml").status == 404);
 }
 
 TEST_CASE("a second server on the port, or another address, is refused in one line", "[http]") {

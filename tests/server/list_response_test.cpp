@@ -37,7 +37,7 @@ TEST_CASE("a list as CSV has a column a field by its path and a row a line, quot
           "[http][export]") {
     const auto csv = as("csv", two_events(), {"events", {"event"}});
     CHECK(csv.content_type == "text/csv; charset=utf-8");
-    CHECK(csv.next_after == "9");
+    CHECK(csv.field("Aeolis-Next-After") == "9");
     CHECK(csv.body ==
           "seq,event.id,event.name,event.level,event.text,event.sclk,event.ert,event.source,event.duplicate\n"
           "7,0,TOUCHDOWN,ACTIVITY_HI,\"a \"\"quoted\"\", text\nof two lines\",397000845.015625,,recorded,false\n"
@@ -50,7 +50,7 @@ TEST_CASE("a list as JSON lines has its rows as they are in the list, one a line
     const auto list = two_events();
     const auto lines = as("jsonl", list, {"events", {"event"}});
     CHECK(lines.content_type == "application/x-ndjson");
-    CHECK(lines.next_after == "9");
+    CHECK(lines.field("Aeolis-Next-After") == "9");
     CHECK(lines.body == server::to_json(list.events(0)) + '\n' + server::to_json(list.events(1)) + '\n');
     CHECK(as("json", list, {"events", {"event"}}).body == server::to_json(list));
 }
@@ -72,13 +72,13 @@ TEST_CASE(
     series.mutable_channels(0)->add_source(v1::SOURCE_REALTIME);
     const auto columns = as("csv", series, {"channels"});
     CHECK_THAT(columns.body, Catch::Contains(",1.5 2,,realtime,"));
-    CHECK(columns.next_after.empty());  // no pages
+    CHECK(columns.field("Aeolis-Next-After").empty());  // no pages
 }
 
 TEST_CASE("as CSV an SCLK has SCET beside it where the clock of the run is known", "[http][export]") {
     auto list = two_events();
     list.mutable_events(1)->mutable_event()->set_sclk(1e15);  // no date has so many digits
-    const ClockCorrelation clock{Sclk{397000845.0}, *scet_from_day_of_year("2012-219T05:17:57.000")};
+    const ClockCorrelation clock{Sclk{397000845.0}, *scet_from_text("2012-219T05:17:57.000")};
     const auto csv = list_response("csv", list, {"events", {"event"}}, clock).body;
     CHECK_THAT(csv, Catch::Contains(",event.sclk,event.scet,event.ert,") &&
                         Catch::Contains(",397000845.015625,2012-219T05:17:57.015,,recorded"));

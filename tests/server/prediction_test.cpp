@@ -102,6 +102,8 @@ TEST_CASE("runs that differ in seed and faults have one prediction, to the octet
     REQUIRE(blackout != prediction.windows().end());
     CHECK(blackout->link() == "uhf_live");
     CHECK(blackout->from_e_s() < blackout->to_e_s());
+    CHECK(prediction.ellipse().major_m() == 20'000.0);
+    CHECK(prediction.ellipse().azimuth_deg() == Approx(94.0).margin(2.0));  // [od137]: entry at 93.35°
 
     // A range cuts the series, and Protobuf says the same.
     {

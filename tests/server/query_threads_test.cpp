@@ -39,7 +39,7 @@ struct Recorded {
                 const auto proof = reader.proof(archive::RunId{1});
                 answered.set_value(proof ? "answered" : reader.stopped() ? "stopped" : proof.error().message);
             },
-            gone));
+            {.gone = gone}));
         return answered.get_future().get();
     }
 };
@@ -72,7 +72,7 @@ TEST_CASE("what is short does not wait behind questions, however many", "[http][
     const auto waits = answered.get_future().share();
     const auto question = [waits](archive::Reader&) { waits.wait(); };
     for (std::size_t i = 0; i < QueryThreads::question_threads; ++i) REQUIRE(threads.ask(question));
-    while (threads.waiting() > 0)  // both are busy
+    while (threads.waiting() > 0)  // all are busy
         std::this_thread::yield();
     const auto room = QueryThreads::waiting_max[static_cast<std::size_t>(server::JobPriority::in_turn)];
     for (std::size_t i = 0; i < room; ++i) REQUIRE(threads.ask(question));
@@ -87,6 +87,47 @@ TEST_CASE("what is short does not wait behind questions, however many", "[http][
         CHECK(items.get() == 10);
     }
     answered.set_value();
+}
+
+TEST_CASE("clients are served in turn, each in its own order, and no client takes all the places", "[http][bounds]") {
+    server::TurnQueue<int> queue{5, 3};
+    for (int i = 1; i <= 3; ++i) CHECK(queue.push("greedy", i));
+    CHECK_FALSE(queue.push("greedy", 4));
+    CHECK(queue.push("other", 10));
+    CHECK(queue.push("third", 20));
+    CHECK_FALSE(queue.push("fourth", 30));  // no place is left to anybody
+    const auto anybody = [](const std::string&) { return true; };
+    std::vector<int> served;
+    while (const auto job = queue.pop(anybody)) served.push_back(*job);
+    CHECK(served == std::vector{1, 10, 20, 2, 3});
+    CHECK(queue.size() == 0);
+    CHECK(queue.push("greedy", 1));
+    CHECK(queue.push("other", 2));
+    CHECK(queue.pop([](const std::string& client) { return client == "other"; }) == 2);
+    CHECK_FALSE(queue.has([](const std::string& client) { return client == "other"; }));
+}
+
+TEST_CASE("a question of one client is answered while another's slow ones go on and wait", "[http][bounds]") {
+    const Recorded recorded;
+    auto& threads = *recorded.threads;
+    std::atomic<bool> enough{false};
+    const auto slow = [&](archive::Reader& reader) {
+        while (!enough) (void)reader.proof(archive::RunId{1}).ok();
+    };
+    for (std::size_t i = 0; i < 60; ++i) REQUIRE(threads.ask(slow, {.client = "greedy"}));
+    // Two clients more, so that more questions are under way than run at a time.
+    for (const char* client : {"slow", "slow too"})
+        for (int i = 0; i < 5; ++i) REQUIRE(threads.ask(slow, {.client = client}));
+    for (int i = 0; i < 5; ++i) {
+        std::promise<bool> told;
+        auto answered = told.get_future();
+        REQUIRE(threads.ask([&](archive::Reader& reader) { told.set_value(reader.proof(archive::RunId{1}).ok()); },
+                            {.client = i == 0 ? "careful" : "slow but one"}));
+        REQUIRE(answered.wait_for(std::chrono::seconds{60}) == std::future_status::ready);
+        CHECK(answered.get());
+    }
+    CHECK(threads.waiting() > 50);
+    enough = true;
 }
 
 TEST_CASE("questions that wait or go on when the server ends are stopped, and what is short is done",

@@ -214,15 +214,40 @@ archive::Sequence kill_after(archive::Sequence published, const std::filesystem:
     return acknowledged;
 }
 
-/// Kills a flying process once `published` items are out, continues the run in this one for `further` items, and holds
-/// every item against a run that nothing happened to.
-void kill_and_continue(archive::Sequence published, archive::Sequence further) {
+enum class Ended : std::uint8_t { killed, left };
+
+/// Flies in this process, with a command on the way, and leaves the run as a server does that ends.
+archive::Sequence leave_after(archive::Sequence published, const std::filesystem::path& file) {
+    const dictionary::Dictionary& dictionary = tests::shipped_dictionary();
+    PipelineThread pipeline{std::move(archive::Archive::open(file)).value(), dictionary,
+                            PipelineThread::Faults::give_up, [](const auto&) {}};
+    RehearsalRunner::Callbacks callbacks;
+    std::atomic<bool> begun{false};
+    callbacks.on_begun = [&](const auto&) { begun = true; };
+    callbacks.on_state = [](const auto&) {};
+    callbacks.on_clocks = [](const auto&) {};
+    {
+        RehearsalRunner runner{short_landing(), 7, 0.0, dictionary, pipeline, callbacks};
+        while (!begun) std::this_thread::sleep_for(std::chrono::milliseconds{1});
+        v1::CommandRequest request;
+        request.set_command("NO_OP");
+        REQUIRE(runner.order(SendCommands{{request}, false, [](const auto&) {}}));
+        while (pipeline.figures().published_items < published)
+            std::this_thread::sleep_for(std::chrono::milliseconds{1});
+    }
+    return pipeline.figures().published_items;
+}
+
+/// Ends a flight once `published` items are out, continues the run for `further` items, and holds every item against a
+/// run that nothing happened to.
+void end_and_continue(archive::Sequence published, archive::Sequence further, Ended ended) {
     spdlog::set_level(spdlog::level::err);
-    INFO("killed after item " << published);
+    INFO((ended == Ended::left ? "left" : "killed") << " after item " << published);
     test::TemporaryFolder folder;
     const auto file = folder / "killed.db";
     const dictionary::Dictionary& dictionary = tests::shipped_dictionary();
-    const archive::Sequence acknowledged = kill_after(published, file);
+    const archive::Sequence acknowledged =
+        ended == Ended::left ? leave_after(published, file) : kill_after(published, file);
     REQUIRE(acknowledged >= published);
     std::optional<archive::CutOffRun> cut;
     std::string failure;
@@ -239,7 +264,7 @@ void kill_and_continue(archive::Sequence published, archive::Sequence further) {
                 return (archive::kept_request(taken.request).intervention().*is_one)();
             });
         };
-        if (published > 1)
+        if (published > 1 && ended == Ended::killed)
             CHECK((count_of(&v1::Intervention::has_fault) == 1 && count_of(&v1::Intervention::has_note) == 1));
         auto scenario = scenario_from_text(cut->scenario_text, "its row");
         REQUIRE(scenario);
@@ -291,7 +316,12 @@ TEST_CASE("a run that kill -9 ended goes on in the same run as if nothing had be
           "[rehearsal][archive][R41][R43]") {
     for (const archive::Sequence published :
          {1U, 9'000U, 60'000U})  // at the start, in flight, while the recording comes down
-        kill_and_continue(published, 3'000);
+        end_and_continue(published, 3'000, Ended::killed);
+}
+
+TEST_CASE("a run that the server left when it ended goes on in the same run as if nothing had been",
+          "[rehearsal][archive][R41]") {
+    end_and_continue(9'000, 3'000, Ended::left);
 }
 
 TEST_CASE("a kept request comes back from its text, and another text is none", "[rehearsal][archive]") {
@@ -305,7 +335,7 @@ TEST_CASE("a kept request comes back from its text, and another text is none", "
 
 TEST_CASE("fifty runs that kill -9 ended at random go on as if nothing had been", "[.long][rehearsal][archive]") {
     std::mt19937_64 random{1};
-    for (int i = 0; i < 50; ++i) kill_and_continue(1 + random() % 60'000, 5'000);
+    for (int i = 0; i < 50; ++i) end_and_continue(1 + random() % 60'000, 5'000, Ended::killed);
 }
 
 TEST_CASE("a run that does not come out the same is not continued, and what it has stays as it is",

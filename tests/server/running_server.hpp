@@ -63,6 +63,7 @@ class RunningServer {
         open();
         start_thread();
     }
+    void renew_certificate() { backend_->renew_certificate(); }
     std::filesystem::path archive() const { return folder_ / "a.db"; }
     /// As when it is asked to by a signal.
     void end() {

@@ -64,17 +64,6 @@ TEST_CASE("each impossible value has a line of its own", "[scenario]") {
     CHECK_THAT(text, Catch::Contains("\ns.textproto: "));
 }
 
-TEST_CASE("UTC is read by calendar and by day of year, and nothing else passes", "[scenario]") {
-    CHECK(scet_from_text("2000-01-01T12:00:00")->microseconds == 0);
-    CHECK(scet_from_text("2000-001T12:00:01.5")->microseconds == 1'500'000);
-    CHECK(*scet_from_text("2012-02-29T00:00:00.000001") == *scet_from_text("2012-060T00:00:00.000001"));
-    for (const char* wrong :
-         {"", "2012", "2013-02-29T00:00:00", "2012-367T00:00:00", "2013-366T00:00:00", "2012-08-06 05:10:47",
-          "2012-08-06T24:00:00", "2012-08-06T05:60:00", "2012-08-06T05:10:47.", "2012-08-06T05:10:47.1234567",
-          "2012-08-06T05:10:47Z", "2012-000T00:00:00", "-012-08-06T05:10:47"})
-        CHECK_FALSE(scet_from_text(wrong).ok());
-}
-
 TEST_CASE("every field of the message reaches the simulation and comes back", "[scenario][R48]") {
     v1::Scenario message;
     // Each number of the schema is moved off its default by a little, so that one that were not carried would show.

@@ -10,6 +10,7 @@
 #include <boost/beast/websocket.hpp>
 #include <boost/beast/websocket/ssl.hpp>
 #include <fmt/format.h>
+#include <fstream>
 #include <future>
 #include <openssl/pem.h>
 #include <openssl/x509v3.h>
@@ -147,7 +148,7 @@ TEST_CASE("with a certificate the server speaks TLS only: routes, cookies and st
     http::read(stream, buffer, response);
     CHECK(response.result_int() == 201);
     const std::string cookie{response[http::field::set_cookie]};
-    CHECK_THAT(cookie, Catch::Contains("; Secure"));
+    CHECK_THAT(cookie, Catch::StartsWith("__Host-aeolis_session=") && Catch::Contains("; Secure"));
 
     request.set(http::field::origin, "http://" + host);  // a page that was not loaded over TLS
     http::write(stream, request);
@@ -171,6 +172,65 @@ TEST_CASE("with a certificate the server speaks TLS only: routes, cookies and st
     response = {};
     http::read(bare, buffer, response, error);
     CHECK(error);
+}
+
+TEST_CASE("a renewed certificate counts for new connections, and one that cannot be read leaves the old one",
+          "[access][http]") {
+    const TemporaryFolder folder;
+    write_certificate(folder / "cert.pem", folder / "key.pem");
+    RunningServer server{RunningServer::Secure{folder / "cert.pem", folder / "key.pem"}};
+    std::filesystem::copy_file(folder / "cert.pem", folder / "old.pem");
+    const auto trusts = [&](const std::filesystem::path& trusted) {
+        SecureClient client{trusted};
+        beast::ssl_stream<beast::tcp_stream> stream{client.io, client.context};
+        beast::get_lowest_layer(stream).connect(tcp::endpoint{asio::ip::make_address("127.0.0.1"), server.port()});
+        error_code error;
+        stream.handshake(asio::ssl::stream_base::client, error);
+        return !error;
+    };
+    SecureClient client{folder / "old.pem"};
+    auto open_all_along = client.connect(server.port());
+    std::ofstream{folder / "cert.pem"} << "not a certificate";
+    server.renew_certificate();
+    CHECK(trusts(folder / "old.pem"));
+    write_certificate(folder / "cert.pem", folder / "key.pem");
+    server.renew_certificate();
+    for (int i = 0; i < 1000 && !trusts(folder / "cert.pem"); ++i)
+        std::this_thread::sleep_for(std::chrono::milliseconds{10});
+    CHECK(trusts(folder / "cert.pem"));
+    CHECK_FALSE(trusts(folder / "old.pem"));
+    http::request<http::string_body> request{http::verb::get, "/healthz", 11};
+    request.set(http::field::host, "localhost");
+    http::write(open_all_along, request);
+    beast::flat_buffer buffer;
+    http::response<http::string_body> response;
+    http::read(open_all_along, buffer, response);
+    CHECK(response.result_int() == 200);
+}
+
+TEST_CASE("a connection beyond the limit is refused inside TLS", "[access][http][bounds]") {
+    const TemporaryFolder folder;
+    write_certificate(folder / "cert.pem", folder / "key.pem");
+    server::WebServer::Settings settings;
+    settings.certificate = folder / "cert.pem";
+    settings.key = folder / "key.pem";
+    settings.streams = 0;
+    const auto server = std::move(server::WebServer::open(settings, {})).value();
+    std::thread network{[&] { server->run(); }};
+
+    asio::io_context io;
+    std::vector<tcp::socket> silent;
+    for (std::size_t i = 0; i < server::WebServer::connections_besides; ++i)
+        silent.emplace_back(io).connect({asio::ip::make_address("127.0.0.1"), server->port()});
+    SecureClient client{folder / "cert.pem"};
+    auto stream = client.connect(server->port());
+    beast::flat_buffer buffer;
+    http::response<http::string_body> response;
+    http::read(stream, buffer, response);
+    CHECK(response.result_int() == 503);
+    CHECK_THAT(response.body(), Catch::Contains("connections are open already"));
+    server->stop();
+    network.join();
 }
 
 TEST_CASE("over TLS, too, a client that leaves is noticed while its question is answered", "[access][http][bounds]") {

@@ -4,7 +4,9 @@
 #include "tests/simulation/gale.hpp"
 #include "tests/support/catch.hpp"
 
+#include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace simulation_scenario_test {
 
@@ -24,6 +26,18 @@ std::string only_fault(const Scenario& scenario) {
 
 TEST_CASE("the nominal scenario is possible", "[simulation][scenario]") {
     CHECK(impossible_values(tests::gale_scenario()).empty());
+}
+
+TEST_CASE("the course at the target leads away from entry", "[simulation][scenario]") {
+    auto scenario = tests::gale_scenario();
+    scenario.entry.latitude_deg = scenario.target.latitude_deg = 0.0;
+    scenario.target.longitude_deg = scenario.entry.longitude_deg + 10.0;
+    CHECK(course_at_target_deg(scenario) == Approx(90.0));
+    scenario.target.longitude_deg = scenario.entry.longitude_deg - 10.0;
+    CHECK(course_at_target_deg(scenario) == Approx(270.0));
+    scenario.target = {10.0, scenario.entry.longitude_deg};
+    CHECK(std::sin(course_at_target_deg(scenario) * std::numbers::pi / 180.0) == Approx(0.0).margin(1e-9));
+    CHECK(std::cos(course_at_target_deg(scenario) * std::numbers::pi / 180.0) == Approx(1.0));
 }
 
 TEST_CASE("an impossible value is named, with its bounds", "[simulation][scenario]") {

@@ -75,7 +75,8 @@ async function documented(server) {
           wrong.push(`${name}: this status is not described; ${said.slice(0, 200)}`);
           continue;
         }
-        const schema = described.content?.['application/json']?.schema;
+        const schema = (described.content?.['application/json'] ?? described.content?.['application/problem+json'])
+          ?.schema;
         if (!schema) continue;
         const fits = ajv.compile(JSON.parse(JSON.stringify(schema).replaceAll('"#/', '"aeolis#/')));
         if (!fits(JSON.parse(said))) wrong.push(`${name}: ${ajv.errorsText(fits.errors)}; ${said.slice(0, 200)}`);

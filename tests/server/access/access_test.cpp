@@ -38,7 +38,7 @@ struct Accounts {
         REQUIRE(access->change_user(first->who, "administrator", change));
     }
     void open() {
-        auto opened = Access::open({file, [this] { return now; }});
+        auto opened = Access::open({.file = file, .now = [this] { return now; }});
         REQUIRE(opened);
         access = std::move(*opened);
     }
@@ -98,6 +98,7 @@ TEST_CASE("who changes the accounts waits until another process has done so, and
     }
     for (int i = 0; i < each; ++i) {
         v1::NewToken wanted;
+        wanted.set_owner("administrator");
         wanted.set_name(fmt::format("token-{}", i));
         wanted.set_role("observer");
         CHECK(accounts.access->add_token(wanted));
@@ -128,6 +129,7 @@ TEST_CASE("without accounts browsers are told apart, and all programs without a 
 TEST_CASE("no password and no secret stands in the file of accounts", "[access]") {
     Accounts accounts;
     v1::NewToken wanted;
+    wanted.set_owner("administrator");
     wanted.set_name("exporter");
     wanted.set_role("observer");
     const auto token = accounts.access->add_token(wanted);
@@ -272,6 +274,7 @@ TEST_CASE("an administrator says which commands an account or a program may send
     CHECK(accounts.who(dina->secret).commands.empty());
 
     v1::NewToken wanted;
+    wanted.set_owner("administrator");
     wanted.set_name("ping");
     wanted.set_role("controller");
     wanted.add_commands("NO_OP");
@@ -287,6 +290,7 @@ TEST_CASE("an administrator says which commands an account or a program may send
 TEST_CASE("a token lets a program in with its role, until it expires or is taken away", "[access]") {
     Accounts accounts;
     v1::NewToken wanted;
+    wanted.set_owner("administrator");
     wanted.set_name("exporter");
     wanted.set_role("observer");
     wanted.set_days(3);
@@ -305,6 +309,39 @@ TEST_CASE("a token lets a program in with its role, until it expires or is taken
     CHECK_FALSE(accounts.access->remove_token("exporter"));
 }
 
+TEST_CASE("a token counts as its owner: never more than the owner may, and gone with the owner", "[access][R63]") {
+    Accounts accounts;
+    accounts.add("ada", "director");
+    v1::NewToken wanted;
+    wanted.set_name("robot");
+    wanted.set_role("director");
+    CHECK(accounts.access->add_token(wanted).error().message == "owner: there is no user ''");
+    wanted.set_owner("nobody");
+    CHECK(accounts.access->add_token(wanted).error().message == "owner: there is no user 'nobody'");
+    wanted.set_owner("ada");
+    wanted.set_role("administrator");
+    CHECK(accounts.access->add_token(wanted).error().message ==
+          "role: administrator is more than that of its owner ada, director");
+    wanted.set_role("director");
+    const auto token = accounts.access->add_token(wanted);
+    REQUIRE(token);
+    CHECK(token->owner() == "ada");
+    const auto who = [&] { return accounts.access->identify({"", "Bearer " + token->token(), "127.0.0.1"}); };
+    CHECK(person_of(who()) == "ada");
+    CHECK(who().user == "token robot");
+    CHECK(may(who(), Right::hazardous));
+    const auto administrator = accounts.log_in("administrator", Accounts::password);
+    REQUIRE(administrator);
+    v1::UserChange change;
+    change.set_role("observer");
+    REQUIRE(accounts.access->change_user(administrator->who, "ada", change));
+    CHECK_FALSE(may(who(), Right::command));
+    CHECK(may(who(), Right::watch));
+    REQUIRE(accounts.access->remove_user("ada"));
+    CHECK_FALSE(who().role);
+    CHECK(accounts.access->tokens().tokens().empty());
+}
+
 TEST_CASE("a server takes over what another program changed in the file, and keeps what it has when that is spoilt",
           "[access]") {
     Accounts accounts;
@@ -320,7 +357,7 @@ TEST_CASE("a server takes over what another program changed in the file, and kee
     std::ofstream{accounts.file} << R"({"accounts": [{"user": "x", "role": "pope"}]})";
     touch();
     CHECK(accounts.log_in("helper", password));
-    const auto opened = Access::open({accounts.file, Access::Clock::now});
+    const auto opened = Access::open({.file = accounts.file});
     REQUIRE_FALSE(opened);
     CHECK_THAT(opened.error().message, Catch::Contains("accounts.json") && Catch::Contains("'pope'"));
 }

@@ -196,6 +196,7 @@ it('the card says the verdict, each step with its evidence, and leads on', () =>
     'never',
     'done',
   ]);
+  expect(root.querySelector('.touchdown-map')?.textContent).toBe('The place is not known.');
   expect([...root.querySelectorAll('a')].map((each) => each.getAttribute('href'))).toEqual([
     '?panel=flown&run=1',
     '?panel=verdicts&run=1',

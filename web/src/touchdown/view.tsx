@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // The touchdown as a result: reported or confirmed, its figures, its place, and what still comes.
 import { STATUS } from '../design/status';
+import { prediction } from '../prediction/model';
 import { toggleReplay } from '../replay/model';
 import { isLost } from '../run/connection';
 import { cutoff, dictionary, pastRange, runNow, timepoints } from '../run/shown';
 import { focusPanel } from '../shortcuts/model';
 import type { Tab } from '../places/model';
 import { fromEntry } from '../run/time';
-import { Path } from '../vehicle/path';
+import { ellipseWords, isInside, Path } from '../vehicle/path';
 import { missOf, restOf, resultsOf, touchdownOf } from './model';
 import type { Step } from './model';
 import { useTouchdownHistory } from './history';
@@ -20,6 +21,8 @@ const LOOKS = {
   never: { ...STATUS.never, word: 'never told' },
   contradicted: { ...STATUS.failed, word: 'contradicted' },
 } as const satisfies Record<Step['state'], object>;
+
+const AROUND_ELLIPSE = 0.55; // chosen: of its longer axis, from the target to the edge of the map
 
 const VERDICTS = {
   reported: { ...STATUS.holds, words: 'Touchdown reported' },
@@ -54,6 +57,7 @@ export function Touchdown() {
   const done = of.steps.filter(({ state }) => state === 'done').length;
   const never = of.steps.filter(({ state }) => state === 'never').length;
   const miss = missOf(look, of.sclk);
+  const ellipse = prediction.value?.ellipse;
   return (
     <div class="touchdown-box">
       <div
@@ -97,11 +101,22 @@ export function Touchdown() {
         </ol>
         <div class="touchdown-map">
           {miss ? (
-            <Path points={[]} now={miss} stale={false} label="Touchdown and target from above" />
+            <Path
+              points={[]}
+              now={miss}
+              stale={false}
+              label="Touchdown and target from above"
+              ellipse={ellipse}
+              least_m={(ellipse?.majorM ?? 0) * AROUND_ELLIPSE}
+            />
           ) : (
             <p>The place is not known.</p>
           )}
-          <small>no ellipse: the server gives none for this run</small>
+          {ellipse && miss && (
+            <small data-testid="in-ellipse">
+              {isInside(miss, ellipse) ? 'inside' : '▲ outside'} {ellipseWords(ellipse)}
+            </small>
+          )}
         </div>
         <div class="touchdown-next" data-testid="touchdown-next">
           {restOf(look, pastRange.value === undefined).map((rest) => (

@@ -15,6 +15,8 @@ interface User {
 interface Token {
   name: string;
   role: string;
+  /** The account that it counts as. */
+  owner?: string;
   commands?: string[];
 }
 interface AuditEntry {

@@ -345,6 +345,7 @@ export function Users() {
                   <b>{each.name}</b>
                 </td>
                 <td>{each.role}</td>
+                <td>{each.owner ? `of ${each.owner}` : ''}</td>
                 <td class="audit-of">{each.commands?.join(' ') || ALL_OF_ROLE}</td>
                 <td>
                   <Remove

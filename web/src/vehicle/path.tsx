@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The flight path from above: north up, one scale for east and north, around the target.
+// The flight path from above: north up, one scale for east and north, around the target and its ellipse.
 import { STATUS } from '../design/status';
+import type { TargetEllipse } from '../gen/aeolis/v1/prediction_pb';
 
 interface Place {
   east_m: number;
@@ -14,6 +15,10 @@ interface Properties {
   now: Place | undefined;
   stale: boolean;
   label: string;
+  /** That is to hold 99 % of the landings. */
+  ellipse?: TargetEllipse | undefined;
+  /** How far the picture reaches at least. */
+  least_m?: number;
 }
 
 const HALF = 100; // of the drawing's own units
@@ -30,7 +35,17 @@ export function scaleBar_m(reach_m: number): number {
 export const reachOf = (now: Place | undefined): number =>
   Math.max(50, now ? Math.hypot(now.east_m, now.north_m) * 1.25 : 1000);
 
+/** Whether a place lies in the ellipse about the target. */
+export function isInside({ east_m, north_m }: Place, { majorM, minorM, azimuthDeg }: TargetEllipse): boolean {
+  const [sin, cos] = [Math.sin((azimuthDeg * Math.PI) / 180), Math.cos((azimuthDeg * Math.PI) / 180)];
+  const [along, across] = [east_m * sin + north_m * cos, east_m * cos - north_m * sin];
+  return Math.hypot((2 * along) / majorM, (2 * across) / minorM) <= 1;
+}
+
 export const lengthWords = (m: number): string => (m >= 1000 ? `${m / 1000} km` : `${m} m`);
+
+export const ellipseWords = ({ majorM, minorM }: TargetEllipse): string =>
+  `the 99 % ellipse, ${majorM / 1000} × ${minorM / 1000} km`;
 
 /** Runs of points of one source that lie within the picture, and one beyond it to either side. */
 function lines(points: Properties['points'], reach: number): { recorded: boolean; d: string }[] {
@@ -55,8 +70,8 @@ function lines(points: Properties['points'], reach: number): { recorded: boolean
   return all;
 }
 
-export function Path({ points, predicted = [], now, stale, label }: Properties) {
-  const reach = reachOf(now);
+export function Path({ points, predicted = [], now, stale, label, ellipse, least_m = 0 }: Properties) {
+  const reach = Math.max(reachOf(now), least_m);
   const bar = scaleBar_m(reach);
   const x = (m: number) => (m / reach) * HALF;
   const from = now && Math.hypot(now.east_m, now.north_m);
@@ -71,6 +86,15 @@ export function Path({ points, predicted = [], now, stale, label }: Properties) 
       <circle r={x(bar)} class="path-ring" />
       <circle r={x(2 * bar)} class="path-ring" />
       <path d="M-6 0H6M0-6V6" class="path-target" />
+      {ellipse && (
+        <ellipse
+          ry={x(ellipse.majorM / 2)}
+          rx={x(ellipse.minorM / 2)}
+          transform={`rotate(${ellipse.azimuthDeg})`}
+          class="path-ellipse"
+          data-testid="ellipse"
+        />
+      )}
       {lines(predicted, reach).map(({ d }, i) => (
         <path key={i} d={d} class="path-predicted" />
       ))}

@@ -6,7 +6,7 @@ import { PREDICTED, STATUS } from '../design/status';
 import { Canvas, grownBy } from '../draw/canvas';
 import { onDraw } from '../draw/loop';
 import { palette } from '../draw/palette';
-import { isPredicted, predictedVersion } from '../prediction/model';
+import { isPredicted, predictedVersion, prediction } from '../prediction/model';
 import { isLost } from '../run/connection';
 import { asHeard, cutoff, dictionary, pastRange, runNow, shownRun, timepoints } from '../run/shown';
 import { fromEntry } from '../run/time';
@@ -17,7 +17,7 @@ import { useHistory } from './history';
 import type { FromPicture, ToPicture } from './messages';
 import { missingOf, motionOf, pathOf, sceneOf, staleOf, targetOf } from './model';
 import type { Look } from './model';
-import { Path } from './path';
+import { ellipseWords, Path } from './path';
 import { predictedLook, predictedTouchdown } from './predicted';
 import { channelOf, figuresOf, rowsOf } from './rows';
 import './style.css';
@@ -216,10 +216,12 @@ function Facts({ look }: { look: Look }) {
           now={motion.over}
           stale={stale}
           label="Path from above"
+          ellipse={prediction.value?.ellipse}
         />
         <figcaption>
           {targetOf(look.run) ? '' : 'No target is known: the middle is where it is. '}
-          Path over ground by navigation on board. No ellipse: the server gives none for this run. The ground in the
+          Path over ground by navigation on board
+          {prediction.value?.ellipse ? `, and ${ellipseWords(prediction.value.ellipse)}` : ''}. The ground in the
           picture is smooth: its relief is not known.
         </figcaption>
       </figure>

@@ -1,0 +1,355 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The client for asyncio."""
+from __future__ import annotations
+
+import asyncio
+import ssl
+from collections.abc import AsyncIterator, Sequence
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Optional, Union
+from urllib.parse import quote, urlsplit
+
+import httpx
+import websockets
+from google.protobuf import json_format
+
+from .errors import AeolisError, CommandFailed, CommandRefused
+from .frames import frame_of
+from .schema import Schema
+
+Instant = Union[float, str]
+"""SCLK in seconds, or a text: SCET ("2012-219T05:10:47"), "ert:" and a UTC time, or from entry ("E+4:58")."""
+Run = Union[int, str]
+"""The number of a run, or "latest"."""
+
+STAGES = ("queued", "authorised", "released", "radiated", "received", "accepted", "executed", "verified")
+_ASK_AGAIN_S = 0.25
+_WAITS_S = (0.2, 0.5, 1.0, 2.0, 5.0)  # before a lost stream is opened again
+
+
+class AsyncClient:
+    """A server as one account, or one token, sees it.
+
+        async with AsyncClient("https://console.example:8443", token=token) as aeolis:
+            print(await aeolis.runs())
+
+    Errors: AeolisError with the server's sentence; CommandRefused and CommandFailed of commands.
+    """
+
+    def __init__(
+        self,
+        server: str = "http://127.0.0.1:8080",
+        *,
+        token: str = "",
+        authorities: Optional[Union[str, Path]] = None,
+        timeout_s: float = 30.0,
+    ) -> None:
+        self._server = server.rstrip("/")
+        self._tls = ssl.create_default_context(cafile=str(authorities) if authorities else None)
+        headers = {"Authorization": f"Bearer {token}"} if token else {}
+        self._http = httpx.AsyncClient(
+            base_url=self._server, headers=headers, verify=self._tls, timeout=timeout_s, trust_env=False
+        )
+        self._schema: Optional[Schema] = None
+
+    async def __aenter__(self) -> AsyncClient:
+        answer = await self._answer("GET", "/api/v1/schema/descriptor_set.binpb")
+        self._schema = Schema(answer.content)
+        return self
+
+    async def __aexit__(
+        self, kind: Optional[type[BaseException]], error: Optional[BaseException], trace: Optional[TracebackType]
+    ) -> None:
+        await self.close()
+
+    async def close(self) -> None:
+        """Ends the connections. A log-in session goes on until it expires; `log_out` ends it."""
+        await self._http.aclose()
+
+    @property
+    def schema(self) -> Schema:
+        """The server's messages, once connected."""
+        if self._schema is None:
+            raise AeolisError(0, "not connected yet: use `async with AsyncClient(...)`")
+        return self._schema
+
+    # Who one is.
+
+    async def log_in(self, user: str, password: str) -> Any:
+        """Logs in; the cookie is sent from then on. Returns the Session: user, role, rights."""
+        return await self._ask("Session", "POST", "/session", {"user": user, "password": password})
+
+    async def log_out(self) -> None:
+        await self._answer("DELETE", "/api/v1/session")
+
+    async def session(self) -> Any:
+        """Who is logged in, and what they may do."""
+        return await self._ask("Session", "GET", "/session")
+
+    # Runs and their data.
+
+    async def runs(self) -> list[Any]:
+        """All runs, newest first."""
+        return list((await self._ask("RunList", "GET", "/runs")).runs)
+
+    async def run(self, run: Run = "latest") -> Any:
+        """The RunState of a run: state, outcome, clocks, predicted entry."""
+        return await self._ask("RunState", "GET", f"/runs/{run}")
+
+    async def dictionary(self) -> Any:
+        """Channels, packets, commands, events, tones and timepoints of the mission."""
+        return await self._ask("DictionaryReply", "GET", "/dictionary")
+
+    async def history(
+        self,
+        channels: Sequence[str],
+        *,
+        run: Run = "latest",
+        start: Optional[Instant] = None,
+        end: Optional[Instant] = None,
+        points: Optional[int] = None,
+        source: str = "",
+    ) -> list[Any]:
+        """Samples of channels, as ChannelSeries: all, or thinned to about `points`. @param source realtime, recorded"""
+        query = {"names": ",".join(channels), "from": start, "to": end, "points": points, "source": source or None}
+        answer = await self._answer("GET", f"/api/v1/runs/{run}/channels", query={**query, "format": "protobuf"})
+        return list(self.schema.ChannelSeriesList.FromString(answer.content).channels)
+
+    async def frame(self, channels: Sequence[str], *, run: Run = "latest", **limits: Any) -> Any:
+        """The same as a pandas.DataFrame by SCLK, with `e_s`, seconds from entry."""
+        state = await self.run(run)
+        return frame_of(await self.history(channels, run=state.run, **limits), state.entry_sclk)
+
+    def events(self, *, run: Run = "latest", **query: Any) -> AsyncIterator[Any]:
+        """Event items in order, page by page. @param query level, text, from, to"""
+        return self._pages("EventList", "events", run, query)
+
+    def tones(self, *, run: Run = "latest", **query: Any) -> AsyncIterator[Any]:
+        """Tone items in order, page by page."""
+        return self._pages("ToneList", "tones", run, query)
+
+    def notes(self, *, run: Run = "latest", **query: Any) -> AsyncIterator[Any]:
+        """The shift log, page by page."""
+        return self._pages("NoteList", "notes", run, query)
+
+    async def add_note(self, text: str, *, run: Run = "latest", by: str = "", sclk: Optional[float] = None) -> Any:
+        """Writes a line of the shift log; returns its item once it is durable."""
+        body = {"text": text, "by": by, **({} if sclk is None else {"sclk": sclk})}
+        return await self._ask("Item", "POST", f"/runs/{run}/notes", body)
+
+    async def report(self, run: Run = "latest") -> Any:
+        """The AsFlownReport: timepoints and events, predicted and flown."""
+        return await self._ask("AsFlownReport", "GET", f"/runs/{run}/report")
+
+    async def export(self, path: Union[str, Path], channels: Sequence[str], *, run: Run = "latest", **query: Any) -> int:
+        """Writes samples to a CSV file as they come, whatever their number. Returns the octets written."""
+        asked = {"names": ",".join(channels), **query}
+        written = 0
+        async with self._http.stream("GET", f"/api/v1/runs/{run}/samples", params=_given(asked)) as answer:
+            if answer.status_code >= 400:
+                await answer.aread()
+                raise _problem(answer)
+            with open(path, "wb") as file:
+                async for part in answer.aiter_bytes():
+                    written += file.write(part)
+        return written
+
+    # Rehearsals and commands.
+
+    async def scenarios(self) -> list[Any]:
+        return list((await self._ask("ScenarioList", "GET", "/scenarios")).scenarios)
+
+    async def start(self, scenario: str, *, seed: int = 1, pace: float = 1.0) -> Any:
+        """Starts a rehearsal; returns its RunState once it is in the archive. @param pace 0: as fast as it goes"""
+        return await self._ask("RunState", "POST", "/rehearsals", {"scenario": scenario, "seed": seed, "pace": pace})
+
+    async def control(self, **action: Any) -> None:
+        """One of pause=True, pause=False, pace=N, stop=True."""
+        await self._answer("POST", "/api/v1/rehearsals/current", body=action)
+
+    async def wait_for_end(self, run: Run = "latest", *, timeout_s: float = 3600.0) -> Any:
+        """The RunState of a run once it is over."""
+
+        async def ended() -> Any:
+            while (state := await self.run(run)).state not in ("finished", "interrupted"):
+                await asyncio.sleep(_ASK_AGAIN_S)
+            return state
+
+        return await asyncio.wait_for(ended(), timeout_s)
+
+    async def command(
+        self,
+        name: str,
+        arguments: Optional[dict[str, float]] = None,
+        *,
+        run: Run = "latest",
+        confirm: bool = False,
+        stage: str = "",
+        timeout_s: float = 60.0,
+        **more: Any,
+    ) -> Any:
+        """Sends a command; returns its CommandReply, once `stage` is reached if one is named.
+
+        @param confirm  arms a hazardous command and types its name: only what a person decided
+        @param stage    one of STAGES, of which word must have come
+        @param more     fields of CommandRequest: from_solution, dry_run, release_at, hold, priority, controller
+        Errors: CommandRefused; CommandFailed, when that stage or one before failed; asyncio.TimeoutError
+        """
+        body: dict[str, Any] = {"command": name, **more}
+        body["arguments"] = [{"name": key, "value": value} for key, value in (arguments or {}).items()]
+        if confirm:
+            body.update(armed=True, confirmation=name)
+        answer = await self._answer("POST", f"/api/v1/runs/{run}/commands", body=body, accept=(202, 409, 422))
+        reply = self._read("CommandReply", answer)
+        if not reply.accepted:
+            raise CommandRefused(answer.status_code, reply)
+        if stage and not reply.dry_run:
+            await self.wait_for_stage(reply.command, stage, run=run, timeout_s=timeout_s)
+        return reply
+
+    async def commands(self, *, run: Run = "latest") -> list[Any]:
+        """The CommandHistory of each command of a run."""
+        return list((await self._ask("CommandList", "GET", f"/runs/{run}/commands")).commands)
+
+    async def wait_for_stage(self, number: int, stage: str, *, run: Run = "latest", timeout_s: float = 60.0) -> Any:
+        """The CommandHistory of a command once a stage of it is reached."""
+        wanted = STAGES.index(stage)
+
+        async def reached() -> Any:
+            while True:
+                for history in await self.commands(run=run):
+                    if history.command != number:
+                        continue
+                    for item in history.stages:
+                        change = item.command_stage
+                        if change.status == 2 and change.stage <= wanted:  # failed
+                            raise CommandFailed(history, f"{history.name}, {STAGES[change.stage]}: {change.evidence}")
+                        if change.status == 1 and change.stage == wanted:  # ok
+                            return history
+                await asyncio.sleep(_ASK_AGAIN_S)
+
+        return await asyncio.wait_for(reached(), timeout_s)
+
+    # The stream.
+
+    async def subscribe(
+        self, *, run: int = 0, after_seq: int = 0, channels: Optional[Sequence[str]] = None, **more: Any
+    ) -> AsyncIterator[Any]:
+        """Items of a run in order, live and from the archive, none left out and none twice.
+
+        When the connection is lost it is opened again, and the stream goes on behind the last item. Ends with the run.
+        @param run       0: the current run
+        @param channels  names; None: all
+        @param more      fields of Subscribe: max_rate_hz, without_units, pace
+        Errors: AeolisError when the server refuses, or is not reached five times in a row
+        """
+        wanted: dict[str, Any] = {"run": run, "after_seq": after_seq, **more}
+        if channels is None:
+            wanted["all_channels"] = True
+        else:
+            ids = {channel.name: channel.id for channel in (await self.dictionary()).channels}
+            wanted["channels"] = [_known(ids, name) for name in channels]
+        lost = 0
+        while True:
+            try:
+                async for batch in self._batches(wanted):
+                    lost = 0
+                    if batch.run:
+                        wanted["run"] = batch.run
+                    for item in batch.items:
+                        yield item
+                    wanted["after_seq"] = max(wanted["after_seq"], batch.complete_through)
+                    if await self._is_over(wanted):
+                        return
+            except (OSError, websockets.exceptions.ConnectionClosed, asyncio.TimeoutError) as error:
+                if lost == len(_WAITS_S):
+                    raise AeolisError(0, f"{self._server}: the stream is lost: {error}") from error
+                await asyncio.sleep(_WAITS_S[lost])
+                lost += 1
+
+    async def _batches(self, wanted: dict[str, Any]) -> AsyncIterator[Any]:
+        parts = urlsplit(self._server)
+        secure = parts.scheme == "https"
+        cookies = "; ".join(f"{name}={value}" for name, value in self._http.cookies.items())
+        headers = {name: self._http.headers[name] for name in ("Authorization",) if name in self._http.headers}
+        if cookies:
+            headers["Cookie"] = cookies
+        address = f"{'wss' if secure else 'ws'}://{parts.netloc}/api/v1/stream"
+        options: dict[str, Any] = {"subprotocols": ["aeolis.v1.protobuf"], "max_size": None}
+        # The option has another name since version 14.
+        new = int(websockets.__version__.split(".")[0]) >= 14 if hasattr(websockets, "__version__") else False
+        options["additional_headers" if new else "extra_headers"] = headers
+        if secure:
+            options["ssl"] = self._tls
+        async with websockets.connect(address, **options) as stream:
+            message = self.schema.ClientMessage()
+            json_format.ParseDict({"subscribe": wanted}, message)
+            await stream.send(message.SerializeToString())
+            async for octets in stream:
+                reply = self.schema.ServerMessage.FromString(octets)
+                kind = reply.WhichOneof("message")
+                if kind == "refusal":
+                    raise AeolisError(0, reply.refusal.reason)
+                if kind == "batch":
+                    yield reply.batch
+
+    async def _is_over(self, wanted: dict[str, Any]) -> bool:
+        if not wanted["run"]:
+            return False
+        state = await self.run(wanted["run"])
+        return state.state in ("finished", "interrupted") and wanted["after_seq"] >= state.last_seq
+
+    # HTTP.
+
+    async def _answer(
+        self,
+        method: str,
+        path: str,
+        *,
+        query: Optional[dict[str, Any]] = None,
+        body: Optional[dict[str, Any]] = None,
+        accept: tuple[int, ...] = (),
+    ) -> httpx.Response:
+        try:
+            answer = await self._http.request(method, path, params=_given(query or {}), json=body)
+        except httpx.HTTPError as error:
+            raise AeolisError(0, f"{self._server}: {error or type(error).__name__}") from error
+        if answer.status_code >= 400 and answer.status_code not in accept:
+            raise _problem(answer)
+        return answer
+
+    async def _ask(self, message: str, method: str, path: str, body: Optional[dict[str, Any]] = None) -> Any:
+        return self._read(message, await self._answer(method, "/api/v1" + quote(path, safe="/"), body=body))
+
+    def _read(self, message: str, answer: httpx.Response) -> Any:
+        return json_format.Parse(answer.content, getattr(self.schema, message)(), ignore_unknown_fields=True)
+
+    async def _pages(self, message: str, question: str, run: Run, query: dict[str, Any]) -> AsyncIterator[Any]:
+        after = 0
+        while True:
+            answer = await self._answer("GET", f"/api/v1/runs/{run}/{question}", query={**query, "after": after})
+            page = self._read(message, answer)
+            for item in getattr(page, question):
+                yield item
+            if not page.next_after:
+                return
+            after = page.next_after
+
+
+def _given(query: dict[str, Any]) -> dict[str, Any]:
+    return {name: value for name, value in query.items() if value is not None}
+
+
+def _known(ids: dict[str, int], name: str) -> int:
+    if name not in ids:
+        raise AeolisError(0, f"there is no channel '{name}'")
+    return ids[name]
+
+
+def _problem(answer: httpx.Response) -> AeolisError:
+    try:
+        detail = answer.json()["detail"]
+    except (ValueError, KeyError, TypeError):
+        detail = answer.text[:200] or answer.reason_phrase
+    return AeolisError(answer.status_code, detail)

@@ -1,0 +1,9 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Starts a rehearsal as fast as it goes, and says how it ended."""
+import sys
+
+from aeolis_client import Client
+
+with Client(*sys.argv[1:2]) as aeolis:
+    run = aeolis.start("nominal_auto", seed=7, pace=0)
+    print(f"run {run.run}: {aeolis.wait_for_end(run.run).outcome}")

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/net/request_head.hpp"
+
+#include <boost/beast/core/string.hpp>
+#include <boost/url/parse.hpp>
+#include <fmt/format.h>
+
+namespace aeolis::server::net {
+namespace {
+
+namespace http = boost::beast::http;
+using boost::beast::iequals;
+
+constexpr unsigned http_1_0 = 10;
+
+RequestTarget parts_of(const boost::urls::url_view& target, std::string host) {
+    return {std::move(host), target.path(), std::string{target.encoded_query()}};
+}
+
+}  // namespace
+
+std::string refusal_of_framing(const RequestHead& head) {
+    for (const auto field : {http::field::host, http::field::content_length, http::field::transfer_encoding})
+        if (head.count(field) > 1) return fmt::format("{}: once, not {} times", to_string(field), head.count(field));
+    if (head.count(http::field::host) == 0 && head.version() != http_1_0) return "Host: is missing";
+    const auto encoding = head.find(http::field::transfer_encoding);
+    if (encoding == head.end()) return {};
+    if (!iequals(encoding->value(), "chunked"))
+        return fmt::format("Transfer-Encoding: only chunked, not '{}'", std::string{encoding->value()});
+    if (head.version() == http_1_0) return "Transfer-Encoding: HTTP/1.0 has none";
+    if (head.count(http::field::content_length) > 0) return "Content-Length and Transfer-Encoding: one of them";
+    return {};
+}
+
+Result<RequestTarget> target_of(const RequestHead& head) {
+    if (const auto path = boost::urls::parse_origin_form(head.target()))
+        return parts_of(*path, std::string{head[http::field::host]});
+    const auto whole = boost::urls::parse_uri(head.target());
+    if (!whole || !whole->has_authority() || (whole->scheme() != "http" && whole->scheme() != "https"))
+        return Error{"the request's target is not a path"};
+    auto target = parts_of(*whole, std::string{whole->encoded_host_and_port()});
+    if (target.path.empty()) target.path = "/";
+    return target;
+}
+
+}  // namespace aeolis::server::net

@@ -1,0 +1,188 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The Python client against a real server: python3 -m unittest discover -s tests/python -p '*_test.py'"""
+import asyncio
+import json
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+import urllib.request
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "clients/python"))
+
+from aeolis_client import AeolisError, AsyncClient, Client, CommandRefused  # noqa: E402
+
+PROGRAM = os.environ.get("AEOLIS_PROGRAM", str(ROOT / "build/release/aeolis"))
+
+
+class Server:
+    """A server on a port of its own, with its archive in a folder that goes with it."""
+
+    def __init__(self, *options: str) -> None:
+        self.folder = tempfile.TemporaryDirectory(prefix="aeolis-python-")
+        archive = Path(self.folder.name) / "a.db"
+        self.process = subprocess.Popen(
+            [PROGRAM, "serve", "--listen", "127.0.0.1:0", "--archive", str(archive), *options],
+            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+        )
+        assert self.process.stdout is not None
+        said = ""
+        for line in self.process.stdout:
+            said += line
+            if found := re.search(r"http://[\d.]+:\d+", line):
+                self.address = found[0]
+                return
+        raise AssertionError(said)
+
+    def end(self) -> None:
+        self.process.terminate()
+        self.process.communicate(timeout=30)
+        self.folder.cleanup()
+
+
+class Landed(unittest.TestCase):
+    """One landing, flown once, that the tests read."""
+
+    server: Server
+    run: int
+
+    @classmethod
+    def setUpClass(cls) -> None:
+        cls.server = Server()
+        with Client(cls.server.address) as aeolis:
+            cls.run = aeolis.start("nominal_auto", seed=7, pace=0).run
+            ended = aeolis.wait_for_end(cls.run, timeout_s=300)
+            assert ended.outcome == "touchdown", ended
+
+    @classmethod
+    def tearDownClass(cls) -> None:
+        cls.server.end()
+
+    def test_each_example_runs(self) -> None:
+        examples = sorted((ROOT / "clients/python/examples").glob("*.py"))
+        self.assertGreaterEqual(len(examples), 11)
+        for example in examples:
+            if example.name in ("do_edl.py", "command.py", "follow.py"):
+                continue  # of a run in progress: below
+            with self.subTest(example.name):
+                wanted = re.findall(r"python3-(pandas|matplotlib)", example.read_text())
+                if any(subprocess.run([sys.executable, "-c", f"import {name}"], capture_output=True).returncode for name in wanted):
+                    self.skipTest(f"{example.name}: {' and '.join(wanted)} are not installed")
+                done = subprocess.run(
+                    [sys.executable, str(example), self.server.address], cwd=self.server.folder.name, text=True,
+                    env={**os.environ, "PYTHONPATH": str(ROOT / "clients/python")}, capture_output=True, timeout=300,
+                )
+                self.assertEqual(done.returncode, 0, done.stderr)
+                self.assertTrue(done.stdout or example.name == "alarms.py" or "landing.txt" in example.read_text())
+
+    def test_values_are_those_that_the_server_gives_without_the_client(self) -> None:
+        url = f"{self.server.address}/api/v1/runs/{self.run}/channels?names=altitude_m&to=E%2B60"
+        plain = json.load(urllib.request.urlopen(url))["channels"][0]
+        with Client(self.server.address) as aeolis:
+            (series,) = aeolis.history(["altitude_m"], run=self.run, end="E+60")
+        self.assertEqual(list(series.value), plain["value"])
+        self.assertEqual(list(series.sclk), plain["sclk"])
+        self.assertGreater(len(series.value), 100)
+
+    def test_a_stream_gives_each_item_once_and_goes_on_behind_the_last_one(self) -> None:
+        async def numbers(after: int, at_most: int = 10**9) -> list[int]:
+            async with AsyncClient(self.server.address) as aeolis:
+                seen = []
+                async for item in aeolis.subscribe(run=self.run, after_seq=after, channels=[]):
+                    seen.append(item.seq)
+                    if len(seen) == at_most:
+                        break
+                return seen
+
+        everything = asyncio.run(numbers(0))
+        self.assertEqual(everything, sorted(set(everything)))
+        first = asyncio.run(numbers(0, 500))
+        self.assertEqual(first + asyncio.run(numbers(first[-1])), everything)
+
+    def test_pages_come_to_all_events(self) -> None:
+        with Client(self.server.address) as aeolis:
+            by_tens = [item.seq for item in aeolis.events(run=self.run, limit=10)]
+            self.assertEqual(by_tens, [item.seq for item in aeolis.events(run=self.run)])
+
+    def test_errors_are_the_server_s_own_sentences(self) -> None:
+        with Client(self.server.address) as aeolis:
+            with self.assertRaisesRegex(AeolisError, "404: .*99") as caught:
+                aeolis.run(99)
+            self.assertEqual(caught.exception.status, 404)
+            with self.assertRaisesRegex(AeolisError, "there is no channel 'altitud'"):
+                list(aeolis.subscribe(run=self.run, channels=["altitud"]))
+            with self.assertRaisesRegex(CommandRefused, "NO_SUCH|no run"):
+                aeolis.command("NO_SUCH")
+        with self.assertRaisesRegex(AeolisError, "http://127.0.0.1:1"):
+            Client("http://127.0.0.1:1")
+
+
+class InProgress(unittest.TestCase):
+    """A run that goes on while it is commanded and followed."""
+
+    def test_a_program_commands_and_follows_a_landing(self) -> None:
+        server = Server()
+        self.addCleanup(server.end)
+        environment = {**os.environ, "PYTHONPATH": str(ROOT / "clients/python"), "PYTHONUNBUFFERED": "1"}
+        with Client(server.address) as aeolis:
+            run = aeolis.start("nominal", seed=1, pace=20).run
+            follower = subprocess.Popen(
+                [sys.executable, str(ROOT / "clients/python/examples/follow.py"), server.address],
+                env=environment, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+            )
+            for example, typed in (("command.py", ""), ("do_edl.py", "EDL_DO_EDL\n")):
+                done = subprocess.run(
+                    [sys.executable, str(ROOT / "clients/python/examples" / example), server.address],
+                    env=environment, text=True, input=typed, capture_output=True, timeout=300,
+                )
+                self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+            states = {each.name: [item.command_stage.status for item in each.stages] for each in aeolis.commands(run=run)}
+            self.assertEqual(set(states), {"NO_OP", "EDL_SET_PARAMETERS", "EDL_DO_EDL"})
+            aeolis.control(pace=0)
+            self.assertEqual(aeolis.wait_for_end(run, timeout_s=300).outcome, "touchdown")
+            said, _ = follower.communicate(timeout=120)
+            self.assertIn("TOUCHDOWN", said)
+
+    def test_a_lost_connection_is_opened_again_without_a_gap_or_a_double(self) -> None:
+        server = Server()
+        self.addCleanup(server.end)
+
+        async def follow() -> list[int]:
+            async with AsyncClient(server.address) as aeolis:
+                run = (await aeolis.start("nominal_auto", seed=3, pace=60)).run
+                seen: list[int] = []
+                items = aeolis.subscribe(run=run, channels=[], without_units=True)
+                opened = aeolis._batches  # each connection is cut after two batches
+
+                async def cut(wanted: dict) -> object:
+                    batches = 0
+                    async for batch in opened(wanted):
+                        yield batch
+                        batches += 1
+                        if batches == 2:
+                            raise OSError("cut by the test")
+
+                aeolis._batches = cut  # type: ignore[method-assign]
+                async for item in items:
+                    seen.append(item.seq)
+                    if len(seen) == 60:
+                        await items.aclose()
+                        break
+                await aeolis.control(stop=True)
+                await aeolis.wait_for_end(run, timeout_s=60)
+                aeolis._batches = opened  # type: ignore[method-assign]
+                every = [item.seq async for item in aeolis.subscribe(run=run, channels=[], without_units=True)]
+                assert seen == every[: len(seen)], (seen, every[: len(seen)])
+                return seen
+
+        self.assertEqual(len(asyncio.run(follow())), 60)
+
+
+if __name__ == "__main__":
+    started = time.monotonic()
+    unittest.main()
