@@ -21,7 +21,7 @@ ClockRow row_of(RowReader& cells) {
     clock.version = static_cast<std::uint32_t>(cells.integer("version", 1, 1'000'000'000).value_or(0));
     row.valid_from = Sclk{cells.number("valid_from_sclk").value_or(0.0)};
     clock.sclk = Sclk{cells.number("sclk").value_or(0.0)};
-    if (const auto scet = scet_from_day_of_year(cells.required_text("scet")))
+    if (const auto scet = scet_from_text(cells.required_text("scet")))
         clock.scet = *scet;
     else
         cells.fault("scet: " + in_quotes(cells.text("scet")) + " is no time as 2012-219T05:10:47.400");
