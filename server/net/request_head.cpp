@@ -39,7 +39,7 @@ Result<RequestTarget> target_of(const RequestHead& head) {
     if (!whole || !whole->has_authority() || (whole->scheme() != "http" && whole->scheme() != "https"))
         return Error{"the request's target is not a path"};
     auto target = parts_of(*whole, std::string{whole->encoded_host_and_port()});
-    if (target.path.empty()) target.path = "/";
+    if (target.path.empty()) target.path.push_back('/');
     return target;
 }
 
