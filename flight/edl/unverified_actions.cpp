@@ -23,6 +23,15 @@ void tell_refused(const Firing& firing, Outbox& out) {
     out.send(ModuleId::mfsk, ToneRequest{is_pyro(firing) ? tone::pyro_not_fired : tone::action_refused, out.now()});
 }
 
+/// What was taken as done after the time-out no longer is.
+void explain_late_refusal(const Firing& firing, Outbox& out) {
+    const bool as_done = row_of(firing).if_unverified != IfUnverified::not_done;
+    const std::array conditions{above(Quantity::reply_wait_s, out.now() - firing.triggered,
+                                      row_of(firing).reply_timeout_s.value_or(0.0)),
+                                is(Quantity::taken_as_done, as_done, as_done)};
+    out.record(explanation(Decision::timepoint, ExplanationVerdict::refused, firing.timepoint.value, conditions));
+}
+
 double magnitude(const std::array<double, 3>& v) {
     return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
@@ -75,6 +84,7 @@ bool UnverifiedActions::on(const ActionReply& reply, ActionContext& context) {
         context.announce(row_of(firing));
     } else {
         tell_refused(firing, context.out());
+        explain_late_refusal(firing, context.out());
         context.configuration().forget(firing.fact);
     }
     return true;

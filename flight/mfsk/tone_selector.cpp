@@ -71,6 +71,8 @@ void ToneSelector::refuse_or_make_room(const ToneRequest& request, Outbox& out) 
 
 void ToneSelector::on(const StandBy& stand_by, Outbox& out) {
     silent_ = !stand_by.over;
+    for (const ToneRequest& request : outstanding_)
+        explain(out, request.tone, ExplanationVerdict::dropped, {is(Quantity::prime_stands_by, true)});
     outstanding_.clear();
     sending_.reset();
     out.bus().tone.reset();

@@ -78,6 +78,7 @@ void ErrorFilter::add_noise(const Motion& motion, bool sees_ground) {
 void ErrorFilter::step(const Motion& motion, const std::vector<Sighting>& sightings, bool whole) {
     Step now;
     now.whole = whole;
+    now.up_M = motion.p_MoB_M.normalized();
     now.transition = transition(motion);
     error_ = now.transition * error_;
     covariance_ = now.transition * covariance_ * now.transition.transpose();
@@ -176,7 +177,8 @@ std::vector<PathError> ErrorFilter::smoothed() const {
         const State sigma = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
         if (step.whole)
             all.push_back({error.segment<3>(p), error.segment<3>(v), error.segment<3>(angle), sigma.segment<3>(p),
-                           sigma.segment<3>(v), sigma.segment<3>(angle)});
+                           sigma.segment<3>(v), sigma.segment<3>(angle),
+                           std::sqrt(std::max(step.up_M.dot(covariance.block<3, 3>(p, p) * step.up_M), 0.0))});
         if (i == 0) break;
         // Gain = filtered Fᵀ predicted⁻¹, with the states scaled to one: metres and radians differ by nine decades.
         const Step& before = steps_[i - 1];

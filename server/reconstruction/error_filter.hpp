@@ -78,6 +78,7 @@ struct Sighting {
 struct PathError {
     Vector3 p_M_m = Vector3::Zero(), v_M_mps = Vector3::Zero(), angle_M_rad = Vector3::Zero();
     Vector3 sigma_p_m = Vector3::Zero(), sigma_v_mps = Vector3::Zero(), sigma_angle_rad = Vector3::Zero();
+    double sigma_height_m = 0.0;  ///< along up: the axes are correlated
 };
 
 class ErrorFilter {
@@ -107,6 +108,7 @@ class ErrorFilter {
     struct Step {
         Covariance transition, predicted, filtered;
         State predicted_error, filtered_error;
+        Vector3 up_M = Vector3::Zero();
         bool whole = true;
     };
 

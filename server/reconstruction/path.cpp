@@ -173,6 +173,7 @@ void correct(Path& path, std::span<const PathError> errors) {
         point.sigma_p_m = error.sigma_p_m;
         point.sigma_v_mps = error.sigma_v_mps;
         point.sigma_angle_rad = error.sigma_angle_rad;
+        point.sigma_height_m = error.sigma_height_m;
     }
 }
 

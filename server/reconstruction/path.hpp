@@ -15,6 +15,7 @@ struct PathPoint {
     Sclk at;
     flight::gnc::NavigatedState state;
     Vector3 sigma_p_m = Vector3::Zero(), sigma_v_mps = Vector3::Zero(), sigma_angle_rad = Vector3::Zero();
+    double sigma_height_m = 0.0;
     std::optional<flight::gnc::NavigatedState> navigated;  ///< as flight recorded it within the 1/64 s before
 };
 

@@ -65,7 +65,7 @@ TEST_CASE("Second Chance takes over after a quarter of a second of silence, not 
     CHECK(backup.recorder.sent<StatePart>().size() == 1);
 }
 
-TEST_CASE("a take-over, made or refused, is explained by prime's silence, its state's age and what that state said",
+TEST_CASE("a take-over, made or refused for the age of prime's state, is explained by prime's silence and that state",
           "[cross_string][R33][R38]") {
     const auto told_by = [](Backup& backup) {
         const auto told = backup.recorder.explanations();

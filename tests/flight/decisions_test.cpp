@@ -27,13 +27,31 @@ TEST_CASE("what GNC starts and the timeline waits for has an anchor", "[edl][R17
     CHECK(set_by_gnc == awaited);
 }
 
-TEST_CASE("each decision of GNC is an event and an explanation with its conditions", "[edl][R38]") {
+TEST_CASE("each decision of GNC is an event of its own and an explanation with its conditions", "[edl][R38]") {
+    // In the order of gnc::Trigger.
+    constexpr std::array<EvrId, gnc::trigger_count> events{evr::GUIDANCE_START::id,
+                                                           evr::HEADING_ALIGNMENT::id,
+                                                           evr::SUFR_START::id,
+                                                           evr::PARACHUTE_DEPLOY::id,
+                                                           evr::HEATSHIELD_SEPARATION::id,
+                                                           evr::RADAR_LOCK::id,
+                                                           evr::ENGINE_PRIMING::id,
+                                                           evr::BACKSHELL_SEPARATION::id,
+                                                           evr::POWERED_APPROACH_START::id,
+                                                           evr::CONSTANT_VELOCITY_START::id,
+                                                           evr::CONSTANT_DECELERATION_START::id,
+                                                           evr::SKY_CRANE_START::id,
+                                                           evr::ROVER_SEPARATION::id,
+                                                           evr::TOUCHDOWN::id};
     for (std::size_t i = 0; i < gnc::trigger_count; ++i) {
         test::OutboxRecorder recorder;
         gnc::JudgedTrigger fired{static_cast<gnc::Trigger>(i), {}};
         fired.conditions.push_back(gnc::at_most(Quantity::speed_mps, 404.6, 405.0));
         announce(fired.trigger, gnc::Output{}, recorder.out);
-        CHECK(recorder.packets<evr::PARACHUTE_DEPLOY>() == 1);
+        const auto records = recorder.sent<Record>();
+        REQUIRE(records.size() == 1);
+        CHECK(records[0].apid == evr::PARACHUTE_DEPLOY::apid);
+        CHECK(EvrId{static_cast<std::uint16_t>(read_bits(records[0].data, 0, 16))} == events.at(i));
         explain(fired, 0, recorder.out);
         const auto told = recorder.explanations();
         REQUIRE(told.size() == 1);

@@ -253,6 +253,23 @@ TEST_CASE("a computer that has not been told a phase, or stands by, sends no hea
     CHECK(f.tick(1101) == ToneId{12});
 }
 
+TEST_CASE("a computer that is to stand by drops the tones that were asked for, and explains each", "[mfsk][R32][R38]") {
+    Fixture f;
+    f.request(2, 1000);
+    f.request(3, 1000);
+    f.recorder.begin(ModuleId::mfsk, Sclk{1001});
+    f.selector.on(StandBy{}, f.recorder.out);
+    const auto told = told_in(f.recorder);
+    REQUIRE(told.size() == 2);
+    for (const Told& one : told) {
+        CHECK(one.verdict == ExplanationVerdict::dropped);
+        CHECK(one.of(Quantity::prime_stands_by).holds);
+    }
+    CHECK(told[0].tone == 2);
+    CHECK(told[1].tone == 3);
+    CHECK_FALSE(f.tick(1002).has_value());
+}
+
 TEST_CASE("each phase from late cruise until the stage has flown away has a heartbeat, and its twin in Second Chance",
           "[mfsk][R31][R35]") {
     for (const EdlPhase phase :

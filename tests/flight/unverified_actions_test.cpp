@@ -67,10 +67,12 @@ TEST_CASE("a late reply about the other state of a switch is not its reply", "[e
     CHECK(f.actions.on(uhf_on, context));
 }
 
-TEST_CASE("a refusal that comes after the time-out takes back what was taken as done", "[edl][R50]") {
+TEST_CASE("a refusal that comes after the time-out takes back what was taken as done, and is explained",
+          "[edl][R38][R50]") {
     Fixture f;
     CHECK(f.reply(Evidence::refused, 1003.0));
     CHECK(f.recorder.events<evr::TIMEPOINT_REFUSED>() == 1);
+    CHECK(f.recorder.packets<packet::Explanation>() == 1);
     CHECK(f.recorder.sent<ToneRequest>()[0].tone == tone::pyro_not_fired);
     CHECK_FALSE(f.configuration.parachute_out);
 }

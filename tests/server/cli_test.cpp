@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "aeolis/v1/run.pb.h"
+#include "commands/parameter_table.hpp"
 #include "common/proximity_frame.hpp"
 #include "common/space_packet.hpp"
 #include "flight/load.hpp"
@@ -37,6 +38,7 @@
 #include <thread>
 #include <unistd.h>
 #include <utility>
+#include <vector>
 
 namespace server_cli_test {
 
@@ -668,6 +670,68 @@ TEST_CASE("a landing's samples and their predict are made together, and decode r
     CHECK(run(program(), simulate + "--predict-out" + predict + "--predict" + predict).code == 2);
     CHECK(run(program(), simulate).code == 2);  // some hundreds of kilohertz are outside of the samples
     std::filesystem::remove_all(directory);
+}
+
+TEST_CASE("the program writes the command file that changes parameters, with the CRC that flight wants",
+          "[cli][parameters][R25][R48]") {
+    if (program() == nullptr) return;
+    const aeolis::test::TemporaryFolder folder;
+    const auto crc_after = [](std::initializer_list<std::pair<std::string, double>> changes) {
+        aeolis::commands::ParameterTable table{aeolis::tests::shipped_dictionary()};
+        for (const auto& [name, value] : changes)
+            REQUIRE(table.set(std::ranges::find(aeolis::tests::shipped_dictionary().parameters, name,
+                                                &aeolis::dictionary::ParameterRow::name)
+                                  ->id,
+                              value));
+        return fmt::format("\"parameter_crc\", \"value\": {}}}", table.crc());
+    };
+    const auto first = run(program(), "parameters --table 1 guidance_gain=4.25 constant_velocity_mps=31");
+    INFO(first.text);
+    CHECK(first.code == 0);
+    CHECK_THAT(first.text, Catch::StartsWith("{\"commands\": [\n  {\"command\": \"EDL_DISCARD_PARAMETERS\"},\n") &&
+                               Catch::Contains("\"value\", \"value\": 4.25}") &&
+                               Catch::Contains("\"parameter_changes\", \"value\": 2}") &&
+                               Catch::Contains(crc_after({{"guidance_gain", 4.25}, {"constant_velocity_mps", 31.0}})));
+    std::ofstream{folder / "first.json"} << first.text;
+    const auto second =
+        run(program(), "parameters --table 2 --after '" + (folder / "first.json").string() + "' guidance_gain=5");
+    CHECK(second.code == 0);
+    CHECK_THAT(second.text, Catch::Contains(crc_after({{"constant_velocity_mps", 31.0}})));  // 5 as built
+    const std::vector<std::pair<std::string, std::string>> wrong{
+        {"guidance_gain=400", "guidance_gain: 400 is outside 1 to 10"},
+        {"guidance_gian=4", "parameters.csv has no parameter 'guidance_gian'"},
+        {"guidance_gain=4 guidance_gain=5", "named twice"},
+        {"guidance_gain=four", "the value is no number"},
+        {"guidance_gain", "a change is NAME=VALUE"},
+        {"entry_moved_max_s=5", "entry_moved_max_s is fixed when flight is built"},
+        {"--after /nope guidance_gain=4", "--after /nope: it cannot be read"}};
+    for (const auto& [arguments, why] : wrong) {
+        const auto told = run(program(), "parameters --table 3 " + arguments);
+        INFO(told.text);
+        CHECK(told.code == 2);
+        CHECK_THAT(told.text, Catch::Contains(why));
+    }
+}
+
+TEST_CASE("the explanations in docs are those that the program prints", "[.long][cli][explanation][R38]") {
+    if (program() == nullptr) return;
+    const aeolis::test::TemporaryFolder folder;
+    const std::string archive = "'" + (folder / "landing.db").string() + "'";
+    REQUIRE(run(program(), "rehearse --scenario nominal_auto --seed 1 --archive " + archive).code == 0);
+    const auto printed = run(program(), "report --explanations --run 1 --archive " + archive);
+    REQUIRE(printed.code == 0);
+    const std::string page = AEOLIS_SOURCE_DIR "/docs/explanations.md";
+    std::ostringstream read;
+    read << std::ifstream{page}.rdbuf();
+    std::string text = read.str();
+    const std::string fence = "```text\n";
+    const auto begin = text.find(fence) + fence.size(), end = text.find("```", begin);
+    REQUIRE(end != std::string::npos);
+    // To renew the page: AEOLIS_RENEW_EXPLANATIONS=1
+    if (std::getenv("AEOLIS_RENEW_EXPLANATIONS") != nullptr)
+        std::ofstream{page} << text.replace(begin, end - begin, printed.text);
+    else
+        CHECK(text.substr(begin, end - begin) == printed.text);
 }
 
 }  // namespace server_cli_test

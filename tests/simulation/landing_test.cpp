@@ -3,6 +3,7 @@
 
 #include "generated/dictionary_flight.hpp"
 #include "simulation/devices/recorder.hpp"
+#include "simulation/limits.hpp"
 #include "telemetry/proximity_packets.hpp"
 #include "tests/simulation/gale.hpp"
 #include "tests/support/catch.hpp"
@@ -65,6 +66,21 @@ void command(Landing& landing, Flown& flown) {
     landing.uplink(do_edl());
 }
 
+/// What ground's navigators have by tracking now: the truth, within 100 m and 0.03 m/s on each axis.
+NavigationSolution tracked(const Landing& landing, std::uint16_t solution_id) {
+    constexpr double position_error_m = 100.0, velocity_error_mps = 0.03;
+    NavigationSolution solution = landing.solution();
+    const TruthState truth = landing.truth();
+    solution.solution_id = solution_id;
+    solution.epoch = truth.sclk;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double sign = axis % 2 == 0 ? 1.0 : -1.0;
+        solution.p_MoB_M_m[axis] = truth.p_MoB_M_m[axis] + sign * position_error_m;
+        solution.v_MB_M_mps[axis] = truth.v_MB_M_mps[axis] - sign * velocity_error_mps;
+    }
+    return solution;
+}
+
 std::set<std::vector<std::uint8_t>> packets_of(std::span<const std::uint8_t> recording) {
     std::set<std::vector<std::uint8_t>> packets;
     for (auto packet = take_packet(recording); !packet.empty(); packet = take_packet(recording))
@@ -90,19 +106,30 @@ TEST_CASE("a commanded landing stands, and all that was sent live is in its reco
     CHECK(std::ranges::all_of(flown.live, [&](const auto& packet) { return recorded.contains(packet); }));
 }
 
-TEST_CASE("do edl six days ahead: heaters at E-3 h, and the phases of the mission at their times",
-          "[.long][simulation][landing][R23][R28]") {
+TEST_CASE(
+    "do edl six days ahead, and parameters anew a day and two hours before entry: heaters at E-3 h, the phases of "
+    "the mission at their times, and a landing within the limits",
+    "[.long][simulation][landing][R23][R25][R28]") {
     using namespace aeolis::flight;
     constexpr double six_days_s = 6.0 * 86400.0;
-    Landing landing{tests::gale_scenario(six_days_s), 1};
-    Flown flown;
+    const Scenario scenario = tests::gale_scenario(six_days_s);
+    Landing landing{scenario, 1};
     landing.uplink(set_parameters(landing.solution()));
     for (int i = 0; i < 640; ++i) landing.step();
     landing.uplink(do_edl());
+    // The first solution's velocity errs by some m/s for six days: nothing would land by it.
+    std::uint16_t solution_id = landing.solution().solution_id;
+    for (const double before_entry_s : {86400.0, 7200.0}) {
+        while (landing.truth().e_s < -before_entry_s) landing.step();
+        landing.uplink(set_parameters(tracked(landing, ++solution_id)));
+    }
     while (!landing.flown()) landing.step();
-    // It does not land: nothing renews a solution whose velocity errs by some m/s for six days.
-    const Sclk entry = tests::gale_scenario().entry_sclk;
-    const auto e_s = [&](Sclk at) { return at - entry; };
+    const Judgement judgement = judge(scenario.limits, figures_of(landing));
+    INFO(reason_of(landing, judgement));
+    CHECK(judgement.verdict == Verdict::landed);
+    CHECK(tests::count_recorded<evr::EDL_PARAMETERS_ACCEPTED>(landing.recording()) == 3);
+    CHECK(tests::count_recorded<evr::SUB_CONSTRAINT_VIOLATED>(landing.recording()) == 0);
+    const auto e_s = [&](Sclk at) { return at - scenario.entry_sclk; };
     const auto heaters = tests::recorded<evr::EDL_HEATERS_ON>(landing.recording());
     REQUIRE(heaters.size() == 1);
     CHECK(e_s(heaters[0].at) == Approx(-10'800.0).margin(1.0));
@@ -112,6 +139,7 @@ TEST_CASE("do edl six days ahead: heaters at E-3 h, and the phases of the missio
     CHECK(began_e_s.at(EdlPhase::edl_approach) == Approx(-six_days_s + 10.0).margin(5.0));
     CHECK(began_e_s.at(EdlPhase::edl_main) == Approx(-14'400.0).margin(1.0));
     CHECK(began_e_s.at(EdlPhase::exo_atmospheric) == Approx(-600.0).margin(1.0));
+    CHECK(began_e_s.at(EdlPhase::landed) > 400.0);
 }
 
 TEST_CASE("a copied landing stepped alike stays bit-identical", "[simulation][landing][invariant2]") {

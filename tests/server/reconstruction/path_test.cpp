@@ -35,13 +35,19 @@ struct Flown {
     std::vector<Truth> truth;  ///< of each tick from entry on
     Sclk touchdown;
 
-    explicit Flown(const simulation::Scenario& scenario, std::uint64_t seed) {
+    /// @param reset_e_s  when prime is reset; none: never
+    explicit Flown(const simulation::Scenario& scenario, std::uint64_t seed, std::optional<double> reset_e_s = {}) {
         simulation::Landing landing{scenario, seed};
         landing.uplink(test::set_parameters(landing.solution()));
         for (int tick = 0; tick < 64; ++tick) landing.step();
+        if (reset_e_s) landing.uplink(test::enable_second_chance());
         landing.uplink(test::do_edl());
         while (!landing.flown()) {
             landing.step();
+            if (reset_e_s && landing.truth().e_s >= *reset_e_s) {
+                landing.reset_prime();
+                reset_e_s.reset();
+            }
             if (landing.truth().e_s < -60.0 || landing.outcome() != simulation::Outcome::running) continue;
             note(landing.truth(), landing.inspect());
         }
@@ -80,6 +86,7 @@ Result<Path> rebuilt(const Flown& flown, const SensorErrors& errors = {}, const 
 
 /// Largest errors against the truth, as they are, and in standard deviations of the three axes together.
 struct Worst {
+    double height_sigmas = 0.0;  ///< along up
     double p_m = 0.0, height_m = 0.0, v_mps = 0.0, angle_deg = 0.0;
     double p_sigmas = 0.0, v_sigmas = 0.0, angle_sigmas = 0.0;
     std::size_t points = 0;
@@ -99,22 +106,25 @@ Worst worst_of(const Path& path, const Flown& flown, double from_s = -1e9) {
         take(worst.p_m, worst.p_sigmas, (point.state.p_MoB_M - truth->p_MoB_M).norm(), point.sigma_p_m.norm());
         take(worst.v_mps, worst.v_sigmas, (point.state.v_MB_M - truth->v_MB_M).norm(), point.sigma_v_mps.norm());
         take(worst.angle_deg, worst.angle_sigmas, angle_deg, point.sigma_angle_rad.norm() / degree);
-        worst.height_m = std::max(worst.height_m, std::abs(point.state.p_MoB_M.norm() - truth->p_MoB_M.norm()));
+        take(worst.height_m, worst.height_sigmas, std::abs(point.state.p_MoB_M.norm() - truth->p_MoB_M.norm()),
+             point.sigma_height_m);
     }
     return worst;
 }
 
 std::string text_of(const char* what, const Worst& worst) {
     return std::string(what) + ": " + std::to_string(worst.p_m) + " m (" + std::to_string(worst.p_sigmas) +
-           " sigma), height " + std::to_string(worst.height_m) + " m, " + std::to_string(worst.v_mps) + " m/s (" +
-           std::to_string(worst.v_sigmas) + "), " + std::to_string(worst.angle_deg) + " deg (" +
-           std::to_string(worst.angle_sigmas) + ")";
+           " sigma), height " + std::to_string(worst.height_m) + " m (" + std::to_string(worst.height_sigmas) + "), " +
+           std::to_string(worst.v_mps) + " m/s (" + std::to_string(worst.v_sigmas) + "), " +
+           std::to_string(worst.angle_deg) + " deg (" + std::to_string(worst.angle_sigmas) + ")";
 }
 
 // The bounds, from SensorErrors. Three standard deviations of three axes together:
 constexpr double sigmas_max = 3.0;
 // height: of the map (10 m) and of the ground's relief over the 150 s in which the radar sees it (12 m);
 constexpr double height_at_end_max_m = sigmas_max * 16.0;
+// and at entry, 430 s and 600 km earlier: by what velocity and attitude at the radar's end leave open;
+constexpr double height_known_m = 300.0;
 // velocity: of the beams' biases (0.033 m/s over six of them) and of what is not modelled.
 constexpr double velocity_at_end_max_mps = sigmas_max * 0.04;
 
@@ -133,6 +143,7 @@ void check_claims(const Path& path, const Flown& flown) {
     INFO(text_of("all", all));
     CHECK(all.points > 8 * 440);
     CHECK(all.p_sigmas < sigmas_max);
+    CHECK(all.height_sigmas < sigmas_max);
     CHECK(all.v_sigmas < sigmas_max);
     CHECK(all.angle_sigmas < sigmas_max);
 }
@@ -176,6 +187,8 @@ TEST_CASE("the path of a landing is rebuilt from its recording alone, as well as
     REQUIRE(touchdown);
     CHECK(*touchdown - path->points.back().at < path_step_s);
     check_bounds(*path, dispersed());
+    // The height is known better than the place: by the radar, back to the entry.
+    for (const PathPoint& point : path->points) CHECK(point.sigma_height_m < height_known_m);
     const auto& end = path->points.back();
     CHECK(end.sigma_p_m.norm() < 1.1 * std::sqrt(3.0) * SensorErrors{}.position_m);
     CHECK(end.sigma_v_mps.norm() < 0.1);
@@ -267,6 +280,15 @@ TEST_CASE("over a silence of the IMU a path claims no more than it knows", "[rec
         CHECK(path->points.back().sigma_angle_rad.norm() > 2.0 * SensorErrors{}.attitude_rad);
         CHECK(path->beams_refused < path->beams_taken / 100);
     }
+}
+
+TEST_CASE("a landing that Second Chance took over is rebuilt, too, and claims no more than it knows",
+          "[reconstruction][second_chance][R33][R52]") {
+    const Flown flown{tests::gale_scenario(900.0), 1, 100.0};
+    const auto path = rebuilt(flown);
+    REQUIRE(path);
+    CHECK(path->breaks == 1);
+    check_claims(*path, flown);
 }
 
 TEST_CASE("packets in any order and any number of times make the same path", "[reconstruction][R52]") {
