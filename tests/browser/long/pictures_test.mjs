@@ -104,6 +104,7 @@ test('each panel comes to look as its stored picture does, within a tolerance, a
   await page.keyboard.press('y');
   await shows('badge', /REPLAY/); // two letters in a row are a word
   await page.keyboard.press('p');
+  await shows('replay-play', /play/); // it is held
   await page.getByTestId('replay-bar').locator('input').fill('265');
   await shows('clock-entry', /E\+4:25/);
   await page.evaluate(() => document.activeElement.blur());
