@@ -323,6 +323,7 @@ test('live, reviewing, ended, in a replay and in the past at least four events (
         await page.keyboard.press('y');
         await shows('badge', /REPLAY/); // two letters in a row are a word
         await page.keyboard.press('p');
+        await shows('replay-play', /play/); // it is held
         await page.getByTestId('replay-bar').locator('input').fill('265');
         await shows('clock-entry', /E\+4:25/);
       },

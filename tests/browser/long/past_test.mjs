@@ -19,6 +19,7 @@ test('a replay shows nothing of what came later, in every panel, and the way bac
   await page.keyboard.press('y');
   await shows('badge', /REPLAY, NOT LIVE/);
   await page.keyboard.press('p');
+  await shows('replay-play', /play/); // it is held
   const marks = await page.getByTestId('mode-mark').allInnerTexts();
   assert.ok(marks.length >= 10, `${marks.length} panels are marked`);
   for (const mark of marks) assert.match(mark, /replay, rehearsal/i);

@@ -21,8 +21,11 @@ function loseATrace() {
   const context = canvas.getContext('2d');
   const picture = context.getImageData(0, 0, canvas.width, canvas.height);
   for (let at = 0; at < picture.data.length; at += 4) {
-    if ([rgb >> 16, (rgb >> 8) & 255, rgb & 255].every((part, i) => Math.abs(picture.data[at + i] - part) < 12))
-      picture.data[at + 3] = 0;
+    // as near as what is counted as the trace's colour
+    const [red, green, blue] = [rgb >> 16, (rgb >> 8) & 255, rgb & 255].map((part, i) =>
+      Math.abs(picture.data[at + i] - part),
+    );
+    if (red + green + blue < 24) picture.data[at + 3] = 0;
   }
   context.putImageData(picture, 0, 0);
 }
@@ -101,6 +104,7 @@ test('each panel comes to look as its stored picture does, within a tolerance, a
   await page.keyboard.press('y');
   await shows('badge', /REPLAY/); // two letters in a row are a word
   await page.keyboard.press('p');
+  await shows('replay-play', /play/); // it is held
   await page.getByTestId('replay-bar').locator('input').fill('265');
   await shows('clock-entry', /E\+4:25/);
   await page.evaluate(() => document.activeElement.blur());
