@@ -19,7 +19,7 @@
 namespace aeolis::server {
 namespace {
 
-constexpr const char* stage = "EDL_STAGE_PARAMETER";
+constexpr const char* stage_command = "EDL_STAGE_PARAMETER";
 
 struct ParametersOptions {
     std::filesystem::path directory = SharedOptions{}.dictionary;
@@ -61,10 +61,10 @@ Result<void> apply(const std::filesystem::path& path, commands::ParameterTable& 
     const auto parsed = file ? from_json(text.str(), sequence) : Result<void>{Error{"it cannot be read"}};
     if (!parsed) return Error{fmt::format("--after {}: {}", path.string(), parsed.error().message)};
     for (const v1::CommandRequest& command : sequence.commands()) {
-        if (command.command() != stage) continue;
+        if (command.command() != stage_command) continue;
         const double row = argument_of(command, "parameter");
         const bool possible = row >= 0.0 && row <= 65535.0;
-        if (!possible) return Error{fmt::format("--after {}: {} names no row", path.string(), stage)};
+        if (!possible) return Error{fmt::format("--after {}: {} names no row", path.string(), stage_command)};
         const auto set = table.set(ParameterId{static_cast<std::uint16_t>(row)}, argument_of(command, "value"));
         if (!set) return Error{fmt::format("--after {}: {}", path.string(), set.error().message)};
     }
@@ -94,7 +94,7 @@ Result<std::string> command_file(const ParametersOptions& options, const diction
         if (!change) return change.error();
         if (!named.insert(change->id.value).second) return Error{given + ": the parameter is named twice"};
         if (const auto set = table.set(change->id, change->value); !set) return set.error();
-        text += ",\n" + line_of(stage, {{"parameter", change->id.value}, {"value", change->value}});
+        text += ",\n" + line_of(stage_command, {{"parameter", change->id.value}, {"value", change->value}});
     }
     return text + ",\n" +
            line_of("EDL_ACTIVATE_PARAMETERS", {{"parameter_version", options.table},
