@@ -47,14 +47,12 @@ export async function comparePicture(page, name, screenshot) {
       file,
       Buffer.from((await page.evaluate(inPage, { png: screenshot.toString('base64'), tile: TILE_PX })).png, 'base64'),
     );
-    if (traces.length > 0)
-      writeFileSync(
-        tracesFile,
-        `{\n${Object.entries({ ...storedTraces(), [name]: traces })
-          .sort(([one], [other]) => (one < other ? -1 : 1))
-          .map(([each, counts]) => `  ${JSON.stringify(each)}: ${JSON.stringify(counts)}`)
-          .join(',\n')}\n}\n`,
-      );
+    const { [name]: _before, ...others } = storedTraces();
+    const all = traces.length > 0 ? { ...others, [name]: traces } : others;
+    const lines = Object.entries(all)
+      .sort(([one], [other]) => (one < other ? -1 : 1))
+      .map(([each, counts]) => `  ${JSON.stringify(each)}: ${JSON.stringify(counts)}`);
+    writeFileSync(tracesFile, `{\n${lines.join(',\n')}\n}\n`);
     return [];
   }
   const lost = differentTraces(name, traces, storedTraces()[name] ?? []);
