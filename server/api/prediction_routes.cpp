@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <fmt/format.h>
 
 // What the ground predicts of a run's landing: the nominal flight of its scenario, and the predicted silences.
@@ -72,12 +71,12 @@ void add_windows(const NominalFlight& flight, const RunClocks& clocks, v1::Predi
     }
 }
 
-void add_ellipse(const simulation::Scenario& scenario, v1::Prediction& prediction) {
-    if (scenario.target.ellipse_major_m == 0.0) return;
+void add_ellipse(const NominalFlight& flight, v1::Prediction& prediction) {
+    if (!flight.ellipse) return;
     auto& ellipse = *prediction.mutable_ellipse();
-    ellipse.set_major_m(scenario.target.ellipse_major_m);
-    ellipse.set_minor_m(scenario.target.ellipse_minor_m);
-    ellipse.set_azimuth_deg(std::fmod(simulation::course_at_target_deg(scenario), 180.0));
+    ellipse.set_major_m(flight.ellipse->major_m);
+    ellipse.set_minor_m(flight.ellipse->minor_m);
+    ellipse.set_azimuth_deg(flight.ellipse->azimuth_deg);
 }
 
 void add_series(const NominalFlight& flight, const dictionary::Channel& channel, const RunClocks& clocks,
@@ -129,7 +128,6 @@ void Api::prediction(const ApiRequest& call) {
             if (!text) return none(text.error());
             const auto scenario = scenario_from_text(*text, fmt::format("the scenario of run {}", id.value));
             if (!scenario) return none(scenario.error());
-            add_ellipse(*scenario, prediction);
             const auto predicted = parts_.predictions.prediction(*scenario);
             if (!predicted.none.empty()) return none(Error{predicted.none});
             prediction.set_basis(basis());
@@ -147,6 +145,7 @@ void Api::prediction(const ApiRequest& call) {
                 added.set_ert(clocks.ert(event.e_s));
             }
             add_windows(flight, clocks, prediction);
+            add_ellipse(flight, prediction);
             for (const auto* channel : channels) add_series(flight, *channel, clocks, *range, prediction);
             return response_of(prediction, format);
         },

@@ -210,6 +210,9 @@ Result<NominalFlight> fly_nominally(const simulation::Scenario& expected, const 
     } catch (const std::exception& error) {
         return Error{std::string{"the simulation ended: "} + error.what()};
     }
+    if (expected.target.ellipse_major_m > 0.0)
+        flight.ellipse = {expected.target.ellipse_major_m, expected.target.ellipse_minor_m,
+                          std::fmod(simulation::course_at_target_deg(expected), 180.0)};
     flight.samples = telemetry.take_samples();
     flight.events = telemetry.take_events();
     for (const auto& firing : firings.all())

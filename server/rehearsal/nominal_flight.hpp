@@ -31,7 +31,13 @@ struct NominalFlight {
         double from_s = 0.0;
         std::optional<double> to_s;  ///< none: no end is predicted
     };
+    /// About the target, to hold 99 % of the landings: what the mission aims at. Full axes; the longer one along the course.
+    struct Ellipse {
+        double major_m = 0.0, minor_m = 0.0;
+        double azimuth_deg = 0.0;  ///< from north to east, 0 … 180
+    };
     std::string outcome;
+    std::optional<Ellipse> ellipse;            ///< none: the scenario has none
     std::vector<Event> events;                 ///< by time: timepoints, and event reports that no timepoint represents
     std::vector<Window> windows;               ///< by beginning
     std::vector<std::vector<Sample>> samples;  ///< by channel: the first of each second, if it is defined

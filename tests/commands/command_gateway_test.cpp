@@ -367,7 +367,7 @@ TEST_CASE(
     wanted.director = true;
     const auto reply = station.send(wanted);
     REQUIRE(reply.accepted);
-    CHECK(station.radiated().size() <= CommandGateway::radiated_a_cycle_max);
+    CHECK(station.gateway.take_uplinks().size() <= CommandGateway::radiated_a_cycle_max);
     int cycles = 0;
     const auto left = [&] {
         return std::ranges::any_of(station.stages, [&](const StageReport& stage) {
@@ -376,7 +376,7 @@ TEST_CASE(
     };
     for (; cycles < 100 && !left(); ++cycles) {
         station.gateway.pass(Ert{now.microseconds + (cycles + 1) * 15'625}, station.stages);
-        CHECK(station.radiated().size() <= CommandGateway::radiated_a_cycle_max);
+        CHECK(station.gateway.take_uplinks().size() <= CommandGateway::radiated_a_cycle_max);
     }
     // Only those that were at the uplink already left before it.
     CHECK(cycles <= static_cast<int>(CommandGateway::at_uplink_max));
@@ -925,12 +925,13 @@ TEST_CASE("when a change of the timeline is refused on board, what was analysed 
                Catch::StartsWith(
                    "pending: taken back from the uplink, which had not radiated it when command 1 came to nothing"));
 
-    tell_room(station, true, now);
-    station.gateway.pass(now, station.stages);
+    const Ert next_cycle{now.microseconds + 15'625};
+    tell_room(station, true, next_cycle);
+    station.gateway.pass(next_cycle, station.stages);
     CHECK_THAT(told(3, "released"), Catch::Contains("does not leave before its timeline is looked at again"));
     CHECK_THAT(told(4, "released"), Catch::StartsWith("ok"));
     CHECK(station.gateway.take_uplinks().size() == 1);  // the fourth: nobody doubts it
-    CHECK(station.gateway.judge({3, 1, false, "all bounds hold"}, now, station.stages));
+    CHECK(station.gateway.judge({3, 1, false, "all bounds hold"}, next_cycle, station.stages));
     CHECK(station.gateway.take_uplinks().size() == 1);
 }
 

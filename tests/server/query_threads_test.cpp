@@ -112,12 +112,11 @@ TEST_CASE("a question of one client is answered while another's slow ones go on 
     auto& threads = *recorded.threads;
     std::atomic<bool> enough{false};
     const auto slow = [&](archive::Reader& reader) {
-        while (!enough) (void)reader.proof(archive::RunId{1}).ok();
+        while (!enough && !reader.stopped()) (void)reader.proof(archive::RunId{1}).ok();
     };
     for (std::size_t i = 0; i < 60; ++i) REQUIRE(threads.ask(slow, {.client = "greedy"}));
-    // Two clients more, so that more questions are under way than run at a time.
-    for (const char* client : {"slow", "slow too"})
-        for (int i = 0; i < 5; ++i) REQUIRE(threads.ask(slow, {.client = client}));
+    // A second one, so that more questions are under way than run at a time.
+    for (int i = 0; i < 5; ++i) REQUIRE(threads.ask(slow, {.client = "slow"}));
     for (int i = 0; i < 5; ++i) {
         std::promise<bool> told;
         auto answered = told.get_future();
