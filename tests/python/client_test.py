@@ -49,14 +49,14 @@ class Landed(unittest.TestCase):
     """One landing, flown once, that the tests read."""
 
     server: Server
-    run: int
+    landed: int  # number of its run
 
     @classmethod
     def setUpClass(cls) -> None:
         cls.server = Server()
         with Client(cls.server.address) as aeolis:
-            cls.run = aeolis.start("nominal_auto", seed=7, pace=0).run
-            ended = aeolis.wait_for_end(cls.run, timeout_s=300)
+            cls.landed = aeolis.start("nominal_auto", seed=7, pace=0).run
+            ended = aeolis.wait_for_end(cls.landed, timeout_s=300)
             assert ended.outcome == "touchdown", ended
 
     @classmethod
@@ -81,10 +81,10 @@ class Landed(unittest.TestCase):
                 self.assertTrue(done.stdout or example.name == "alarms.py" or "landing.txt" in example.read_text())
 
     def test_values_are_those_that_the_server_gives_without_the_client(self) -> None:
-        url = f"{self.server.address}/api/v1/runs/{self.run}/channels?names=altitude_m&to=E%2B60"
+        url = f"{self.server.address}/api/v1/runs/{self.landed}/channels?names=altitude_m&to=E%2B60"
         plain = json.load(urllib.request.urlopen(url))["channels"][0]
         with Client(self.server.address) as aeolis:
-            (series,) = aeolis.history(["altitude_m"], run=self.run, end="E+60")
+            (series,) = aeolis.history(["altitude_m"], run=self.landed, end="E+60")
         self.assertEqual(list(series.value), plain["value"])
         self.assertEqual(list(series.sclk), plain["sclk"])
         self.assertGreater(len(series.value), 100)
@@ -93,7 +93,7 @@ class Landed(unittest.TestCase):
         async def numbers(after: int, at_most: int = 10**9) -> list[int]:
             async with AsyncClient(self.server.address) as aeolis:
                 seen = []
-                async for item in aeolis.subscribe(run=self.run, after_seq=after, channels=[]):
+                async for item in aeolis.subscribe(run=self.landed, after_seq=after, channels=[]):
                     seen.append(item.seq)
                     if len(seen) == at_most:
                         break
@@ -106,8 +106,8 @@ class Landed(unittest.TestCase):
 
     def test_pages_come_to_all_events(self) -> None:
         with Client(self.server.address) as aeolis:
-            by_tens = [item.seq for item in aeolis.events(run=self.run, limit=10)]
-            self.assertEqual(by_tens, [item.seq for item in aeolis.events(run=self.run)])
+            by_tens = [item.seq for item in aeolis.events(run=self.landed, limit=10)]
+            self.assertEqual(by_tens, [item.seq for item in aeolis.events(run=self.landed)])
 
     def test_errors_are_the_server_s_own_sentences(self) -> None:
         with Client(self.server.address) as aeolis:
@@ -115,7 +115,7 @@ class Landed(unittest.TestCase):
                 aeolis.run(99)
             self.assertEqual(caught.exception.status, 404)
             with self.assertRaisesRegex(AeolisError, "there is no channel 'altitud'"):
-                list(aeolis.subscribe(run=self.run, channels=["altitud"]))
+                list(aeolis.subscribe(run=self.landed, channels=["altitud"]))
             with self.assertRaisesRegex(CommandRefused, "NO_SUCH|no run"):
                 aeolis.command("NO_SUCH")
         with self.assertRaisesRegex(AeolisError, "http://127.0.0.1:1"):
