@@ -15,8 +15,10 @@ class StaticFiles {
     static constexpr std::uintmax_t file_octets_max = 16 << 20;  ///< chosen: the console is below 1 MB
 
     explicit StaticFiles(std::filesystem::path directory) : directory_(std::move(directory)) {}
-    /// Whether the path may be one of the console's files: "/", or a name with a dot. Looks at no disk.
-    static bool may_have(std::string_view path) { return path == "/" || path.find('.') != std::string_view::npos; }
+    /// Whether the path may be one of the console's files: "/", or a name with a dot outside /api/. Looks at no disk.
+    static bool may_have(std::string_view path) {
+        return path == "/" || (path.find('.') != std::string_view::npos && !path.starts_with("/api/"));
+    }
     HttpResponse file(std::string_view path) const;
 
   private:
