@@ -26,9 +26,9 @@ void tell_refused(const Firing& firing, Outbox& out) {
 /// What was taken as done after the time-out no longer is.
 void explain_late_refusal(const Firing& firing, Outbox& out) {
     const bool as_done = row_of(firing).if_unverified != IfUnverified::not_done;
-    const std::array conditions{above(Quantity::reply_wait_s, out.now() - firing.triggered,
-                                      row_of(firing).reply_timeout_s.value_or(0.0)),
-                                is(Quantity::taken_as_done, as_done, as_done)};
+    const std::array conditions{
+        above(Quantity::reply_wait_s, out.now() - firing.triggered, row_of(firing).reply_timeout_s.value_or(0.0)),
+        is(Quantity::taken_as_done, as_done, as_done)};
     out.record(explanation(Decision::timepoint, ExplanationVerdict::refused, firing.timepoint.value, conditions));
 }
 

@@ -240,8 +240,8 @@ v1::ClockReply to_reply(const ClockCorrelation& clock) {
 
 ClockCorrelation correlation_of(const v1::RunState& run) {
     const auto& clock = run.clock();
-    return {Sclk{clock.sclk()}, scet_from_text(clock.scet()).value_or(Scet{}), clock.rate(),
-            clock.leap_seconds(), clock.version()};
+    return {Sclk{clock.sclk()}, scet_from_text(clock.scet()).value_or(Scet{}), clock.rate(), clock.leap_seconds(),
+            clock.version()};
 }
 
 Ert ert_of(const v1::RunState& run, Sclk at) {

@@ -397,7 +397,8 @@ TEST_CASE("entry is not set by its anchor while nobody has navigated it", "[edl]
     CHECK(f.recorder.sent<CommandOutcome>()[0].refused == CommandRefusal::bad_argument);
 }
 
-TEST_CASE("prime that was reset after touchdown was declared is not ordered on", "[edl][second_chance][R32][R34][R38]") {
+TEST_CASE("prime that was reset after touchdown was declared is not ordered on",
+          "[edl][second_chance][R32][R34][R38]") {
     test::FlownComputers flown;
     for (const bool touchdown : {false, true}) {
         flown.fly_until([&](test::FlownComputers& at) {
