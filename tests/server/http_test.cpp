@@ -484,7 +484,7 @@ TEST_CASE("a question that the disk keeps from its answer is the server's fault 
 }
 
 TEST_CASE("a command file goes whole or not at all, and names the command that is refused", "[http][R44]") {
-    RunningServer server{shipped_scenario("nominal"), 100.0};
+    RunningServer server{shipped_scenario("nominal"), 10.0};  // the run outlasts two thousand commands
     const auto post = [&](std::string_view body) {
         return web_request(server.port(), "POST", "/api/v1/runs/latest/sequences", body);
     };
