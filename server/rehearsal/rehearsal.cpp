@@ -55,14 +55,14 @@ Result<void> Rehearsal::inject(const v1::FaultInjection& injection) {
     return {};
 }
 
-std::vector<v1::CommandReply> Rehearsal::look(std::span<const v1::CommandRequest> file) {
+std::vector<v1::CommandReply> Rehearsal::look(std::span<const v1::CommandRequest> file, const std::string& browser) {
     std::vector<v1::CommandReply> replies;
     if (!takes_commands()) {
         for (const auto& request : file) replies.push_back(submit(request));
         return replies;
     }
     std::vector<commands::Request> requests;
-    for (const auto& request : file) requests.push_back(request_of(request));
+    for (const auto& request : file) requests.push_back(request_of(request, browser));
     for (const auto& reply : flight_.look(requests)) replies.push_back(message_of(reply));
     return replies;
 }

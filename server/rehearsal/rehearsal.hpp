@@ -43,7 +43,7 @@ class Rehearsal {
     /// See request_of().
     v1::CommandReply submit(const v1::CommandRequest& request, const std::string& browser = {}, bool director = false);
     /// See commands::CommandGateway::look.
-    std::vector<v1::CommandReply> look(std::span<const v1::CommandRequest> file);
+    std::vector<v1::CommandReply> look(std::span<const v1::CommandRequest> file, const std::string& browser = {});
     /// See commands::CommandGateway::judge.
     Result<void> judge(const commands::TimelineVerdict& verdict) { return flight_.judge(verdict); }
 

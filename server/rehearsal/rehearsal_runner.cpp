@@ -278,7 +278,7 @@ void RehearsalRunner::finish(Rehearsal& rehearsal) {
 
 std::vector<v1::CommandReply> RehearsalRunner::look_at(Rehearsal& rehearsal, const SendCommands& order) {
     if (!order.only_check && order.requests.size() == 1) return {};  // it is checked once, when taken
-    auto replies = rehearsal.look(order.requests);
+    auto replies = rehearsal.look(order.requests, order.browser);
     if (!order.only_check && std::ranges::all_of(replies, &v1::CommandReply::accepted)) replies.clear();
     return replies;
 }
