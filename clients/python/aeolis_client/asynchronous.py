@@ -142,7 +142,9 @@ class AsyncClient:
         """The AsFlownReport: timepoints and events, predicted and flown."""
         return await self._ask("AsFlownReport", "GET", f"/runs/{run}/report")
 
-    async def export(self, path: Union[str, Path], channels: Sequence[str], *, run: Run = "latest", **query: Any) -> int:
+    async def export(
+        self, path: Union[str, Path], channels: Sequence[str], *, run: Run = "latest", **query: Any
+    ) -> int:
         """Writes samples to a CSV file as they come, whatever their number. Returns the octets written."""
         asked = {"names": ",".join(channels), **query}
         written = 0
@@ -172,7 +174,7 @@ class AsyncClient:
         """The RunState of a run once it is over."""
 
         async def ended() -> Any:
-            while (state := await self.run(run)).state not in ("finished", "interrupted"):
+            while not _is_over(state := await self.run(run)):
                 await asyncio.sleep(_ASK_AGAIN_S)
             return state
 
@@ -196,6 +198,8 @@ class AsyncClient:
         @param more     fields of CommandRequest: from_solution, dry_run, release_at, hold, priority, controller
         Errors: CommandRefused; CommandFailed, when that stage or one before failed; asyncio.TimeoutError
         """
+        if stage and run == "latest":
+            run = (await self.run()).run  # another run may begin while this waits
         body: dict[str, Any] = {"command": name, **more}
         body["arguments"] = [{"name": key, "value": value} for key, value in (arguments or {}).items()]
         if confirm:
@@ -236,9 +240,11 @@ class AsyncClient:
     async def subscribe(
         self, *, run: int = 0, after_seq: int = 0, channels: Optional[Sequence[str]] = None, **more: Any
     ) -> AsyncIterator[Any]:
-        """Items of a run in order, live and from the archive, none left out and none twice.
+        """Items of a run in order, live and from the archive, none twice.
 
         When the connection is lost it is opened again, and the stream goes on behind the last item. Ends with the run.
+        No event, tone or other item is left out. Samples that nobody followed while the connection was lost may come
+        thinned to one a second: `history` has all of them.
         @param run       0: the current run
         @param channels  names; None: all
         @param more      fields of Subscribe: max_rate_hz, without_units, pace
@@ -250,17 +256,20 @@ class AsyncClient:
         else:
             ids = {channel.name: channel.id for channel in (await self.dictionary()).channels}
             wanted["channels"] = [_known(ids, name) for name in channels]
+        state = self.schema.RunState()  # as the stream told last
         lost = 0
         while True:
             try:
-                async for batch in self._batches(wanted):
+                async for kind, message in self._messages(wanted):
                     lost = 0
-                    if batch.run:
-                        wanted["run"] = batch.run
-                    for item in batch.items:
-                        yield item
-                    wanted["after_seq"] = max(wanted["after_seq"], batch.complete_through)
-                    if await self._is_over(wanted):
+                    if kind == "batch":
+                        for item in message.items:
+                            yield item
+                        wanted["after_seq"] = max(wanted["after_seq"], message.complete_through)
+                    else:
+                        state = message
+                    wanted["run"] = wanted["run"] or message.run
+                    if state.run == wanted["run"] and _is_over(state) and wanted["after_seq"] >= state.last_seq:
                         return
             except (OSError, websockets.exceptions.ConnectionClosed, asyncio.TimeoutError) as error:
                 if lost == len(_WAITS_S):
@@ -268,7 +277,8 @@ class AsyncClient:
                 await asyncio.sleep(_WAITS_S[lost])
                 lost += 1
 
-    async def _batches(self, wanted: dict[str, Any]) -> AsyncIterator[Any]:
+    async def _messages(self, wanted: dict[str, Any]) -> AsyncIterator[tuple[str, Any]]:
+        """Of one connection: batches, and states of the run."""
         parts = urlsplit(self._server)
         secure = parts.scheme == "https"
         cookies = "; ".join(f"{name}={value}" for name, value in self._http.cookies.items())
@@ -278,8 +288,8 @@ class AsyncClient:
         address = f"{'wss' if secure else 'ws'}://{parts.netloc}/api/v1/stream"
         options: dict[str, Any] = {"subprotocols": ["aeolis.v1.protobuf"], "max_size": None}
         # The option has another name since version 14.
-        new = int(websockets.__version__.split(".")[0]) >= 14 if hasattr(websockets, "__version__") else False
-        options["additional_headers" if new else "extra_headers"] = headers
+        is_new = int(websockets.__version__.split(".")[0]) >= 14
+        options["additional_headers" if is_new else "extra_headers"] = headers
         if secure:
             options["ssl"] = self._tls
         async with websockets.connect(address, **options) as stream:
@@ -291,14 +301,10 @@ class AsyncClient:
                 kind = reply.WhichOneof("message")
                 if kind == "refusal":
                     raise AeolisError(0, reply.refusal.reason)
-                if kind == "batch":
-                    yield reply.batch
-
-    async def _is_over(self, wanted: dict[str, Any]) -> bool:
-        if not wanted["run"]:
-            return False
-        state = await self.run(wanted["run"])
-        return state.state in ("finished", "interrupted") and wanted["after_seq"] >= state.last_seq
+                if kind in ("batch", "run_state"):
+                    yield kind, getattr(reply, kind)
+                elif kind == "welcome" and reply.welcome.HasField("run_state"):
+                    yield "run_state", reply.welcome.run_state
 
     # HTTP.
 
@@ -335,6 +341,10 @@ class AsyncClient:
             if not page.next_after:
                 return
             after = page.next_after
+
+
+def _is_over(state: Any) -> bool:
+    return state.state in ("finished", "interrupted")
 
 
 def _given(query: dict[str, Any]) -> dict[str, Any]:

@@ -27,7 +27,11 @@ class Client:
         self._loop = asyncio.new_event_loop()
         self._thread = threading.Thread(target=self._loop.run_forever, daemon=True, name="aeolis_client")
         self._thread.start()
-        self._client = self._wait(self._open(server, options))
+        try:
+            self._client = self._wait(self._open(server, options))
+        except BaseException:
+            self._end()
+            raise
 
     @staticmethod
     async def _open(server: str, options: dict[str, Any]) -> AsyncClient:
@@ -74,6 +78,9 @@ class Client:
         if self._loop.is_closed():
             return
         self._wait(self._client.close())
+        self._end()
+
+    def _end(self) -> None:
         self._loop.call_soon_threadsafe(self._loop.stop)
         self._thread.join()
         self._loop.close()
