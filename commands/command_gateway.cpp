@@ -67,9 +67,8 @@ std::vector<CommandGateway::FieldPlace> CommandGateway::clcw_places(const dictio
 }
 
 Result<void> CommandGateway::takes(std::size_t more, const std::string& asker) const {
-    const auto own = static_cast<std::size_t>(std::ranges::count_if(underway_, [&](const Underway& each) {
-        return (each.browser.empty() ? each.controller : each.browser) == asker;
-    }));
+    const auto own = static_cast<std::size_t>(std::ranges::count_if(
+        underway_, [&](const Underway& each) { return asker_of(each.browser, each.controller) == asker; }));
     const std::size_t taken = underway_.size() + more - 1;
     if (may_take(own + more - 1, taken, commands_max)) return {};
     if (taken >= commands_max)
@@ -83,7 +82,7 @@ Result<CommandGateway::Prepared> CommandGateway::prepare(const Request& request,
     if (command == nullptr)
         return Error{fmt::format("unknown command '{}': the dictionary of {} has none of this name", request.command,
                                  dictionary_.mission)};
-    if (auto room = takes(1, request.asker()); !room) return room.error();
+    if (auto room = takes(1, asker_of(request.browser, request.controller)); !room) return room.error();
 
     std::vector<NamedValue> arguments = request.arguments;
     if (request.from_solution) arguments = fill_from_solution(*command, arguments, solution_);
@@ -184,7 +183,7 @@ void CommandGateway::queue(const Prepared& prepared, const Request& request, Ask
     const auto* report = read_back_packet(dictionary_, *prepared.command);
     auto& underway = underway_.emplace_back(
         Underway{++commands_, prepared.packet, prepared.arguments, request.controller, request.browser, "",
-                 request.priority, request.director, prepared.wanted, report,
+                 request.priority, request.director || is_hazardous(*prepared.command), prepared.wanted, report,
                  CommandLifecycle{*prepared.command, count_, light_time_s_, report != nullptr}});
     count_ = static_cast<std::uint16_t>((count_ + 1) % count_modulus);
 
@@ -201,15 +200,10 @@ void CommandGateway::queue(const Prepared& prepared, const Request& request, Ask
     append(underway, changes_, stages);
     reply.accepted = true;
     reply.command = underway.number;
-    const CommandQueue::Entry entry{underway.number,
-                                    request.priority,
-                                    prepared.release_at,
-                                    request.hold,
-                                    reply.needs_approval,
-                                    changes_offsets(prepared.command->name),
-                                    false,
-                                    request.director || is_hazardous(*prepared.command),
-                                    request.asker()};
+    const CommandQueue::Entry entry{
+        underway.number, request.priority,     prepared.release_at,
+        request.hold,    reply.needs_approval, changes_offsets(prepared.command->name),
+        false,           underway.ahead,       asker_of(request.browser, request.controller)};
     queue_.add(entry);
     if (request.hold || prepared.release_at || reply.needs_approval || queue_.leaves_after(entry))
         tell_wait(underway, now, stages);
@@ -226,7 +220,7 @@ std::vector<Reply> CommandGateway::look(std::span<const Request> file, Ert now) 
         request.dry_run = true;
         auto& reply = replies.emplace_back(submit(request, now, none));
         if (!reply.accepted || !request.action.empty()) continue;
-        if (const auto room = takes(++more, request.asker()); !room) {
+        if (const auto room = takes(++more, asker_of(request.browser, request.controller)); !room) {
             reply.accepted = false;
             reply.reason = room.error().message;
             continue;

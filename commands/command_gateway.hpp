@@ -110,7 +110,7 @@ class CommandGateway {
         std::string arguments, controller, browser;
         std::string timeline;  ///< verdict of a later analysis; empty: not analysed again
         std::uint32_t priority = 0;
-        bool director = false;
+        bool ahead = false;  ///< hazardous, or a director's
         std::optional<Fop::Service> wanted;
         const dictionary::Packet* report = nullptr;  ///< the packet in which flight reads back this command
         CommandLifecycle lifecycle;

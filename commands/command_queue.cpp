@@ -53,9 +53,9 @@ bool CommandQueue::judged(std::uint64_t number) {
 
 std::optional<std::uint64_t> CommandQueue::leaves_after(const Entry& entry) const {
     std::optional<std::uint64_t> last;
+    if (!entry.in_order) return last;
     for (const Entry& each : entries_)
-        if (entry.in_order && each.in_order && each.number < entry.number)
-            last = std::max(last.value_or(0), each.number);
+        if (each.in_order && each.number < entry.number) last = std::max(last.value_or(0), each.number);
     return last;
 }
 
@@ -82,9 +82,11 @@ std::optional<std::uint64_t> CommandQueue::take_next(Ert now) {
         return std::tuple{!entry.ahead, turn == last_turn_.end() ? 0 : turn->second, ~entry.priority, entry.number};
     };
     auto next = entries_.end();
-    for (auto entry = entries_.begin(); entry != entries_.end(); ++entry)
-        if (is_due(*entry, now) && seen.insert(entry->asker).second)
-            if (next == entries_.end() || rank(*entry) < rank(*next)) next = entry;
+    for (auto entry = entries_.begin(); entry != entries_.end(); ++entry) {
+        if (seen.contains(entry->asker) || !is_due(*entry, now)) continue;
+        seen.insert(entry->asker);
+        if (next == entries_.end() || rank(*entry) < rank(*next)) next = entry;
+    }
     if (next == entries_.end()) return {};
     const Entry taken = *next;
     entries_.erase(next);

@@ -15,8 +15,8 @@ namespace aeolis::commands {
 ///
 /// Order    one asker's due commands: the higher priority first, equals by number, as they were requested. Among the
 ///          next commands of all askers: those that pass ahead, then the asker whose turn was longest ago, then the
-///          higher priority. Commands that are `in_order` leave by number alone, because each was judged by the effects of
-///          those before it
+///          higher priority. Commands that are `in_order` leave by number alone, because each was judged by the
+///          effects of those before it
 /// Memory   one entry a command; the owner bounds their number
 class CommandQueue {
   public:

@@ -3,7 +3,7 @@
 // reports say of their frames.
 #include "commands/command_gateway.hpp"
 
-#include "commands/authorise.hpp"
+#include "commands/shares.hpp"
 #include "commands/timeline_change.hpp"
 #include "common/bytes.hpp"
 #include "common/tc_frame.hpp"
@@ -73,8 +73,8 @@ void CommandGateway::wait_again(std::uint64_t number, std::optional<Ert> until, 
                                     false,
                                     changes_offsets(command->lifecycle.command().name),
                                     false,
-                                    command->director || is_hazardous(command->lifecycle.command()),
-                                    command->browser.empty() ? command->controller : command->browser};
+                                    command->ahead,
+                                    asker_of(command->browser, command->controller)};
     queue_.add(entry);
     std::vector<StageChange> changes;
     command->lifecycle.taken_back(

@@ -21,8 +21,8 @@ class ParameterTable {
     /// range; so would flight.
     [[nodiscard]] Result<void> set(ParameterId id, double value);
 
-    /// CRC-16 over each row in order, its number in 16 bits and its value as a binary64: the data product that dumps the
-    /// table, and the channel parameter_crc.
+    /// CRC-16 over each row in order, its number in 16 bits and its value as a binary64: as of the data product that
+    /// dumps the table, and the channel parameter_crc.
     std::uint16_t crc() const;
 
   private:

@@ -33,9 +33,6 @@ struct Request {
     std::string controller{};  ///< who asks
     std::string browser{};     ///< from where, when there are no accounts
     bool director = false;     ///< asked by one who may send hazardous commands
-
-    /// For whom it counts where places are shared.
-    const std::string& asker() const { return browser.empty() ? controller : browser; }
 };
 
 /// The server's verdict on the timeline of a waiting command that changes it.

@@ -339,7 +339,10 @@ void SituationDesk::note_loss(const std::string& link, const LinkRow& row, Ert t
         loss = losses_.insert(losses_.end(), Loss{std::string(of)});
     }
     const Ert from = row.station ? row.station_since : *row.lost_since;
-    if (loss->times == 0 || from > loss->to) ++loss->times, loss->from = from;  // each link tells the station's fault
+    if (loss->times == 0 || from > loss->to) {  // each link tells the station's fault
+        ++loss->times;
+        loss->from = from;
+    }
     loss->to = to;
     loss->seq = origin.seq;
 }

@@ -31,7 +31,8 @@ struct NominalFlight {
         double from_s = 0.0;
         std::optional<double> to_s;  ///< none: no end is predicted
     };
-    /// About the target, to hold 99 % of the landings: what the mission aims at. Full axes; the longer one along the course.
+    /// About the target, to hold 99 % of the landings: what the mission aims at. Full axes, the longer one along the
+    /// course.
     struct Ellipse {
         double major_m = 0.0, minor_m = 0.0;
         double azimuth_deg = 0.0;  ///< from north to east, 0 … 180

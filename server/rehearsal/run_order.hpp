@@ -3,6 +3,7 @@
 
 #include "aeolis/v1/run.pb.h"
 #include "commands/request.hpp"
+#include "commands/shares.hpp"
 
 #include <functional>
 #include <string>
@@ -41,7 +42,9 @@ struct SendCommands {
     bool director = false;  ///< who sends may send hazardous commands
 
     /// For whom it counts where places are shared.
-    std::string asker() const { return browser.empty() && !requests.empty() ? requests.front().controller() : browser; }
+    std::string asker() const {
+        return requests.empty() ? browser : commands::asker_of(browser, requests.front().controller());
+    }
 
     /// Replies to each command with the same refusal.
     void refuse(const std::string& reason) const;
