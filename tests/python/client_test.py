@@ -90,6 +90,19 @@ class Landed(unittest.TestCase):
         self.assertEqual(list(series.sclk), plain["sclk"])
         self.assertGreater(len(series.value), 100)
 
+    def test_a_table_has_a_row_for_each_instant_and_nothing_between(self) -> None:
+        with Client(self.server.address) as aeolis:
+            state = aeolis.run(self.landed)
+            names = ["altitude_m", "propellant_kg"]
+            limits = {"start": "E+0:00", "end": "E+1:00", "source": "recorded"}
+            table = aeolis.frame(names, run=self.landed, **limits)
+            altitude, propellant = aeolis.history(names, run=self.landed, **limits)
+        self.assertEqual(list(table.columns), ["e_s", *names])
+        self.assertEqual(list(table.index), sorted(set(altitude.sclk) | set(propellant.sclk)))
+        self.assertEqual(list(table["altitude_m"].dropna()), list(altitude.value))
+        self.assertEqual(table["e_s"].iloc[0], table.index[0] - state.entry_sclk)
+        self.assertTrue(table["propellant_kg"].isna().any())  # nothing is interpolated
+
     def test_a_stream_gives_each_item_once_and_goes_on_behind_the_last_one(self) -> None:
         async def numbers(after: int, at_most: int = 10**9) -> list[int]:
             async with AsyncClient(self.server.address) as aeolis:

@@ -12,7 +12,7 @@ def frame_of(series: list[Any], entry_sclk: float) -> Any:
     """
     import pandas
 
-    columns = {each.name: pandas.Series(each.value, index=each.sclk, dtype=float) for each in series}
+    columns = {each.name: pandas.Series(list(each.value), index=list(each.sclk), dtype=float) for each in series}
     frame = pandas.DataFrame({name: column[~column.index.duplicated(keep="last")] for name, column in columns.items()})
     frame.index.name = "sclk"
     frame.insert(0, "e_s", frame.index.to_numpy() - entry_sclk)
