@@ -20,7 +20,7 @@ with Client(*sys.argv[1:2]) as aeolis:
     entry = aeolis.frame(["altitude_m", "speed_mps"], run=run.run, start="E+0:00", source="recorded").dropna()
     axes = entry.plot(x="speed_mps", y="altitude_m", legend=False)
     axes.set(xlabel="speed, m/s", ylabel="altitude, m", title=f"Run {run.run}, {run.scenario}: recorded")
-    plt.savefig("landing.png", dpi=150)
+    plt.savefig("landing.png", dpi=150, bbox_inches="tight")
 
     # %% Report
     with open("landing.txt", "w", encoding="utf-8") as text:
