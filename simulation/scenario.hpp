@@ -30,9 +30,9 @@ struct Target {
     double latitude_deg = -4.6019;
     double longitude_deg = 137.4102;
     double radius_m = 3391148.0;
-    /// Full axes of the ellipse about the target that is to hold 99 % of the landings, the longer one along the course.
-    /// [facts] Dispersed landings (H); 0: there is none
-    double ellipse_major_m = 20000.0, ellipse_minor_m = 7000.0;
+    /// Full axes of the ellipse about the target that is to hold 99 % of the landings, the longer one along the course:
+    /// what a mission aims at, so none (0) unless a scenario says so.
+    double ellipse_major_m = 0.0, ellipse_minor_m = 0.0;
 };
 
 struct Masses {

@@ -158,6 +158,13 @@ std::vector<NominalFlight::Window> windows_of(const telemetry::PredictedSilences
     return windows;
 }
 
+std::optional<NominalFlight::Ellipse> ellipse_of(const simulation::Scenario& scenario) {
+    const auto& target = scenario.target;
+    if (target.ellipse_major_m == 0.0) return std::nullopt;
+    return NominalFlight::Ellipse{target.ellipse_major_m, target.ellipse_minor_m,
+                                  std::fmod(simulation::course_at_target_deg(scenario), 180.0)};
+}
+
 simulation::Scenario expected_scenario(simulation::Scenario scenario) {
     scenario = simulation::undispersed(std::move(scenario));
     scenario.name.clear();
@@ -210,9 +217,7 @@ Result<NominalFlight> fly_nominally(const simulation::Scenario& expected, const 
     } catch (const std::exception& error) {
         return Error{std::string{"the simulation ended: "} + error.what()};
     }
-    if (expected.target.ellipse_major_m > 0.0)
-        flight.ellipse = {expected.target.ellipse_major_m, expected.target.ellipse_minor_m,
-                          std::fmod(simulation::course_at_target_deg(expected), 180.0)};
+    flight.ellipse = ellipse_of(expected);
     flight.samples = telemetry.take_samples();
     flight.events = telemetry.take_events();
     for (const auto& firing : firings.all())

@@ -52,6 +52,9 @@ inline constexpr double nominal_flight_before_entry_s = 1200.0;
 /// links and of the station, and without its name. Scenarios that differ only in these are expected to go alike.
 simulation::Scenario expected_scenario(simulation::Scenario scenario);
 
+/// The ellipse that the scenario aims at; none: it has none.
+std::optional<NominalFlight::Ellipse> ellipse_of(const simulation::Scenario& scenario);
+
 /// Flies the landing of an expected scenario, commanded as planned: by the scenario's script or, without "do edl" in
 /// it, by ground's parameters and "do edl". The samples are decoded from the recorded packets.
 ///

@@ -72,6 +72,15 @@ TEST_CASE("a nominal flight lands, and has each timepoint and the moments betwee
     CHECK(*e_s_of(flight, "touchdown") == Approx(431.0).margin(30.0));
 }
 
+TEST_CASE("the ellipse is the scenario's own, along its course, and a scenario without one has none", "[prediction]") {
+    CHECK_FALSE(ellipse_of(simulation::Scenario{}));
+    const auto& flight = nominal_flight();
+    REQUIRE(flight.ellipse);
+    CHECK(flight.ellipse->major_m == 20'000.0);
+    CHECK(flight.ellipse->minor_m == 7'000.0);
+    CHECK(flight.ellipse->azimuth_deg == Approx(94.0).margin(2.0));  // [od137]: entry at 93.35°
+}
+
 TEST_CASE("predicted channels have a sample a second as telemetry decodes it, and a gap where a value is undefined",
           "[prediction]") {
     const auto& flight = nominal_flight();

@@ -53,6 +53,7 @@ TEST_CASE("runs that differ in seed and faults have one prediction, to the octet
         return web_request(
             server.port(), "POST", "/api/v1/rehearsals",
             fmt::format(R"({{"inline_scenario":{{"name":"{}","entry_scet":"2012-08-06T05:10:47.4",)"
+                        R"("target":{{"ellipse_major_m":20000,"ellipse_minor_m":7000}},)"
                         R"("commands":[{{"send_before_entry_s":1190,"command":"EDL_SET_PARAMETERS",)"
                         R"("from_solution":true}},{{"send_before_entry_s":1170,"command":"EDL_DO_EDL"}}])"
                         R"({}}},"seed":{},"pace":1}})",

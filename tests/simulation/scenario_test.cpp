@@ -58,6 +58,12 @@ TEST_CASE("an impossible value is named, with its bounds", "[simulation][scenari
     CHECK(only_fault(scenario) == "masses.entry_kg: 3000 is not the sum of its parts, 3153");
 
     scenario = tests::gale_scenario();
+    scenario.target.ellipse_major_m = 20000.0;  // an ellipse has two axes
+    CHECK(only_fault(scenario) == "target.ellipse_minor_m: 0 is outside 1 … 20000");
+    scenario.target.ellipse_minor_m = 20001.0;
+    CHECK(only_fault(scenario) == "target.ellipse_minor_m: 20001 is outside 1 … 20000");
+
+    scenario = tests::gale_scenario();
     scenario.target.longitude_deg = 128.0;
     CHECK(only_fault(scenario) == "target: out of range: 86 km from entry is outside 300 … 1500 km");
 
