@@ -38,10 +38,11 @@ struct Asker {
 };
 
 /// Threads that query the archive, each with its own read-only connection. A thread reconnects when the file was
-/// replaced under its name. A long query never delays the network or the writer, and others by a few slices at most.
+/// replaced under its name. A long query never delays the network or the writer.
 ///
-/// Shares   clients are served in turn. One client's queries take of_client_max threads at most, so that a thread
-///          remains for others; of the queries under way running_max run at a time, in turn for a slice each
+/// Shares   clients are served in turn. One client's queries take of_client_max threads at most; of the queries under
+///          way running_max run at a time, in turn for a slice each. So a query waits for a few slices while a thread
+///          is free, and for the end of another query when other clients have taken all of them
 /// Short    one thread takes no queries (in_turn), so that short jobs always proceed. The others take queries before
 ///          jobs of priority `soon`, so that a thousand clients catching up delay nobody's query
 class QueryThreads {

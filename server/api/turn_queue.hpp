@@ -13,8 +13,8 @@ namespace aeolis::server {
 
 /// Jobs that are served in turn by client: each client's in the order received, one client after another.
 ///
-/// Bounds   each_max of one client, all_max of all: what one client may wait for leaves places to others. The client
-///          without a name is the server itself, which has only the bound of all
+/// Bounds   each_max jobs of one client and all_max of all wait, so that places remain for others. The client without a
+///          name is the server itself, which has only the bound of all
 /// Threads  none of its own: the caller locks
 template <typename Job>
 class TurnQueue {

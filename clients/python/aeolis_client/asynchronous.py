@@ -248,7 +248,7 @@ class AsyncClient:
         @param run       0: the current run
         @param channels  names; None: all
         @param more      fields of Subscribe: max_rate_hz, without_units, pace
-        Errors: AeolisError when the server refuses, or is not reached five times in a row
+        Errors: AeolisError when the server refuses, or is not reached again in five tries
         """
         wanted: dict[str, Any] = {"run": run, "after_seq": after_seq, **more}
         if channels is None:
