@@ -181,10 +181,10 @@ void CommandGateway::queue(const Prepared& prepared, const Request& request, Ask
         if (condition.state == PreconditionState::State::unknown)
             not_known += (not_known.empty() ? "; left to flight: " : ", ") + condition.text;
     const auto* report = read_back_packet(dictionary_, *prepared.command);
-    auto& underway = underway_.emplace_back(
-        Underway{++commands_, prepared.packet, prepared.arguments, request.controller, request.browser, "",
-                 request.priority, request.director || is_hazardous(*prepared.command), prepared.wanted, report,
-                 CommandLifecycle{*prepared.command, count_, light_time_s_, report != nullptr}});
+    auto& underway = underway_.emplace_back(Underway{
+        ++commands_, prepared.packet, prepared.arguments, request.controller, request.browser, request.client_id, "",
+        request.priority, request.director || is_hazardous(*prepared.command), prepared.wanted, report,
+        CommandLifecycle{*prepared.command, count_, light_time_s_, report != nullptr}});
     count_ = static_cast<std::uint16_t>((count_ + 1) % count_modulus);
 
     changes_.clear();
@@ -243,17 +243,8 @@ void CommandGateway::note_refused(const Request& request, const std::string& rea
     const auto* command = dictionary_.command(request.command);
     if (command == nullptr) return;  // a script with an unknown command is not started
     auto prepared = prepare(request, now);
-    Underway refused{++commands_,
-                     {},
-                     "",
-                     "",
-                     "",
-                     "",
-                     0,
-                     false,
-                     {},
-                     nullptr,
-                     CommandLifecycle{*command, count_, light_time_s_, false}};
+    Underway refused{++commands_, {}, "",    "", "",      "",
+                     "",          0,  false, {}, nullptr, CommandLifecycle{*command, count_, light_time_s_, false}};
     if (prepared) {
         refused.packet = std::move(prepared->packet);
         refused.arguments = std::move(prepared->arguments);
@@ -425,6 +416,7 @@ void CommandGateway::append(const Underway& underway, const std::vector<StageCha
         if (change.stage == Stage::queued) {
             stage.arguments = underway.arguments;
             stage.octets = underway.packet;
+            stage.client_id = underway.client_id;
         }
         if (change.stage == Stage::released && change.status == Status::pending && waits != nullptr) {
             stage.held = waits->held;

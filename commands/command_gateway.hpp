@@ -107,7 +107,7 @@ class CommandGateway {
     struct Underway {
         std::uint64_t number = 0;
         std::vector<std::uint8_t> packet;
-        std::string arguments, controller, browser;
+        std::string arguments, controller, browser, client_id;
         std::string timeline;  ///< verdict of a later analysis; empty: not analysed again
         std::uint32_t priority = 0;
         bool ahead = false;  ///< hazardous, or a director's

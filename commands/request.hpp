@@ -18,6 +18,7 @@ namespace aeolis::commands {
 /// A request for a command, or for an action on a waiting one.
 struct Request {
     std::uint64_t request = 0;  ///< the client's own number, returned in the reply
+    std::string client_id{};    ///< the client's own id, for the command's history
     std::string command{};
     std::vector<NamedValue> arguments{};
     bool from_solution = false;  ///< fills arguments that are not given from ground's navigation solution
@@ -66,7 +67,7 @@ struct Reply {
     std::vector<std::string> too_late_for{};               ///< timepoints
 };
 
-/// A change of one command's stage. The first report of a command carries its arguments and octets.
+/// A change of one command's stage. The first report of a command carries its arguments, octets and client_id.
 struct StageReport : StageChange {
     std::uint64_t command = 0;
     std::string name{};
@@ -75,6 +76,7 @@ struct StageReport : StageChange {
     std::vector<std::uint8_t> octets{};
     bool held = false, needs_approval = false;  ///< of a pending `released`: what it waits for
     std::string asked_by{};                     ///< of a command that needs approval: who may not give it
+    std::string client_id{};
 };
 
 }  // namespace aeolis::commands

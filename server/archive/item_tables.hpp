@@ -161,6 +161,7 @@ struct ItemTable<StageRecord> {
         visit("held", record.held);
         visit("needs_approval", record.needs_approval);
         visit("asked_by", record.asked_by);
+        visit("client_id", record.client_id, Column::searched);
         visit("octets", record.octets, Column::optional);
     }
 };

@@ -113,6 +113,7 @@ v1::Item to_item(const StageRecord& record) {
     stage.set_held(record.held);
     stage.set_needs_approval(record.needs_approval);
     stage.set_asked_by(record.asked_by);
+    stage.set_client_id(record.client_id);
     return item;
 }
 

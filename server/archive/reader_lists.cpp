@@ -224,6 +224,7 @@ Result<v1::CommandList> Reader::commands(RunId run, const CommandQuery& query) {
             history.set_command(stage.command);
             history.set_name(stage.name);
             history.set_arguments(stage.arguments);
+            history.set_client_id(stage.client_id);
         }
         if (!stage.octets.empty()) history.set_octets(hex(stage.octets));
         if (stage.stage == commands::Stage::released) {  // its final stage

@@ -96,7 +96,7 @@ struct ToneRecord : ItemRecord {
     std::optional<ToneSpectrum> spectrum;       ///< only of a decision from samples
 };
 
-/// A stage of a command. A command's first record carries its arguments and octets.
+/// A stage of a command. A command's first record carries its arguments, octets and client_id.
 struct StageRecord : ItemRecord {
     std::uint64_t command = 0;  ///< number of the command in its run, from 1
     std::string name;
@@ -108,6 +108,7 @@ struct StageRecord : ItemRecord {
     std::vector<std::uint8_t> octets;
     bool held = false, needs_approval = false;  ///< of a pending `released`: what it waits for
     std::string asked_by;                       ///< of a command that needs approval: who may not give it
+    std::string client_id;                      ///< the client's own; empty: none
 };
 
 struct FiringRecord : ItemRecord {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "server/access/secrets.hpp"
 #include "server/base/json.hpp"
 #include "server/cli/commands.hpp"
 #include "server/cli/options.hpp"
@@ -23,6 +24,7 @@ struct SendOptions {
     std::filesystem::path authorities;  ///< PEM; empty: the system's
     std::string by;                     ///< the asker, unless the file names one
     std::optional<std::uint32_t> run;   ///< none: the current run
+    std::string id;                     ///< of this sending; empty: a new one
     bool dry_run = false;
 };
 
@@ -35,13 +37,19 @@ Result<v1::CommandSequence> sequence_of(const SendOptions& options) {
     if (const auto parsed = from_json(text.str(), sequence); !parsed)
         return Error{fmt::format("--file {}: {}", options.file.string(), parsed.error().message)};
     if (options.dry_run) sequence.set_dry_run(true);
-    for (auto& command : *sequence.mutable_commands())
+    int place = 0;
+    for (auto& command : *sequence.mutable_commands()) {
+        ++place;
         if (command.controller().empty()) command.set_controller(options.by);
+        if (command.client_id().empty()) command.set_client_id(fmt::format("{}-{}", options.id, place));
+    }
     return sequence;
 }
 
 std::string of_one(const v1::CommandReply& reply) {
     if (!reply.accepted()) return "refused: " + reply.reason();
+    if (reply.repeated())
+        return fmt::format("is command {} already: not sent again; {}", reply.command(), reply.fate().evidence());
     std::string text = reply.command() == 0 ? "would be taken" : fmt::format("is command {}", reply.command());
     text += fmt::format(", {} octets", reply.octets().size() / 2);
     if (!reply.arrives().empty()) text += fmt::format(", at the vehicle {} SCET", reply.arrives());
@@ -53,15 +61,16 @@ std::string of_one(const v1::CommandReply& reply) {
 }
 
 constexpr int exit_not_known = 3;
+constexpr std::size_t id_length = 16;  // chosen: 64 bits or more of chance
 
 /// Reports that the server may have taken all of the file or nothing.
 int perhaps_taken(const v1::CommandSequence& sequence, const std::string& why, const SendOptions& options) {
     if (sequence.dry_run()) return failed("send: a dry run, nothing was sent: " + why);
     return failed(
         fmt::format(
-            "send: {}: it is not known whether the commands were taken: look at the history before you send them again "
-            "(GET /api/v1/runs/{}/commands, or the console's)",
-            why, options.run ? std::to_string(*options.run) : "latest"),
+            "send: {}: it is not known whether the commands were taken: while this run goes on, send the file again "
+            "with --id {}; what was taken is not taken again",
+            why, options.id),
         exit_not_known);
 }
 
@@ -115,9 +124,16 @@ void add_send_command(CLI::App& program, int& exit_code) {
                        "PEM file of the authorities that may have signed the server's certificate; the system's if "
                        "left out");
     command.add_option("--by", options->by, "name of the sender, for a server without accounts, if the file has none");
+    command.add_option(
+        "--id", options->id,
+        "id of this sending, 1 to 56 of A-Z a-z 0-9 . _ : - ; a file sent again with the id of before is "
+        "not taken twice in one run. A new one if left out");
     command.add_option("--run", options->run, "send only if this is the current run")->check(whole_number());
     command.add_flag("--dry-run", options->dry_run, "only tell what would happen");
-    command.callback([options, &exit_code] { exit_code = send(*options); });
+    command.callback([options, &exit_code] {
+        if (options->id.empty()) options->id = new_secret().substr(0, id_length);
+        exit_code = send(*options);
+    });
 }
 
 }  // namespace aeolis::server

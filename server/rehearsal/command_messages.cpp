@@ -10,6 +10,7 @@ namespace aeolis::server {
 commands::Request request_of(const v1::CommandRequest& message, const std::string& browser, bool director) {
     commands::Request request;
     request.request = message.request();
+    request.client_id = message.client_id();
     request.command = message.command();
     for (const auto& argument : message.arguments()) request.arguments.push_back({argument.name(), argument.value()});
     request.from_solution = message.from_solution();
@@ -84,6 +85,7 @@ archive::StageRecord record_of(commands::StageReport stage) {
     record.held = stage.held;
     record.needs_approval = stage.needs_approval;
     record.asked_by = std::move(stage.asked_by);
+    record.client_id = std::move(stage.client_id);
     return record;
 }
 

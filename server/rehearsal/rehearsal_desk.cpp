@@ -204,6 +204,8 @@ void RehearsalDesk::sequence(std::vector<v1::CommandRequest> requests, bool only
 
 void RehearsalDesk::receive(SendCommands order, const AuthorityCheck& authority) {
     if (const auto refusal = refusal_of(order); !refusal.empty()) return order.refuse(refusal);
+    if (runner_->knows_all(order.requests))  // sent again: answered in turn, and no change of anything
+        return hand_over(std::move(order), state_.run(), timeline_undone_count_, std::string{});
     if (waits(order)) return wait(std::move(order), authority);
     analyse(std::move(order));
 }
@@ -214,6 +216,7 @@ std::string RehearsalDesk::refusal_of(const SendCommands& order) const {
         return "the run waits until its archive can be written again: " + pipeline_.fault();
     for (const auto& request : order.requests)
         if (request.run() != 0 && request.run() != state_.run()) return not_going_on(request.run());
+    if (const auto ids = check_client_ids(order.requests); !ids) return ids.error().message;
     return {};
 }
 
@@ -262,7 +265,8 @@ void RehearsalDesk::hand_over(SendCommands order, std::uint64_t run, std::uint64
                             "it again");
     order.replies = [this, replies = std::move(order.replies),
                      says = *timeline](std::vector<v1::CommandReply> answers) {
-        for (auto& answer : answers) answer.set_timeline(says);
+        for (auto& answer : answers)
+            if (!answer.repeated()) answer.set_timeline(says);
         post_([replies, answers = std::move(answers)] { replies(answers); });
     };
     static_cast<void>(runner_->order(std::move(order)));  // a refusal is in the replies

@@ -144,6 +144,18 @@ std::optional<std::string> RehearsalRunner::name_of_command(std::uint64_t number
     return found == names_.end() ? std::nullopt : std::optional{found->second};
 }
 
+bool RehearsalRunner::knows_all(const std::vector<v1::CommandRequest>& requests) const {
+    const std::scoped_lock lock{mutex_};
+    return std::ranges::all_of(requests, [this](const auto& request) { return client_ids_.knows(request); });
+}
+
+std::vector<std::optional<v1::CommandReply>> RehearsalRunner::repeated(const SendCommands& order) const {
+    std::vector<std::optional<v1::CommandReply>> replies;
+    const std::scoped_lock lock{mutex_};
+    for (const auto& request : order.requests) replies.push_back(client_ids_.reply_to(request));
+    return replies;
+}
+
 void RehearsalRunner::run() {
     Rehearsal rehearsal{scenario_, seed_, 0, dictionary_, {}, cut_ ? std::optional{cut_->clock} : std::nullopt};
     start_ = rehearsal.run_start(pace_);
@@ -321,33 +333,46 @@ void RehearsalRunner::carry_out(Rehearsal& rehearsal, const InterveneRun& order)
 }
 
 void RehearsalRunner::carry_out(Rehearsal& rehearsal, const SendCommands& order) {
-    auto replies = look_at(rehearsal, order);
-    if (!replies.empty()) return order.replies(std::move(replies));
-    bool any = false;
-    for (const auto& request : order.requests) {
-        auto answer = rehearsal.submit(request, order.browser, order.director);
-        const auto what =
-            request.action().empty() ? request.command() : fmt::format("{} of {}", request.action(), request.number());
-        spdlog::info("run {}: command {} {}", run_id_.value, what,
-                     answer.accepted() ? fmt::format("taken as number {}", answer.command())
-                                       : "refused: " + answer.reason());
-        if (answer.accepted()) {
-            any = true;
-            v1::KeptRequest kept;
-            *kept.mutable_command() = request;
-            kept.set_browser(order.browser);
-            kept.set_director(order.director);
-            keep(rehearsal, kept);
-            take_stages(rehearsal);
-        }
-        replies.push_back(std::move(answer));
-    }
-    if (!any) return order.replies(std::move(replies));
+    auto known = repeated(order);
+    for (const auto& reply : known)
+        if (reply && !reply->accepted()) return order.refuse(reply->reason());
+    SendCommands fresh{{}, order.only_check, {}, order.browser, order.director};
+    for (std::size_t i = 0; i < known.size(); ++i)
+        if (!known[i]) fresh.requests.push_back(order.requests[i]);
+    auto looked = fresh.requests.empty() ? std::vector<v1::CommandReply>{} : look_at(rehearsal, fresh);
+    const bool send = looked.empty() && !order.only_check;
+    if (send)
+        for (const auto& request : fresh.requests) looked.push_back(submit(rehearsal, request, order));
+    std::vector<v1::CommandReply> replies;
+    auto next = looked.begin();
+    for (auto& reply : known) replies.push_back(reply ? std::move(*reply) : std::move(*next++));
+    if (!send || std::ranges::none_of(replies, &v1::CommandReply::accepted)) return order.replies(std::move(replies));
     delivery_.answers.push_back([give = order.replies, given = std::move(replies)](const std::string& fault) mutable {
         for (auto& reply : given)
             if (reply.accepted() && !fault.empty()) reply.set_reason(not_stored_yet + fault);
         give(std::move(given));
     });
+}
+
+v1::CommandReply RehearsalRunner::submit(Rehearsal& rehearsal, const v1::CommandRequest& request,
+                                         const SendCommands& order) {
+    auto reply = rehearsal.submit(request, order.browser, order.director);
+    const auto what =
+        request.action().empty() ? request.command() : fmt::format("{} of {}", request.action(), request.number());
+    spdlog::info("run {}: command {} {}", run_id_.value, what,
+                 reply.accepted() ? fmt::format("taken as number {}", reply.command()) : "refused: " + reply.reason());
+    if (!reply.accepted()) return reply;
+    v1::KeptRequest kept;
+    *kept.mutable_command() = request;
+    kept.set_browser(order.browser);
+    kept.set_director(order.director);
+    keep(rehearsal, kept);
+    {
+        const std::scoped_lock lock{mutex_};
+        client_ids_.accepted(request, reply.command());
+    }
+    take_stages(rehearsal);
+    return reply;
 }
 
 void RehearsalRunner::carry_out(Rehearsal& rehearsal, const commands::TimelineVerdict& verdict) {
@@ -369,7 +394,12 @@ void RehearsalRunner::keep(const Rehearsal& rehearsal, const v1::KeptRequest& re
 bool RehearsalRunner::repeat(Rehearsal& rehearsal, const std::string& request) {
     const auto kept = archive::kept_request(request);
     switch (kept.kept_case()) {
-    case v1::KeptRequest::kCommand: return rehearsal.submit(kept.command(), kept.browser(), kept.director()).accepted();
+    case v1::KeptRequest::kCommand: {
+        const auto reply = rehearsal.submit(kept.command(), kept.browser(), kept.director());
+        const std::scoped_lock lock{mutex_};
+        if (reply.accepted()) client_ids_.accepted(kept.command(), reply.command());
+        return reply.accepted();
+    }
     case v1::KeptRequest::kVerdict: return rehearsal.judge(verdict_of(kept.verdict())).ok();
     case v1::KeptRequest::kIntervention:
         return !kept.intervention().has_fault() || rehearsal.inject(kept.intervention().fault()).ok();
@@ -388,9 +418,10 @@ void RehearsalRunner::take_stages(Rehearsal& rehearsal) {
     for (auto& stage : rehearsal.take_stages()) {
         const bool ended = stage.status == commands::Status::failed;
         timeline_moved_ = timeline_moved_ || (ended && commands::changes_offsets(stage.name));
-        if (stage.stage == commands::Stage::queued) {
+        {
             const std::scoped_lock lock{mutex_};
-            names_.emplace(stage.command, stage.name);
+            if (stage.stage == commands::Stage::queued) names_.emplace(stage.command, stage.name);
+            client_ids_.note(stage);
         }
         delivery_.entries.emplace_back(std::move(stage));
     }

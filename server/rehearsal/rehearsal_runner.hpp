@@ -6,7 +6,9 @@
 #include "aeolis/v1/scenario.pb.h"
 #include "common/result.hpp"
 #include "dictionaries/dictionary.hpp"
+#include "server/archive/records.hpp"
 #include "server/pipeline/pipeline_thread.hpp"
+#include "server/rehearsal/client_ids.hpp"
 #include "server/rehearsal/run_order.hpp"
 #include "simulation/scenario.hpp"
 
@@ -81,6 +83,8 @@ class RehearsalRunner {
     std::size_t at_uplink() const { return at_uplink_; }
     /// The name of the command with this number; none: no such number yet.
     std::optional<std::string> name_of_command(std::uint64_t number) const;
+    /// Whether all these requests carry ids of accepted commands: then nothing is sent, whatever is asked.
+    bool knows_all(const std::vector<v1::CommandRequest>& requests) const;
 
   private:
     using Clock = std::chrono::steady_clock;
@@ -113,7 +117,10 @@ class RehearsalRunner {
     void finish(Rehearsal& rehearsal);
     void leave(const Rehearsal& rehearsal);
     /// Repeats a request stored with this run.
-    static bool repeat(Rehearsal& rehearsal, const std::string& request);
+    bool repeat(Rehearsal& rehearsal, const std::string& request);
+    /// For each command the reply where it repeats an earlier one by its client's id, else none.
+    std::vector<std::optional<v1::CommandReply>> repeated(const SendCommands& order) const;
+    v1::CommandReply submit(Rehearsal& rehearsal, const v1::CommandRequest& request, const SendCommands& order);
     /// Checks commands. @return the replies of refused commands, or of all in a dry run; empty: each may be accepted
     static std::vector<v1::CommandReply> look_at(Rehearsal& rehearsal, const SendCommands& order);
     void collect(Rehearsal& rehearsal, const telemetry::Received& received);
@@ -137,6 +144,7 @@ class RehearsalRunner {
     bool stop_ = false, over_ = false;                ///< under mutex_
     std::size_t faults_taken_ = 0, notes_taken_ = 0;  ///< under mutex_; since this runner began
     std::map<std::uint64_t, std::string> names_;      ///< under mutex_; of the run's commands, by number
+    ClientIds client_ids_;                            ///< under mutex_
 
     std::atomic<std::size_t> queued_{0}, at_uplink_{0};
 

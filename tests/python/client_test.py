@@ -4,6 +4,7 @@ import asyncio
 import importlib.util
 import json
 import os
+import random
 import re
 import subprocess
 import sys
@@ -12,6 +13,9 @@ import threading
 import unittest
 import urllib.request
 from pathlib import Path
+from typing import Any
+
+import httpx
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "clients/python"))
@@ -197,6 +201,89 @@ class InProgress(unittest.TestCase):
                 return seen
 
         self.assertEqual(len(asyncio.run(follow())), 60)
+
+    def test_a_full_stream_that_is_cut_off_at_any_place_has_every_value_that_the_run_has(self) -> None:
+        server = Server()
+        self.addCleanup(server.end)
+
+        async def follow(cuts: random.Random) -> None:
+            async with AsyncClient(server.address) as aeolis:
+                run = (await aeolis.start("nominal_auto", seed=3, pace=200)).run
+                opened = aeolis._messages
+
+                async def cut(wanted: dict) -> object:
+                    batches = cuts.randrange(1, 12)
+                    async for kind, message in opened(wanted):
+                        yield kind, message
+                        batches -= kind == "batch"
+                        if batches == 0:
+                            await asyncio.sleep(cuts.random() * 0.2)  # nobody follows meanwhile
+                            raise OSError("cut by the test")
+
+                aeolis._messages = cut  # type: ignore[method-assign]
+                got: dict[int, bytes] = {}
+                async for item in aeolis.subscribe(run=run):
+                    self.assertNotIn(item.seq, got)
+                    got[item.seq] = item.SerializeToString(deterministic=True)
+                    if len(got) == 6000:
+                        break
+                await aeolis.control(stop=True)
+                state = await aeolis.wait_for_end(run, timeout_s=60)
+                wanted = [item async for item in aeolis.items(run=state.run) if item.seq <= max(got)]
+                self.assertEqual([item.seq for item in wanted], list(got))
+                for item in wanted:
+                    self.assertEqual(item.SerializeToString(deterministic=True), got[item.seq])
+
+        for seed in range(3):
+            asyncio.run(follow(random.Random(seed)))
+
+    def test_a_command_whose_reply_is_lost_is_sent_again_and_taken_once(self) -> None:
+        server = Server()
+        self.addCleanup(server.end)
+
+        async def command() -> None:
+            async with AsyncClient(server.address) as aeolis:
+                run = (await aeolis.start("nominal", seed=3, pace=1)).run
+                sent = aeolis._http.request
+                lost = 2
+
+                async def lose(*given: Any, **named: Any) -> httpx.Response:
+                    nonlocal lost
+                    answer = await sent(*given, **named)
+                    if given[0] == "POST" and lost:
+                        lost -= 1
+                        raise httpx.ReadError("lost by the test")
+                    return answer
+
+                aeolis._http.request = lose  # type: ignore[method-assign]
+                reply = await aeolis.command("NO_OP", run=run)
+                self.assertTrue(reply.repeated)
+                self.assertEqual(lost, 0)
+                (history,) = await aeolis.commands(run=run)
+                self.assertEqual(history.command, reply.command)
+                self.assertRegex(history.client_id, "^[0-9a-f]{32}$")
+                again = await aeolis.command("NO_OP", run=run, client_id=history.client_id)
+                self.assertEqual(again.command, history.command)
+
+        asyncio.run(command())
+
+
+class Documents(unittest.TestCase):
+    def test_each_example_of_the_page_for_programs_runs_as_it_stands(self) -> None:
+        server = Server()
+        self.addCleanup(server.end)
+        page = (ROOT / "docs/programs.md").read_text()
+        examples = re.findall(r"^```python\n(.*?)^```$", page, re.DOTALL | re.MULTILINE)
+        self.assertGreaterEqual(len(examples), 2)
+        for example in examples:
+            self.assertLess(len(example.splitlines()), 40)
+            done = subprocess.run(
+                [sys.executable, "-c", example.replace("127.0.0.1:8080", server.address.removeprefix("http://"))],
+                env={**os.environ, "PYTHONPATH": str(ROOT / "clients/python")}, text=True, capture_output=True,
+                timeout=300,
+            )
+            self.assertEqual(done.returncode, 0, example + done.stderr)
+            self.assertTrue(done.stdout)
 
 
 if __name__ == "__main__":

@@ -108,13 +108,18 @@ TEST_CASE("a command file is sent to a server by the program, whole or not at al
     CHECK_THAT(sent.text,
                Catch::Contains("1  NO_OP  is command 1") && Catch::Contains("2  EDL_SET_PARAMETERS  is command 2"));
     CHECK(count() == 2);
+    CHECK(send(good, "--by ann --id again").code == 0);
+    const auto again = send(good, "--by ann --id again");
+    CHECK(again.code == 0);
+    CHECK_THAT(again.text, Catch::Contains("1  NO_OP  is command 3 already: not sent again; "));
+    CHECK(count() == 4);
     const auto wrong = send(good, "--run 77");
     CHECK(wrong.code == 1);
     CHECK_THAT(wrong.text, Catch::Contains("77"));
 }
 
 TEST_CASE(
-    "a command file whose answer is lost, or is none of ours, may have been taken: exit code 3, and where to look",
+    "a command file whose answer is lost, or is none of ours, may have been taken: exit code 3, and how to send it again",
     "[cli][http][R44]") {
     namespace asio = boost::asio;
     namespace http = boost::beast::http;
@@ -147,12 +152,12 @@ TEST_CASE(
     for (const auto& [answer, says] : {std::pair<std::string, const char*>{"", "no answer: "},
                                        {page.substr(0, 50), "no answer: "},
                                        {page, "the answer (502) is not one of Aeolis"}}) {
-        const auto ended = send_to_one_that_says(answer, "");
+        const auto ended = send_to_one_that_says(answer, "--id mine");
         INFO(answer << " -> " << ended.code << ": " << ended.text);
         CHECK(ended.code == 3);
         CHECK_THAT(ended.text, Catch::Contains(says) &&
                                    Catch::Contains("it is not known whether the commands were taken") &&
-                                   Catch::Contains("/api/v1/runs/7/commands"));
+                                   Catch::Contains("send the file again with --id mine; "));
         CHECK(std::count(ended.text.begin(), ended.text.end(), '\n') == 1);
     }
     const auto tried = send_to_one_that_says("", "--dry-run");

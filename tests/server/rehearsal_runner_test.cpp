@@ -231,6 +231,7 @@ archive::Sequence leave_after(archive::Sequence published, const std::filesystem
         while (!begun) std::this_thread::sleep_for(std::chrono::milliseconds{1});
         v1::CommandRequest request;
         request.set_command("NO_OP");
+        request.set_client_id("of-the-first-server");
         REQUIRE(runner.order(SendCommands{{request}, false, [](const auto&) {}}));
         while (pipeline.figures().published_items < published)
             std::this_thread::sleep_for(std::chrono::milliseconds{1});
@@ -280,9 +281,13 @@ void end_and_continue(archive::Sequence published, archive::Sequence further, En
         RehearsalRunner runner{*scenario, *cut, 0.0, dictionary, pipeline, callbacks};
         while (!runner.over() && pipeline.figures().published_items < further)
             std::this_thread::sleep_for(std::chrono::milliseconds{1});
+        if (ended == Ended::left) {
+            v1::CommandRequest request;
+            request.set_command("NO_OP");
+            request.set_client_id("of-the-first-server");
+            CHECK(runner.knows_all({request}));
+        }
         CHECK(runner.order(StopRun{}));
-        while (!runner.over()) std::this_thread::sleep_for(std::chrono::milliseconds{1});
-        CHECK(begun);
     }
     REQUIRE(failure.empty());
     auto reader = archive::Reader::open(file, dictionary);

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import ssl
+import uuid
 from collections.abc import AsyncIterator, Sequence
 from pathlib import Path
 from types import TracebackType
@@ -25,7 +26,7 @@ Run = Union[int, str]
 
 STAGES = ("queued", "authorised", "released", "radiated", "received", "accepted", "executed", "verified")
 _ASK_AGAIN_S = 0.25
-_WAITS_S = (0.2, 0.5, 1.0, 2.0, 5.0)  # before a lost stream is opened again
+_WAITS_S = (0.2, 0.5, 1.0, 2.0, 5.0)  # before a lost stream is opened again, or a command is sent again
 
 
 class AsyncClient:
@@ -116,6 +117,25 @@ class AsyncClient:
         answer = await self._answer("GET", f"/api/v1/runs/{run}/channels", query={**query, "format": "protobuf"})
         return list(self.schema.ChannelSeriesList.FromString(answer.content).channels)
 
+    async def items(
+        self, *, run: Run = "latest", after_seq: int = 0, channels: Optional[Sequence[str]] = None
+    ) -> AsyncIterator[Any]:
+        """All items that a run has now, in order, page by page, as `subscribe` gives them.
+
+        @param channels  names; None: all
+        """
+        names = ",".join(channels) if channels is not None else None
+        while True:
+            query = {"names": names, "after": after_seq, "format": "protobuf"}
+            batch = self.schema.Batch.FromString(
+                (await self._answer("GET", f"/api/v1/runs/{run}/items", query=query)).content
+            )
+            for item in batch.items:
+                yield item
+            if batch.complete_through == after_seq:
+                return
+            after_seq = batch.complete_through
+
     async def frame(self, channels: Sequence[str], *, run: Run = "latest", **limits: Any) -> Any:
         """The same as a pandas.DataFrame by SCLK, with `e_s`, seconds from entry."""
         state = await self.run(run)
@@ -189,28 +209,43 @@ class AsyncClient:
         confirm: bool = False,
         stage: str = "",
         timeout_s: float = 60.0,
+        client_id: str = "",
         **more: Any,
     ) -> Any:
-        """Sends a command; returns its CommandReply, once `stage` is reached if one is named.
+        """Sends a command once; returns its CommandReply, once `stage` is reached if one is named.
 
-        @param confirm  arms a hazardous command and types its name: only what a person decided
-        @param stage    one of STAGES, of which word must have come
-        @param more     fields of CommandRequest: from_solution, dry_run, release_at, hold, priority, controller
-        Errors: CommandRefused; CommandFailed, when that stage or one before failed; asyncio.TimeoutError
+        When the connection is lost before the reply, or the server is too busy to look at it, it is sent again with the
+        same id: within its run the server takes it once, and replies with the fate of the first.
+        @param confirm    arms a hazardous command and types its name: only what a person decided
+        @param stage      one of STAGES, of which word must have come
+        @param client_id  an id of one's own, by which the command can be sent again later, also by another program
+        @param more       fields of CommandRequest: from_solution, dry_run, release_at, hold, priority, controller
+        Errors: CommandRefused; CommandFailed, when that stage or one before failed; asyncio.TimeoutError; AeolisError
+            when no reply came in six tries: whether the command was taken is not known then
         """
-        if stage and run == "latest":
-            run = (await self.run()).run  # another run may begin while this waits
-        body: dict[str, Any] = {"command": name, **more}
+        if run == "latest":
+            run = (await self.run()).run  # another run may begin meanwhile: this is for the present one
+        body: dict[str, Any] = {"command": name, "client_id": client_id or uuid.uuid4().hex, **more}
         body["arguments"] = [{"name": key, "value": value} for key, value in (arguments or {}).items()]
         if confirm:
             body.update(armed=True, confirmation=name)
-        answer = await self._answer("POST", f"/api/v1/runs/{run}/commands", body=body, accept=(202, 409, 422))
+        answer = await self._send(f"/api/v1/runs/{run}/commands", body)
         reply = self._read("CommandReply", answer)
         if not reply.accepted:
             raise CommandRefused(answer.status_code, reply)
         if stage and not reply.dry_run:
             await self.wait_for_stage(reply.command, stage, run=run, timeout_s=timeout_s)
         return reply
+
+    async def _send(self, path: str, body: dict[str, Any]) -> httpx.Response:
+        for wait_s in (*_WAITS_S, None):
+            try:
+                return await self._answer("POST", path, body=body, accept=(202, 409, 422))
+            except AeolisError as error:
+                if wait_s is None or error.status not in (0, 429, 503):
+                    raise
+            await asyncio.sleep(wait_s)
+        raise AssertionError
 
     async def commands(self, *, run: Run = "latest") -> list[Any]:
         """The CommandHistory of each command of a run."""
@@ -243,8 +278,7 @@ class AsyncClient:
         """Items of a run in order, live and from the archive, none twice.
 
         When the connection is lost it is opened again, and the stream goes on behind the last item. Ends with the run.
-        No event, tone or other item is left out. Samples that nobody followed while the connection was lost may come
-        thinned to one a second: `history` has all of them.
+        No item is left out, but for samples above `max_rate_hz` where one is given: `items` has those.
         @param run       0: the current run
         @param channels  names; None: all
         @param more      fields of Subscribe: max_rate_hz, without_units, pace
@@ -299,7 +333,7 @@ class AsyncClient:
             async for octets in stream:
                 reply = self.schema.ServerMessage.FromString(octets)
                 kind = reply.WhichOneof("message")
-                if kind == "refusal":
+                if kind == "refusal" and not reply.refusal.goes_on:
                     raise AeolisError(0, reply.refusal.reason)
                 if kind in ("batch", "run_state"):
                     yield kind, getattr(reply, kind)
