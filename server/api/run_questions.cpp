@@ -7,6 +7,7 @@
 #include "server/api/query_text.hpp"
 #include "server/api/series_text.hpp"
 #include "server/api/state_at.hpp"
+#include "server/api/stream_hub.hpp"
 #include "server/api/time_texts.hpp"
 #include "server/archive/items.hpp"
 #include "server/base/csv_text.hpp"
@@ -81,6 +82,36 @@ Result<bool> flag_of(const QueryText& query, std::string_view name) {
     if (text == "true" || text == "1") return true;
     if (text == "false" || text == "0") return false;
     return Error{fmt::format("{}: '{}' is neither true nor false", name, text)};
+}
+
+constexpr std::size_t item_page_max = 1'000;  // chosen: with all channels about 3 MB as JSON
+constexpr std::array<std::string_view, 2> item_formats{"json", "protobuf"};
+
+/// A page of the items as the stream gives them, at full rate.
+HttpResponse items(const AnswerContext& context, archive::Reader& reader, archive::RunId run, const QueryText& query) {
+    StreamSelection selection;
+    const auto names = query.list("names");
+    selection.all_channels = names.empty();
+    for (const auto& name : names) {
+        const auto* channel = context.dictionary.channel(name);
+        if (channel == nullptr) return error_response(400, fmt::format("names: there is no channel '{}'", name));
+        selection.channels.push_back(channel->id.value);
+    }
+    std::ranges::sort(selection.channels);
+    const auto page = page_of(query, item_page_max, item_page_max);
+    if (!page) return error_response(400, page.error());
+    const auto read = reader.items(run, page->after, page->limit);
+    if (!read) return error_response(400, read.error());
+    std::vector<ItemWithFacts> given;
+    for (const auto& item : read->items) given.push_back({.item = &item, .facts = {}});
+    v1::Batch batch;
+    select_items(selection, 0.0, given, batch);
+    batch.set_run(run.value);
+    batch.set_history(true);
+    batch.set_after_seq(page->after);
+    batch.set_complete_through(read->complete_through);
+    if (format_of(query, item_formats) == "json") return {200, "application/json", "no-store", to_json(batch)};
+    return {200, "application/x-protobuf", "no-store", batch.SerializeAsString()};
 }
 
 HttpResponse run_itself(const AnswerContext&, archive::Reader& reader, archive::RunId run, const QueryText&) {
@@ -390,6 +421,7 @@ const std::array questions{
              channels},
     RunRoute{"packets", {"apid", "name", "from", "to", "verdict", "after", "limit", "format"}, list_formats, packets},
     RunRoute{"tones", {"text", "from", "to", "after", "limit", "format"}, list_formats, tones},
+    RunRoute{"items", {"names", "after", "limit", "format"}, item_formats, items},
     RunRoute{"events", {"level", "text", "from", "to", "after", "limit", "duplicates", "format"}, list_formats, events},
     RunRoute{"commands", {"text", "from", "to", "format"}, list_formats, commands},
     RunRoute{"alarms", {"state", "after", "limit", "format"}, list_formats, alarms},

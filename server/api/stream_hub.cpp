@@ -18,9 +18,9 @@ constexpr double pace_without_further_thinning = 8.0;
 
 constexpr std::size_t sessions_ahead = 4;  // chosen
 
-double thinning_interval_s(const StreamSelection& selection, const v1::RunState& state) {
-    if (selection.max_rate_hz <= 0.0) return 0.0;
-    return std::max(1.0, state.attained_pace() / pace_without_further_thinning) / selection.max_rate_hz;
+/// The factor by which a client's intervals of vehicle time are longer at this pace.
+float stretch_of(const v1::RunState& state) {
+    return static_cast<float>(std::max(1.0, state.attained_pace() / pace_without_further_thinning));
 }
 
 /// Whether a sample at `sclk` begins a new interval after the previous sample.
@@ -50,24 +50,40 @@ v1::Samples some_of(const v1::Samples& samples, const std::vector<std::uint32_t>
     return chosen;
 }
 
-std::vector<DueItem> due_of(std::span<const ItemWithFacts> items, double interval_s, bool packets) {
-    std::vector<DueItem> due;
-    for (const auto& [item, facts] : items) {
-        if (item->has_unit() && (!packets || item->unit().source() == v1::SOURCE_RECORDED)) continue;
-        if (!item->has_samples()) {
-            due.push_back({item});
-            continue;
-        }
-        const double sclk = item->samples().sclk();
-        if (interval_s > 0.0 && !begins_interval(sclk, facts.previous_sclk, interval_s)) continue;
-        due.push_back(
-            {item, interval_s > 0.0 && facts.previous_sclk && sclk - *facts.previous_sclk < interval_s, facts.ascend});
-    }
-    return due;
+/// Whether any of the samples is of the given channels, which ascend.
+bool has_any(const v1::Samples& samples, const std::vector<std::uint32_t>& channels) {
+    return std::ranges::any_of(samples.ids(), [&](auto id) { return std::ranges::binary_search(channels, id); });
 }
 
-void add_items(const StreamSelection& selection, std::span<const DueItem> due, v1::Batch& batch) {
-    for (const auto& [item, thinned, ascend] : due) {
+RatedItem rated(const ItemWithFacts& given, double interval_s) {
+    const auto& [item, facts] = given;
+    if (!item->has_samples() || interval_s <= 0.0) return {item, false, false, facts.ascend};
+    const double now_s = interval_s * facts.stretch, before_s = interval_s * facts.previous_stretch;
+    const bool due = begins_interval(item->samples().sclk(), facts.previous_sclk, now_s);
+    const bool whole =
+        facts.previous_sclk ? begins_interval(*facts.previous_sclk, facts.before_previous_sclk, before_s) : facts.first;
+    return {item, !due, !whole, facts.ascend};
+}
+
+std::vector<RatedItem> at_rate(std::span<const ItemWithFacts> items, double interval_s, bool packets) {
+    std::vector<RatedItem> given;
+    given.reserve(items.size());
+    for (const auto& each : items) {
+        const auto& item = *each.item;
+        if (item.has_unit() && (!packets || item.unit().source() == v1::SOURCE_RECORDED)) continue;
+        given.push_back(rated(each, interval_s));
+    }
+    return given;
+}
+
+/// Adds what goes out to the batch, and what does not to its left_out.
+void add_items(const StreamSelection& selection, std::span<const RatedItem> items, v1::Batch& batch) {
+    std::uint64_t left_out_count = 0;
+    for (const auto& [item, left_out, thinned, ascend] : items) {
+        if (left_out) {
+            left_out_count += selection.all_channels || has_any(item->samples(), selection.channels) ? 1 : 0;
+            continue;
+        }
         if (!item->has_samples() || selection.all_channels) {
             *batch.add_items() = *item;
         } else {
@@ -83,6 +99,7 @@ void add_items(const StreamSelection& selection, std::span<const DueItem> due, v
         }
         if (item->has_samples()) batch.mutable_items()->rbegin()->mutable_samples()->set_thinned(thinned);
     }
+    batch.set_left_out(batch.left_out() + left_out_count);
 }
 
 }  // namespace
@@ -94,20 +111,27 @@ Encoded encode(const v1::ServerMessage& message, StreamFormat format) {
 
 void select_items(const StreamSelection& selection, double interval_s, std::span<const ItemWithFacts> items,
                   v1::Batch& batch) {
-    add_items(selection, due_of(items, interval_s, selection.packets), batch);
+    add_items(selection, at_rate(items, interval_s, selection.packets), batch);
 }
 
-SampleFacts SampleSpacing::next(const v1::Item& item) {
-    if (!item.has_samples() || item.samples().ids_size() == 0) return {};
-    return {previous(item.samples()), std::ranges::is_sorted(item.samples().ids())};
-}
-
-std::optional<double> SampleSpacing::previous(const v1::Samples& samples) {
+SampleFacts SampleSpacing::next(const v1::Item& item, float stretch) {
+    SampleFacts facts;
+    if (!item.has_samples() || item.samples().ids_size() == 0) return facts;
+    const auto& samples = item.samples();
+    facts.stretch = stretch;
+    facts.first = from_start_;
+    facts.ascend = std::ranges::is_sorted(samples.ids());
     const std::uint64_t packet = (std::uint64_t{samples.ids(0)} << 8) | static_cast<std::uint64_t>(samples.source());
-    for (auto& [known, sclk] : last_)
-        if (known == packet) return std::exchange(sclk, samples.sclk());
-    last_.emplace_back(packet, samples.sclk());
-    return std::nullopt;
+    const auto last = std::ranges::find(last_, packet, &Last::packet);
+    if (last == last_.end()) {
+        last_.push_back({packet, samples.sclk(), std::nullopt, stretch});
+        return facts;
+    }
+    facts.previous_sclk = last->sclk;
+    facts.before_previous_sclk = last->previous_sclk;
+    facts.previous_stretch = last->stretch;
+    *last = {packet, samples.sclk(), facts.previous_sclk, stretch};
+    return facts;
 }
 
 StreamHub::StreamHub(std::uint16_t dictionary_id, Services services)
@@ -123,7 +147,7 @@ void StreamHub::published(std::shared_ptr<const pipeline::PublishedBatch> batch)
     } else {
         Held held{std::move(batch), {}};
         held.facts.reserve(held.batch->items.size());
-        for (const auto& item : held.batch->items) held.facts.push_back(spacing_.next(item));
+        for (const auto& item : held.batch->items) held.facts.push_back(spacing_.next(item, stretch_of(state_)));
         held_items_ += held.batch->items.size();
         held_.push_back(std::move(held));
         while (held_items_ > items_max) {
@@ -138,7 +162,7 @@ void StreamHub::forget_items() {
     range_.reset();
     held_.clear();
     held_items_ = 0;
-    spacing_ = {};
+    spacing_ = SampleSpacing{last_seq_ == 0};
 }
 
 void StreamHub::run_state(v1::RunState state) {
@@ -214,24 +238,26 @@ const StreamHub::Range& StreamHub::range_after(archive::Sequence after, double i
             if (held->batch->items[i].seq() > after) items.push_back({&held->batch->items[i], held->facts[i]});
     }
     return range_.emplace(Range{after, last_seq_, items.empty() ? last_seq_ : items.back().item->seq(), interval_s,
-                                packets, due_of(items, interval_s, packets)});
+                                packets, at_rate(items, interval_s, packets)});
 }
 
 StreamHub::EncodedRange StreamHub::encoded_range(const StreamSelection& selection, archive::Sequence after,
-                                                 archive::Sequence sent_through) {
+                                                 archive::Sequence sent_through, std::uint64_t left_out) {
     for (const auto& cached : cache_ | std::views::reverse) {  // the newest is requested most
-        if (cached.after == after && cached.sent_through == sent_through && cached.last_seq == last_seq_ &&
-            cached.clocks_version == clocks_version_ && cached.selection == selection) {
+        if (cached.after == after && cached.sent_through == sent_through && cached.left_out == left_out &&
+            cached.last_seq == last_seq_ && cached.clocks_version == clocks_version_ && cached.selection == selection) {
             ++figures.shared;
             return cached.encoded;
         }
     }
-    const auto& range = range_after(after, thinning_interval_s(selection, state_), selection.packets);
+    const auto& range = range_after(after, selection.interval_s(), selection.packets);
     EncodedRange encoded;
     encoded.through = range.through;
     v1::ServerMessage message;
     auto& batch = *message.mutable_batch();
+    batch.set_left_out(left_out);
     add_items(selection, range.items, batch);
+    encoded.left_out = batch.left_out();
     if (batch.items_size() > 0) {
         batch.set_run(state_.run());
         batch.set_after_seq(sent_through);
@@ -240,7 +266,7 @@ StreamHub::EncodedRange StreamHub::encoded_range(const StreamSelection& selectio
         encoded.message = encode(message, selection.format);
     }
     ++figures.encodings;
-    cache_.push_back({selection, after, sent_through, last_seq_, clocks_version_, encoded});
+    cache_.push_back({selection, after, sent_through, last_seq_, left_out, clocks_version_, encoded});
     if (cache_.size() > shared_encodings) cache_.pop_front();
     return encoded;
 }

@@ -33,13 +33,18 @@ struct StreamSelection {
     std::vector<std::uint32_t> channels;  ///< ascending
     double max_rate_hz = 0.0;
     bool packets = true;
+    /// Vehicle time from one sample of a packet to the next that goes out, at least; 0: every sample goes out.
+    double interval_s() const { return max_rate_hz > 0.0 ? 1.0 / max_rate_hz : 0.0; }
     bool operator==(const StreamSelection&) const = default;
 };
 
-/// Facts about an item's samples, computed once for all clients.
+/// Facts about an item's samples, computed once for all clients. They make thinning stateless per client: whether an
+/// item, and the one before it, goes out at some rate follows from them alone.
 struct SampleFacts {
-    std::optional<double> previous_sclk;  ///< of the same packet; makes thinning stateless per client
-    bool ascend = false;                  ///< their channel ids ascend: allows binary search
+    std::optional<double> previous_sclk{}, before_previous_sclk{};  ///< of the same packet
+    float stretch = 1.0F, previous_stretch = 1.0F;              ///< of the interval; see Held
+    bool first = true;                                          ///< without a previous one: whether none exists
+    bool ascend = false;                                        ///< their channel ids ascend: allows binary search
 };
 /// A published item with the facts about its samples.
 struct ItemWithFacts {
@@ -47,27 +52,37 @@ struct ItemWithFacts {
     SampleFacts facts;
 };
 
-/// An item due at some client rate; each client receives those of its samples that it subscribed to.
-struct DueItem {
+/// An item at some client rate; each client receives those of its samples that it subscribed to.
+struct RatedItem {
     const v1::Item* item = nullptr;
+    bool left_out = false;  ///< only counted
     bool thinned = false, ascend = false;
 };
 
 /// Adds the selected items to a Batch. Commands, events, alarms, tones, firings, explanations, links: all.
-/// Samples: the subscribed channels; with `interval_s` > 0 at least that far apart (vehicle time) and marked thinned.
-/// Packets: those received live, if the selection includes packets; the recording's are at /packets.
+/// Samples: the subscribed channels; with `interval_s` > 0 one item a packet in each interval of vehicle time, the others
+/// counted in left_out. Packets: those received live, if the selection includes packets; the recording's are at
+/// /packets.
 void select_items(const StreamSelection& selection, double interval_s, std::span<const ItemWithFacts> items,
                   v1::Batch& batch);
 
-/// Finds the sample before each item's samples. Call in item order.
+/// Finds the samples before each item's samples. Call in item order.
 class SampleSpacing {
   public:
-    SampleFacts next(const v1::Item& item);
+    /// @param from_start  no item of the run, or of the subscription, comes before the first one
+    explicit SampleSpacing(bool from_start = true) : from_start_(from_start) {}
+    /// @param stretch  factor by which intervals are longer now, >= 1
+    SampleFacts next(const v1::Item& item, float stretch = 1.0F);
 
   private:
-    std::optional<double> previous(const v1::Samples& samples);
-
-    std::vector<std::pair<std::uint64_t, double>> last_;  ///< last SCLK by packet (its first channel) and source
+    struct Last {
+        std::uint64_t packet = 0;  ///< its first channel, and source
+        double sclk = 0.0;
+        std::optional<double> previous_sclk;
+        float stretch = 1.0F;
+    };
+    bool from_start_;
+    std::vector<Last> last_;
 };
 
 /// The live end of the stream: the current run, its newest items and its clocks.
@@ -122,12 +137,14 @@ class StreamHub {
     bool holds(archive::Sequence after) const;                ///< whether every item after `after` is still in memory
 
     struct EncodedRange {
-        Encoded message;  ///< null: nothing in this range matches the selection
+        Encoded message;  ///< null: nothing in this range matches the selection, or is due at its rate
         archive::Sequence through = 0;
+        std::uint64_t left_out = 0;  ///< after sent_through up to `through`
     };
     /// The items after `after`, at most message_items_max, encoded for `selection`. Requires holds(after).
+    /// @param left_out  samples left out after `sent_through` up to `after`
     EncodedRange encoded_range(const StreamSelection& selection, archive::Sequence after,
-                               archive::Sequence sent_through);
+                               archive::Sequence sent_through, std::uint64_t left_out);
     Encoded encoded_state(StreamFormat format);
 
     struct Figures {
@@ -139,21 +156,21 @@ class StreamHub {
   private:
     struct Held {
         std::shared_ptr<const pipeline::PublishedBatch> batch;
-        std::vector<SampleFacts> facts;  ///< per item
+        std::vector<SampleFacts> facts;  ///< per item, with the stretch of intervals when it was published
     };
     struct Cached {
         StreamSelection selection;
         archive::Sequence after = 0, sent_through = 0, last_seq = 0;
-        std::uint64_t clocks_version = 0;
+        std::uint64_t left_out = 0, clocks_version = 0;
         EncodedRange encoded;
     };
-    /// The items that go out after `after` at one rate. Most clients are equally far, whatever their channels, so that
+    /// The items after `after` at one rate. Most clients are equally far, whatever their channels, so that
     /// this is shared.
     struct Range {
         archive::Sequence after = 0, last_seq = 0, through = 0;
         double interval_s = 0.0;
         bool packets = false;
-        std::vector<DueItem> items;
+        std::vector<RatedItem> items;
     };
     void wake_all();
     const Range& range_after(archive::Sequence after, double interval_s, bool packets);

@@ -87,10 +87,11 @@ void StreamSession::on_message(std::string_view payload) {
     refuse("the message says nothing: subscribe, command or control is wanted");
 }
 
-void StreamSession::refuse(std::string reason) {
+void StreamSession::refuse(std::string reason, bool goes_on) {
     ++hub_.figures.refusals;
     v1::ServerMessage message;
     message.mutable_refusal()->set_reason(std::move(reason));
+    message.mutable_refusal()->set_goes_on(goes_on);
     reply(message);
 }
 
@@ -184,7 +185,7 @@ void StreamSession::answered() {
 
 void StreamSession::stall(const std::string& why, std::function<void()> retry) {
     retry_ = std::move(retry);
-    if (!std::exchange(stall_told_, true)) refuse("the archive could not be read, it is tried again: " + why);
+    if (!std::exchange(stall_told_, true)) refuse("the archive could not be read, it is tried again: " + why, true);
 }
 
 void StreamSession::follow(std::uint64_t run, archive::Sequence after) {
@@ -195,8 +196,9 @@ void StreamSession::follow(std::uint64_t run, archive::Sequence after) {
     // A position beyond the end means another run: start at the end.
     const auto last = replay_ || run != hub_.current_run() ? older_run_.last_seq() : hub_.last_seq();
     cursor_ = sent_through_ = std::min(after, last);
+    left_out_ = 0;
     page_.reset();
-    page_spacing_ = {};
+    page_spacing_ = SampleSpacing{};
     reading_ = exhausted_ = was_live_ = stall_told_ = false;
     retry_ = nullptr;
     welcome_due_ = true;
@@ -252,6 +254,7 @@ Encoded StreamSession::next_due() {
             return nullptr;
         }
         if (gave_all_of_run()) {
+            if (sent_through_ < cursor_) return progress();
             ++subscription_;
             follow(hub_.current_run(), 0);
         }
@@ -266,18 +269,21 @@ Encoded StreamSession::next_due() {
     if (auto message = next_items()) return message;
     if (!follows_current() || reading_ || retry_) return nullptr;
     const bool through_due = std::exchange(tell_through_, false) && sent_through_ < cursor_;
-    if (through_due || clocks_sent_ != hub_.clocks_version()) {
+    return through_due || clocks_sent_ != hub_.clocks_version() ? progress() : nullptr;
+}
+
+Encoded StreamSession::progress() {
+    v1::ServerMessage message;
+    auto& batch = *message.mutable_batch();
+    batch.set_run(run_);
+    batch.set_after_seq(std::exchange(sent_through_, cursor_));
+    batch.set_complete_through(cursor_);
+    batch.set_left_out(std::exchange(left_out_, 0));
+    if (follows_current()) {
         clocks_sent_ = hub_.clocks_version();
-        v1::ServerMessage message;
-        auto& batch = *message.mutable_batch();
-        batch.set_run(run_);
-        batch.set_after_seq(sent_through_);
-        batch.set_complete_through(cursor_);
         *batch.mutable_clocks() = hub_.latest_clocks();
-        sent_through_ = cursor_;
-        return encode(message, selection_.format);
     }
-    return nullptr;
+    return encode(message, selection_.format);
 }
 
 bool StreamSession::gave_all_of_run() const {
@@ -316,10 +322,13 @@ Encoded StreamSession::next_items() {
             ask_archive();
             return nullptr;
         }
-        auto encoded = hub_.encoded_range(selection_, cursor_, sent_through_);
+        const auto encoded = hub_.encoded_range(selection_, cursor_, sent_through_, left_out_);
         cursor_ = encoded.through;
+        left_out_ = encoded.left_out;
+        page_spacing_ = SampleSpacing{false};  // a later page begins behind samples that were not seen here
         if (!encoded.message) continue;
         sent_through_ = encoded.through;
+        left_out_ = 0;
         clocks_sent_ = hub_.clocks_version();
         return encoded.message;
     }
@@ -355,14 +364,17 @@ Encoded StreamSession::from_page() {
     const auto taken = take_page();
     if (!taken) return nullptr;
     const auto& page = *taken;
+    const double interval_s = selection_.interval_s();
+    const bool catching_up = interval_s > 0.0 && was_live_ && follows_current();
+    const auto stretch = catching_up ? static_cast<float>(std::max(1.0, catching_up_interval_s / interval_s)) : 1.0F;
     std::vector<ItemWithFacts> items;
     items.reserve(page.items.size());
-    for (const auto& item : page.items) items.push_back({&item, page_spacing_.next(item)});
-    double interval_s = selection_.max_rate_hz > 0.0 ? 1.0 / selection_.max_rate_hz : 0.0;
-    if (was_live_ && follows_current()) interval_s = std::max(interval_s, catching_up_interval_s);
+    for (const auto& item : page.items) items.push_back({&item, page_spacing_.next(item, stretch)});
     v1::ServerMessage message;
     auto& batch = *message.mutable_batch();
+    batch.set_left_out(left_out_);
     select_items(selection_, interval_s, items, batch);
+    left_out_ = batch.left_out();
     cursor_ = std::max(cursor_, page.complete_through);
     exhausted_ = !page.more;
     const bool last = exhausted_ || (follows_current() && cursor_ >= hub_.last_seq());
@@ -374,6 +386,7 @@ Encoded StreamSession::from_page() {
     batch.set_complete_through(cursor_);
     if (follows_current()) *batch.mutable_clocks() = hub_.latest_clocks();
     sent_through_ = cursor_;
+    left_out_ = 0;
     return encode(message, selection_.format);
 }
 

@@ -16,8 +16,9 @@ namespace aeolis::server {
 ///
 /// In       the client's messages                        Out   next_message(), when the connection can write
 /// Rule     items go out in order, each once. Newest items come from the hub, older ones from the archive, page by
-///          page: a slow or late client catches up from the archive. A client that follows "the current run" gets all
-///          of one run, and its end, before the next
+///          page: a slow or late client catches up from the archive. Samples are left out only below a rate that the
+///          client asked for, and each batch counts them. A client that follows "the current run" gets all of one run,
+///          and its end, before the next
 /// Pace     a finished run goes out as fast as the archive is read or, with a pace in the subscription, as it reached
 ///          Earth: each item when it is due, at most one batch per replay_interval. A replay includes nothing else: no
 ///          run states, no clocks
@@ -28,10 +29,11 @@ namespace aeolis::server {
 /// Load     one query at a time, whatever the client asks for meanwhile
 class StreamSession : public std::enable_shared_from_this<StreamSession> {
   public:
-    static constexpr std::size_t replies_max = 64;         ///< chosen: a client that sends and never reads is closed
-    static constexpr std::size_t page_items = 2'048;       ///< read from the archive at once
-    static constexpr std::size_t json_items = 128;         ///< chosen: per message; 2 ms of the network thread
-    static constexpr double catching_up_interval_s = 1.0;  ///< chosen: a client far behind gets samples at 1 Hz
+    static constexpr std::size_t replies_max = 64;    ///< chosen: a client that sends and never reads is closed
+    static constexpr std::size_t page_items = 2'048;  ///< read from the archive at once
+    static constexpr std::size_t json_items = 128;    ///< chosen: per message; 2 ms of the network thread
+    /// Chosen: of a client that takes less than every sample, and falls far behind.
+    static constexpr double catching_up_interval_s = 1.0;
     static constexpr std::chrono::milliseconds replay_interval{50};  ///< chosen: 20 Hz, as often as a console draws
 
     /// What a client may do besides following the stream; the functions check its rights.
@@ -69,11 +71,13 @@ class StreamSession : public std::enable_shared_from_this<StreamSession> {
     std::string refusal_of_pace(double pace, std::uint64_t run) const;
     void read_run(std::uint64_t run, archive::Sequence after);
     void stall(const std::string& why, std::function<void()> retry);
-    void refuse(std::string reason);
+    void refuse(std::string reason, bool goes_on = false);
     void reply(const v1::ServerMessage& message);
     void follow(std::uint64_t run, archive::Sequence after);
     Encoded next_due();
     Encoded welcome();
+    /// How far the client has come, without items.
+    Encoded progress();
     Encoded next_items();
     Encoded from_page();
     /// Takes from the page what goes out next: all of it, json_items, or with a pace the items due. None: nothing yet.
@@ -106,6 +110,7 @@ class StreamSession : public std::enable_shared_from_this<StreamSession> {
     ReplaySchedule::Clock::time_point next_batch_{};        ///< earliest time of the next batch
     archive::Sequence cursor_ = 0;                          ///< served up to here
     archive::Sequence sent_through_ = 0;                    ///< last complete_through sent to the client
+    std::uint64_t left_out_ = 0;                            ///< samples left out after it, up to the cursor
     bool asking_ = false;                                   ///< an archive query is in progress
     std::function<void()> next_question_;                   ///< null: none waits
     bool reading_ = false, exhausted_ = false, was_live_ = false;

@@ -7,9 +7,11 @@
 #include "tests/server/small_mission.hpp"
 #include "tests/support/catch.hpp"
 
+#include <array>
 #include <condition_variable>
 #include <future>
 #include <limits>
+#include <map>
 #include <mutex>
 #include <random>
 
@@ -216,6 +218,154 @@ TEST_CASE("a client that resumes gets what it missed, each item once", "[stream]
     CHECK(venue.pages_read == 0);  // all of it was still in memory
 }
 
+namespace {
+
+/// A program that follows the run, is cut off and comes back, and holds what it was told against what was published.
+struct Follower {
+    Follower(Venue& its_venue, double its_rate_hz, bool all)
+        : venue(its_venue), rate_hz(its_rate_hz), all_channels(all) {
+        connect();
+    }
+
+    void connect() {
+        client.emplace(venue.hub);
+        client->complete_through = through;
+        v1::ClientMessage message;
+        auto& subscribe = *message.mutable_subscribe();
+        subscribe.set_run(1);
+        subscribe.set_after_seq(through);
+        subscribe.set_all_channels(all_channels);
+        if (!all_channels) subscribe.add_channels(altitude);
+        subscribe.set_max_rate_hz(rate_hz);
+        client->send(message);
+        began = through;
+    }
+    void cut() { client.reset(); }
+
+    void read() {
+        if (!client) return;
+        client->read_all();
+        for (const auto& message : std::exchange(client->messages, {})) {
+            const auto& batch = message.batch();
+            for (const auto& item : batch.items()) take(item);
+            if (!message.has_batch()) continue;
+            through = batch.complete_through();
+            left_out += batch.left_out();
+            CHECK(got_count + left_out == selected_through(through));
+        }
+    }
+    void take(const v1::Item& item) {
+        if (!item.has_samples()) return;
+        ++got_count;
+        const auto& published = venue.durable[item.seq() - 1].samples();
+        CHECK(item.samples().sclk() == published.sclk());
+        CHECK(item.samples().ids_size() == (all_channels ? published.ids_size() : 1));
+        // From the one before, in this subscription, to this one: was anything left out?
+        const auto first = published.ids(0);
+        auto before = item.seq() - 1;
+        while (before > began && !(has(before) && venue.durable[before - 1].samples().ids(0) == first)) --before;
+        const bool missing = before > began && before != last_of_packet[first];
+        if (missing) CHECK(item.samples().thinned());
+        if (rate_hz == 0.0) CHECK_FALSE(item.samples().thinned());
+        last_of_packet[first] = item.seq();
+    }
+    bool has(archive::Sequence seq) const {
+        const auto& ids = venue.durable[seq - 1].samples().ids();
+        return !ids.empty() && (all_channels || std::ranges::find(ids, altitude) != ids.end());
+    }
+    std::uint64_t selected_through(archive::Sequence last) const {
+        std::uint64_t count = 0;
+        for (archive::Sequence seq = 1; seq <= last; ++seq) count += has(seq) ? 1 : 0;
+        return count;
+    }
+
+    Venue& venue;
+    double rate_hz;
+    bool all_channels;
+    std::optional<Client> client;
+    archive::Sequence through = 0, began = 0;
+    std::uint64_t got_count = 0, left_out = 0;
+    std::map<std::uint32_t, archive::Sequence> last_of_packet;
+};
+
+/// Items of some moments: two packets with samples at 64 Hz and 4 Hz, and events.
+std::vector<v1::Item> some_items(std::mt19937& random, archive::Sequence last, double& sclk) {
+    std::vector<v1::Item> items;
+    const auto count = 1 + random() % 60;
+    for (std::size_t i = 0; i < count; ++i) {
+        sclk += 1.0 / 64.0;
+        items.push_back(samples_item(last + items.size() + 1, sclk));
+        if (random() % 8 == 0) items.push_back(event_item(last + items.size() + 1));
+        if (random() % 16 == 0) {
+            items.push_back(samples_item(last + items.size() + 1, sclk));
+            auto& samples = *items.back().mutable_samples();
+            samples.clear_ids();
+            samples.add_ids(9);
+            samples.mutable_values()->Truncate(1);
+        }
+    }
+    return items;
+}
+
+void publish_in_archive_only(Venue& venue, std::vector<v1::Item> items) {
+    auto batch = std::make_shared<pipeline::PublishedBatch>();
+    batch->run = archive::RunId{1};
+    batch->first_seq = items.front().seq();
+    batch->last_seq = items.back().seq();
+    batch->built = false;
+    venue.durable.insert(venue.durable.end(), items.begin(), items.end());
+    venue.hub.published(batch);
+}
+
+}  // namespace
+
+TEST_CASE("wherever clients are cut off, each gets every sample or the number of those that its rate left out",
+          "[stream][R42][property]") {
+    for (unsigned seed = 0; seed < 60; ++seed) {
+        CAPTURE(seed);
+        std::mt19937 random{seed};
+        Venue venue;
+        double sclk = 1000.0;
+        std::vector<std::unique_ptr<Follower>> followers;
+        const bool alone = seed % 3 == 0;  // nobody follows while it is cut off: then only the archive has the items
+        for (const double rate_hz : {0.0, 0.0, 20.0, 3.0}) {
+            followers.push_back(std::make_unique<Follower>(venue, rate_hz, followers.size() % 2 == 0));
+            if (alone) break;
+        }
+        const auto paces = std::array{1.0, 1.0, 30.0};
+        for (int step = 0; step < 120; ++step) {
+            if (random() % 10 == 0) {
+                auto state = venue.hub.state();
+                state.set_attained_pace(paces.at(random() % paces.size()));
+                venue.hub.run_state(state);
+            }
+            auto items = some_items(random, venue.durable.size(), sclk);
+            const bool watched = std::ranges::any_of(followers, [](const auto& each) { return each->client.has_value(); });
+            if (watched)
+                venue.publish(std::move(items));
+            else
+                publish_in_archive_only(venue, std::move(items));
+            for (auto& each : followers) {
+                if (random() % 12 == 0) each->cut();
+                if (!each->client && random() % 3 == 0) each->connect();
+                if (random() % 4 != 0) each->read();
+            }
+            if (random() % 3 == 0) venue.answer();
+        }
+        for (auto& each : followers) {
+            if (!each->client) each->connect();
+            do {
+                venue.answer();
+                each->read();
+            } while (!venue.waiting.empty());
+            venue.hub.clocks({});
+            each->read();
+            CHECK(each->through == venue.durable.size());
+            if (each->rate_hz == 0.0) CHECK(each->left_out == 0);
+        }
+    }
+}
+
 TEST_CASE("a slow client reads the archive and loses nothing", "[stream][R42]") {
     Venue venue;
     Client client{venue.hub};
@@ -275,7 +425,7 @@ TEST_CASE("samples are thinned to the rate asked for and say so; nothing else is
 TEST_CASE("only the channels of the subscription are sent", "[stream]") {
     auto item = samples_item(1, 5.0);
     item.set_ert_us(7);
-    const std::vector<ItemWithFacts> items{{&item, {std::nullopt, true}}};
+    const std::vector<ItemWithFacts> items{{&item, {.ascend = true}}};
     v1::Batch batch;
     select_items({StreamFormat::json, false, {speed}, 0.0}, 0.0, items, batch);
     REQUIRE(batch.items_size() == 1);
@@ -304,7 +454,7 @@ TEST_CASE("channels that ascend are found as those that do not", "[stream]") {
         const auto chosen = [&](bool ascend) {
             v1::Batch batch;
             select_items({StreamFormat::json, false, wanted, 0.0}, 0.0,
-                         std::vector<ItemWithFacts>{{&item, {std::nullopt, ascend}}}, batch);
+                         std::vector<ItemWithFacts>{{&item, {.ascend = ascend}}}, batch);
             return batch.SerializeAsString();
         };
         CHECK(chosen(true) == chosen(false));
@@ -478,6 +628,7 @@ TEST_CASE(
     }
     REQUIRE(client.refusals.size() == 1);
     CHECK_THAT(client.refusals[0], Catch::Contains("tried again") && Catch::Contains("disk I/O error"));
+    CHECK(std::ranges::any_of(client.messages, [](const auto& message) { return message.refusal().goes_on(); }));
     CHECK(venue.pages_read == 6);  // a check each, and no more than that
     CHECK(client.seen.empty());
     CHECK(std::ranges::none_of(client.messages,

@@ -4,6 +4,7 @@
 #include "tests/server/web_client.hpp"
 
 #include <chrono>
+#include <fmt/format.h>
 #include <map>
 #include <optional>
 
@@ -117,6 +118,64 @@ TEST_CASE("a client that comes back with after_seq has no gap and no double", "[
     third.read_through(second.complete_through);
     CHECK(third.history);
     CHECK(third.seen == all_from(1, third.complete_through));
+}
+
+TEST_CASE("what a rate left out is counted, and comes by HTTP, where all items of a run are",
+          "[stream][http][R42][R62]") {
+    RunningServer server{shipped_scenario("nominal_auto"), 0.0};
+    Follower all{server.port(), false};
+    std::map<std::uint64_t, std::string> by_stream;
+    const auto read = [&] {
+        REQUIRE(all.read());
+        for (const auto& item : all.last.batch().items()) {
+            by_stream[item.seq()] = item.SerializeAsString();
+            CHECK_FALSE(item.samples().thinned());
+        }
+        CHECK(all.last.batch().left_out() == 0);
+    };
+    while (all.complete_through < 20'000) read();
+
+    StreamClient slow{server.port(), "aeolis.v1.protobuf"};
+    v1::ClientMessage message;
+    message.mutable_subscribe()->set_all_channels(true);
+    message.mutable_subscribe()->set_max_rate_hz(1.0);
+    slow.send(message.SerializeAsString(), true);
+    std::uint64_t seen = 0, left_out = 0, through = 0;
+    while (through < 20'000) {
+        const auto payload = slow.receive();
+        REQUIRE(payload);
+        v1::ServerMessage got;
+        REQUIRE(got.ParseFromString(*payload));
+        if (!got.has_batch()) continue;
+        through = got.batch().complete_through();
+        left_out += got.batch().left_out();
+        seen += static_cast<std::uint64_t>(got.batch().items_size());
+    }
+    CHECK(left_out > 0);
+
+    std::uint64_t after = 0, items = 0;
+    while (after < through) {
+        const auto page =
+            web_request(server.port(), "GET", fmt::format("/api/v1/runs/latest/items?format=protobuf&after={}", after));
+        REQUIRE(page.status == 200);
+        v1::Batch batch;
+        REQUIRE(batch.ParseFromString(page.body));
+        CHECK(batch.after_seq() == after);
+        REQUIRE(batch.complete_through() > after);
+        for (const auto& item : batch.items()) {
+            if (item.seq() > through) continue;
+            ++items;
+            if (item.seq() <= all.complete_through && by_stream.contains(item.seq()))
+                CHECK(item.SerializeAsString() == by_stream[item.seq()]);
+        }
+        after = batch.complete_through();
+    }
+    CHECK(items == seen + left_out);
+    CHECK(web_request(server.port(), "GET", "/api/v1/runs/latest/items?limit=1001").status == 400);
+    CHECK_THAT(web_request(server.port(), "GET", "/api/v1/runs/latest/items?names=nonsense").body,
+               Catch::Contains("names: there is no channel 'nonsense'"));
+    CHECK_THAT(web_request(server.port(), "GET", "/api/v1/runs/latest/items?names=altitude_m&limit=200").body,
+               Catch::StartsWith(R"({"run":"1","complete_through":"200")"));
 }
 
 TEST_CASE("a message that does not parse is refused and the stream goes on", "[stream]") {
