@@ -34,7 +34,8 @@ struct ServeOptions {
     std::filesystem::path accounts;          ///< empty: none
     std::filesystem::path certificate, key;  ///< PEM; empty: no TLS
     std::vector<std::string> names;          ///< host names used by browsers
-    std::string scenario;                    ///< empty: start none
+    std::vector<std::string> trusted_proxies;
+    std::string scenario;  ///< empty: start none
     std::uint64_t seed = 1;
     double pace = 1.0;
     std::optional<std::string> downlink;  ///< "tcp://HOST:PORT", "udp://HOST:PORT": follow another mission
@@ -210,6 +211,7 @@ int serve(const ServeOptions& options) {
     auto opened = ConsoleBackend::open({.web_server = {.address = listen->address,
                                                        .port = listen->port,
                                                        .names = options.names,
+                                                       .trusted_proxies = options.trusted_proxies,
                                                        .certificate = options.certificate,
                                                        .key = options.key},
                                         .accounts = options.accounts,
@@ -249,6 +251,11 @@ void add_backend_options(CLI::App& command, ServeOptions& options) {
     command
         .add_option("--host", options.names,
                     "names by which browsers call this server, separated by commas; loopback names always work")
+        ->delimiter(',');
+    command
+        .add_option("--trusted-proxies", options.trusted_proxies,
+                    "addresses and networks of the proxies in front of this server, separated by commas: clients are "
+                    "told apart by the X-Forwarded-For that these send")
         ->delimiter(',');
     command.add_option("--archive", options.archive, "SQLite file that keeps everything")->capture_default_str();
     command.add_option("--web", options.web, "directory of the built console")->capture_default_str();

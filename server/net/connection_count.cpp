@@ -1,23 +1,71 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/net/connection_count.hpp"
 
+#include "commands/shares.hpp"
+
+#include <algorithm>
 #include <fmt/format.h>
+#include <utility>
 
 namespace aeolis::server {
+namespace {
 
-std::string ConnectionCount::enter(const std::string& from, bool loopback) {
-    if (all_ >= all_max_) return fmt::format("{} connections are open already", all_max_);
-    const auto found = from_.find(from);
-    if (!loopback && found != from_.end() && found->second >= each_max_)
-        return fmt::format("{} connections are open from {} already", each_max_, from);
-    ++all_;
-    ++from_[from];
+void take_from(std::map<std::string, std::size_t>& counts, const std::string& key) {
+    const auto found = counts.find(key);
+    if (--found->second == 0) counts.erase(found);
+}
+
+}  // namespace
+
+Result<std::shared_ptr<ConnectionCount::Place>> ConnectionCount::enter(const std::string& network, bool shared,
+                                                                       std::function<void()> close) {
+    const auto own = strangers_of_.find(network);
+    if (!shared && own != strangers_of_.end() && own->second >= limits_.strangers_of_network)
+        return Error{fmt::format("{} connections of nobody known are open from {} already", own->second, network)};
+    const bool full = entries_.size() >= limits_.all || strangers_ >= limits_.strangers;
+    if (full && !make_room_for(network)) return Error{fmt::format("{} connections are open already", entries_.size())};
+    entries_.push_back({network, {}, false, std::move(close)});
+    ++strangers_;
+    ++strangers_of_[network];
+    return std::make_shared<Place>(*this, std::prev(entries_.end()));
+}
+
+bool ConnectionCount::make_room_for(const std::string& network) {
+    if (strangers_of_.empty()) return false;
+    const auto most = std::ranges::max_element(strangers_of_, {}, [](const auto& each) { return each.second; });
+    const auto own = strangers_of_.find(network);
+    if (own != strangers_of_.end() && own->second > most->second) return false;
+    const auto oldest = std::ranges::find_if(
+        entries_, [&](const Entry& entry) { return !entry.known && entry.close && entry.network == most->first; });
+    if (oldest == entries_.end()) return false;
+    forget_stranger(*oldest);
+    std::exchange(oldest->close, nullptr)();
+    return true;
+}
+
+void ConnectionCount::forget_stranger(const Entry& entry) {
+    --strangers_;
+    take_from(strangers_of_, entry.network);
+}
+
+Result<void> ConnectionCount::know(Entry& entry, const std::string& person) {
+    if (entry.known) return {};
+    const auto own = places_of_.find(person);
+    const auto mine = own == places_of_.end() ? std::size_t{0} : own->second;
+    if (!person.empty() && !commands::may_take(mine, entries_.size() - strangers_, limits_.all))
+        return Error{fmt::format("{} connections of {} are open already, no more than are free", mine, person)};
+    if (entry.close) forget_stranger(entry);  // else it is being closed
+    entry.known = true;
+    if (person.empty()) return {};
+    entry.person = person;
+    ++places_of_[person];
     return {};
 }
 
-void ConnectionCount::leave(const std::string& from) {
-    --all_;
-    if (const auto found = from_.find(from); --found->second == 0) from_.erase(found);
+void ConnectionCount::leave(std::list<Entry>::iterator entry) {
+    if (!entry->known && entry->close) forget_stranger(*entry);
+    if (!entry->person.empty()) take_from(places_of_, entry->person);
+    entries_.erase(entry);
 }
 
 }  // namespace aeolis::server

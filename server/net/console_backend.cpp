@@ -111,6 +111,11 @@ WebServer::Handlers ConsoleBackend::web_handlers() {
     handlers.request = [this](HttpRequest request, const Respond& respond) {
         api_->handle(std::move(request), respond);
     };
+    handlers.person = [this](const Credentials& credentials) -> std::optional<std::string> {
+        const auto who = access_->identify(credentials);
+        if (!who.role) return std::nullopt;
+        return who.accounts ? person_of(who) : std::string{};
+    };
     handlers.body_octets = [this](const Credentials& credentials, std::string_view method, std::string_view path) {
         return api_->body_octets(credentials, method, path);
     };
@@ -144,6 +149,8 @@ StreamSession::Client ConsoleBackend::stream_client(const Credentials& credentia
         name_asker(who, request);
         auto right = allowed(who, Right::command);
         if (right) right = may_send(who, dictionary_, *desk_, request);
+        if (right)
+            if (const auto many = api_->count_commands(who, 1)) right = Error{many->reason};
         const auto noted = [this, who, detail = to_json(request), dry_run = request.dry_run(), full,
                             reply](const v1::CommandReply& answer) {
             // A dry run is not audited: a console repeats it every second.

@@ -117,8 +117,8 @@ struct Exchange {
 template <typename AnyStream>
 class HttpConnection {
   public:
-    HttpConnection(AnyStream& stream, HttpService& service, std::string from)
-        : stream_(stream), lowest_(beast::get_lowest_layer(stream)), service_(service), from_(std::move(from)) {}
+    HttpConnection(AnyStream& stream, HttpService& service, Peer peer)
+        : stream_(stream), lowest_(beast::get_lowest_layer(stream)), service_(service), peer_(std::move(peer)) {}
 
     Task<> serve();
 
@@ -131,6 +131,8 @@ class HttpConnection {
     Task<bool> write_parts(Response first, More more);
 
     Credentials credentials_of(const Request& request) const;
+    std::string client_address(const Request& request) const;
+    std::string refusal_of_share(const Credentials& credentials);
     std::size_t body_octets_max(const Request& request, const Credentials& credentials) const;
     Task<bool> invite_body(const Parser& parser);
     Task<> answer_broken(const Request& request, error_code error, std::size_t octets_max);
@@ -146,7 +148,7 @@ class HttpConnection {
     AnyStream& stream_;
     Stream& lowest_;
     HttpService& service_;
-    std::string from_;
+    Peer peer_;
     beast::flat_buffer buffer_;
 };
 
@@ -194,7 +196,26 @@ Task<bool> HttpConnection<AnyStream>::read(Exchange& exchange) {
 template <typename AnyStream>
 Credentials HttpConnection<AnyStream>::credentials_of(const Request& request) const {
     return {std::string{plain(request[http::field::cookie])}, std::string{plain(request[http::field::authorization])},
-            from_};
+            client_address(request)};
+}
+
+template <typename AnyStream>
+std::string HttpConnection<AnyStream>::client_address(const Request& request) const {
+    std::string passed;
+    const auto [first, last] = request.equal_range("X-Forwarded-For");
+    for (auto field = first; field != last; ++field)
+        passed += (passed.empty() ? "" : ",") + std::string{plain(field->value())};
+    return service_.proxies.client(peer_.address, passed);
+}
+
+/// Notes who sends this request, the first of somebody known on this connection. Why they have no place; empty: they do.
+template <typename AnyStream>
+std::string HttpConnection<AnyStream>::refusal_of_share(const Credentials& credentials) {
+    if (peer_.place->known()) return {};
+    const auto person = service_.handlers.person ? service_.handlers.person(credentials) : std::string{};
+    if (!person) return {};
+    const auto known = peer_.place->know(*person);
+    return known ? "" : known.error().message;
 }
 
 /// The body limit, determined before reading: the bodies of a thousand strangers take no memory.
@@ -246,6 +267,9 @@ Task<bool> HttpConnection<AnyStream>::answer(Exchange& exchange) {
         exchange.response = error_reply(request, http::status::bad_request, target.error().message);
     } else if (const auto refusal = refusal_of(request, target->host); !refusal.empty()) {
         exchange.response = error_reply(request, http::status::forbidden, refusal);
+    } else if (const auto no_place = refusal_of_share(exchange.credentials); !no_place.empty()) {
+        auto refused = retry_response(503, no_place, std::chrono::seconds{1});
+        exchange.response = response_of(refused, request.version());
     } else if (!websocket::is_upgrade(request) || target->path != stream_path) {
         co_await ask(exchange, std::move(target->path), std::move(target->query));
     } else if (auto refused = refusal_of_stream(exchange)) {
@@ -408,13 +432,13 @@ bool HttpConnection<AnyStream>::tear() {
 
 }  // namespace
 
-Task<> serve_http(Stream& stream, HttpService& service, std::string from) {
-    HttpConnection<Stream> connection{stream, service, std::move(from)};
+Task<> serve_http(Stream& stream, HttpService& service, Peer peer) {
+    HttpConnection<Stream> connection{stream, service, std::move(peer)};
     co_await connection.serve();
 }
 
-Task<> serve_http(TlsStream& stream, HttpService& service, std::string from) {
-    HttpConnection<TlsStream> connection{stream, service, std::move(from)};
+Task<> serve_http(TlsStream& stream, HttpService& service, Peer peer) {
+    HttpConnection<TlsStream> connection{stream, service, std::move(peer)};
     co_await connection.serve();
 }
 

@@ -2,8 +2,10 @@
 #pragma once
 
 #include "server/net/body_budget.hpp"
+#include "server/net/connection_count.hpp"
 #include "server/net/sockets.hpp"
 #include "server/net/stream_connection.hpp"
+#include "server/net/trusted_proxies.hpp"
 #include "server/net/waiting_peers.hpp"
 #include "server/net/web_server.hpp"
 
@@ -26,15 +28,21 @@ struct HttpService {
     std::chrono::milliseconds request_max, silence_max;
     WaitingPeers waiting;
     BodyBudget answers;
+    TrustedProxies proxies;
     OpenStreams streams;
     asio::io_context io{1};
     WriteScheduler scheduler{io.get_executor()};
 };
 
+/// The other end of a connection.
+struct Peer {
+    std::string address;
+    std::shared_ptr<ConnectionCount::Place> place;  ///< null: the connection is refused
+};
+
 /// Reads requests and answers each, until either side closes the connection or it becomes a stream.
-/// @param from  the peer's address
-Task<> serve_http(Stream& stream, HttpService& service, std::string from);
-Task<> serve_http(TlsStream& stream, HttpService& service, std::string from);
+Task<> serve_http(Stream& stream, HttpService& service, Peer peer);
+Task<> serve_http(TlsStream& stream, HttpService& service, Peer peer);
 
 inline constexpr std::chrono::seconds refusal_max{1};  ///< chosen: for a connection beyond the limit to be told so
 

@@ -6,6 +6,7 @@
 #include "server/net/http_connection.hpp"
 #include "server/net/sockets.hpp"
 
+#include <algorithm>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
 #include <boost/asio/post.hpp>
@@ -14,6 +15,7 @@
 #include <fmt/format.h>
 #include <optional>
 #include <spdlog/spdlog.h>
+#include <sys/socket.h>
 
 namespace aeolis::server {
 namespace {
@@ -27,6 +29,12 @@ constexpr unsigned peers_poll_ms = 250;   // chosen: longest work on an answer a
 asio::ip::address plain_address(const asio::ip::address& address) {
     if (!address.is_v6() || !address.to_v6().is_v4_mapped()) return address;
     return asio::ip::make_address_v4(asio::ip::v4_mapped, address.to_v6());
+}
+
+ConnectionCount::Limits limits_of(const WebServer::Settings& settings) {
+    const auto all = settings.streams + WebServer::connections_besides;
+    return {all, std::max(WebServer::connections_besides, all / WebServer::strangers_part),
+            WebServer::strangers_each_max};
 }
 
 /// The TLS context from certificate and key, or an Error; none: no TLS.
@@ -49,8 +57,7 @@ Result<std::optional<asio::ssl::context>> tls_of(const WebServer::Settings& sett
 }  // namespace
 
 struct WebServer::State {
-    explicit State(const Settings& given)
-        : settings(given), connections(given.streams + connections_besides, connections_each_max), service(given) {}
+    explicit State(const Settings& given) : settings(given), connections(limits_of(given)), service(given) {}
 
     const Settings settings;
     ConnectionCount connections;
@@ -65,38 +72,38 @@ struct WebServer::State {
     Task<> accept();
     Task<> repeat(Timer& timer, std::chrono::milliseconds interval, std::function<void()> action);
     Task<> serve(Socket socket);
-    Task<> serve_plain(Stream stream, std::string from);
-    Task<> serve_tls(Stream stream, std::string from, const std::string& refused);
+    Task<> serve_plain(Stream stream, Peer peer);
+    Task<> serve_tls(Stream stream, Peer peer, const std::string& refused);
     std::size_t refusing = 0;  ///< connections beyond the limit that are being told so over TLS
 };
 
 Task<> WebServer::State::serve(Socket socket) {
     error_code ignored;
-    const auto peer = plain_address(socket.remote_endpoint(ignored).address());
-    const std::string from = ignored ? "unknown" : peer.to_string();
-    const std::string share = network_of(from);
-    const std::string refused = connections.enter(share, peer.is_loopback());
-    const std::shared_ptr<void> counted{nullptr, [this, &share, entered = refused.empty()](void*) {
-                                            if (entered) connections.leave(share);
-                                        }};
+    const auto address = plain_address(socket.remote_endpoint(ignored).address());
+    const std::string from = ignored ? "unknown" : address.to_string();
+    const auto close = [this, descriptor = socket.native_handle()] { ::shutdown(descriptor, SHUT_RDWR); };
+    const bool shared = address.is_loopback() || service.proxies.contains(from);
+    const auto place = connections.enter(network_of(from), shared, close);
+    const std::string refused = place ? "" : place.error().message;
     socket.set_option(tcp::no_delay{true}, ignored);
     Stream stream{std::move(socket)};
+    Peer peer{from, place ? *place : nullptr};
     if (tls)
-        co_await serve_tls(std::move(stream), from, refused);
+        co_await serve_tls(std::move(stream), std::move(peer), refused);
     else if (!refused.empty())
         co_await refuse_connection(stream, refused);
     else
-        co_await serve_plain(std::move(stream), from);
+        co_await serve_plain(std::move(stream), std::move(peer));
 }
 
-Task<> WebServer::State::serve_plain(Stream stream, std::string from) {
-    co_await serve_http(stream, service, std::move(from));
+Task<> WebServer::State::serve_plain(Stream stream, Peer peer) {
+    co_await serve_http(stream, service, std::move(peer));
     error_code ignored;
     if (stream.socket().is_open()) stream.socket().shutdown(tcp::socket::shutdown_send, ignored);
 }
 
 /// @param refused  why the connection is refused, which the client is told inside TLS; empty: it is served
-Task<> WebServer::State::serve_tls(Stream stream, std::string from, const std::string& refused) {
+Task<> WebServer::State::serve_tls(Stream stream, Peer peer, const std::string& refused) {
     if (!refused.empty() && refusing >= refusing_max) co_return;  // handshakes cost: a flood gets none
     const std::shared_ptr<void> counted{nullptr, [this, counts = !refused.empty()](void*) { refusing -= counts; }};
     refusing += !refused.empty();
@@ -107,7 +114,7 @@ Task<> WebServer::State::serve_tls(Stream stream, std::string from, const std::s
     co_await secure.async_handshake(asio::ssl::stream_base::server, asio::redirect_error(awaiting, error));
     if (error) co_return;  // the client speaks no TLS, or rejects the certificate
     if (refused.empty())
-        co_await serve_http(secure, service, std::move(from));
+        co_await serve_http(secure, service, std::move(peer));
     else
         co_await refuse_connection(secure, refused);
     if (!lowest.socket().is_open()) co_return;
@@ -166,7 +173,10 @@ Result<std::unique_ptr<WebServer>> WebServer::open(const Settings& settings, Han
     if (error) return Error{fmt::format("--listen {}: not an IP address", address)};
     auto tls = tls_of(settings);
     if (!tls) return tls.error();
+    auto proxies = TrustedProxies::parse(settings.trusted_proxies);
+    if (!proxies) return proxies.error();
     auto state = std::make_unique<State>(settings);
+    state->service.proxies = std::move(*proxies);
     state->tls = std::move(*tls);
     state->service.secure = state->tls.has_value();
     state->service.handlers = std::move(handlers);

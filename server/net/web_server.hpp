@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,12 +30,16 @@ class WebServer {
     static constexpr std::size_t header_octets_max = 16 << 10;  ///< chosen
     /// Chosen: a command with every argument is under 2 KiB.
     static constexpr std::size_t message_octets_max = 64 << 10;
-    static constexpr std::size_t streams_max = 1000;          ///< chosen: the number that bench/load_bench shows
-    static constexpr std::size_t connections_besides = 64;    ///< chosen: for requests while all streams are taken
-    static constexpr std::size_t connections_each_max = 100;  ///< chosen: from one address, loopback excepted
+    static constexpr std::size_t streams_max = 1000;        ///< chosen: the number that bench/load_bench shows
+    static constexpr std::size_t connections_besides = 64;  ///< chosen: for requests while all streams are taken
+    static constexpr std::size_t strangers_each_max = 100;  ///< chosen: from one network, before they are known
+    static constexpr std::size_t strangers_part = 4;        ///< chosen: a fourth of all, at least connections_besides
 
     struct Handlers {
         std::function<void(HttpRequest, Respond)> request;
+        /// Who sends a request with these, as far as connections are shared: none, a stranger; empty, somebody known on
+        /// a server without accounts; else a person. Null: everybody is known.
+        std::function<std::optional<std::string>(const Credentials&)> person;
         /// The longest body accepted for this request; null: HttpRequest::body_octets_max.
         std::function<std::size_t(const Credentials&, std::string_view method, std::string_view path)> body_octets;
         /// Decides on a request for /api/v1/stream: 200 admits the client, anything else is the response.
@@ -47,10 +52,11 @@ class WebServer {
     static constexpr std::chrono::milliseconds close_timeout{1'000};
     struct Settings {
         std::string address = "127.0.0.1";
-        std::uint16_t port = 0;             ///< 0: any free port
-        std::vector<std::string> names;     ///< host names used by browsers, besides loopback's
-        std::filesystem::path certificate;  ///< PEM, the whole chain; empty: no TLS
-        std::filesystem::path key;          ///< PEM
+        std::uint16_t port = 0;                      ///< 0: any free port
+        std::vector<std::string> names;              ///< host names used by browsers, besides loopback's
+        std::vector<std::string> trusted_proxies{};  ///< addresses and networks whose X-Forwarded-For is believed
+        std::filesystem::path certificate;           ///< PEM, the whole chain; empty: no TLS
+        std::filesystem::path key;                   ///< PEM
         std::chrono::milliseconds request_max{
             30'000};  ///< chosen: for a request to arrive, and for an answer to proceed
         std::chrono::milliseconds silence_max{

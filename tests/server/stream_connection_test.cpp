@@ -7,6 +7,7 @@
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/read_until.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/websocket.hpp>
 #include <fmt/format.h>
@@ -274,18 +275,19 @@ TEST_CASE("one stream more than there are places is refused with 503, and who ha
     CHECK(second->open());
 
     asio::io_context io;
-    std::vector<asio::ip::tcp::socket> idle;  // of the places besides, all but one
-    for (std::size_t i = 0; i + 1 < server::WebServer::connections_besides; ++i)
-        idle.emplace_back(io).connect({asio::ip::make_address("127.0.0.1"), events.port()});
+    std::vector<asio::ip::tcp::socket> silent;  // twice as many as there are places: none of them keeps one
+    for (std::size_t i = 0; i < 2 * server::WebServer::connections_besides; ++i)
+        silent.emplace_back(io).connect({asio::ip::make_address("127.0.0.1"), events.port()});
     CHECK(answers());
-    std::string refused;
-    for (int i = 0; i < 100 && refused.find("503") == std::string::npos;
-         ++i) {  // the one just answered may still have its place
-        idle.emplace_back(io).connect({asio::ip::make_address("127.0.0.1"), events.port()});
-        std::this_thread::sleep_for(10ms);
-        refused = raw_exchange(events.port(), "GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n");
+    const std::string request = "GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n";
+    std::vector<asio::ip::tcp::socket> known;  // each has asked something, and holds its place
+    for (std::size_t i = 0; i < server::WebServer::connections_besides; ++i) {
+        known.emplace_back(io).connect({asio::ip::make_address("127.0.0.1"), events.port()});
+        asio::write(known.back(), asio::buffer(request));
+        std::string answer;
+        asio::read_until(known.back(), asio::dynamic_buffer(answer), "\r\n\r\n");
     }
-    CHECK_THAT(refused, Catch::Contains("66 connections are open already"));
+    CHECK_THAT(raw_exchange(events.port(), request), Catch::Contains("66 connections are open already"));
 }
 
 TEST_CASE("while as many streams are open as may be, who has none is answered", "[stream][http][bounds]") {

@@ -215,14 +215,22 @@ TEST_CASE("a connection beyond the limit is refused inside TLS", "[access][http]
     settings.certificate = folder / "cert.pem";
     settings.key = folder / "key.pem";
     settings.streams = 0;
-    const auto server = std::move(server::WebServer::open(settings, {})).value();
+    server::WebServer::Handlers handlers;
+    handlers.request = [](const server::HttpRequest&, const server::Respond& respond) { respond({}); };
+    const auto server = std::move(server::WebServer::open(settings, handlers)).value();
     std::thread network{[&] { server->run(); }};
 
-    asio::io_context io;
-    std::vector<tcp::socket> silent;
-    for (std::size_t i = 0; i < server::WebServer::connections_besides; ++i)
-        silent.emplace_back(io).connect({asio::ip::make_address("127.0.0.1"), server->port()});
     SecureClient client{folder / "cert.pem"};
+    http::request<http::string_body> request{http::verb::get, "/", 11};
+    request.set(http::field::host, "localhost");
+    std::vector<beast::ssl_stream<beast::tcp_stream>> known;  // each has asked something, and holds its place
+    for (std::size_t i = 0; i < server::WebServer::connections_besides; ++i) {
+        known.push_back(client.connect(server->port()));
+        http::write(known.back(), request);
+        beast::flat_buffer buffer;
+        http::response<http::string_body> response;
+        http::read(known.back(), buffer, response);
+    }
     auto stream = client.connect(server->port());
     beast::flat_buffer buffer;
     http::response<http::string_body> response;
