@@ -3,6 +3,7 @@
 
 #include "dictionaries/dictionary.hpp"
 #include "server/access/access.hpp"
+#include "server/api/command_rates.hpp"
 #include "server/api/http_message.hpp"
 #include "server/api/query_threads.hpp"
 #include "server/api/static_files.hpp"
@@ -59,6 +60,13 @@ class Api {
     explicit Api(Parts parts);
 
     void handle(HttpRequest request, const Respond& give);
+    /// Why an operator must send no more commands now, and for how long.
+    struct TooMany {
+        std::string reason;
+        std::chrono::seconds wait;
+    };
+    /// Counts commands of this operator; none: they may be sent.
+    std::optional<TooMany> count_commands(const Operator& who, std::size_t commands);
     /// The largest body accepted from this peer for this path. The body of a request that will be refused is not read,
     /// since reading takes the network thread's time.
     std::size_t body_octets(const Credentials& credentials, std::string_view method, std::string_view path) const;
@@ -159,6 +167,7 @@ class Api {
 
     Parts parts_;
     std::string dictionary_json_;
+    CommandRates command_rates_;
     std::mutex counts_mutex_;
     std::map<std::pair<std::string, unsigned>, std::uint64_t> responses_;  ///< by route and status
 };

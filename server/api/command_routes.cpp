@@ -95,11 +95,20 @@ Result<void> may_start(const Operator& who, const dictionary::Dictionary& dictio
     return {};
 }
 
+std::optional<Api::TooMany> Api::count_commands(const Operator& who, std::size_t commands) {
+    const auto wait = command_rates_.take(client_of(who), commands, CommandRates::Clock::now());
+    if (!wait) return std::nullopt;
+    return TooMany{fmt::format("more than {} commands a second: none of these is sent; try again in {} s",
+                               CommandRates::each_second, wait->count()),
+                   *wait};
+}
+
 void Api::post_command(const ApiRequest& call) {
     v1::CommandRequest command;
     if (const auto parsed = from_json(call.request.body, command); !parsed)
         return call.respond(error_response(400, parsed.error()));
     const auto respond = command.dry_run() ? call.respond : audited(call, "command");
+    if (const auto many = count_commands(call.who, 1)) return respond(retry_response(429, many->reason, many->wait));
     if (const auto right = complete(call, command); !right) return respond(error_response(400, right.error()));
     if (const auto allowed = may_send(call.who, parts_.dictionary, parts_.desk, command); !allowed)
         return respond(error_response(403, allowed.error()));
@@ -119,6 +128,8 @@ void Api::post_sequence(const ApiRequest& call) {
     if (sequence.commands().empty() || sequence.commands_size() > sequence_max)
         return respond(error_response(
             400, fmt::format("commands: 1 to {} are wanted, here are {}", sequence_max, sequence.commands_size())));
+    if (const auto many = count_commands(call.who, static_cast<std::size_t>(sequence.commands_size())))
+        return respond(retry_response(429, many->reason, many->wait));
     for (int i = 0; i < sequence.commands_size(); ++i) {
         auto& command = *sequence.mutable_commands(i);
         const auto at = [i](const std::string& error) { return fmt::format("commands[{}]: {}", i, error); };

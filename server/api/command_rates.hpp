@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <string>
+
+namespace aeolis::server {
+
+/// Bounds how often each client sends commands, dry runs among them: so many at once, and so many a second for long.
+///
+/// Memory   clients_max clients; those that have sent nothing for long are forgotten
+/// Thread   the network thread
+class CommandRates {
+  public:
+    using Clock = std::chrono::steady_clock;
+    static constexpr double each_second = 100.0;        ///< chosen: ten times what a console's controls can ask
+    static constexpr double at_once = 2'500.0;          ///< chosen: more than one may have under way: commands/shares
+    static constexpr std::size_t clients_max = 10'000;  ///< chosen
+
+    /// Counts `commands` of a client. @return none: they may go; else how long to wait until so many may
+    std::optional<std::chrono::seconds> take(const std::string& client, std::size_t commands, Clock::time_point now);
+
+  private:
+    struct Allowance {
+        double left = at_once;
+        Clock::time_point at{};
+    };
+    static double left_at(const Allowance& allowance, Clock::time_point now);
+
+    std::map<std::string, Allowance> clients_;
+};
+
+}  // namespace aeolis::server
