@@ -4,6 +4,8 @@
 #include "common/bytes.hpp"
 #include "common/crc.hpp"
 
+#include <array>
+
 namespace aeolis {
 namespace {
 
@@ -60,6 +62,27 @@ std::optional<PrimaryHeader> read_primary_header(std::span<const std::uint8_t> o
 std::optional<std::size_t> space_packet_octets(std::span<const std::uint8_t> octets) {
     if (octets.size() < primary_header_octets || octets[0] >> 5 != 0) return std::nullopt;
     return primary_header_octets + (std::size_t{octets[4]} << 8) + octets[5] + 1;
+}
+
+PacketStart packet_start(std::span<const std::uint8_t> octets) {
+    constexpr unsigned space_version = 0, encapsulation_version = 7;
+    constexpr std::array<std::size_t, 4> header_sizes{1, 2, 4, 8};  // by the length of the length
+    const unsigned version = octets[0] >> 5U;
+    using enum PacketStart::Kind;
+    if (version == space_version) {
+        const auto size = space_packet_octets(octets);
+        if (!size) return {space, 0};
+        return {read_bits(octets, 5, 11) == idle_apid ? idle : space, *size};
+    }
+    if (version != encapsulation_version) return {};
+    const unsigned protocol = (octets[0] >> 2U) & 7U;
+    const std::size_t header = header_sizes.at(octets[0] & 3U);
+    const auto kind = protocol == 0 ? idle : encapsulation;
+    if (header == 1) return protocol == 0 ? PacketStart{idle, 1} : PacketStart{};
+    if (octets.size() < header) return {kind, 0};
+    const auto length_bits = static_cast<unsigned>(header == 2 ? 8 : header * 4);
+    const auto size = read_bits(octets, header * 8 - length_bits, length_bits);
+    return size < header || size > encapsulation_octets_max ? PacketStart{} : PacketStart{kind, size};
 }
 
 std::optional<TmHeader> read_tm_packet(std::span<const std::uint8_t> packet) {

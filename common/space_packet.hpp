@@ -42,6 +42,22 @@ inline constexpr std::uint16_t idle_apid = 0x7FF;
 inline constexpr Apid file_delivery_apid{0x7FD};  ///< packets whose data are a CFDP PDU; 2045, the APID reserved for
                                                   ///< CFDP
 
+/// What begins a run of octets: a space packet, or an encapsulation packet beside it in the same frames, of one octet
+/// and more. [ccsds-133.0-b-2] [ccsds-133.1-b-3]
+struct PacketStart {
+    enum class Kind : std::uint8_t {
+        space,
+        idle,           ///< a space packet of the idle APID, or an encapsulation packet of protocol 0
+        encapsulation,  ///< of another protocol
+        unknown,        ///< no packet, or one of another version
+    };
+    Kind kind = Kind::unknown;
+    std::size_t octets = 0;  ///< of the whole packet; 0: its header is not complete
+};
+/// `octets` must not be empty.
+PacketStart packet_start(std::span<const std::uint8_t> octets);
+inline constexpr std::size_t encapsulation_octets_max = std::size_t{1} << 20U;  ///< chosen; a longer one is unknown
+
 /// Writes the header of an unsegmented packet into the first six octets.
 void write_primary_header(const PrimaryHeader& header, std::span<std::uint8_t> packet);
 

@@ -13,6 +13,7 @@ constexpr std::size_t transfer_header_octets = 6;
 constexpr std::size_t packet_zone_header_octets = 2;
 constexpr std::size_t control_field_octets = 4;
 constexpr std::size_t transfer_crc_octets = 2;
+constexpr std::size_t header_error_control_octets = 2;
 
 /// The octets after the header, without CRC and control field; the control field is stored in `into`.
 Parsed<std::span<const std::uint8_t>> body_of(std::span<const std::uint8_t> frame, bool crc, bool control_field,
@@ -90,8 +91,9 @@ Parsed<TransferFrame> read_aos_frame(std::span<const std::uint8_t> octets, const
     frame.replay = reader.get(1) != 0;
     const auto body = body_of(octets, agreed.crc, agreed.control_field, frame);
     if (!body) return body.why();
-    if (body->size() <= agreed.insert_octets + packet_zone_header_octets) return Malformed::too_short;
-    const auto zone = body->subspan(agreed.insert_octets);
+    const std::size_t before = (agreed.header_error_control ? header_error_control_octets : 0) + agreed.insert_octets;
+    if (body->size() <= before + packet_zone_header_octets) return Malformed::too_short;
+    const auto zone = body->subspan(before);
     frame.first_header_pointer = static_cast<std::uint16_t>(read_bits(zone, 5, 11));
     frame.data = zone.subspan(packet_zone_header_octets);
     if (const Malformed why = check_pointer(frame); why != Malformed::none) return why;

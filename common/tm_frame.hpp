@@ -26,9 +26,10 @@ inline constexpr std::size_t transfer_frame_octets_max = 65536;  ///< chosen; th
 
 /// Properties of a mission's frames that the frames themselves do not declare.
 struct FrameAgreement {
-    bool crc = true;                 ///< frames end with a CRC-16
-    bool control_field = false;      ///< AOS only: a TM frame declares it
-    std::uint8_t insert_octets = 0;  ///< AOS only: insert zone after the header
+    bool crc = true;                    ///< frames end with a CRC-16
+    bool control_field = false;         ///< AOS only: a TM frame declares it
+    bool header_error_control = false;  ///< AOS only: 2 octets at the end of the header, not used here
+    std::uint8_t insert_octets = 0;     ///< AOS only: insert zone after the header
 };
 
 struct TransferFrame {

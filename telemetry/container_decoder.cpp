@@ -61,11 +61,16 @@ Datum calibrated_by(const Calibration& calibration, double raw) {
         return defined(sum);
     }
     const auto& points = calibration.spline;
-    const auto above = std::ranges::upper_bound(points, raw, {}, [](const auto& point) { return point.first; });
-    if (above == points.begin()) return {};
+    auto above = std::ranges::upper_bound(points, raw, {}, [](const auto& point) { return point.first; });
+    const bool outside = above == points.begin() || (above == points.end() && raw != points.back().first);
+    if (outside && !calibration.extrapolate) return {};
+    if (calibration.flat || points.size() == 1)
+        return defined(above == points.begin() ? above->second : std::prev(above)->second);
+    // The closest outside point and the interpolation beside it extend outside. [xtce-1.2]
+    if (above == points.begin()) ++above;
+    if (above == points.end()) --above;
     const auto below = std::prev(above);
-    if (raw == below->first || calibration.flat) return defined(below->second);
-    if (above == points.end()) return {};
+    if (raw == above->first) return defined(above->second);
     const double part = (raw - below->first) / (above->first - below->first);
     return defined(below->second + part * (above->second - below->second));
 }
@@ -94,6 +99,25 @@ class Reading {
         }
         return false;
     }
+
+    /// The derived container that describes the packet further. None where none does, or where several do.
+    std::optional<std::size_t> next_of(const std::vector<std::size_t>& derived) {
+        std::optional<std::size_t> restricted, any;
+        for (const std::size_t each : derived) {
+            const PacketContainer& container = model_.containers[each];
+            if (!holds(container.when)) continue;
+            auto& found = container.when.form == xtce::Condition::Form::always ? any : restricted;
+            if (found) {
+                stop(model_.containers[*found].name + " and " + container.name + " both describe it", container.line);
+                return std::nullopt;
+            }
+            found = each;
+        }
+        return restricted ? restricted : any;
+    }
+
+    /// The end of what lies furthest back in the packet.
+    std::size_t furthest_bits() const { return std::max(furthest_, position_); }
 
     DecodedContents contents;
 
@@ -179,6 +203,7 @@ class Reading {
     }
 
     bool read_once(const PacketEntry& entry, const std::string& suffix, unsigned depth) {
+        furthest_ = std::max(furthest_, position_);
         if (entry.what == PacketEntry::What::container)
             return read_container(model_.containers[entry.index], position_, depth + 1);
         const PacketParameter& parameter = model_.parameters[entry.index];
@@ -354,7 +379,7 @@ class Reading {
     std::span<const std::uint8_t> packet_;
     std::unordered_map<std::size_t, Latest>
         latest_;  ///< by parameter; only those in the packet, as a model has thousands
-    std::size_t position_ = 0;
+    std::size_t position_ = 0, furthest_ = 0;
     std::size_t steps_ = 0;
     std::size_t reading_ = 0;               ///< the parameter
     std::optional<std::size_t> time_from_;  ///< the parameter that gave contents.time
@@ -405,44 +430,68 @@ std::string datum_text(const Datum& datum) {
     return "undefined";
 }
 
-ContainerDecoder::ContainerDecoder(const PacketModel& model) : model_(model), derived_(model.containers.size()) {
+std::vector<std::size_t> ContainerDecoder::roots_of(const PacketModel& model) {
     std::vector<bool> part_of_other(model.containers.size(), false);
-    for (std::size_t i = 0; i < model.containers.size(); ++i) {
-        if (model.containers[i].base) derived_[*model.containers[i].base].push_back(i);
-        for (const PacketEntry& entry : model.containers[i].entries)
+    for (const PacketContainer& container : model.containers)
+        for (const PacketEntry& entry : container.entries)
             if (entry.what == PacketEntry::What::container) part_of_other[entry.index] = true;
+    std::vector<std::size_t> roots;
+    for (std::size_t i = 0; i < model.containers.size(); ++i) {
+        const PacketContainer& container = model.containers[i];
+        const bool has_base = container.base || container.when.form != xtce::Condition::Form::always;
+        if (!has_base && !part_of_other[i]) roots.push_back(i);
     }
+    return roots;
+}
+
+Result<std::size_t> ContainerDecoder::root_of(const PacketModel& model, const std::string& name) {
+    const auto roots = roots_of(model);
+    if (roots.empty()) return Error{"the XTCE file has no container to begin with"};
+    if (name.empty() && roots.size() == 1) return roots.front();
+    std::string names;
+    for (const std::size_t root : roots) {
+        const PacketContainer& container = model.containers[root];
+        if (!name.empty() && (container.name == name || container.path == name)) return root;
+        names += (names.empty() ? "" : ", ") + container.path;
+    }
+    if (!name.empty()) return Error{"no packet begins with a container '" + name + "'; those that can are " + names};
+    return Error{"several containers of the XTCE file have no base: say with which one packets begin: " + names};
+}
+
+ContainerDecoder::ContainerDecoder(const PacketModel& model)
+    : model_(model), root_(model.root), derived_(model.containers.size()) {
+    if (const auto only = root_of(model, {}); !root_ && only) root_ = *only;
     for (std::size_t i = 0; i < model.containers.size(); ++i)
-        if (!model.containers[i].base && !part_of_other[i]) roots_.push_back(i);
+        if (model.containers[i].base) derived_[*model.containers[i].base].push_back(i);
 }
 
 DecodedContents ContainerDecoder::decode(std::span<const std::uint8_t> packet) const {
-    std::optional<DecodedContents> best;
-    for (const std::size_t root : roots_) {
-        Reading reading{model_, packet};
-        std::size_t at = root;
-        bool readable = reading.read_container(model_.containers[at], 0, 0);
-        while (readable) {
-            const auto next = std::ranges::find_if(
-                derived_[at], [&](std::size_t each) { return reading.holds(model_.containers[each].when); });
-            if (next == derived_[at].end()) break;
-            at = *next;
-            readable = reading.read_container(model_.containers[at], 0, 0);
-        }
-        const PacketContainer& last = model_.containers[at];
-        reading.contents.container = last.name;
-        reading.contents.container_index = at;
-        if (!reading.contents.time) reading.contents.time = coarse_and_fine(reading.contents.values);
-        if (readable && last.abstract)
-            reading.contents.problem = "no container describes it: " + last.name + " is abstract";
-        const bool whole = reading.contents.problem.empty();
-        if (!best || whole || reading.contents.values.size() > best->values.size()) best = std::move(reading.contents);
-        if (whole) break;
+    if (!root_) {
+        DecodedContents none;
+        none.problem = root_of(model_, {}).error().message;
+        return none;
     }
-    if (best) return std::move(*best);
-    DecodedContents none;
-    none.problem = "the XTCE file has no container to begin with";
-    return none;
+    Reading reading{model_, packet};
+    std::size_t at = *root_;
+    bool readable = reading.read_container(model_.containers[at], 0, 0);
+    while (readable) {
+        const auto next = reading.next_of(derived_[at]);
+        if (!next) break;
+        at = *next;
+        readable = reading.read_container(model_.containers[at], 0, 0);
+    }
+    const PacketContainer& last = model_.containers[at];
+    auto contents = std::move(reading.contents);
+    contents.container = last.name;
+    contents.container_index = at;
+    if (!contents.time) contents.time = coarse_and_fine(contents.values);
+    if (readable && contents.problem.empty() && last.abstract)
+        contents.problem = "no container describes it: " + last.name + " is abstract";
+    const std::size_t behind_bits = packet.size() * 8 - std::min(packet.size() * 8, reading.furthest_bits());
+    if (contents.problem.empty() && behind_bits > 0)
+        contents.problem = std::to_string(behind_bits) + " bits are behind the last entry of " + last.name + " (line " +
+                           std::to_string(last.line) + ")";
+    return contents;
 }
 
 }  // namespace aeolis::telemetry

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "common/result.hpp"
 #include "dictionaries/xtce/packet_model.hpp"
 
 #include <cstdint>
@@ -45,8 +46,10 @@ struct DecodedContents {
 ///
 /// In       the octets of a packet, any octets      Out   values up to the end, or up to the first unreadable field and
 ///          the reason
-/// Rule     begins with a container that has no base and is part of no other, and continues with the first derived
-///          container whose restriction holds, and so on
+/// Rule     begins with the root: a container that has no base and is part of no other. Continues with the derived
+///          container whose restriction holds, and so on. Where several hold, one without a restriction gives way;
+///          what is still several is not decoded further, nor is a packet that ends in an abstract container
+/// Whole    a packet is decoded when all of its octets are: what is behind the last entry is a problem
 /// Time     the first absolute time, or a later one relative to it. Without one, two whole numbers right after the
 ///          primary header, with ...coarse... and ...fine... in their names, in any case, are the spacecraft's clock as
 ///          in CUC: counts and their binary fraction. [ccsds-301.0-b-4]
@@ -57,14 +60,20 @@ class ContainerDecoder {
     static constexpr std::size_t values_max = 65536;  ///< chosen: as many as the longest packet has octets
     static constexpr unsigned depth_max = 16;         ///< chosen
 
-    /// `model` must outlive this.
+    /// The containers with which packets may begin. One whose base is not known is none: without it, it would be taken
+    /// for a packet of its own.
+    static std::vector<std::size_t> roots_of(const dictionary::xtce::PacketModel& model);
+    /// The root by its name or path, or the only one. The Error names those there are.
+    static Result<std::size_t> root_of(const dictionary::xtce::PacketModel& model, const std::string& name);
+
+    /// `model` must outlive this. Without a root of the model's or only one of roots_of(), nothing is decoded.
     explicit ContainerDecoder(const dictionary::xtce::PacketModel& model);
 
     DecodedContents decode(std::span<const std::uint8_t> packet) const;
 
   private:
     const dictionary::xtce::PacketModel& model_;
-    std::vector<std::size_t> roots_;
+    std::optional<std::size_t> root_;
     std::vector<std::vector<std::size_t>> derived_;  ///< by container
 };
 

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <compare>
 
 namespace aeolis::telemetry {
 namespace {
@@ -18,28 +19,60 @@ bool begins_with_marker(std::span<const std::uint8_t> octets) {
            std::equal(attached_sync_marker.begin(), attached_sync_marker.end(), octets.begin());
 }
 
-/// The number of whole packets in a stream under this layout, less those that its own frames contradict.
-///
-/// With check symbols read as data, a packet ends where no frame says that the next begins. None when no frame can be
-/// read.
-std::optional<std::int64_t> packets_in_agreement(const FrameStream& stream, std::span<const std::uint8_t> octets) {
+/// How well a layout reads a stream.
+struct Agreement {
+    std::uint64_t frames = 0;
+    /// The number of whole packets less those that the stream's own frames contradict: with check symbols read as data,
+    /// a packet ends where no frame says that the next begins.
+    std::int64_t packets = 0;
+    auto operator<=>(const Agreement&) const = default;
+};
+
+Agreement agreement_of(const FrameStream& stream, std::span<const std::uint8_t> octets) {
     FrameReceiver receiver{stream};
     receiver.receive(octets);
     std::map<std::uint32_t, PacketExtractor> channels;
     while (const auto received = receiver.next()) {
         PacketExtractor& channel = channels[received->frame.spacecraft * 64U + received->frame.virtual_channel];
-        channel.add(received->frame, received->missing_before > 0);
+        channel.add(received->frame, received->place);
         while (channel.next()) {
         }
     }
-    if (channels.empty()) return std::nullopt;
-    std::int64_t agreement = 0;
-    for (const auto& [id, channel] : channels) {
-        const PacketCounters& counted = channel.counters();
-        agreement += static_cast<std::int64_t>(counted.packets + counted.idle_packets);
-        agreement -= static_cast<std::int64_t>(counted.cut_packets + (counted.unreadable_octets > 0 ? 1 : 0));
+    PacketCounters sum;
+    for (const auto& [id, channel] : channels) sum += channel.counters();
+    const auto read = sum.packets + sum.idle_packets + sum.encapsulation_packets;
+    const auto against = sum.cut_packets + (sum.unreadable_octets > 0 ? 1 : 0);
+    return {receiver.counters().frames, static_cast<std::int64_t>(read) - static_cast<std::int64_t>(against)};
+}
+
+template <typename T, std::size_t size>
+std::vector<T> known_or(const std::optional<T>& known, const std::array<T, size>& possible) {
+    return known ? std::vector<T>{*known} : std::vector<T>(possible.begin(), possible.end());
+}
+
+/// The layouts that frames of `length` octets between two markers may have.
+std::vector<FrameStream> layouts_of(std::size_t length, bool crc, const FrameHints& known) {
+    // Reed-Solomon: 32 or 16 check symbols a code word, 1 to 8 code words interleaved. [ccsds-131.0-b-5]
+    constexpr std::array<std::size_t, 10> check_symbols{0, 16, 32, 48, 64, 80, 96, 128, 160, 256};
+    std::vector<FrameStream> layouts;
+    for (std::size_t symbols : known_or(known.suffix_octets, check_symbols)) {
+        if (known.frame_octets && length >= *known.frame_octets) symbols = length - *known.frame_octets;
+        if (length < symbols + shortest_frame_octets) continue;
+        for (const bool randomised : known_or(known.randomised, std::array{false, true}))
+            for (const auto kind : {FrameStream::Kind::tm, FrameStream::Kind::aos}) {
+                FrameStream stream;
+                stream.kind = kind;
+                stream.frame_octets = length - symbols;
+                stream.suffix_octets = symbols;
+                stream.randomised = randomised;
+                stream.agreed = known.agreed;
+                stream.agreed.crc = crc;
+                stream.virtual_channel = known.virtual_channel;
+                layouts.push_back(stream);
+            }
+        if (known.frame_octets) break;
     }
-    return agreement;
+    return layouts;
 }
 
 }  // namespace
@@ -95,8 +128,10 @@ std::optional<FrameReceiver::Received> FrameReceiver::next() {
         }
         window_.use(unit_octets());
         ++counters_.frames;
+        if (stream_.virtual_channel && frame->virtual_channel != *stream_.virtual_channel) continue;
         const std::uint32_t channel = frame->spacecraft * 64U + frame->virtual_channel;
-        return Received{*frame, channels_[channel].next(frame->count, frame->count_modulus, counters_)};
+        const auto placed = channels_[channel].place(frame->count, frame->count_modulus, frame_, counters_);
+        if (placed.place != FramePlace::repeated) return Received{*frame, placed.place};
     }
     return std::nullopt;
 }
@@ -120,37 +155,29 @@ std::optional<std::size_t> cadu_frame_octets(std::span<const std::uint8_t> octet
     return most->first - attached_sync_marker.size();
 }
 
-std::optional<FrameStream> recognise_cadus(std::span<const std::uint8_t> octets) {
+std::optional<FrameStream> recognise_cadus(std::span<const std::uint8_t> octets, const FrameHints& known, bool ended) {
     constexpr std::size_t looked_at_octets = std::size_t{1} << 20U;
-    // Reed-Solomon: 32 or 16 check symbols a code word, 1 to 8 code words interleaved. [ccsds-131.0-b-5]
-    constexpr std::array<std::size_t, 10> check_symbols{0, 16, 32, 48, 64, 80, 96, 128, 160, 256};
     octets = octets.first(std::min(octets.size(), looked_at_octets));
     const auto length = cadu_frame_octets(octets);
     if (!length) return std::nullopt;
     std::optional<FrameStream> best;
-    std::int64_t most = 0;
-    for (const bool crc : {true, false}) {
-        if (best) break;  // a right CRC leaves no doubt
-        for (const std::size_t symbols : check_symbols)
-            for (const bool randomised : {false, true})
-                for (const auto kind : {FrameStream::Kind::tm, FrameStream::Kind::aos}) {
-                    if (*length < symbols + shortest_frame_octets) continue;
-                    FrameStream stream;
-                    stream.kind = kind;
-                    stream.frame_octets = *length - symbols;
-                    stream.suffix_octets = symbols;
-                    stream.randomised = randomised;
-                    stream.agreed.crc = crc;
-                    const auto agreement = packets_in_agreement(stream, octets);
-                    if (!agreement || (best && *agreement <= most)) continue;
-                    best = stream;
-                    most = *agreement;
-                }
+    Agreement most;
+    for (const bool crc : known_or(known.crc, std::array{true, false})) {
+        for (const auto& stream : layouts_of(*length, crc, known)) {
+            const auto agreement = agreement_of(stream, octets);
+            if (agreement.frames == 0 || (best && agreement.packets <= most.packets)) continue;
+            best = stream;
+            most = agreement;
+        }
+        // Right CRCs leave no doubt, one alone does: it may be chance.
+        if (best && (most.frames > 1 || ended)) break;
     }
-    return best;
+    return best && (ended || most.frames >= frames_to_agree) ? best : std::nullopt;
 }
 
-std::optional<std::size_t> crc_frame_octets(std::span<const std::uint8_t> octets, std::size_t prefix_octets) {
+std::optional<std::size_t> crc_frame_octets(std::span<const std::uint8_t> octets, std::size_t prefix_octets,
+                                            bool ended) {
+    constexpr std::size_t frames_wanted = 3;
     if (octets.size() <= prefix_octets) return std::nullopt;
     const auto first = octets.subspan(prefix_octets);
     const std::size_t most = std::min(first.size(), transfer_frame_octets_max);
@@ -159,9 +186,14 @@ std::optional<std::size_t> crc_frame_octets(std::span<const std::uint8_t> octets
     for (std::size_t size = shortest_frame_octets; size <= most; ++size) {
         crc = crc16(first.subspan(size - 1, 1), crc);
         if (crc != 0) continue;
-        const auto second = first.subspan(size);
-        if (second.empty()) return size;
-        if (second.size() >= prefix_octets + size && crc16(second.subspan(prefix_octets, size)) == 0) return size;
+        std::size_t right = 1;
+        auto rest = first.subspan(size);
+        while (right < frames_wanted && rest.size() >= prefix_octets + size &&
+               crc16(rest.subspan(prefix_octets, size)) == 0) {
+            ++right;
+            rest = rest.subspan(prefix_octets + size);
+        }
+        if (right == frames_wanted || (ended && rest.empty())) return size;
     }
     return std::nullopt;
 }

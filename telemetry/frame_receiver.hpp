@@ -2,7 +2,7 @@
 #pragma once
 
 #include "common/tm_frame.hpp"
-#include "telemetry/link_counters.hpp"
+#include "telemetry/frame_order.hpp"
 #include "telemetry/octet_window.hpp"
 
 #include <cstdint>
@@ -23,11 +23,13 @@ struct FrameStream {
     std::size_t suffix_octets = 0;    ///< ignored after each frame: the code's check symbols
     bool randomised = false;
     FrameAgreement agreed{};
+    std::optional<std::uint8_t> virtual_channel{};  ///< none: frames of all
 };
 
 /// Finds TM or AOS frames in a stream of octets.
 ///
-/// In       octets as received, in pieces of any size       Out   readable frames, and how many are missing
+/// In       octets as received, in pieces of any size       Out   readable frames, and the place of each in its channel's
+///          sequence. Repeated ones are only counted
 /// Memory   the last piece and two frames
 /// Faults   with a marker, after anything but a good frame the search continues right behind the marker; without one,
 ///          an unreadable frame is skipped whole
@@ -35,8 +37,8 @@ struct FrameStream {
 class FrameReceiver {
   public:
     struct Received {
-        TransferFrame frame;               ///< valid until the next next() or receive()
-        std::uint32_t missing_before = 0;  ///< frames of its virtual channel that were not received
+        TransferFrame frame;  ///< valid until the next next() or receive()
+        FramePlace place = FramePlace::next;
     };
 
     explicit FrameReceiver(const FrameStream& stream);
@@ -57,7 +59,7 @@ class FrameReceiver {
     FrameStream stream_;
     OctetWindow window_;
     std::vector<std::uint8_t> frame_;
-    std::map<std::uint32_t, SequenceGaps> channels_;
+    std::map<std::uint32_t, FrameOrder> channels_;
     LinkCounters counters_;
 };
 
@@ -65,12 +67,24 @@ class FrameReceiver {
 /// than two markers.
 std::optional<std::size_t> cadu_frame_octets(std::span<const std::uint8_t> octets);
 
-/// Length of contiguous frames with a CRC-16, each after `prefix_octets`. It is the smallest at which the CRCs of the
-/// first two, or of the only one, are right.
-std::optional<std::size_t> crc_frame_octets(std::span<const std::uint8_t> octets, std::size_t prefix_octets);
+/// Length of contiguous frames with a CRC-16, each after `prefix_octets`: the smallest at which the CRCs of the first
+/// three are right. When no more octets come, of as many as there are, and nothing is behind them.
+std::optional<std::size_t> crc_frame_octets(std::span<const std::uint8_t> octets, std::size_t prefix_octets,
+                                            bool ended);
 
-/// Detects a CADU stream's layout by trial: frame length, TM or AOS, randomisation, the code's check symbols, CRC. None
-/// without two markers.
-std::optional<FrameStream> recognise_cadus(std::span<const std::uint8_t> octets);
+/// What is known of frames before any is seen.
+struct FrameHints {
+    std::optional<std::size_t> frame_octets{}, suffix_octets{};
+    std::optional<bool> crc{}, randomised{};
+    FrameAgreement agreed{};  ///< but for its `crc`
+    std::optional<std::uint8_t> virtual_channel{};
+};
+
+inline constexpr std::uint64_t frames_to_agree = 8;  ///< chosen: before a layout is believed in a stream that goes on
+
+/// Detects a CADU stream's layout by trial, as far as it is not known: frame length, TM or AOS, randomisation, the code's
+/// check symbols, CRC. None when no layout reads the frames.
+/// @param ended  no more octets come: fewer than frames_to_agree must do
+std::optional<FrameStream> recognise_cadus(std::span<const std::uint8_t> octets, const FrameHints& known, bool ended);
 
 }  // namespace aeolis::telemetry

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "telemetry/link_counters.hpp"
 
-#include "common/check.hpp"
-
 #include <algorithm>
 
 namespace aeolis::telemetry {
@@ -15,21 +13,6 @@ std::int64_t whole_seconds(Ert at) {
 }
 
 }  // namespace
-
-std::uint32_t SequenceGaps::next(std::uint32_t sequence, std::uint32_t modulus, LinkCounters& counters) {
-    AEOLIS_CHECK(modulus > 0 && (modulus & (modulus - 1)) == 0);
-    const std::uint32_t missing = begun_ ? (sequence - expected_) & (modulus - 1) : 0;
-    if (missing == modulus - 1 && modulus > 2) {
-        ++counters.repeated_frames;
-        return 0;
-    }
-    begun_ = true;
-    expected_ = (sequence + 1) & (modulus - 1);
-    if (missing == 0) return 0;
-    ++counters.gaps;
-    counters.missing_frames += missing;
-    return missing;
-}
 
 void RateMeter::add(Ert at, std::uint64_t amount) {
     const std::int64_t now_s = std::max(whole_seconds(at), newest_s_);

@@ -17,20 +17,11 @@ struct LinkCounters {
     std::uint64_t skipped_octets = 0;   ///< between good frames
     std::uint64_t gaps = 0;             ///< frame sequences that do not continue the last
     std::uint64_t missing_frames = 0;   ///< by frame sequence; multiples of its modulus go unnoticed
-    std::uint64_t repeated_frames = 0;  ///< with the previous frame's sequence
+    std::uint64_t repeated_frames = 0;  ///< received before, and dropped
+    std::uint64_t late_frames = 0;      ///< received behind later ones; not missing any more
+    std::uint64_t restarts = 0;         ///< the sequence began anew
 
     bool operator==(const LinkCounters&) const = default;
-};
-
-/// Checks a stream's frame sequence for gaps.
-class SequenceGaps {
-  public:
-    /// Counts a frame in `counters` and returns the number missing before it. `modulus` is a power of two.
-    std::uint32_t next(std::uint32_t sequence, std::uint32_t modulus, LinkCounters& counters);
-
-  private:
-    std::uint32_t expected_ = 0;
-    bool begun_ = false;
 };
 
 /// A rate per second, over the last ten whole seconds.

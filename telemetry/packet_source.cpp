@@ -20,17 +20,17 @@ std::optional<DownlinkFormat> downlink_format(std::string_view name) {
 }
 
 std::optional<std::span<const std::uint8_t>> BarePackets::next() {
-    const auto rest = window_.rest();
-    if (rest.size() < prefix_octets_ + primary_header_octets || lost_) return std::nullopt;
-    const auto size = space_packet_octets(rest.subspan(prefix_octets_));
-    if (!size) {
-        lost_ = true;
-        return std::nullopt;
+    while (!lost_) {
+        const auto rest = window_.rest();
+        if (rest.size() <= prefix_octets_) return std::nullopt;
+        const auto start = packet_start(rest.subspan(prefix_octets_));
+        if (start.kind == PacketStart::Kind::unknown) break;
+        if (start.octets == 0 || rest.size() < prefix_octets_ + start.octets) return std::nullopt;
+        window_.use(prefix_octets_ + start.octets);
+        if (counters_.count(start.kind)) return rest.subspan(prefix_octets_, start.octets);
     }
-    if (rest.size() < prefix_octets_ + *size) return std::nullopt;
-    window_.use(prefix_octets_ + *size);
-    ++counters_.packets;
-    return rest.subspan(prefix_octets_, *size);
+    lost_ = true;
+    return std::nullopt;
 }
 
 void BarePackets::end() {
@@ -48,7 +48,7 @@ void PacketSource::take_from(BarePackets& packets) {
 void PacketSource::take_from(Frames& frames) {
     while (const auto received = frames.receiver.next()) {
         PacketExtractor& channel = frames.channels[received->frame.spacecraft * 64U + received->frame.virtual_channel];
-        channel.add(received->frame, received->missing_before > 0);
+        channel.add(received->frame, received->place);
         while (const auto packet = channel.next()) keep(*packet);
     }
 }
@@ -80,6 +80,11 @@ void PacketSource::end() {
         pltus->receiver.end();
         take_from(*pltus);
     }
+    segments_.end();
+}
+
+void PacketSource::keep(std::span<const std::uint8_t> packet) {
+    if (const auto whole = segments_.add(packet)) whole_.emplace_back(whole->begin(), whole->end());
 }
 
 std::optional<std::span<const std::uint8_t>> PacketSource::next() {
@@ -101,16 +106,12 @@ LinkCounters PacketSource::link() const {
 }
 
 PacketCounters PacketSource::packets() const {
-    if (const auto* packets = std::get_if<BarePackets>(&source_)) return packets->counters();
-    if (const auto* pltus = std::get_if<Pltus>(&source_)) return pltus->packets.counters();
     PacketCounters sum;
+    if (const auto* packets = std::get_if<BarePackets>(&source_)) sum = packets->counters();
+    if (const auto* pltus = std::get_if<Pltus>(&source_)) sum = pltus->packets.counters();
     if (const auto* frames = std::get_if<Frames>(&source_))
-        for (const auto& [id, channel] : frames->channels) {
-            sum.packets += channel.counters().packets;
-            sum.idle_packets += channel.counters().idle_packets;
-            sum.cut_packets += channel.counters().cut_packets;
-            sum.unreadable_octets += channel.counters().unreadable_octets;
-        }
+        for (const auto& [id, channel] : frames->channels) sum += channel.counters();
+    sum.lost_segments += segments_.lost_segments();
     return sum;
 }
 

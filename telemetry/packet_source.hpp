@@ -3,6 +3,7 @@
 
 #include "telemetry/frame_receiver.hpp"
 #include "telemetry/proximity_packets.hpp"
+#include "telemetry/segment_assembler.hpp"
 
 #include <cstdint>
 #include <deque>
@@ -40,7 +41,8 @@ class BarePackets {
 
 /// Extracts space packets of any mission from a stream in any of the formats.
 ///
-/// In       octets as received, in pieces of any size       Out   packets, in the order of completion
+/// In       octets as received, in pieces of any size       Out   packets, in the order of completion; what was sent in
+///          segments as one
 class PacketSource {
   public:
     static PacketSource of_packets(std::size_t prefix_octets) { return PacketSource{BarePackets{prefix_octets}}; }
@@ -72,9 +74,10 @@ class PacketSource {
     void take_from(Frames& frames);
     void take_from(Pltus& pltus);
     void take_from(BarePackets& packets);
-    void keep(std::span<const std::uint8_t> packet) { whole_.emplace_back(packet.begin(), packet.end()); }
+    void keep(std::span<const std::uint8_t> packet);
 
     Source source_;
+    SegmentAssembler segments_;
     std::deque<std::vector<std::uint8_t>> whole_;
     std::vector<std::uint8_t> given_;
 };

@@ -47,7 +47,8 @@ std::optional<PltuReceiver::Received> PltuReceiver::next() {
         ++counters_.frames;
         const ProximityHeader& header = frame->header;
         const std::uint32_t stream = header.spacecraft * 4U + header.physical_channel * 2U + header.expedited;
-        return Received{*frame, streams_[stream].next(header.sequence, 256, counters_)};
+        const auto placed = streams_[stream].place(header.sequence, 256, rest.first(size), counters_);
+        if (placed.place != FramePlace::repeated) return Received{*frame, placed.place};
     }
 }
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "common/proximity_frame.hpp"
-#include "telemetry/link_counters.hpp"
+#include "telemetry/frame_order.hpp"
 #include "telemetry/octet_window.hpp"
 
 #include <cstdint>
@@ -14,7 +14,8 @@ namespace aeolis::telemetry {
 
 /// Finds Proximity-1 frames in a stream of octets.
 ///
-/// In       octets as received, in pieces of any size       Out   frames with a right CRC, and how many are missing
+/// In       octets as received, in pieces of any size       Out   frames with a right CRC, and the place of each in the
+///          sequence of its spacecraft, channel and service. Repeated ones are only counted
 /// Rate     above 200 MB/s (bench/pltu_bench.cpp)
 /// Memory   the last piece and one PLTU
 /// Faults   after anything but a good frame the search continues right behind the marker, so that a good frame is never
@@ -22,8 +23,8 @@ namespace aeolis::telemetry {
 class PltuReceiver {
   public:
     struct Received {
-        ProximityFrame frame;              ///< valid until the next receive()
-        std::uint32_t missing_before = 0;  ///< frames of its spacecraft, channel and service that were not received
+        ProximityFrame frame;  ///< valid until the next receive()
+        FramePlace place = FramePlace::next;
     };
 
     void receive(std::span<const std::uint8_t> octets);
@@ -40,7 +41,7 @@ class PltuReceiver {
     void skip(std::size_t octets);
 
     OctetWindow window_;
-    std::map<std::uint32_t, SequenceGaps> streams_;
+    std::map<std::uint32_t, FrameOrder> streams_;
     LinkCounters counters_;
     bool ended_ = false;
 };

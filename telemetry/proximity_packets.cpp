@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "telemetry/proximity_packets.hpp"
 
-#include "common/bytes.hpp"
 #include "common/space_packet.hpp"
 
 namespace aeolis::telemetry {
@@ -9,9 +8,12 @@ namespace aeolis::telemetry {
 void ProximityPackets::add(const PltuReceiver::Received& received) {
     const ProximityHeader& header = received.frame.header;
     const StreamId stream = header.spacecraft * 4U + header.physical_channel * 2U + header.expedited;
-    if (received.missing_before > 0) forget(stream);
+    const bool late = received.place == FramePlace::late;
+    if (received.place != FramePlace::next && !late) forget(stream);
     if (!header.supervisory && header.construction == Construction::packets)
         split(received.frame.data);
+    else if (!header.supervisory && header.construction == Construction::segments && late)
+        counters_.unreadable_octets += received.frame.data.size();  // the packet that it belongs to was given up
     else if (!header.supervisory && header.construction == Construction::segments)
         add_segment(stream, received.frame.data);
     else
@@ -20,13 +22,13 @@ void ProximityPackets::add(const PltuReceiver::Received& received) {
 
 void ProximityPackets::split(std::span<const std::uint8_t> packets) {
     while (!packets.empty()) {
-        const auto size = space_packet_octets(packets);
-        if (!size || *size > packets.size()) {
+        const auto start = packet_start(packets);
+        if (start.kind == PacketStart::Kind::unknown || start.octets == 0 || start.octets > packets.size()) {
             counters_.unreadable_octets += packets.size();
             return;
         }
-        give_out({packets.begin(), packets.begin() + static_cast<std::ptrdiff_t>(*size)});
-        packets = packets.subspan(*size);
+        give_out(start, packets.first(start.octets));
+        packets = packets.subspan(start.octets);
     }
 }
 
@@ -56,12 +58,11 @@ void ProximityPackets::add_segment(StreamId stream, std::span<const std::uint8_t
     split(packet);
 }
 
-void ProximityPackets::give_out(std::vector<std::uint8_t> packet) {
-    if (read_bits(packet, 5, 11) == idle_apid) {
-        ++counters_.idle_packets;
-        return;
-    }
-    whole_.push_back(std::move(packet));
+void ProximityPackets::give_out(const PacketStart& start, std::span<const std::uint8_t> packet) {
+    if (start.kind == PacketStart::Kind::space)
+        whole_.emplace_back(packet.begin(), packet.end());
+    else
+        counters_.count(start.kind);
 }
 
 void ProximityPackets::forget(StreamId stream) {

@@ -56,6 +56,7 @@ struct Calibration {
     std::vector<double> polynomial{};                 ///< coefficient of each power
     std::vector<std::pair<double, double>> spline{};  ///< raw, calibrated; sorted; linear between points
     bool flat = false;                                ///< spline of order 0: steps
+    bool extrapolate = false;                         ///< outside the points, too; else it is undefined there
     bool empty() const { return polynomial.empty() && spline.empty(); }
 };
 
@@ -164,6 +165,7 @@ struct PacketModel {
     std::vector<PacketType> types;
     std::vector<PacketParameter> parameters;
     std::vector<PacketContainer> containers;
+    std::optional<std::size_t> root{};  ///< the container with which packets begin, where the file leaves it open
 };
 
 /// Reads the model.

@@ -217,6 +217,7 @@ Calibration ModelTypes::calibration(pugi::xml_node calibrator) {
         std::ranges::sort(result.spline);
         const int order = spline.attribute("order").as_int(1);
         result.flat = order == 0;
+        result.extrapolate = spline.attribute("extrapolate").as_bool(false);
         if (order > 1)
             parts_.report.fault(spline, "a spline of order " + std::to_string(order) + " is read as straight lines");
         return result;

@@ -72,7 +72,7 @@ Result<std::vector<archive::RunLine>> chosen(const PruneOptions& options, const 
 /// Returns 0 when there is no fault.
 int archive_verify(const ArchiveOptions& options) {
     int exit_code = 0;
-    const auto recorded = recorded_dictionary(options.shared.dictionary, options.xtce, exit_code);
+    const auto recorded = recorded_dictionary(options.shared.dictionary, options.xtce, options.root, exit_code);
     if (!recorded) return exit_code;
     const auto found = [&] {
         ProgressLine line;
@@ -91,7 +91,7 @@ int archive_verify(const ArchiveOptions& options) {
 /// Returns 0 when every run was rebuilt.
 int archive_rebuild(const ArchiveOptions& options) {
     int exit_code = 0;
-    const auto recorded = recorded_dictionary(options.shared.dictionary, options.xtce, exit_code);
+    const auto recorded = recorded_dictionary(options.shared.dictionary, options.xtce, options.root, exit_code);
     if (!recorded) return exit_code;
     const auto rebuilt = [&] {
         ProgressLine line;

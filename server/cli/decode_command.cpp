@@ -23,6 +23,7 @@ namespace {
 
 struct DecodeOptions {
     std::filesystem::path xtce, packets;
+    std::string root;
     PacketStreamFormat format{};
     std::optional<std::filesystem::path> clock_kernel,
         leap_seconds;                      ///< SPICE text kernels: both, or the leap seconds alone
@@ -116,14 +117,21 @@ bool print_losses(const telemetry::PacketSource& source, const Printed& printed)
     const auto link = source.link();
     const auto packets = source.packets();
     if (link.octets > 0)
-        fmt::print(
-            stderr,
-            "frames: {} good, {} with a wrong CRC, {} with a wrong header, {} missing in {} gaps; {} octets skipped\n",
-            link.frames, link.bad_crc, link.bad_header, link.missing_frames, link.gaps, link.skipped_octets);
-    fmt::print(stderr, "packets: {}, {} idle, {} cut off; {} octets unreadable\n", packets.packets,
-               packets.idle_packets, packets.cut_packets, packets.unreadable_octets);
+        fmt::print(stderr,
+                   "frames: {} good, {} with a wrong CRC, {} with a wrong header, {} missing in {} gaps, {} repeated, "
+                   "{} late, "
+                   "{} restarts; {} octets skipped\n",
+                   link.frames, link.bad_crc, link.bad_header, link.missing_frames, link.gaps, link.repeated_frames,
+                   link.late_frames, link.restarts, link.skipped_octets);
+    fmt::print(
+        stderr,
+        "packets: {}, {} idle, {} encapsulation packets not decoded, {} cut off, {} segments without the rest; {} "
+        "octets unreadable\n",
+        packets.packets, packets.idle_packets, packets.encapsulation_packets, packets.cut_packets,
+        packets.lost_segments, packets.unreadable_octets);
     for (const auto& [problem, count] : printed.problems()) fmt::print(stderr, "{} packets: {}\n", count, problem);
-    return link.bad_crc + link.bad_header + link.missing_frames + packets.cut_packets + packets.unreadable_octets ==
+    return link.bad_crc + link.bad_header + link.missing_frames + packets.encapsulation_packets + packets.cut_packets +
+                   packets.lost_segments + packets.unreadable_octets ==
                0 &&
            printed.problems().empty();
 }
@@ -131,10 +139,10 @@ bool print_losses(const telemetry::PacketSource& source, const Printed& printed)
 /// Prints any mission's packets by its XTCE file; returns 0 when every octet was decoded.
 int decode(const DecodeOptions& options) {
     if (!telemetry::downlink_format(options.format.name))
-        return failed(packet_source(options.format, {}).error().message, 2);
+        return failed(packet_source(options.format, {}, true).error().message, 2);
     const auto kernels = time_kernels(options);
     if (!kernels) return failed(kernels.error().message, 2);
-    const auto xtce = read_xtce_file(options.xtce);
+    const auto xtce = read_xtce_file(options.xtce, options.root);
     if (!xtce) return xtce.exit_code;
     const auto& model = xtce.model;
 
@@ -148,22 +156,24 @@ int decode(const DecodeOptions& options) {
     if (!in || std::filesystem::is_directory(options.packets))
         return failed(options.packets.string() + " cannot be read", 2);
     auto octets = read_piece();
-    auto source = packet_source(options.format, octets);
-    if (!source) return failed(options.packets.string() + ": " + source.error().message, 2);
+    auto recognised = packet_source(options.format, octets, octets.size() < piece_octets);
+    if (!recognised) return failed(options.packets.string() + ": " + recognised.error().message, 2);
+    auto& source = recognised->source;
+    if (!recognised->layout.empty()) fmt::print(stderr, "taken for {}\n", recognised->layout);
 
     const telemetry::ContainerDecoder decoder{*model};
     Printed printed{decoder, *kernels, options.csv};
     const auto take = [&] {
-        while (const auto packet = source->next()) printed.add(*packet);
+        while (const auto packet = source.next()) printed.add(*packet);
     };
     for (; !octets.empty(); octets = read_piece()) {
-        source->receive(octets);
+        source.receive(octets);
         take();
     }
-    source->end();
+    source.end();
     take();
     printed.print_kinds();
-    return print_losses(*source, printed) ? 0 : 1;
+    return print_losses(source, printed) ? 0 : 1;
 }
 
 }  // namespace
@@ -171,8 +181,10 @@ int decode(const DecodeOptions& options) {
 void add_decode_command(CLI::App& program, int& exit_code) {
     const auto options = std::make_shared<DecodeOptions>();
     auto& command = *program.add_subcommand(
-        "decode", "decodes any mission's packets by its XTCE file; exit code 1 when an octet could not be decoded");
+        "decode",
+        "decodes any mission's packets by its XTCE file; exit code 1 when anything but idle data was not decoded");
     command.add_option("--xtce", options->xtce, "the mission's XTCE file, version 1.0 to 1.3")->required();
+    add_root(command, options->root);
     command.add_option("--packets", options->packets, "file of packets or frames")->required();
     add_stream_format(command, options->format);
     auto* leap_seconds = command.add_option(

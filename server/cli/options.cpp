@@ -24,17 +24,38 @@ CLI::Validator whole_number() {
             "NUMBER"};
 }
 
-std::array<CLI::Option*, 3> add_stream_format(CLI::App& command, PacketStreamFormat& format) {
+std::vector<CLI::Option*> add_stream_format(CLI::App& command, PacketStreamFormat& format) {
+    const auto yes_or_no = [&](const char* name, std::optional<bool>& answer, const char* text) {
+        return command
+            .add_option_function<std::string>(
+                name, [&answer](const std::string& word) { answer = word == "yes"; }, text)
+            ->check(CLI::IsMember({"yes", "no"}));
+    };
+    const auto number = [&](const char* name, auto& value, const char* text, std::size_t least, std::size_t most) {
+        return command.add_option(name, value, text)->check(whole_number())->check(CLI::Range(least, most));
+    };
     return {command.add_option("--format", format.name, "packets, tm, aos, cadu or pltu")->capture_default_str(),
-            command.add_option("--skip", format.skip, "octets to skip before each packet, TM or AOS frame")
-                ->check(whole_number())
-                ->check(CLI::Range(std::size_t{0}, decode_skip_max))
+            number("--skip", format.skip, "octets to skip before each packet, TM or AOS frame", 0, decode_skip_max)
                 ->capture_default_str(),
-            command
-                .add_option("--frame-octets", format.frame_octets,
-                            "octets of a TM or AOS frame; found by trying if left out")
-                ->check(whole_number())
-                ->check(CLI::Range(std::size_t{9}, std::size_t{65536}))};
+            number("--frame-octets", format.frame_octets,
+                   "octets of a TM or AOS frame, without marker and check symbols; found by trying if left out", 9,
+                   65536),
+            number("--check-symbols", format.check_octets,
+                   "octets of a code's check symbols behind each frame; found by trying for cadu, else 0", 0, 256),
+            yes_or_no("--randomised", format.randomised, "whether frames are randomised; found by trying for cadu"),
+            yes_or_no("--fecf", format.crc, "whether frames end with a CRC-16; found by trying if left out"),
+            command.add_flag("--control-field", format.agreed.control_field,
+                             "AOS frames have an operational control field of 4 octets; a TM frame says so itself"),
+            command.add_flag("--header-error-control", format.agreed.header_error_control,
+                             "the headers of AOS frames have 2 octets of error control"),
+            number("--insert-octets", format.agreed.insert_octets, "octets of the insert zone of AOS frames", 0, 255),
+            number("--virtual-channel", format.virtual_channel, "frames of this virtual channel only", 0, 63)};
+}
+
+CLI::Option* add_root(CLI::App& command, std::string& root) {
+    return command.add_option("--root", root,
+                              "name of the container with which packets begin, where several in the XTCE file have no "
+                              "base");
 }
 
 void add_archive_file(CLI::App& command, std::filesystem::path& archive) {
@@ -45,7 +66,9 @@ void add_archive_and_dictionary(CLI::App& command, ArchiveOptions& options) {
     add_archive_file(command, options.archive);
     command.add_option("--dictionary", options.shared.dictionary, "directory of the mission's dictionary")
         ->capture_default_str();
-    command.add_option("--xtce", options.xtce, "XTCE file of the followed mission, if the run followed one");
+    auto* xtce =
+        command.add_option("--xtce", options.xtce, "XTCE file of the followed mission, if the run followed one");
+    add_root(command, options.root)->needs(xtce);
 }
 
 }  // namespace aeolis::server

@@ -5,10 +5,11 @@
 #include "server/links/frame_format.hpp"
 
 #include <CLI/CLI.hpp>
-#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <vector>
 
 // Options shared by several subcommands.
 namespace aeolis::server {
@@ -20,7 +21,9 @@ void add_shared(CLI::App& command, SharedOptions& shared);
 CLI::Validator whole_number();
 
 /// Adds the options for how a file or link carries packets. @return the options, each of which may need another
-std::array<CLI::Option*, 3> add_stream_format(CLI::App& command, PacketStreamFormat& format);
+std::vector<CLI::Option*> add_stream_format(CLI::App& command, PacketStreamFormat& format);
+/// Adds --root: with which container of an XTCE file packets begin.
+CLI::Option* add_root(CLI::App& command, std::string& root);
 
 inline constexpr const char* default_archive = "run-data/aeolis.db";
 
@@ -29,10 +32,11 @@ struct ArchiveOptions {
     SharedOptions shared;
     std::filesystem::path archive = default_archive;
     std::filesystem::path xtce;  ///< XTCE of the mission that was followed; empty: the dictionary's own
+    std::string root;            ///< with which container of it packets begin
     std::optional<std::uint32_t> run;
 };
 void add_archive_file(CLI::App& command, std::filesystem::path& archive);
-/// Adds --archive, --dictionary and --xtce.
+/// Adds --archive, --dictionary, --xtce and --root.
 void add_archive_and_dictionary(CLI::App& command, ArchiveOptions& options);
 
 }  // namespace aeolis::server

@@ -7,10 +7,11 @@
 namespace aeolis::server {
 
 std::optional<RecordedDictionary> recorded_dictionary(const std::filesystem::path& dictionary,
-                                                      const std::filesystem::path& xtce, int& exit_code) {
+                                                      const std::filesystem::path& xtce, const std::string& root,
+                                                      int& exit_code) {
     RecordedDictionary recorded;
     if (!xtce.empty()) {
-        auto file = read_xtce_file(xtce);
+        auto file = read_xtce_file(xtce, root);
         if (!file) {
             exit_code = file.exit_code;
             return {};

@@ -40,6 +40,7 @@ struct ServeOptions {
     double pace = 1.0;
     std::optional<std::string> downlink;  ///< "tcp://HOST:PORT", "udp://HOST:PORT": follow another mission
     std::filesystem::path xtce;           ///< of the followed mission
+    std::string root;
     PacketStreamFormat format{};
     std::string log_level{default_log_level}, log_format = "text";
     bool log_level_given = false;  ///< by command line or environment, before which the file gives way
@@ -104,8 +105,8 @@ FollowedMission followed_mission(const ServeOptions& options) {
     auto address = DownlinkAddress::parse(*options.downlink);
     if (!address) return refused(failed("--downlink " + address.error().message, 2));
     if (!telemetry::downlink_format(options.format.name))
-        return refused(failed(packet_source(options.format, {}).error().message, 2));
-    auto xtce = read_xtce_file(options.xtce);
+        return refused(failed(packet_source(options.format, {}, true).error().message, 2));
+    auto xtce = read_xtce_file(options.xtce, options.root);
     if (!xtce) return refused(xtce.exit_code);
     FollowedMission mission;
     mission.model = std::make_unique<telemetry::OtherMission>(std::move(*xtce.model), xtce.id);
@@ -293,6 +294,7 @@ void add_run_options(CLI::App& command, ServeOptions& options) {
                                  "that mission's XTCE file; unsupported parts are named with their lines")
                      ->needs(downlink);
     downlink->needs(xtce);
+    add_root(command, options.root)->needs(xtce);
     for (auto* option : add_stream_format(command, options.format)) option->needs(downlink);
     command.add_option("--seed", options.seed, "seed of that rehearsal's errors")
         ->check(whole_number())

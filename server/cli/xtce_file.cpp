@@ -3,6 +3,7 @@
 
 #include "common/crc.hpp"
 #include "server/cli/shipped_paths.hpp"
+#include "telemetry/container_decoder.hpp"
 
 #include <fmt/format.h>
 #include <fstream>
@@ -33,7 +34,7 @@ Result<std::string> text_of_file(const std::filesystem::path& path) {
     return std::string{std::istreambuf_iterator<char>{in}, {}};
 }
 
-XtceFile read_xtce_file(const std::filesystem::path& path) {
+XtceFile read_xtce_file(const std::filesystem::path& path, const std::string& root) {
     const auto text = text_of_file(path);
     if (!text) return {std::nullopt, failed(text.error().message, 2), 0};
     std::vector<dictionary::Finding> all;
@@ -41,7 +42,14 @@ XtceFile read_xtce_file(const std::filesystem::path& path) {
     XtceFile file{dictionary::xtce::read_packet_model(*text, findings), 0,
                   crc16(std::vector<std::uint8_t>{text->begin(), text->end()})};
     print_findings(all);
-    if (!file.model) file.exit_code = 1;
+    if (!file.model) {
+        file.exit_code = 1;
+        return file;
+    }
+    const auto begins = telemetry::ContainerDecoder::root_of(*file.model, root);
+    if (!begins)
+        return {std::nullopt, failed(fmt::format("{}: {} (--root)", path.string(), begins.error().message), 2), 0};
+    file.model->root = *begins;
     return file;
 }
 

@@ -21,6 +21,7 @@ struct XtceFile {
     std::uint16_t id = 0;  ///< changes with every change of the file
     explicit operator bool() const { return model.has_value(); }
 };
-XtceFile read_xtce_file(const std::filesystem::path& path);
+/// @param root  name of the container with which packets begin; empty: the only one that can
+XtceFile read_xtce_file(const std::filesystem::path& path, const std::string& root);
 
 }  // namespace aeolis::server

@@ -33,7 +33,7 @@ Result<std::unique_ptr<DownlinkFollower>> DownlinkFollower::start(Settings setti
         new DownlinkFollower{std::move(settings), pipeline, std::move(on_state)}};
     auto& self = *follower;
     if (!needs_beginning(self.settings_.format))
-        if (const auto source = packet_source(self.settings_.format, {}); !source) return source.error();
+        if (const auto source = packet_source(self.settings_.format, {}, true); !source) return source.error();
     if (self.settings_.address.udp) {
         if (auto bound = self.socket_.open(self.settings_.address, connect_limit); !bound) return bound.error();
         self.port_ = self.settings_.address.port = self.socket_.local_port();
@@ -132,20 +132,31 @@ bool DownlinkFollower::recognise(std::span<const std::uint8_t> octets) {
     const bool told = !needs_beginning(settings_.format);
     if (!told && !full && beginning_.size() < 2 * tried_octets_) return false;
     tried_octets_ = beginning_.size();
-    auto source = packet_source(settings_.format, beginning_);
-    if (source) {
-        source_.emplace(std::move(*source));
-        source_->receive(beginning_);
-    }
-    if (source || full) {
+    const auto recognised = begin_source(full);
+    if (recognised || full) {
         beginning_.clear();
         tried_octets_ = 0;
     }
-    if (full && !source) say(false, source.error().message);
-    return source.ok();
+    if (full && !recognised) say(false, recognised.error().message);
+    return recognised.ok();
+}
+
+/// Makes the packet source from the first octets, which it then has received. @param ended  no more of them come
+Result<void> DownlinkFollower::begin_source(bool ended) {
+    auto recognised = packet_source(settings_.format, beginning_, ended);
+    if (!recognised) return recognised.error();
+    if (!recognised->layout.empty())
+        spdlog::info("downlink {}: taken for {}", settings_.address.text(), recognised->layout);
+    source_.emplace(std::move(recognised->source));
+    source_->receive(beginning_);
+    return {};
 }
 
 void DownlinkFollower::end_of_stream() {
+    if (!source_ && !beginning_.empty())
+        if (const auto recognised = begin_source(true); !recognised)
+            spdlog::warn("downlink {}: {} octets are not read: {}", settings_.address.text(), beginning_.size(),
+                         recognised.error().message);
     if (source_) {
         source_->end();
         deliver_packets();

@@ -52,6 +52,7 @@ class DownlinkFollower {
     bool connect_again();
     void receive_until_end();
     void take(std::span<const std::uint8_t> octets);
+    Result<void> begin_source(bool ended);
     bool recognise(std::span<const std::uint8_t> octets);
     void end_of_stream();
     void pass();

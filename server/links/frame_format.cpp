@@ -1,47 +1,84 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/links/frame_format.hpp"
 
+#include <fmt/format.h>
+
 namespace aeolis::server {
 namespace {
 
 using telemetry::DownlinkFormat;
 
-/// The frame layout, from the user's options and the first octets.
-Result<telemetry::FrameStream> frame_stream(const PacketStreamFormat& format, DownlinkFormat kind,
-                                            std::span<const std::uint8_t> beginning) {
+telemetry::FrameHints hints_of(const PacketStreamFormat& format) {
+    telemetry::FrameHints hints;
+    hints.frame_octets = format.frame_octets;
+    hints.suffix_octets = format.check_octets;
+    hints.crc = format.crc;
+    hints.randomised = format.randomised;
+    hints.agreed = format.agreed;
+    hints.virtual_channel = format.virtual_channel;
+    return hints;
+}
+
+/// The layout as far as it is told, for frames that are not recognised.
+telemetry::FrameStream told(const PacketStreamFormat& format) {
     telemetry::FrameStream stream;
-    if (kind == DownlinkFormat::cadu) {
-        const auto found = telemetry::recognise_cadus(beginning);
-        if (!found && !format.frame_octets) return Error{"no two sync markers 1ACFFC1D: say --frame-octets"};
-        if (found) stream = *found;
-    } else {
-        stream.kind = kind == DownlinkFormat::tm ? telemetry::FrameStream::Kind::tm : telemetry::FrameStream::Kind::aos;
-        stream.marker = false;
-        stream.prefix_octets = format.skip;
-        const auto found = telemetry::crc_frame_octets(beginning, format.skip);
-        if (!found && !format.frame_octets)
-            return Error{"frames of no length end with a right CRC-16: say --frame-octets"};
-        stream.agreed.crc = found.has_value();
-        stream.frame_octets = found.value_or(stream.frame_octets);
-    }
-    if (format.frame_octets && *format.frame_octets != stream.frame_octets) {
-        stream.frame_octets = *format.frame_octets;
-        stream.suffix_octets = 0;
-    }
+    stream.frame_octets = format.frame_octets.value_or(stream.frame_octets);
+    stream.suffix_octets = format.check_octets.value_or(0);
+    stream.randomised = format.randomised.value_or(false);
+    stream.agreed = format.agreed;
+    stream.agreed.crc = format.crc.value_or(true);
+    stream.virtual_channel = format.virtual_channel;
     return stream;
+}
+
+Result<telemetry::FrameStream> cadu_stream(const PacketStreamFormat& format, std::span<const std::uint8_t> beginning,
+                                           bool ended) {
+    const auto found = telemetry::recognise_cadus(beginning, hints_of(format), ended);
+    if (found) return *found;
+    if (!telemetry::cadu_frame_octets(beginning)) {
+        if (ended && format.frame_octets) return told(format);
+        return Error{"no two sync markers 1ACFFC1D: say --frame-octets"};
+    }
+    return Error{"no layout reads these frames: say what is agreed (--frame-octets, --check-symbols, --randomised, "
+                 "--fecf, --insert-octets, …)"};
+}
+
+/// TM or AOS frames without markers.
+Result<telemetry::FrameStream> bare_stream(const PacketStreamFormat& format, DownlinkFormat kind,
+                                           std::span<const std::uint8_t> beginning, bool ended) {
+    auto stream = told(format);
+    stream.kind = kind == DownlinkFormat::tm ? telemetry::FrameStream::Kind::tm : telemetry::FrameStream::Kind::aos;
+    stream.marker = false;
+    stream.prefix_octets = format.skip;
+    if (format.frame_octets && format.crc) return stream;
+    const auto found = telemetry::crc_frame_octets(beginning, format.skip, ended);
+    if (!found && !format.frame_octets) return Error{"frames of no length end with a right CRC-16: say --frame-octets"};
+    if (!format.crc) stream.agreed.crc = found.has_value() && (!format.frame_octets || *found == *format.frame_octets);
+    stream.frame_octets = format.frame_octets.value_or(found.value_or(stream.frame_octets));
+    return stream;
+}
+
+std::string words_of(const telemetry::FrameStream& stream) {
+    return fmt::format("{} frames of {} octets{}{}{}{}", stream.kind == telemetry::FrameStream::Kind::tm ? "TM" : "AOS",
+                       stream.frame_octets, stream.agreed.crc ? " with a CRC-16" : " without a CRC-16",
+                       stream.suffix_octets > 0 ? fmt::format(", {} check symbols behind each", stream.suffix_octets)
+                                                : "",
+                       stream.randomised ? ", randomised" : "", stream.marker ? ", behind sync markers" : "");
 }
 
 }  // namespace
 
-Result<telemetry::PacketSource> packet_source(const PacketStreamFormat& format,
-                                              std::span<const std::uint8_t> beginning) {
+Result<RecognisedSource> packet_source(const PacketStreamFormat& format, std::span<const std::uint8_t> beginning,
+                                       bool ended) {
+    using telemetry::PacketSource;
     const auto kind = telemetry::downlink_format(format.name);
     if (!kind) return Error{"there is no format '" + format.name + "': packets, tm, aos, cadu or pltu"};
-    if (*kind == DownlinkFormat::packets) return telemetry::PacketSource::of_packets(format.skip);
-    if (*kind == DownlinkFormat::pltu) return telemetry::PacketSource::of_pltus();
-    const auto frames = frame_stream(format, *kind, beginning);
+    if (*kind == DownlinkFormat::packets) return RecognisedSource{PacketSource::of_packets(format.skip), {}};
+    if (*kind == DownlinkFormat::pltu) return RecognisedSource{PacketSource::of_pltus(), {}};
+    const auto frames = *kind == DownlinkFormat::cadu ? cadu_stream(format, beginning, ended)
+                                                      : bare_stream(format, *kind, beginning, ended);
     if (!frames) return frames.error();
-    return telemetry::PacketSource::of_frames(*frames);
+    return RecognisedSource{PacketSource::of_frames(*frames), words_of(*frames)};
 }
 
 bool needs_beginning(const PacketStreamFormat& format) {

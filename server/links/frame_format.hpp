@@ -13,15 +13,25 @@ namespace aeolis::server {
 
 /// The format of a packet stream, as far as the user gives it.
 struct PacketStreamFormat {
-    std::string name = "packets";             ///< packets, tm, aos, cadu or pltu
-    std::size_t skip = 0;                     ///< octets before each packet or bare frame
-    std::optional<std::size_t> frame_octets;  ///< none: found by trying
+    std::string name = "packets";  ///< packets, tm, aos, cadu or pltu
+    std::size_t skip = 0;          ///< octets before each packet or bare frame
+    // None: found by trying.
+    std::optional<std::size_t> frame_octets, check_octets;
+    std::optional<bool> crc, randomised;
+    FrameAgreement agreed{};  ///< but for its `crc`
+    std::optional<std::uint8_t> virtual_channel;
 };
 
+/// A packet source, and the layout that was recognised, in words; empty: none had to be.
+struct RecognisedSource {
+    telemetry::PacketSource source;
+    std::string layout;
+};
 /// Makes the packet source for a stream, from its format and its first octets. Fails on an unknown format, or when
-/// `beginning` does not reveal the frame length.
-Result<telemetry::PacketSource> packet_source(const PacketStreamFormat& format,
-                                              std::span<const std::uint8_t> beginning);
+/// `beginning` does not reveal the layout of frames.
+/// @param ended  no more octets come
+Result<RecognisedSource> packet_source(const PacketStreamFormat& format, std::span<const std::uint8_t> beginning,
+                                       bool ended);
 
 /// Whether packet_source() uses the beginning at all.
 bool needs_beginning(const PacketStreamFormat& format);

@@ -46,7 +46,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     for (std::size_t at = 0; at < stream.size(); at += piece) {
         receiver.receive(std::span{stream}.subspan(at, std::min(piece, stream.size() - at)));
         while (const auto received = receiver.next()) {
-            packets.add(received->frame, received->missing_before > 0);
+            packets.add(received->frame, received->place);
             while (const auto packet = packets.next())
                 if (packet->size() <= 6) std::abort();
         }

@@ -135,8 +135,7 @@ TEST_CASE("octets whose number another value tells, and what stands behind them"
     CHECK(mission.decode("00 07").problem.starts_with("the size of data cannot be known"));
 }
 
-TEST_CASE("the first derived container whose restriction holds goes on; none leaves the packet where it is",
-          "[telemetry]") {
+TEST_CASE("the derived container whose restriction holds goes on; none leaves the packet where it is", "[telemetry]") {
     const Mission mission{
         "",
         {{"kind", "u8"}, {"a", "u8"}, {"b", "u16"}},
@@ -150,6 +149,82 @@ TEST_CASE("the first derived container whose restriction holds goes on; none lea
     CHECK(mission.decode("01 05").container == "One");
     CHECK(text(mission.decode("10 0102")) == "kind=16|16 b=258|258");
     CHECK(mission.decode("05 0102").container == "Root");
+}
+
+TEST_CASE("what no container describes, or more than one, is not decoded further", "[telemetry][R55]") {
+    const std::vector<std::pair<std::string, std::string>> parameters{{"kind", "u8"}, {"a", "u8"}, {"b", "u16"}};
+    const std::string root = container("Root", entry("kind"));
+    const Mission two{"", parameters,
+                      root + container("Low", entry("a"), base("Root", when("kind", "<", "5"))) +
+                          container("Odd", entry("b"), base("Root", when("kind", "==", "3")))};
+    CHECK(text(two.decode("01 07")) == "kind=1|1 a=7|7");
+    const auto both = two.decode("03 0102");
+    CHECK(text(both) == "kind=3|3");
+    CHECK_THAT(both.problem, Catch::StartsWith("Low and Odd both describe it"));
+
+    const Mission rest{"", parameters,
+                       root + container("Rest", entry("b"), "<BaseContainer containerRef='Root'/>") +
+                           container("One", entry("a"), base("Root", when("kind", "==", "1")))};
+    CHECK(text(rest.decode("01 07")) == "kind=1|1 a=7|7");  // one without a restriction gives way
+    CHECK(text(rest.decode("02 0007")) == "kind=2|2 b=7|7");
+
+    const Mission unresolved{"", parameters,
+                             root + container("Science", entry("b"), base("../T/Root", when("kind", "==", "9")))};
+    REQUIRE(unresolved.findings.size() == 1);
+    CHECK(unresolved.findings[0].message == "there is no container '../T/Root'");
+    const auto contents = unresolved.decode("09 0102");
+    CHECK(text(contents) == "kind=9|9");
+    CHECK_THAT(contents.problem, Catch::StartsWith("16 bits are behind the last entry of Root"));
+}
+
+TEST_CASE("where several containers can begin a packet, the user says which", "[telemetry][R55]") {
+    Mission mission{"", {{"a", "u8"}, {"b", "u16"}}, container("P", entry("a")) + container("Q", entry("b"))};
+    CHECK(mission.decode("0102").problem ==
+          "several containers of the XTCE file have no base: say with which one packets begin: /T/P, /T/Q");
+    CHECK(mission.decode("0102").values.empty());
+    CHECK_FALSE(ContainerDecoder::root_of(mission.model, "R"));
+    mission.model.root = ContainerDecoder::root_of(mission.model, "Q").value();
+    CHECK(text(mission.decode("0102")) == "b=258|258");
+    mission.model.root = ContainerDecoder::root_of(mission.model, "/T/P").value();
+    CHECK(text(mission.decode("01")) == "a=1|1");
+}
+
+TEST_CASE("octets behind the last entry are told, wherever the entries stand", "[telemetry][R55]") {
+    const std::string at_start =
+        "<LocationInContainerInBits referenceLocation='containerStart'><FixedValue>0</FixedValue>"
+        "</LocationInContainerInBits>";
+    const Mission mission{
+        "", {{"a", "u8"}, {"b", "u16"}}, container("P", entry("a") + entry("b") + entry("a", at_start))};
+    CHECK(mission.decode("010203").problem.empty());
+    CHECK_THAT(mission.decode("01020304050607").problem, Catch::StartsWith("32 bits are behind the last entry of P"));
+}
+
+TEST_CASE("a spline extends outside its points where the file says so", "[telemetry][R55]") {
+    const auto type = [](const char* attributes) {
+        return std::string{"<FloatParameterType name='t'><IntegerDataEncoding sizeInBits='16'><DefaultCalibrator>"
+                           "<SplineCalibrator "} +
+               attributes +
+               "><SplinePoint raw='10' calibrated='5'/><SplinePoint raw='20' calibrated='15'/><SplinePoint raw='40' "
+               "calibrated='20'/></SplineCalibrator></DefaultCalibrator></IntegerDataEncoding></FloatParameterType>";
+    };
+    const auto value = [&](const char* attributes, const char* octets) {
+        const Mission mission{type(attributes), {{"v", "t"}}, container("P", entry("v"))};
+        CHECK(mission.findings.empty());
+        return datum_text(mission.decode(octets).values.at(0).calibrated);
+    };
+    for (const char* outside : {"0000", "0009", "0029", "ffff"}) CHECK(value("", outside) == "undefined");
+    CHECK(value("", "000a") == "5");
+    CHECK(value("", "0014") == "15");
+    CHECK(value("", "001e") == "17.5");
+    CHECK(value("", "0028") == "20");
+    const char* extended = "extrapolate='true'";
+    CHECK(value(extended, "0000") == "-5");
+    CHECK(value(extended, "0014") == "15");
+    CHECK(value(extended, "003c") == "25");
+    CHECK(value("order='0' extrapolate='true'", "0000") == "5");
+    CHECK(value("order='0' extrapolate='true'", "ffff") == "20");
+    CHECK(value("order='0'", "0013") == "5");
+    CHECK(value("order='0'", "ffff") == "undefined");
 }
 
 TEST_CASE("entries repeat as often as told, are there only when their condition holds, and stand where told",
@@ -265,7 +340,7 @@ TEST_CASE("what is not supported is named with its line, and the packet is read 
     const Mission mission{"",
                           {{"a", "u8"}, {"b", "nowhere"}, {"c", "u8"}},
                           container("P", entry("a") + "\n<StreamSegmentEntry streamRef='s'/>" + entry("c")) +
-                              container("Q", entry("b"))};
+                              container("Q", entry("b"), base("P", when("a", "==", "99")))};
     REQUIRE(mission.findings.size() == 2);
     CHECK(mission.findings[1].line == 2);
     CHECK(mission.findings[1].message.find("StreamSegmentEntry") != std::string::npos);

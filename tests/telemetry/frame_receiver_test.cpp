@@ -111,9 +111,70 @@ TEST_CASE("the length of frames is found from the markers, and from the CRC wher
     }
     CHECK(cadu_frame_octets(cadus) == length);
     CHECK_FALSE(cadu_frame_octets(std::span{cadus}.first(100)));
-    CHECK(crc_frame_octets(bare, 2) == length);
-    CHECK(crc_frame_octets(std::span{bare}.first(length + 2), 2) == length);
-    CHECK_FALSE(crc_frame_octets(std::span{bare}.first(length), 2));
+    CHECK(crc_frame_octets(bare, 2, false) == length);
+    CHECK(crc_frame_octets(std::span{bare}.first(length + 2), 2, true) == length);
+    CHECK_FALSE(crc_frame_octets(std::span{bare}.first(length + 2), 2, false));  // more may come
+    CHECK_FALSE(crc_frame_octets(std::span{bare}.first(length), 2, true));
+}
+
+TEST_CASE("a chance CRC is not taken for a frame, and a stream that goes on is believed after some frames",
+          "[telemetry][R55]") {
+    std::mt19937 random{5};
+    for (int round = 0; round < 40; ++round) {
+        const Octets noise = test::random_octets(random, 60'000);  // with a right CRC at about one length
+        CHECK_FALSE(crc_frame_octets(noise, 0, true));
+    }
+    Octets cadus;
+    for (unsigned i = 0; i < 20; ++i) {
+        append(cadus, attached_sync_marker);
+        append(cadus, frame_octets(FrameStream::Kind::tm, i, random));
+        const auto found = recognise_cadus(cadus, {}, false);
+        CHECK(found.has_value() == (i + 1 >= frames_to_agree));
+        if (i > 0) CHECK(recognise_cadus(cadus, {}, true));
+    }
+}
+
+TEST_CASE("an insert zone, a control field and a header's error control are skipped where they are agreed",
+          "[telemetry][R55]") {
+    const Octets data = test::hex("00112233445566778899aabb");
+    for (const bool control_field : {false, true})
+        for (const std::uint8_t insert : {0, 2, 5})
+            for (const bool error_control : {false, true}) {
+                CAPTURE(control_field, insert, error_control);
+                Octets octets(6);
+                octets[0] = 0x40;
+                if (error_control) append(octets, test::hex("dead"));
+                append(octets, Octets(insert, 0xEE));
+                append(octets, test::hex("0003"));  // the pointer
+                append(octets, data);
+                if (control_field) append(octets, test::hex("01020304"));
+                const auto frame = read_aos_frame(octets, {.crc = false,
+                                                           .control_field = control_field,
+                                                           .header_error_control = error_control,
+                                                           .insert_octets = insert});
+                REQUIRE(frame);
+                CHECK(frame->first_header_pointer == 3);
+                CHECK(test::copy_of(frame->data) == data);
+                CHECK(frame->control_field.has_value() == control_field);
+            }
+}
+
+TEST_CASE("repeated frames are counted and not given out, and frames of another virtual channel when one is asked for",
+          "[telemetry][R55]") {
+    std::mt19937 random{6};
+    Octets stream;
+    for (unsigned i = 0; i < 40; ++i) {
+        const Octets frame = frame_octets(FrameStream::Kind::aos, i, random);
+        for (unsigned copy = 0; copy < 1 + i % 3; ++copy) {
+            append(stream, attached_sync_marker);
+            append(stream, frame);
+        }
+    }
+    FrameReceiver receiver{{.kind = FrameStream::Kind::aos, .frame_octets = length}};
+    CHECK(frames_in(receiver, stream, random) == 40);
+    CHECK(receiver.counters().repeated_frames == 39);
+    FrameReceiver one{{.kind = FrameStream::Kind::aos, .frame_octets = length, .virtual_channel = 1}};
+    CHECK(frames_in(one, stream, random) == 20);
 }
 
 }  // namespace telemetry_frame_receiver_test

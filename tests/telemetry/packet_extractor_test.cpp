@@ -74,7 +74,7 @@ TEST_CASE("packets come whole out of frames of any length, also much shorter tha
         PacketExtractor extractor;
         std::vector<Octets> found;
         for (std::size_t i = 0; i < stream.zones.size(); ++i) {
-            extractor.add(frame_of(stream, i), false);
+            extractor.add(frame_of(stream, i), FramePlace::next);
             for (auto& packet : all(extractor)) found.push_back(std::move(packet));
         }
         CHECK(found == stream.packets);
@@ -90,7 +90,7 @@ TEST_CASE("a missing frame costs the packets that it carries a part of, and no o
         std::vector<Octets> found;
         for (std::size_t i = 0; i < stream.zones.size(); ++i) {
             if (i == lost) continue;
-            extractor.add(frame_of(stream, i), i == lost + 1);
+            extractor.add(frame_of(stream, i), i == lost + 1 ? FramePlace::after_gap : FramePlace::next);
             for (auto& packet : all(extractor)) found.push_back(std::move(packet));
         }
         std::size_t at = 0;
@@ -110,12 +110,12 @@ TEST_CASE("a pointer that contradicts the packet before it ends that packet and 
     TransferFrame frame;
     frame.first_header_pointer = 0;
     frame.data = std::span{a}.first(50);
-    extractor.add(frame, false);
+    extractor.add(frame, FramePlace::next);
     Octets second(5 + b.size(), 0xEE);
     std::ranges::copy(b, second.begin() + 5);
     frame.first_header_pointer = 5;
     frame.data = second;
-    extractor.add(frame, false);
+    extractor.add(frame, FramePlace::next);
     CHECK(all(extractor) == std::vector<Octets>{b});
     CHECK(extractor.counters() == PacketCounters{.packets = 1, .cut_packets = 1, .unreadable_octets = 55});
 }
@@ -127,11 +127,73 @@ TEST_CASE("fill is not given out: idle frames, idle packets", "[telemetry]") {
     TransferFrame frame;
     frame.first_header_pointer = 0;
     frame.data = idle;
-    extractor.add(frame, false);
+    extractor.add(frame, FramePlace::next);
     frame.first_header_pointer = only_idle_data;
-    extractor.add(frame, false);
+    extractor.add(frame, FramePlace::next);
     CHECK(all(extractor).empty());
     CHECK(extractor.counters() == PacketCounters{.idle_packets = 1});
+}
+
+TEST_CASE("a repeated frame changes nothing, and of a late one the packets come that it holds whole",
+          "[telemetry][R55]") {
+    std::mt19937 random{5};
+    const Stream stream = stream_of(random, 300, 400);
+    for (std::size_t late = 1; late + 2 < stream.zones.size(); ++late) {
+        PacketExtractor extractor;
+        std::vector<Octets> found;
+        const auto add = [&](std::size_t i, FramePlace place) {
+            extractor.add(frame_of(stream, i), place);
+            for (auto& packet : all(extractor)) found.push_back(std::move(packet));
+        };
+        for (std::size_t i = 0; i < stream.zones.size(); ++i) {
+            if (i == late) continue;
+            add(i, i == late + 1 ? FramePlace::after_gap : FramePlace::next);
+            add(i, FramePlace::repeated);
+            if (i == late + 1) add(late, FramePlace::late);
+        }
+        std::size_t at = 0;
+        std::vector<Octets> expected;
+        for (const Octets& packet : stream.packets) {  // but those that lie over an edge of the late frame
+            const bool over_edge = (at < late * 400 && at + packet.size() > late * 400) ||
+                                   (at < (late + 1) * 400 && at + packet.size() > (late + 1) * 400);
+            if (!over_edge) expected.push_back(packet);
+            at += packet.size();
+        }
+        std::ranges::sort(expected);
+        std::ranges::sort(found);
+        REQUIRE(found == expected);
+    }
+}
+
+TEST_CASE("encapsulation packets between space packets are idle or counted, of one octet and more",
+          "[telemetry][R55]") {
+    const Octets a = packet_of(10, 1), b = packet_of(20, 2);
+    const auto stream_with = [&](std::string_view between) {
+        Octets octets = a;
+        for (const std::uint8_t octet : test::hex(between)) octets.push_back(octet);
+        octets.insert(octets.end(), b.begin(), b.end());
+        return octets;
+    };
+    struct Case {
+        const char* between;
+        std::size_t idle, other;
+    };
+    for (const auto& [between, idle, other] :
+         {Case{"e0", 1, 0}, Case{"e0e0e0", 3, 0}, Case{"e103ff", 1, 0}, Case{"e2000006aaaa", 1, 0},
+          Case{"e300000000000009ee", 1, 0}, Case{"e904aabb", 0, 1}, Case{"fe00ffff0005aa", 0, 0}}) {
+        CAPTURE(between);
+        const Octets octets = stream_with(between);
+        PacketExtractor extractor;
+        TransferFrame frame;
+        frame.first_header_pointer = 0;
+        frame.data = octets;
+        extractor.add(frame, FramePlace::next);
+        const bool readable = idle + other > 0;
+        CHECK(all(extractor) == (readable ? std::vector<Octets>{a, b} : std::vector<Octets>{a}));
+        CHECK(extractor.counters().idle_packets == idle);
+        CHECK(extractor.counters().encapsulation_packets == other);
+        CHECK((extractor.counters().unreadable_octets == 0) == readable);
+    }
 }
 
 TEST_CASE("frames of any content: nothing outside them is read, and it goes on with the next pointer", "[telemetry]") {
@@ -143,14 +205,14 @@ TEST_CASE("frames of any content: nothing outside them is read, and it goes on w
         frame.data = data;
         frame.first_header_pointer =
             static_cast<std::uint16_t>(random() % 3 == 0 ? no_packet_begins : random() % data.size());
-        extractor.add(frame, random() % 5 == 0);
+        extractor.add(frame, static_cast<FramePlace>(random() % 5));
         (void)all(extractor);
     }
     const Octets good = packet_of(10, 2);
     TransferFrame frame;
     frame.data = good;
     frame.first_header_pointer = 0;
-    extractor.add(frame, true);
+    extractor.add(frame, FramePlace::after_gap);
     CHECK(all(extractor) == std::vector<Octets>{good});
 }
 

@@ -95,7 +95,7 @@ TEST_CASE("packets come out of bare packets with a prefix, of frames and of PLTU
     for (const auto kind : {FrameStream::Kind::tm, FrameStream::Kind::aos}) {
         Octets stream;
         for (const Octets& frame : frames_of(packets, kind, 223)) append(stream, frame);
-        CHECK(crc_frame_octets(stream, 0) == 223U);
+        CHECK(crc_frame_octets(stream, 0, true) == 223U);
         CHECK(all(PacketSource::of_frames({.kind = kind, .frame_octets = 223, .marker = false}), stream, random) ==
               packets);
     }
@@ -119,7 +119,7 @@ TEST_CASE("how CADUs are is found by trying: TM or AOS, randomised or not, with 
                         if (randomised) randomise_tm(frame);
                         append(stream, frame);
                     }
-                    const auto found = recognise_cadus(stream);
+                    const auto found = recognise_cadus(stream, {}, true);
                     REQUIRE(found);
                     CHECK(found->agreed.crc == crc);
                     CHECK(found->kind == kind);
@@ -128,6 +128,33 @@ TEST_CASE("how CADUs are is found by trying: TM or AOS, randomised or not, with 
                     CHECK(found->suffix_octets == symbols);
                     CHECK(all(PacketSource::of_frames(*found), stream, random) == packets);
                 }
+}
+
+TEST_CASE("what was sent in segments comes as one packet, from bare packets and from frames", "[telemetry][R55]") {
+    std::mt19937 random{4};
+    const Octets block = test::random_octets(random, 500);
+    std::vector<Octets> segments;
+    const auto segment = [&](unsigned flags, std::size_t first, std::size_t octets) {
+        Octets packet = test::hex("0123000000ff");
+        packet[2] = static_cast<std::uint8_t>(flags << 6U);
+        packet[3] = static_cast<std::uint8_t>(segments.size());
+        packet[4] = static_cast<std::uint8_t>((octets - 1) >> 8U);
+        packet[5] = static_cast<std::uint8_t>((octets - 1) & 0xFFU);
+        append(packet, std::span{block}.subspan(first, octets));
+        segments.push_back(packet);
+    };
+    segment(1, 0, 200);
+    segment(0, 200, 200);
+    segment(2, 400, 100);
+    Octets whole = test::hex("0123c00001f3");
+    append(whole, block);
+    Octets bare;
+    for (const auto& each : segments) append(bare, each);
+    CHECK(all(PacketSource::of_packets(0), bare, random) == std::vector<Octets>{whole});
+    Octets stream;
+    for (const Octets& frame : frames_of(segments, FrameStream::Kind::tm, 223)) append(stream, frame);
+    CHECK(all(PacketSource::of_frames({.frame_octets = 223, .marker = false}), stream, random) ==
+          std::vector<Octets>{whole});
 }
 
 TEST_CASE("bare packets end where no header stands or one is cut, and the rest is counted", "[telemetry]") {
