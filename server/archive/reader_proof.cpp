@@ -41,7 +41,7 @@ constexpr char selections_sql[] =
 
 constexpr char counters_sql[] =
     "SELECT link, octets, frames, bad_crc, bad_header, skipped_octets, gaps, missing_frames,"
-    " repeated_frames, octets_per_s FROM link_totals WHERE run = ?1 ORDER BY link";
+    " repeated_frames, octets_per_s, late_frames, restarts FROM link_totals WHERE run = ?1 ORDER BY link";
 
 constexpr double half_a_symbol_s = 5.0;  // a tone lasts 10 s; no two begin within less
 
@@ -220,6 +220,8 @@ Result<void> Reader::add_counters(RunId run, v1::ProofReport& report) {
         counters.set_missing_frames(number(7));
         counters.set_repeated_frames(number(8));
         counters.set_octets_per_s(row.real(9));
+        counters.set_late_frames(number(10));
+        counters.set_restarts(number(11));
     }
 }
 

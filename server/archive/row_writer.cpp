@@ -57,7 +57,7 @@ Result<RowWriter> RowWriter::open(sqlite::Database& database) {
         {&RowWriter::column_, "INSERT INTO segment_columns VALUES (?,?,?,?,?,?,?,?,?)"},
         {&RowWriter::link_number_, "SELECT number FROM words WHERE kind = 'link' AND word = ?"},
         {&RowWriter::link_word_, "INSERT INTO words SELECT 'link', max(number) + 1, ? FROM words WHERE kind = 'link'"},
-        {&RowWriter::link_totals_, "INSERT OR REPLACE INTO link_totals VALUES (?,?,?,?,?,?,?,?,?,?,?)"},
+        {&RowWriter::link_totals_, "INSERT OR REPLACE INTO link_totals VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?)"},
         {&RowWriter::request_,
          "INSERT INTO requests SELECT ?1, coalesce(max(position), 0) + 1, ?2, ?3 FROM requests WHERE run = ?1"},
         {&RowWriter::totals_, "INSERT OR REPLACE INTO recordings VALUES (?,?,?,?,?,?,?,?,?)"},
@@ -246,7 +246,9 @@ Result<void> RowWriter::link_totals(RunId run, const LinkTotals& totals) {
         .bind(8, sqlite::number(counted.gaps))
         .bind(9, sqlite::number(counted.missing_frames))
         .bind(10, sqlite::number(counted.repeated_frames))
-        .bind(11, totals.octets_per_s);
+        .bind(11, totals.octets_per_s)
+        .bind(12, sqlite::number(counted.late_frames))
+        .bind(13, sqlite::number(counted.restarts));
     return link_totals_.run();
 }
 

@@ -70,7 +70,8 @@ CREATE TABLE pyramid_columns (key INTEGER PRIMARY KEY, nodes BLOB NOT NULL) STRI
 CREATE TABLE link_totals (
     run INTEGER NOT NULL, link TEXT NOT NULL, octets INTEGER NOT NULL, frames INTEGER NOT NULL, bad_crc INTEGER NOT NULL,
     bad_header INTEGER NOT NULL, skipped_octets INTEGER NOT NULL, gaps INTEGER NOT NULL, missing_frames INTEGER NOT NULL,
-    repeated_frames INTEGER NOT NULL, octets_per_s REAL NOT NULL, PRIMARY KEY (run, link)) STRICT, WITHOUT ROWID;
+    repeated_frames INTEGER NOT NULL, octets_per_s REAL NOT NULL, late_frames INTEGER NOT NULL,
+    restarts INTEGER NOT NULL, PRIMARY KEY (run, link)) STRICT, WITHOUT ROWID;
 
 CREATE TABLE audit (
     entry INTEGER PRIMARY KEY, at TEXT NOT NULL, who TEXT NOT NULL, peer TEXT NOT NULL, action TEXT NOT NULL,
