@@ -4,6 +4,7 @@
 #include "common/bytes.hpp"
 #include "common/space_packet.hpp"
 #include "dictionaries/words.hpp"
+#include "telemetry/characters.hpp"
 #include "telemetry/raw_number.hpp"
 
 #include <algorithm>
@@ -365,13 +366,9 @@ class Reading {
         if (!has(*bits)) return cut(name, *bits, type.line);
         auto octets = take_octets(*bits);
         position_ = coding.boxed ? end : position_ + terminator_bits;
-        const std::size_t kept =
-            octets.size() -
-            static_cast<std::size_t>(
-                std::ranges::find_if(octets.rbegin(), octets.rend(), [](std::uint8_t octet) { return octet != 0; }) -
-                octets.rbegin());
-        std::string text{octets.begin(), octets.begin() + static_cast<std::ptrdiff_t>(kept)};
-        contents.values.push_back({name, std::move(octets), std::move(text), begin, position_ - begin, reading_});
+        auto text = type.kind == PacketType::Kind::octets ? std::nullopt : text_of(octets, coding.characters);
+        Datum shown = text ? Datum{std::move(*text)} : type.kind == PacketType::Kind::octets ? Datum{octets} : Datum{};
+        contents.values.push_back({name, std::move(octets), std::move(shown), begin, position_ - begin, reading_});
         return true;
     }
 

@@ -72,8 +72,11 @@ struct Coding {
         text,
         octets,
     };
+    enum class Characters : std::uint8_t { utf8, latin1, utf16_big_endian, utf16_little_endian };
+
     Form form = Form::unsigned_integer;
-    Amount bits{};  ///< of text and octets: without terminator or leading size
+    Characters characters = Characters::utf8;  ///< of text; US-ASCII is a part of it
+    Amount bits{};                             ///< of text and octets: without terminator or leading size
     bool least_significant_octet_first = false;
     bool least_significant_bit_first = false;
     std::optional<std::uint8_t> terminator{};  ///< terminator of the text; `bits` is then its maximum size

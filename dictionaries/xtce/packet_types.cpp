@@ -37,6 +37,15 @@ std::optional<Coding::Form> integer_form(std::string_view word) {
     return std::nullopt;
 }
 
+std::optional<Coding::Characters> characters_of(std::string_view word) {
+    using enum Coding::Characters;
+    if (word == "UTF-8" || word == "US-ASCII") return utf8;
+    if (word == "ISO-8859-1") return latin1;
+    if (word == "UTF-16" || word == "UTF-16BE") return utf16_big_endian;  // UTF-16: unless a mark says otherwise
+    if (word == "UTF-16LE") return utf16_little_endian;
+    return std::nullopt;
+}
+
 std::optional<Coding::Form> real_form(std::string_view word, std::int64_t bits) {
     if (word.empty() || word == "IEEE754_1985" || word == "IEEE754")
         return bits == 16 || bits == 32 || bits == 64 ? std::optional{Coding::Form::ieee754} : std::nullopt;
@@ -160,8 +169,13 @@ void ModelTypes::read_order(pugi::xml_node coding, Coding& into) {
 void ModelTypes::read_text(const Symbol& symbol, pugi::xml_node coding, PacketType& type) {
     type.coding.form = Coding::Form::text;
     const std::string_view characters = coding.attribute("encoding").as_string("UTF-8");
-    if (characters != "UTF-8" && characters != "US-ASCII" && characters != "ISO-8859-1")
-        parts_.report.fault(coding, "characters in " + in_quotes(characters) + " are given as they are");
+    if (const auto known = characters_of(characters)) {
+        type.coding.characters = *known;
+    } else {
+        parts_.report.fault(coding, "characters in " + in_quotes(characters) + " are not supported: octets are given");
+        type.coding.characters = Coding::Characters::utf8;
+        type.kind = PacketType::Kind::octets;
+    }
     pugi::xml_node size = coding.child("SizeInBits");
     const pugi::xml_node variable = coding.child("Variable");
     if (!size) size = variable;
