@@ -43,9 +43,13 @@ double mil1750a_of(std::uint64_t field) {
     return std::ldexp(mantissa, static_cast<int>(sign_extend(field & 0xFF, 8)) - 23);
 }
 
-std::uint64_t bcd_of(std::uint64_t field, unsigned bits) {
+RawNumber bcd_of(std::uint64_t field, unsigned bits) {
     std::uint64_t value = 0;
-    for (unsigned at = (bits + 3) / 4; at > 0; --at) value = value * 10 + ((field >> (4 * (at - 1))) & 0xF);
+    for (unsigned at = (bits + 3) / 4; at > 0; --at) {
+        const auto digit = (field >> (4 * (at - 1))) & 0xF;
+        if (digit > 9) return NAN;
+        value = value * 10 + digit;
+    }
     return value;
 }
 

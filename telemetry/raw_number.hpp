@@ -10,7 +10,8 @@ namespace aeolis::telemetry {
 
 using RawNumber = std::variant<std::uint64_t, std::int64_t, double>;
 
-/// Reads a number from `bits` (1 … 64) bits of a coding, most significant bit first.
+/// Reads a number from `bits` (1 … 64) bits of a coding, most significant bit first. NaN: the bits are none, as decimal
+/// digits beyond 9 are.
 ///
 /// Source: [xtce-1.2]; [mil-std-1750a] for its real number of 24 bits mantissa and 8 bits exponent, both two's
 /// complement

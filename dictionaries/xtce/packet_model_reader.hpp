@@ -54,7 +54,7 @@ class ModelTypes {
     void read_coding(const Symbol& symbol, pugi::xml_node holder, PacketType& type);
     void read_number(const Symbol& symbol, pugi::xml_node coding, PacketType& type);
     void read_text(const Symbol& symbol, pugi::xml_node coding, PacketType& type);
-    void read_order(pugi::xml_node coding, Coding& into);
+    bool read_order(pugi::xml_node coding, Coding& into);
     void read_calibrations(const Symbol& symbol, pugi::xml_node coding, Coding& into);
     Calibration calibration(pugi::xml_node calibrator);
     void read_labels(pugi::xml_node element, PacketType& type);

@@ -140,30 +140,36 @@ void ModelTypes::read_number(const Symbol& symbol, pugi::xml_node coding, Packet
     if (!form) type.kind = PacketType::Kind::octets;
     if (!bits) type.kind = PacketType::Kind::unknown;
     type.coding.bits = Amount::fixed(static_cast<double>(bits.value_or(0)));
-    read_order(coding, type.coding);
+    const bool ordered = read_order(coding, type.coding);
     read_calibrations(symbol, coding, type.coding);
-    if (type.coding.least_significant_octet_first && bits.value_or(0) % 8 != 0)
+    const bool parts = type.coding.least_significant_octet_first && bits.value_or(0) % 8 != 0;
+    if (parts)
         parts_.report.fault(coding, "least significant octet first is not supported for " +
-                                        std::to_string(bits.value_or(0)) + " bits");
+                                        std::to_string(bits.value_or(0)) + " bits: octets are given");
+    if (ordered && !parts) return;
+    type.coding.form = Coding::Form::octets;
+    if (type.kind != PacketType::Kind::unknown) type.kind = PacketType::Kind::octets;
 }
 
-void ModelTypes::read_order(pugi::xml_node coding, Coding& into) {
+/// False: the order is not supported, and no number can be read.
+bool ModelTypes::read_order(pugi::xml_node coding, Coding& into) {
     const std::string_view bit_order = coding.attribute("bitOrder").value();
     into.least_significant_bit_first = bit_order == "leastSignificantBitFirst";
     const std::string_view order = coding.attribute("byteOrder").value();
     into.least_significant_octet_first = order == "leastSignificantByteFirst";
-    if (!order.empty() && order != "leastSignificantByteFirst" && order != "mostSignificantByteFirst")
-        parts_.report.fault(coding,
-                            "byte order " + in_quotes(order) + " is not supported: most significant first is taken");
+    if (!order.empty() && order != "leastSignificantByteFirst" && order != "mostSignificantByteFirst") {
+        parts_.report.fault(coding, "byte order " + in_quotes(order) + " is not supported: octets are given");
+        return false;
+    }
     // XTCE 1.0 and 1.1 list the octets, each with its significance.
     std::vector<int> octet_order;
     for (const pugi::xml_node each : coding.child("ByteOrderList").children("Byte"))
         octet_order.push_back(each.attribute("byteSignificance").as_int());
-    if (octet_order.size() < 2) return;
-    if (std::ranges::is_sorted(octet_order))
-        into.least_significant_octet_first = true;
-    else if (!std::ranges::is_sorted(octet_order, std::ranges::greater{}))
-        parts_.report.fault(coding, "octets in mixed order are not supported: most significant first is taken");
+    if (octet_order.size() < 2 || std::ranges::is_sorted(octet_order, std::ranges::greater{})) return true;
+    into.least_significant_octet_first = std::ranges::is_sorted(octet_order);
+    if (!into.least_significant_octet_first)
+        parts_.report.fault(coding, "octets in mixed order are not supported: octets are given");
+    return into.least_significant_octet_first;
 }
 
 void ModelTypes::read_text(const Symbol& symbol, pugi::xml_node coding, PacketType& type) {
@@ -187,10 +193,17 @@ void ModelTypes::read_text(const Symbol& symbol, pugi::xml_node coding, PacketTy
         type.coding.leading_size_bits = leading.attribute("sizeInBitsOfSizeTag").as_uint(16);
     if (const pugi::xml_node end = size.child("TerminationChar")) {
         const auto octet = to_integer("0x" + std::string{end.text().as_string("00")});
-        if (octet && *octet >= 0 && *octet <= 255)
+        const auto wide = type.coding.characters;
+        if (wide == Coding::Characters::utf16_big_endian || wide == Coding::Characters::utf16_little_endian) {
+            parts_.report.fault(end, "a termination of UTF-16 is not supported: packets are read up to it");
+            type.kind = PacketType::Kind::unknown;
+        } else if (octet && *octet >= 0 && *octet <= 255) {
             type.coding.terminator = static_cast<std::uint8_t>(*octet);
-        else
-            parts_.report.fault(end, "a termination of " + in_quotes(end.text().as_string()) + " is not supported");
+        } else {
+            parts_.report.fault(end, "a termination of " + in_quotes(end.text().as_string()) +
+                                         " is not supported: packets are read up to it");
+            type.kind = PacketType::Kind::unknown;
+        }
     }
     if (type.coding.leading_size_bits > 64) {
         parts_.report.fault(size, "a leading size of more than 64 bits is not supported");
