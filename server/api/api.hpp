@@ -58,7 +58,7 @@ class Api {
     };
     explicit Api(Parts parts);
 
-    void handle(HttpRequest request, const Respond& give);
+    void handle(HttpRequest request, const Respond& respond_with);
     /// The largest body accepted from this peer for this path. The body of a request that will be refused is not read,
     /// since reading takes the network thread's time.
     std::size_t body_octets(const Credentials& credentials, std::string_view method, std::string_view path) const;
