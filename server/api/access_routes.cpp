@@ -2,6 +2,7 @@
 #include "server/access/account_file.hpp"
 #include "server/access/secrets.hpp"
 #include "server/api/api.hpp"
+#include "server/api/list_response.hpp"
 #include "server/api/query_text.hpp"
 #include "server/base/json.hpp"
 
@@ -13,7 +14,7 @@
 namespace aeolis::server {
 namespace {
 
-constexpr std::uint64_t audit_page_max = 1'000;  // chosen: about 300 kB
+constexpr std::size_t audit_page_max = 1'000;  // chosen: about 300 kB
 
 v1::Session session_of(const Operator& who) {
     v1::Session session;
@@ -185,30 +186,33 @@ void Api::remove_token(const ApiRequest& call) {
 }
 
 void Api::audit(const ApiRequest& call) {
-    const auto query = QueryText::parse(call.request.query, {"after", "limit"});
+    const auto query = QueryText::parse(call.request.query, {"after", "limit", "order", "format"});
     if (!query) return call.respond(error_response(400, query.error()));
-    const auto after = query->count("after", UINT32_MAX), limit = query->amount("limit", audit_page_max);
-    if (!after) return call.respond(error_response(400, after.error()));
-    if (!limit) return call.respond(error_response(400, limit.error()));
-    answer_on_query_thread(
-        call, [after = after->value_or(0), limit = limit->value_or(audit_page_max)](archive::Reader& reader) {
-            const auto entries = reader.audit(after, limit);
-            if (!entries) return error_response(500, entries.error());
-            v1::AuditList list;
-            for (const auto& entry : *entries) {
-                auto& shown = *list.add_entries();
-                shown.set_entry(entry.entry);
-                shown.set_at(entry.at);
-                shown.set_who(entry.who);
-                shown.set_from(entry.from);
-                shown.set_action(entry.action);
-                shown.set_detail(entry.detail);
-                shown.set_outcome(entry.outcome);
-                shown.set_hash(entry.hash);
-            }
-            if (entries->size() == limit) list.set_next_after(entries->back().entry);
-            return json_response(list);
-        });
+    auto format = query->one_of("format", list_formats);
+    if (!format) return call.respond(error_response(400, format.error()));
+    const auto page = ListPage::of(*query, {audit_page_max, audit_page_max, archive::Order::oldest_first, UINT32_MAX});
+    if (!page) return call.respond(error_response(400, page.error()));
+    answer_on_query_thread(call, [page = *page, format = std::move(*format), path = call.request.path,
+                                  asked = call.request.query](archive::Reader& reader) {
+        const auto entries = reader.audit(page.after, page.limit, page.order);
+        if (!entries) return error_response(500, entries.error());
+        v1::AuditList list;
+        for (const auto& entry : *entries) {
+            auto& shown = *list.add_entries();
+            shown.set_entry(entry.entry);
+            shown.set_at(entry.at);
+            shown.set_who(entry.who);
+            shown.set_from(entry.from);
+            shown.set_action(entry.action);
+            shown.set_detail(entry.detail);
+            shown.set_outcome(entry.outcome);
+            shown.set_hash(entry.hash);
+        }
+        if (entries->size() == page.limit) list.set_next_after(entries->back().entry);
+        auto response = list_response(format, list, {"entries"});
+        add_next_link(response, path, asked);
+        return response;
+    });
 }
 
 }  // namespace aeolis::server

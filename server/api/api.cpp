@@ -2,6 +2,7 @@
 #include "server/api/api.hpp"
 
 #include "server/access/network.hpp"
+#include "server/api/content_coding.hpp"
 #include "server/api/dictionary_reply.hpp"
 #include "server/api/list_response.hpp"
 #include "server/api/query_text.hpp"
@@ -205,7 +206,8 @@ Respond Api::counted(std::string route, const Respond& respond) {
     };
 }
 
-void Api::handle(HttpRequest request, const Respond& give) {
+void Api::handle(HttpRequest request, const Respond& respond_with) {
+    const auto give = in_accepted_coding(request, respond_with);
     const std::string_view method = request.method == "HEAD" ? "GET" : std::string_view{request.method};
     const std::string path = request.path;
     std::vector<std::string_view> others;
@@ -314,9 +316,13 @@ void Api::run_question(const ApiRequest& call) {
         return respond(json_response(current));
     ask(
         call, std::move(*query),
-        [&dictionary, clock = clock(), instructor = may(call.who, Right::rehearse),
-         answer = question->answer](archive::Reader& reader, archive::RunId id, const QueryText& asked_of) {
-            return answer({dictionary, clock(id), instructor}, reader, id, asked_of);
+        [&dictionary, &queries = parts_.queries, asker = Asker{client_of(call.who), call.request.gone}, clock = clock(),
+         instructor = may(call.who, Right::rehearse), answer = question->answer, path = call.request.path,
+         asked = call.request.query](archive::Reader& reader, archive::RunId id, const QueryText& asked_of) {
+            const auto parts = [&queries, asker](ReadPart read) { return in_parts(queries, asker, std::move(read)); };
+            auto response = answer({dictionary, clock(id), instructor, parts}, reader, id, asked_of);
+            add_next_link(response, path, asked);
+            return response;
         },
         what.empty() ? JobPriority::soon : JobPriority::in_turn);
 }
@@ -331,7 +337,7 @@ void Api::ask(const ApiRequest& call, QueryText query, RunQuestion question, Job
                       respond = call.respond](archive::Reader& reader) {
         auto id = run_id(run);
         if (!id) {  // no run since the server started
-            const auto runs = reader.runs();
+            const auto runs = reader.runs({.limit = 1});
             if (!runs) return respond(error_response(500, runs.error()));
             if (runs->runs().empty()) return respond(error_response(404, "run 'latest': no run has been recorded yet"));
             id = archive::RunId{static_cast<std::uint32_t>(runs->runs(0).run())};
@@ -352,18 +358,23 @@ void Api::ask(const ApiRequest& call, QueryText query, RunQuestion question, Job
 }
 
 void Api::list_runs(const ApiRequest& call) {
-    const auto query = QueryText::parse(call.request.query, {"format"});
+    const auto query = QueryText::parse(call.request.query, {"after", "limit", "order", "format"});
     if (!query) return call.respond(error_response(400, query.error()));
     auto format = query->one_of("format", list_formats);
     if (!format) return call.respond(error_response(400, format.error()));
+    const auto page = ListPage::of(*query, {1'000, archive::rows_page_max, archive::Order::newest_first, UINT32_MAX});
+    if (!page) return call.respond(error_response(400, page.error()));
     answer_on_query_thread(
         call,
-        [current = current_run(), format = std::move(*format)](archive::Reader& reader) {
-            auto runs = reader.runs();
+        [current = current_run(), format = std::move(*format), page = *page, path = call.request.path,
+         asked = call.request.query](archive::Reader& reader) {
+            auto runs = reader.runs({static_cast<std::uint32_t>(page.after), page.limit, page.order});
             if (!runs) return error_response(500, runs.error());
             for (auto& run : *runs->mutable_runs())
                 if (run.run() == current.run()) run = current;
-            return list_response(format, *runs, {"runs"});
+            auto response = list_response(format, *runs, {"runs"});
+            add_next_link(response, path, asked);
+            return response;
         },
         JobPriority::soon);
 }
@@ -374,7 +385,9 @@ void Api::list_scenarios(const ApiRequest& call) {
 }
 
 void Api::dictionary(const ApiRequest& call) {
-    call.respond({200, "application/json", "no-store", dictionary_json_});
+    answer_on_query_thread(  // where it may be compressed: it is long
+        call, [this](archive::Reader&) { return HttpResponse{200, "application/json", "no-store", dictionary_json_}; },
+        JobPriority::at_once);
 }
 
 void Api::stream(const ApiRequest& call) {

@@ -59,7 +59,7 @@ class Api {
     };
     explicit Api(Parts parts);
 
-    void handle(HttpRequest request, const Respond& give);
+    void handle(HttpRequest request, const Respond& respond_with);
     /// Why an operator must send no more commands now, and for how long.
     struct TooMany {
         std::string reason;

@@ -26,6 +26,7 @@ struct HttpRequest {
     Credentials credentials{};
     std::function<bool()>
         gone{};  ///< whether the client has disconnected, so that work may stop; from any thread; null: unknown
+    std::string accept_encoding{};  ///< the header; its lines joined by commas
 };
 
 /// The next part of a body, which may be empty; none at the end of the body.
@@ -36,7 +37,8 @@ struct HttpResponse {
     std::string content_type = "application/json";
     std::string cache_control = "no-store";
     std::string body;
-    /// Header fields of this response alone: Set-Cookie, Allow, Retry-After, Aeolis-Next-After.
+    /// Header fields of this response alone: Set-Cookie, Allow, Retry-After, Aeolis-Next-After, Link, Vary,
+    /// Content-Encoding.
     std::vector<std::pair<std::string, std::string>> fields{};
     /// Null: `body` is the whole body. Else `body` is its first part, and this is called for each further part once the
     /// client has taken the one before; the answer may come from any thread. An Error closes the connection, so that

@@ -126,6 +126,20 @@ void append_line(std::string& csv, const std::vector<Column>& columns, TextOf te
 
 }  // namespace
 
+Result<ListPage> ListPage::of(const QueryText& query, const Limits& limits) {
+    static constexpr std::array<std::string_view, 2> orders{"oldest", "newest"};
+    const auto after = query.count("after", limits.after_max);
+    if (!after) return after.error();
+    const auto limit = query.amount("limit", limits.most);
+    if (!limit) return limit.error();
+    ListPage page{after->value_or(0), static_cast<std::size_t>(limit->value_or(limits.usual)), limits.order};
+    if (!query.text("order")) return page;
+    const auto order = query.one_of("order", orders);
+    if (!order) return order.error();
+    page.order = *order == "newest" ? archive::Order::newest_first : archive::Order::oldest_first;
+    return page;
+}
+
 HttpResponse list_response(std::string_view format, const Message& list, const Rows& rows,
                            const std::optional<ClockCorrelation>& clock) {
     const auto& reflection = *list.GetReflection();
@@ -149,6 +163,18 @@ HttpResponse list_response(std::string_view format, const Message& list, const R
             append_line(response.body, columns, [&](const Column& column) { return cell_text(row, column, clock); });
     }
     return response;
+}
+
+void add_next_link(HttpResponse& response, std::string_view path, std::string_view query) {
+    const auto next = response.field("Aeolis-Next-After");
+    if (next.empty() || next == "0") return;
+    std::string parameters;
+    while (!query.empty()) {
+        const auto parameter = query.substr(0, query.find('&'));
+        query.remove_prefix(std::min(query.size(), parameter.size() + 1));
+        if (!parameter.empty() && !parameter.starts_with("after=")) parameters += std::string{parameter} + '&';
+    }
+    response.fields.emplace_back("Link", fmt::format("<{}?{}after={}>; rel=\"next\"", path, parameters, next));
 }
 
 }  // namespace aeolis::server

@@ -3,6 +3,8 @@
 
 #include "common/time.hpp"
 #include "server/api/http_message.hpp"
+#include "server/api/query_text.hpp"
+#include "server/archive/records.hpp"
 
 #include <array>
 #include <google/protobuf/message.h>
@@ -18,6 +20,19 @@ struct Rows {
     std::vector<std::string_view> kinds{};  ///< "event"
 };
 
+/// Which rows of a list are asked for: the parameters after, limit and order.
+struct ListPage {
+    struct Limits {
+        std::size_t usual = 0, most = 0;            ///< rows when none is asked for; most that may be asked for
+        archive::Order order{};                     ///< when none is asked for
+        std::uint64_t after_max = UINT64_MAX >> 1;  ///< SQLite's integers are signed
+    };
+    std::uint64_t after = 0;
+    std::size_t limit = 0;
+    archive::Order order{};
+
+    static Result<ListPage> of(const QueryText& query, const Limits& limits);
+};
 /// The formats of a list. The first is the default.
 ///
 /// json   the list
@@ -27,10 +42,13 @@ struct Rows {
 /// jsonl  one line per row, each as in the list
 inline constexpr std::array<std::string_view, 3> list_formats{"json", "csv", "jsonl"};
 
-/// Builds the response in a format. The header Aeolis-Next-After also tells where the next page begins.
+/// Builds the response in a format. The header Aeolis-Next-After also tells where the next page begins; 0: nowhere.
 /// @param format  one of list_formats
 /// @param clock   clock correlation of the run that the rows belong to
 HttpResponse list_response(std::string_view format, const google::protobuf::Message& list, const Rows& rows,
                            const std::optional<ClockCorrelation>& clock = {});
+
+/// Adds the address of the next page (Link, rel="next", RFC 8288) to the response of a list that has one.
+void add_next_link(HttpResponse& response, std::string_view path, std::string_view query);
 
 }  // namespace aeolis::server

@@ -25,7 +25,6 @@
 namespace aeolis::server {
 namespace {
 
-constexpr std::uint64_t seq_max = UINT64_MAX >> 1;  // SQLite's integers are signed
 constexpr std::array<std::string_view, 3> series_formats{"json", "csv", "protobuf"};
 constexpr std::array<std::string_view, 2> report_formats{"json", "csv"};
 constexpr std::string_view ert_prefix = "ert:";
@@ -52,6 +51,8 @@ std::string format_of(const QueryText& query, std::span<const std::string_view> 
     return query.text("format").value_or(std::string{formats.front()});
 }
 
+constexpr ListPage::Limits rows_page{1'000, archive::rows_page_max};
+
 struct Asking {
     archive::Reader& reader;
     archive::RunId run;
@@ -63,18 +64,6 @@ HttpResponse answer_rows(const Asking& asking, Result<List> list, const Rows& ro
     write_time_texts(*list);
     const auto format = format_of(asking.query, list_formats);
     return list_response(format, *list, rows, format == "csv" ? clock_of(asking.reader, asking.run) : std::nullopt);
-}
-
-struct Page {
-    archive::Sequence after = 0;
-    std::size_t limit = 0;
-};
-Result<Page> page_of(const QueryText& query, std::size_t usual, std::size_t max) {
-    const auto after = query.count("after", seq_max);
-    if (!after) return after.error();
-    const auto limit = query.amount("limit", max);
-    if (!limit) return limit.error();
-    return Page{after->value_or(0), static_cast<std::size_t>(limit->value_or(usual))};
 }
 
 Result<bool> flag_of(const QueryText& query, std::string_view name) {
@@ -127,7 +116,58 @@ Result<v1::ChannelSeriesList> derived(archive::Reader& reader, archive::RunId ru
     return list;
 }
 
-HttpResponse channels(const AnswerContext&, archive::Reader& reader, archive::RunId run, const QueryText& query) {
+/// The samples of a series answer above which it is read and written channel by channel; 4 MB as JSON.
+constexpr std::size_t whole_series_samples_max = 60'000;
+
+/// Series that are too long to be held together, on their way to the client.
+struct SeriesParts {
+    archive::RunId run;
+    archive::SeriesQuery query;
+    std::vector<std::string> channels;  ///< not begun
+    SeriesText text;
+    bool in_series = false, ended = false;
+
+    BodyPart next(archive::Reader& reader) {
+        if (ended) return std::optional<std::string>{};
+        if (!in_series && channels.empty()) {
+            ended = true;
+            return std::optional{text.tail()};
+        }
+        if (!in_series) {
+            query.channels = {channels.front()};
+            channels.erase(channels.begin());
+            auto one = reader.series(run, query);
+            if (!one) return one.error();
+            text.begin(std::move(*one->mutable_channels(0)));
+        }
+        std::string part;
+        in_series = text.append(part);
+        return std::optional{std::move(part)};
+    }
+};
+
+struct SeriesAnswer {
+    SeriesFormat format{};
+    const char* content_type = "";
+};
+SeriesAnswer series_answer(std::string_view format) {
+    if (format == "csv") return {SeriesFormat::csv, "text/csv; charset=utf-8"};
+    if (format == "protobuf") return {SeriesFormat::protobuf, "application/x-protobuf"};
+    return {SeriesFormat::json, "application/json"};
+}
+
+/// Gives the first part now and the others as the client takes them.
+HttpResponse in_parts(const AnswerContext& context, archive::Reader& reader, const std::shared_ptr<SeriesParts>& parts,
+                      const char* content_type) {
+    auto first = parts->next(reader);
+    if (!first) return error_response(400, first.error());
+    HttpResponse response{200, content_type, "no-store", parts->text.head() + first->value_or("")};
+    response.more = context.in_parts([parts](archive::Reader& of_part) { return parts->next(of_part); });
+    return response;
+}
+
+HttpResponse channels(const AnswerContext& context, archive::Reader& reader, archive::RunId run,
+                      const QueryText& query) {
     archive::SeriesQuery series;
     series.channels = query.list("names");
     const auto expression = query.text("expression");
@@ -156,11 +196,25 @@ HttpResponse channels(const AnswerContext&, archive::Reader& reader, archive::Ru
     if (*provenance && (expression || format == "csv"))
         return error_response(400, "provenance: of named channels only, as json or protobuf");
     series.provenance = *provenance;
-    const auto result = expression ? derived(reader, run, *expression, series) : reader.series(run, series);
+    const auto [text_format, content_type] = series_answer(format);
+    if (!expression) {
+        auto size = reader.series_size(run, series);
+        if (!size) return error_response(400, size.error());
+        if (size->samples > whole_series_samples_max)
+            return in_parts(context, reader,
+                            std::make_shared<SeriesParts>(
+                                SeriesParts{run, series, std::move(size->channels), SeriesText{text_format}}),
+                            content_type);
+    }
+    auto result = expression ? derived(reader, run, *expression, series) : reader.series(run, series);
     if (!result) return error_response(400, result.error());
-    if (format == "json") return {200, "application/json", "no-store", series_json(*result)};
-    if (format == "csv") return {200, "text/csv; charset=utf-8", "no-store", series_csv(*result)};
-    return {200, "application/x-protobuf", "no-store", result->SerializeAsString()};
+    if (expression && static_cast<std::size_t>(result->channels(0).sclk_size()) > whole_series_samples_max) {
+        const auto parts = std::make_shared<SeriesParts>(SeriesParts{run, series, {}, SeriesText{text_format}});
+        parts->text.begin(std::move(*result->mutable_channels(0)));
+        parts->in_series = true;
+        return in_parts(context, reader, parts, content_type);
+    }
+    return {200, content_type, "no-store", series_text(text_format, std::move(*result))};
 }
 
 HttpResponse packets(const AnswerContext& context, archive::Reader& reader, archive::RunId run,
@@ -182,7 +236,7 @@ HttpResponse packets(const AnswerContext& context, archive::Reader& reader, arch
     }
     const auto range = range_of(query, reader, run);
     if (!range) return error_response(400, range.error());
-    const auto page = page_of(query, 100, archive::packets_page_max);
+    const auto page = ListPage::of(query, {100, archive::packets_page_max});
     if (!page) return error_response(400, page.error());
     packets.verdict = query.text("verdict").value_or("");
     if (!packets.verdict.empty() &&
@@ -192,6 +246,7 @@ HttpResponse packets(const AnswerContext& context, archive::Reader& reader, arch
     packets.range = *range;
     packets.after = page->after;
     packets.limit = page->limit;
+    packets.order = page->order;
     return answer_rows({reader, run, query}, reader.packets(run, packets), {"packets"});
 }
 
@@ -208,13 +263,14 @@ HttpResponse events(const AnswerContext&, archive::Reader& reader, archive::RunI
     events.text = query.text("text").value_or("");
     const auto range = range_of(query, reader, run);
     if (!range) return error_response(400, range.error());
-    const auto page = page_of(query, 1'000, archive::rows_page_max);
+    const auto page = ListPage::of(query, rows_page);
     if (!page) return error_response(400, page.error());
     const auto duplicates = flag_of(query, "duplicates");
     if (!duplicates) return error_response(400, duplicates.error());
     events.range = *range;
     events.after = page->after;
     events.limit = page->limit;
+    events.order = page->order;
     events.duplicates = *duplicates;
     return answer_rows({reader, run, query}, reader.events(run, events), {"events", {"event"}});
 }
@@ -235,7 +291,7 @@ HttpResponse explanations(const AnswerContext& context, archive::Reader& reader,
         return error_response(400, fmt::format("decision: flight explains none called '{}'", explanations.decision));
     const auto range = range_of(query, reader, run);
     if (!range) return error_response(400, range.error());
-    const auto page = page_of(query, 1'000, archive::rows_page_max);
+    const auto page = ListPage::of(query, rows_page);
     if (!page) return error_response(400, page.error());
     const auto duplicates = flag_of(query, "duplicates");
     if (!duplicates) return error_response(400, duplicates.error());
@@ -243,6 +299,7 @@ HttpResponse explanations(const AnswerContext& context, archive::Reader& reader,
     explanations.range = *range;
     explanations.after = page->after;
     explanations.limit = page->limit;
+    explanations.order = page->order;
     explanations.duplicates = *duplicates;
     return answer_rows({reader, run, query}, reader.explanations(run, explanations), {"explanations", {"explanation"}});
 }
@@ -250,27 +307,32 @@ HttpResponse explanations(const AnswerContext& context, archive::Reader& reader,
 HttpResponse tones(const AnswerContext&, archive::Reader& reader, archive::RunId run, const QueryText& query) {
     const auto range = range_of(query, reader, run);
     if (!range) return error_response(400, range.error());
-    const auto page = page_of(query, archive::rows_page_max, archive::rows_page_max);
+    const auto page = ListPage::of(query, {archive::rows_page_max, archive::rows_page_max});
     if (!page) return error_response(400, page.error());
-    return answer_rows({reader, run, query},
-                       reader.tones(run, {*range, query.text("text").value_or(""), page->after, page->limit}),
-                       {"tones", {"tone"}});
+    return answer_rows(
+        {reader, run, query},
+        reader.tones(run, {*range, query.text("text").value_or(""), page->after, page->limit, page->order}),
+        {"tones", {"tone"}});
 }
 
 HttpResponse commands(const AnswerContext&, archive::Reader& reader, archive::RunId run, const QueryText& query) {
     const auto range = range_of(query, reader, run);
     if (!range) return error_response(400, range.error());
-    return answer_rows({reader, run, query}, reader.commands(run, {*range, query.text("text").value_or("")}),
-                       {"commands"});
+    const auto page = ListPage::of(query, {archive::commands_page_max, archive::commands_page_max});
+    if (!page) return error_response(400, page.error());
+    return answer_rows(
+        {reader, run, query},
+        reader.commands(run, {*range, query.text("text").value_or(""), page->after, page->limit, page->order}),
+        {"commands"});
 }
 
 /// Changes of alarms, or their present states.
 HttpResponse alarms(const AnswerContext& context, archive::Reader& reader, archive::RunId run, const QueryText& query) {
-    const auto page = page_of(query, 1'000, archive::rows_page_max);
+    const auto page = ListPage::of(query, rows_page);
     if (!page) return error_response(400, page.error());
     const auto state = query.text("state");
     if (!state)
-        return answer_rows({reader, run, query}, reader.alarms(run, page->after, page->limit),
+        return answer_rows({reader, run, query}, reader.alarms(run, page->after, page->limit, page->order),
                            {"changes", {"alarm", "staleness", "alarm_action", "link"}});
     if (*state != "current")
         return error_response(
@@ -279,10 +341,10 @@ HttpResponse alarms(const AnswerContext& context, archive::Reader& reader, archi
 }
 
 HttpResponse notes(const AnswerContext&, archive::Reader& reader, archive::RunId run, const QueryText& query) {
-    const auto page = page_of(query, 1'000, archive::rows_page_max);
+    const auto page = ListPage::of(query, rows_page);
     if (!page) return error_response(400, page.error());
     return answer_rows({reader, run, query},
-                       reader.notes(run, {query.text("text").value_or(""), page->after, page->limit}),
+                       reader.notes(run, {query.text("text").value_or(""), page->after, page->limit, page->order}),
                        {"notes", {"note"}});
 }
 
@@ -295,8 +357,10 @@ HttpResponse interventions(const AnswerContext& context, archive::Reader& reader
             return error_response(
                 403, "what an instructor does is told when the run is over; before, it needs the right to rehearse");
     }
+    const auto page = ListPage::of(query, rows_page);
+    if (!page) return error_response(400, page.error());
     return answer_rows(
-        {reader, run, query}, reader.interventions(run),
+        {reader, run, query}, reader.interventions(run, {page->after, page->limit, page->order}),
         {"interventions", {"fault", "device_fault", "system_fault", "computer_reset", "station_outage", "note"}});
 }
 
@@ -419,18 +483,24 @@ const std::array questions{
              {"names", "expression", "from", "to", "points", "source", "provenance", "format"},
              series_formats,
              channels},
-    RunRoute{"packets", {"apid", "name", "from", "to", "verdict", "after", "limit", "format"}, list_formats, packets},
-    RunRoute{"tones", {"text", "from", "to", "after", "limit", "format"}, list_formats, tones},
+    RunRoute{"packets",
+             {"apid", "name", "from", "to", "verdict", "after", "limit", "order", "format"},
+             list_formats,
+             packets},
+    RunRoute{"tones", {"text", "from", "to", "after", "limit", "order", "format"}, list_formats, tones},
     RunRoute{"items", {"names", "after", "limit", "format"}, item_formats, items},
-    RunRoute{"events", {"level", "text", "from", "to", "after", "limit", "duplicates", "format"}, list_formats, events},
-    RunRoute{"commands", {"text", "from", "to", "format"}, list_formats, commands},
-    RunRoute{"alarms", {"state", "after", "limit", "format"}, list_formats, alarms},
-    RunRoute{"notes", {"text", "after", "limit", "format"}, list_formats, notes},
-    RunRoute{"interventions", {"format"}, list_formats, interventions},
+    RunRoute{"events",
+             {"level", "text", "from", "to", "after", "limit", "order", "duplicates", "format"},
+             list_formats,
+             events},
+    RunRoute{"commands", {"text", "from", "to", "after", "limit", "order", "format"}, list_formats, commands},
+    RunRoute{"alarms", {"state", "after", "limit", "order", "format"}, list_formats, alarms},
+    RunRoute{"notes", {"text", "after", "limit", "order", "format"}, list_formats, notes},
+    RunRoute{"interventions", {"after", "limit", "order", "format"}, list_formats, interventions},
     RunRoute{"preconditions", {"command", "at"}, {}, preconditions},
     RunRoute{"timepoints", {"at", "recorded", "command", "arguments", "format"}, list_formats, timepoints},
     RunRoute{"explanations",
-             {"decision", "text", "from", "to", "after", "limit", "duplicates", "format"},
+             {"decision", "text", "from", "to", "after", "limit", "order", "duplicates", "format"},
              list_formats,
              explanations},
     RunRoute{"recording", {}, {}, recording},

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "server/api/api.hpp"
+#include "server/api/body_parts.hpp"
 
 #include <span>
 #include <string_view>
@@ -12,8 +13,9 @@ namespace aeolis::server {
 /// What an answer may need besides the archive.
 struct AnswerContext {
     const dictionary::Dictionary& dictionary;
-    std::optional<Ert> now;  ///< only of the current run
-    bool instructor;         ///< the operator may rehearse
+    std::optional<Ert> now;                                          ///< only of the current run
+    bool instructor;                                                 ///< the operator may rehearse
+    std::function<decltype(HttpResponse::more)(ReadPart)> in_parts;  ///< of body_parts.hpp, for the client who asks
 };
 
 /// A route to a question about one run: the last part of its path, its parameters, the formats of its answer, and its

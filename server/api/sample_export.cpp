@@ -2,6 +2,7 @@
 // GET /api/v1/runs/{run}/samples: any number of samples, in the memory of one page.
 
 #include "server/api/api.hpp"
+#include "server/api/body_parts.hpp"
 #include "server/api/query_text.hpp"
 #include "server/api/run_questions.hpp"
 #include "server/api/sample_text.hpp"
@@ -12,16 +13,14 @@ namespace aeolis::server {
 namespace {
 
 /// An export request and its progress.
-struct SampleExport : std::enable_shared_from_this<SampleExport> {
-    SampleExport(QueryThreads& threads, SampleText lines) : queries(threads), text(std::move(lines)) {}
-    QueryThreads& queries;
+struct SampleExport {
+    explicit SampleExport(SampleText lines) : text(std::move(lines)) {}
     SampleText text;
     archive::RunId run;
     std::vector<std::string> channels;
     archive::SclkRange range;
     std::optional<archive::SampleCursor> after;
     bool done = false;
-    Asker asker;
 
     /// The next page as text, which may be empty; none at the end.
     BodyPart page(archive::Reader& reader) {
@@ -35,19 +34,6 @@ struct SampleExport : std::enable_shared_from_this<SampleExport> {
         if (done) text.finish(lines);
         return std::optional{std::move(lines)};
     }
-    void tell_next(const std::function<void(BodyPart)>& tell) {
-        if (done) return tell(std::optional<std::string>{});
-        const auto job = [self = shared_from_this(), tell](archive::Reader& reader) {
-            try {
-                tell(self->page(reader));
-            } catch (const std::exception& bug) {
-                tell(Error{fmt::format("this is a fault of the server: {}", bug.what())});
-            }
-        };
-        // A page takes milliseconds, and a started answer must not be cut off because many queries wait: so it queues
-        // with the stream's pages.
-        if (!queries.ask(job, asker, JobPriority::soon)) tell(Error{"too many questions wait"});
-    }
 };
 
 }  // namespace
@@ -59,11 +45,11 @@ void Api::export_samples(const ApiRequest& call) {
     auto text = SampleText::make(parts_.dictionary, channels,
                                  {query->text("format").value_or("csv"), query->text("align").value_or("")});
     if (!text) return call.respond(error_response(400, text.error()));
-    auto wanted = std::make_shared<SampleExport>(parts_.queries, std::move(*text));
+    auto wanted = std::make_shared<SampleExport>(std::move(*text));
     wanted->channels = std::move(channels);
-    wanted->asker = {client_of(call.who), call.request.gone};
     ask(call, std::move(*query),
-        [wanted](archive::Reader& reader, archive::RunId run, const QueryText& of) -> std::optional<HttpResponse> {
+        [wanted, &queries = parts_.queries, asker = Asker{client_of(call.who), call.request.gone}](
+            archive::Reader& reader, archive::RunId run, const QueryText& of) -> std::optional<HttpResponse> {
             const auto range = range_of(of, reader, run);
             if (!range) return error_response(400, range.error());
             wanted->range = *range;
@@ -76,7 +62,9 @@ void Api::export_samples(const ApiRequest& call) {
             HttpResponse response;
             response.content_type = wanted->text.is_csv() ? "text/csv; charset=utf-8" : "application/x-ndjson";
             response.body = wanted->text.head() + first->value_or("");
-            if (!wanted->done) response.more = [wanted](const auto& tell) { wanted->tell_next(tell); };
+            if (!wanted->done)
+                response.more =
+                    in_parts(queries, asker, [wanted](archive::Reader& of_part) { return wanted->page(of_part); });
             return response;
         });
 }

@@ -43,7 +43,12 @@ std::string descriptor_set() {
 }  // namespace
 
 void Api::openapi(const ApiRequest& call) {
-    call.respond({200, "application/yaml", "no-cache", std::string{text_named("openapi.yaml")->text}});
+    answer_on_query_thread(  // where it may be compressed: it is long
+        call,
+        [](archive::Reader&) {
+            return HttpResponse{200, "application/yaml", "no-cache", std::string{text_named("openapi.yaml")->text}};
+        },
+        JobPriority::at_once);
 }
 
 void Api::list_schema(const ApiRequest& call) {

@@ -5,6 +5,7 @@
 #include "server/base/json.hpp"
 #include "server/base/json_object.hpp"
 
+#include <array>
 #include <cmath>
 #include <fmt/format.h>
 #include <iterator>
@@ -13,59 +14,103 @@
 namespace aeolis::server {
 namespace {
 
-constexpr std::size_t octets_a_sample = 56;  // in JSON: an SCLK, a value and a source
+constexpr std::size_t part_octets = 1 << 20;  // chosen: a part ends with the element that passes it
 
-template <typename Column, typename Append>
-void append_column(std::string& json, const char* name, const Column& column, Append append) {
-    fmt::format_to(std::back_inserter(json), ",\"{}\":[", name);
-    bool first = true;
-    for (const auto each : column) {
-        if (!std::exchange(first, false)) json += ',';
-        append(each);
-    }
-    json += ']';
+void append_number(std::string& json, double value) {
+    if (std::isfinite(value))
+        fmt::format_to(std::back_inserter(json), "{}", value);
+    else
+        json += std::isnan(value) ? R"("NaN")" : value > 0 ? R"("Infinity")" : R"("-Infinity")";
 }
 
-void append_json(std::string& json, const v1::ChannelSeries& series) {
-    fmt::format_to(std::back_inserter(json), R"({{"id":{},"name":{},"unit":{},"samples":"{}","thinned":{})",
-                   series.id(), json_text(series.name()), json_text(series.unit()), series.samples(), series.thinned());
-    const auto number = [&](double value) {
-        if (std::isfinite(value))
-            fmt::format_to(std::back_inserter(json), "{}", value);
-        else
-            json += std::isnan(value) ? R"("NaN")" : value > 0 ? R"("Infinity")" : R"("-Infinity")";
-    };
-    append_column(json, "sclk", series.sclk(), number);
-    append_column(json, "value", series.value(), number);
-    append_column(json, "source", series.source(), [&](int source) { json += '"' + v1::Source_Name(source) + '"'; });
-    json += R"(,"origins":)" + json_array(series.origins(), to_json);
-    json += R"(,"gaps":)" + json_array(series.gaps(), to_json) + '}';
-}
+struct SeriesColumn {
+    std::string_view name;
+    int (*size)(const v1::ChannelSeries&);
+    void (*append)(std::string&, const v1::ChannelSeries&, int index);
+};
+using Series = v1::ChannelSeries;
+constexpr std::array series_columns{
+    SeriesColumn{"sclk", [](const Series& of) { return of.sclk_size(); },
+                 [](std::string& json, const Series& of, int i) { append_number(json, of.sclk(i)); }},
+    SeriesColumn{"value", [](const Series& of) { return of.value_size(); },
+                 [](std::string& json, const Series& of, int i) { append_number(json, of.value(i)); }},
+    SeriesColumn{"source", [](const Series& of) { return of.source_size(); },
+                 [](std::string& json, const Series& of, int i) { json += '"' + v1::Source_Name(of.source(i)) + '"'; }},
+    SeriesColumn{"origins", [](const Series& of) { return of.origins_size(); },
+                 [](std::string& json, const Series& of, int i) { json += to_json(of.origins(i)); }},
+    SeriesColumn{"gaps", [](const Series& of) { return of.gaps_size(); },
+                 [](std::string& json, const Series& of, int i) { json += to_json(of.gaps(i)); }},
+};
 
 }  // namespace
 
-std::string series_json(const v1::ChannelSeriesList& list) {
-    std::size_t samples = 0;
-    for (const auto& series : list.channels()) samples += static_cast<std::size_t>(series.sclk_size());
-    std::string json = R"({"channels":[)";
-    json.reserve(json.size() + samples * octets_a_sample);
-    for (int i = 0; i < list.channels_size(); ++i) {
-        if (i > 0) json += ',';
-        append_json(json, list.channels(i));
+std::string SeriesText::head() const {
+    switch (format_) {
+    case SeriesFormat::json: return R"({"channels":[)";
+    case SeriesFormat::csv: return "channel,unit,sclk_s,value,source\n";
+    case SeriesFormat::protobuf: break;
     }
-    json += "]}";
-    return json;
+    return {};
 }
 
-std::string series_csv(const v1::ChannelSeriesList& list) {
-    std::string csv = "channel,unit,sclk_s,value,source\n";
-    for (const auto& series : list.channels()) {
-        const auto name = csv_text(series.name()), unit = csv_text(series.unit());  // a formula may contain commas
-        for (int i = 0; i < series.sclk_size(); ++i)
-            fmt::format_to(std::back_inserter(csv), "{},{},{},{},{}\n", name, unit, series.sclk(i), series.value(i),
-                           series.source(i) == v1::SOURCE_RECORDED ? "recorded" : "realtime");
+std::string SeriesText::tail() const {
+    return format_ == SeriesFormat::json ? "]}" : "";
+}
+
+void SeriesText::begin(v1::ChannelSeries series) {
+    series_ = std::move(series);
+    column_ = next_ = 0;
+}
+
+bool SeriesText::append(std::string& text) {
+    if (format_ == SeriesFormat::json) return append_json(text);
+    if (format_ == SeriesFormat::csv) return append_csv(text);
+    v1::ChannelSeriesList list;  // such lists one after another are the list of all
+    *list.add_channels() = std::move(series_);
+    list.AppendToString(&text);
+    return false;
+}
+
+bool SeriesText::append_json(std::string& text) {
+    const auto full = text.size() + part_octets;
+    if (column_ == 0 && next_ == 0)
+        fmt::format_to(std::back_inserter(text), R"({}{{"id":{},"name":{},"unit":{},"samples":"{}","thinned":{})",
+                       std::exchange(first_, false) ? "" : ",", series_.id(), json_text(series_.name()),
+                       json_text(series_.unit()), series_.samples(), series_.thinned());
+    for (; column_ < static_cast<int>(series_columns.size()); ++column_, next_ = 0) {
+        const auto& column = series_columns[static_cast<std::size_t>(column_)];
+        if (next_ == 0) fmt::format_to(std::back_inserter(text), ",\"{}\":[", column.name);
+        for (; next_ < column.size(series_); ++next_) {
+            if (next_ > 0 && text.size() >= full) return true;
+            if (next_ > 0) text += ',';
+            column.append(text, series_, next_);
+        }
+        text += ']';
     }
-    return csv;
+    text += '}';
+    return false;
+}
+
+bool SeriesText::append_csv(std::string& text) {
+    const auto full = text.size() + part_octets;
+    const auto name = csv_text(series_.name()), unit = csv_text(series_.unit());  // a formula may contain commas
+    for (; next_ < series_.sclk_size(); ++next_) {
+        if (text.size() >= full) return true;
+        fmt::format_to(std::back_inserter(text), "{},{},{},{},{}\n", name, unit, series_.sclk(next_),
+                       series_.value(next_), series_.source(next_) == v1::SOURCE_RECORDED ? "recorded" : "realtime");
+    }
+    return false;
+}
+
+std::string series_text(SeriesFormat format, v1::ChannelSeriesList list) {
+    SeriesText series{format};
+    std::string text = series.head();
+    for (auto& each : *list.mutable_channels()) {
+        series.begin(std::move(each));
+        while (series.append(text)) {
+        }
+    }
+    return text + series.tail();
 }
 
 }  // namespace aeolis::server

@@ -4,10 +4,13 @@
 #include "server/archive/items.hpp"
 
 #include <map>
+#include <set>
 #include <string>
 
 namespace aeolis::server {
 namespace {
+
+constexpr std::size_t commands_of_state_max = 1'000;  // chosen: with a stage each, 0.5 MB as JSON
 
 /// The newest item by name.
 template <typename Name>
@@ -24,7 +27,17 @@ struct Cut {
 struct Stand {
     Newest<std::string> links, alarms, timepoints;
     Newest<std::uint64_t> commands;
+    std::set<std::uint64_t> commands_left_out;
     std::optional<v1::Item> tone, situation;
+
+    void take_command(const v1::Item& item) {
+        const auto number = item.command_stage().command();
+        if (commands_left_out.contains(number)) return;
+        commands.insert_or_assign(number, item);
+        if (commands.size() <= commands_of_state_max) return;
+        commands_left_out.insert(commands.begin()->first);
+        commands.erase(commands.begin());
+    }
 
     void take(const v1::Item& item, const Cut& cut) {
         switch (item.item_case()) {
@@ -32,7 +45,7 @@ struct Stand {
             if (!cut.leaves_out(item)) links.insert_or_assign(item.link().link(), item);
             return;
         case v1::Item::kCommandStage:
-            if (!cut.leaves_out(item)) commands.insert_or_assign(item.command_stage().command(), item);
+            if (!cut.leaves_out(item)) take_command(item);
             return;
         case v1::Item::kAlarm:
             if (!cut.leaves_out(item.alarm().sclk()))
@@ -94,6 +107,7 @@ Result<v1::StateAt> state_at(archive::Reader& reader, archive::RunId run, const 
     }
     for (auto& [name, item] : stand.timepoints) *answer.add_timepoints() = std::move(item);
     for (auto& [name, item] : stand.commands) *answer.add_commands() = std::move(item);
+    answer.set_commands_left_out(stand.commands_left_out.size());
     for (auto& [name, item] : stand.alarms)
         if (stands(item)) *answer.add_alarms() = std::move(item);
     if (stand.tone) *answer.mutable_tone() = std::move(*stand.tone);

@@ -72,8 +72,11 @@ Result<void> append_audit(sqlite::Database& database, std::span<const AuditRecor
     return {};
 }
 
-Result<std::vector<AuditEntry>> audit_entries(sqlite::Database& database, std::uint64_t after, std::size_t limit) {
-    auto rows = database.prepare((std::string{entry_columns} + "WHERE entry > ?1 ORDER BY entry LIMIT ?2").c_str());
+Result<std::vector<AuditEntry>> audit_entries(sqlite::Database& database, std::uint64_t after, std::size_t limit,
+                                              Order order) {
+    const char* const page = order == Order::oldest_first ? "WHERE entry > ?1 ORDER BY entry LIMIT ?2"
+                                                          : "WHERE entry < ?1 OR ?1 = 0 ORDER BY entry DESC LIMIT ?2";
+    auto rows = database.prepare((std::string{entry_columns} + page).c_str());
     if (!rows) return rows.error();
     rows->bind(1, static_cast<std::int64_t>(after)).bind(2, static_cast<std::int64_t>(limit));
     std::vector<AuditEntry> entries;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "common/result.hpp"
+#include "server/archive/records.hpp"
 #include "server/archive/sqlite.hpp"
 
 #include <cstdint>
@@ -32,8 +33,9 @@ std::string audit_hash(const std::string& before, const AuditEntry& entry);
 
 /// Appends entries. Call within a transaction.
 Result<void> append_audit(sqlite::Database& database, std::span<const AuditRecord> records);
-/// The entries after `after`, in order.
-Result<std::vector<AuditEntry>> audit_entries(sqlite::Database& database, std::uint64_t after, std::size_t limit);
+/// The entries after `after` in that order; 0: from its beginning.
+Result<std::vector<AuditEntry>> audit_entries(sqlite::Database& database, std::uint64_t after, std::size_t limit,
+                                              Order order = {});
 
 struct AuditCheck {
     std::uint64_t entries = 0;

@@ -226,22 +226,34 @@ std::string joined(const std::vector<ColumnText>& columns, std::string ColumnTex
 
 /// SQL for read_row(): "SELECT key, ert_us, … FROM `schema`TABLE WHERE `where` ORDER BY key LIMIT ?3".
 template <typename Record>
-std::string select_sql(const std::string& where, const std::string& schema = {}) {
+std::string select_sql(const std::string& where, const std::string& schema = {}, Order order = {}) {
     return "SELECT key, ert_us, " + joined(columns_of<ItemTable, Record>(), &ColumnText::selected, ", ") + " FROM " +
-           schema + ItemTable<Record>::name + " WHERE " + where + " ORDER BY key LIMIT ?3";
+           schema + ItemTable<Record>::name + " WHERE " + where + " ORDER BY key" +
+           (order == Order::newest_first ? " DESC" : "") + " LIMIT ?3";
+}
+/// A text in both orders. Static storage: State::query() knows a text by its address.
+struct SqlInOrder {
+    std::string oldest_first, newest_first;
+    const char* in(Order order) const {
+        return order == Order::newest_first ? newest_first.c_str() : oldest_first.c_str();
+    }
+};
+template <typename Record>
+SqlInOrder select_in_order(const std::string& where) {
+    return {select_sql<Record>(where), select_sql<Record>(where, {}, Order::newest_first)};
 }
 /// SQL for the rows with keys ?1 to ?2, at most ?3, in order. Static storage, as for all these functions.
 template <typename Record>
-const char* rows_sql() {
-    static const std::string sql = select_sql<Record>("key BETWEEN ?1 AND ?2");
-    return sql.c_str();
+const char* rows_sql(Order order = {}) {
+    static const auto sql = select_in_order<Record>("key BETWEEN ?1 AND ?2");
+    return sql.in(order);
 }
 /// SQL for those of these rows that contain the words ?4.
 template <typename Record>
-const char* found_rows_sql() {
-    static const std::string sql =
-        select_sql<Record>("key IN (SELECT rowid FROM search WHERE search MATCH ?4 AND rowid BETWEEN ?1 AND ?2)");
-    return sql.c_str();
+const char* found_rows_sql(Order order = {}) {
+    static const auto sql =
+        select_in_order<Record>("key IN (SELECT rowid FROM search WHERE search MATCH ?4 AND rowid BETWEEN ?1 AND ?2)");
+    return sql.in(order);
 }
 /// SQL for the parts of the item with key ?1, in order.
 template <typename Part>

@@ -117,8 +117,8 @@ Result<Sequence> Reader::last_seq(RunId run) {
     return state_->last_seq(run);
 }
 
-Result<std::vector<AuditEntry>> Reader::audit(std::uint64_t after, std::size_t limit) {
-    return audit_entries(state_->database, after, limit);
+Result<std::vector<AuditEntry>> Reader::audit(std::uint64_t after, std::size_t limit, Order order) {
+    return audit_entries(state_->database, after, limit, order);
 }
 
 Result<std::vector<LayoutRecord>> Reader::layouts(const std::string& owner) {
@@ -150,21 +150,39 @@ Result<std::vector<RequestRecord>> Reader::State::requests(RunId run) {
     }
 }
 
-Result<v1::InterventionList> Reader::interventions(RunId run) {
+Result<v1::InterventionList> Reader::interventions(RunId run, const InterventionQuery& query) {
+    if (auto fits = check_limit(query.limit, rows_page_max); !fits) return fits.error();
     const auto state = this->run(run);
     if (!state) return state.error();
-    const auto requests = state_->requests(run);
-    if (!requests) return requests.error();
+    static const std::string sql =
+        "SELECT position, cycle, request FROM requests WHERE run = ?1 AND position BETWEEN ?2 AND ?3 ORDER BY position";
+    static const SqlInOrder in_order{sql, sql + " DESC"};
+    auto rows = state_->query(in_order.in(query.order));
+    if (!rows) return rows.error();
+    auto& row = **rows;
+    const auto places = numbers_after(query.after, query.order, INT64_MAX);
+    row.bind(1, std::int64_t{run.value})
+        .bind(2, static_cast<std::int64_t>(places.first))
+        .bind(3, static_cast<std::int64_t>(places.last));
     v1::InterventionList list;
-    for (const auto& request : *requests) {
-        auto kept = kept_request(request.request);
+    std::uint64_t place = 0;  // of the last one in the list
+    for (PageSize size{query.limit};;) {
+        auto found = row.step();
+        if (!found) return found.error();
+        if (!*found) return list;
+        auto kept = kept_request(std::string(row.text(2)));
         if (!kept.has_intervention()) continue;
+        if (size.full()) {
+            list.set_next_after(place);
+            return list;
+        }
         auto& intervention = *list.add_interventions();
         intervention = std::move(*kept.mutable_intervention());
         intervention.set_e_s(state->start_sclk() - state->entry_sclk() +
-                             static_cast<double>(request.cycle) * seconds_per_tick);
+                             static_cast<double>(row.integer(1)) * seconds_per_tick);
+        size.add(intervention.ByteSizeLong());
+        place = static_cast<std::uint64_t>(row.integer(0));
     }
-    return list;
 }
 
 Result<std::string> Reader::scenario_text(RunId run) {
@@ -224,11 +242,16 @@ Result<CutOffRun> Reader::cut_off(RunId run) {
 }
 
 namespace {
-constexpr char runs_sql[] =
-    "SELECT r.run, scenario, title, venue, seed, state, outcome, pace, started, last_seq, entry_sclk, start_sclk,"
-    " light_time_s, tone_model, digest, coalesce(progress, 0), correlation_sclk, correlation_scet_us, clock_rate,"
-    " leap_seconds, clock_version FROM runs r LEFT JOIN recordings c ON c.run = r.run"
-    " WHERE ?1 IS NULL OR r.run = ?1 ORDER BY r.run DESC";
+/// The runs ?1 to ?2, in order.
+const SqlInOrder& runs_sql() {
+    static const std::string columns =
+        "SELECT r.run, scenario, title, venue, seed, state, outcome, pace, started, last_seq, entry_sclk, start_sclk,"
+        " light_time_s, tone_model, digest, coalesce(progress, 0), correlation_sclk, correlation_scet_us, clock_rate,"
+        " leap_seconds, clock_version FROM runs r LEFT JOIN recordings c ON c.run = r.run"
+        " WHERE r.run BETWEEN ?1 AND ?2 ORDER BY r.run";
+    static const SqlInOrder sql{columns, columns + " DESC"};
+    return sql;
+}
 constexpr char solution_sql[] = "SELECT name, value FROM run_solution WHERE run = ? ORDER BY position";
 }  // namespace
 
@@ -267,19 +290,26 @@ Result<v1::RunState> Reader::State::run_state(const sqlite::Statement& row) {
     }
 }
 
-Result<v1::RunList> Reader::runs() {
+Result<v1::RunList> Reader::runs(const RunQuery& query) {
+    if (auto fits = check_limit(query.limit, rows_page_max); !fits) return fits.error();
     auto snapshot = sqlite::Transaction::begin_read(state_->database);
     if (!snapshot) return snapshot.error();
-    auto rows = state_->query(runs_sql);
+    auto rows = state_->query(runs_sql().in(query.order));
     if (!rows) return rows.error();
-    (*rows)->bind_null(1);
+    const auto numbers = numbers_after(query.after, query.order, UINT32_MAX);
+    (*rows)->bind(1, static_cast<std::int64_t>(numbers.first)).bind(2, static_cast<std::int64_t>(numbers.last));
     v1::RunList list;
-    for (;;) {
+    for (PageSize size{query.limit};;) {
         auto found = (*rows)->step();
         if (!found) return found.error();
         if (!*found) return list;
+        if (size.full()) {
+            list.set_next_after(list.runs().rbegin()->run());
+            return list;
+        }
         auto state = state_->run_state(**rows);
         if (!state) return state.error();
+        size.add(state->ByteSizeLong());
         *list.add_runs() = std::move(state).value();
     }
 }
@@ -287,9 +317,9 @@ Result<v1::RunList> Reader::runs() {
 Result<v1::RunState> Reader::run(RunId run) {
     auto snapshot = sqlite::Transaction::begin_read(state_->database);
     if (!snapshot) return snapshot.error();
-    auto rows = state_->query(runs_sql);
+    auto rows = state_->query(runs_sql().in({}));
     if (!rows) return rows.error();
-    (*rows)->bind(1, std::int64_t{run.value});
+    (*rows)->bind(1, std::int64_t{run.value}).bind(2, std::int64_t{run.value});
     auto found = (*rows)->step();
     if (!found) return found.error();
     if (!*found) return Error{"no run " + std::to_string(run.value)};

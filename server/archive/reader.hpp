@@ -23,9 +23,13 @@
 
 namespace aeolis::archive {
 
+/// Octets of encoded rows after which a page ends before its limit of rows: at most 8 MiB as JSON, where an empty field
+/// takes some 20 characters. The stream's pages of items have a limit of rows only.
+inline constexpr std::size_t page_octets_max = 512 << 10;
 inline constexpr std::size_t items_page_max = 10'000;      ///< items in one answer: about 2 MB encoded
 inline constexpr std::size_t packets_page_max = 1'000;     ///< packets with their fields in one answer: about 1 MB
 inline constexpr std::size_t rows_page_max = 10'000;       ///< events, explanations in one answer
+inline constexpr std::size_t commands_page_max = 1'000;    ///< commands with their stages in one answer
 inline constexpr std::size_t channels_max = 64;            ///< channels in one series query
 inline constexpr std::size_t exact_samples_max = 200'000;  ///< samples of one channel in one exact answer; beyond: thin
 inline constexpr std::size_t thinned_points_max = 20'000;  ///< points in one thinned answer
@@ -62,6 +66,7 @@ struct PacketQuery {
     Sequence after = 0;
     std::size_t limit = 100;
     bool fields = true;
+    Order order{};
 };
 
 struct EventQuery {
@@ -71,6 +76,7 @@ struct EventQuery {
     bool duplicates = false;  ///< include recorded ones that were also seen in real time
     Sequence after = 0;
     std::size_t limit = 1'000;
+    Order order{};
 };
 
 struct ToneQuery {
@@ -78,11 +84,27 @@ struct ToneQuery {
     std::string text;  ///< words of name or meaning, as in EventQuery
     Sequence after = 0;
     std::size_t limit = rows_page_max;
+    Order order{};
 };
 
 struct CommandQuery {
-    SclkRange range;   ///< commands with a stage between the range's ends as seen on Earth
-    std::string text;  ///< words of a stage, as in EventQuery
+    SclkRange range;          ///< commands with a stage between the range's ends as seen on Earth
+    std::string text;         ///< words of a stage, as in EventQuery
+    std::uint64_t after = 0;  ///< number of a command
+    std::size_t limit = commands_page_max;
+    Order order{};
+};
+
+struct RunQuery {
+    std::uint32_t after = 0;  ///< number of a run
+    std::size_t limit = 1'000;
+    Order order = Order::newest_first;
+};
+
+struct InterventionQuery {
+    std::uint64_t after = 0;  ///< place of a request in the run
+    std::size_t limit = 1'000;
+    Order order{};
 };
 
 struct TimepointQuery {
@@ -99,12 +121,14 @@ struct ExplanationQuery {
     bool duplicates = false;
     Sequence after = 0;
     std::size_t limit = 1'000;
+    Order order{};
 };
 
 struct NoteQuery {
     std::string text;  ///< words, as in EventQuery
     Sequence after = 0;
     std::size_t limit = 1'000;
+    Order order{};
 };
 
 struct ChannelValue {
@@ -128,7 +152,8 @@ struct SamplePage {
 /// In       run, names, ranges: anything a client may send        Out   the schema's messages, or an Error in words
 /// Sees     what was committed before the query. Samples are read from segments; those not yet in a segment are
 ///          decommutated again from the packets, so that nothing durable is missing
-/// Limits   those above; a longer answer is refused or comes in pages
+/// Limits   those above; a longer answer is refused or comes in pages. A page goes on after `after`, in its order; 0: it
+///          is the first. Its next_after is where the next page goes on; 0: it was the last
 /// Threads  one owner per Reader; many Readers may be open. The dictionary must outlive it
 class Reader {
   public:
@@ -148,8 +173,8 @@ class Reader {
     /// Whether the file was removed or replaced under its name: answers are from the old file; open a new Reader.
     bool outdated() const;
 
-    /// All runs, newest first. A run in progress is `running`; the rehearsal fills in its pace and clocks.
-    Result<v1::RunList> runs();
+    /// A page of runs. A run in progress is `running`; the rehearsal fills in its pace and clocks.
+    Result<v1::RunList> runs(const RunQuery& query = {});
     Result<v1::RunState> run(RunId run);
 
     /// The kinds of items to include. complete_through counts excluded ones as given.
@@ -166,6 +191,13 @@ class Reader {
     /// The scenario of a run of this dictionary, as Protobuf text. The Error says why there is none.
     Result<std::string> scenario_text(RunId run);
 
+    /// The channels of a series query, each once, and the samples that series() would give of them at most. Fails where
+    /// series() fails of one channel.
+    struct SeriesSize {
+        std::vector<std::string> channels;
+        std::size_t samples = 0;
+    };
+    Result<SeriesSize> series_size(RunId run, const SeriesQuery& query);
     /// Live and recorded samples as one series in order of SCLK, each sample once. Undefined values are left out: gaps.
     Result<v1::ChannelSeriesList> series(RunId run, const SeriesQuery& query);
     /// A formula of channels as one series, at the times of its first channel. Each other channel counts with its
@@ -193,8 +225,10 @@ class Reader {
     Result<v1::ToneList> tones(RunId run, const ToneQuery& query);
     Result<v1::ExplanationList> explanations(RunId run, const ExplanationQuery& query);
     Result<v1::CommandList> commands(RunId run, const CommandQuery& query = {});
+    /// All commands of the run that change the timeline.
+    Result<v1::CommandList> timeline_commands(RunId run);
     /// Changes of alarms and actions on them, a page at a time.
-    Result<v1::AlarmList> alarms(RunId run, Sequence after, std::size_t limit);
+    Result<v1::AlarmList> alarms(RunId run, Sequence after, std::size_t limit, Order order = {});
     /// All alarms that are not normal, the most severe first. Refused for a run of another dictionary.
     /// @param now  time on Earth; none: when the run's newest packet was received
     Result<v1::AlarmList> alarm_states(RunId run, std::optional<Ert> now);
@@ -205,18 +239,18 @@ class Reader {
     /// When the run's newest packet was received.
     Result<Ert> newest_ert(RunId run);
     Result<v1::NoteList> notes(RunId run, const NoteQuery& query);
-    /// The interventions of instructors in the run, in order. Those being rehearsed see them only once the run is over.
-    Result<v1::InterventionList> interventions(RunId run);
+    /// The interventions of instructors in the run. Those being rehearsed see them only once the run is over.
+    Result<v1::InterventionList> interventions(RunId run, const InterventionQuery& query = {});
     /// The timeline: planned times, firings as far as known, and predictions from what was known.
     Result<v1::TimepointList> timepoints(RunId run, const TimepointQuery& query = {});
     Result<v1::RecordingSummary> recording(RunId run);
     /// Compares each live packet and tone with the recording, in totals. Takes as long as reading all packets.
     Result<v1::ProofReport> proof(RunId run);
-    /// The as-flown report that a review of the landing starts from. Takes as long as proof().
+    /// The as-flown report that a review of the landing starts from, with the first page of commands and of notes.
+    /// Takes as long as proof().
     Result<v1::AsFlownReport> as_flown(RunId run);
 
-    /// The entries after `after`, in order.
-    Result<std::vector<AuditEntry>> audit(std::uint64_t after, std::size_t limit);
+    Result<std::vector<AuditEntry>> audit(std::uint64_t after, std::size_t limit, Order order = {});
     /// The layouts of the owner, by name.
     Result<std::vector<LayoutRecord>> layouts(const std::string& owner);
 

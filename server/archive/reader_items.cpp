@@ -12,13 +12,24 @@ namespace aeolis::archive {
 
 namespace {
 
-/// A page being collected. `through` is lowered when a table has more rows than fit.
+/// A page being collected. `through` is lowered when a table has more rows than fit; newest first, `after` is raised.
 struct Page {
     RunId run;
     Sequence after = 0;
     Sequence through = 0;
     std::size_t limit = 0;
-    std::vector<v1::Item> items;
+    Order order{};
+    std::vector<v1::Item> items{};
+
+    bool newest_first() const { return order == Order::newest_first; }
+    /// Leaves what lies beyond this item, in the page's order, to the next page.
+    void end_with(const v1::Item& item) {
+        if (newest_first())
+            after = std::max<Sequence>(after, item.seq() - 1);
+        else
+            through = std::min<Sequence>(through, item.seq());
+    }
+    bool holds(const v1::Item& item) const { return after < item.seq() && item.seq() <= through; }
 };
 
 template <typename Read>
@@ -38,24 +49,31 @@ Result<void> collect(Reader::State& reader, const char* sql, Page& page, Read re
         if (!item) return item.error();
         page.items.push_back(std::move(item).value());
     }
-    if (count == page.limit) page.through = std::min<Sequence>(page.through, page.items.back().seq());
+    if (count == page.limit) page.end_with(page.items.back());
     return {};
 }
 
-/// Sorts the page and removes items beyond `through`.
+/// Sorts the page and removes items beyond its end.
 void finish(Page& page) {
-    std::sort(page.items.begin(), page.items.end(), [](const auto& a, const auto& b) { return a.seq() < b.seq(); });
-    while (!page.items.empty() && page.items.back().seq() > page.through) page.items.pop_back();
+    std::sort(page.items.begin(), page.items.end(), [&](const auto& a, const auto& b) {
+        return page.newest_first() ? a.seq() > b.seq() : a.seq() < b.seq();
+    });
+    while (!page.items.empty() && !page.holds(page.items.back())) page.items.pop_back();
     if (page.items.size() <= page.limit) return;
     page.items.resize(page.limit);
-    page.through = page.items.back().seq();
+    page.end_with(page.items.back());
 }
 
 /// Collects the items of one kind.
 template <typename Record>
-Result<void> collect(Reader::State& reader, const RunInfo& info, Page& page, const char* sql = rows_sql<Record>()) {
+Result<void> collect(Reader::State& reader, const RunInfo& info, Page& page, const char* sql) {
     const auto* words = reader.words_of(info);
     return collect(reader, sql, page, [&](const auto& row) { return reader.item<Record>(row, words); });
+}
+
+template <typename Record>
+Result<void> collect(Reader::State& reader, const RunInfo& info, Page& page) {
+    return collect<Record>(reader, info, page, rows_sql<Record>(page.order));
 }
 
 Result<void> collect_alarms(Reader::State& reader, const RunInfo& info, Page& page) {
@@ -114,7 +132,7 @@ Result<ItemPage> Reader::items(RunId run, Sequence after, std::size_t limit, Ite
     if (!last) return last.error();
     if (after >= *last) return ItemPage{{}, *last, false};
 
-    Page page{run, after, *last, limit, {}};
+    Page page{run, after, *last, limit};
     const auto done = try_item_kinds([&]<typename Record>(ItemKind<Record>) {
         if constexpr (std::is_same_v<Record, PacketRecord>)
             return kinds.packets || kinds.samples ? collect_packets(*state_, instant->run, page, kinds)
@@ -127,21 +145,31 @@ Result<ItemPage> Reader::items(RunId run, Sequence after, std::size_t limit, Ite
     return ItemPage{std::move(page.items), page.through, page.through < *last};
 }
 
-Result<v1::AlarmList> Reader::alarms(RunId run, Sequence after, std::size_t limit) {
+Result<v1::AlarmList> Reader::alarms(RunId run, Sequence after, std::size_t limit, Order order) {
     if (auto fits = check_limit(limit, rows_page_max); !fits) return fits.error();
     const auto instant = state_->instant(run);
     if (!instant) return instant.error();
-    static const std::string lost_some_time =
-        select_sql<LinkRecord>("key BETWEEN ?1 AND ?2 AND link IN (SELECT link FROM link_changes WHERE lost AND key"
-                               " BETWEEN ?1 >> 40 << 40 AND ?2)");
-    Page page{run, std::min(after, sequence_max - 1), sequence_max, limit, {}};
+    static const auto lost_some_time = select_in_order<LinkRecord>(
+        "key BETWEEN ?1 AND ?2 AND link IN (SELECT link FROM link_changes WHERE lost AND key"
+        " BETWEEN ?1 >> 40 << 40 AND ?2 | 0xFFFFFFFFFF)");
+    const auto numbers = numbers_after(after, order, sequence_max);
+    Page page{run, numbers.first - 1, numbers.last, limit, order};
     auto done = collect_alarms(*state_, instant->run, page);
-    if (done) done = collect<LinkRecord>(*state_, instant->run, page, lost_some_time.c_str());
+    if (done) done = collect<LinkRecord>(*state_, instant->run, page, lost_some_time.in(order));
     if (!done) return done.error();
     finish(page);
     v1::AlarmList list;
-    for (auto& item : page.items) *list.add_changes() = std::move(item);
-    list.set_next_after(page.through == sequence_max ? 0 : page.through);
+    PageSize size{limit};
+    for (auto& item : page.items) {
+        if (size.full()) {
+            page.end_with(*list.changes().rbegin());
+            break;
+        }
+        size.add(item.ByteSizeLong());
+        *list.add_changes() = std::move(item);
+    }
+    const bool more = order == Order::newest_first ? page.after + 1 > numbers.first : page.through < numbers.last;
+    if (more && list.changes_size() > 0) list.set_next_after(list.changes().rbegin()->seq());
     return list;
 }
 

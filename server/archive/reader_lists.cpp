@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "commands/timeline_change.hpp"
 #include "server/archive/item_rows.hpp"
 #include "server/archive/items.hpp"
 #include "server/archive/reader.hpp"
@@ -7,8 +8,11 @@
 #include "telemetry/text.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <map>
+#include <ranges>
 #include <set>
+#include <tuple>
 
 namespace aeolis::archive {
 
@@ -33,15 +37,16 @@ struct Wanted {
     bool nothing() const { return asked && words.empty(); }  ///< punctuation only: no row matches
 };
 
-/// Reads rows of one table after `after` until `take` says that the page is full. Returns the number to continue after;
-/// 0: no more rows.
+/// Reads rows of one table until `take` says that the page is full. Returns the number to continue after; 0: no more
+/// rows.
 template <typename Take>
-Result<Sequence> scan(Reader::State& reader, const char* sql, RunId run, Sequence after, Take take,
+Result<Sequence> scan(Reader::State& reader, const char* sql, RunId run, const Numbers& numbers, Take take,
                       const std::string& words = {}) {
+    if (numbers.first > numbers.last) return Sequence{0};
     auto rows = reader.query(sql);
     if (!rows) return rows.error();
     auto& row = **rows;
-    row.bind(1, item_key(run, std::min(after, sequence_max - 1) + 1)).bind(2, item_key(run, sequence_max));
+    row.bind(1, item_key(run, numbers.first)).bind(2, item_key(run, numbers.last));
     row.bind(3, static_cast<std::int64_t>(rows_scanned_max));
     if (!words.empty()) row.bind(4, std::string_view(words));
     Sequence last = 0;
@@ -67,14 +72,17 @@ Result<List> page_of(Reader::State& reader, RunId run, const Query& query, auto 
     List list;
     if (words.nothing()) return list;
     auto& page = *(list.*items)();
+    PageSize size{query.limit};
     const auto next = scan(
-        reader, words.asked ? found_rows_sql<Record>() : rows_sql<Record>(), run, query.after,
+        reader, words.asked ? found_rows_sql<Record>(query.order) : rows_sql<Record>(query.order), run,
+        numbers_after(query.after, query.order, sequence_max),
         [&](const auto& row) -> Result<bool> {
             if (!wanted(read_row<Record>(row))) return false;
             auto item = reader.item<Record>(row);
             if (!item) return item.error();
+            size.add(item->ByteSizeLong());
             *page.Add() = std::move(*item);
-            return static_cast<std::size_t>(page.size()) == query.limit;
+            return size.full();
         },
         words.words);
     if (!next) return next.error();
@@ -138,7 +146,9 @@ Result<v1::PacketList> Reader::packets(RunId run, const PacketQuery& query) {
     if (!complete) return complete.error();
     const auto* words = state_->words_of(instant->run);
     v1::PacketList list;
-    const auto next = scan(*state_, rows_sql<PacketRecord>(), run, query.after, [&](const auto& row) -> Result<bool> {
+    PageSize size{query.limit};
+    const auto numbers = numbers_after(query.after, query.order, sequence_max);
+    const auto take = [&](const auto& row) -> Result<bool> {
         const auto record = read_row<PacketRecord>(row);
         if ((wanted && record.packet != wanted) || !range->holds(record.sclk.seconds)) return false;
         const auto verdict = state_->verdict_on(run, record, *complete);
@@ -155,8 +165,10 @@ Result<v1::PacketList> Reader::packets(RunId run, const PacketQuery& query) {
             add_contents(written, state_->other->contents(octets));
         else if (query.fields && words != nullptr && record.packet && state_->decode(octets))
             add_fields(written, words->packets[state_->decoded.packet], state_->decoded);
-        return static_cast<std::size_t>(list.packets_size()) == query.limit;
-    });
+        size.add(written.ByteSizeLong());
+        return size.full();
+    };
+    const auto next = scan(*state_, rows_sql<PacketRecord>(query.order), run, numbers, take);
     if (!next) return next.error();
     list.set_next_after(*next);
     return list;
@@ -210,47 +222,124 @@ Result<v1::NoteList> Reader::notes(RunId run, const NoteQuery& query) {
     return page_of<NoteRecord>(*state_, run, query, wanted, &v1::NoteList::mutable_notes);
 }
 
+namespace {
+
+/// Passes every stage of the run's commands to `take`, in the order of receipt; with words, those that contain them.
+Result<void> each_stage(Reader::State& reader, RunId run, const std::function<void(const StageRecord&)>& take,
+                        const std::string& words = {}) {
+    for (Sequence after = 0;;) {
+        const auto next = scan(
+            reader, words.empty() ? rows_sql<StageRecord>() : found_rows_sql<StageRecord>(), run,
+            numbers_after(after, {}, sequence_max),
+            [&](const auto& row) -> Result<bool> {
+                take(read_row<StageRecord>(row));
+                return false;
+            },
+            words);
+        if (!next) return next.error();
+        if (*next == 0) return {};
+        after = *next;
+    }
+}
+
+void add_stage(const StageRecord& stage, v1::CommandHistory& history) {
+    if (history.stages_size() == 0) {
+        history.set_command(stage.command);
+        history.set_name(stage.name);
+        history.set_arguments(stage.arguments);
+        history.set_client_id(stage.client_id);
+    }
+    if (!stage.octets.empty()) history.set_octets(hex(stage.octets));
+    if (stage.stage == commands::Stage::released) {  // its final stage
+        history.set_held(stage.held);
+        history.set_needs_approval(stage.needs_approval);
+    }
+    *history.add_stages() = to_item(stage);
+}
+
+/// The commands that a query asks for, by number, with the octets of their stages.
+using CommandSizes = std::map<std::uint64_t, std::size_t>;
+
+Result<CommandSizes> matching_commands(Reader::State& reader, RunId run, const CommandQuery& query,
+                                       const HeardRange& range) {
+    CommandSizes sizes;
+    std::set<std::uint64_t> in_range;
+    const auto take = [&](const StageRecord& stage) {
+        sizes[stage.command] += to_item(stage).ByteSizeLong() + 2 * stage.octets.size();
+        if (range.from <= stage.ert && stage.ert <= range.to) in_range.insert(stage.command);
+    };
+    if (auto done = each_stage(reader, run, take); !done) return done.error();
+    std::erase_if(sizes, [&](const auto& command) { return !in_range.contains(command.first); });
+    const Wanted wanted(query.text);
+    if (!wanted.asked) return sizes;
+    std::set<std::uint64_t> found;
+    if (!wanted.nothing())
+        if (auto done = each_stage(
+                reader, run, [&](const StageRecord& stage) { found.insert(stage.command); }, wanted.words);
+            !done)
+            return done.error();
+    std::erase_if(sizes, [&](const auto& command) { return !found.contains(command.first); });
+    return sizes;
+}
+
+/// The numbers of the page, in the order asked, and where the next page goes on.
+struct CommandPage {
+    std::vector<std::uint64_t> commands;
+    std::uint64_t next_after = 0;
+};
+CommandPage page_of(const CommandSizes& sizes, const CommandQuery& query) {
+    CommandPage page;
+    PageSize size{query.limit};
+    const auto numbers = numbers_after(query.after, query.order, INT64_MAX);
+    const auto take = [&](const auto& command) {
+        if (command.first < numbers.first || command.first > numbers.last) return true;
+        if (size.full()) {
+            page.next_after = page.commands.back();
+            return false;
+        }
+        page.commands.push_back(command.first);
+        size.add(command.second);
+        return true;
+    };
+    if (query.order == Order::newest_first)
+        std::ignore = std::ranges::all_of(sizes | std::views::reverse, take);
+    else
+        std::ignore = std::ranges::all_of(sizes, take);
+    return page;
+}
+
+}  // namespace
+
+/// Reads the stages twice: first to choose the commands of the page, then to build these alone.
 Result<v1::CommandList> Reader::commands(RunId run, const CommandQuery& query) {
+    if (auto fits = check_limit(query.limit, commands_page_max); !fits) return fits.error();
     const auto range = heard_range(*this, run, query.range);
     if (!range) return range.error();
     const auto instant = state_->instant(run);
     if (!instant) return instant.error();
-    std::set<std::uint64_t> in_range;
+    const auto sizes = matching_commands(*state_, run, query, *range);
+    if (!sizes) return sizes.error();
+    const auto page = page_of(*sizes, query);
+    v1::CommandList list;
+    std::map<std::uint64_t, v1::CommandHistory*> histories;
+    for (const auto number : page.commands) histories[number] = list.add_commands();
+    const auto take = [&](const StageRecord& stage) {
+        if (const auto history = histories.find(stage.command); history != histories.end())
+            add_stage(stage, *history->second);
+    };
+    if (auto done = each_stage(*state_, run, take); !done) return done.error();
+    list.set_next_after(page.next_after);
+    return list;
+}
+
+Result<v1::CommandList> Reader::timeline_commands(RunId run) {
+    const auto instant = state_->instant(run);
+    if (!instant) return instant.error();
     std::map<std::uint64_t, v1::CommandHistory> histories;
-    const auto done = scan(*state_, rows_sql<StageRecord>(), run, 0, [&](const auto& row) -> Result<bool> {
-        const auto stage = read_row<StageRecord>(row);
-        auto& history = histories[stage.command];
-        if (history.stages_size() == 0) {
-            history.set_command(stage.command);
-            history.set_name(stage.name);
-            history.set_arguments(stage.arguments);
-            history.set_client_id(stage.client_id);
-        }
-        if (!stage.octets.empty()) history.set_octets(hex(stage.octets));
-        if (stage.stage == commands::Stage::released) {  // its final stage
-            history.set_held(stage.held);
-            history.set_needs_approval(stage.needs_approval);
-        }
-        *history.add_stages() = to_item(stage);
-        if (range->from <= stage.ert && stage.ert <= range->to) in_range.insert(stage.command);
-        return false;
-    });
-    if (!done) return done.error();
-    std::erase_if(histories, [&](const auto& history) { return !in_range.contains(history.first); });
-    if (const Wanted wanted(query.text); wanted.asked) {
-        std::set<std::uint64_t> found;
-        if (!wanted.nothing()) {
-            const auto looked = scan(
-                *state_, found_rows_sql<StageRecord>(), run, 0,
-                [&](const auto& row) -> Result<bool> {
-                    found.insert(read_row<StageRecord>(row).command);
-                    return false;
-                },
-                wanted.words);
-            if (!looked) return looked.error();
-        }
-        std::erase_if(histories, [&](const auto& history) { return !found.contains(history.first); });
-    }
+    const auto take = [&](const StageRecord& stage) {
+        if (commands::changes_offsets(stage.name)) add_stage(stage, histories[stage.command]);
+    };
+    if (auto done = each_stage(*state_, run, take); !done) return done.error();
     v1::CommandList list;
     for (auto& [number, history] : histories) *list.add_commands() = std::move(history);
     return list;

@@ -45,13 +45,14 @@ bool executed_by(const v1::CommandHistory& command, Ert by) {
 }
 
 /// Adds the predictions as of entry interface: from firings received live and changes executed.
+/// @param commands  those that change the timeline
 void add_predictions(const dictionary::Dictionary& dictionary, const v1::TimepointList& timeline,
                      const v1::CommandList& commands, const v1::RunState& run, v1::AsFlownReport& report) {
     std::optional<dictionary::Dictionary> changed;
     const Ert at_entry = ert_of(run, Sclk{run.entry_sclk()});  // when entry interface was due on Earth
     for (const auto& command : commands.commands()) {
         const auto* known = dictionary.command(command.name());
-        if (known == nullptr || !commands::changes_offsets(command.name()) || !executed_by(command, at_entry)) continue;
+        if (known == nullptr || !executed_by(command, at_entry)) continue;
         const auto arguments = commands::decode(*known, octets_of_hex(command.octets()));
         if (!arguments) continue;
         if (!changed) changed = dictionary;
@@ -167,11 +168,13 @@ Result<v1::AsFlownReport> Reader::as_flown(RunId run) {
     if (!heard) return heard.error();
     auto sent = commands(run);
     if (!sent) return sent.error();
+    const auto changes = timeline_commands(run);
+    if (!changes) return changes.error();
     auto proven = proof(run);
     if (!proven) return proven.error();
     v1::AsFlownReport report;
     add_timepoints(*timeline, *heard, state->entry_sclk(), report);
-    add_predictions(state_->dictionary, *timeline, *sent, *state,
+    add_predictions(state_->dictionary, *timeline, *changes, *state,
                     report);  // timepoints() succeeds for this dictionary only
     if (auto added = add_events(*this, run, *timeline, state->entry_sclk(), report); !added) return added.error();
     const auto decoded =
@@ -186,6 +189,8 @@ Result<v1::AsFlownReport> Reader::as_flown(RunId run) {
     auto written = notes(run, all);
     if (!written) return written.error();
     *report.mutable_notes() = std::move(*written->mutable_notes());
+    report.set_notes_next_after(written->next_after());
+    report.set_commands_next_after(sent->next_after());
     *report.mutable_run() = std::move(*state);
     *report.mutable_commands() = std::move(*sent->mutable_commands());
     *report.mutable_proof() = std::move(*proven);

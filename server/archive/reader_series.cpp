@@ -64,6 +64,12 @@ void write(v1::ChannelSeries& series, std::span<const Sample> samples) {
     }
 }
 
+Result<void> check_exact(std::size_t samples, const dictionary::Channel& channel) {
+    if (samples <= exact_samples_max) return {};
+    return Error{"the range holds some " + std::to_string(samples) + " samples of '" + channel.name + "'; at most " +
+                 std::to_string(exact_samples_max) + " are given exactly: ask for points, or less"};
+}
+
 Result<v1::ChannelSeries> one_series(Reader::State& reader, const RunInfo& run, const dictionary::Channel& channel,
                                      const ClosedRange& range, const SeriesQuery& query) {
     const auto& points = query.points;
@@ -82,9 +88,7 @@ Result<v1::ChannelSeries> one_series(Reader::State& reader, const RunInfo& run, 
         write(series, thinned->points);
         return series;
     }
-    if (count > exact_samples_max)
-        return Error{"the range holds some " + std::to_string(count) + " samples of '" + channel.name + "'; at most " +
-                     std::to_string(exact_samples_max) + " are given exactly: ask for points, or less"};
+    if (auto fits = check_exact(count, channel); !fits) return fits.error();
     const auto samples = exact_samples(reader, *sources);
     if (!samples) return samples.error();
     series.set_samples(samples->size());
@@ -97,6 +101,12 @@ Result<std::span<const Sample>> samples_of(Reader::State& reader, const RunInfo&
     const auto sources = find_sample_sources(reader, run, channel, range);
     if (!sources) return sources.error();
     return exact_samples(reader, *sources);
+}
+
+Result<ClosedRange> range_of(const SeriesQuery& query) {
+    if (query.points && (*query.points < 2 || *query.points > thinned_points_max))
+        return Error{"points " + std::to_string(*query.points) + " is not 2 … " + std::to_string(thinned_points_max)};
+    return closed(query.range);
 }
 
 /// First to last sample of a run, and the number of packets with samples. A reversed range: none.
@@ -155,11 +165,30 @@ Result<void> note_newest(Reader::State& reader, RunId run, std::size_t packet, S
 
 }  // namespace
 
-Result<v1::ChannelSeriesList> Reader::series(RunId run, const SeriesQuery& query) {
-    const auto range = closed(query.range);
+Result<Reader::SeriesSize> Reader::series_size(RunId run, const SeriesQuery& query) {
+    const auto range = range_of(query);
     if (!range) return range.error();
-    if (query.points && (*query.points < 2 || *query.points > thinned_points_max))
-        return Error{"points " + std::to_string(*query.points) + " is not 2 … " + std::to_string(thinned_points_max)};
+    const auto instant = state_->instant(run);
+    if (!instant) return instant.error();
+    if (auto same = state_->same_dictionary(instant->run); !same) return same.error();
+    const auto channels = find_channels(state_->dictionary, query.channels);
+    if (!channels) return channels.error();
+    SeriesSize size;
+    for (const auto* channel : without_repeats(*channels)) {
+        const auto sources = find_sample_sources(*state_, instant->run, channel->id, *range, query.source);
+        if (!sources) return sources.error();
+        const std::size_t count = sources->samples_at_most;
+        if (!query.points)
+            if (auto fits = check_exact(count, *channel); !fits) return fits.error();
+        size.channels.push_back(channel->name);
+        size.samples += query.points ? std::min(count, *query.points) : count;
+    }
+    return size;
+}
+
+Result<v1::ChannelSeriesList> Reader::series(RunId run, const SeriesQuery& query) {
+    const auto range = range_of(query);
+    if (!range) return range.error();
     const auto instant = state_->instant(run);
     if (!instant) return instant.error();
     if (auto same = state_->same_dictionary(instant->run); !same) return same.error();

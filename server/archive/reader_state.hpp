@@ -9,6 +9,7 @@
 #include "server/archive/sqlite.hpp"
 #include "telemetry/decommutator.hpp"
 
+#include <algorithm>
 #include <map>
 #include <vector>
 
@@ -46,6 +47,31 @@ struct ClosedRange {
 Result<ClosedRange> closed(const SclkRange& range);
 /// Checks that a limit is 1 … `most`.
 Result<void> check_limit(std::size_t limit, std::size_t most);
+
+/// The numbers that are left for a page, both ends included; none when first > last.
+struct Numbers {
+    std::uint64_t first = 1, last = 0;
+};
+/// What is left after `after` of the numbers 1 … `most` in an order; 0: all of them.
+inline Numbers numbers_after(std::uint64_t after, Order order, std::uint64_t most) {
+    if (after == 0) return {1, most};
+    if (order == Order::newest_first) return {1, std::min(after - 1, most)};
+    return {std::min(after, most - 1) + 1, after < most ? most : 0};
+}
+
+/// The size of a page while it grows.
+class PageSize {
+  public:
+    explicit PageSize(std::size_t limit) : limit_(limit) {}
+    void add(std::size_t octets) {
+        ++rows_;
+        octets_ += octets;
+    }
+    bool full() const { return rows_ >= limit_ || octets_ >= page_octets_max; }
+
+  private:
+    std::size_t limit_, rows_ = 0, octets_ = 0;
+};
 
 /// The FTS5 query for words typed by a person: all of them, each as a prefix, punctuation ignored. Empty when there is
 /// no word in the text.

@@ -277,7 +277,7 @@ Result<void> Reader::State::add_predicted_anchors(RunId run, v1::TimepointList& 
 Result<v1::TimepointList> Reader::timepoints(RunId run, const TimepointQuery& query) {
     const auto state = this->run(run);
     if (!state) return state.error();
-    const auto commands = this->commands(run);
+    const auto commands = timeline_commands(run);
     if (!commands) return commands.error();
     const auto instant = state_->instant(run);
     if (!instant) return instant.error();

@@ -27,6 +27,9 @@ using RunId = Id<struct RunTag, std::uint32_t>;
 /// Number of an item within its run, from 1, in the order of arrival. Published only once durable.
 using Sequence = std::uint64_t;
 
+/// The order of a list, by the numbers of its rows.
+enum class Order : std::uint8_t { oldest_first, newest_first };
+
 /// Numbers equal those of Source in schema/aeolis/v1/items.proto.
 enum class Source : std::uint8_t { realtime = 1, recorded = 2, ground = 3 };
 

@@ -111,6 +111,27 @@ int print_explanations(archive::Reader& reader, archive::RunId run) {
     return 0;
 }
 
+/// Adds the commands and notes that the report has no room for.
+Result<void> complete(archive::Reader& reader, archive::RunId run, v1::AsFlownReport& report) {
+    while (report.commands_next_after() != 0) {
+        archive::CommandQuery query;
+        query.after = report.commands_next_after();
+        auto page = reader.commands(run, query);
+        if (!page) return page.error();
+        report.mutable_commands()->MergeFrom(page->commands());
+        report.set_commands_next_after(page->next_after());
+    }
+    while (report.notes_next_after() != 0) {
+        archive::NoteQuery query;
+        query.after = report.notes_next_after();
+        auto page = reader.notes(run, query);
+        if (!page) return page.error();
+        report.mutable_notes()->MergeFrom(page->notes());
+        report.set_notes_next_after(page->next_after());
+    }
+    return {};
+}
+
 /// Prints the as-flown report of a run.
 int report(const ReportOptions& options) {
     int exit_code = 0;
@@ -122,6 +143,7 @@ int report(const ReportOptions& options) {
     if (options.explanations) return print_explanations(*reader, number);
     auto report = reader->as_flown(number);
     if (!report) return failed(fmt::format("{}: {}", options.of.archive.string(), report.error().message));
+    if (auto done = complete(*reader, number, *report); !done) return failed(done.error().message);
     write_time_texts(*report);
     if (options.json) {
         fmt::print("{}\n", to_json(*report));

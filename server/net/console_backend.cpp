@@ -215,7 +215,7 @@ RehearsalDesk::TimelineQuestions ConsoleBackend::timeline_questions() {
             [this, run, requests, only_check, done](archive::Reader& reader) {
                 const auto before =
                     // 0: no run yet
-                    run.value == 0 ? Result<v1::CommandList>{v1::CommandList{}} : reader.commands(run);
+                    run.value == 0 ? Result<v1::CommandList>{v1::CommandList{}} : reader.timeline_commands(run);
                 done(before ? timeline_check_.check(*before, requests, only_check, queries_->stop_of_question({}))
                             : Result<std::string>{before.error()});
             },
@@ -226,7 +226,7 @@ RehearsalDesk::TimelineQuestions ConsoleBackend::timeline_questions() {
         using Reanalysis = TimelineCheck::Reanalysis;
         const bool taken = queries_->ask(
             [this, run, done](archive::Reader& reader) {
-                const auto before = reader.commands(run);
+                const auto before = reader.timeline_commands(run);
                 done(before ? Result<Reanalysis>{timeline_check_.reanalyse(*before, queries_->stop_of_question({}))}
                             : Result<Reanalysis>{before.error()});
             },
@@ -267,7 +267,7 @@ StreamHub::Services ConsoleBackend::stream_services() {
 void ConsoleBackend::adopt_newest_run() {
     auto reader = archive::Reader::open(settings_.archive, dictionary_, settings_.other);
     if (!reader) return;
-    auto runs = reader->runs();
+    auto runs = reader->runs({.limit = 1});
     if (runs && !runs->runs().empty()) hub_->run_state(runs->runs(0));
 }
 

@@ -48,6 +48,15 @@ std::string_view plain(beast::string_view text) {
     return {text.data(), text.size()};
 }
 
+/// The value of a header that may be given in several lines.
+std::string joined(const Request& request, http::field name) {
+    std::string value;
+    const auto [begin, end] = request.equal_range(name);
+    for (auto line = begin; line != end; ++line)
+        value += (value.empty() ? "" : ",") + std::string{plain(line->value())};
+    return value;
+}
+
 /// The client's first subprotocol that the server supports.
 const Subprotocol* chosen_subprotocol(const Request& request) {
     for (const auto token : http::token_list{request[http::field::sec_websocket_protocol]})
@@ -333,7 +342,8 @@ Task<> HttpConnection<AnyStream>::ask(Exchange& exchange, std::string path, std:
                       std::move(query),
                       std::move(request.body()),
                       std::move(exchange.credentials),
-                      exchange.waiting->gone()};
+                      exchange.waiting->gone(),
+                      joined(request, http::field::accept_encoding)};
     const auto hand_on = [this, &asked](const Respond& respond) {
         service_.handlers.request(std::move(asked), respond);
     };

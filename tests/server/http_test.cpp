@@ -248,7 +248,7 @@ TEST_CASE("an event is found by its SCET, its ERT or its time from entry, and a 
 
     for (const char* format : {"json", "csv", "jsonl"})
         CHECK(ask(std::string{"/events?limit=1&format="} + format).next_after == std::to_string(first.seq()));
-    CHECK(ask("/commands?format=csv").next_after.empty());  // it has no pages
+    CHECK(ask("/timepoints?format=csv").next_after.empty());  // it has no pages
 }
 
 TEST_CASE("a rehearsal that cannot be is refused with what is wrong, and the next one begins", "[http][R45]") {

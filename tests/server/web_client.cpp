@@ -58,6 +58,8 @@ WebReply web_request(std::uint16_t port, std::string_view method, std::string_vi
     const auto error = finish(io, [&](auto done) { http::async_read(stream, buffer, parser, done); });
     if (error) return {};
     const auto& response = parser.get();
+    Headers fields;
+    for (const auto& each : response) fields.emplace_back(std::string{each.name_string()}, std::string{each.value()});
     const auto text = [&](http::field field) { return std::string{response[field]}; };
     return {response.result_int(),
             text(http::field::content_type),
@@ -65,7 +67,8 @@ WebReply web_request(std::uint16_t port, std::string_view method, std::string_vi
             text(http::field::set_cookie),
             std::string{response["Content-Security-Policy"]},
             response.body(),
-            std::string{response["Aeolis-Next-After"]}};
+            std::string{response["Aeolis-Next-After"]},
+            std::move(fields)};
 }
 
 std::string raw_exchange(std::uint16_t port, std::string_view octets) {

@@ -17,6 +17,7 @@ using Headers = std::vector<std::pair<std::string, std::string>>;
 struct WebReply {
     unsigned status = 0;
     std::string content_type, cache_control, set_cookie, security_policy, body, next_after;
+    Headers fields{};  ///< all of them
 };
 WebReply web_request(std::uint16_t port, std::string_view method, std::string_view target, std::string_view body = {},
                      const Headers& headers = {});

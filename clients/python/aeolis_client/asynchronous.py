@@ -92,7 +92,7 @@ class AsyncClient:
 
     async def runs(self) -> list[Any]:
         """All runs, newest first."""
-        return list((await self._ask("RunList", "GET", "/runs")).runs)
+        return [run async for run in self._pages("RunList", "/runs", {})]
 
     async def run(self, run: Run = "latest") -> Any:
         """The RunState of a run: state, outcome, clocks, predicted entry."""
@@ -142,16 +142,16 @@ class AsyncClient:
         return frame_of(await self.history(channels, run=state.run, **limits), state.entry_sclk)
 
     def events(self, *, run: Run = "latest", **query: Any) -> AsyncIterator[Any]:
-        """Event items in order, page by page. @param query level, text, from, to"""
-        return self._pages("EventList", "events", run, query)
+        """Event items, page by page. @param query level, text, from, to, order: oldest or newest first"""
+        return self._pages("EventList", f"/runs/{run}/events", query)
 
     def tones(self, *, run: Run = "latest", **query: Any) -> AsyncIterator[Any]:
-        """Tone items in order, page by page."""
-        return self._pages("ToneList", "tones", run, query)
+        """Tone items, page by page. @param query text, from, to, order"""
+        return self._pages("ToneList", f"/runs/{run}/tones", query)
 
     def notes(self, *, run: Run = "latest", **query: Any) -> AsyncIterator[Any]:
-        """The shift log, page by page."""
-        return self._pages("NoteList", "notes", run, query)
+        """The shift log, page by page. @param query text, order"""
+        return self._pages("NoteList", f"/runs/{run}/notes", query)
 
     async def add_note(self, text: str, *, run: Run = "latest", by: str = "", sclk: Optional[float] = None) -> Any:
         """Writes a line of the shift log; returns its item once it is durable."""
@@ -159,7 +159,7 @@ class AsyncClient:
         return await self._ask("Item", "POST", f"/runs/{run}/notes", body)
 
     async def report(self, run: Run = "latest") -> Any:
-        """The AsFlownReport: timepoints and events, predicted and flown."""
+        """The AsFlownReport: timepoints and events, predicted and flown, with the first page of commands and notes."""
         return await self._ask("AsFlownReport", "GET", f"/runs/{run}/report")
 
     async def export(
@@ -247,9 +247,9 @@ class AsyncClient:
             await asyncio.sleep(wait_s)
         raise AssertionError
 
-    async def commands(self, *, run: Run = "latest") -> list[Any]:
-        """The CommandHistory of each command of a run."""
-        return list((await self._ask("CommandList", "GET", f"/runs/{run}/commands")).commands)
+    async def commands(self, *, run: Run = "latest", **query: Any) -> list[Any]:
+        """The CommandHistory of each command of a run. @param query text, from, to, order"""
+        return [history async for history in self._pages("CommandList", f"/runs/{run}/commands", query)]
 
     async def wait_for_stage(self, number: int, stage: str, *, run: Run = "latest", timeout_s: float = 60.0) -> Any:
         """The CommandHistory of a command once a stage of it is reached."""
@@ -257,8 +257,10 @@ class AsyncClient:
 
         async def reached() -> Any:
             while True:
-                for history in await self.commands(run=run):
-                    if history.command != number:
+                asked = {"after": number - 1, "limit": 1}
+                answer = await self._answer("GET", f"/api/v1/runs/{run}/commands", query=asked)
+                for history in self._read("CommandList", answer).commands:
+                    if history.command != number:  # it has no stage yet
                         continue
                     for item in history.stages:
                         change = item.command_stage
@@ -365,12 +367,12 @@ class AsyncClient:
     def _read(self, message: str, answer: httpx.Response) -> Any:
         return json_format.Parse(answer.content, getattr(self.schema, message)(), ignore_unknown_fields=True)
 
-    async def _pages(self, message: str, question: str, run: Run, query: dict[str, Any]) -> AsyncIterator[Any]:
+    async def _pages(self, message: str, path: str, query: dict[str, Any]) -> AsyncIterator[Any]:
         after = 0
         while True:
-            answer = await self._answer("GET", f"/api/v1/runs/{run}/{question}", query={**query, "after": after})
+            answer = await self._answer("GET", f"/api/v1{path}", query={**query, "after": after})
             page = self._read(message, answer)
-            for item in getattr(page, question):
+            for item in getattr(page, path.rsplit("/", 1)[1]):
                 yield item
             if not page.next_after:
                 return

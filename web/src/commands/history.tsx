@@ -78,7 +78,7 @@ async function toggle(command: number): Promise<void> {
   const run = store.value;
   if (opened.value === undefined || !run) return;
   try {
-    const list = await ask<CommandList>('commands', `/runs/${run.id}/commands`);
+    const list = await ask<CommandList>('commands', `/runs/${run.id}/commands?after=${command - 1}&limit=1`);
     octets.value = { run: run.id, of: new Map(list.commands.map((each) => [Number(each.command), each.octets])) };
   } catch {
     // The line of octets then says that they are not known.

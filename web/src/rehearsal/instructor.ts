@@ -35,9 +35,17 @@ const mayRead = (run: Pick<RunStore, 'going'>): boolean => !run.going || mayRehe
 
 /** Asks for the interventions. Throws the server's words, since there is no score without them. */
 export async function askInterventions(run: RunStore): Promise<readonly Intervention[]> {
-  const list = await read<{ interventions?: Intervention[] }>(`/runs/${run.id}/interventions`);
-  if (store.value === run) interventions.value = { run: run.id, all: list.interventions ?? [] };
-  return list.interventions ?? [];
+  const all: Intervention[] = [];
+  for (let after = '0'; ; ) {
+    const list = await read<{ interventions?: Intervention[]; next_after?: string }>(
+      `/runs/${run.id}/interventions${after === '0' ? '' : `?after=${after}`}`,
+    );
+    for (const each of list.interventions ?? []) all.push(each);
+    after = list.next_after ?? '0';
+    if (after === '0') break;
+  }
+  if (store.value === run) interventions.value = { run: run.id, all };
+  return all;
 }
 
 export async function refreshInterventions(): Promise<void> {

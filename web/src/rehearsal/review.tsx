@@ -4,7 +4,7 @@ import { signal } from '@preact/signals';
 import { useEffect } from 'preact/hooks';
 import { outcomeWords } from '../clocks/model';
 import { isHazardous } from '../commands/model';
-import type { AsFlownReport } from '../gen/aeolis/v1/run_pb';
+import type { AsFlownReport, CommandList, NoteList } from '../gen/aeolis/v1/run_pb';
 import { LAYOUT } from '../layout';
 import { isReal } from '../mode/model';
 import { wordsFor } from '../run/api';
@@ -41,6 +41,22 @@ async function alarmChanges(run: number): Promise<AlarmChange[]> {
   }
 }
 
+/** The report with all commands and notes: the server gives the first page of each with it. */
+async function wholeReport(run: number): Promise<AsFlownReport> {
+  const report = await ask<AsFlownReport>('report', `/runs/${run}/report`);
+  for (let after = report.commandsNextAfter; after !== 0n; ) {
+    const page = await ask<CommandList>('commands', `/runs/${run}/commands?after=${after}`);
+    report.commands.push(...page.commands);
+    after = page.nextAfter;
+  }
+  for (let after = report.notesNextAfter; after !== 0n; ) {
+    const page = await ask<NoteList>('notes', `/runs/${run}/notes?after=${after}`);
+    report.notes.push(...page.notes);
+    after = page.nextAfter;
+  }
+  return report;
+}
+
 async function landedOf(run: RunStore): Promise<Landed | undefined> {
   const event = run.events.find((row) => row.fact.name === LAYOUT.landing.event)?.fact;
   if (!event) return undefined;
@@ -64,7 +80,7 @@ async function judge(run: RunStore): Promise<void> {
   const through = run.completeThrough;
   try {
     const [report, alarms, landed, interventions] = await Promise.all([
-      ask<AsFlownReport>('report', `/runs/${run.id}/report`),
+      wholeReport(run.id),
       alarmChanges(run.id),
       landedOf(run),
       askInterventions(run),

@@ -64,7 +64,8 @@ export type Question =
   | 'recording'
   | 'proof'
   | 'report'
-  | 'commands';
+  | 'commands'
+  | 'notes';
 
 /** A command for the uplink, or an action on a waiting one, as in CommandRequest. Missing fields are not sent. */
 export interface CommandIntent {

@@ -12,6 +12,7 @@ import { PredictionSchema } from '../gen/aeolis/v1/prediction_pb';
 import {
   AsFlownReportSchema,
   CommandListSchema,
+  NoteListSchema,
   PacketListSchema,
   ProofReportSchema,
   RecordingSummarySchema,
@@ -337,6 +338,7 @@ const ANSWERS: Record<Exclude<Question, 'series'>, DescMessage> = {
   proof: ProofReportSchema,
   report: AsFlownReportSchema,
   commands: CommandListSchema,
+  notes: NoteListSchema,
 };
 
 /** The successful response, before its body is read. Throws the server's words with its status. */

@@ -43,28 +43,10 @@ export const busy = signal(false);
 const AUDIT_LIMIT = 100;
 const OFFERED = 20; // chosen: names offered under a field
 
-const auditPage = async (after: number, limit: number) =>
-  (await call<{ entries?: AuditEntry[] }>('GET', `/audit?after=${after}&limit=${limit}`)).entries ?? [];
-
-/**
- * A page of the audit, newest first. The server pages from the oldest entry, so the end is found by bisection, one
- * entry per request.
- */
-async function auditUpTo(before: number): Promise<AuditEntry[]> {
-  if (before > 0)
-    return (await auditPage(Math.max(0, before - 1 - AUDIT_LIMIT), AUDIT_LIMIT))
-      .filter(({ entry }) => Number(entry) < before)
-      .reverse();
-  const isThere = async (entry: number) => (await auditPage(entry - 1, 1)).length > 0;
-  let [low, high] = [0, AUDIT_LIMIT]; // numbered from 1 without gaps
-  while (await isThere(high)) [low, high] = [high, high * 2];
-  while (high - low > AUDIT_LIMIT) {
-    const middle = Math.floor((low + high) / 2);
-    if (await isThere(middle)) low = middle;
-    else high = middle;
-  }
-  return (await auditPage(Math.max(0, low - AUDIT_LIMIT), 2 * AUDIT_LIMIT)).slice(-AUDIT_LIMIT).reverse();
-}
+/** A page of the audit, newest first; 0: the newest page. */
+const auditUpTo = async (before: number): Promise<AuditEntry[]> =>
+  (await call<{ entries?: AuditEntry[] }>('GET', `/audit?order=newest&after=${before}&limit=${AUDIT_LIMIT}`)).entries ??
+  [];
 
 export async function refreshUsers(): Promise<void> {
   try {

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "server/api/http_message.hpp"
+#include "server/api/query_threads.hpp"
+
+#include <functional>
+
+namespace aeolis::server {
+
+/// Reads the next part of a body. Called on a query thread, once for each part.
+using ReadPart = std::function<BodyPart(archive::Reader&)>;
+
+/// HttpResponse::more of a body that is longer than memory should hold: each part is read once the client has taken the
+/// one before, in a job of its own.
+decltype(HttpResponse::more) in_parts(QueryThreads& queries, const Asker& asker, ReadPart read);
+
+}  // namespace aeolis::server

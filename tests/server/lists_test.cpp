@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+// The lists of the API over a socket, of a run with thousands of commands, and what memory they take.
+
+#include "aeolis/v1/access.pb.h"
+#include "aeolis/v1/run.pb.h"
+#include "server/base/json.hpp"
+#include "tests/server/run_writer.hpp"
+#include "tests/server/running_server.hpp"
+#include "tests/server/web_client.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <fstream>
+#include <memory>
+#include <string>
+
+namespace server_lists_test {
+
+using namespace aeolis;
+using namespace aeolis::test;
+
+namespace {
+
+constexpr std::size_t body_octets_max = 8 << 20;
+
+/// A finished run 1 of so many rounds of RunWriter.
+std::unique_ptr<RunningServer> server_with(std::uint64_t rounds, const std::string& words) {
+    auto server = std::make_unique<RunningServer>();
+    server->end();
+    {
+        auto archive = archive::Archive::open(server->archive());
+        REQUIRE(archive);
+        const auto run = archive->begin_run({}, tests::shipped_dictionary());
+        REQUIRE(run);
+        RunWriter rows{*archive, *run, words};
+        for (std::uint64_t written = 0; written < rounds; written += 512)
+            rows.add(std::min<std::uint64_t>(512, rounds - written));
+        rows.finish();
+    }
+    server->restart();
+    return server;
+}
+
+/// The target of the next page; empty: this was the last.
+std::string next_of(const WebReply& reply) {
+    for (const auto& [name, value] : reply.fields)
+        if (name == "Link") {
+            CHECK_THAT(value, Catch::StartsWith("<") && Catch::EndsWith(">; rel=\"next\""));
+            return value.substr(1, value.find('>') - 1);
+        }
+    return {};
+}
+
+/// Follows the links from `target` to the last page. @return the number of lines
+std::size_t lines_of_all_pages(std::uint16_t port, std::string target) {
+    std::size_t lines = 0;
+    for (int pages = 0; !target.empty() && pages < 1'000; ++pages) {
+        const auto reply = web_request(port, "GET", target);
+        INFO(target);
+        REQUIRE(reply.status == 200);
+        CHECK(reply.body.size() <= body_octets_max);
+        CHECK((reply.next_after == "0") == next_of(reply).empty());
+        lines += static_cast<std::size_t>(std::ranges::count(reply.body, '\n'));
+        target = next_of(reply);
+    }
+    return lines;
+}
+
+/// The largest resident set of this process since the last call, kB.
+std::size_t largest_since_last_kb() {
+    std::size_t largest = 0;
+    std::ifstream status{"/proc/self/status"};
+    for (std::string line; std::getline(status, line);)
+        if (line.starts_with("VmHWM:")) largest = std::stoul(line.substr(6));
+    std::ofstream{"/proc/self/clear_refs"} << "5";
+    return largest;
+}
+
+const std::vector<std::string> lists{"events", "tones",    "explanations", "alarms",
+                                     "notes",  "commands", "packets",      "interventions"};
+
+}  // namespace
+
+TEST_CASE("every list of a run goes on by Link and Aeolis-Next-After, in each format and either order", "[http][R62]") {
+    const auto server = server_with(40, "as planned");
+    for (const auto& list : lists)
+        for (const auto* order : {"oldest", "newest"}) {
+            const auto target = fmt::format("/api/v1/runs/1/{}?limit=7&order={}", list, order);
+            CHECK(lines_of_all_pages(server->port(), target + "&format=jsonl") == 40);
+            CHECK(lines_of_all_pages(server->port(), target + "&format=csv") == 40 + 6);  // with a header a page
+            const auto json = web_request(server->port(), "GET", target);
+            CHECK_THAT(json.body, Catch::Contains(fmt::format("\"next_after\":\"{}\"", json.next_after)));
+        }
+    const auto link = next_of(web_request(server->port(), "GET",
+                                          "/api/v1/runs/latest/events?after=3&text=as%20planned&limit=2&order=newest"));
+    CHECK(link.empty());  // before 3 there is one
+    CHECK(next_of(web_request(server->port(), "GET", "/api/v1/runs/latest/events?text=as%20planned&after=0&limit=2")) ==
+          "/api/v1/runs/latest/events?text=as%20planned&limit=2&after=16");
+    CHECK(lines_of_all_pages(server->port(), "/api/v1/runs?format=jsonl&limit=1") == 1);
+    CHECK(lines_of_all_pages(server->port(), "/api/v1/runs?format=jsonl&order=oldest") == 1);
+}
+
+TEST_CASE("the newest rows come first where that is asked", "[http][R62]") {
+    const auto server = server_with(5, "as planned");
+    const auto numbers = [&](const char* query) {
+        v1::CommandList list;
+        REQUIRE(server::from_json(
+            web_request(server->port(), "GET", std::string{"/api/v1/runs/1/commands"} + query).body, list));
+        std::vector<std::uint64_t> all;
+        for (const auto& command : list.commands()) all.push_back(command.command());
+        return all;
+    };
+    CHECK(numbers("") == std::vector<std::uint64_t>{1, 2, 3, 4, 5});
+    CHECK(numbers("?order=newest") == std::vector<std::uint64_t>{5, 4, 3, 2, 1});
+    CHECK(numbers("?order=newest&after=4&limit=2") == std::vector<std::uint64_t>{3, 2});
+    CHECK(numbers("?after=4") == std::vector<std::uint64_t>{5});
+    CHECK(numbers("?after=9223372036854775807").empty());
+}
+
+TEST_CASE("an order, a limit or a position that no list has is refused in one sentence", "[http]") {
+    const auto server = server_with(1, "as planned");
+    const auto error = [&](const std::string& target) {
+        const auto reply = web_request(server->port(), "GET", target);
+        v1::ErrorReply problem;
+        CHECK(reply.status == 400);
+        REQUIRE(server::from_json(reply.body, problem));
+        return problem.detail();
+    };
+    for (const auto& list : lists) {
+        const auto target = "/api/v1/runs/1/" + list;
+        CHECK(error(target + "?order=latest") == "order: 'latest' is none of oldest, newest");
+        CHECK(error(target + "?order=") == "order: '' is none of oldest, newest");
+        CHECK(error(target + "?limit=0") == "limit: 0 asks for nothing");
+        CHECK_THAT(error(target + "?limit=10001"), Catch::StartsWith("limit: 10001 is more than "));
+        CHECK(error(target + "?after=-1") == "after: '-1' is not a whole number from 0");
+        CHECK_THAT(error(target + "?after=9223372036854775808"), Catch::Contains("is more than 9223372036854775807"));
+    }
+    CHECK(error("/api/v1/runs?order=up") == "order: 'up' is none of oldest, newest");
+}
+
+// Its words are as long as evidence gets; the sanitizers weigh otherwise.
+TEST_CASE("no list of a run with 4096 commands is longer than 8 MiB, and all of them take little memory",
+          "[http][R62][release]") {
+    const auto server = server_with(4'096, std::string(400, '"'));  // each is two octets of JSON
+    const auto before_kb = (largest_since_last_kb(), largest_since_last_kb());
+    std::size_t largest = 0;
+    for (const auto& list : lists)
+        for (const auto* query : {"", "?order=newest", "?format=csv", "?format=jsonl"}) {
+            const auto most = list == "packets" || list == "commands" ? 1'000 : 10'000;
+            const auto target =
+                fmt::format("/api/v1/runs/1/{}{}{}limit={}", list, query, *query == 0 ? "?" : "&", most);
+            const auto reply = web_request(server->port(), "GET", target);
+            INFO(target);
+            CHECK(reply.status == 200);
+            CHECK(reply.body.size() <= body_octets_max);
+            largest = std::max(largest, reply.body.size());
+        }
+    for (const auto* question : {"state", "report", "timepoints", "proof"}) {
+        const auto reply = web_request(server->port(), "GET", fmt::format("/api/v1/runs/1/{}", question));
+        INFO(question);
+        CHECK(reply.status == 200);
+        CHECK(reply.body.size() <= body_octets_max);
+    }
+    CHECK(lines_of_all_pages(server->port(), "/api/v1/runs/1/commands?format=jsonl") == 4'096);
+    const auto grown_kb = largest_since_last_kb() - before_kb;
+    INFO(fmt::format("{} octets, {} kB more", largest, grown_kb));
+    CHECK(grown_kb < 250'000);  // with this client, and caches of seven readers; 900 MB when lists were built whole
+}
+
+}  // namespace server_lists_test
