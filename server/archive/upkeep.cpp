@@ -25,6 +25,15 @@ std::string item_keys_sql(const std::string& schema) {
 
 }  // namespace
 
+std::optional<std::string> open_to_others(const std::filesystem::path& file) {
+    using std::filesystem::perms;
+    std::error_code error;
+    const auto mode = std::filesystem::status(file, error).permissions();
+    if (error || (mode & (perms::group_all | perms::others_all)) == perms::none) return std::nullopt;
+    return file.string() + " may be read or written by others than its owner: chmod 600 " + file.string() +
+           "*, unless that is wanted";
+}
+
 Result<void> make_durable(const std::filesystem::path& file) {
     const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
     for (const auto& each : {file, folder}) {

@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -54,6 +55,10 @@ Result<void> backup(const std::filesystem::path& file, const std::filesystem::pa
 /// Copies an open database, even one removed under its name; replaces `into`. Durable when it returns; leaves no file
 /// when it fails.
 Result<void> copy_whole(const sqlite::Database& source, const std::filesystem::path& into);
+
+/// A sentence when others than its owner may read or write the file. A new archive is its owner's alone; an older one, or
+/// one opened to others by hand, keeps its mode.
+std::optional<std::string> open_to_others(const std::filesystem::path& file);
 
 /// Makes a file durable: its contents, and its name in its folder.
 Result<void> make_durable(const std::filesystem::path& file);

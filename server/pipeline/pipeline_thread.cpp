@@ -186,7 +186,16 @@ Result<void> PipelineThread::write_audit() {
     if (records.empty()) return {};
     if (auto written = archive_.append_audit(records); !written) return written;
     tell_audit_kept(records.size());
+    tell_audit_head();
     return {};
+}
+
+void PipelineThread::tell_audit_head() {
+    if (!on_audited_) return;
+    const auto head = archive_.audit_head();
+    if (!head || *head == audit_head_) return;
+    audit_head_ = *head;
+    on_audited_(audit_head_);
 }
 
 Result<void> PipelineThread::commit(std::optional<std::chrono::steady_clock::time_point> when_due) {
@@ -235,6 +244,7 @@ bool PipelineThread::annotate(archive::RunId run, archive::Annotation annotation
     return !blocked() && jobs_.try_push(Action{[this, run, annotation = std::move(annotation), done = std::move(done)] {
         auto added = pipeline_.annotate(run, annotation);
         if (!added) return done(std::move(added));
+        tell_audit_head();  // a run that has ended got another fingerprint
         // Answered after the commit, as a command is: a failing disk must not delay what arrives meanwhile.
         answers_.push_back([done, added = std::move(added)](const std::string& fault) {
             if (fault.empty()) return done(added);
@@ -264,6 +274,14 @@ PipelineThread::Figures PipelineThread::figures() const {
     figures.published_items = items_;
     figures.waiting = jobs_.size();
     figures.pending_octets = pending_octets_;
+    const auto size_of = [](const std::filesystem::path& file) {
+        std::error_code error;
+        const auto octets = std::filesystem::file_size(file, error);
+        return error ? std::uintmax_t{0} : octets;
+    };
+    figures.archive_octets = size_of(archive_.file());
+    auto log = archive_.file();
+    figures.log_octets = size_of(log += "-wal");
     {
         const std::scoped_lock lock{audit_mutex_};
         figures.audit_waiting = audit_.size();
@@ -302,10 +320,9 @@ void PipelineThread::run() {
 }
 
 void PipelineThread::finish(Finish& finish) {
-    if (retry_until_stored([&] { return pipeline_.finish(finish.end); }))
-        finish.done.set_value({});
-    else
-        finish.done.set_value(Error{fault()});
+    const bool stored = retry_until_stored([&] { return pipeline_.finish(finish.end); });
+    tell_audit_head();  // the run's fingerprint
+    finish.done.set_value(stored ? Result<void>{} : Error{fault()});
 }
 
 void PipelineThread::take(Delivery& delivery) {
