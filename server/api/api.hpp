@@ -85,6 +85,7 @@ class Api {
   private:
     void run_question(const ApiRequest& call);
     void list_runs(const ApiRequest& call);
+    void remove_run(const ApiRequest& call);
     void list_scenarios(const ApiRequest& call);
     void dictionary(const ApiRequest& call);
     void stream(const ApiRequest& call);

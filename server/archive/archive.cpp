@@ -2,6 +2,7 @@
 #include "server/archive/archive.hpp"
 
 #include "server/archive/fingerprint.hpp"
+#include "server/archive/pruning.hpp"
 #include "server/archive/row_writer.hpp"
 #include "server/archive/schema.hpp"
 #include "server/archive/sqlite.hpp"
@@ -62,6 +63,7 @@ struct Archive::State {
     sqlite::Database database;
     RowWriter rows;
     sqlite::Statement last_key;
+    Pruning pruning{database};
     Identities opened;
     bool told_removed = false;
     std::vector<RunId> interrupted;
@@ -301,6 +303,19 @@ Result<void> Archive::append_audit(std::span<const AuditRecord> records) {
 
 Result<AuditHead> Archive::audit_head() {
     return archive::audit_head(state_->database);
+}
+
+Result<void> Archive::prune(RunId run, AuditRecord by) {
+    if (auto done = state_->in_place(); !done) return done;
+    auto transaction = sqlite::Transaction::begin_write(state_->database);
+    if (!transaction) return transaction.error();
+    if (auto done = mark_pruned(state_->database, {&run, 1}, std::move(by)); !done) return done;
+    return transaction->commit();
+}
+
+Result<bool> Archive::remove_pruned() {
+    if (auto done = state_->in_place(); !done) return done.error();
+    return state_->pruning.step();
 }
 
 Result<LayoutOutcome> Archive::change_layout(const LayoutChange& change) {

@@ -10,7 +10,11 @@
 namespace aeolis::server {
 namespace {
 
-bool printed_json = false;  ///< of the process: set once, before there are threads
+/// Of the process: set once, before there are threads.
+bool& printed_json() {
+    static bool json = false;
+    return json;
+}
 
 class TextLine final : public spdlog::formatter {
   public:
@@ -65,11 +69,11 @@ std::string printable(std::string_view text) {
 }
 
 void print_json() {
-    printed_json = true;
+    printed_json() = true;
 }
 
 void print_line(std::FILE* to, std::string_view text) {
-    if (!printed_json) return fmt::print(to, "{}\n", text);
+    if (!printed_json()) return fmt::print(to, "{}\n", text);
     const auto level = to == stderr ? spdlog::level::err : spdlog::level::info;
     spdlog::memory_buf_t line;
     JsonLine{}.format(spdlog::details::log_msg{"", level, {text.data(), text.size()}}, line);

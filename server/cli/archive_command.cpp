@@ -127,7 +127,9 @@ int archive_prune(const PruneOptions& options) {
     if (options.runs.empty() == !options.keep)
         return failed("archive prune: --run or --keep must name the runs, not both", 2);
     auto archive = archive::Maintenance::open(options.archive);
-    if (!archive) return failed_at("prune", archive.error());
+    if (!archive)
+        return failed(fmt::format("archive prune: {} (a server that serves it removes a run by DELETE /api/v1/runs/N)",
+                                  archive.error().message));
     const auto all = archive::run_lines(archive->database());
     if (!all) return failed_at("prune", all.error());
     const auto runs = chosen(options, *all);
@@ -144,8 +146,9 @@ int archive_prune(const PruneOptions& options) {
         return 0;
     }
     if (auto done = archive::prune(*archive, numbers, by_this_user()); !done) return failed_at("prune", done.error());
-    fmt::print("{} of {} runs removed; aeolis archive vacuum returns their space to the disk\n", runs->size(),
-               all->size());
+    std::error_code ignored;
+    fmt::print("{} of {} runs removed; {}: {} octets\n", runs->size(), all->size(), options.archive.string(),
+               std::filesystem::file_size(options.archive, ignored));
     return 0;
 }
 

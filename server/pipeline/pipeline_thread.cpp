@@ -261,6 +261,27 @@ bool PipelineThread::change_layout(archive::LayoutChange change,
     }});
 }
 
+bool PipelineThread::prune(archive::RunId run, archive::AuditRecord by, std::function<void(Result<void>)> done) {
+    return !blocked() && jobs_.try_push(Action{[this, run, by = std::move(by), done = std::move(done)] {
+        if (pipeline_.run() == run) return done(Error{fmt::format("run {} goes on: it cannot be removed", run.value)});
+        auto marked = archive_.prune(run, by);
+        pruning_ = pruning_ || marked.ok();
+        tell_audit_head();
+        done(std::move(marked));
+    }});
+}
+
+void PipelineThread::remove_pruned() {
+    constexpr int share = 10;  // chosen: one part in ten of this thread's time
+    const auto begun = std::chrono::steady_clock::now();
+    if (!pruning_ || begun < next_piece_) return;
+    const auto more = archive_.remove_pruned();
+    if (!more) spdlog::error("rows of pruned runs are left until the next is removed: {}", more.error().message);
+    pruning_ = more.ok() && *more;
+    const auto end = std::chrono::steady_clock::now();
+    next_piece_ = end + (share - 1) * (end - begun);
+}
+
 std::string PipelineThread::fault() const {
     const std::scoped_lock lock{fault_mutex_};
     return fault_;
@@ -297,8 +318,8 @@ PipelineThread::Figures PipelineThread::figures() const {
 void PipelineThread::run() {
     for (;;) {
         // Nothing waits for a commit: no need to wake for one.
-        auto job =
-            waits() ? jobs_.pop_until(std::chrono::steady_clock::now() + pipeline::commit_interval) : jobs_.pop();
+        auto job = waits() || pruning_ ? jobs_.pop_until(std::chrono::steady_clock::now() + pipeline::commit_interval)
+                                       : jobs_.pop();
         if (!job && jobs_.closed() && jobs_.size() == 0) {
             if (waits()) retry_until_stored([&] { return commit(std::nullopt); });
             return;
@@ -315,6 +336,7 @@ void PipelineThread::run() {
                 finish(std::get<Finish>(*job));
         }
         commit_what_is_due();
+        remove_pruned();
         pending_octets_ = pipeline_.pending_octets();
     }
 }

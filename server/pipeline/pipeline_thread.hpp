@@ -89,6 +89,11 @@ class PipelineThread {
     /// changed. False, and nothing done, when too much waits.
     bool change_layout(archive::LayoutChange change, std::function<void(Result<archive::LayoutOutcome>)> done);
 
+    /// Removes a run that is over: at once for readers, and its rows piece by piece, in a tenth of this thread's time.
+    /// Calls `done` on this thread once readers no longer find it, or with an Error. False, and nothing done, when too
+    /// much waits.
+    bool prune(archive::RunId run, archive::AuditRecord by, std::function<void(Result<void>)> done);
+
     void want_items(bool wanted) { items_wanted_ = wanted; }
     /// Sets the callback, called on this thread, for each change of fault(). Call before the first run.
     void on_fault(std::function<void(const std::string& fault)> told) { on_fault_ = std::move(told); }
@@ -142,6 +147,8 @@ class PipelineThread {
     void tell_answers(const std::string& fault);
     bool waits() const;
     Result<void> write_audit();
+    /// Removes a piece of what pruned runs left, when it is time for one.
+    void remove_pruned();
     /// Reports the newest entry of the audit, unless it is the one reported last.
     void tell_audit_head();
     /// Whether the budget admits the record. Call with audit_mutex_ held.
@@ -174,6 +181,8 @@ class PipelineThread {
     /// For deliveries waiting for the first attempt.
     std::vector<std::function<void(const std::string& fault)>> answers_;
     std::chrono::steady_clock::time_point next_attempt_{};
+    bool pruning_ = true;  ///< rows of pruned runs may be left: the program may have ended before all were removed
+    std::chrono::steady_clock::time_point next_piece_{};
     std::function<void(const std::string&)> on_fault_;
     std::function<void(const archive::AuditHead&)> on_audited_;
     archive::AuditHead audit_head_;  ///< the one reported last

@@ -63,7 +63,7 @@ TEST_CASE("of a run that is over no gauge is left", "[metrics][http]") {
     CHECK_THAT(during, Catch::Contains("\naeolis_run_in_progress 1\n") && Catch::Contains("\naeolis_run 1\n") &&
                            Catch::Contains("\naeolis_run_pace 2\n"));
     const std::string held = R"({"command":"NO_OP","hold":true})";
-    REQUIRE(web_request(server.port(), "POST", "/api/v1/runs/1/commands", held).status == 200);
+    REQUIRE(web_request(server.port(), "POST", "/api/v1/runs/1/commands", held).status == 202);
     CHECK_THAT(metrics_with(server, "\naeolis_commands_queued 1\n"), Catch::Contains("\naeolis_commands_queued 1\n"));
     REQUIRE(web_request(server.port(), "POST", "/api/v1/rehearsals/current", R"({"stop":true})").status == 202);
     const auto after = metrics_with(server, "\naeolis_run_in_progress 0\n");
@@ -75,6 +75,7 @@ TEST_CASE("of a run that is over no gauge is left", "[metrics][http]") {
 TEST_CASE("the metrics tell build, fault, log, clock, replays, and how long each client's questions waited",
           "[metrics][http]") {
     RunningServer server{shipped_scenario("nominal"), 100.0};
+    REQUIRE_THAT(metrics_with(server, "\naeolis_run 1\n"), Catch::Contains("\naeolis_run 1\n"));
     REQUIRE(web_request(server.port(), "GET", "/api/v1/runs/1/channels?names=altitude_m").status == 200);
     const auto text = metrics_with(server, "aeolis_query_wait_seconds_count{");
     CHECK(std::regex_search(text,

@@ -100,13 +100,49 @@ TEST_CASE("every table of a run is known to prune", "[archive][prune]") {
                         .c_str()) == 0);
 }
 
-TEST_CASE("vacuum gives the room of pruned runs back", "[archive][prune]") {
+TEST_CASE("a pruning that a crash cut off is gone on with, piece by piece, and nothing of the run is left",
+          "[archive][prune]") {
+    TemporaryFolder folder;
+    const auto dictionary = small_dictionary();
+    const auto file = folder / "a.db";
+    record(file, dictionary, 2);
+    const auto before = std::filesystem::file_size(file);
+    for (int stop_after = 3;; stop_after += 7) {  // each time the archive is opened anew
+        auto archive = std::move(Archive::open(file)).value();
+        if (stop_after == 3) REQUIRE(archive.prune(RunId{1}, {}).ok());
+        auto more = Result<bool>{true};
+        for (int i = 0; i < stop_after && *more; ++i) {
+            more = archive.remove_pruned();
+            REQUIRE(more.ok());
+        }
+        CHECK(pipeline::verify(file, {}, dictionary, nullptr, folder / "")->faults == std::vector<std::string>{});
+        if (!*more) break;
+        REQUIRE(stop_after < 1000);
+    }
+    for (const auto& table : run_tables()) {
+        INFO(table.name);
+        std::string of_first = table.rows;
+        for (auto at = of_first.find("?1"); at != std::string::npos; at = of_first.find("?1"))
+            of_first.replace(at, 2, "1");
+        CHECK(ask(file, (std::string("SELECT count(*) FROM ") + table.name + " WHERE " + of_first).c_str()) == 0);
+    }
+    CHECK(ask(file, "SELECT count(*) FROM units") == 2500);
+    CHECK(ask(file, "PRAGMA freelist_count") == 0);
+    CHECK(std::filesystem::file_size(file) < before * 9 / 10);
+    auto archive = std::move(Archive::open(file)).value();
+    CHECK(archive.prune(RunId{1}, {}).error().message.find("no run 1 that is over") == 0);
+    CHECK(*archive.begin_run({}, dictionary) == RunId{3});
+    CHECK_FALSE(archive.prune(RunId{3}, {}).ok());  // it goes on
+}
+
+TEST_CASE("pruning gives the room of the runs back, and vacuum does not undo it", "[archive][prune]") {
     TemporaryFolder folder;
     const auto file = folder / "a.db";
     record(file, small_dictionary(), 8);  // beside which a page for each of the tables is little
+    const auto before = std::filesystem::file_size(file);
     auto archive = Maintenance::open(file);
     REQUIRE(prune(*archive, {{RunId{1}, RunId{2}, RunId{3}, RunId{4}, RunId{5}, RunId{6}, RunId{7}}}, {}).ok());
-    const auto before = std::filesystem::file_size(file);
+    CHECK(std::filesystem::file_size(file) < before * 2 / 3);
     REQUIRE(vacuum(*archive).ok());
     CHECK(std::filesystem::file_size(file) < before * 2 / 3);
 }
