@@ -161,6 +161,7 @@ std::span<const Api::Route> Api::routes() {
         {"POST", "/api/v1/runs/{run}/alarms", Right::command, &Api::post_alarm, Query::none, "alarm"},
         {"POST", "/api/v1/runs/{run}/notes", Right::command, &Api::post_note, Query::none, "note"},
         {"GET", "/api/v1/runs/{run}", Right::watch, &Api::run_question, Query::own},
+        {"DELETE", "/api/v1/runs/{run}", Right::rehearse, &Api::remove_run, Query::none, "prune", Audited::refusals},
         {"GET", "/api/v1/runs/{run}/samples", Right::watch, &Api::export_samples, Query::own},
         {"GET", "/api/v1/runs/{run}/prediction", Right::watch, &Api::prediction, Query::own},
         {"GET", "/api/v1/runs/{run}/{question}", Right::watch, &Api::run_question, Query::own},
@@ -402,6 +403,19 @@ void Api::health(const ApiRequest& call) {
                              : may(call.who, Right::watch) ? fault
                                                            : "the archive cannot be written";
     call.respond({fault.empty() ? 200U : 503U, "text/plain; charset=utf-8", "no-store", text + "\n"});
+}
+
+void Api::remove_run(const ApiRequest& call) {
+    const auto run = run_id(call.parts[0]);
+    if (!run) return call.respond(error_response(409, "name the run by its number: what is gone is gone"));
+    if (run->value == parts_.hub.current_run())
+        return call.respond(error_response(
+            409, fmt::format("run {}: the consoles show it; it can be removed when another has begun", run->value)));
+    const auto done = [respond = call.respond](const Result<void>& pruned) {
+        respond(pruned ? HttpResponse{204, "application/json", "no-store", ""} : error_response(404, pruned.error()));
+    };
+    if (!parts_.pipeline.prune(*run, audit_record(call.who, "prune", "", ""), done))
+        call.respond(error_response(503, "nothing was removed, too much waits to be stored: try again"));
 }
 
 v1::RunState Api::current_run() const {

@@ -8,6 +8,7 @@
 #include "server/api/query_threads.hpp"
 #include "server/api/static_files.hpp"
 #include "server/api/stream_hub.hpp"
+#include "server/base/clock_watch.hpp"
 #include "server/campaign/campaign_desk.hpp"
 #include "server/pipeline/pipeline_thread.hpp"
 #include "server/rehearsal/prediction_desk.hpp"
@@ -56,6 +57,7 @@ class Api {
         Access& access;
         bool secure;  ///< over TLS: cookies are marked Secure
         std::function<std::size_t()> connections;
+        const ClockWatch& clock_watch;
     };
     explicit Api(Parts parts);
 
@@ -91,6 +93,7 @@ class Api {
   private:
     void run_question(const ApiRequest& call);
     void list_runs(const ApiRequest& call);
+    void remove_run(const ApiRequest& call);
     void list_scenarios(const ApiRequest& call);
     void dictionary(const ApiRequest& call);
     void stream(const ApiRequest& call);

@@ -2,6 +2,7 @@
 // GET /metrics: figures of queues, links, commits and clients, in Prometheus text format.
 
 #include "server/api/api.hpp"
+#include "server/base/digest.hpp"
 #include "server/base/version.hpp"
 
 #include <fmt/format.h>
@@ -63,6 +64,8 @@ void write(MetricsText& text, const PipelineThread::Figures& pipeline) {
     text.line("archive_commit_seconds_sum", "", pipeline.commit_s);
     text.line("archive_commit_seconds_count", "", pipeline.commits);
     text.gauge("archive_longest_commit_seconds", "the longest of them", pipeline.longest_commit_s);
+    text.gauge("archive_bytes", "size of the archive's file", pipeline.archive_octets);
+    text.gauge("archive_wal_bytes", "size of the archive's write-ahead log", pipeline.log_octets);
     text.counter("items_published_total", "items made durable and published", pipeline.published_items);
     text.begin("link_units_total", "counter", "packets, or decoded tones, received over a link");
     for (const auto& [link, received] : pipeline.links)
@@ -77,6 +80,8 @@ void write(MetricsText& text, const StreamHub& hub) {
     text.gauge("stream_clients", "WebSocket clients", hub.sessions());
     text.gauge("stream_clients_behind", "of them, those that have not been given all that is published for them",
                hub.sessions_behind());
+    text.gauge("stream_clients_replaying", "of them, those that are given a run that is over, or a run again",
+               hub.sessions_replaying());
     text.counter("stream_messages_total", "messages given to clients", figures.messages);
     text.counter("stream_octets_total", "octets of them", figures.octets);
     text.counter("stream_encodings_total", "batches encoded", figures.encodings);
@@ -85,13 +90,44 @@ void write(MetricsText& text, const StreamHub& hub) {
     text.counter("stream_refusals_total", "client messages that were refused", figures.refusals);
 }
 
+/// A client's label: its account's name. Without accounts the start of a hash, since a browser is known by the secret of
+/// its cookie.
+std::string label_of(const std::string& client, bool accounts) {
+    constexpr std::size_t digits = 8;
+    if (accounts || client == QueryThreads::other_clients) return client;
+    Digest digest;
+    digest.add({reinterpret_cast<const std::uint8_t*>(client.data()), client.size()});
+    return digest.text().substr(0, digits);
+}
+
+void write(MetricsText& text, const std::map<std::string, QueryThreads::Waits>& waits, bool accounts) {
+    text.begin("query_wait_seconds", "summary", "how long questions of a client waited for a query thread");
+    for (const auto& [client, of_client] : waits) {
+        const auto label = fmt::format("{{client=\"{}\"}}", label_of(client, accounts));
+        text.line("query_wait_seconds_sum", label, of_client.all_s);
+        text.line("query_wait_seconds_count", label, of_client.queries);
+    }
+    text.begin("query_longest_wait_seconds", "gauge", "the longest of these waits, by client");
+    for (const auto& [client, of_client] : waits)
+        text.line("query_longest_wait_seconds", fmt::format("{{client=\"{}\"}}", label_of(client, accounts)),
+                  of_client.longest_s);
+}
+
 }  // namespace
 
 void Api::metrics(const ApiRequest& call) {
     MetricsText text;
-    text.begin("build_info", "gauge", "1, labelled with the version of the program");
-    text.line("build_info", fmt::format("{{version=\"{}\"}}", version), 1);
+    text.begin("build_info", "gauge", "1, labelled with the program's version, its archive's schema, its dictionary");
+    text.line("build_info",
+              fmt::format("{{version=\"{}\",schema=\"{}\",dictionary=\"{}\"}}", version, archive::schema_version,
+                          parts_.dictionary.id),
+              1);
     write(text, parts_.pipeline.figures());
+    text.gauge("archive_fault", "1 while nothing can be stored; /healthz says why",
+               parts_.pipeline.fault().empty() ? 0 : 1);
+    text.counter("clock_jumps_total", "jumps of the system's clock against the monotonic clock",
+                 parts_.clock_watch.jumps());
+    text.gauge("clock_moved_seconds", "all these jumps together", parts_.clock_watch.moved_s());
     write(text, parts_.hub);
     text.begin("http_responses_total", "counter", "responses, by route and status; none: no route of the API");
     {
@@ -103,17 +139,24 @@ void Api::metrics(const ApiRequest& call) {
     text.gauge("connections", "open HTTP and WebSocket connections", parts_.connections());
     text.counter("queries_total", "questions to the archive", parts_.queries.asked());
     text.gauge("queries_waiting", "questions that wait for a query thread", parts_.queries.waiting());
+    write(text, parts_.queries.waits(), parts_.access.accounts());
+    // Of a run only while it goes on: what is over is in the archive.
+    const bool going_on = parts_.desk.going_on();
+    const auto of_run = [going_on](auto value) { return going_on ? value : decltype(value){}; };
     const auto run = parts_.desk.current();
+    text.gauge("run_in_progress", "1 while a rehearsal goes on", going_on ? 1 : 0);
     text.gauge("commands_waiting", "commands and command files that wait for the run's next cycle",
-               parts_.desk.commands_waiting());
+               of_run(parts_.desk.commands_waiting()));
     text.gauge("commands_put_off", "commands and command files that wait until a change of the timeline is decided",
                parts_.desk.commands_deferred());
     text.gauge("commands_queued", "commands that wait for their time, a controller, a pass or an analysis",
-               parts_.desk.commands_queued());
+               of_run(parts_.desk.commands_queued()));
     text.gauge("commands_at_uplink", "commands that have left the queue and are not radiated",
-               parts_.desk.commands_at_uplink());
-    text.gauge("run", "number of the current run", run.run());
-    text.gauge("run_attained_pace", "seconds of the vehicle a second", run.attained_pace());
+               of_run(parts_.desk.commands_at_uplink()));
+    text.gauge("run", "number of the rehearsal that goes on; 0: none does", of_run(run.run()));
+    text.gauge("run_pace", "seconds of the vehicle a second, as ordered; 0: as fast as it goes, or none goes on",
+               of_run(run.pace()));
+    text.gauge("run_attained_pace", "seconds of the vehicle a second, as attained", of_run(run.attained_pace()));
     text.counter("process_cpu_seconds_total", "CPU time of the process", cpu_s());
     text.gauge("resident_memory_bytes", "resident memory of the process", resident_octets());
     call.respond({200, "text/plain; version=0.0.4; charset=utf-8", "no-store", std::move(text.text)});

@@ -142,8 +142,25 @@ std::optional<QueryThreads::WaitingJob> QueryThreads::next(std::span<const JobPr
     const auto kind = first();
     if (kind == kinds.end()) return std::nullopt;
     auto asked = waiting_[static_cast<std::size_t>(*kind)].pop(may(*kind));
-    if (*kind == JobPriority::in_turn) ++questions_of_[asked->asker.client];
+    if (*kind == JobPriority::in_turn) {
+        ++questions_of_[asked->asker.client];
+        note_wait(*asked);
+    }
     return asked;
+}
+
+void QueryThreads::note_wait(const WaitingJob& taken) {
+    const bool room = waits_.size() < waits_clients_max || waits_.contains(taken.asker.client);
+    auto& waits = waits_[room ? taken.asker.client : other_clients];
+    const double waited_s = std::chrono::duration<double>{Clock::now() - taken.asked}.count();
+    ++waits.queries;
+    waits.all_s += waited_s;
+    waits.longest_s = std::max(waits.longest_s, waited_s);
+}
+
+std::map<std::string, QueryThreads::Waits> QueryThreads::waits() const {
+    const std::scoped_lock lock{mutex_};
+    return waits_;
 }
 
 void QueryThreads::done(const WaitingJob& asked) {

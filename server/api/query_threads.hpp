@@ -82,7 +82,15 @@ class QueryThreads {
     std::function<bool()> stop_of_question(std::function<bool()> gone,
                                            std::chrono::milliseconds question_max = question_seconds_max) const;
     std::uint64_t asked() const { return asked_; }
-    std::size_t waiting() const;  ///< of all priorities
+    /// How long queries waited until a thread took them.
+    struct Waits {
+        std::uint64_t queries = 0;
+        double all_s = 0.0, longest_s = 0.0;
+    };
+    static constexpr std::size_t waits_clients_max = 100;  ///< chosen; the rest is counted under other_clients
+    static constexpr const char* other_clients = "others";
+    std::map<std::string, Waits> waits() const;  ///< by client, since the start
+    std::size_t waiting() const;                 ///< of all priorities
 
   private:
     using Open = std::function<Result<archive::Reader>()>;
@@ -92,11 +100,13 @@ class QueryThreads {
         Job job;
         Asker asker;
         JobPriority priority{};
+        Clock::time_point asked = Clock::now();
     };
     /// Takes the next job of the first of `kinds` that has one; none once ended and none of these kinds waits.
     std::optional<WaitingJob> next(std::span<const JobPriority> kinds);
     /// Whether a client's job of this kind may begin now. Call with mutex_ held.
     bool may_begin(JobPriority kind, const std::string& client) const;
+    void note_wait(const WaitingJob& taken);  ///< call with mutex_ held
     void serve(archive::Reader& reader, std::span<const JobPriority> kinds, const Open& open,
                std::chrono::milliseconds question_max);
     void done(const WaitingJob& asked);
@@ -111,6 +121,7 @@ class QueryThreads {
     std::condition_variable changed_;
     std::array<TurnQueue<WaitingJob>, waiting_max.size()> waiting_;  ///< by JobPriority
     std::map<std::string, std::size_t> questions_of_;                ///< under way, by client
+    std::map<std::string, Waits> waits_;                             ///< by client
     std::size_t running_ = 0;                                        ///< threads that have a turn
     std::uint64_t next_place_ = 0;
     std::deque<std::uint64_t> line_;  ///< places of threads that wait for a turn

@@ -213,6 +213,11 @@ std::size_t StreamHub::sessions_behind() const {
         std::ranges::count_if(sessions_, [](const auto* session) { return session->behind(); }));
 }
 
+std::size_t StreamHub::sessions_replaying() const {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(sessions_, [](const auto* session) { return session->replays(); }));
+}
+
 void StreamHub::wake_all() {
     for (std::size_t i = 0; i < sessions_.size(); ++i) {
         if (i + sessions_ahead < sessions_.size())

@@ -119,7 +119,8 @@ class StreamHub {
     /// Closes clients that may no longer follow.
     void check_clients();
     std::size_t sessions() const { return sessions_.size(); }
-    std::size_t sessions_behind() const;  ///< that have not yet received everything
+    std::size_t sessions_replaying() const;  ///< that are given another run than the current one, or it again
+    std::size_t sessions_behind() const;     ///< that have not yet received everything
 
     // ---- for sessions ------------------------------------------------------------------------------------------
     const Services& services() const { return services_; }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/archive/archive.hpp"
 
+#include "server/archive/fingerprint.hpp"
+#include "server/archive/pruning.hpp"
 #include "server/archive/row_writer.hpp"
 #include "server/archive/schema.hpp"
 #include "server/archive/sqlite.hpp"
@@ -54,12 +56,14 @@ struct Archive::State {
     Result<void> add_dictionary(const dictionary::Dictionary& dictionary);
     Result<RunId> add_run(const RunStart& start, const dictionary::Dictionary& dictionary);
     Result<void> end_run(RunId run, const RunEnd& end, Sequence last_seq);
+    Result<void> add_fingerprint(RunId run, Sequence first, Sequence last);
 
     std::filesystem::path file;
     WriterLock lock;  // released last
     sqlite::Database database;
     RowWriter rows;
     sqlite::Statement last_key;
+    Pruning pruning{database};
     Identities opened;
     bool told_removed = false;
     std::vector<RunId> interrupted;
@@ -297,6 +301,23 @@ Result<void> Archive::append_audit(std::span<const AuditRecord> records) {
     return transaction->commit();
 }
 
+Result<AuditHead> Archive::audit_head() {
+    return archive::audit_head(state_->database);
+}
+
+Result<void> Archive::prune(RunId run, AuditRecord by) {
+    if (auto done = state_->in_place(); !done) return done;
+    auto transaction = sqlite::Transaction::begin_write(state_->database);
+    if (!transaction) return transaction.error();
+    if (auto done = mark_pruned(state_->database, {&run, 1}, std::move(by)); !done) return done;
+    return transaction->commit();
+}
+
+Result<bool> Archive::remove_pruned() {
+    if (auto done = state_->in_place(); !done) return done.error();
+    return state_->pruning.step();
+}
+
 Result<LayoutOutcome> Archive::change_layout(const LayoutChange& change) {
     if (auto done = state_->in_place(); !done) return done.error();
     auto transaction = sqlite::Transaction::begin_write(state_->database);
@@ -323,13 +344,16 @@ Result<Annotation> Archive::annotate(RunId run, Annotation annotation) {
     batch.add(annotation);
     if (auto done = state_->rows.write(run, batch); !done) return done.error();
     auto row =
-        state_->database.prepare("UPDATE runs SET last_seq = ?2 WHERE run = ?1 AND state <> 'running' RETURNING run");
+        state_->database.prepare("UPDATE runs SET last_seq = ?2 WHERE run = ?1 AND state <> 'running' RETURNING state");
     if (!row) return row.error();
     row->bind(1, std::int64_t{run.value}).bind(2, sqlite::number(seq));
     auto updated = row->step();
     if (!updated) return updated.error();
     if (!*updated) return Error{"run " + std::to_string(run.value) + ": there is none that is over"};
+    const bool ended = row->text(0) == "finished";
     row->reset();
+    if (ended)  // else it gets its fingerprint when it has been continued and ends
+        if (auto done = state_->add_fingerprint(run, seq, seq); !done) return done.error();
     if (auto done = transaction->commit(); !done) return done.error();
     return annotation;
 }
@@ -349,7 +373,14 @@ Result<void> Archive::State::end_run(RunId run, const RunEnd& end, Sequence last
         .bind(4, std::string_view(end.digest))
         .bind(5, std::string_view(end.ended))
         .bind(6, sqlite::number(std::max(stored, last_seq)));
-    return row->run();
+    if (auto done = row->run(); !done) return done;
+    return add_fingerprint(run, 1, std::max(stored, last_seq));
+}
+
+Result<void> Archive::State::add_fingerprint(RunId run, Sequence first, Sequence last) {
+    const auto record = fingerprint(database, run, first, last);
+    if (!record) return record.error();
+    return archive::append_audit(database, {&*record, 1});
 }
 
 }  // namespace aeolis::archive

@@ -40,11 +40,18 @@ class Archive {
     /// Continues a run that was cut off; durable when it returns. Fails when the run was not cut off.
     Result<void> continue_run(RunId run);
 
-    /// Stores all of `batch` or none of it; durable when it returns. `batch.end` finishes the run.
+    /// Stores all of `batch` or none of it; durable when it returns. `batch.end` finishes the run, whose
+    /// fingerprint is then in the audit.
     Result<void> append(RunId run, const Batch& batch);
 
     /// Stores all records or none; durable when it returns.
     Result<void> append_audit(std::span<const AuditRecord> records);
+    /// The newest entry of the audit: these records, or the fingerprints of a run that has ended.
+    Result<AuditHead> audit_head();
+    /// Marks a run that is over as pruned: readers no longer find it; durable when it returns.
+    Result<void> prune(RunId run, AuditRecord by);
+    /// Removes a piece of what pruned runs left, some milliseconds of work. False: nothing is left (pruning.hpp).
+    Result<bool> remove_pruned();
     /// Saves or removes a layout of the console; durable when it returns.
     Result<LayoutOutcome> change_layout(const LayoutChange& change);
     /// Adds the last item of a run that is not in progress; durable when it returns. @return the annotation with its

@@ -1,14 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/archive/audit.hpp"
 
-#include "common/check.hpp"
+#include "server/base/digest.hpp"
 
-#include <array>
-#include <openssl/evp.h>
+#include <cerrno>
+#include <charconv>
+#include <cstring>
+#include <fcntl.h>
+#include <fstream>
+#include <unistd.h>
 
 namespace aeolis::archive {
 namespace {
 
+constexpr std::size_t hash_digits = 64;
+constexpr mode_t owner_only = 0600;
 constexpr char entry_columns[] = "SELECT entry, at, who, peer, action, detail, outcome, hash FROM audit ";
 
 AuditEntry entry_of(const sqlite::Statement& row) {
@@ -35,15 +41,9 @@ std::string audit_hash(const std::string& before, const AuditEntry& entry) {
     for (const auto& part : {before, std::to_string(entry.entry), entry.at, entry.who, entry.from, entry.action,
                              entry.detail, entry.outcome})
         add_part(text, part);
-    std::array<unsigned char, 32> hash{};
-    AEOLIS_CHECK(EVP_Digest(text.data(), text.size(), hash.data(), nullptr, EVP_sha256(), nullptr) == 1);
-    constexpr char digits[] = "0123456789abcdef";
-    std::string hex;
-    for (const auto octet : hash) {
-        hex += digits[octet >> 4U];
-        hex += digits[octet & 15U];
-    }
-    return hex;
+    server::Digest digest;
+    digest.add({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+    return digest.text();
 }
 
 Result<void> append_audit(sqlite::Database& database, std::span<const AuditRecord> records) {
@@ -86,6 +86,77 @@ Result<std::vector<AuditEntry>> audit_entries(sqlite::Database& database, std::u
         if (!*found) return entries;
         entries.push_back(entry_of(*rows));
     }
+}
+
+Result<AuditHead> audit_head(sqlite::Database& database) {
+    auto last = database.prepare("SELECT entry, hash FROM audit ORDER BY entry DESC LIMIT 1");
+    if (!last) return last.error();
+    auto found = last->step();
+    if (!found) return found.error();
+    if (!*found) return AuditHead{};
+    return AuditHead{static_cast<std::uint64_t>(last->integer(0)), std::string(last->text(1))};
+}
+
+std::string text_of(const AuditHead& head) {
+    return std::to_string(head.entry) + ':' + head.hash;
+}
+
+std::optional<AuditHead> head_from_text(std::string_view text) {
+    AuditHead head;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), head.entry);
+    const auto rest = text.substr(static_cast<std::size_t>(end - text.data()));
+    if (error != std::errc{} || head.entry == 0 || !rest.starts_with(':')) return std::nullopt;
+    head.hash = rest.substr(1);
+    if (head.hash.size() != hash_digits || head.hash.find_first_not_of("0123456789abcdef") != std::string::npos)
+        return std::nullopt;
+    return head;
+}
+
+Result<std::optional<std::string>> head_fault(sqlite::Database& database, const AuditHead& known) {
+    if (known.entry == 0) return std::optional<std::string>{};
+    auto entry = database.prepare("SELECT hash FROM audit WHERE entry = ?1");
+    if (!entry) return entry.error();
+    entry->bind(1, static_cast<std::int64_t>(known.entry));
+    auto found = entry->step();
+    if (!found) return found.error();
+    if (*found && entry->text(0) == known.hash) return std::optional<std::string>{};
+    const auto named = "audit: entry " + std::to_string(known.entry);
+    if (*found) return std::optional{named + " is not the one that was known to be there"};
+    const auto last = audit_head(database);
+    if (!last) return last.error();
+    return std::optional{named + " was known to be there, and is gone: " +
+                         (last->entry == 0 ? "the audit is empty" : "the last is " + std::to_string(last->entry))};
+}
+
+Result<void> write_head(const std::filesystem::path& file, const AuditHead& head) {
+    auto partial = file;
+    partial += "-partial";
+    const auto text = text_of(head) + "\n";
+    const auto failed = [&] { return Error{file.string() + ": " + std::strerror(errno)}; };
+    const int out = ::open(partial.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, owner_only);
+    if (out < 0) return failed();
+    const bool written = ::write(out, text.data(), text.size()) == static_cast<ssize_t>(text.size());
+    const auto why = failed();
+    ::close(out);
+    if (!written) return why;
+    return ::rename(partial.c_str(), file.c_str()) == 0 ? Result<void>{} : failed();
+}
+
+Result<std::optional<AuditHead>> read_head(const std::filesystem::path& file) {
+    std::error_code ignored;
+    if (!std::filesystem::exists(file, ignored)) return std::optional<AuditHead>{};
+    std::ifstream in{file};
+    std::string line;
+    std::getline(in, line);
+    const auto head = head_from_text(line);
+    if (!head) return Error{file.string() + ": not the head of an audit, ENTRY:HASH"};
+    return head;
+}
+
+std::filesystem::path head_file(const std::filesystem::path& archive, const std::filesystem::path& folder) {
+    auto name = archive.filename();
+    name += "-audit";
+    return folder / name;
 }
 
 Result<AuditCheck> check_audit(sqlite::Database& database) {

@@ -6,12 +6,15 @@
 #include "server/archive/sqlite.hpp"
 
 #include <cstdint>
+#include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 // The audit: who did what. Entries are chained by hash: none can be changed, removed or inserted unless all that follow
-// are recomputed. Removal of the newest entries shows only against a hash kept elsewhere.
+// are recomputed. Removal of the newest entries, or of all, shows against a head kept outside the archive.
 namespace aeolis::archive {
 
 struct AuditRecord {
@@ -36,6 +39,26 @@ Result<void> append_audit(sqlite::Database& database, std::span<const AuditRecor
 /// The entries after `after` in that order; 0: from its beginning.
 Result<std::vector<AuditEntry>> audit_entries(sqlite::Database& database, std::uint64_t after, std::size_t limit,
                                               Order order = {});
+
+/// The newest entry, which stands for all before it.
+struct AuditHead {
+    std::uint64_t entry = 0;  ///< 0: there is none
+    std::string hash;
+    bool operator==(const AuditHead&) const = default;
+};
+Result<AuditHead> audit_head(sqlite::Database& database);
+/// A head as text, "ENTRY:HASH", and from it; none for any other text.
+std::string text_of(const AuditHead& head);
+std::optional<AuditHead> head_from_text(std::string_view text);
+/// Whether the chain still has the entry that was once its head; else what is wrong, as a sentence.
+Result<std::optional<std::string>> head_fault(sqlite::Database& database, const AuditHead& known);
+
+/// Writes a head into a file, as a line, all of it or nothing, readable by its owner only; reads it. None: there is no
+/// such file.
+Result<void> write_head(const std::filesystem::path& file, const AuditHead& head);
+Result<std::optional<AuditHead>> read_head(const std::filesystem::path& file);
+/// The file of an archive's head, in `folder`.
+std::filesystem::path head_file(const std::filesystem::path& archive, const std::filesystem::path& folder);
 
 struct AuditCheck {
     std::uint64_t entries = 0;

@@ -181,7 +181,7 @@ CREATE VIEW commands AS
 
 // Page size of a new archive; SQLite's default is 4 kB. A pyramid block or a packed column fits one page, and trees are
 // a level less deep: a plot opened first reads a third of the pages. docs/decisions/0028
-constexpr char page_size_sql[] = "PRAGMA page_size = 16384";
+constexpr char page_size_sql[] = "PRAGMA page_size = 16384; PRAGMA auto_vacuum = INCREMENTAL";  // Pruning
 
 constexpr char by_key[] = "key BETWEEN ?1 << 40 AND ?1 << 40 | 0xFFFFFFFFFF";
 constexpr char by_run[] = "run = ?1";

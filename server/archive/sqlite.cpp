@@ -3,8 +3,11 @@
 
 #include "common/check.hpp"
 
+#include <bit>
 #include <cctype>
+#include <fcntl.h>
 #include <sqlite3.h>
+#include <unistd.h>
 
 namespace aeolis::archive::sqlite {
 
@@ -12,7 +15,14 @@ namespace {
 
 /// A reader never waits; a writer only for another connection's checkpoint.
 constexpr int busy_timeout_ms = 250;
+constexpr mode_t owner_only = 0600;
 constexpr int operations_between_looks = 1000;  ///< of SQLite's virtual machine: about 20 us
+
+/// Makes the file, if there is none. An open file is never closed here: that would drop SQLite's locks on it.
+void make_private(const std::string& file) {
+    const int made = ::open(file.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, owner_only);
+    if (made >= 0) ::close(made);
+}
 
 }  // namespace
 
@@ -94,6 +104,30 @@ std::span<const std::uint8_t> Statement::octets(int column) const {
     if (octets == nullptr) return {};
     return {octets, static_cast<std::size_t>(sqlite3_column_bytes(statement_.get(), column))};
 }
+int Statement::columns() const {
+    return sqlite3_column_count(statement_.get());
+}
+void Statement::append_exact(int column, std::vector<std::uint8_t>& octets) const {
+    const auto append = [&](char type, const void* data, std::size_t size) {
+        const auto head = type + std::to_string(size) + ':';
+        octets.insert(octets.end(), head.begin(), head.end());
+        const auto* first = static_cast<const std::uint8_t*>(data);
+        octets.insert(octets.end(), first, first + size);
+    };
+    switch (sqlite3_column_type(statement_.get(), column)) {
+    case SQLITE_INTEGER: {
+        const auto digits = std::to_string(integer(column));
+        return append('i', digits.data(), digits.size());
+    }
+    case SQLITE_FLOAT: {
+        const auto digits = std::to_string(std::bit_cast<std::uint64_t>(real(column)));
+        return append('r', digits.data(), digits.size());
+    }
+    case SQLITE_TEXT: return append('t', text(column).data(), text(column).size());
+    case SQLITE_BLOB: return append('b', this->octets(column).data(), this->octets(column).size());
+    default: return append('n', "", 0);
+    }
+}
 bool Statement::is_null(int column) const {
     return sqlite3_column_type(statement_.get(), column) == SQLITE_NULL;
 }
@@ -104,6 +138,7 @@ Result<Database> Database::open(const std::string& file, Mode mode) {
     // NOMUTEX: each connection has one owner. URI: needed by attach_read_only().
     const int flags = SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_URI |
                       (mode == Mode::read_only ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
+    if (mode == Mode::read_write_create) make_private(file);
     sqlite3* handle = nullptr;
     const int code = sqlite3_open_v2(file.c_str(), &handle, flags, nullptr);
     database.database_.reset(handle);

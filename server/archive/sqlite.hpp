@@ -11,6 +11,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 struct sqlite3;
 struct sqlite3_stmt;
@@ -47,6 +48,9 @@ class Statement {
     std::string_view text(int column) const;
     std::span<const std::uint8_t> octets(int column) const;
     bool is_null(int column) const;
+    int columns() const;
+    /// Appends a column's type and value, exactly: equal octets mean equal columns. For hashes.
+    void append_exact(int column, std::vector<std::uint8_t>& octets) const;
 
   private:
     friend class Database;
@@ -61,6 +65,8 @@ enum class Mode { read_only, read_write_create };
 /// One connection, one owner.
 class Database {
   public:
+    /// A file that is made is its owner's alone (mode 0600), whatever the umask, and SQLite gives its log and its shared
+    /// memory the same mode. An existing file keeps its mode.
     static Result<Database> open(const std::string& file, Mode mode);
 
     Result<void> execute(const char* sql);

@@ -3,6 +3,7 @@
 
 #include "server/archive/archive.hpp"
 #include "server/archive/item_tables.hpp"
+#include "server/archive/pruning.hpp"
 #include "server/archive/schema.hpp"
 
 #include <cerrno>
@@ -24,6 +25,15 @@ std::string item_keys_sql(const std::string& schema) {
 }
 
 }  // namespace
+
+std::optional<std::string> open_to_others(const std::filesystem::path& file) {
+    using std::filesystem::perms;
+    std::error_code error;
+    const auto mode = std::filesystem::status(file, error).permissions();
+    if (error || (mode & (perms::group_all | perms::others_all)) == perms::none) return std::nullopt;
+    return file.string() + " may be read or written by others than its owner: chmod 600 " + file.string() +
+           "*, unless that is wanted";
+}
 
 Result<void> make_durable(const std::filesystem::path& file) {
     const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
@@ -70,31 +80,19 @@ Result<void> prune(Maintenance& archive, const std::vector<RunId>& runs, AuditRe
     auto& database = archive.database();
     auto transaction = sqlite::Transaction::begin_write(database);
     if (!transaction) return transaction.error();
-    auto note = database.prepare("INSERT INTO pruned_runs SELECT run, scenario, seed, case_number, outcome, started,"
-                                 " strftime('%Y-%m-%dT%H:%M:%SZ') FROM runs WHERE run = ?1 RETURNING run");
-    if (!note) return note.error();
-    for (const RunId run : runs) {
-        note->bind(1, std::int64_t{run.value});
-        auto found = note->step();
-        if (!found) return found.error();
-        if (!*found) return Error{"no run " + std::to_string(run.value) + " in " + database.file()};
-        note->reset();
-        for (const RunTable& table : run_tables()) {
-            auto taken = database.prepare((std::string("DELETE FROM ") + table.name + " WHERE " + table.rows).c_str());
-            if (!taken) return taken.error();
-            taken->bind(1, std::int64_t{run.value});
-            if (auto done = taken->run(); !done) return done;
-        }
-        by.detail += (by.detail.empty() ? "runs " : ", ") + std::to_string(run.value);
+    if (auto done = mark_pruned(database, runs, std::move(by)); !done) return done;
+    if (auto done = transaction->commit(); !done) return done;
+    Pruning pruning{database};
+    for (;;) {
+        auto more = pruning.step();
+        if (!more) return more.error();
+        if (!*more) return database.execute("PRAGMA wal_checkpoint(TRUNCATE)");
     }
-    by.action = "prune";
-    by.outcome = "done";
-    if (auto noted = append_audit(database, {&by, 1}); !noted) return noted;
-    return transaction->commit();
 }
 
 Result<void> vacuum(Maintenance& archive) {
-    if (auto done = archive.database().execute("VACUUM"); !done) return done;
+    // From now on pruning returns space by itself, as in a new archive.
+    if (auto done = archive.database().execute("PRAGMA auto_vacuum = INCREMENTAL; VACUUM"); !done) return done;
     return archive.database().execute("PRAGMA wal_checkpoint(TRUNCATE)");
 }
 

@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -39,8 +40,9 @@ struct RunLine {
 /// All runs, oldest first.
 Result<std::vector<RunLine>> run_lines(sqlite::Database& database);
 
-/// Deletes the runs, all or none, and notes them in `pruned_runs`. Their numbers are not used again. The file keeps its
-/// size until it is vacuumed.
+/// Deletes the runs and notes them in `pruned_runs`; all or none of them is deleted, though a crash may leave rows that
+/// the next writer removes. Their numbers are not used again. An archive of an older version keeps its size until it is
+/// vacuumed.
 /// @param by  time, user and address for the audit entry; the action is filled in here
 Result<void> prune(Maintenance& archive, const std::vector<RunId>& runs, AuditRecord by);
 
@@ -54,6 +56,10 @@ Result<void> backup(const std::filesystem::path& file, const std::filesystem::pa
 /// Copies an open database, even one removed under its name; replaces `into`. Durable when it returns; leaves no file
 /// when it fails.
 Result<void> copy_whole(const sqlite::Database& source, const std::filesystem::path& into);
+
+/// A sentence when others than its owner may read or write the file. A new archive is its owner's alone; an older one, or
+/// one opened to others by hand, keeps its mode.
+std::optional<std::string> open_to_others(const std::filesystem::path& file);
 
 /// Makes a file durable: its contents, and its name in its folder.
 Result<void> make_durable(const std::filesystem::path& file);

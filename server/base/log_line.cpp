@@ -10,6 +10,12 @@
 namespace aeolis::server {
 namespace {
 
+/// Of the process: set once, before there are threads.
+bool& printed_json() {
+    static bool json = false;
+    return json;
+}
+
 class TextLine final : public spdlog::formatter {
   public:
     void format(const spdlog::details::log_msg& message, spdlog::memory_buf_t& line) override {
@@ -60,6 +66,18 @@ std::string printable(std::string_view text) {
             shown += text[i];
     }
     return shown;
+}
+
+void print_json() {
+    printed_json() = true;
+}
+
+void print_line(std::FILE* to, std::string_view text) {
+    if (!printed_json()) return fmt::print(to, "{}\n", text);
+    const auto level = to == stderr ? spdlog::level::err : spdlog::level::info;
+    spdlog::memory_buf_t line;
+    JsonLine{}.format(spdlog::details::log_msg{"", level, {text.data(), text.size()}}, line);
+    std::fwrite(line.data(), 1, line.size(), to);
 }
 
 std::unique_ptr<spdlog::formatter> text_lines() {

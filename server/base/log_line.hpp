@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdio>
 #include <memory>
 #include <spdlog/formatter.h>
 #include <string>
@@ -11,6 +12,10 @@ namespace aeolis::server {
 
 /// Escapes control characters as \n, \t or \x1b; leaves all else unchanged.
 std::string printable(std::string_view text);
+
+/// Prints a line besides the log: as it is or, after print_json(), as an object like the log's, of level error on stderr.
+void print_line(std::FILE* to, std::string_view text);
+void print_json();
 
 /// spdlog's own format, with a printable message.
 std::unique_ptr<spdlog::formatter> text_lines();

@@ -7,10 +7,14 @@
 
 namespace aeolis::server {
 
-/// The machine's clock (UTC, ISO 8601): only for a run's start and end, never for what happened in it.
+/// UTC, ISO 8601, to the second.
+inline std::string utc_text(std::chrono::system_clock::time_point time) {
+    return fmt::format("{:%Y-%m-%dT%H:%M:%S}Z", fmt::gmtime(std::chrono::floor<std::chrono::seconds>(time)));
+}
+
+/// The machine's clock: only for a run's start and end, never for what happened in it (EarthClock).
 inline std::string wall_clock_text() {
-    return fmt::format("{:%Y-%m-%dT%H:%M:%S}Z",
-                       fmt::gmtime(std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now())));
+    return utc_text(std::chrono::system_clock::now());
 }
 
 }  // namespace aeolis::server

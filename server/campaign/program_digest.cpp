@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/campaign/program_digest.hpp"
 
-#include "server/rehearsal/digest.hpp"
+#include "server/base/digest.hpp"
 
 #include <fstream>
 #include <vector>

@@ -69,18 +69,36 @@ Result<std::vector<archive::RunLine>> chosen(const PruneOptions& options, const 
     return runs;
 }
 
+struct VerifyOptions : ArchiveOptions {
+    std::string head;  ///< of the audit: a file, or ENTRY:HASH; empty: the file beside the archive, if there is one
+};
+
+/// The head of the audit that was kept outside the archive; none: none is known.
+Result<std::optional<archive::AuditHead>> known_head(const VerifyOptions& options) {
+    if (const auto given = archive::head_from_text(options.head)) return std::optional{*given};
+    if (options.head.empty())
+        return archive::read_head(archive::head_file(options.archive, options.archive.parent_path()));
+    auto read = archive::read_head(options.head);
+    if (read && !*read) return Error{fmt::format("--audit-head {}: neither a file nor ENTRY:HASH", options.head)};
+    return read;
+}
+
 /// Returns 0 when there is no fault.
-int archive_verify(const ArchiveOptions& options) {
+int archive_verify(const VerifyOptions& options) {
     int exit_code = 0;
+    const auto known = known_head(options);
+    if (!known) return failed_at("verify", known.error());
     const auto recorded = recorded_dictionary(options.shared.dictionary, options.xtce, options.root, exit_code);
     if (!recorded) return exit_code;
     const auto found = [&] {
         ProgressLine line;
         return pipeline::verify(options.archive, asked(options), recorded->dictionary, recorded->other.get(),
-                                std::filesystem::temp_directory_path(), until_interrupted(line));
+                                std::filesystem::temp_directory_path(), until_interrupted(line), *known);
     }();
     if (!found) return failed_at("verify", found.error());
     if (found->stopped) return failed("archive verify: stopped before everything was compared");
+    if (!*known && found->faults.empty())
+        fmt::print("note: audit: no head of it was kept outside the archive: an end that was cut off would not show\n");
     for (const auto& fault : found->faults) fmt::print("{}\n", fault);
     for (const auto& note : found->notes) fmt::print("note: {}\n", note);
     fmt::print("{}: {} runs, {} packets compared, {}\n", options.archive.string(), found->runs, found->packets,
@@ -109,7 +127,9 @@ int archive_prune(const PruneOptions& options) {
     if (options.runs.empty() == !options.keep)
         return failed("archive prune: --run or --keep must name the runs, not both", 2);
     auto archive = archive::Maintenance::open(options.archive);
-    if (!archive) return failed_at("prune", archive.error());
+    if (!archive)
+        return failed(fmt::format("archive prune: {} (a server that serves it removes a run by DELETE /api/v1/runs/N)",
+                                  archive.error().message));
     const auto all = archive::run_lines(archive->database());
     if (!all) return failed_at("prune", all.error());
     const auto runs = chosen(options, *all);
@@ -126,8 +146,9 @@ int archive_prune(const PruneOptions& options) {
         return 0;
     }
     if (auto done = archive::prune(*archive, numbers, by_this_user()); !done) return failed_at("prune", done.error());
-    fmt::print("{} of {} runs removed; aeolis archive vacuum returns their space to the disk\n", runs->size(),
-               all->size());
+    std::error_code ignored;
+    fmt::print("{} of {} runs removed; {}: {} octets\n", runs->size(), all->size(), options.archive.string(),
+               std::filesystem::file_size(options.archive, ignored));
     return 0;
 }
 
@@ -150,11 +171,16 @@ int archive_backup(const std::filesystem::path& file, const std::filesystem::pat
 }
 
 void add_archive_verify(CLI::App& archive, int& exit_code) {
-    const auto options = std::make_shared<ArchiveOptions>();
-    auto& command =
-        *archive.add_subcommand("verify", "checks the file's structure, its sequence numbers, and every derived "
-                                          "row against the packets; a line a fault; exit code 1 when there is one");
+    const auto options = std::make_shared<VerifyOptions>();
+    auto& command = *archive.add_subcommand(
+        "verify",
+        "checks the file's structure, its audit, its sequence numbers, every derived row against the packets, "
+        "and all other rows against the run's fingerprint; a line a fault; exit code 1 when there is one");
     add_archive_and_dictionary(command, *options);
+    command.add_option(
+        "--audit-head", options->head,
+        "newest entry of the audit that is known to have been there: a file that the server keeps beside "
+        "its accounts, or ENTRY:HASH from its log; if left out, ARCHIVE-audit where it exists");
     command.add_option("--run", options->run, "only this run")->check(whole_number());
     command.callback([options, &exit_code] { exit_code = archive_verify(*options); });
 }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "server/base/log_line.hpp"
 #include "server/base/version.hpp"
 #include "server/cli/commands.hpp"
 #include "server/cli/settings_file.hpp"
@@ -33,6 +34,11 @@ int main(int argc, char** argv) {
     using namespace aeolis::server;
     spdlog::set_default_logger(spdlog::stderr_color_mt("aeolis"));
     spdlog::set_pattern("%Y-%m-%dT%H:%M:%S.%e %^%l%$ %v");
+
+    if (setting_given(argc, argv, "log-format") == "json") {  // already for what is wrong with the other options
+        print_json();
+        spdlog::set_formatter(json_lines());
+    }
 
     CLI::App program{
         "Aeolis lands a spacecraft on Mars and lets you control it from a browser.\n"

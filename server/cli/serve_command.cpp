@@ -143,20 +143,23 @@ class Signals {
 void print_first_password(const ConsoleBackend& backend, const std::filesystem::path& accounts) {
     const auto& password = backend.first_password();
     if (password.empty()) return;
-    fmt::print("No accounts yet: {} was made.\n  Log in as administrator with {}\n  It is shown this once, and "
-               "only lets you choose a password of your own.\n",
-               accounts.string(), password);
+    print_line(stdout, fmt::format("No accounts yet: {} was made.", accounts.string()));
+    print_line(stdout, fmt::format("  Log in as administrator with {}", password));
+    print_line(stdout, "  It is shown this once, and only lets you choose a password of your own.");
     std::fflush(stdout);
 }
 
 void print_address(const ConsoleBackend& backend, const Listen& listen, const std::string& next_step,
                    const ServeOptions& options) {
-    fmt::print("Aeolis is at {}://{}:{}/\n  {}\n  archive {}; {}; end with Ctrl-C\n",
-               backend.secure() ? "https" : "http",
-               listen.address.find(':') == std::string::npos ? listen.address : '[' + listen.address + ']',
-               backend.port(), next_step, std::filesystem::absolute(options.archive).lexically_normal().string(),
-               options.accounts.empty() ? "no accounts: whoever uses this machine may command"
-                                        : "accounts in " + options.accounts.string());
+    print_line(stdout,
+               fmt::format("Aeolis is at {}://{}:{}/", backend.secure() ? "https" : "http",
+                           listen.address.find(':') == std::string::npos ? listen.address : '[' + listen.address + ']',
+                           backend.port()));
+    print_line(stdout, "  " + next_step);
+    print_line(stdout, fmt::format("  archive {}; {}; end with Ctrl-C",
+                                   std::filesystem::absolute(options.archive).lexically_normal().string(),
+                                   options.accounts.empty() ? "no accounts: whoever uses this machine may command"
+                                                            : "accounts in " + options.accounts.string()));
     std::fflush(stdout);
 }
 

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cctype>
+#include <cstdlib>
 #include <filesystem>
 #include <fmt/format.h>
 #include <fstream>
@@ -14,15 +15,26 @@
 namespace aeolis::server {
 namespace {
 
-std::optional<std::filesystem::path> settings_given(int argc, char** argv) {
-    constexpr std::string_view option = "--config";
+/// The value of an option on the command line of `serve`.
+std::optional<std::string> on_command_line(int argc, char** argv, std::string_view name) {
+    const auto option = "--" + std::string{name};
     for (int i = 2; i < argc; ++i) {
         const std::string_view word = argv[i];
         if (word == option && i + 1 < argc) return argv[i + 1];
         if (word.starts_with(option) && word.substr(option.size()).starts_with('='))
-            return word.substr(option.size() + 1);
+            return std::string{word.substr(option.size() + 1)};
     }
     return std::nullopt;
+}
+
+std::string variable_of(std::string_view option) {
+    auto variable = "AEOLIS_" + std::string{option};
+    for (char& c : variable) c = c == '-' ? '_' : static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+    return variable;
+}
+
+bool serves(int argc, char** argv) {
+    return argc >= 2 && std::string_view{argv[1]} == "serve";
 }
 
 Result<std::vector<CLI::ConfigItem>> lines_of(const std::filesystem::path& file) {
@@ -58,9 +70,7 @@ void name_environment(CLI::App& command) {
     for (auto* option : command.get_options()) {
         const auto& name = option->get_lnames().front();
         if (name == "help" || name == "config") continue;
-        std::string variable = "AEOLIS_" + name;
-        for (char& c : variable) c = c == '-' ? '_' : static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-        option->envname(variable);
+        option->envname(variable_of(name));
     }
 }
 
@@ -73,9 +83,19 @@ Result<std::optional<std::string>> setting_in_file(const std::filesystem::path& 
     return value;
 }
 
+std::optional<std::string> setting_given(int argc, char** argv, std::string_view option) {
+    if (!serves(argc, argv)) return std::nullopt;
+    if (auto given = on_command_line(argc, argv, option)) return given;
+    if (const char* const variable = std::getenv(variable_of(option).c_str())) return variable;
+    const auto file = on_command_line(argc, argv, "config");
+    if (!file) return std::nullopt;
+    auto set = setting_in_file(*file, option);
+    return set ? std::move(*set) : std::nullopt;
+}
+
 Result<void> take_settings(CLI::App& program, int argc, char** argv) {
-    if (argc < 2 || std::string_view{argv[1]} != "serve") return {};
-    const auto file = settings_given(argc, argv);
+    if (!serves(argc, argv)) return {};
+    const auto file = on_command_line(argc, argv, "config");
     return file ? take_file(*program.get_subcommand("serve"), *file) : Result<void>{};
 }
 

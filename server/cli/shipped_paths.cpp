@@ -2,6 +2,7 @@
 #include "server/cli/shipped_paths.hpp"
 
 #include "generated/dictionary_flight.hpp"
+#include "server/base/log_line.hpp"
 #include "server/scenario/scenario_library.hpp"
 #include "server/scenario/scenario_text.hpp"
 #include "server/scenario/script_check.hpp"
@@ -22,7 +23,7 @@ std::filesystem::path shipped(const std::string& folder) {
 
 std::optional<dictionary::Dictionary> loaded_dictionary(const std::filesystem::path& directory) {
     auto loaded = dictionary::load(directory);
-    for (const auto& finding : loaded.findings) fmt::print(stderr, "{}\n", finding.text());
+    for (const auto& finding : loaded.findings) print_line(stderr, finding.text());
     return std::move(loaded.dictionary);
 }
 
@@ -53,7 +54,7 @@ Result<FlightInputs> flight_inputs(const SharedOptions& shared, const std::strin
 }
 
 int failed(const std::string& message, int exit_code) {
-    fmt::print(stderr, "aeolis: {}\n", message);
+    print_line(stderr, "aeolis: " + message);
     return exit_code;
 }
 

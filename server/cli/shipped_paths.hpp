@@ -37,7 +37,7 @@ struct FlightInputs {
 };
 Result<FlightInputs> flight_inputs(const SharedOptions& shared, const std::string& scenario);
 
-/// Prints one line to stderr, "aeolis: …"; returns the exit code.
+/// Prints one line to stderr, "aeolis: …" (print_line); returns the exit code.
 int failed(const std::string& message, int exit_code = 1);
 
 }  // namespace aeolis::server

@@ -2,6 +2,7 @@
 #include "server/cli/xtce_file.hpp"
 
 #include "common/crc.hpp"
+#include "server/base/log_line.hpp"
 #include "server/cli/shipped_paths.hpp"
 #include "telemetry/container_decoder.hpp"
 
@@ -18,8 +19,9 @@ constexpr std::size_t findings_shown_max = 200;                         // chose
 
 void print_findings(const std::vector<dictionary::Finding>& findings) {
     for (std::size_t i = 0; i < findings.size() && i < findings_shown_max; ++i)
-        fmt::print(stderr, "{}:{}: {}\n", findings[i].file, findings[i].line, findings[i].message);
-    if (findings.size() > findings_shown_max) fmt::print(stderr, "and {} more\n", findings.size() - findings_shown_max);
+        print_line(stderr, fmt::format("{}:{}: {}", findings[i].file, findings[i].line, findings[i].message));
+    if (findings.size() > findings_shown_max)
+        print_line(stderr, fmt::format("and {} more", findings.size() - findings_shown_max));
 }
 
 }  // namespace

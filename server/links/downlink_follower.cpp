@@ -13,18 +13,11 @@ namespace {
 constexpr std::chrono::milliseconds connect_limit{10'000};  // chosen
 constexpr std::chrono::milliseconds receive_limit{1'000};
 constexpr std::int64_t pass_interval_us = 1'000'000;
-constexpr std::int64_t unix_to_2000_s = 946'728'000;  // 1970-01-01 to 2000-01-01T12:00:00
-
-Ert now_on_earth() {
-    using namespace std::chrono;
-    const auto since_1970 = duration_cast<microseconds>(system_clock::now().time_since_epoch());
-    return Ert{since_1970.count() - unix_to_2000_s * 1'000'000};
-}
 
 }  // namespace
 
 DownlinkFollower::DownlinkFollower(Settings settings, PipelineThread& pipeline, OnState on_state)
-    : settings_(std::move(settings)), pipeline_(pipeline), on_state_(std::move(on_state)),
+    : settings_(std::move(settings)), pipeline_(pipeline), on_state_(std::move(on_state)), clock_(settings_.clocks),
       wait_(settings_.retry_first) {}
 
 Result<std::unique_ptr<DownlinkFollower>> DownlinkFollower::start(Settings settings, PipelineThread& pipeline,
@@ -168,7 +161,7 @@ void DownlinkFollower::end_of_stream() {
 
 void DownlinkFollower::deliver_packets() {
     Delivery delivery;
-    const Ert ert = now_on_earth();
+    const Ert ert = clock_.now();
     while (const auto packet = source_->next())
         delivery.entries.emplace_back(
             telemetry::ReceivedPacket{telemetry::downlink_link, ert, {packet->begin(), packet->end()}});
@@ -180,7 +173,7 @@ void DownlinkFollower::deliver_packets() {
 
 /// Reports the time on Earth, also while nothing is received.
 void DownlinkFollower::pass() {
-    const Ert now = now_on_earth();
+    const Ert now = clock_.now();
     if (now.microseconds - passed_.microseconds < pass_interval_us) return;
     passed_ = now;
     Delivery delivery;
@@ -198,7 +191,7 @@ void DownlinkFollower::say(bool up, const std::string& reason) {
     Delivery delivery;
     // No prediction explains a silence of another mission: a broken connection is a ground fault.
     delivery.entries.emplace_back(
-        telemetry::LinkState{telemetry::downlink_link, now_on_earth(), up,
+        telemetry::LinkState{telemetry::downlink_link, clock_.now(), up,
                              up ? reason : words_of(telemetry::SilenceClass::ground_fault, reason), !up});
     if (!pipeline_.deliver(std::move(delivery))) stop_ = true;
     on_state_(state("running"));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "aeolis/v1/run.pb.h"
+#include "server/base/clock_watch.hpp"
 #include "server/links/downlink_socket.hpp"
 #include "server/links/frame_format.hpp"
 #include "server/pipeline/pipeline_thread.hpp"
@@ -22,6 +23,7 @@ namespace aeolis::server {
 /// UDP      bare packets: each datagram holds whole packets. Frames: datagrams are pieces of one stream
 /// Faults   octets that are no packet are counted and skipped. When bare packets cannot be found any more, it
 ///          reconnects. Each change is logged and is an item of the run
+/// Times    Earth received times go on with the monotonic clock when the system's clock jumps (EarthClock)
 /// Memory   a piece of `piece_octets`, a frame, and the beginning of a stream whose frame length is not yet known. A
 ///          slow disk blocks the thread and so the TCP sender; datagrams that arrive meanwhile may be lost, as UDP
 ///          permits
@@ -35,6 +37,7 @@ class DownlinkFollower {
         PacketStreamFormat format;
         std::string xtce;  ///< name of the XTCE file
         std::chrono::milliseconds retry_first{250}, retry_max{30'000};
+        ReadClocks clocks = read_clocks;
     };
     using OnState = std::function<void(v1::RunState)>;  ///< called on the follower's thread
 
@@ -45,6 +48,8 @@ class DownlinkFollower {
     ~DownlinkFollower();  ///< ends the run
 
     std::uint16_t port() const { return port_; }  ///< of the bound UDP socket
+    archive::RunId run() const { return run_; }
+    Ert now() const { return clock_.now(); }  ///< the time on Earth of its run; from any thread
 
   private:
     DownlinkFollower(Settings settings, PipelineThread& pipeline, OnState on_state);
@@ -63,6 +68,7 @@ class DownlinkFollower {
     Settings settings_;
     PipelineThread& pipeline_;
     OnState on_state_;
+    EarthClock clock_;
     DownlinkSocket socket_;
     std::uint16_t port_ = 0;
     archive::RunId run_;

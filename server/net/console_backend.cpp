@@ -2,7 +2,9 @@
 #include "server/net/console_backend.hpp"
 
 #include "server/access/this_user.hpp"
+#include "server/archive/upkeep.hpp"
 #include "server/base/json.hpp"
+#include "server/base/wall_clock.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -39,8 +41,8 @@ Result<void> check_reach(const ConsoleBackend::Settings& settings) {
 }  // namespace
 
 ConsoleBackend::ConsoleBackend(Settings settings, const dictionary::Dictionary& dictionary)
-    : settings_(std::move(settings)), dictionary_(dictionary), timeline_check_(dictionary),
-      scenarios_(settings_.scenarios), console_(settings_.web), predictions_(dictionary) {}
+    : settings_(std::move(settings)), dictionary_(dictionary), clock_watch_(settings_.clocks),
+      timeline_check_(dictionary), scenarios_(settings_.scenarios), console_(settings_.web), predictions_(dictionary) {}
 
 Result<std::unique_ptr<ConsoleBackend>> ConsoleBackend::open(Settings settings,
                                                              const dictionary::Dictionary& dictionary) {
@@ -59,6 +61,7 @@ Result<std::unique_ptr<ConsoleBackend>> ConsoleBackend::open(Settings settings,
     backend->server_->every(stream_check_ms, [self] {
         self->hub_->check_clients();
         self->note_resets();
+        self->watch_clock();
     });
     const auto post = [self](std::function<void()> action) { self->server_->post(std::move(action)); };
 
@@ -66,6 +69,7 @@ Result<std::unique_ptr<ConsoleBackend>> ConsoleBackend::open(Settings settings,
     if (chosen.archive.has_parent_path()) std::filesystem::create_directories(chosen.archive.parent_path(), ignored);
     auto archive = archive::Archive::open(chosen.archive);
     if (!archive) return archive.error();
+    if (const auto wide = archive::open_to_others(chosen.archive)) spdlog::warn("{}", *wide);
     for (const auto run : archive->interrupted())
         spdlog::warn("run {} was cut off: it can be continued in the console, or by POST /api/v1/rehearsals "
                      "{{\"continue_run\":{}}}",
@@ -82,6 +86,7 @@ Result<std::unique_ptr<ConsoleBackend>> ConsoleBackend::open(Settings settings,
     backend->pipeline_->want_items(false);
     backend->pipeline_->on_fault(
         [self, post](const std::string& fault) { post([self, fault] { self->hub_->archive_fault(fault); }); });
+    backend->pipeline_->on_audited([self](const archive::AuditHead& head) { self->keep_audit_head(head); });
     backend->desk_ = std::make_unique<RehearsalDesk>(
         backend->scenarios_, dictionary, *backend->pipeline_, post,
         [self](archive::RunId run, const auto& done) {
@@ -100,7 +105,8 @@ Result<std::unique_ptr<ConsoleBackend>> ConsoleBackend::open(Settings settings,
     backend->api_ = std::make_unique<Api>(
         Api::Parts{dictionary, backend->scenarios_, *backend->queries_, *backend->desk_, backend->predictions_,
                    *backend->campaigns_, *backend->hub_, *backend->pipeline_, backend->console_, *backend->access_,
-                   backend->server_->secure(), [self] { return self->server_->connections(); }});
+                   backend->server_->secure(), [self] { return self->server_->connections(); }, backend->clock_watch_});
+    backend->check_audit_head();
     backend->adopt_newest_run();
     backend->note_resets();
     return backend;
@@ -284,6 +290,74 @@ void ConsoleBackend::note_resets() {
     }
 }
 
+namespace {
+
+/// Where the head of the audit is kept: beside the accounts. Without accounts the audit names nobody, and its head is in
+/// the log only.
+std::filesystem::path audit_head_file(const ConsoleBackend::Settings& settings) {
+    return archive::head_file(settings.archive, settings.accounts.parent_path());
+}
+
+}  // namespace
+
+/// Compares the audit with the head that the last server kept. What is missing is in the log and the audit from now on.
+void ConsoleBackend::check_audit_head() {
+    if (settings_.accounts.empty()) return;
+    const auto fault = [this]() -> Result<std::optional<std::string>> {
+        const auto known = archive::read_head(audit_head_file(settings_));
+        if (!known) return known.error();
+        if (!*known) return std::optional<std::string>{};
+        auto database = archive::sqlite::Database::open(settings_.archive.string(), archive::sqlite::Mode::read_only);
+        if (!database) return database.error();
+        return archive::head_fault(*database, **known);
+    }();
+    if (fault && !*fault) return;
+    const auto told = fault ? **fault : fault.error().message;
+    spdlog::error("{}", told);
+    Operator who;
+    who.from = "server";
+    pipeline_->audit(audit_record(who, "audit", told, "found"));
+}
+
+/// On the pipeline's thread.
+void ConsoleBackend::keep_audit_head(const archive::AuditHead& head) const {
+    spdlog::info("audit head {}", archive::text_of(head));
+    if (settings_.accounts.empty()) return;
+    if (const auto kept = archive::write_head(audit_head_file(settings_), head); !kept)
+        spdlog::error("the head of the audit is not kept: {}", kept.error().message);
+}
+
+/// Tells a jump of the system's clock: in the log, the audit, whose times are the clock's, and the shift log of a run
+/// in progress.
+void ConsoleBackend::watch_clock() {
+    const auto jump = clock_watch_.look();
+    if (!jump) return;
+    const auto told = text_of(*jump);
+    spdlog::warn("{}", told);
+    Operator who;
+    who.from = "server";
+    pipeline_->audit(audit_record(who, "clock", told, "found"));
+
+    archive::NoteRecord note;
+    archive::RunId run;
+    if (downlink_) {
+        run = downlink_->run();
+        note.ert = downlink_->now();
+    } else {
+        const auto now = ert_from_text(hub_->latest_clocks().ert());
+        if (!desk_->going_on() || !now) return;
+        run = archive::RunId{static_cast<std::uint32_t>(desk_->current().run())};
+        note.ert = *now;
+    }
+    note.text = fmt::format("{}. Earth received times of this run do not follow it.", told);
+    note.by = "server";
+    note.written = wall_clock_text();
+    const auto added = [run](const Result<archive::Annotation>& stored) {
+        if (!stored) spdlog::error("run {}: the jump is not in its shift log: {}", run.value, stored.error().message);
+    };
+    if (!pipeline_->annotate(run, std::move(note), added)) added(Error{"too much waits to be stored"});
+}
+
 void ConsoleBackend::start(RehearsalDesk::Flight flight) {
     const auto detail =
         fmt::format("serve --scenario {} --seed {} --pace {}", flight.scenario.name, flight.seed, flight.pace);
@@ -299,6 +373,7 @@ Result<void> ConsoleBackend::follow(DownlinkFollower::Settings settings) {
     desk_->close("this server follows the downlink of another mission: rehearsals need one of their own");
     campaigns_->close("this server follows the downlink of another mission: campaigns need one of their own");
     const auto detail = fmt::format("serve --downlink {} --xtce {}", settings.address.text(), settings.xtce);
+    settings.clocks = settings_.clocks;
     auto follower = DownlinkFollower::start(std::move(settings), *pipeline_, [this](v1::RunState state) {
         server_->post([this, state = std::move(state)]() mutable { hub_->run_state(std::move(state)); });
     });

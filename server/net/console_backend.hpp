@@ -4,6 +4,7 @@
 #include "common/result.hpp"
 #include "dictionaries/dictionary.hpp"
 #include "server/api/api.hpp"
+#include "server/base/clock_watch.hpp"
 #include "server/links/downlink_follower.hpp"
 #include "server/net/web_server.hpp"
 #include "server/rehearsal/timeline_check.hpp"
@@ -26,6 +27,7 @@ class ConsoleBackend {
         std::filesystem::path archive{}, scenarios{}, web{};
         /// Null: our own mission; else that of the dictionary, and must outlive this.
         const telemetry::OtherMission* other = nullptr;
+        ReadClocks clocks = read_clocks;
     };
     /// Opens all parts. Fails with one line that names the archive or the address. The dictionary must outlive this.
     static Result<std::unique_ptr<ConsoleBackend>> open(Settings settings, const dictionary::Dictionary& dictionary);
@@ -53,9 +55,13 @@ class ConsoleBackend {
     StreamSession::Client stream_client(const Credentials& credentials);
     void adopt_newest_run();
     void note_resets();
+    void watch_clock();
+    void check_audit_head();
+    void keep_audit_head(const archive::AuditHead& head) const;
 
     Settings settings_;
     const dictionary::Dictionary& dictionary_;
+    ClockWatch clock_watch_;
     TimelineCheck timeline_check_;
     ScenarioLibrary scenarios_;
     StaticFiles console_;

@@ -3,6 +3,7 @@
 
 #include "server/archive/archive.hpp"
 #include "server/archive/column_codec.hpp"
+#include "server/archive/fingerprint.hpp"
 #include "server/archive/item_rows.hpp"
 #include "server/archive/row_writer.hpp"
 #include "server/archive/schema.hpp"
@@ -274,11 +275,32 @@ Result<void> compare(sqlite::Database& database, const RunToDerive& run, const d
                            " JOIN archive.segment_columns a ON a.key = b.key WHERE s.run = ?1 AND a.value <> b.value");
 }
 
+Result<void> verify_audit(sqlite::Database& database, std::optional<RunId> only,
+                          const std::optional<archive::AuditHead>& known, Verification& found) {
+    auto audit = archive::check_audit(database);
+    if (!audit) return audit.error();
+    found.faults = std::move(audit->faults);
+    if (audit->entries > 0)
+        found.notes.push_back("audit: " + std::to_string(audit->entries) + " entries, the last with hash " +
+                              audit->last_hash);
+    if (known) {
+        auto fault = archive::head_fault(database, *known);
+        if (!fault) return fault.error();
+        if (*fault) found.faults.push_back(std::move(**fault));
+    }
+    auto prints = archive::check_fingerprints(database, only);
+    if (!prints) return prints.error();
+    found.faults.insert(found.faults.end(), prints->faults.begin(), prints->faults.end());
+    found.notes.insert(found.notes.end(), prints->notes.begin(), prints->notes.end());
+    return {};
+}
+
 }  // namespace
 
 Result<Verification> verify(const std::filesystem::path& file, std::optional<RunId> only,
                             const dictionary::Dictionary& dictionary, const telemetry::OtherMission* other,
-                            const std::filesystem::path& scratch_folder, const ProgressCallback& on_progress) {
+                            const std::filesystem::path& scratch_folder, const ProgressCallback& on_progress,
+                            const std::optional<archive::AuditHead>& known) {
     Verification found;
     {
         auto database = sqlite::Database::open(file.string(), sqlite::Mode::read_only);
@@ -288,12 +310,9 @@ Result<Verification> verify(const std::filesystem::path& file, std::optional<Run
         if (!faults) return faults.error();
         for (auto& fault : *faults) found.faults.push_back("the file: " + std::move(fault));
         if (!found.faults.empty()) return found;  // with a damaged file the other checks tell nothing new
-        auto audit = archive::check_audit(*database);
-        if (!audit) return audit.error();
-        found.faults = std::move(audit->faults);
-        if (audit->entries > 0)
-            found.notes.push_back("audit: " + std::to_string(audit->entries) + " entries, the last with hash " +
-                                  audit->last_hash);
+        auto moment = sqlite::Transaction::begin_read(*database);
+        if (!moment) return moment.error();
+        if (auto done = verify_audit(*database, only, known, found); !done) return done.error();
     }
     auto scratch = Scratch::open(scratch_folder / ("aeolis-verify-" + std::to_string(::getpid()) + ".db"), file);
     if (!scratch) return scratch.error();

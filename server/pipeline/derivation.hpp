@@ -32,15 +32,18 @@ struct Verification {
     bool stopped = false;             ///< before all was compared
 };
 
-/// Checks the file's structure, the sequence numbers, and every derived row against the packets. Only reads the
+/// Checks the file's structure, the audit, the sequence numbers, every derived row against the packets, and all other
+/// rows of a run against its fingerprint in the audit. Only reads the
 /// archive, at one instant; a writer may proceed.
 /// @param run      none: all
 /// @param scratch  a folder with room for the derived rows of one run
 /// @param other    the mission of the dictionary; null: our own
 /// @param on_progress  empty: runs to the end
+/// @param known    a head of the audit that was kept outside the archive
 Result<Verification> verify(const std::filesystem::path& archive, std::optional<archive::RunId> run,
                             const dictionary::Dictionary& dictionary, const telemetry::OtherMission* other,
-                            const std::filesystem::path& scratch, const ProgressCallback& on_progress = {});
+                            const std::filesystem::path& scratch, const ProgressCallback& on_progress = {},
+                            const std::optional<archive::AuditHead>& known = {});
 
 struct Rebuilt {
     std::vector<archive::RunId> runs;

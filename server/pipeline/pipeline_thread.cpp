@@ -186,7 +186,16 @@ Result<void> PipelineThread::write_audit() {
     if (records.empty()) return {};
     if (auto written = archive_.append_audit(records); !written) return written;
     tell_audit_kept(records.size());
+    tell_audit_head();
     return {};
+}
+
+void PipelineThread::tell_audit_head() {
+    if (!on_audited_) return;
+    const auto head = archive_.audit_head();
+    if (!head || *head == audit_head_) return;
+    audit_head_ = *head;
+    on_audited_(audit_head_);
 }
 
 Result<void> PipelineThread::commit(std::optional<std::chrono::steady_clock::time_point> when_due) {
@@ -235,6 +244,7 @@ bool PipelineThread::annotate(archive::RunId run, archive::Annotation annotation
     return !blocked() && jobs_.try_push(Action{[this, run, annotation = std::move(annotation), done = std::move(done)] {
         auto added = pipeline_.annotate(run, annotation);
         if (!added) return done(std::move(added));
+        tell_audit_head();  // a run that has ended got another fingerprint
         // Answered after the commit, as a command is: a failing disk must not delay what arrives meanwhile.
         answers_.push_back([done, added = std::move(added)](const std::string& fault) {
             if (fault.empty()) return done(added);
@@ -251,6 +261,27 @@ bool PipelineThread::change_layout(archive::LayoutChange change,
     }});
 }
 
+bool PipelineThread::prune(archive::RunId run, archive::AuditRecord by, std::function<void(Result<void>)> done) {
+    return !blocked() && jobs_.try_push(Action{[this, run, by = std::move(by), done = std::move(done)] {
+        if (pipeline_.run() == run) return done(Error{fmt::format("run {} goes on: it cannot be removed", run.value)});
+        auto marked = archive_.prune(run, by);
+        pruning_ = pruning_ || marked.ok();
+        tell_audit_head();
+        done(std::move(marked));
+    }});
+}
+
+void PipelineThread::remove_pruned() {
+    constexpr int share = 10;  // chosen: one part in ten of this thread's time
+    const auto begun = std::chrono::steady_clock::now();
+    if (!pruning_ || begun < next_piece_) return;
+    const auto more = archive_.remove_pruned();
+    if (!more) spdlog::error("rows of pruned runs are left until the next is removed: {}", more.error().message);
+    pruning_ = more.ok() && *more;
+    const auto end = std::chrono::steady_clock::now();
+    next_piece_ = end + (share - 1) * (end - begun);
+}
+
 std::string PipelineThread::fault() const {
     const std::scoped_lock lock{fault_mutex_};
     return fault_;
@@ -264,6 +295,14 @@ PipelineThread::Figures PipelineThread::figures() const {
     figures.published_items = items_;
     figures.waiting = jobs_.size();
     figures.pending_octets = pending_octets_;
+    const auto size_of = [](const std::filesystem::path& file) {
+        std::error_code error;
+        const auto octets = std::filesystem::file_size(file, error);
+        return error ? std::uintmax_t{0} : octets;
+    };
+    figures.archive_octets = size_of(archive_.file());
+    auto log = archive_.file();
+    figures.log_octets = size_of(log += "-wal");
     {
         const std::scoped_lock lock{audit_mutex_};
         figures.audit_waiting = audit_.size();
@@ -279,8 +318,8 @@ PipelineThread::Figures PipelineThread::figures() const {
 void PipelineThread::run() {
     for (;;) {
         // Nothing waits for a commit: no need to wake for one.
-        auto job =
-            waits() ? jobs_.pop_until(std::chrono::steady_clock::now() + pipeline::commit_interval) : jobs_.pop();
+        auto job = waits() || pruning_ ? jobs_.pop_until(std::chrono::steady_clock::now() + pipeline::commit_interval)
+                                       : jobs_.pop();
         if (!job && jobs_.closed() && jobs_.size() == 0) {
             if (waits()) retry_until_stored([&] { return commit(std::nullopt); });
             return;
@@ -297,15 +336,15 @@ void PipelineThread::run() {
                 finish(std::get<Finish>(*job));
         }
         commit_what_is_due();
+        remove_pruned();
         pending_octets_ = pipeline_.pending_octets();
     }
 }
 
 void PipelineThread::finish(Finish& finish) {
-    if (retry_until_stored([&] { return pipeline_.finish(finish.end); }))
-        finish.done.set_value({});
-    else
-        finish.done.set_value(Error{fault()});
+    const bool stored = retry_until_stored([&] { return pipeline_.finish(finish.end); });
+    tell_audit_head();  // the run's fingerprint
+    finish.done.set_value(stored ? Result<void>{} : Error{fault()});
 }
 
 void PipelineThread::take(Delivery& delivery) {

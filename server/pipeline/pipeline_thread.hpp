@@ -89,9 +89,17 @@ class PipelineThread {
     /// changed. False, and nothing done, when too much waits.
     bool change_layout(archive::LayoutChange change, std::function<void(Result<archive::LayoutOutcome>)> done);
 
+    /// Removes a run that is over: at once for readers, and its rows piece by piece, in a tenth of this thread's time.
+    /// Calls `done` on this thread once readers no longer find it, or with an Error. False, and nothing done, when too
+    /// much waits.
+    bool prune(archive::RunId run, archive::AuditRecord by, std::function<void(Result<void>)> done);
+
     void want_items(bool wanted) { items_wanted_ = wanted; }
     /// Sets the callback, called on this thread, for each change of fault(). Call before the first run.
     void on_fault(std::function<void(const std::string& fault)> told) { on_fault_ = std::move(told); }
+    /// Sets the callback, called on this thread, for each durable entry that is the audit's newest. Call before the first
+    /// run.
+    void on_audited(std::function<void(const archive::AuditHead& head)> told) { on_audited_ = std::move(told); }
     /// Why nothing is stored, now or for good; empty when all is well.
     std::string fault() const;
     /// Whether nothing more is taken until the disk recovers; the run then waits.
@@ -103,10 +111,11 @@ class PipelineThread {
     struct Figures {
         std::uint64_t deliveries = 0, failed_commits = 0, published_batches = 0, published_items = 0;
         std::size_t waiting = 0, audit_waiting = 0;
-        std::size_t pending_octets = 0;                 ///< kept until the disk takes them
-        std::uint64_t commits = 0;                      ///< that made something durable
-        double commit_s = 0.0, longest_commit_s = 0.0;  ///< of all commits; of one
-        std::map<std::string, Received> links;          ///< by name: packets and tones that reached Earth
+        std::size_t pending_octets = 0;                     ///< kept until the disk takes them
+        std::uintmax_t archive_octets = 0, log_octets = 0;  ///< sizes of the file and of SQLite's write-ahead log
+        std::uint64_t commits = 0;                          ///< that made something durable
+        double commit_s = 0.0, longest_commit_s = 0.0;      ///< of all commits; of one
+        std::map<std::string, Received> links;              ///< by name: packets and tones that reached Earth
     };
     Figures figures() const;
 
@@ -138,6 +147,10 @@ class PipelineThread {
     void tell_answers(const std::string& fault);
     bool waits() const;
     Result<void> write_audit();
+    /// Removes a piece of what pruned runs left, when it is time for one.
+    void remove_pruned();
+    /// Reports the newest entry of the audit, unless it is the one reported last.
+    void tell_audit_head();
     /// Whether the budget admits the record. Call with audit_mutex_ held.
     bool within_budget(archive::AuditRecord& record);
     /// Calls and removes all waiting callbacks or, with `written`, those of the first records. These records leave the
@@ -168,7 +181,11 @@ class PipelineThread {
     /// For deliveries waiting for the first attempt.
     std::vector<std::function<void(const std::string& fault)>> answers_;
     std::chrono::steady_clock::time_point next_attempt_{};
+    bool pruning_ = true;  ///< rows of pruned runs may be left: the program may have ended before all were removed
+    std::chrono::steady_clock::time_point next_piece_{};
     std::function<void(const std::string&)> on_fault_;
+    std::function<void(const archive::AuditHead&)> on_audited_;
+    archive::AuditHead audit_head_;  ///< the one reported last
     mutable std::mutex fault_mutex_;
     std::string fault_;
     std::thread thread_;

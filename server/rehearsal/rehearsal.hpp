@@ -4,7 +4,7 @@
 #include "aeolis/v1/run.pb.h"
 #include "dictionaries/dictionary.hpp"
 #include "server/archive/records.hpp"
-#include "server/rehearsal/digest.hpp"
+#include "server/base/digest.hpp"
 #include "server/rehearsal/recorded_firings.hpp"
 #include "server/rehearsal/scripted_landing.hpp"
 #include "server/rehearsal/tone_score.hpp"

@@ -72,6 +72,7 @@ const Row rows[] = {
     {"GET", "/api/v1/tokens", "administrator", "/api/v1/tokens", "", 200},
     {"POST", "/api/v1/tokens", "administrator", "/api/v1/tokens", "{", 400},
     {"DELETE", "/api/v1/tokens/{name}", "administrator", "/api/v1/tokens/none", "", 409},
+    {"DELETE", "/api/v1/runs/{run}", "director", "/api/v1/runs/9", "", 404},
     {"GET", "/api/v1/audit", "administrator", "/api/v1/audit?limit=1", "", 200},
     {"GET", "/api/v1/runs", "observer", "/api/v1/runs", "", 200},
     {"POST", "/api/v1/runs/{run}/commands", "controller", "/api/v1/runs/latest/commands", R"({"command":"NO_OP"})",

@@ -241,6 +241,45 @@ TEST_CASE("each option of serve stands in an environment variable of its name, a
                Catch::Contains("1000: 0.7"));
 }
 
+TEST_CASE(
+    "with log-format=json, by command line, environment or file, each line that the server prints is an object, of "
+    "wrong options too",
+    "[cli][operation]") {
+    if (program() == nullptr) return;
+    const aeolis::test::TemporaryFolder folder;
+    const auto settings = folder / "aeolis.conf", wrong = folder / "wrong.conf";
+    std::ofstream{settings} << "log-format=json\n";
+    std::ofstream{wrong} << "log-format=json\nlog-levell=info\n";
+    std::ofstream{folder / "notes.txt"} << std::string(5000, 'x');
+    const auto serve = fmt::format("'{}' serve --archive '{}' ", program(), (folder / "a.db").string());
+    for (const auto& line : {
+             serve + "--log-format json --listen nonsense",
+             serve + "--log-format=json --nonsense 1",
+             serve + "--log-format json --pace 0.5",
+             serve + "--log-format json --scenario none_of_this_name",
+             serve + "--log-format json --dictionary /nonexistent",
+             serve + "--log-format json --archive '" + (folder / "notes.txt").string() + "'",
+             serve + "--config '" + settings.string() + "' --listen 0.0.0.0:0",
+             serve + "--config '" + wrong.string() + "'",
+             "AEOLIS_LOG_FORMAT=json " + serve + "--listen nowhere",
+             serve + "--log-format json --accounts '" + (folder / "accounts.json").string() +
+                 "' --listen 127.0.0.1:0 --scenario nominal --pace 1000 & server=$!; sleep 1; kill -TERM $server; wait "
+                 "$server",
+         }) {
+        std::ofstream{folder / "line.sh"} << line << '\n';
+        const auto ended = run("sh", "'" + (folder / "line.sh").string() + "'");
+        INFO(line << " -> " << ended.code << ": " << ended.text);
+        CHECK(!ended.text.empty());
+        std::istringstream lines{ended.text};
+        for (std::string each; std::getline(lines, each);) {
+            google::protobuf::Struct object;
+            INFO(each);
+            REQUIRE(aeolis::server::from_json(each, object));
+            for (const char* field : {"time", "level", "message"}) CHECK(object.fields().contains(field));
+        }
+    }
+}
+
 TEST_CASE("a settings file may name several hosts with commas between, and a path with blanks and commas",
           "[cli][http]") {
     if (program() == nullptr) return;

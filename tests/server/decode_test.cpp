@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // aeolis decode on what another mission's instrument sent, where those files are beside the project (../shared/data).
 #include "dictionaries/xtce/packet_model.hpp"
-#include "server/rehearsal/digest.hpp"
+#include "server/base/digest.hpp"
 #include "telemetry/container_decoder.hpp"
 #include "telemetry/packet_source.hpp"
 #include "tests/support/catch.hpp"

@@ -12,6 +12,7 @@
 #include "tests/support/catch.hpp"
 
 #include <arpa/inet.h>
+#include <atomic>
 #include <chrono>
 #include <cstdio>
 #include <fstream>
@@ -128,7 +129,8 @@ class Sender {
 /// `aeolis serve --downlink` in this process.
 class Follower {
   public:
-    Follower(const telemetry::OtherMission& mission, const std::string& address, PacketStreamFormat format) {
+    Follower(const telemetry::OtherMission& mission, const std::string& address, PacketStreamFormat format,
+             ReadClocks clocks = read_clocks) {
         spdlog::set_level(spdlog::level::off);
         ConsoleBackend::Settings settings;
         settings.web_server.port = 0;
@@ -136,6 +138,7 @@ class Follower {
         settings.scenarios = AEOLIS_SOURCE_DIR "/simulation/scenarios";
         settings.web = folder_ / "web";
         settings.other = &mission;
+        settings.clocks = std::move(clocks);
         auto backend = ConsoleBackend::open(settings, mission.dictionary());
         REQUIRE(backend);
         backend_ = std::move(*backend);
@@ -293,6 +296,50 @@ TEST_CASE("who follows a downlink rehearses nothing, and says so", "[server][dow
     const auto reply = web_request(follower.port(), "POST", "/api/v1/rehearsals", R"({"scenario":"nominal"})");
     CHECK(reply.status >= 400);
     CHECK_THAT(reply.body, Catch::Contains("follows the downlink of another mission"));
+}
+
+TEST_CASE("while the system's clock is set back and forth under a run, Earth received times go on evenly; each jump is "
+          "in the shift log, the audit and the metrics",
+          "[server][downlink][clock]") {
+    const auto mission = mission_of(small_xtce);
+    std::atomic<std::int64_t> moved_us{0};
+    Follower follower{*mission, "udp://127.0.0.1:0", {.name = "packets", .skip = 0, .frame_octets = {}}, [&moved_us] {
+                          auto reading = read_clocks();
+                          reading.system_us += moved_us;
+                          return reading;
+                      }};
+    const auto notes = [](std::size_t wanted) {
+        return [wanted](const std::string& text) { return count_of(text, "jumped") >= wanted; };
+    };
+    send_datagram(follower.downlink_port(), power_packet(1, 1001, 1));
+    follower.ask_until("/runs/1/packets", [](const std::string& text) { return count_of(text, "\"hex\"") == 1; });
+    moved_us = -3'600'000'000;
+    CHECK_THAT(follower.ask_until("/runs/1/notes", notes(1)),
+               Catch::Contains("jumped 3600.000 s back") && Catch::Contains("\"by\":\"server\"") &&
+                   Catch::Contains("Earth received times of this run do not follow it"));
+    send_datagram(follower.downlink_port(), power_packet(2, 1002, 1));
+    follower.ask_until("/runs/1/packets", [](const std::string& text) { return count_of(text, "\"hex\"") == 2; });
+    moved_us = 7'200'000'000;
+    CHECK_THAT(follower.ask_until("/runs/1/notes", notes(2)), Catch::Contains("jumped 10800.000 s forward"));
+    send_datagram(follower.downlink_port(), power_packet(3, 1003, 1));
+    follower.ask_until("/runs/1/packets", [](const std::string& text) { return count_of(text, "\"hex\"") == 3; });
+    const auto metrics = web_request(follower.port(), "GET", "/metrics").body;
+    CHECK_THAT(metrics, Catch::Contains("aeolis_clock_jumps_total 2\naeolis") ||
+                            Catch::Contains("aeolis_clock_jumps_total 2\n#"));
+
+    auto reader = archive::Reader::open(follower.archive(), mission->dictionary(), mission.get());
+    REQUIRE(reader);
+    CHECK(std::ranges::count(reader->audit(0, 100).value(), "clock", &archive::AuditEntry::action) == 2);
+    const auto page = reader->items(archive::RunId{1}, 0, 1000);
+    REQUIRE(page);
+    auto database = archive::sqlite::Database::open(follower.archive().string(), archive::sqlite::Mode::read_only);
+    REQUIRE(database);
+    CHECK(database->integer_of("SELECT count(*) FROM units").value() == 3);
+    CHECK(database
+              ->integer_of("SELECT count(*) FROM (SELECT ert_us, lag(ert_us) OVER (ORDER BY key) AS before FROM units)"
+                           " WHERE ert_us < before")
+              .value() == 0);
+    CHECK(database->integer_of("SELECT max(ert_us) - min(ert_us) FROM units").value() < 60'000'000);
 }
 
 TEST_CASE("a downlink that the program was started to follow is in the audit, with who started it",

@@ -198,7 +198,9 @@ TEST_CASE("a run that this program would tell otherwise is left as it is", "[arc
         CHECK(rebuilt->left.front() == "run 1 was recorded with dictionary 4711, this program has 4712");
         const auto found = pipeline::verify(recorded.file, {}, other, nullptr, recorded.folder / "");
         CHECK(found->faults.empty());
-        CHECK(found->notes.size() == 2);
+        CHECK(std::ranges::count_if(found->notes, [](const auto& note) {
+                  return note.find("its derived rows were not compared") != std::string::npos;
+              }) == 2);
     }
     SECTION("items would get other numbers") {
         auto other = recorded.dictionary;

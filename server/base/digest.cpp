@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/rehearsal/digest.hpp"
+#include "server/base/digest.hpp"
 
 #include "common/check.hpp"
 
