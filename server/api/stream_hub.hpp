@@ -42,9 +42,9 @@ struct StreamSelection {
 /// item, and the one before it, goes out at some rate follows from them alone.
 struct SampleFacts {
     std::optional<double> previous_sclk{}, before_previous_sclk{};  ///< of the same packet
-    float stretch = 1.0F, previous_stretch = 1.0F;              ///< of the interval; see Held
-    bool first = true;                                          ///< without a previous one: whether none exists
-    bool ascend = false;                                        ///< their channel ids ascend: allows binary search
+    float stretch = 1.0F, previous_stretch = 1.0F;                  ///< of the interval; see Held
+    bool first = true;                                              ///< without a previous one: whether none exists
+    bool ascend = false;                                            ///< their channel ids ascend: allows binary search
 };
 /// A published item with the facts about its samples.
 struct ItemWithFacts {

@@ -340,7 +340,8 @@ TEST_CASE("wherever clients are cut off, each gets every sample or the number of
                 venue.hub.run_state(state);
             }
             auto items = some_items(random, venue.durable.size(), sclk);
-            const bool watched = std::ranges::any_of(followers, [](const auto& each) { return each->client.has_value(); });
+            const bool watched =
+                std::ranges::any_of(followers, [](const auto& each) { return each->client.has_value(); });
             if (watched)
                 venue.publish(std::move(items));
             else
