@@ -685,6 +685,59 @@ TEST_CASE("decode prints a row a packet of our own, whatever carried it, and say
     std::filesystem::remove_all(directory);
 }
 
+TEST_CASE("decode ends with 1 and says what it left, and asks where the file leaves open how packets begin",
+          "[cli][decode][R55]") {
+    if (program() == nullptr) return;
+    const aeolis::test::TemporaryFolder folder;
+    const auto write = [&](const char* name, const std::string& text) {
+        std::ofstream{folder / name, std::ios::binary} << text;
+        return "'" + (folder / name).string() + "'";
+    };
+    const std::string number =
+        "<IntegerParameterType name='u16'><IntegerDataEncoding sizeInBits='16'/></IntegerParameterType>"
+        "<IntegerParameterType name='u48'><IntegerDataEncoding sizeInBits='48'/></IntegerParameterType>";
+    const auto mission = [&](const std::string& containers) {
+        return "<SpaceSystem name='T'><TelemetryMetaData><ParameterTypeSet>" + number +
+               "</ParameterTypeSet><ParameterSet><Parameter name='H' parameterTypeRef='u48'/><Parameter name='W' "
+               "parameterTypeRef='u16'/></ParameterSet><ContainerSet>" +
+               containers + "</ContainerSet></TelemetryMetaData></SpaceSystem>";
+    };
+    const auto container = [](const std::string& name) {
+        return "<SequenceContainer name='" + name +
+               "'><EntryList><ParameterRefEntry parameterRef='H'/><ParameterRefEntry parameterRef='W'/></EntryList>"
+               "</SequenceContainer>";
+    };
+    using namespace std::string_literals;
+    const std::string one = write("one.xml", mission(container("P")));
+    const std::string two = write("two.xml", mission(container("P") + container("Q")));
+    const std::string right = write("right", "\x01\x23\xC0\x00\x00\x01\x00\x07"s);
+    const std::string longer = write("longer", "\x01\x23\xC0\x00\x00\x03\x00\x07\x00\x00"s);
+    const std::string segments = write("segments", "\x01\x23\x40\x00\x00\x00\x00\x01\x23\x80\x01\x00\x00\x07"s);
+    const std::string half = write("half", "\x01\x23\x40\x00\x00\x01\x00\x07"s);
+    const std::string other = write("other", "\xE9\x03\xFF\x01\x23\xC0\x00\x00\x01\x00\x07"s);
+    const std::string idle = write("idle", "\xE0\x07\xFF\xC0\x00\x00\x00\x00"s);
+    struct Case {
+        std::string arguments;
+        int code;
+        const char* says;
+    };
+    for (const auto& [arguments, code, says] :
+         {Case{one + " --packets " + right, 0, "0,291,0,,H=1253056708609|1253056708609,W=7|7"},
+          Case{one + " --packets " + longer, 1, "1 packets: 16 bits are behind the last entry of P"},
+          Case{one + " --packets " + segments, 0, ",W=7|7"},
+          Case{one + " --packets " + half, 1, "1 segments without the rest"},
+          Case{one + " --packets " + other, 1, "1 encapsulation packets not decoded"},
+          Case{one + " --packets " + idle, 0, "packets: 0, 2 idle"},
+          Case{two + " --packets " + right, 2, "say with which one packets begin: /T/P, /T/Q"},
+          Case{two + " --root Q --packets " + right, 0, ",W=7|7"},
+          Case{two + " --root R --packets " + right, 2, "no packet begins with a container 'R'"}}) {
+        const auto ended = run(program(), "decode --csv --xtce " + arguments);
+        INFO(arguments << " -> " << ended.code << ": " << ended.text);
+        CHECK(ended.code == code);
+        CHECK_THAT(ended.text, Catch::Contains(says));
+    }
+}
+
 TEST_CASE("a landing's samples and their predict are made together, and decode reads the tones out of them",
           "[cli][tones][R31]") {
     if (program() == nullptr) return;
