@@ -87,7 +87,7 @@ HttpResponse items(const AnswerContext& context, archive::Reader& reader, archiv
         selection.channels.push_back(channel->id.value);
     }
     std::ranges::sort(selection.channels);
-    const auto page = page_of(query, item_page_max, item_page_max);
+    const auto page = ListPage::of(query, {item_page_max, item_page_max});
     if (!page) return error_response(400, page.error());
     const auto read = reader.items(run, page->after, page->limit);
     if (!read) return error_response(400, read.error());
