@@ -21,8 +21,8 @@ Octets packet_of(std::size_t data_octets, std::uint16_t apid = 0x20) {
     return packet;
 }
 
-PltuReceiver::Received received(Construction construction, const Octets& data, std::uint32_t missing = 0) {
-    return {{{.construction = construction, .spacecraft = 76}, data}, missing};
+PltuReceiver::Received received(Construction construction, const Octets& data, FramePlace place = FramePlace::next) {
+    return {{{.construction = construction, .spacecraft = 76}, data}, place};
 }
 
 Octets segment(bool first, bool last, std::uint8_t packet, std::span<const std::uint8_t> part) {
@@ -68,7 +68,7 @@ TEST_CASE("a missing frame, a second beginning and a segment without beginning c
     const std::span sa{a};
     ProximityPackets packets;
     packets.add(received(Construction::segments, segment(true, false, 1, sa.first(200))));
-    packets.add(received(Construction::segments, segment(false, true, 1, sa.subspan(400)), 1));
+    packets.add(received(Construction::segments, segment(false, true, 1, sa.subspan(400)), FramePlace::after_gap));
     CHECK(all(packets).empty());
     CHECK(packets.counters().cut_packets == 1);
     packets.add(received(Construction::segments, segment(true, false, 1, sa.first(200))));
@@ -89,6 +89,19 @@ TEST_CASE("fill, supervisory frames and what is no packet are counted and not gi
     CHECK(all(packets).empty());
     CHECK(packets.counters() == PacketCounters{.idle_packets = 1, .unreadable_octets = 8});
     CHECK(packets.other_frames() == 2);
+}
+
+TEST_CASE("of a late frame whole packets are used, and a segment costs no other packet", "[telemetry][R55]") {
+    const Octets a = packet_of(500);
+    const std::span sa{a};
+    ProximityPackets packets;
+    packets.add(received(Construction::segments, segment(true, false, 1, sa.first(300))));
+    packets.add(received(Construction::segments, segment(false, true, 2, sa.subspan(400)), FramePlace::late));
+    packets.add(received(Construction::packets, packet_of(3), FramePlace::late));
+    packets.add(received(Construction::segments, segment(false, true, 1, sa.subspan(300))));
+    CHECK(all(packets) == std::vector<Octets>{packet_of(3), a});
+    CHECK(packets.counters().cut_packets == 0);
+    CHECK(packets.counters().unreadable_octets == 1 + sa.subspan(400).size());
 }
 
 TEST_CASE("segments without end cost no more than one largest packet", "[telemetry]") {
