@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/base/json.hpp"
 #include "server/base/digest.hpp"
+#include "server/base/json.hpp"
 #include "server/rehearsal/landing_report.hpp"
 #include "telemetry/packet_stream.hpp"
 #include "tests/server/running_server.hpp"
