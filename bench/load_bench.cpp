@@ -3,8 +3,7 @@
 //
 // Each second 2000 packets of 1.5 kB are decoded and stored, and sent to a thousand clients that follow 30 channels at
 // 20 Hz and every event; one client is stalled. First all follow the same channels, then each has some of its own. The
-// first, a middle and the last client are watched, and the stalled one when it reads again. Then the real program
-// starts on an archive of a hundred runs, up to the first answer with data.
+// first, a middle and the last client are watched, and the stalled one when it reads again.
 
 #include "bench/loopback_clients.hpp"
 #include "bench/must.hpp"
@@ -20,7 +19,6 @@
 #include <array>
 #include <chrono>
 #include <cmath>
-#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -377,58 +375,6 @@ void under_load(Channels channels) {
     queries.reset();
 }
 
-/// Starts `aeolis serve` on an archive of a hundred runs, until the list of runs and a channel of the last one arrive.
-void start() {
-    const test::TemporaryFolder folder;
-    const auto file = folder / "runs.db";
-    const std::string program = AEOLIS_SOURCE_DIR "/build/release/aeolis";
-    const auto flown = program + " rehearse --scenario nominal_auto --archive " + file.string() + " >/dev/null";
-    must(std::system(flown.c_str()) == 0, flown.c_str());
-    {
-        // The other ninety-nine have a minute each: a start reads only the list of runs and the last of them.
-        const auto dictionary = load();
-        auto archive = std::move(archive::Archive::open(file)).value();
-        pipeline::Pipeline pipeline{archive, dictionary};
-        pipeline.want_items(false);
-        std::vector<std::uint8_t> octets(tm_overhead_octets + 4 * channels_a_packet);
-        for (int i = 0; i < 99; ++i) {
-            must(pipeline.begin({}).ok(), "begin");
-            for (std::uint16_t k = 0; k < 640; ++k) {
-                seal_tm_packet(octets, Apid{1}, k, Sclk{k / 64.0}, dictionary.id);
-                must(pipeline.accept(telemetry::ReceivedPacket{telemetry::uhf_live_link, Ert{0}, octets}).ok(),
-                     "accept");
-            }
-            must(pipeline.finish({}).ok(), "finish");
-        }
-    }
-    std::fflush(stdout);
-    const std::uint16_t port = 18'753;
-    const auto ask = "curl -sf --max-time 5 -o /dev/null http://127.0.0.1:" + std::to_string(port) +
-                     "/api/v1/runs/1/channels?names=altitude_m\\&points=500";
-    const double begin = now_s();
-    const pid_t child = ::fork();
-    must(child >= 0, "fork");
-    if (child == 0) {
-        const auto listen = "127.0.0.1:" + std::to_string(port);
-        must(std::freopen("/dev/null", "w", stdout) != nullptr && std::freopen("/dev/null", "w", stderr) != nullptr,
-             "freopen");
-        ::execl(program.c_str(), program.c_str(), "serve", "--listen", listen.c_str(), "--archive", file.c_str(),
-                static_cast<char*>(nullptr));
-        ::_exit(1);
-    }
-    double first_s = 0.0;
-    while (now_s() - begin < 10.0 && first_s == 0.0) {
-        if (std::system(ask.c_str()) == 0) first_s = now_s() - begin;
-        std::this_thread::sleep_for(std::chrono::milliseconds{10});
-    }
-    ::kill(child, SIGTERM);
-    ::waitpid(child, nullptr, 0);
-    must(first_s > 0.0, "the server's first answer");
-    std::printf("aeolis serve on an archive of 100 runs, %.0f MB\n",
-                static_cast<double>(std::filesystem::file_size(file)) * 1e-6);
-    goal("from its start to the first plotted channel", 1e3 * first_s, 1000.0, "ms");
-}
-
 }  // namespace
 
 int main() {
@@ -444,6 +390,5 @@ int main() {
         must(::waitpid(child, &status, 0) == child && WIFEXITED(status), "the load");
         met = met && WEXITSTATUS(status) == 0;
     }
-    start();
     return met ? 0 : 1;
 }

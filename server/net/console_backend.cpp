@@ -345,8 +345,8 @@ void ConsoleBackend::watch_clock() {
         note.ert = downlink_->now();
     } else {
         const auto now = ert_from_text(hub_->latest_clocks().ert());
-        if (!desk_->going_on() || !now) return;
         run = archive::RunId{static_cast<std::uint32_t>(desk_->current().run())};
+        if (!desk_->going_on() || run.value != hub_->current_run() || !now) return;
         note.ert = *now;
     }
     note.text = fmt::format("{}. Earth received times of this run do not follow it.", told);

@@ -43,6 +43,12 @@ class RunningServer {
         start_thread();
     }
 
+    /// With clocks that the test moves.
+    explicit RunningServer(server::ReadClocks clocks) : clocks_(std::move(clocks)) {
+        open();
+        start_thread();
+    }
+
     struct Secure {
         std::filesystem::path certificate, key;
     };
@@ -82,6 +88,7 @@ class RunningServer {
         settings.archive = archive();
         settings.scenarios = shipped_scenarios;
         settings.web = folder_ / "web";
+        settings.clocks = clocks_;
         auto backend = server::ConsoleBackend::open(settings, tests::shipped_dictionary());
         REQUIRE(backend);
         backend_ = std::move(*backend);
@@ -94,6 +101,7 @@ class RunningServer {
     TemporaryFolder folder_;
     std::filesystem::path accounts_;
     server::WebServer::Settings web_server_;
+    server::ReadClocks clocks_ = server::read_clocks;
     std::unique_ptr<server::ConsoleBackend> backend_;
     std::thread network_;
     std::uint16_t port_ = 0;
