@@ -16,10 +16,10 @@ struct PacketStreamFormat {
     std::string name = "packets";  ///< packets, tm, aos, cadu or pltu
     std::size_t skip = 0;          ///< octets before each packet or bare frame
     // None: found by trying.
-    std::optional<std::size_t> frame_octets, check_octets;
-    std::optional<bool> crc, randomised;
+    std::optional<std::size_t> frame_octets{}, check_octets{};
+    std::optional<bool> crc{}, randomised{};
     FrameAgreement agreed{};  ///< but for its `crc`
-    std::optional<std::uint8_t> virtual_channel;
+    std::optional<std::uint8_t> virtual_channel{};
 };
 
 /// A packet source, and the layout that was recognised, in words; empty: none had to be.
