@@ -2,6 +2,7 @@
 #include "telemetry/container_decoder.hpp"
 
 #include "common/bytes.hpp"
+#include "common/crc.hpp"
 #include "common/space_packet.hpp"
 #include "dictionaries/words.hpp"
 #include "telemetry/characters.hpp"
@@ -183,6 +184,7 @@ class Reading {
     bool read_entry(const PacketContainer& container, const PacketEntry& entry, std::size_t start_bits,
                     unsigned depth) {
         if (++steps_ > steps_max) return stop("it has more entries than a packet may", entry.line);
+        furthest_ = std::max(furthest_, position_);  // the entry may stand before it
         if (!holds(entry.when)) return true;
         const std::string where = "an entry of " + container.name;
         if (entry.what == PacketEntry::What::unknown) return stop(where + " is not supported", entry.line);
@@ -204,7 +206,6 @@ class Reading {
     }
 
     bool read_once(const PacketEntry& entry, const std::string& suffix, unsigned depth) {
-        furthest_ = std::max(furthest_, position_);
         if (entry.what == PacketEntry::What::container)
             return read_container(model_.containers[entry.index], position_, depth + 1);
         const PacketParameter& parameter = model_.parameters[entry.index];
@@ -485,7 +486,8 @@ DecodedContents ContainerDecoder::decode(std::span<const std::uint8_t> packet) c
     if (readable && contents.problem.empty() && last.abstract)
         contents.problem = "no container describes it: " + last.name + " is abstract";
     const std::size_t behind_bits = packet.size() * 8 - std::min(packet.size() * 8, reading.furthest_bits());
-    if (contents.problem.empty() && behind_bits > 0)
+    const bool error_control = behind_bits == 8 * packet_crc_octets && crc16(packet) == 0;
+    if (contents.problem.empty() && behind_bits > 0 && !error_control)
         contents.problem = std::to_string(behind_bits) + " bits are behind the last entry of " + last.name + " (line " +
                            std::to_string(last.line) + ")";
     return contents;

@@ -197,6 +197,8 @@ TEST_CASE("octets behind the last entry are told, wherever the entries stand", "
         "", {{"a", "u8"}, {"b", "u16"}}, container("P", entry("a") + entry("b") + entry("a", at_start))};
     CHECK(mission.decode("010203").problem.empty());
     CHECK_THAT(mission.decode("01020304050607").problem, Catch::StartsWith("32 bits are behind the last entry of P"));
+    CHECK(mission.decode("010203adad").problem.empty());  // the right CRC-16
+    CHECK_THAT(mission.decode("010203adac").problem, Catch::StartsWith("16 bits are behind the last entry of P"));
 }
 
 TEST_CASE("a spline extends outside its points where the file says so", "[telemetry][R55]") {
