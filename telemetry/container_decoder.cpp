@@ -447,11 +447,15 @@ Result<std::size_t> ContainerDecoder::root_of(const PacketModel& model, const st
     if (roots.empty()) return Error{"the XTCE file has no container to begin with"};
     if (name.empty() && roots.size() == 1) return roots.front();
     std::string names;
+    std::vector<std::size_t> named;
     for (const std::size_t root : roots) {
         const PacketContainer& container = model.containers[root];
-        if (!name.empty() && (container.name == name || container.path == name)) return root;
+        if (!name.empty() && container.path == name) return root;
+        if (container.name == name) named.push_back(root);
         names += (names.empty() ? "" : ", ") + container.path;
     }
+    if (named.size() == 1) return named.front();
+    if (!named.empty()) return Error{"several containers are called '" + name + "': say which of " + names};
     if (!name.empty()) return Error{"no packet begins with a container '" + name + "'; those that can are " + names};
     return Error{"several containers of the XTCE file have no base: say with which one packets begin: " + names};
 }

@@ -94,6 +94,8 @@ void FrameReceiver::skip(std::size_t octets) {
 void FrameReceiver::end() {
     while (next()) {
     }
+    const bool frame_begins = !stream_.marker || begins_with_marker(window_.rest());
+    if (!window_.rest().empty() && frame_begins) ++counters_.cut_frames;
     skip(window_.rest().size());
 }
 
@@ -169,8 +171,9 @@ std::optional<FrameStream> recognise_cadus(std::span<const std::uint8_t> octets,
             best = stream;
             most = agreement;
         }
-        // Right CRCs leave no doubt, one alone does: it may be chance.
-        if (best && (most.frames > 1 || ended)) break;
+        // Right CRCs leave no doubt. One alone does, unless there can be no more: it may be chance.
+        const auto possible = octets.size() / (*length + attached_sync_marker.size());
+        if (best && (most.frames > 1 || possible <= 2)) break;
     }
     return best && (ended || most.frames >= frames_to_agree) ? best : std::nullopt;
 }

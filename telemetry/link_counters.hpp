@@ -20,6 +20,7 @@ struct LinkCounters {
     std::uint64_t repeated_frames = 0;  ///< received before, and dropped
     std::uint64_t late_frames = 0;      ///< received behind later ones; not missing any more
     std::uint64_t restarts = 0;         ///< the sequence began anew
+    std::uint64_t cut_frames = 0;       ///< the stream ended within it
 
     bool operator==(const LinkCounters&) const = default;
 };

@@ -83,6 +83,19 @@ void PacketExtractor::add(const TransferFrame& frame, FramePlace place) {
     begin_at(frame);
 }
 
+void PacketExtractor::end() {
+    while (next()) {
+    }
+    const auto rest = std::span{octets_}.subspan(used_);
+    if (!rest.empty() && packet_start(rest).kind != PacketStart::Kind::idle) {
+        ++counters_.cut_packets;
+        counters_.unreadable_octets += rest.size();
+    }
+    octets_.clear();
+    used_ = begun_octets_ = 0;
+    in_step_ = false;
+}
+
 void PacketExtractor::add_late(const TransferFrame& frame) {
     const auto data = data_from_pointer(frame);
     counters_.unreadable_octets += frame.data.size() - data.size();

@@ -40,6 +40,8 @@ class PacketExtractor {
 
     /// The next whole packet; valid until the next add().
     std::optional<std::span<const std::uint8_t>> next();
+    /// Ends the channel: a packet that was begun is cut; fill is not.
+    void end();
 
     const PacketCounters& counters() const { return counters_; }
 

@@ -41,6 +41,11 @@ void BarePackets::end() {
     lost_ = true;
 }
 
+void BarePackets::end_datagram() {
+    end();
+    lost_ = false;
+}
+
 void PacketSource::take_from(BarePackets& packets) {
     while (const auto packet = packets.next()) keep(*packet);
 }
@@ -80,7 +85,13 @@ void PacketSource::end() {
         pltus->receiver.end();
         take_from(*pltus);
     }
+    if (auto* frames = std::get_if<Frames>(&source_))
+        for (auto& [id, channel] : frames->channels) channel.end();
     segments_.end();
+}
+
+void PacketSource::end_datagram() {
+    if (auto* packets = std::get_if<BarePackets>(&source_)) packets->end_datagram();
 }
 
 void PacketSource::keep(std::span<const std::uint8_t> packet) {

@@ -29,6 +29,8 @@ class BarePackets {
     std::optional<std::span<const std::uint8_t>> next();
     /// Ends the stream.
     void end();
+    /// Ends a datagram: the next octets begin with a packet, whatever stands before them.
+    void end_datagram();
     bool lost() const { return lost_; }
     const PacketCounters& counters() const { return counters_; }
 
@@ -52,6 +54,8 @@ class PacketSource {
     void receive(std::span<const std::uint8_t> octets);
     /// Ends the stream; next() may then return more packets.
     void end();
+    /// Ends a datagram, which holds whole packets or frames.
+    void end_datagram();
     /// The next packet; valid until the next call of any function.
     std::optional<std::span<const std::uint8_t>> next();
 

@@ -10,7 +10,8 @@ std::optional<std::chrono::seconds> CommandRates::take(const std::string& client
                                                        Clock::time_point now) {
     if (clients_.size() >= clients_max && !clients_.contains(client))
         std::erase_if(clients_, [&](const auto& each) { return left_at(each.second, now) >= at_once; });
-    auto& allowance = clients_.try_emplace(client, Allowance{at_once, now}).first->second;
+    const bool room = clients_.size() < clients_max || clients_.contains(client);
+    auto& allowance = clients_.try_emplace(room ? client : "", Allowance{at_once, now}).first->second;
     const double left = left_at(allowance, now);
     const auto wanted = static_cast<double>(commands);
     if (wanted > left)

@@ -183,6 +183,11 @@ void StreamSession::answered() {
     if (auto next = std::exchange(next_question_, nullptr)) ask(std::move(next));
 }
 
+void StreamSession::lose_run(std::string why) {
+    subscribed_ = false;
+    refuse(std::move(why));
+}
+
 void StreamSession::stall(const std::string& why, std::function<void()> retry) {
     retry_ = std::move(retry);
     if (!std::exchange(stall_told_, true)) refuse("the archive could not be read, it is tried again: " + why, true);
@@ -198,7 +203,7 @@ void StreamSession::follow(std::uint64_t run, archive::Sequence after) {
     cursor_ = sent_through_ = std::min(after, last);
     left_out_ = 0;
     page_.reset();
-    page_spacing_ = SampleSpacing{};
+    page_spacing_ = SampleSpacing{cursor_ == 0};
     reading_ = exhausted_ = was_live_ = stall_told_ = false;
     retry_ = nullptr;
     welcome_due_ = true;
@@ -408,6 +413,7 @@ void StreamSession::read_page() {
                                    if (session->subscription_ != subscription) return;
                                    session->reading_ = false;
                                    const auto retry = [session = session.get()] { session->ask_archive(); };
+                                   if (!page && !page.error().internal) return session->lose_run(page.error().message);
                                    if (!page) return session->stall(page.error().message, retry);
                                    if (page->complete_through <= session->cursor_ && session->follows_current())
                                        return session->stall(fmt::format("it holds nothing after {}", session->cursor_),

@@ -73,6 +73,8 @@ class StreamSession : public std::enable_shared_from_this<StreamSession> {
     std::string refusal_of_pace(double pace, std::uint64_t run) const;
     void read_run(std::uint64_t run, archive::Sequence after);
     void stall(const std::string& why, std::function<void()> retry);
+    /// Ends the subscription: its run is not there any more.
+    void lose_run(std::string why);
     void refuse(std::string reason, bool goes_on = false);
     void reply(const v1::ServerMessage& message);
     void follow(std::uint64_t run, archive::Sequence after);

@@ -310,6 +310,7 @@ Result<void> Archive::prune(RunId run, AuditRecord by) {
     auto transaction = sqlite::Transaction::begin_write(state_->database);
     if (!transaction) return transaction.error();
     if (auto done = mark_pruned(state_->database, {&run, 1}, std::move(by)); !done) return done;
+    state_->pruning = Pruning{state_->database};  // it looks again which runs are marked
     return transaction->commit();
 }
 

@@ -120,9 +120,9 @@ bool print_losses(const telemetry::PacketSource& source, const Printed& printed)
         fmt::print(stderr,
                    "frames: {} good, {} with a wrong CRC, {} with a wrong header, {} missing in {} gaps, {} repeated, "
                    "{} late, "
-                   "{} restarts; {} octets skipped\n",
+                   "{} restarts, {} cut off; {} octets skipped\n",
                    link.frames, link.bad_crc, link.bad_header, link.missing_frames, link.gaps, link.repeated_frames,
-                   link.late_frames, link.restarts, link.skipped_octets);
+                   link.late_frames, link.restarts, link.cut_frames, link.skipped_octets);
     fmt::print(
         stderr,
         "packets: {}, {} idle, {} encapsulation packets not decoded, {} cut off, {} segments without the rest; {} "
@@ -130,8 +130,8 @@ bool print_losses(const telemetry::PacketSource& source, const Printed& printed)
         packets.packets, packets.idle_packets, packets.encapsulation_packets, packets.cut_packets,
         packets.lost_segments, packets.unreadable_octets);
     for (const auto& [problem, count] : printed.problems()) fmt::print(stderr, "{} packets: {}\n", count, problem);
-    return link.bad_crc + link.bad_header + link.missing_frames + packets.encapsulation_packets + packets.cut_packets +
-                   packets.lost_segments + packets.unreadable_octets ==
+    return link.bad_crc + link.bad_header + link.missing_frames + link.cut_frames + packets.encapsulation_packets +
+                   packets.cut_packets + packets.lost_segments + packets.unreadable_octets ==
                0 &&
            printed.problems().empty();
 }

@@ -97,8 +97,7 @@ void DownlinkFollower::receive_until_end() {
         if (received.got == DownlinkSocket::Got::end) return say(false, received.reason);
         if (received.got == DownlinkSocket::Got::nothing) continue;
         take(std::span{piece}.first(received.octets));
-        if (settings_.address.udp && !needs_beginning(settings_.format) && settings_.format.name == "packets")
-            end_of_stream();
+        if (settings_.address.udp && source_) source_->end_datagram();
         if (stop_) return;
         if (lost_ && !settings_.address.udp) {
             socket_.close();

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/links/frame_format.hpp"
 
+#include "common/crc.hpp"
+#include "common/randomiser.hpp"
+
 #include <fmt/format.h>
+#include <vector>
 
 namespace aeolis::server {
 namespace {
@@ -43,6 +47,21 @@ Result<telemetry::FrameStream> cadu_stream(const PacketStreamFormat& format, std
                  "--fecf, --insert-octets, …)"};
 }
 
+/// Whether frames that stand every `distance` octets end with a right CRC-16, most of the first three; none: too few.
+std::optional<bool> has_crc(std::span<const std::uint8_t> octets, std::size_t distance,
+                            const telemetry::FrameStream& stream, bool ended) {
+    constexpr std::size_t frames_wanted = 3;
+    std::size_t frames = 0, right = 0;
+    for (; frames < frames_wanted && octets.size() >= distance; ++frames, octets = octets.subspan(distance)) {
+        const auto frame = octets.subspan(stream.prefix_octets, stream.frame_octets);
+        std::vector<std::uint8_t> plain{frame.begin(), frame.end()};
+        if (stream.randomised) randomise_tm(plain);
+        right += crc16(plain) == 0 ? 1 : 0;
+    }
+    if (frames < frames_wanted && !ended) return std::nullopt;
+    return 2 * right > frames;
+}
+
 /// TM or AOS frames without markers.
 Result<telemetry::FrameStream> bare_stream(const PacketStreamFormat& format, DownlinkFormat kind,
                                            std::span<const std::uint8_t> beginning, bool ended) {
@@ -51,10 +70,15 @@ Result<telemetry::FrameStream> bare_stream(const PacketStreamFormat& format, Dow
     stream.marker = false;
     stream.prefix_octets = format.skip;
     if (format.frame_octets && format.crc) return stream;
+    if (format.frame_octets) {
+        const auto crc = has_crc(beginning, format.skip + stream.frame_octets + stream.suffix_octets, stream, ended);
+        if (!crc) return Error{"too few frames have come to tell whether they end with a CRC-16: say --fecf"};
+        stream.agreed.crc = *crc;
+        return stream;
+    }
     const auto found = telemetry::crc_frame_octets(beginning, format.skip, ended);
-    if (!found && !format.frame_octets) return Error{"frames of no length end with a right CRC-16: say --frame-octets"};
-    if (!format.crc) stream.agreed.crc = found.has_value() && (!format.frame_octets || *found == *format.frame_octets);
-    stream.frame_octets = format.frame_octets.value_or(found.value_or(stream.frame_octets));
+    if (!found) return Error{"frames of no length end with a right CRC-16: say --frame-octets"};
+    stream.frame_octets = *found;
     return stream;
 }
 

@@ -2,6 +2,7 @@
 #include "server/net/connection_count.hpp"
 
 #include "commands/shares.hpp"
+#include "common/check.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -20,27 +21,30 @@ void take_from(std::map<std::string, std::size_t>& counts, const std::string& ke
 Result<std::shared_ptr<ConnectionCount::Place>> ConnectionCount::enter(const std::string& network, bool shared,
                                                                        std::function<void()> close) {
     const auto own = strangers_of_.find(network);
-    if (!shared && own != strangers_of_.end() && own->second >= limits_.strangers_of_network)
-        return Error{fmt::format("{} connections of nobody known are open from {} already", own->second, network)};
+    const bool own_full = !shared && own != strangers_of_.end() && own->second >= limits_.strangers_of_network;
+    if (own_full) close_oldest_of(network);
     const bool full = entries_.size() >= limits_.all || strangers_ >= limits_.strangers;
-    if (full && !make_room_for(network)) return Error{fmt::format("{} connections are open already", entries_.size())};
+    if (full && !own_full && !make_room())
+        return Error{fmt::format("{} connections are open already", entries_.size())};
     entries_.push_back({network, {}, false, std::move(close)});
     ++strangers_;
     ++strangers_of_[network];
     return std::make_shared<Place>(*this, std::prev(entries_.end()));
 }
 
-bool ConnectionCount::make_room_for(const std::string& network) {
+bool ConnectionCount::make_room() {
     if (strangers_of_.empty()) return false;
     const auto most = std::ranges::max_element(strangers_of_, {}, [](const auto& each) { return each.second; });
-    const auto own = strangers_of_.find(network);
-    if (own != strangers_of_.end() && own->second > most->second) return false;
+    close_oldest_of(std::string{most->first});
+    return true;
+}
+
+void ConnectionCount::close_oldest_of(const std::string& network) {
     const auto oldest = std::ranges::find_if(
-        entries_, [&](const Entry& entry) { return !entry.known && entry.close && entry.network == most->first; });
-    if (oldest == entries_.end()) return false;
+        entries_, [&](const Entry& entry) { return !entry.known && entry.close && entry.network == network; });
+    AEOLIS_CHECK(oldest != entries_.end());  // the network has strangers
     forget_stranger(*oldest);
     std::exchange(oldest->close, nullptr)();
-    return true;
 }
 
 void ConnectionCount::forget_stranger(const Entry& entry) {

@@ -15,9 +15,9 @@ namespace aeolis::server {
 /// The places for connections, and who has them.
 ///
 /// Rule     a connection begins as a stranger's, and is known once a request on it came from somebody with rights.
-///          Strangers have a part of the places only, and of these each network a part. When their part is full, the
-///          oldest stranger of the network that has most of them gives way to a new one, so that whoever comes is heard
-///          and can become known. Of those known, nobody has more places than are free: commands/shares
+///          Strangers have a part of the places only, and of these each network a part. When a network's part is full, its
+///          oldest stranger gives way to the new one; when that of all is, the oldest of the network that has most, so
+///          that whoever comes is heard and can become known. Of those known, nobody has more places than are free: commands/shares
 /// Shared   loopback, and proxies in front of the server, bring everybody from one address: for them the part of a
 ///          network does not count
 /// Thread   the network thread
@@ -59,9 +59,9 @@ class ConnectionCount {
   private:
     Result<void> know(Entry& entry, const std::string& person);
     void leave(std::list<Entry>::iterator entry);
-    /// Closes the oldest stranger of the network with most of them. False: there is none, or the new one's network has
-    /// more.
-    bool make_room_for(const std::string& network);
+    /// Closes the oldest stranger of the network with most of them. False: there is none.
+    bool make_room();
+    void close_oldest_of(const std::string& network);
     void forget_stranger(const Entry& entry);
 
     Limits limits_;

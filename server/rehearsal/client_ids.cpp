@@ -3,6 +3,7 @@
 
 #include "common/time.hpp"
 #include "server/archive/items.hpp"
+#include "server/base/digest.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -15,13 +16,16 @@ namespace {
 constexpr std::size_t id_length_max = 64;
 constexpr std::string_view id_characters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789._:-";
 
-/// What makes two requests the same one.
+/// Digest of what makes two requests the same one.
 std::string content_of(v1::CommandRequest request) {
     request.clear_request();
     request.clear_client_id();
     request.clear_run();
     request.clear_dry_run();
-    return request.SerializeAsString();
+    const auto text = request.SerializeAsString();
+    Digest digest;
+    digest.add({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+    return digest.text();
 }
 
 bool has_id(const v1::CommandRequest& request) {

@@ -35,7 +35,7 @@ class ClientIds {
   private:
     struct Sent {
         std::uint64_t number = 0;
-        std::string content;
+        std::string content;    ///< a digest
         v1::CommandStage fate;  ///< the last stage
     };
     const Sent* find(const v1::CommandRequest& request) const;

@@ -204,7 +204,7 @@ void RehearsalDesk::sequence(std::vector<v1::CommandRequest> requests, bool only
 
 void RehearsalDesk::receive(SendCommands order, const AuthorityCheck& authority) {
     if (const auto refusal = refusal_of(order); !refusal.empty()) return order.refuse(refusal);
-    if (runner_->knows_all(order.requests))  // sent again: answered in turn, and no change of anything
+    if (runner_->unknown(order.requests).empty())  // sent again: answered in turn, and no change of anything
         return hand_over(std::move(order), state_.run(), timeline_undone_count_, std::string{});
     if (waits(order)) return wait(std::move(order), authority);
     analyse(std::move(order));
@@ -239,7 +239,8 @@ void RehearsalDesk::wait(SendCommands order, const AuthorityCheck& authority) {
 }
 
 void RehearsalDesk::analyse(SendCommands order) {
-    if (!order.only_check && std::ranges::any_of(order.requests, changes_timeline)) {
+    const auto sent = runner_->unknown(order.requests);
+    if (!order.only_check && std::ranges::any_of(sent, changes_timeline)) {
         change_pending_ = true;
         order.replies = [this, replies = std::move(order.replies)](std::vector<v1::CommandReply> answers) {
             change_pending_ = false;
@@ -248,7 +249,7 @@ void RehearsalDesk::analyse(SendCommands order) {
         };
     }
     const auto run = state_.run();
-    timeline_.check(archive::RunId{static_cast<std::uint32_t>(run)}, order.requests, order.only_check,
+    timeline_.check(archive::RunId{static_cast<std::uint32_t>(run)}, sent, order.only_check,
                     [this, run, order, undone_count = timeline_undone_count_](Result<std::string> timeline) {
                         post_([this, run, order, undone_count, timeline = std::move(timeline)] {
                             hand_over(order, run, undone_count, timeline);

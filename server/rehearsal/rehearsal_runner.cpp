@@ -144,9 +144,12 @@ std::optional<std::string> RehearsalRunner::name_of_command(std::uint64_t number
     return found == names_.end() ? std::nullopt : std::optional{found->second};
 }
 
-bool RehearsalRunner::knows_all(const std::vector<v1::CommandRequest>& requests) const {
+std::vector<v1::CommandRequest> RehearsalRunner::unknown(const std::vector<v1::CommandRequest>& requests) const {
+    std::vector<v1::CommandRequest> unknown;
     const std::scoped_lock lock{mutex_};
-    return std::ranges::all_of(requests, [this](const auto& request) { return client_ids_.knows(request); });
+    std::ranges::copy_if(requests, std::back_inserter(unknown),
+                         [this](const auto& request) { return !client_ids_.knows(request); });
+    return unknown;
 }
 
 std::vector<std::optional<v1::CommandReply>> RehearsalRunner::repeated(const SendCommands& order) const {

@@ -17,7 +17,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     how.kind = (data[0] & 1) != 0 ? FrameStream::Kind::aos : FrameStream::Kind::tm;
     how.marker = (data[0] & 2) != 0;
     how.randomised = (data[0] & 4) != 0;
-    how.agreed = {(data[0] & 8) != 0, (data[0] & 16) != 0, static_cast<std::uint8_t>(data[0] >> 5)};
+    how.agreed = {.crc = (data[0] & 8) != 0,
+                  .control_field = (data[0] & 16) != 0,
+                  .header_error_control = (data[2] & 128) != 0,
+                  .insert_octets = static_cast<std::uint8_t>(data[0] >> 5)};
     how.frame_octets = 9 + data[1];
     how.prefix_octets = how.marker ? 0 : data[2] % 8;
     const std::size_t piece = data[3] + std::size_t{1};
@@ -52,8 +55,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         }
     }
     receiver.end();
+    packets.end();
     if (receiver.counters().frames * unit + receiver.counters().skipped_octets != stream.size()) std::abort();
     (void)cadu_frame_octets(stream);
-    (void)crc_frame_octets(stream, how.prefix_octets);
+    (void)crc_frame_octets(stream, how.prefix_octets, true);
+    (void)recognise_cadus(stream, {}, true);
     return 0;
 }

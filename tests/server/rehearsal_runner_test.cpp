@@ -285,7 +285,7 @@ void end_and_continue(archive::Sequence published, archive::Sequence further, En
             v1::CommandRequest request;
             request.set_command("NO_OP");
             request.set_client_id("of-the-first-server");
-            CHECK(runner.knows_all({request}));
+            CHECK(runner.unknown({request}).empty());
         }
         CHECK(runner.order(StopRun{}));
     }

@@ -124,6 +124,8 @@ class AsyncClient:
 
         @param channels  names; None: all
         """
+        if run == "latest":
+            run = (await self.run()).run  # another run may begin between two pages
         names = ",".join(channels) if channels is not None else None
         while True:
             query = {"names": names, "after": after_seq, "format": "protobuf"}
