@@ -58,8 +58,9 @@ struct Server {
     campaign::CampaignDesk campaigns{recorded.folder / "campaigns", scenarios, recorded.dictionary};
     PredictionDesk predictions{recorded.dictionary};
     std::unique_ptr<Access> access = std::move(Access::open({})).value();
+    ClockWatch clock_watch;
     Api api{{recorded.dictionary, scenarios, *queries, desk, predictions, campaigns, hub, pipeline, console, *access,
-             false, [] { return std::size_t{1}; }}};
+             false, [] { return std::size_t{1}; }, clock_watch}};
 };
 
 HttpResponse ask(Server& server, const HttpRequest& request) {
