@@ -154,6 +154,7 @@ std::vector<v1::CommandRequest> RehearsalRunner::unknown(const std::vector<v1::C
 
 std::vector<std::optional<v1::CommandReply>> RehearsalRunner::repeated(const SendCommands& order) const {
     std::vector<std::optional<v1::CommandReply>> replies;
+    replies.reserve(order.requests.size());
     const std::scoped_lock lock{mutex_};
     for (const auto& request : order.requests) replies.push_back(client_ids_.reply_to(request));
     return replies;
@@ -347,6 +348,7 @@ void RehearsalRunner::carry_out(Rehearsal& rehearsal, const SendCommands& order)
     if (send)
         for (const auto& request : fresh.requests) looked.push_back(submit(rehearsal, request, order));
     std::vector<v1::CommandReply> replies;
+    replies.reserve(known.size());
     auto next = looked.begin();
     for (auto& reply : known) replies.push_back(reply ? std::move(*reply) : std::move(*next++));
     if (!send || std::ranges::none_of(replies, &v1::CommandReply::accepted)) return order.replies(std::move(replies));
