@@ -81,7 +81,7 @@ Task<> WebServer::State::serve(Socket socket) {
     error_code ignored;
     const auto address = plain_address(socket.remote_endpoint(ignored).address());
     const std::string from = ignored ? "unknown" : address.to_string();
-    const auto close = [this, descriptor = socket.native_handle()] { ::shutdown(descriptor, SHUT_RDWR); };
+    const auto close = [descriptor = socket.native_handle()] { ::shutdown(descriptor, SHUT_RDWR); };
     const bool shared = address.is_loopback() || service.proxies.contains(from);
     const auto place = connections.enter(network_of(from), shared, close);
     const std::string refused = place ? "" : place.error().message;
