@@ -49,8 +49,8 @@ struct DecodedContents {
 /// Rule     begins with the root: a container that has no base and is part of no other. Continues with the derived
 ///          container whose restriction holds, and so on. Where several hold, one without a restriction gives way;
 ///          what is still several is not decoded further, nor is a packet that ends in an abstract container
-/// Whole    a packet is decoded when all of its octets are: what is behind the last entry is a problem, unless it is the
-///          right CRC-16 of the packet
+/// Whole    a packet is decoded when all of its octets are: what is behind the last entry is a problem, unless it is
+///          the right CRC-16 of the packet
 /// Time     the first absolute time, or a later one relative to it. Without one, two whole numbers right after the
 ///          primary header, with ...coarse... and ...fine... in their names, in any case, are the spacecraft's clock as
 ///          in CUC: counts and their binary fraction. [ccsds-301.0-b-4]

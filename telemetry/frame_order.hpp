@@ -20,9 +20,9 @@ enum class FramePlace : std::uint8_t {
 
 /// Orders the frames of one channel by their count.
 ///
-/// Rule     a count within the last `window_max` frames, or a quarter of the modulus, is an earlier frame: repeated when
-///          its octets are those received with that count, restarted when they differ, late when none was received. A
-///          count of more than 8 bits that goes back further is restarted. Everything else is a gap
+/// Rule     a count within the last `window_max` frames, or a quarter of the modulus, is an earlier frame: repeated
+///          when its octets are those received with that count, restarted when they differ, late when none was
+///          received. A count of more than 8 bits that goes back further is restarted. Everything else is a gap
 /// Limits   an outage of a whole modulus goes unnoticed; of a count of 8 bits, up to a quarter of it looks late
 class FrameOrder {
   public:

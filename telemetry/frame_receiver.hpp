@@ -28,8 +28,8 @@ struct FrameStream {
 
 /// Finds TM or AOS frames in a stream of octets.
 ///
-/// In       octets as received, in pieces of any size       Out   readable frames, and the place of each in its channel's
-///          sequence. Repeated ones are only counted
+/// In       octets as received, in pieces of any size       Out   readable frames, and the place of each in its
+///          channel's sequence. Repeated ones are only counted
 /// Memory   the last piece and two frames
 /// Faults   with a marker, after anything but a good frame the search continues right behind the marker; without one,
 ///          an unreadable frame is skipped whole
@@ -82,8 +82,8 @@ struct FrameHints {
 
 inline constexpr std::uint64_t frames_to_agree = 8;  ///< chosen: before a layout is believed in a stream that goes on
 
-/// Detects a CADU stream's layout by trial, as far as it is not known: frame length, TM or AOS, randomisation, the code's
-/// check symbols, CRC. None when no layout reads the frames.
+/// Detects a CADU stream's layout by trial, as far as it is not known: frame length, TM or AOS, randomisation, the
+/// code's check symbols, CRC. None when no layout reads the frames.
 /// @param ended  no more octets come: fewer than frames_to_agree must do
 std::optional<FrameStream> recognise_cadus(std::span<const std::uint8_t> octets, const FrameHints& known, bool ended);
 

@@ -30,7 +30,8 @@ struct PacketCounters {
 
 /// Extracts space packets from the frames of one virtual channel, across frames, by the first header pointer.
 ///
-/// In       frames as received, each with its place in the sequence              Out   whole space packets, of any mission
+/// In       frames as received, each with its place in the sequence              Out   whole space packets, of any
+///          mission
 /// Memory   one packet and one frame
 /// Faults   a missing frame, or a pointer that contradicts the packet before it, loses the unfinished packet;
 ///          extraction resumes at the next pointer. Of a late frame the packets that it holds whole are returned

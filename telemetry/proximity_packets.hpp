@@ -18,8 +18,8 @@ namespace aeolis::telemetry {
 ///
 /// In       frames in order, of any number of spacecraft      Out   whole packets, of any mission
 /// Memory   one packet for each pseudo packet id in use, 65542 octets each at most; the packets of one frame
-/// Faults   a missing frame loses the unfinished segmented packets of its stream; of a late frame only whole packets are
-///          used; supervisory frames, and data that are not packets, are only counted
+/// Faults   a missing frame loses the unfinished segmented packets of its stream; of a late frame only whole packets
+///          are used; supervisory frames, and data that are not packets, are only counted
 class ProximityPackets {
   public:
     void add(const PltuReceiver::Received& received);

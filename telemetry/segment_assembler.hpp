@@ -9,14 +9,15 @@
 
 namespace aeolis::telemetry {
 
-/// Puts together what a sender has divided into several space packets, by their sequence flags. [ccsds-133.0-b-2, 4.1.3.4.2]
+/// Puts together what a sender has divided into several space packets, by their sequence flags. [ccsds-133.0-b-2,
+/// 4.1.3.4.2]
 ///
-/// In       space packets of any mission, in order          Out   unsegmented packets as they came; segments as one packet:
-///          the first one's header, marked unsegmented, and the data fields of all
+/// In       space packets of any mission, in order          Out   unsegmented packets as they came; segments as one
+///          packet: the first one's header, marked unsegmented, and the data fields of all
 /// Memory   apids_max unfinished packets of 65542 octets each at most
-/// Faults   counted, and nothing is given out: a count missing or repeated between two segments, a segment without a first
-///          one, a first one before the last, more data than a packet can have, a secondary header in a later segment,
-///          whose length is not known
+/// Faults   counted, and nothing is given out: a count missing or repeated between two segments, a segment without a
+///          first one, a first one before the last, more data than a packet can have, a secondary header in a later
+///          segment, whose length is not known
 class SegmentAssembler {
   public:
     static constexpr std::size_t apids_max = 64;  ///< chosen: unfinished at a time; of more, the least APID is given up

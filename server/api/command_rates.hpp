@@ -11,7 +11,8 @@ namespace aeolis::server {
 
 /// Bounds how often each client sends commands, dry runs among them: so many at once, and so many a second for long.
 ///
-/// Memory   clients_max clients; those that have sent nothing for long are forgotten, and more than that share one allowance
+/// Memory   clients_max clients; those that have sent nothing for long are forgotten, and more than that share one
+///          allowance
 /// Thread   the network thread
 class CommandRates {
   public:

@@ -90,8 +90,8 @@ void write(MetricsText& text, const StreamHub& hub) {
     text.counter("stream_refusals_total", "client messages that were refused", figures.refusals);
 }
 
-/// A client's label: its account's name. Without accounts the start of a hash, since a browser is known by the secret of
-/// its cookie.
+/// A client's label: its account's name. Without accounts the start of a hash, since a browser is known by the secret
+/// of its cookie.
 std::string label_of(const std::string& client, bool accounts) {
     constexpr std::size_t digits = 8;
     if (accounts || client == QueryThreads::other_clients) return client;

@@ -60,8 +60,8 @@ struct RatedItem {
 };
 
 /// Adds the selected items to a Batch. Commands, events, alarms, tones, firings, explanations, links: all.
-/// Samples: the subscribed channels; with `interval_s` > 0 one item a packet in each interval of vehicle time, the others
-/// counted in left_out. Packets: those received live, if the selection includes packets; the recording's are at
+/// Samples: the subscribed channels; with `interval_s` > 0 one item a packet in each interval of vehicle time, the
+/// others counted in left_out. Packets: those received live, if the selection includes packets; the recording's are at
 /// /packets.
 void select_items(const StreamSelection& selection, double interval_s, std::span<const ItemWithFacts> items,
                   v1::Batch& batch);

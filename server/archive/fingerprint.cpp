@@ -126,6 +126,7 @@ std::optional<Fingerprint> fingerprint_of(const std::string& text) {
 /// What the audit says of runs.
 struct Audited {
     std::map<std::uint32_t, std::vector<Fingerprint>> prints;  ///< by run: the one from item 1 on, then later items
+    std::vector<std::uint32_t> again;                          ///< runs with another one of items that had one
     std::vector<std::uint32_t> pruned;
 };
 
@@ -153,8 +154,11 @@ Result<Audited> audited(sqlite::Database& database) {
             add_numbers(detail, all.pruned);
         } else if (auto print = fingerprint_of(detail)) {
             auto& of_run = all.prints[print->run.value];
-            if (print->first == 1) of_run.clear();
-            of_run.push_back(std::move(*print));
+            // Items get a fingerprint once, each behind those before: another one is not the program's.
+            if (!of_run.empty() && print->first <= of_run.back().last)
+                all.again.push_back(print->run.value);
+            else
+                of_run.push_back(std::move(*print));
         }
     }
 }
@@ -227,6 +231,9 @@ Result<FingerprintCheck> check_fingerprints(sqlite::Database& database, std::opt
         const auto of_run = "run " + std::to_string(number) + ": ";
         const auto run = stored->find(number);
         if (!wanted(number)) continue;
+        if (std::ranges::find(kept->again, number) != kept->again.end())
+            check.faults.push_back(of_run +
+                                   "the audit has another fingerprint of items that had one: the first counts");
         if (run == stored->end()) {
             if (std::ranges::find(kept->pruned, number) == kept->pruned.end())
                 check.faults.push_back(of_run + "the audit has its fingerprint, and it is gone without a prune");

@@ -9,13 +9,13 @@
 #include <string>
 #include <vector>
 
-// Fingerprints of what was received or decided once and follows from nothing else: raw units, tones, stages of commands,
-// links, notes, requests, outcome, seed, digest. An entry of the audit holds them, so they are as hard to change as the
-// audit (docs/decisions/0035).
+// Fingerprints of what was received or decided once and follows from nothing else: raw units, tones, stages of
+// commands, links, notes, requests, outcome, seed, digest. An entry of the audit holds them; the first one of
+// an item counts (docs/decisions/0035).
 namespace aeolis::archive {
 
-/// An audit entry with the number and the hash of the rows of each table, for the items `first` to `last` of a run; from
-/// item 1 on also for the tables without items.
+/// An audit entry with the number and the hash of the rows of each table, for the items `first` to `last` of a run;
+/// from item 1 on also for the tables without items.
 Result<AuditRecord> fingerprint(sqlite::Database& database, RunId run, Sequence first, Sequence last);
 
 struct FingerprintCheck {

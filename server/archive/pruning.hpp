@@ -16,8 +16,8 @@ namespace aeolis::archive {
 /// @param by  time, user and address for the audit entry; the action is filled in here
 Result<void> mark_pruned(sqlite::Database& database, std::span<const RunId> runs, AuditRecord by);
 
-/// Removes the rows of runs that are marked as pruned, then returns the free pages to the disk; piece by piece, so that a
-/// writer proceeds between. After a crash the next one goes on: all it needs to know is in the archive.
+/// Removes the rows of runs that are marked as pruned, then returns the free pages to the disk; piece by piece, so that
+/// a writer proceeds between. After a crash the next one goes on: all it needs to know is in the archive.
 class Pruning {
   public:
     static constexpr std::int64_t items_a_step = 512;    ///< chosen: some milliseconds, most of it one commit

@@ -152,8 +152,8 @@ struct SamplePage {
 /// In       run, names, ranges: anything a client may send        Out   the schema's messages, or an Error in words
 /// Sees     what was committed before the query. Samples are read from segments; those not yet in a segment are
 ///          decommutated again from the packets, so that nothing durable is missing
-/// Limits   those above; a longer answer is refused or comes in pages. A page goes on after `after`, in its order; 0: it
-///          is the first. Its next_after is where the next page goes on; 0: it was the last
+/// Limits   those above; a longer answer is refused or comes in pages. A page goes on after `after`, in its order; 0:
+///          it is the first. Its next_after is where the next page goes on; 0: it was the last
 /// Threads  one owner per Reader; many Readers may be open. The dictionary must outlive it
 class Reader {
   public:

@@ -163,19 +163,31 @@ Result<void> note_newest(Reader::State& reader, RunId run, std::size_t packet, S
     return {};
 }
 
+/// What a query of series asks for, looked up.
+struct SeriesScope {
+    ClosedRange range;
+    RunInfo run;
+    std::vector<const dictionary::Channel*> channels;  ///< each once
+};
+Result<SeriesScope> scope_of(Reader::State& reader, RunId run, const SeriesQuery& query) {
+    const auto range = range_of(query);
+    if (!range) return range.error();
+    const auto instant = reader.instant(run);
+    if (!instant) return instant.error();
+    if (auto same = reader.same_dictionary(instant->run); !same) return same.error();
+    const auto channels = find_channels(reader.dictionary, query.channels);
+    if (!channels) return channels.error();
+    return SeriesScope{*range, instant->run, without_repeats(*channels)};
+}
+
 }  // namespace
 
 Result<Reader::SeriesSize> Reader::series_size(RunId run, const SeriesQuery& query) {
-    const auto range = range_of(query);
-    if (!range) return range.error();
-    const auto instant = state_->instant(run);
-    if (!instant) return instant.error();
-    if (auto same = state_->same_dictionary(instant->run); !same) return same.error();
-    const auto channels = find_channels(state_->dictionary, query.channels);
-    if (!channels) return channels.error();
+    const auto scope = scope_of(*state_, run, query);
+    if (!scope) return scope.error();
     SeriesSize size;
-    for (const auto* channel : without_repeats(*channels)) {
-        const auto sources = find_sample_sources(*state_, instant->run, channel->id, *range, query.source);
+    for (const auto* channel : scope->channels) {
+        const auto sources = find_sample_sources(*state_, scope->run, channel->id, scope->range, query.source);
         if (!sources) return sources.error();
         const std::size_t count = sources->samples_at_most;
         if (!query.points)
@@ -187,20 +199,16 @@ Result<Reader::SeriesSize> Reader::series_size(RunId run, const SeriesQuery& que
 }
 
 Result<v1::ChannelSeriesList> Reader::series(RunId run, const SeriesQuery& query) {
-    const auto range = range_of(query);
-    if (!range) return range.error();
-    const auto instant = state_->instant(run);
-    if (!instant) return instant.error();
-    if (auto same = state_->same_dictionary(instant->run); !same) return same.error();
-    const auto channels = find_channels(state_->dictionary, query.channels);
-    if (!channels) return channels.error();
+    const auto scope = scope_of(*state_, run, query);
+    if (!scope) return scope.error();
     v1::ChannelSeriesList list;
     std::size_t given = 0;
-    for (const auto* channel : without_repeats(*channels)) {
-        auto series = one_series(*state_, instant->run, *channel, *range, query);
+    for (const auto* channel : scope->channels) {
+        auto series = one_series(*state_, scope->run, *channel, scope->range, query);
         if (!series) return series.error();
         if (query.provenance)
-            if (auto done = add_origins(*state_, instant->run, channel->id, query.range, *range, query.source, *series);
+            if (auto done =
+                    add_origins(*state_, scope->run, channel->id, query.range, scope->range, query.source, *series);
                 !done)
                 return done.error();
         given += static_cast<std::size_t>(series->sclk_size()) + static_cast<std::size_t>(series->origins_size()) +

@@ -176,7 +176,8 @@ CREATE VIEW command_wait_log AS
            c.needs_approval, c.asked_by, c.evidence
     FROM command_stages c WHERE c.held OR c.needs_approval;
 CREATE VIEW commands AS
-    SELECT key >> 40 AS run, command, name, arguments, count, client_id, octets FROM command_stages WHERE octets IS NOT NULL;
+    SELECT key >> 40 AS run, command, name, arguments, count, client_id, octets FROM command_stages
+    WHERE octets IS NOT NULL;
 )sql";
 
 // Page size of a new archive; SQLite's default is 4 kB. A pyramid block or a packed column fits one page, and trees are

@@ -8,9 +8,9 @@
 #include <optional>
 #include <string>
 
-// The two clocks of the machine: the system's, which tells UTC and can be set, and the monotonic one, which only counts.
-// NTP slews both alike (clock_gettime(2)), so their difference changes only when the system's clock is set or the
-// machine sleeps.
+// The two clocks of the machine: the system's, which tells UTC and can be set, and the monotonic one, which only
+// counts. NTP slews both alike (clock_gettime(2)), so their difference changes only when the system's clock is set or
+// the machine sleeps.
 namespace aeolis::server {
 
 struct ClockReading {

@@ -13,7 +13,8 @@ namespace aeolis::server {
 /// Escapes control characters as \n, \t or \x1b; leaves all else unchanged.
 std::string printable(std::string_view text);
 
-/// Prints a line besides the log: as it is or, after print_json(), as an object like the log's, of level error on stderr.
+/// Prints a line besides the log: as it is or, after print_json(), as an object like the log's, of level error on
+/// stderr.
 void print_line(std::FILE* to, std::string_view text);
 void print_json();
 

@@ -15,7 +15,8 @@ struct RecordedDictionary {
     std::unique_ptr<telemetry::OtherMission> other;  ///< null: our own mission
     dictionary::Dictionary dictionary;
 };
-/// Loads the dictionary; with `xtce`, another mission's, whose packets begin with `root`. None: the fault was printed; end with `exit_code`.
+/// Loads the dictionary; with `xtce`, another mission's, whose packets begin with `root`. None: the fault was printed;
+/// end with `exit_code`.
 std::optional<RecordedDictionary> recorded_dictionary(const std::filesystem::path& dictionary,
                                                       const std::filesystem::path& xtce, const std::string& root,
                                                       int& exit_code);

@@ -15,9 +15,10 @@ namespace aeolis::server {
 /// The places for connections, and who has them.
 ///
 /// Rule     a connection begins as a stranger's, and is known once a request on it came from somebody with rights.
-///          Strangers have a part of the places only, and of these each network a part. When a network's part is full, its
-///          oldest stranger gives way to the new one; when that of all is, the oldest of the network that has most, so
-///          that whoever comes is heard and can become known. Of those known, nobody has more places than are free: commands/shares
+///          Strangers have a part of the places only, and of these each network a part. When a network's part is full,
+///          its oldest stranger gives way to the new one; when that of all is, the oldest of the network that has most,
+///          so that whoever comes is heard and can become known. Of those known, nobody has more places than are free:
+///          commands/shares
 /// Shared   loopback, and proxies in front of the server, bring everybody from one address: for them the part of a
 ///          network does not count
 /// Thread   the network thread

@@ -292,8 +292,8 @@ void ConsoleBackend::note_resets() {
 
 namespace {
 
-/// Where the head of the audit is kept: beside the accounts. Without accounts the audit names nobody, and its head is in
-/// the log only.
+/// Where the head of the audit is kept: beside the accounts. Without accounts the audit names nobody, and its head is
+/// in the log only.
 std::filesystem::path audit_head_file(const ConsoleBackend::Settings& settings) {
     return archive::head_file(settings.archive, settings.accounts.parent_path());
 }

@@ -217,7 +217,8 @@ std::string HttpConnection<AnyStream>::client_address(const Request& request) co
     return service_.proxies.client(peer_.address, passed);
 }
 
-/// Notes who sends this request, the first of somebody known on this connection. Why they have no place; empty: they do.
+/// Notes who sends this request, the first of somebody known on this connection. Why they have no place; empty: they
+/// do.
 template <typename AnyStream>
 std::string HttpConnection<AnyStream>::refusal_of_share(const Credentials& credentials) {
     if (peer_.place->known()) return {};

@@ -97,8 +97,8 @@ class PipelineThread {
     void want_items(bool wanted) { items_wanted_ = wanted; }
     /// Sets the callback, called on this thread, for each change of fault(). Call before the first run.
     void on_fault(std::function<void(const std::string& fault)> told) { on_fault_ = std::move(told); }
-    /// Sets the callback, called on this thread, for each durable entry that is the audit's newest. Call before the first
-    /// run.
+    /// Sets the callback, called on this thread, for each durable entry that is the audit's newest. Call before the
+    /// first run.
     void on_audited(std::function<void(const archive::AuditHead& head)> told) { on_audited_ = std::move(told); }
     /// Why nothing is stored, now or for good; empty when all is well.
     std::string fault() const;

@@ -110,7 +110,10 @@ export async function documented(server) {
       }
       return { wrong, statuses };
     },
-    /** Calls every route of reading once for each parameter that has an example. @returns what was not answered as described, with 200 */
+    /**
+     * Calls every route of reading once for each parameter that has an example.
+     * @returns what was not answered as described, with 200
+     */
     callExamples: async () => {
       const wrong = [];
       let called = 0;

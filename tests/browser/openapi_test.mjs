@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The served description is a valid OpenAPI document, and it is true of a finished run: each route and each example of a
-// parameter is called, every answer must be one that is described, and its body must have no field that is not.
+// The served description is a valid OpenAPI document, and it is true of a finished run: each route and each example of
+// a parameter is called, every answer must be one that is described, and its body must have no field that is not.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { documented } from './openapi.mjs';

@@ -22,7 +22,7 @@ function random(seed) {
   };
 }
 
-/** Octets of one connection: requests of which each has a path of its own, spelt in ways that servers read differently. */
+/** Octets of one connection: requests, each with a path of its own, spelt in ways that servers read differently. */
 function conversation(seed) {
   const next = random(seed);
   const any = (...choices) => choices[Math.floor(next() * choices.length)];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The served description is true of a running run too, and for each role by cookie and by token: every answer must be one
-// that is described, in the described shape. The examples in its text run unchanged.
+// The served description is true of a running run too, and for each role by cookie and by token: every answer must be
+// one that is described, in the described shape. The examples in its text run unchanged.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import path from 'node:path';

@@ -148,6 +148,36 @@ TEST_CASE("whatever of a run is edited, taken out or added by hand, verify names
     CHECK(names(found.faults, edit.named));
 }
 
+TEST_CASE("a fingerprint that is appended to cover an edit does not replace the first",
+          "[archive][verify][fingerprint]") {
+    const Flown flown;
+    auto database = sqlite::Database::open(flown.file.string(), sqlite::Mode::read_write_create);
+    REQUIRE(database->execute("UPDATE runs SET outcome = 'lost' WHERE run = 1"));
+    const auto last = static_cast<Sequence>(
+        database->integer_of("SELECT max(key) & 0xFFFFFFFFFF FROM notes WHERE key >> 40 = 1").value());
+    const auto forged = fingerprint(*database, RunId{1}, 1, last);
+    REQUIRE(forged);
+    REQUIRE(append_audit(*database, {&*forged, 1}));
+    const auto found = flown.verified(flown.head);
+    CHECK(names(found.faults, "run 1: the audit has another fingerprint of items that had one"));
+    CHECK(names(found.faults, "run 1: runs.outcome: not what"));
+}
+
+TEST_CASE("a run without items that gets a note after its end has a fingerprint of each",
+          "[archive][verify][fingerprint]") {
+    const TemporaryFolder folder;
+    const auto file = folder / "a.db";
+    const auto dictionary = small_dictionary();
+    {
+        auto archive = std::move(Archive::open(file)).value();
+        pipeline::Pipeline pipeline(archive, dictionary);
+        REQUIRE(pipeline.begin({}).ok());
+        REQUIRE(pipeline.finish({"stopped", "", "", "2026-11-22T12:10:00Z"}).ok());
+        REQUIRE(pipeline.annotate(RunId{1}, note("nothing came")).ok());
+    }
+    CHECK(pipeline::verify(file, {}, dictionary, nullptr, folder / "")->faults == std::vector<std::string>{});
+}
+
 TEST_CASE("an audit that was emptied, or whose end was cut off, is found by a head kept outside the archive",
           "[archive][verify][audit]") {
     const Flown flown;

@@ -135,6 +135,20 @@ TEST_CASE("a pruning that a crash cut off is gone on with, piece by piece, and n
     CHECK_FALSE(archive.prune(RunId{3}, {}).ok());  // it goes on
 }
 
+TEST_CASE("a run that is pruned while the rows of another go is removed as well", "[archive][prune]") {
+    TemporaryFolder folder;
+    const auto dictionary = small_dictionary();
+    const auto file = folder / "a.db";
+    record(file, dictionary, 3);
+    auto archive = std::move(Archive::open(file)).value();
+    REQUIRE(archive.prune(RunId{1}, {}).ok());
+    REQUIRE(*archive.remove_pruned());
+    REQUIRE(archive.prune(RunId{2}, {}).ok());
+    for (int pieces = 0; *archive.remove_pruned(); ++pieces) REQUIRE(pieces < 1000);
+    CHECK(ask(file, "SELECT count(DISTINCT key >> 40) FROM units") == 1);
+    CHECK(ask(file, "PRAGMA freelist_count") == 0);
+}
+
 TEST_CASE("pruning gives the room of the runs back, and vacuum does not undo it", "[archive][prune]") {
     TemporaryFolder folder;
     const auto file = folder / "a.db";
