@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace aeolis::dictionary {
@@ -15,7 +17,10 @@ struct Decoded {
     std::size_t packet = 0;  ///< index in Dictionary::packets
     TmHeader header;
     std::vector<std::uint64_t> raw;            ///< one per field: the bits as received, zero-extended
-    std::vector<std::optional<double>> value;  ///< one per field: calibrated; none when undefined
+    std::vector<std::optional<double>> value;  ///< one per field: calibrated; none when undefined, and of text
+    /// Exact values of fields whose type needs_text(): field and text. A field without one here is undefined.
+    std::vector<std::pair<std::size_t, std::string>> texts;
+    bool timed = true;  ///< false: the packet holds no time, and header.time says nothing
 };
 
 }  // namespace aeolis::dictionary

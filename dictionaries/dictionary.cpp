@@ -50,6 +50,12 @@ const Packet* Dictionary::packet(std::string_view name) const {
     return first(packets, [&](const Packet& p) { return p.name == name; });
 }
 
+bool needs_text(const Type& type) {
+    constexpr unsigned exact_bits = 53;  // of a double
+    if (type.kind == ValueKind::text) return true;
+    return type.kind == ValueKind::integer && type.calibrator.empty() && type.bits > exact_bits;
+}
+
 std::optional<std::size_t> field_index(const Packet& packet, std::string_view name) {
     for (std::size_t i = 0; i < packet.fields.size(); ++i)
         if (packet.fields[i].name == name) return i;

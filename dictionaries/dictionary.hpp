@@ -23,11 +23,16 @@ namespace aeolis::dictionary {
 // ---- types -----------------------------------------------------------------------------------------------------
 
 enum class Encoding { unsigned_integer, twos_complement, ieee754 };
-enum class ValueKind { integer, real, enumerated, boolean };
+enum class ValueKind { integer, real, enumerated, boolean, text };
 
 struct EnumValue {
     std::int64_t value = 0;
     std::string label;
+    std::optional<std::int64_t> last{};  ///< of a range of values with this label; none: only `value`
+
+    bool holds(double number) const {
+        return number >= static_cast<double>(value) && number <= static_cast<double>(last.value_or(value));
+    }
 };
 
 /// Calibrated = sum of coefficient[i] · raw^i; empty: calibrated is raw.
@@ -39,10 +44,16 @@ struct AlarmRange {
     Severity severity = Severity::none;
     std::optional<double> below;  ///< in alarm when value < below
     std::optional<double> above;  ///< in alarm when value > above
+    bool at_below = false;        ///< in alarm also when value = below
+    bool at_above = false;        ///< in alarm also when value = above
+
+    bool is_below(double value) const { return below && (value < *below || (at_below && value == *below)); }
+    bool is_above(double value) const { return above && (value > *above || (at_above && value == *above)); }
 };
 struct EnumAlarm {
     Severity severity = Severity::none;
     std::int64_t value = 0;
+    std::optional<std::int64_t> last{};  ///< of a range of values; none: only `value`
 };
 /// Condition on a channel's latest value: for the release of a command, or for the alarms of a context.
 struct Precondition {
@@ -82,6 +93,8 @@ struct Type {
     std::optional<double> valid_min, valid_max;
     Alarms alarms;
 };
+/// Whether a double does not hold every value of the type: text, and whole numbers of more than 53 bits.
+bool needs_text(const Type& type);
 
 // ---- telemetry -------------------------------------------------------------------------------------------------
 

@@ -12,7 +12,11 @@ namespace {
 using dictionary::Severity;
 
 bool breaks(const dictionary::AlarmRange& range, double value) {
-    return (range.below && value < *range.below) || (range.above && value > *range.above);
+    return range.is_below(value) || range.is_above(value);
+}
+
+bool holds(const dictionary::EnumAlarm& alarm, double value) {
+    return value >= static_cast<double>(alarm.value) && value <= static_cast<double>(alarm.last.value_or(alarm.value));
 }
 
 /// Severity of the most severe limit that `value` violates.
@@ -21,7 +25,7 @@ Severity worst(const dictionary::Alarms& alarms, double value) {
     for (const dictionary::AlarmRange& range : alarms.ranges)
         if (range.severity > worst && breaks(range, value)) worst = range.severity;
     for (const dictionary::EnumAlarm& alarm : alarms.values)
-        if (alarm.severity > worst && value == static_cast<double>(alarm.value)) worst = alarm.severity;
+        if (alarm.severity > worst && holds(alarm, value)) worst = alarm.severity;
     return worst;
 }
 
@@ -31,8 +35,8 @@ std::string limit_text(const dictionary::Type& type, const dictionary::Alarms& a
     std::string text;
     for (const dictionary::AlarmRange& range : alarms.ranges) {
         if (!breaks(range, value) || (!text.empty() && range.severity != severity)) continue;
-        const bool low = range.below && value < *range.below;
-        text = (low ? "< " : "> ") + value_text(type, low ? range.below : range.above);
+        const bool low = range.is_below(value), at = low ? range.at_below : range.at_above;
+        text = std::string{low ? "<" : ">"} + (at ? "= " : " ") + value_text(type, low ? range.below : range.above);
     }
     return text.empty() ? "= " + value_text(type, value) : text;
 }

@@ -31,7 +31,7 @@ bool latches(const dictionary::Alarms& alarms);
 
 /// Detects when a channel enters, leaves, or changes its severity of alarm.
 ///
-/// In       samples of each channel in the order of SCLK, from one source only (real time, or the recording)
+/// In       samples of each channel in the order of reception, from one source only (real time, or the recording)
 /// Out      changes, appended to `out`
 /// Rule     A severity is raised when `min_violations` consecutive samples were at least that severe, and cleared when
 ///          `min_conformance` consecutive samples were less severe. [xtce-1.2] minViolations, minConformance. The

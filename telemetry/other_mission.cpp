@@ -16,6 +16,7 @@ using namespace dictionary::xtce;
 namespace xtce = dictionary::xtce;  // telemetry has a Condition of its own
 
 constexpr unsigned apid_position_bits = 5, apid_bits = 11;  // [ccsds-133.0-b-2]
+constexpr unsigned number_bits_max = 64;
 
 std::optional<std::size_t> fixed_amount(const Amount& amount) {
     const double value = amount.intercept;
@@ -33,8 +34,9 @@ std::size_t elements_of(const std::vector<Amount>& last_indices) {
     return std::min(elements, OtherMission::elements_max);
 }
 
-bool is_number(const PacketType& type) {
+bool is_channel(const PacketType& type) {
     switch (type.kind) {
+    case PacketType::Kind::text: return type.coding.form == Coding::Form::text;
     case PacketType::Kind::integer:
     case PacketType::Kind::real:
     case PacketType::Kind::enumerated:
@@ -54,11 +56,16 @@ dictionary::Type type_of(const PacketType& type) {
         words.kind = dictionary::ValueKind::boolean;
     } else if (type.kind == PacketType::Kind::enumerated) {
         words.kind = dictionary::ValueKind::enumerated;
-        for (const auto& label : type.labels) words.enumeration.push_back({label.first, label.label});
+        for (const auto& [first, last, label] : type.labels)
+            words.enumeration.push_back({first, label, last == first ? std::nullopt : std::optional{last}});
+    } else if (type.kind == PacketType::Kind::text) {
+        words.kind = dictionary::ValueKind::text;
     } else if (type.kind != PacketType::Kind::integer || !type.coding.calibration.empty() ||
                !type.coding.contexts.empty()) {
         words.kind = dictionary::ValueKind::real;
     }
+    if (words.bits == 0 && words.kind == dictionary::ValueKind::integer) words.bits = number_bits_max;
+    words.alarms = type.alarms;
     const auto form = type.coding.form;
     if (form == Coding::Form::ieee754 || form == Coding::Form::mil1750a)
         words.encoding = dictionary::Encoding::ieee754;
@@ -81,6 +88,18 @@ std::optional<double> channel_value(const DecodedValue& value) {
 
 }  // namespace
 
+const char* name_of(xtce::Condition::Operator op) {
+    switch (op) {
+    case xtce::Condition::Operator::equal: return "==";
+    case xtce::Condition::Operator::not_equal: return "!=";
+    case xtce::Condition::Operator::less: return "<";
+    case xtce::Condition::Operator::less_or_equal: return "<=";
+    case xtce::Condition::Operator::greater: return ">";
+    case xtce::Condition::Operator::greater_or_equal: return ">=";
+    }
+    return "==";
+}
+
 /// Builds packets and channels from containers and parameters, once.
 class OtherMission::Builder {
   public:
@@ -95,9 +114,51 @@ class OtherMission::Builder {
             mission_.fields_.emplace_back();
             if (!container.abstract) add_container(i, 0);
         }
+        for (std::size_t i = 0; i < types_.size(); ++i)
+            add_context_alarms(mission_.dictionary_.channels[i], *types_[i]);
     }
 
   private:
+    /// Alarms of a context whose channels no packet holds can never be in force, and are left out.
+    void add_context_alarms(dictionary::Channel& channel, const PacketType& type) {
+        for (const auto& [when, alarms] : type.context_alarms) {
+            dictionary::ContextAlarms added{{}, alarms};
+            const auto can = add_conditions(when, added.context);
+            if (can && *can) channel.type.alarms.contexts.push_back(std::move(added));
+            if (!can)
+                mission_.not_judged_.push_back("line " + std::to_string(type.line) + ": alarms of " + channel.name +
+                                               " in a context that is not a comparison of channels are not judged");
+        }
+    }
+
+    /// None: the condition cannot be judged by channels. False: it can never hold.
+    std::optional<bool> add_conditions(const xtce::Condition& when, std::vector<dictionary::Precondition>& into) const {
+        if (when.form == xtce::Condition::Form::all) {
+            bool can_hold = true;
+            for (const auto& part : when.parts) {
+                const auto can = add_conditions(part, into);
+                if (!can) return std::nullopt;
+                can_hold = can_hold && *can;
+            }
+            return can_hold;
+        }
+        if (when.form != xtce::Condition::Form::compare) return std::nullopt;
+        const auto found = channels_.find({when.parameter, model_.parameters[when.parameter].name + when.member});
+        if (found == channels_.end()) return false;
+        const dictionary::Type& type = mission_.dictionary_.channels[found->second.value].type;
+        const bool calibrated = type.kind == dictionary::ValueKind::real;
+        auto number = dictionary::to_number(when.value);
+        if (const auto label = std::ranges::find(type.enumeration, when.value, &dictionary::EnumValue::label);
+            label != type.enumeration.end()) {
+            if (label->last) return std::nullopt;
+            number = static_cast<double>(label->value);
+        }
+        if (!number || type.kind == dictionary::ValueKind::text || (calibrated && !when.calibrated))
+            return std::nullopt;
+        into.push_back({found->second, name_of(when.op), *number, {}});
+        return true;
+    }
+
     /// Nested references multiply even when depth is bounded: what is not reached counts as left out.
     bool too_many_steps() {
         if (++steps_ <= steps_max) return false;
@@ -140,7 +201,7 @@ class OtherMission::Builder {
             if (dimensions.size() != 1) return;  // tables are only in contents()
             for (std::size_t i = 0; i < elements_of(dimensions); ++i)
                 add_type(name + "[" + std::to_string(i) + "]", model_.types[type.element], {}, depth + 1);
-        } else if (is_number(type)) {
+        } else if (is_channel(type)) {
             add_field(name, type);
         }
     }
@@ -162,6 +223,7 @@ class OtherMission::Builder {
             const std::string& unique = names_.insert(name).second ? name : with_path;
             const ChannelId channel{static_cast<std::uint16_t>(channels.size())};
             channels.push_back({channel, unique, unique, type.name, type_of(type)});
+            types_.push_back(&type);
             known = channels_.emplace(key, channel).first;
         }
         const dictionary::Channel& channel = channels[known->second.value];
@@ -179,7 +241,7 @@ class OtherMission::Builder {
                 return std::nullopt;
             const PacketType& type = model_.types[model_.parameters[entry.index].type];
             const auto bits = fixed_amount(type.coding.bits);
-            if (!is_number(type) || !bits) return std::nullopt;
+            if (!is_channel(type) || !bits) return std::nullopt;
             if (position == apid_position_bits && *bits == apid_bits) return entry.index;
             position += *bits;
         }
@@ -216,8 +278,9 @@ class OtherMission::Builder {
     OtherMission& mission_;
     const PacketModel& model_;
     std::map<FieldKey, ChannelId> channels_;
-    std::set<std::string> names_;  ///< taken
-    std::size_t parameter_ = 0;    ///< the parameter whose fields are being added
+    std::vector<const PacketType*> types_;  ///< by channel
+    std::set<std::string> names_;           ///< taken
+    std::size_t parameter_ = 0;             ///< the parameter whose fields are being added
     std::size_t fields_ = 0;
 };
 
@@ -237,7 +300,10 @@ std::optional<std::string> OtherMission::decode(std::span<const std::uint8_t> pa
     into.header = {};
     into.header.primary.apid = Apid{static_cast<std::uint16_t>(read_bits(packet, apid_position_bits, apid_bits))};
     into.header.time = Sclk{contents.time ? contents.time->seconds : 0.0};
-    const std::size_t fields = dictionary_.packets[into.packet].fields.size();
+    into.timed = contents.time.has_value();
+    into.texts.clear();
+    const auto& known = dictionary_.packets[into.packet].fields;
+    const std::size_t fields = known.size();
     into.raw.assign(fields, 0);
     into.value.assign(fields, std::nullopt);
     const auto& names = fields_[into.packet];
@@ -245,6 +311,8 @@ std::optional<std::string> OtherMission::decode(std::span<const std::uint8_t> pa
         const auto field = names.find({value.parameter, value.name});
         if (field == names.end()) continue;
         into.value[field->second] = channel_value(value);
+        if (needs_text(known[field->second].type) && !std::holds_alternative<std::monostate>(value.calibrated))
+            into.texts.emplace_back(field->second, datum_text(value.calibrated));
         if (const auto* raw = std::get_if<std::uint64_t>(&value.raw)) into.raw[field->second] = *raw;
     }
     return std::nullopt;

@@ -15,14 +15,16 @@
 
 namespace aeolis::telemetry {
 
-/// Another mission in terms of our dictionary: each container is a packet, each number in it a channel.
+/// Another mission in terms of our dictionary: each container is a packet, each number or text in it a channel.
 ///
 /// In       the octets of a packet                       Out   Decoded by the indices of dictionary(), or the reason
 ///          for refusal
-/// Channels numbers, labels (by their number), flags and times; of arrays, and of parameters whose size varies, the
-/// first `elements_max`. Text and octets are no channels: contents() has everything.
+/// Channels numbers, labels (by their number), flags, times and text; of arrays, and of parameters whose size varies,
+/// the first `elements_max`. Octets are no channels: contents() has everything.
+/// Exact    whole numbers of more than 53 bits and text are in Decoded::texts
+/// Alarms   those of the file; not_judged() names contexts that are no comparison of channels
 /// Names    those of the file; of two equal names the later is prefixed with its SpaceSystem's path
-/// Time     the packet's own time, as if from the spacecraft's clock; without one the clock stands at 0
+/// Time     the packet's own time, as if from the spacecraft's clock; Decoded::timed says whether there is one
 /// Faults   a partly readable packet is decoded in part; the rest is undefined
 /// Many threads may share one.
 class OtherMission {
@@ -41,6 +43,8 @@ class OtherMission {
     const dictionary::Dictionary& dictionary() const { return dictionary_; }
     /// Number of fields beyond channels_max and fields_max.
     std::size_t left_out() const { return left_out_; }
+    /// What in the file's alarms is not judged, a line each.
+    const std::vector<std::string>& not_judged() const { return not_judged_; }
 
     DecodedContents contents(std::span<const std::uint8_t> packet) const { return decoder_.decode(packet); }
     /// Decodes a packet. Returns none when at least a part was decoded; after a refusal `into` is unspecified.
@@ -55,6 +59,7 @@ class OtherMission {
     dictionary::Dictionary dictionary_;
     std::vector<std::map<FieldKey, std::size_t>> fields_;  ///< by packet
     std::size_t left_out_ = 0;
+    std::vector<std::string> not_judged_;
 };
 
 }  // namespace aeolis::telemetry

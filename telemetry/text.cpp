@@ -115,7 +115,7 @@ std::string moment_words(const dictionary::Dictionary& dictionary, const diction
 
 const std::string* label_of(const dictionary::Type& type, double value) {
     for (const dictionary::EnumValue& entry : type.enumeration)
-        if (static_cast<double>(entry.value) == value) return &entry.label;
+        if (entry.holds(value)) return &entry.label;
     return nullptr;
 }
 
@@ -132,7 +132,8 @@ std::string number_text(const dictionary::Type& type, std::optional<double> valu
     case dictionary::ValueKind::integer:
         if (is_whole(*value)) return digits(*value, 0);
         break;  // calibrated to a fraction
-    case dictionary::ValueKind::real: break;
+    case dictionary::ValueKind::real:
+    case dictionary::ValueKind::text: break;
     }
     const Notation* notation = notation_of_unit(type.unit);
     return digits(*value, notation != nullptr ? std::optional{notation->decimals} : std::nullopt);

@@ -4,22 +4,11 @@
 #include "dictionaries/words.hpp"
 
 #include <algorithm>
-#include <array>
 #include <limits>
 #include <map>
 
 namespace aeolis::dictionary::xtce {
 namespace {
-
-struct Level {
-    const char* range;
-    const char* word;
-    Severity severity;
-};
-constexpr std::array levels{
-    Level{"WatchRange", "watch", Severity::watch}, Level{"WarningRange", "warning", Severity::warning},
-    Level{"DistressRange", "distress", Severity::distress}, Level{"CriticalRange", "critical", Severity::critical},
-    Level{"SevereRange", "severe", Severity::severe}};
 
 constexpr double none_below = -std::numeric_limits<double>::infinity();
 constexpr double none_above = std::numeric_limits<double>::infinity();
@@ -31,12 +20,14 @@ bool reaches_inside(const AlarmRange& severe, const AlarmRange& mild) {
 
 void read_ranges(pugi::xml_node ranges, Alarms& alarms, Reporter& report) {
     report.expect(ranges, {"WatchRange", "WarningRange", "DistressRange", "CriticalRange", "SevereRange"}, {});
-    for (const Level& level : levels) {
+    for (const AlarmLevel& level : alarm_levels) {
         const pugi::xml_node element = ranges.child(level.range);
         if (!element) continue;
         report.expect(element, {}, {"minInclusive", "maxInclusive"});
-        const AlarmRange range{level.severity, report.number(element, "minInclusive"),
-                               report.number(element, "maxInclusive")};
+        AlarmRange range;
+        range.severity = level.severity;
+        range.below = report.number(element, "minInclusive");
+        range.above = report.number(element, "maxInclusive");
         if (range.below && range.above && *range.below > *range.above)
             report.fault(element, std::string{level.range} + ": minInclusive is above maxInclusive");
         else if (!alarms.ranges.empty() && reaches_inside(range, alarms.ranges.back()))
@@ -52,10 +43,10 @@ void read_labels(pugi::xml_node list, const Type& type, Alarms& alarms, Reporter
         const std::string label = element.attribute("enumerationLabel").value();
         const std::string word = element.attribute("alarmLevel").value();
         const auto value = std::ranges::find(type.enumeration, label, &EnumValue::label);
-        const auto level = std::ranges::find(levels, word, [](const Level& l) { return std::string{l.word}; });
+        const auto level = std::ranges::find(alarm_levels, word, &AlarmLevel::word);
         if (value == type.enumeration.end())
             report.fault(element, "the alarm names " + in_quotes(label) + ", which the enumeration lacks");
-        else if (level == levels.end())
+        else if (level == alarm_levels.end())
             report.fault(element, "alarm level " + in_quotes(word) + " is unknown");
         else
             alarms.values.push_back({level->severity, value->value});

@@ -3,7 +3,21 @@
 
 #include "dictionaries/xtce/parameters.hpp"
 
+#include <array>
+#include <string_view>
+
 namespace aeolis::dictionary::xtce {
+
+/// A level of alarm: the element of its range, and its word. [xtce-1.2]
+struct AlarmLevel {
+    const char* range;
+    std::string_view word;
+    Severity severity;
+};
+inline constexpr std::array alarm_levels{
+    AlarmLevel{"WatchRange", "watch", Severity::watch}, AlarmLevel{"WarningRange", "warning", Severity::warning},
+    AlarmLevel{"DistressRange", "distress", Severity::distress},
+    AlarmLevel{"CriticalRange", "critical", Severity::critical}, AlarmLevel{"SevereRange", "severe", Severity::severe}};
 
 /// Reads the DefaultAlarm of a type; an absent element gives no alarms.
 /// Static ranges, each lying outside all less severe ones, or labels of an enumeration. minViolations and

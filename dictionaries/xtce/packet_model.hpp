@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "dictionaries/dictionary.hpp"
 #include "dictionaries/findings.hpp"
 
 #include <cstddef>
@@ -114,6 +115,10 @@ struct PacketType {
         std::string name;
         std::size_t type = 0;
     };
+    struct ContextAlarm {
+        Condition when;
+        Alarms alarms;
+    };
 
     std::string name{};
     unsigned line = 0;
@@ -121,7 +126,9 @@ struct PacketType {
     std::string unit{};         ///< the first one; empty: the file gives none
     Coding coding{};
     std::vector<Label> labels{};
-    std::string zero = "False", one = "True";  ///< of a boolean
+    Alarms alarms{};                             ///< without contexts
+    std::vector<ContextAlarm> context_alarms{};  ///< the first that holds replaces `alarms`
+    std::string zero = "False", one = "True";    ///< of a boolean
     double time_offset_s = 0.0, time_scale_s = 1.0;
     bool relative = false;  ///< of a time: a duration, or a time since something other than an epoch
     std::string epoch{};    ///< of a time: "UNIX", "TAI", "GPS", "J2000", a date; empty: the file does not say

@@ -61,6 +61,10 @@ class ModelTypes {
     void read_time(const Symbol& symbol, PacketType& type);
     void read_reference_time(const Symbol& symbol, PacketType& type);
     void read_members(const Symbol& symbol, PacketType& type);
+    void read_alarms(const Symbol& symbol, PacketType& type);
+    Alarms read_alarm(pugi::xml_node alarm, const PacketType& type);
+    void read_ranges(pugi::xml_node ranges, Alarms& alarms);
+    void read_label_alarms(pugi::xml_node list, const PacketType& type, Alarms& alarms);
 
     const ModelParts& parts_;
     std::map<std::string, std::size_t> by_path_;

@@ -105,6 +105,7 @@ PacketType ModelTypes::read(const Symbol& symbol) {
     default: break;
     }
     read_coding(symbol, element, type);
+    read_alarms(symbol, type);
     return type;
 }
 

@@ -10,10 +10,11 @@ namespace aeolis::server {
 namespace {
 
 void add_labels(const dictionary::Type& type, google::protobuf::RepeatedPtrField<v1::EnumLabel>& labels) {
-    for (const auto& [value, label] : type.enumeration) {
+    for (const auto& [value, label, last] : type.enumeration) {
         auto& added = *labels.Add();
         added.set_value(value);
         added.set_label(label);
+        if (last) added.set_last(*last);
     }
 }
 
@@ -45,6 +46,8 @@ void add_limits(const dictionary::Alarms& alarms, const std::string& context, v1
         limit.set_severity(telemetry::name_of(range.severity));
         if (range.below) limit.set_below(*range.below);
         if (range.above) limit.set_above(*range.above);
+        limit.set_at_below(range.at_below);
+        limit.set_at_above(range.at_above);
         limit.set_context(context);
     }
 }
@@ -57,6 +60,7 @@ void add_channel(const dictionary::Dictionary& dictionary, const dictionary::Cha
     added.set_alias(channel.alias);
     added.set_unit(channel.type.unit);
     added.set_text(channel.text);
+    added.set_needs_text(needs_text(channel.type));
     add_labels(channel.type, *added.mutable_labels());
     add_limits(channel.type.alarms, "", added);
     for (const auto& [context, alarms] : channel.type.alarms.contexts)

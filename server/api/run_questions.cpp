@@ -474,7 +474,18 @@ HttpResponse report(const AnswerContext&, archive::Reader& reader, archive::RunI
 HttpResponse state(const AnswerContext& context, archive::Reader& reader, archive::RunId run, const QueryText& query) {
     const auto at = instant_of(query, "at", reader, run);
     if (!at) return error_response(400, at.error());
-    return answer(state_at(reader, run, context.dictionary, *at));
+    auto found = state_at(reader, run, context.dictionary, *at);
+    if (!found) return answer(std::move(found));
+    // The channels as in /channels: JSON of Protobuf has no number that is undefined.
+    v1::ChannelSeriesList channels;
+    channels.mutable_channels()->Swap(found->mutable_channels());
+    auto response = answer(std::move(found));
+    constexpr std::string_view begin = R"({"channels":[])";
+    if (!response.body.starts_with(begin)) return error_response(500, Error{"the state cannot be written as JSON"});
+    auto with_channels = series_text(SeriesFormat::json, std::move(channels));
+    with_channels.pop_back();  // its "}"
+    response.body.replace(0, begin.size(), with_channels);
+    return response;
 }
 
 const std::array questions{

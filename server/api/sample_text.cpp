@@ -17,9 +17,19 @@ const char* word_for(archive::Source source) {
     return source == archive::Source::realtime ? "realtime" : "recorded";
 }
 
-/// A number as JSON; infinities, which JSON lacks, as texts.
-std::string number_or_text(double value) {
-    return std::isfinite(value) ? json_number(value) : value > 0 ? "\"Infinity\"" : "\"-Infinity\"";
+/// A value as JSON: undefined is null; a text, and an infinity, which JSON lacks, are texts.
+std::string json_of(const archive::ChannelValue& sample) {
+    if (sample.text) return json_text(*sample.text);
+    if (std::isnan(sample.value)) return "null";
+    return std::isfinite(sample.value) ? json_number(sample.value)
+           : sample.value > 0          ? "\"Infinity\""
+                                       : "\"-Infinity\"";
+}
+
+/// A value as a cell of CSV; undefined is an empty one.
+std::string csv_of(const archive::ChannelValue& sample) {
+    if (sample.text) return csv_text(*sample.text);
+    return std::isnan(sample.value) ? std::string{} : fmt::format("{}", sample.value);
 }
 
 std::optional<double> seconds_of(const std::string& text) {
@@ -88,17 +98,23 @@ void SampleText::finish(std::string& text) {
     line_s_.reset();
 }
 
+std::string SampleText::e_text(double sclk_s) const {
+    if (entry_.seconds != 0.0) return fmt::format("{}", sclk_s - entry_.seconds);
+    return csv_ ? "" : "null";
+}
+
 void SampleText::append_sample(std::string& text, const archive::ChannelValue& sample) const {
     const auto into = std::back_inserter(text);
     const auto& [channel, unit] = words_[sample.channel.value];
-    const double sclk_s = sample.sclk.seconds, e_s = sclk_s - entry_.seconds;
+    const double sclk_s = sample.sclk.seconds;
     if (csv_)
-        fmt::format_to(into, "{},{},{},{},{},{}\n", sclk_s, e_s, channel, sample.value, unit, word_for(sample.source));
+        fmt::format_to(into, "{},{},{},{},{},{}\n", sclk_s, e_text(sclk_s), channel, csv_of(sample), unit,
+                       word_for(sample.source));
     else
         fmt::format_to(into,
                        R"({{"sclk":{},"e_s":{},"channel":{},"value":{},"unit":{},"source":"{}"}})"
                        "\n",
-                       sclk_s, e_s, channel, number_or_text(sample.value), unit, word_for(sample.source));
+                       sclk_s, e_text(sclk_s), channel, json_of(sample), unit, word_for(sample.source));
 }
 
 void SampleText::append_aligned(std::string& text, const archive::ChannelValue& sample) {
@@ -106,7 +122,7 @@ void SampleText::append_aligned(std::string& text, const archive::ChannelValue& 
     if (column == columns_.end()) return;
     const double sclk_s = sample.sclk.seconds;
     if (line_s_ && sclk_s > *line_s_) finish(text);  // all samples of that instant were appended
-    values_[static_cast<std::size_t>(column - columns_.begin())] = sample.value;
+    values_[static_cast<std::size_t>(column - columns_.begin())] = csv_ ? csv_of(sample) : json_of(sample);
     if (leader_ == nullptr)
         line_s_ = next_step(sclk_s, step_s_);
     else if (sample.channel == leader_->id)
@@ -116,15 +132,14 @@ void SampleText::append_aligned(std::string& text, const archive::ChannelValue& 
 void SampleText::append_line(std::string& text, double sclk_s) const {
     const auto into = std::back_inserter(text);
     if (csv_)
-        fmt::format_to(into, "{},{}", sclk_s, sclk_s - entry_.seconds);
+        fmt::format_to(into, "{},{}", sclk_s, e_text(sclk_s));
     else
-        fmt::format_to(into, R"({{"sclk":{},"e_s":{})", sclk_s, sclk_s - entry_.seconds);
+        fmt::format_to(into, R"({{"sclk":{},"e_s":{})", sclk_s, e_text(sclk_s));
     for (std::size_t i = 0; i < columns_.size(); ++i) {
         if (csv_)
-            text += values_[i] ? fmt::format(",{}", *values_[i]) : ",";
+            text += ',' + values_[i].value_or("");
         else
-            fmt::format_to(into, ",{}:{}", words_[columns_[i]->id.value].name,
-                           values_[i] ? number_or_text(*values_[i]) : "null");
+            fmt::format_to(into, ",{}:{}", words_[columns_[i]->id.value].name, values_[i].value_or("null"));
     }
     text += csv_ ? "\n" : "}\n";
 }

@@ -34,6 +34,7 @@ class SampleText {
                                    const Options& options);
 
     /// Adds to each line the seconds since entry.
+    /// 0: not known, as for a followed mission; e_s is then empty.
     void set_entry(Sclk entry) { entry_ = entry; }
     bool is_csv() const { return csv_; }
     std::string head() const;
@@ -42,6 +43,7 @@ class SampleText {
 
   private:
     SampleText(const dictionary::Dictionary& dictionary, bool csv);
+    std::string e_text(double sclk_s) const;
     void append_sample(std::string& text, const archive::ChannelValue& sample) const;
     void append_aligned(std::string& text, const archive::ChannelValue& sample);
     void append_line(std::string& text, double sclk_s) const;
@@ -55,8 +57,8 @@ class SampleText {
     std::vector<const dictionary::Channel*> columns_;  ///< of aligned lines; empty: a line per sample
     const dictionary::Channel* leader_ = nullptr;      ///< the channel aligned to; null: step_s_
     double step_s_ = 0.0;
-    std::vector<std::optional<double>> values_;  ///< per column
-    std::optional<double> line_s_;               ///< SCLK of the line not yet written
+    std::vector<std::optional<std::string>> values_;  ///< per column, as text of the format
+    std::optional<double> line_s_;                    ///< SCLK of the line not yet written
 };
 
 }  // namespace aeolis::server

@@ -20,7 +20,28 @@ void append_number(std::string& json, double value) {
     if (std::isfinite(value))
         fmt::format_to(std::back_inserter(json), "{}", value);
     else
-        json += std::isnan(value) ? R"("NaN")" : value > 0 ? R"("Infinity")" : R"("-Infinity")";
+        json += std::isnan(value) ? "null" : value > 0 ? R"("Infinity")" : R"("-Infinity")";
+}
+
+/// A value as JSON: a number, or what a number does not hold as text; undefined is null.
+void append_value(std::string& json, const v1::ChannelSeries& of, int i) {
+    if (i >= of.text_size()) return append_number(json, of.value(i));
+    json += of.text(i).has_text() ? json_text(of.text(i).text()) : "null";
+}
+
+std::string newest_text(const v1::NewestSample& newest) {
+    std::string value;
+    if (newest.has_text())
+        value = json_text(newest.text());
+    else
+        append_number(value, newest.value());
+    return fmt::format(R"({{"sclk":{},"value":{},"ert_us":"{}","sclk_by_reception":{}}})", newest.sclk(), value,
+                       newest.ert_us(), newest.sclk_by_reception());
+}
+
+std::string csv_value(const v1::ChannelSeries& of, int i) {
+    if (i < of.text_size()) return csv_text(of.text(i).text());
+    return std::isnan(of.value(i)) ? std::string{} : fmt::format("{}", of.value(i));
 }
 
 struct SeriesColumn {
@@ -32,8 +53,7 @@ using Series = v1::ChannelSeries;
 constexpr std::array series_columns{
     SeriesColumn{"sclk", [](const Series& of) { return of.sclk_size(); },
                  [](std::string& json, const Series& of, int i) { append_number(json, of.sclk(i)); }},
-    SeriesColumn{"value", [](const Series& of) { return of.value_size(); },
-                 [](std::string& json, const Series& of, int i) { append_number(json, of.value(i)); }},
+    SeriesColumn{"value", [](const Series& of) { return of.value_size(); }, append_value},
     SeriesColumn{"source", [](const Series& of) { return of.source_size(); },
                  [](std::string& json, const Series& of, int i) { json += '"' + v1::Source_Name(of.source(i)) + '"'; }},
     SeriesColumn{"origins", [](const Series& of) { return of.origins_size(); },
@@ -87,6 +107,7 @@ bool SeriesText::append_json(std::string& text) {
         }
         text += ']';
     }
+    if (series_.has_newest()) text += ",\"newest\":" + newest_text(series_.newest());
     text += '}';
     return false;
 }
@@ -97,7 +118,8 @@ bool SeriesText::append_csv(std::string& text) {
     for (; next_ < series_.sclk_size(); ++next_) {
         if (text.size() >= full) return true;
         fmt::format_to(std::back_inserter(text), "{},{},{},{},{}\n", name, unit, series_.sclk(next_),
-                       series_.value(next_), series_.source(next_) == v1::SOURCE_RECORDED ? "recorded" : "realtime");
+                       csv_value(series_, next_),
+                       series_.source(next_) == v1::SOURCE_RECORDED ? "recorded" : "realtime");
     }
     return false;
 }

@@ -100,6 +100,10 @@ Result<v1::StateAt> state_at(archive::Reader& reader, archive::RunId run, const 
         series.add_sclk(value.sclk.seconds);
         series.add_value(value.value);
         series.add_source(static_cast<v1::Source>(value.source));
+        if (needs_text(channel.type)) {
+            auto& text = *series.add_text();
+            if (value.text) text.set_text(*value.text);
+        }
     }
     for (auto& [name, item] : stand.links) {
         if (item.link().lost()) *answer.add_alarms() = item;  // by the link's name, as in the list of alarms

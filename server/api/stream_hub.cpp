@@ -36,6 +36,8 @@ v1::Samples some_of(const v1::Samples& samples, const std::vector<std::uint32_t>
         chosen.add_ids(ids[i]);
         chosen.add_values(samples.values(i));
     };
+    for (const auto& exact : samples.exact())
+        if (std::ranges::binary_search(channels, exact.id())) *chosen.add_exact() = exact;
     if (!ascend) {
         for (int i = 0; i < ids.size(); ++i)
             if (std::ranges::binary_search(channels, ids[i])) add(i);
@@ -92,6 +94,7 @@ void add_items(const StreamSelection& selection, std::span<const RatedItem> item
             if (chosen.ids_size() == 0) continue;
             chosen.set_sclk(samples.sclk());
             chosen.set_source(samples.source());
+            chosen.set_sclk_by_reception(samples.sclk_by_reception());
             auto& added = *batch.add_items();
             added.set_seq(item->seq());
             added.set_ert_us(item->ert_us());

@@ -55,10 +55,15 @@ v1::Item to_item(const SampleRecord& record, std::span<const ChannelId> channels
     samples.mutable_ids()->Reserve(static_cast<int>(channels.size()));
     samples.mutable_values()->Reserve(static_cast<int>(channels.size()));
     for (std::size_t i = 0; i < values.size(); ++i) {
-        if (std::isnan(values[i])) continue;
         samples.add_ids(channels[i].value);
         samples.add_values(values[i]);
     }
+    for (const auto& [column, text] : record.texts) {
+        auto& exact = *samples.add_exact();
+        exact.set_id(channels[column].value);
+        exact.set_text(text);
+    }
+    samples.set_sclk_by_reception(record.sclk_by_reception);
     return item;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/archive/packet_columns.hpp"
 
+#include <algorithm>
 #include <limits>
 
 namespace aeolis::archive {
@@ -25,6 +26,15 @@ PacketColumns::PacketColumns(const dictionary::Dictionary& dictionary)
 void PacketColumns::append_values(const telemetry::Decoded& decoded, std::vector<double>& values) const {
     for (const std::size_t field : packets_[decoded.packet].fields)
         values.push_back(decoded.value[field].value_or(undefined));
+}
+
+std::vector<SampleText> PacketColumns::texts(const telemetry::Decoded& decoded) const {
+    std::vector<SampleText> texts;
+    const auto& fields = packets_[decoded.packet].fields;
+    for (const auto& [field, text] : decoded.texts)
+        if (const auto column = std::ranges::find(fields, field); column != fields.end())
+            texts.push_back({static_cast<std::size_t>(column - fields.begin()), text});
+    return texts;
 }
 
 double PacketColumns::value(const telemetry::Decoded& decoded, std::size_t column) const {

@@ -133,9 +133,14 @@ struct NoteQuery {
 
 struct ChannelValue {
     ChannelId channel;
-    double value = 0.0;
+    double value = 0.0;  ///< NaN: undefined, or a text
     Sclk sclk;
     Source source{};
+    std::optional<std::string> text{};  ///< the exact value of a channel that needs_text(); none: undefined
+    // Only in latest():
+    Sequence seq = 0;  ///< of the packet
+    Ert ert{};
+    bool sclk_by_reception = false;
 };
 
 /// The position of a walk through samples, and the width of its time windows.
@@ -198,11 +203,12 @@ class Reader {
         std::size_t samples = 0;
     };
     Result<SeriesSize> series_size(RunId run, const SeriesQuery& query);
-    /// Live and recorded samples as one series in order of SCLK, each sample once. Undefined values are left out: gaps.
+    /// Live and recorded samples as one series in order of SCLK, each sample once. Exact series have undefined samples,
+    /// too; thinned ones leave them out. With an open end each series also has the newest sample (latest()).
     Result<v1::ChannelSeriesList> series(RunId run, const SeriesQuery& query);
     /// A formula of channels as one series, at the times of its first channel. Each other channel counts with its
     /// newest value up to then. Exact, or thinned to the minimum and maximum of equal intervals. Memory does not grow
-    /// with the number of samples. Undefined values (NaN) are left out.
+    /// with the number of samples. Where a channel or the result is undefined, so is the sample; thinned, it is left out.
     Result<v1::ChannelSeries> derived(RunId run, const std::string& expression, const SclkRange& range,
                                       std::optional<std::size_t> points);
     /// Passes all samples of the channels in a range to `take`, in order of SCLK, some thousands at a time. Memory does
@@ -214,7 +220,8 @@ class Reader {
     /// received after the first page was read are in no page.
     Result<SamplePage> sample_page(RunId run, const std::vector<std::string>& channels, const SclkRange& range,
                                    const std::optional<SampleCursor>& after = {});
-    /// The newest value of every channel up to `at` (none: of the whole run), without undefined ones.
+    /// The newest sample of every channel up to `at` (none: of the whole run), undefined ones too. Of our mission by its
+    /// clock; of another's by reception, because its clocks may restart.
     Result<std::vector<ChannelValue>> latest(RunId run, std::optional<Sclk> at);
 
     Result<v1::PacketList> packets(RunId run, const PacketQuery& query);

@@ -104,11 +104,12 @@ Result<void> collect_packets(Reader::State& reader, const RunInfo& info, Page& p
         if (kinds.packets && record.seq > page.after) page.items.push_back(to_item(record, words));
         if (!kinds.samples || !record.sampled) continue;
         // With another dictionary the values are unknown; the item still keeps its number.
-        const SampleRecord sample{
-            {record.seq + 1, record.ert}, record.packet.value_or(0), record.sclk, record.source, {}};
+        SampleRecord sample{{record.seq + 1, record.ert}, record.packet.value_or(0), record.sclk, record.source, {}};
         values.clear();
         if (words != nullptr && reader.decode(octets_of_packet(**rows))) {
             reader.columns.append_values(reader.decoded, values);
+            sample.texts = reader.columns.texts(reader.decoded);
+            sample.sclk_by_reception = !reader.decoded.timed;
             page.items.push_back(to_item(sample, reader.columns.channels(reader.decoded.packet), values));
         } else {
             page.items.push_back(to_item(sample, {}, {}));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/archive/expression.hpp"
+#include "server/archive/packet_samples.hpp"
 #include "server/archive/reader.hpp"
 #include "server/archive/sample_origins.hpp"
 #include "server/archive/sample_query.hpp"
@@ -20,12 +21,6 @@ constexpr std::size_t page_samples = 10'000;                 ///< chosen: likewi
 constexpr char sealed_span_sql[] = "SELECT min(first_sclk), max(last_sclk), sum(samples) FROM segments WHERE run = ?1";
 constexpr char packet_span_sql[] =
     "SELECT min(sclk), max(sclk), count(*) FROM units WHERE key BETWEEN ?1 AND ?2 AND sampled = 1";
-constexpr char newest_sql[] = "SELECT octets FROM units WHERE run = ?1 AND apid = ?2 AND source = ?5 AND sclk <= ?3"
-                              " AND packet = ?4 AND sampled = 1 ORDER BY sclk DESC LIMIT 1";
-// For another mission's packets, whose containers may have any APID.
-constexpr char newest_of_any_apid_sql[] =
-    "SELECT octets, sclk FROM units WHERE run = ?1 AND ?2 IS NOT NULL AND sclk <= ?3 AND packet = ?4 AND source = ?5"
-    " AND sampled = 1 ORDER BY sclk DESC LIMIT 1";
 
 Result<std::vector<const dictionary::Channel*>> find_channels(const dictionary::Dictionary& dictionary,
                                                               const std::vector<std::string>& names) {
@@ -70,6 +65,45 @@ Result<void> check_exact(std::size_t samples, const dictionary::Channel& channel
                  std::to_string(exact_samples_max) + " are given exactly: ask for points, or less"};
 }
 
+void write(const ChannelValue& sample, v1::ChannelSeries& series) {
+    series.add_sclk(sample.sclk.seconds);
+    series.add_value(sample.value);
+    series.add_source(static_cast<v1::Source>(sample.source));
+    auto& text = *series.add_text();
+    if (sample.text) text.set_text(*sample.text);
+}
+
+/// Adds the newest sample in real time.
+Result<void> add_newest(Reader::State& reader, const RunInfo& run, ChannelId channel, v1::ChannelSeries& series) {
+    Newest newest(reader.dictionary.channels.size());
+    for (const auto place : reader.columns.places(channel))
+        if (auto done = note_newest(reader, run, place.packet, Source::realtime,
+                                    std::numeric_limits<double>::infinity(), newest);
+            !done)
+            return done;
+    const auto& found = newest[channel.value];
+    if (!found) return {};
+    auto& added = *series.mutable_newest();
+    added.set_sclk(found->sclk.seconds);
+    added.set_value(found->value);
+    if (found->text) added.set_text(*found->text);
+    added.set_ert_us(found->ert.microseconds);
+    added.set_sclk_by_reception(found->sclk_by_reception);
+    return {};
+}
+
+/// The series of a channel that needs_text(). Texts have no least and largest: thinned, the series has the last ones.
+Result<v1::ChannelSeries> text_series(Reader::State& reader, const RunInfo& run, const dictionary::Channel& channel,
+                                      const ClosedRange& range, const SeriesQuery& query, v1::ChannelSeries series) {
+    const auto samples = text_samples(reader, run, channel.id, range, query.source);
+    if (!samples) return samples.error();
+    series.set_samples(samples->size());
+    const std::size_t left_out = query.points && samples->size() > *query.points ? samples->size() - *query.points : 0;
+    series.set_thinned(left_out > 0);
+    for (const ChannelValue& sample : std::span{*samples}.subspan(left_out)) write(sample, series);
+    return series;
+}
+
 Result<v1::ChannelSeries> one_series(Reader::State& reader, const RunInfo& run, const dictionary::Channel& channel,
                                      const ClosedRange& range, const SeriesQuery& query) {
     const auto& points = query.points;
@@ -77,6 +111,9 @@ Result<v1::ChannelSeries> one_series(Reader::State& reader, const RunInfo& run, 
     series.set_id(channel.id.value);
     series.set_name(channel.name);
     series.set_unit(channel.type.unit);
+    if (reader.other != nullptr && !query.range.to_s)
+        if (auto done = add_newest(reader, run, channel.id, series); !done) return done.error();
+    if (needs_text(channel.type)) return text_series(reader, run, channel, range, query, std::move(series));
     const auto sources = find_sample_sources(reader, run, channel.id, range, query.source);
     if (!sources) return sources.error();
     const std::size_t count = sources->samples_at_most;
@@ -135,32 +172,6 @@ Result<SampleSpan> sample_span(Reader::State& reader, const RunInfo& run) {
     if (auto found = (*packets)->step(); !found) return found.error();
     add(**packets);
     return span;
-}
-
-/// Takes the values of the newest packet of a type and source where they are newer.
-Result<void> note_newest(Reader::State& reader, RunId run, std::size_t packet, Source source, double to_s,
-                         std::vector<std::optional<ChannelValue>>& newest) {
-    const auto& channels = reader.columns.channels(packet);
-    if (channels.empty()) return {};
-    const Apid apid = reader.dictionary.packets[packet].apid;
-    auto rows = reader.query(apid == telemetry::OtherMission::any_apid ? newest_of_any_apid_sql : newest_sql);
-    if (!rows) return rows.error();
-    auto& row = **rows;
-    row.bind(1, std::int64_t{run.value})
-        .bind(2, std::int64_t{apid.value})
-        .bind(3, to_s)
-        .bind(4, static_cast<std::int64_t>(packet))
-        .bind(5, static_cast<std::int64_t>(source));
-    auto found = row.step();
-    if (!found) return found.error();
-    if (!*found || !reader.decode(row.octets(0))) return {};
-    std::vector<double> values;
-    reader.columns.append_values(reader.decoded, values);
-    const Sclk sclk = reader.decoded.header.time;
-    for (std::size_t i = 0; i < channels.size(); ++i)
-        if (auto& known = newest[channels[i].value]; !known || known->sclk < sclk)
-            known = ChannelValue{channels[i], values[i], sclk, source};
-    return {};
 }
 
 /// What a query of series asks for, looked up.
@@ -232,6 +243,7 @@ class Thinning {
         : range_(range), intervals_(points ? *points / 2 : 0) {}
 
     Result<void> add(const Sample& sample) {
+        if (intervals_ > 0 && std::isnan(sample.value)) return {};
         ++count_;
         if (intervals_ == 0) {
             if (count_ > exact_samples_max)
@@ -295,17 +307,19 @@ Result<v1::ChannelSeries> Reader::derived(RunId run, const std::string& text, co
     }
     // Within one instant the first channel's sample comes last: by then all others are known.
     const std::vector<std::string> in_order(names.rbegin(), names.rend());
-    std::vector<double> values(names.size(), std::numeric_limits<double>::quiet_NaN());
+    std::vector<std::optional<double>> known(names.size());
+    std::vector<double> values(names.size());
     Thinning thinning(within, points);
     const auto take = [&](std::span<const ChannelValue> samples) -> Result<void> {
         for (const ChannelValue& sample : samples) {
             for (std::size_t i = 0; i < names.size(); ++i)
-                if ((*channels)[i]->id == sample.channel) values[i] = sample.value;
+                if ((*channels)[i]->id == sample.channel) known[i] = sample.value;
             if (sample.channel != channels->front()->id ||
-                std::ranges::any_of(values, [](double value) { return std::isnan(value); }))
+                std::ranges::any_of(known, [](const auto& value) { return !value; }))
                 continue;
-            const double value = expression->value(values);
-            if (std::isnan(value)) continue;
+            std::ranges::transform(known, values.begin(), [](const auto& value) { return *value; });
+            const bool defined = std::ranges::none_of(values, [](double value) { return std::isnan(value); });
+            const double value = defined ? expression->value(values) : std::numeric_limits<double>::quiet_NaN();
             if (auto done = thinning.add({sample.sclk.seconds, value, sample.source}); !done) return done;
         }
         return {};
@@ -337,6 +351,8 @@ class SampleWindows {
   private:
     SampleWindows(Reader::State& reader, const RunInfo& run, std::size_t wanted)
         : reader_(&reader), run_(run), wanted_(wanted) {}
+    Result<void> add_samples(const dictionary::Channel& channel, const ClosedRange& window,
+                             std::vector<ChannelValue>& samples);
 
     Reader::State* reader_;
     RunInfo run_;
@@ -374,6 +390,21 @@ Result<SampleWindows> SampleWindows::of(Reader::State& reader, RunId run, const 
     return windows;
 }
 
+Result<void> SampleWindows::add_samples(const dictionary::Channel& channel, const ClosedRange& window,
+                                        std::vector<ChannelValue>& samples) {
+    if (needs_text(channel.type)) {
+        auto found = text_samples(*reader_, run_, channel.id, window);
+        if (!found) return found.error();
+        std::ranges::move(*found, std::back_inserter(samples));
+        return {};
+    }
+    const auto found = samples_of(*reader_, run_, channel.id, window);
+    if (!found) return found.error();
+    for (const Sample& sample : *found)
+        samples.push_back({channel.id, sample.value, Sclk{sample.sclk_s}, sample.source});
+    return {};
+}
+
 Result<void> SampleWindows::next(std::vector<ChannelValue>& samples) {
     auto& [from_s, to_s, width_s] = cursor_;
     for (;;) {
@@ -382,10 +413,7 @@ Result<void> SampleWindows::next(std::vector<ChannelValue>& samples) {
         samples.clear();
         bool whole = true;
         for (const auto* channel : channels_) {
-            auto found = samples_of(*reader_, run_, channel->id, window);
-            if (!found) return found.error();
-            for (const Sample& sample : *found)
-                samples.push_back({channel->id, sample.value, Sclk{sample.sclk_s}, sample.source});
+            if (auto done = add_samples(*channel, window, samples); !done) return done;
             whole = samples.size() <= 4 * wanted_ || window.from_s == window.to_s;
             if (!whole) break;
         }
@@ -436,13 +464,14 @@ Result<std::vector<ChannelValue>> Reader::latest(RunId run, std::optional<Sclk> 
     const auto instant = state_->instant(run);
     if (!instant) return instant.error();
     if (auto same = state_->same_dictionary(instant->run); !same) return same.error();
-    std::vector<std::optional<ChannelValue>> newest(state_->dictionary.channels.size());
+    Newest newest(state_->dictionary.channels.size());
     for (std::size_t packet = 0; packet < state_->columns.packets(); ++packet)
         for (const Source source : {Source::realtime, Source::recorded})
-            if (auto done = note_newest(*state_, run, packet, source, range->to_s, newest); !done) return done.error();
+            if (auto done = note_newest(*state_, instant->run, packet, source, range->to_s, newest); !done)
+                return done.error();
     std::vector<ChannelValue> answer;
-    for (const auto& value : newest)
-        if (value && !std::isnan(value->value)) answer.push_back(*value);
+    for (auto& value : newest)
+        if (value) answer.push_back(std::move(*value));
     return answer;
 }
 

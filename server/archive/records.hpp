@@ -63,13 +63,21 @@ struct PacketRecord : ItemRecord {
     }
 };
 
+/// An exact value that a double does not hold: text, or a whole number of more than 53 bits.
+struct SampleText {
+    std::size_t column = 0;
+    std::string text;
+};
+
 /// The values of one sampled packet, one column per channel; NaN where undefined. Only for publishing and for segments:
 /// it has no row of its own.
 struct SampleRecord : ItemRecord {
     std::uint16_t packet = 0;
     Sclk sclk;
     Source source{};
-    Slice values;  ///< in Batch::values
+    Slice values;                     ///< in Batch::values
+    std::vector<SampleText> texts{};  ///< of columns whose channel needs_text(), where defined
+    bool sclk_by_reception = false;   ///< the packet holds no time
 };
 
 struct EventRecord : ItemRecord {

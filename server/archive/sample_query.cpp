@@ -44,7 +44,7 @@ Result<void> read_column(Reader::State& reader, const sqlite::Statement& row, in
     return reader.codec.unpack(octets, into);
 }
 
-/// Appends to `into` the defined samples within the range among first … last - 1 of a series.
+/// Appends to `into` the samples within the range among first … last - 1 of a series.
 Result<void> read_samples(Reader::State& reader, const SealedSeries& series, const SampleSources& sources,
                           std::uint64_t first, std::uint64_t last, std::vector<Sample>& into) {
     auto rows = reader.query(columns_sql);
@@ -74,8 +74,7 @@ Result<void> read_samples(Reader::State& reader, const SealedSeries& series, con
         std::size_t end = into.size();
         into.resize(end + (to > from ? to - from : 0));
         for (std::size_t i = from; i < to; ++i)
-            if (const double sclk_s = reader.segment_sclk_s[i];
-                !std::isnan(reader.segment_values[i]) && sources.range.holds(sclk_s))
+            if (const double sclk_s = reader.segment_sclk_s[i]; sources.range.holds(sclk_s))
                 into[end++] = {sclk_s, reader.segment_values[i], series.source};
         into.resize(end);
     }
@@ -138,8 +137,7 @@ Result<void> read_tail(Reader::State& reader, const SealedSeries& series, std::s
         if (!found) return found.error();
         if (!*found) return {};
         if (!reader.decode((*rows)->octets(0))) continue;
-        const double value = reader.columns.value(reader.decoded, column);
-        if (!std::isnan(value)) take(Sample{(*rows)->real(1), value, series.source});
+        take(Sample{(*rows)->real(1), reader.columns.value(reader.decoded, column), series.source});
     }
 }
 
@@ -261,7 +259,9 @@ Result<Thinned> thinned_samples(Reader::State& reader, const SampleSources& sour
     std::vector<Sample> found;
     found.reserve(sources.tail.size() + 2 * sources.samples_at_most / pyramid::samples_of_node(wanted) +
                   segment_samples);
+    const auto undefined = [](const Sample& sample) { return std::isnan(sample.value); };
     found.assign(sources.tail.begin(), sources.tail.end());
+    std::erase_if(found, undefined);
     thinned.samples = found.size();
     for (const auto& [series, parts] : sources.parts) {
         for (const NodeRange& each : parts) {
@@ -271,6 +271,8 @@ Result<Thinned> thinned_samples(Reader::State& reader, const SampleSources& sour
             if (level == 0) {
                 const std::size_t before = found.size();
                 if (auto done = read_samples(reader, series, sources, first, last, found); !done) return done.error();
+                found.erase(std::remove_if(found.begin() + static_cast<std::ptrdiff_t>(before), found.end(), undefined),
+                            found.end());
                 thinned.samples += found.size() - before;
                 continue;
             }

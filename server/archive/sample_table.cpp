@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/archive/sample_table.hpp"
 
+#include <cmath>
+
 namespace aeolis::archive {
 
 SampleTable::SampleTable(std::filesystem::path file, sqlite::Database database, sqlite::Statement insert)
@@ -21,13 +23,12 @@ Result<SampleTable> SampleTable::create(const std::filesystem::path& file) {
     auto database = sqlite::Database::open(file.string(), sqlite::Mode::read_write_create);
     if (!database) return database.error();
     // No journal is needed: the file can be made again, and exists only when finish() is done.
-    constexpr char begin[] =
-        "PRAGMA journal_mode = OFF; PRAGMA synchronous = OFF;"
-        "CREATE TABLE samples (run INTEGER NOT NULL, channel TEXT NOT NULL, sclk REAL NOT NULL,"
-        " e_s REAL NOT NULL, value REAL NOT NULL, unit TEXT NOT NULL, source TEXT NOT NULL) STRICT;"
-        "BEGIN";
+    constexpr char begin[] = "PRAGMA journal_mode = OFF; PRAGMA synchronous = OFF;"
+                             "CREATE TABLE samples (run INTEGER NOT NULL, channel TEXT NOT NULL, sclk REAL NOT NULL,"
+                             " e_s REAL, value REAL, unit TEXT NOT NULL, source TEXT NOT NULL, text TEXT) STRICT;"
+                             "BEGIN";
     if (auto done = database->execute(begin); !done) return done.error();
-    auto insert = database->prepare("INSERT INTO samples VALUES (?,?,?,?,?,?,?)");
+    auto insert = database->prepare("INSERT INTO samples VALUES (?,?,?,?,?,?,?,?)");
     if (!insert) return insert.error();
     return SampleTable(file, std::move(*database), std::move(*insert));
 }
@@ -39,10 +40,20 @@ Result<void> SampleTable::add(RunId run, Sclk entry, const dictionary::Dictionar
         insert_.bind(1, std::int64_t{run.value})
             .bind(2, std::string_view(channel.name))
             .bind(3, sample.sclk.seconds)
-            .bind(4, sample.sclk.seconds - entry.seconds)
-            .bind(5, sample.value)
             .bind(6, std::string_view(channel.type.unit))
             .bind(7, std::string_view(sample.source == Source::realtime ? "realtime" : "recorded"));
+        if (entry.seconds == 0.0)
+            insert_.bind_null(4);
+        else
+            insert_.bind(4, sample.sclk.seconds - entry.seconds);
+        if (std::isnan(sample.value))
+            insert_.bind_null(5);
+        else
+            insert_.bind(5, sample.value);
+        if (sample.text)
+            insert_.bind(8, std::string_view(*sample.text));
+        else
+            insert_.bind_null(8);
         if (auto done = insert_.run(); !done) return done;
     }
     return {};

@@ -112,6 +112,7 @@ FollowedMission followed_mission(const ServeOptions& options) {
     mission.model = std::make_unique<telemetry::OtherMission>(std::move(*xtce.model), xtce.id);
     if (mission.model->left_out() > 0)
         spdlog::warn("{}: more numbers than can be channels: the rest is in the packets only", options.xtce.string());
+    for (const auto& line : mission.model->not_judged()) spdlog::warn("{}: {}", options.xtce.string(), line);
     mission.link = DownlinkFollower::Settings{.address = *address,
                                               .format = options.format,
                                               .xtce = options.xtce.filename().string(),

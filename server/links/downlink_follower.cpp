@@ -16,14 +16,14 @@ constexpr std::int64_t pass_interval_us = 1'000'000;
 
 }  // namespace
 
-DownlinkFollower::DownlinkFollower(Settings settings, PipelineThread& pipeline, OnState on_state)
-    : settings_(std::move(settings)), pipeline_(pipeline), on_state_(std::move(on_state)), clock_(settings_.clocks),
-      wait_(settings_.retry_first) {}
+DownlinkFollower::DownlinkFollower(Settings settings, PipelineThread& pipeline, OnState on_state, OnClock on_clock)
+    : settings_(std::move(settings)), pipeline_(pipeline), on_state_(std::move(on_state)),
+      on_clock_(std::move(on_clock)), clock_(settings_.clocks), wait_(settings_.retry_first) {}
 
 Result<std::unique_ptr<DownlinkFollower>> DownlinkFollower::start(Settings settings, PipelineThread& pipeline,
-                                                                  OnState on_state) {
+                                                                  OnState on_state, OnClock on_clock) {
     std::unique_ptr<DownlinkFollower> follower{
-        new DownlinkFollower{std::move(settings), pipeline, std::move(on_state)}};
+        new DownlinkFollower{std::move(settings), pipeline, std::move(on_state), std::move(on_clock)}};
     auto& self = *follower;
     if (!needs_beginning(self.settings_.format))
         if (const auto source = packet_source(self.settings_.format, {}, true); !source) return source.error();
@@ -54,7 +54,7 @@ void DownlinkFollower::follow() {
     on_state_(state("running"));
     while (!stop_) {
         if (settings_.address.udp)
-            say(true, "listening");
+            waits("listening");
         else if (!connect_again())
             break;
         receive_until_end();
@@ -74,11 +74,11 @@ bool DownlinkFollower::connect_again() {
         wait_ = std::min(2 * wait_, settings_.retry_max);
         const auto opened = socket_.open(settings_.address, connect_limit);
         if (opened) {
-            say(true, "connected");
+            waits("connected");
             return true;
         }
-        say(false, opened.error().message + "; trying again, at most every " +
-                       fmt::format("{:.3g} s", settings_.retry_max.count() * 1e-3));
+        lost(telemetry::SilenceClass::ground_fault, opened.error().message + "; trying again, at most every " +
+                                                        fmt::format("{:.3g} s", settings_.retry_max.count() * 1e-3));
     }
     stop_ = true;
     return false;
@@ -86,7 +86,7 @@ bool DownlinkFollower::connect_again() {
 
 void DownlinkFollower::receive_until_end() {
     std::vector<std::uint8_t> piece(piece_octets);
-    lost_ = false;
+    out_of_step_ = false;
     for (;;) {
         const auto received = socket_.receive(piece, receive_limit);
         if (received.got == DownlinkSocket::Got::woken) {
@@ -94,14 +94,16 @@ void DownlinkFollower::receive_until_end() {
             return;
         }
         pass();
-        if (received.got == DownlinkSocket::Got::end) return say(false, received.reason);
+        if (received.got == DownlinkSocket::Got::end)
+            return lost(telemetry::SilenceClass::ground_fault, received.reason);
         if (received.got == DownlinkSocket::Got::nothing) continue;
         take(std::span{piece}.first(received.octets));
         if (settings_.address.udp && source_) source_->end_datagram();
         if (stop_) return;
-        if (lost_ && !settings_.address.udp) {
+        if (out_of_step_ && !settings_.address.udp) {
             socket_.close();
-            return say(false, "no packet begins where the last one ended: the connection is made anew");
+            return lost(telemetry::SilenceClass::ground_fault,
+                        "no packet begins where the last one ended: the connection is made anew");
         }
     }
 }
@@ -113,7 +115,7 @@ void DownlinkFollower::take(std::span<const std::uint8_t> octets) {
     }
     if (!octets.empty()) source_->receive(octets);
     deliver_packets();
-    lost_ = source_->lost();
+    out_of_step_ = source_->lost();
 }
 
 /// Makes the packet source once the frame length is known, and passes it all octets received.
@@ -129,7 +131,7 @@ bool DownlinkFollower::recognise(std::span<const std::uint8_t> octets) {
         beginning_.clear();
         tried_octets_ = 0;
     }
-    if (full && !recognised) say(false, recognised.error().message);
+    if (full && !recognised) lost(telemetry::SilenceClass::ground_fault, recognised.error().message);
     return recognised.ok();
 }
 
@@ -166,34 +168,49 @@ void DownlinkFollower::deliver_packets() {
             telemetry::ReceivedPacket{telemetry::downlink_link, ert, {packet->begin(), packet->end()}});
     if (delivery.entries.empty()) return;
     packets_ += delivery.entries.size();
+    rhythm_.heard(ert);
+    // Before the packets: what comes with them is then known to come over a link that is up.
+    if (!up_) say({telemetry::downlink_link, ert, true, "packets come"});
     wait_ = settings_.retry_first;
     if (!pipeline_.deliver(std::move(delivery))) stop_ = true;
 }
 
-/// Reports the time on Earth, also while nothing is received.
+/// Reports the time on Earth, also while nothing is received, and a silence.
 void DownlinkFollower::pass() {
     const Ert now = clock_.now();
+    if (const auto silence = rhythm_.silent(now); silence && up_)
+        lost(telemetry::SilenceClass::unexplained,
+             fmt::format("no packet since {}; before, they came at least every {:.3g} s",
+                         day_of_year_text(silence->since), silence->interval_s));
     if (now.microseconds - passed_.microseconds < pass_interval_us) return;
     passed_ = now;
+    v1::Clocks clocks;
+    clocks.set_ert(day_of_year_text(now));
+    on_clock_(std::move(clocks));
     Delivery delivery;
     delivery.entries.emplace_back(telemetry::EarthTime{now});
     if (!pipeline_.deliver(std::move(delivery))) stop_ = true;
 }
 
-void DownlinkFollower::say(bool up, const std::string& reason) {
-    if (reason == said_) return;
-    said_ = reason;
-    if (up)
-        spdlog::info("downlink {}: {}", settings_.address.text(), reason);
-    else
-        spdlog::warn("downlink {}: {}", settings_.address.text(), reason);
+/// The line is there, and nothing has come over it yet.
+void DownlinkFollower::waits(const std::string& how) {
+    if (!up_) say({telemetry::downlink_link, clock_.now(), false, how + ", no packet has come yet"});
+}
+
+void DownlinkFollower::lost(telemetry::SilenceClass silence, const std::string& why) {
+    say({telemetry::downlink_link, clock_.now(), false, telemetry::words_of(silence, why), true});
+}
+
+void DownlinkFollower::say(telemetry::LinkState state) {
+    if (state.reason == said_) return;
+    said_ = state.reason;
+    up_ = state.up;
+    spdlog::log(state.lost ? spdlog::level::warn : spdlog::level::info, "downlink {}: {}", settings_.address.text(),
+                state.reason);
     Delivery delivery;
-    // No prediction explains a silence of another mission: a broken connection is a ground fault.
-    delivery.entries.emplace_back(
-        telemetry::LinkState{telemetry::downlink_link, clock_.now(), up,
-                             up ? reason : words_of(telemetry::SilenceClass::ground_fault, reason), !up});
+    delivery.entries.emplace_back(std::move(state));
     if (!pipeline_.deliver(std::move(delivery))) stop_ = true;
-    on_state_(state("running"));
+    on_state_(this->state("running"));
 }
 
 v1::RunState DownlinkFollower::state(const std::string& word) const {

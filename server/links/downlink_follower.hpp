@@ -6,6 +6,8 @@
 #include "server/links/downlink_socket.hpp"
 #include "server/links/frame_format.hpp"
 #include "server/pipeline/pipeline_thread.hpp"
+#include "telemetry/link_rhythm.hpp"
+#include "telemetry/station/silence_classifier.hpp"
 
 #include <chrono>
 #include <functional>
@@ -23,6 +25,8 @@ namespace aeolis::server {
 /// UDP      bare packets: each datagram holds whole packets. Frames: datagrams are pieces of one stream
 /// Faults   octets that are no packet are counted and skipped. When bare packets cannot be found any more, it
 ///          reconnects. Each change is logged and is an item of the run
+/// Silence  the link is up once packets come. It is lost when the connection breaks, and when packets stay out longer than
+///          it has learnt that they do (telemetry/link_rhythm.hpp)
 /// Times    Earth received times go on with the monotonic clock when the system's clock jumps (EarthClock)
 /// Memory   a piece of `piece_octets`, a frame, and the beginning of a stream whose frame length is not yet known. A
 ///          slow disk blocks the thread and so the TCP sender; datagrams that arrive meanwhile may be lost, as UDP
@@ -40,11 +44,12 @@ class DownlinkFollower {
         ReadClocks clocks = read_clocks;
     };
     using OnState = std::function<void(v1::RunState)>;  ///< called on the follower's thread
+    using OnClock = std::function<void(v1::Clocks)>;    ///< likewise, about once a second: the time on Earth
 
     /// Begins the run. Fails on an unknown format, when the datagrams' address cannot be bound, or when the archive
     /// refuses. The pipeline, which reads that mission's packets, must outlive this.
     static Result<std::unique_ptr<DownlinkFollower>> start(Settings settings, PipelineThread& pipeline,
-                                                           OnState on_state);
+                                                           OnState on_state, OnClock on_clock);
     ~DownlinkFollower();  ///< ends the run
 
     std::uint16_t port() const { return port_; }  ///< of the bound UDP socket
@@ -52,7 +57,7 @@ class DownlinkFollower {
     Ert now() const { return clock_.now(); }  ///< the time on Earth of its run; from any thread
 
   private:
-    DownlinkFollower(Settings settings, PipelineThread& pipeline, OnState on_state);
+    DownlinkFollower(Settings settings, PipelineThread& pipeline, OnState on_state, OnClock on_clock);
     void follow();
     bool connect_again();
     void receive_until_end();
@@ -62,12 +67,15 @@ class DownlinkFollower {
     void end_of_stream();
     void pass();
     void deliver_packets();
-    void say(bool up, const std::string& reason);
+    void say(telemetry::LinkState state);
+    void waits(const std::string& how);
+    void lost(telemetry::SilenceClass silence, const std::string& why);
     v1::RunState state(const std::string& word) const;
 
     Settings settings_;
     PipelineThread& pipeline_;
     OnState on_state_;
+    OnClock on_clock_;
     EarthClock clock_;
     DownlinkSocket socket_;
     std::uint16_t port_ = 0;
@@ -78,9 +86,11 @@ class DownlinkFollower {
     std::size_t tried_octets_ = 0;
     std::string said_;  ///< the last message, so that a lasting fault is reported once
     std::uint64_t packets_ = 0;
+    telemetry::LinkRhythm rhythm_;
+    bool up_ = false;                 ///< packets come
     Ert passed_;                      ///< the time on Earth delivered last
     std::chrono::milliseconds wait_;  ///< before the next attempt to connect; reset once packets arrive
-    bool stop_ = false, lost_ = false;
+    bool stop_ = false, out_of_step_ = false;
     std::thread thread_;
 };
 

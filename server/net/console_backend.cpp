@@ -374,9 +374,14 @@ Result<void> ConsoleBackend::follow(DownlinkFollower::Settings settings) {
     campaigns_->close("this server follows the downlink of another mission: campaigns need one of their own");
     const auto detail = fmt::format("serve --downlink {} --xtce {}", settings.address.text(), settings.xtce);
     settings.clocks = settings_.clocks;
-    auto follower = DownlinkFollower::start(std::move(settings), *pipeline_, [this](v1::RunState state) {
-        server_->post([this, state = std::move(state)]() mutable { hub_->run_state(std::move(state)); });
-    });
+    auto follower = DownlinkFollower::start(
+        std::move(settings), *pipeline_,
+        [this](v1::RunState state) {
+            server_->post([this, state = std::move(state)]() mutable { hub_->run_state(std::move(state)); });
+        },
+        [this](v1::Clocks clocks) {
+            server_->post([this, clocks = std::move(clocks)]() mutable { hub_->clocks(std::move(clocks)); });
+        });
     pipeline_->audit(audit_record(command_line_operator(), "downlink", detail,
                                   follower ? "done" : "refused: " + follower.error().message));
     if (!follower) return follower.error();

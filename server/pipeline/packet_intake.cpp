@@ -19,7 +19,8 @@ using telemetry::Standing;
 PacketIntake::PacketIntake(const dictionary::Dictionary& dictionary, const archive::PacketColumns& columns,
                            const telemetry::OtherMission* other)
     : dictionary_(dictionary), columns_(columns), firing_(find_firing_fields(dictionary)), other_(other),
-      alarms_(dictionary), segments_(columns), latest_(dictionary.channels.size()) {
+      alarms_(dictionary), segments_(columns), latest_(dictionary.channels.size()),
+      clocks_(other == nullptr ? 0 : dictionary.packets.size()) {
     if (other_ == nullptr) decommutator_.emplace(dictionary);
     const auto* phase = dictionary.channel("edl_phase");  // null: not in this mission
     const auto tells_phase = [&](const dictionary::Field& field) {
@@ -56,6 +57,7 @@ std::optional<PacketIntake::FiringFields> PacketIntake::find_firing_fields(const
 void PacketIntake::take(const telemetry::ReceivedPacket& packet, Numbering& numbering, Batch& batch,
                         const Observer& observer) {
     const bool recorded = packet.link.recorded;
+    remark_.clear();
     PacketRecord record;
     record.seq = numbering.next(batch);
     record.ert = packet.ert;
@@ -80,6 +82,12 @@ void PacketIntake::take(const telemetry::ReceivedPacket& packet, Numbering& numb
     }
     record.packet = static_cast<std::uint16_t>(decoded_.packet);
     record.sclk = decoded_.header.time;
+    if (other_ != nullptr) {
+        const auto own = decoded_.timed ? std::optional{decoded_.header.time} : std::nullopt;
+        auto place = clocks_.place(decoded_.packet, dictionary_.packets[decoded_.packet].name, own, packet.ert);
+        record.sclk = place.sclk;
+        remark_ = std::move(place.remark).value_or("");
+    }
     if (other_ == nullptr)
         record.standing =
             register_.add(packet.octets, recorded ? telemetry::Path::recorded : telemetry::Path::realtime);
@@ -108,7 +116,9 @@ void PacketIntake::sample(const PacketRecord& record, Numbering& numbering, Batc
                              *record.packet,
                              record.sclk,
                              record.source,
-                             {first, batch.values.size() - first}});
+                             {first, batch.values.size() - first},
+                             columns_.texts(decoded_),
+                             !decoded_.timed});
     segments_.add(*record.packet, record.source, record.seq, record.sclk, values, batch);
     if (record.source == Source::realtime) judge(record, values, numbering, batch);
 }
@@ -119,7 +129,8 @@ void PacketIntake::judge(const PacketRecord& record, std::span<const double> val
     changes_.clear();
     for (std::size_t i = 0; i < channels.size(); ++i) {
         auto& latest = latest_[channels[i].value];
-        if (latest && latest->sclk > record.sclk) continue;
+        // Our clock never goes back: an earlier time is late, from an orbiter's memory.
+        if (other_ == nullptr && latest && latest->sclk > record.sclk) continue;
         latest = LatestValue{std::isnan(values[i]) ? std::nullopt : std::optional(values[i]), record.sclk, record.ert};
         if (latest->value) alarms_.sample(channels[i], values[i], record.sclk, changes_);
     }

@@ -7,6 +7,7 @@
 #include "telemetry/alarms.hpp"
 #include "telemetry/decommutator.hpp"
 #include "telemetry/other_mission.hpp"
+#include "telemetry/packet_clocks.hpp"
 #include "telemetry/unit_identity.hpp"
 
 #include <optional>
@@ -45,6 +46,9 @@ class Numbering {
 /// it.
 ///
 /// In       packets in the order of receipt               Out   records, appended to a batch
+/// Time     another mission's packet without a time of its own stands at its reception (telemetry/packet_clocks.hpp)
+/// Newest   of real time: ours by its clock, which never goes back; another mission's by reception, because its clocks
+///          may restart and stand still
 /// Rules    a packet seen before on the other path is stored (it is the proof) and marked, but its samples are not
 ///          added again. A packet seen before on the same path yields nothing new. Alarms are judged in real time only:
 ///          the recording tells the past. Another mission's packets count as real time and are never compared: nothing
@@ -60,7 +64,10 @@ class PacketIntake {
     void seal(archive::Batch& batch) { segments_.seal(batch); }
 
     archive::RecordingTotals totals() const;
+    /// The newest value of each channel in real time.
     const std::vector<std::optional<LatestValue>>& latest() const { return latest_; }
+    /// What the last packet showed of its clock, for people; empty: nothing.
+    const std::string& remark() const { return remark_; }
     /// The label of the vehicle's phase as last reported in real time; empty: not reported. Reported by the phase
     /// channel or by the event of its change, whichever is newer on board: the channel is sent every two seconds and
     /// may be lost.
@@ -96,6 +103,8 @@ class PacketIntake {
     std::vector<telemetry::AlarmChange> changes_;
     SegmentBuilder segments_;
     std::vector<std::optional<LatestValue>> latest_;
+    telemetry::PacketClocks clocks_;  ///< of another mission's packets
+    std::string remark_;
     std::uint64_t recorded_octets_ = 0;
     std::uint64_t not_decoded_ = 0;
     std::uint64_t of_others_ = 0;  ///< packets of another mission

@@ -4,6 +4,7 @@
 #include "server/archive/item_tables.hpp"
 #include "server/archive/items.hpp"
 #include "server/archive/packet_columns.hpp"
+#include "server/base/wall_clock.hpp"
 #include "server/pipeline/packet_intake.hpp"
 #include "server/pipeline/situation_feed.hpp"
 #include "telemetry/staleness.hpp"
@@ -242,6 +243,15 @@ Result<void> Pipeline::accept(archive::StageRecord stage) {
 
 void Pipeline::State::take(const telemetry::ReceivedPacket& packet) {
     run->intake.take(packet, run->numbering, run->pending, observer);
+    if (const auto& remark = run->intake.remark(); !remark.empty()) {
+        archive::NoteRecord note;
+        note.seq = run->numbering.next(run->pending);
+        note.ert = packet.ert;
+        note.text = remark;
+        note.by = "ground";
+        note.written = server::wall_clock_text();
+        run->pending.notes.push_back(std::move(note));
+    }
     if (!packet.link.recorded) heard();
     run->situation.follow(run->pending);
 }

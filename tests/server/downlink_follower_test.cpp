@@ -5,11 +5,13 @@
 #include "server/access/this_user.hpp"
 #include "server/links/downlink_follower.hpp"
 #include "server/net/console_backend.hpp"
+#include "server/pipeline/derivation.hpp"
 #include "telemetry/other_mission.hpp"
 #include "tests/server/audited.hpp"
 #include "tests/server/small_mission.hpp"
 #include "tests/server/web_client.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/octets.hpp"
 
 #include <arpa/inet.h>
 #include <atomic>
@@ -340,6 +342,96 @@ TEST_CASE("while the system's clock is set back and forth under a run, Earth rec
                            " WHERE ert_us < before")
               .value() == 0);
     CHECK(database->integer_of("SELECT max(ert_us) - min(ert_us) FROM units").value() < 60'000'000);
+}
+
+/// Packets with a clock of whole seconds and a number (APID 1), and without a time: a whole number and a text (APID 2).
+constexpr const char* odd_xtce = R"(<SpaceSystem name="Odd"><TelemetryMetaData><ParameterTypeSet>
+<IntegerParameterType name="u5"><IntegerDataEncoding sizeInBits="5"/></IntegerParameterType>
+<IntegerParameterType name="u11"><IntegerDataEncoding sizeInBits="11"/></IntegerParameterType>
+<IntegerParameterType name="u16"><IntegerDataEncoding sizeInBits="16"/></IntegerParameterType>
+<IntegerParameterType name="u32"><IntegerDataEncoding sizeInBits="32"/></IntegerParameterType>
+<IntegerParameterType name="u64"><IntegerDataEncoding sizeInBits="64"/></IntegerParameterType>
+<FloatParameterType name="f32"><FloatDataEncoding sizeInBits="32"/></FloatParameterType>
+<StringParameterType name="latin"><StringDataEncoding encoding="ISO-8859-1"><SizeInBits><Fixed><FixedValue>24</FixedValue></Fixed></SizeInBits></StringDataEncoding></StringParameterType>
+</ParameterTypeSet><ParameterSet>
+<Parameter name="first" parameterTypeRef="u5"/><Parameter name="apid" parameterTypeRef="u11"/><Parameter name="rest" parameterTypeRef="u32"/>
+<Parameter name="COARSE" parameterTypeRef="u32"/><Parameter name="FINE" parameterTypeRef="u16"/><Parameter name="X" parameterTypeRef="f32"/>
+<Parameter name="BIG" parameterTypeRef="u64"/><Parameter name="NAME" parameterTypeRef="latin"/>
+</ParameterSet><ContainerSet>
+<SequenceContainer name="Header" abstract="true"><EntryList><ParameterRefEntry parameterRef="first"/><ParameterRefEntry parameterRef="apid"/>
+<ParameterRefEntry parameterRef="rest"/></EntryList></SequenceContainer>
+<SequenceContainer name="Timed"><EntryList><ParameterRefEntry parameterRef="COARSE"/><ParameterRefEntry parameterRef="FINE"/>
+<ParameterRefEntry parameterRef="X"/></EntryList><BaseContainer containerRef="Header"><RestrictionCriteria>
+<Comparison parameterRef="apid" value="1"/></RestrictionCriteria></BaseContainer></SequenceContainer>
+<SequenceContainer name="Bare"><EntryList><ParameterRefEntry parameterRef="BIG"/><ParameterRefEntry parameterRef="NAME"/></EntryList>
+<BaseContainer containerRef="Header"><RestrictionCriteria><Comparison parameterRef="apid" value="2"/></RestrictionCriteria></BaseContainer></SequenceContainer>
+</ContainerSet></TelemetryMetaData></SpaceSystem>)";
+
+Octets packet_of(std::uint8_t apid, const std::string& data) {
+    Octets packet{0, apid, 0xC0, 0, 0, 0};
+    const auto octets = hex(data);
+    packet.insert(packet.end(), octets.begin(), octets.end());
+    packet[5] = static_cast<std::uint8_t>(packet.size() - 7);
+    return packet;
+}
+
+TEST_CASE(
+    "of a followed mission the newest is what was received last, undefined is a sample, and texts and 64-bit numbers "
+    "are exact: in channels, state, export and stream; a clock that restarts, and packets without one, are told",
+    "[server][downlink][R53][R54]") {
+    const auto mission = mission_of(odd_xtce);
+    Follower follower{*mission, "udp://127.0.0.1:0", {.name = "packets", .skip = 0, .frame_octets = {}}};
+    const auto link =
+        follower.ask_until("/runs/1/items", [](const std::string& text) { return count_of(text, "\"link\"") > 0; });
+    CHECK_THAT(link, Catch::Contains("listening, no packet has come yet") && !Catch::Contains("\"up\":true"));
+    std::size_t sent = 0;
+    const auto send = [&](const Octets& packet) {
+        send_datagram(follower.downlink_port(), packet);
+        ++sent;
+        follower.ask_until("/runs/1/packets",
+                           [&](const std::string& text) { return count_of(text, "\"hex\"") == sent; });
+    };
+    constexpr const char *one = "3f800000", *two = "40000000", *three = "40400000", *four = "40800000",
+                         *nan = "7fc00000";
+    for (const char* x : {one, two, three}) send(packet_of(1, "00001388 0000" + std::string(x)));  // 5000 s
+    send(packet_of(2, "0020000000000001 c4d641"));
+    send(packet_of(1, std::string("00000007 0000") + nan));
+    send(packet_of(1, std::string("00000008 0000") + four));
+    send(packet_of(2, "ffffffffffffffff 204142"));
+    send(packet_of(1, std::string("00000009 0000") + nan));
+
+    const auto x = follower.ask("/runs/1/channels?names=X");
+    CHECK_THAT(x, Catch::Contains("\"samples\":\"6\"") && Catch::Contains("\"sclk\":[7,8,9,5000,5000,5000]") &&
+                      Catch::Contains("\"value\":[null,4,null,1,2,3]") &&
+                      Catch::Contains("\"newest\":{\"sclk\":9,\"value\":null"));
+    CHECK_THAT(follower.ask("/runs/1/channels?names=X&format=csv"),
+               Catch::Contains("X,,7,,realtime\nX,,8,4,realtime\nX,,9,,"));
+    CHECK_THAT(follower.ask("/runs/1/channels?names=BIG,NAME"),
+               Catch::Contains("\"value\":[\"9007199254740993\",\"18446744073709551615\"]") &&
+                   Catch::Contains("\"value\":[\"ÄÖA\",\" AB\"]") && Catch::Contains("\"sclk_by_reception\":true"));
+    const auto state_of = [&](const std::string& at) {
+        const auto state = follower.ask("/runs/1/state" + at);
+        const auto begin = state.find("\"name\":\"X\"");
+        return state.substr(begin, state.find('}', begin) - begin);
+    };
+    CHECK_THAT(state_of(""), Catch::Contains("\"sclk\":[9],\"value\":[null]"));
+    CHECK_THAT(state_of("?at=6000"),
+               Catch::Contains("\"sclk\":[9],\"value\":[null]"));  // received last of those up to then
+    CHECK_THAT(state_of("?at=8"), Catch::Contains("\"sclk\":[8],\"value\":[4]"));
+    CHECK_THAT(follower.ask("/runs/1/state"), Catch::Contains("\"value\":[\"18446744073709551615\"]"));
+    CHECK_THAT(follower.ask("/runs/1/samples?names=X,BIG&align=X"),
+               Catch::Contains("sclk,e_s,X,BIG\n7,,,\n8,,4,") && Catch::Contains("\n9,,,"));
+    const auto items = follower.ask("/runs/1/items");
+    CHECK_THAT(items, Catch::Contains("\"exact\":[{\"id\"") && Catch::Contains("\"text\":\"9007199254740993\"") &&
+                          Catch::Contains("\"NaN\"") && Catch::Contains("packets come"));
+    CHECK_THAT(follower.ask("/runs/1/notes"),
+               Catch::Contains("packet Bare holds no time: its samples stand at their reception") &&
+                   Catch::Contains("the clock of packet Timed went back from 5000 s to 7 s") &&
+                   Catch::Contains("\"by\":\"ground\""));
+    const auto verified = pipeline::verify(follower.archive(), {}, mission->dictionary(), mission.get(),
+                                           follower.archive().parent_path());
+    REQUIRE(verified);
+    CHECK(verified->faults.empty());
 }
 
 TEST_CASE("a downlink that the program was started to follow is in the audit, with who started it",

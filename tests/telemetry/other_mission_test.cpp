@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "telemetry/alarms.hpp"
 #include "telemetry/other_mission.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/mission_copy.hpp"
@@ -6,6 +7,7 @@
 #include "tests/support/shipped_dictionary.hpp"
 
 #include <algorithm>
+#include <map>
 #include <memory>
 
 namespace telemetry_other_mission_test {
@@ -119,6 +121,91 @@ TEST_CASE("two parameters of one name in different systems are two channels", "[
     CHECK(mission->dictionary().channel("x") != nullptr);
     CHECK(mission->dictionary().channel("T/B/x") != nullptr);
     CHECK(mission->dictionary().packet("T/B/P") != nullptr);
+}
+
+TEST_CASE("whole numbers of 64 bits and text are channels with their exact value; undefined text is undefined",
+          "[telemetry][downlink][R54]") {
+    const auto mission = mission_of(with_containers(
+        "<IntegerParameterType name='u64'><IntegerDataEncoding sizeInBits='64'/></IntegerParameterType>"
+        "<IntegerParameterType name='i64' signed='true'><IntegerDataEncoding sizeInBits='64' "
+        "encoding='twosComplement'/></IntegerParameterType>"
+        "<IntegerParameterType name='u53'><IntegerDataEncoding sizeInBits='53'/></IntegerParameterType>"
+        "<IntegerParameterType name='u3'><IntegerDataEncoding sizeInBits='3'/></IntegerParameterType>"
+        "<StringParameterType name='latin'><StringDataEncoding encoding='ISO-8859-1'><SizeInBits><Fixed><FixedValue>24"
+        "</FixedValue></Fixed></SizeInBits></StringDataEncoding></StringParameterType>"
+        "<StringParameterType name='utf8'><StringDataEncoding encoding='UTF-8'><SizeInBits><Fixed><FixedValue>8"
+        "</FixedValue></Fixed></SizeInBits></StringDataEncoding></StringParameterType>",
+        "<Parameter name='a' parameterTypeRef='u64'/><Parameter name='b' parameterTypeRef='i64'/>"
+        "<Parameter name='c' parameterTypeRef='u53'/><Parameter name='pad' parameterTypeRef='u3'/>"
+        "<Parameter name='name' parameterTypeRef='latin'/><Parameter name='bad' parameterTypeRef='utf8'/>",
+        "<SequenceContainer name='P'><EntryList><ParameterRefEntry parameterRef='header'/>"
+        "<ParameterRefEntry parameterRef='a'/><ParameterRefEntry parameterRef='b'/><ParameterRefEntry "
+        "parameterRef='c'/><ParameterRefEntry parameterRef='pad'/><ParameterRefEntry parameterRef='name'/>"
+        "<ParameterRefEntry parameterRef='bad'/></EntryList></SequenceContainer>"));
+    const auto packet = test::hex("0000c000001b"
+                                  "0020000000000001"
+                                  "8000000000000001"
+                                  "fffffffffffffff8"
+                                  "c4d641"
+                                  "ff");
+    Decoded decoded;
+    REQUIRE_FALSE(mission->decode(packet, decoded));
+    const auto& fields = mission->dictionary().packets[decoded.packet].fields;
+    std::map<std::string, std::string> texts;
+    for (const auto& [field, text] : decoded.texts) texts[fields[field].name] = text;
+    CHECK(texts == std::map<std::string, std::string>{
+                       {"a", "9007199254740993"}, {"b", "-9223372036854775807"}, {"name", "ÄÖA"}});
+    CHECK(mission->dictionary().channel("bad")->type.kind == dictionary::ValueKind::text);
+    CHECK_FALSE(decoded.value[*field_index(mission->dictionary().packets[decoded.packet], "name")]);
+    CHECK(*decoded.value[*field_index(mission->dictionary().packets[decoded.packet], "c")] == 9007199254740991.0);
+    CHECK_FALSE(decoded.timed);
+}
+
+TEST_CASE("limits and label alarms of the file are judged, exclusive ones and contexts too; what is not is named",
+          "[telemetry][downlink][alarms][R54]") {
+    const std::string types =
+        "<EnumeratedParameterType name='mode'><IntegerDataEncoding/><EnumerationList><Enumeration value='0' "
+        "label='OFF'/>"
+        "<Enumeration value='1' maxValue='5' label='WARM'/></EnumerationList><DefaultAlarm><EnumerationAlarmList>"
+        "<EnumerationAlarm alarmLevel='warning' enumerationLabel='WARM'/></EnumerationAlarmList></DefaultAlarm>"
+        "</EnumeratedParameterType>"
+        "<IntegerParameterType name='temp'><IntegerDataEncoding/><DefaultAlarm minViolations='2'><StaticAlarmRanges>"
+        "<WarningRange maxExclusive='50'/><CriticalRange maxInclusive='60'/></StaticAlarmRanges><ChangeAlarmRanges/>"
+        "</DefaultAlarm><ContextAlarmList><ContextAlarm><StaticAlarmRanges><SevereRange maxInclusive='10'/>"
+        "</StaticAlarmRanges><ContextMatch><Comparison parameterRef='m' value='OFF'/></ContextMatch></ContextAlarm>"
+        "</ContextAlarmList></IntegerParameterType>";
+    std::vector<dictionary::Finding> findings;
+    dictionary::Findings into{"m.xml", findings};
+    auto model = dictionary::xtce::read_packet_model(
+        with_containers(types,
+                        "<Parameter name='m' parameterTypeRef='mode'/><Parameter name='t' parameterTypeRef='temp'/>",
+                        "<SequenceContainer name='P'><EntryList><ParameterRefEntry parameterRef='header'/>"
+                        "<ParameterRefEntry parameterRef='m'/><ParameterRefEntry parameterRef='t'/></EntryList>"
+                        "</SequenceContainer>"),
+        into);
+    REQUIRE(model);
+    REQUIRE(findings.size() == 1);
+    CHECK(findings[0].message == "ChangeAlarmRanges of type 'temp' is not judged");
+    const OtherMission mission{std::move(*model), 1};
+    CHECK(mission.not_judged().empty());
+    const auto& dictionary = mission.dictionary();
+    AlarmMonitor monitor{dictionary};
+    const auto id = [&](const char* name) { return dictionary.channel(name)->id; };
+    std::vector<std::string> said;
+    const auto sample = [&](const char* name, double value) {
+        std::vector<AlarmChange> changes;
+        monitor.sample(id(name), value, Sclk{0.0}, changes);
+        for (const auto& change : changes) said.push_back(std::string(name_of(change.severity)) + " " + change.limit);
+    };
+    sample("m", 5.0);   // in the range of WARM
+    sample("t", 50.0);  // the exclusive limit itself, the first of two
+    sample("t", 50.0);
+    sample("t", 61.0);
+    sample("t", 61.0);
+    sample("m", 0.0);
+    sample("t", 11.0);  // the context replaces the limits
+    CHECK(said ==
+          std::vector<std::string>{"warning = WARM", "warning >= 50", "critical > 60", "none ", "severe > 10 in OFF"});
 }
 
 }  // namespace telemetry_other_mission_test

@@ -7,7 +7,7 @@ import { LAYOUT } from '../layout';
 import type { Dictionary } from '../run/dictionary';
 import { valueText } from '../run/dictionary';
 import { allLimitsText, isWorst, limitsIn, limitsText } from '../run/limits';
-import type { RunStore } from '../run/store';
+import type { RunStore, Sample } from '../run/store';
 import { duration } from '../run/time';
 import { whoseAt } from '../run/whose';
 
@@ -23,6 +23,8 @@ interface ChannelRow {
   value: string;
   unit: string;
   age: string;
+  /** What is to be said of the time of the sample; empty: nothing. */
+  timed: string;
   look: ChannelLook;
   /** Limits in force now; `allLimits`: those of every context. */
   limits: string;
@@ -66,7 +68,7 @@ export function channelRow(
   lost = false,
 ): ChannelRow {
   const sample = store?.latest(channel.id, cutoff);
-  const age = sample && store ? ageOf(store, sample.sclk, cutoff) : undefined;
+  const age = sample && store ? ageOf(store, sample, cutoff) : undefined;
   const limits = limitsIn(channel, context);
   return {
     id: channel.id,
@@ -75,8 +77,9 @@ export function channelRow(
     text: channel.text,
     unit: channel.unit,
     whose: whoseAt(store, channel.name, sample?.sclk ?? -Infinity),
-    value: valueText(channel, sample?.value),
+    value: valueText(channel, sample?.value, sample?.text),
     age: age === undefined ? '' : age < 0.05 ? 'now' : duration(age),
+    timed: sample?.byReception ? 'its packets hold no time: samples stand at their reception' : '',
     look: lookOf(store, channel, sample?.value, age, cutoff, lost),
     limits: limitsText(limits),
     allLimits: allLimitsText(channel),
@@ -98,8 +101,12 @@ function lookOf(
   return isStale(store, channel, age, cutoff, lost) ? 'stale' : 'good';
 }
 
-const ageOf = (store: RunStore, sclk: number, cutoff: number): number =>
-  Math.max(0, Math.min(store.seenSclk, cutoff) - sclk);
+/** By the vehicle's clock, or where that is not known to Earth by reception. */
+const ageOf = (store: RunStore, sample: Sample, cutoff: number): number =>
+  Math.max(
+    0,
+    sample.ert_s === undefined ? Math.min(store.seenSclk, cutoff) - sample.sclk : store.ertNow_s - sample.ert_s,
+  );
 
 function isStale(
   store: RunStore | undefined,
@@ -111,7 +118,7 @@ function isStale(
   if (lost && cutoff === Infinity) return true;
   const period = channel.expectedRateHz > 0 ? 1 / channel.expectedRateHz : 1;
   // The history held is thinned: nothing is known between two of its samples.
-  const held_s = cutoff === Infinity ? 0 : (store?.spacing(channel.id) ?? 0);
+  const held_s = cutoff === Infinity ? (store?.rhythm(channel.id) ?? 0) : (store?.spacing(channel.id) ?? 0);
   return age > Math.max(STALE_LEAST_S, STALE_PERIODS * Math.max(period, held_s));
 }
 
@@ -124,7 +131,7 @@ export function staleWords(
 ): string | undefined {
   const sample = channel && store?.latest(channel.id, cutoff);
   if (!sample || !store) return undefined;
-  const age = ageOf(store, sample.sclk, cutoff);
+  const age = ageOf(store, sample, cutoff);
   return isStale(store, channel, age, cutoff, lost)
     ? `${STATUS.stale.shape} ${age < 60 ? `${age.toFixed(0)} s` : duration(age)}`
     : undefined;

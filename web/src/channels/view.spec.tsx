@@ -50,7 +50,7 @@ describe('channels', () => {
       { value: '—', look: 'never' },
       { look: 'unasked' },
     ]);
-    expect(row(aStore([samples(900, { 3: 1 })]), 'speed_mps')?.value).toBe('undefined');
+    expect(row(aStore([samples(900, { 3: 1, 4: NaN })]), 'speed_mps')?.value).toBe('undefined');
   });
   it('have in a past view the alarms that the ground had raised by then, and judge nothing themselves', () => {
     const store = aStore([

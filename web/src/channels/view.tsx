@@ -34,7 +34,7 @@ function Row({ channel, place }: { channel: DictionaryChannel; place: number }) 
         {row.value}
       </td>
       <td>{row.unit}</td>
-      <td class="number">
+      <td class="number" title={row.timed}>
         {row.look === 'stale' && <span class="age-word">stale, </span>}
         {row.age}
         {row.recorded ? ` ${SOURCES.recording.shape}` : ''}

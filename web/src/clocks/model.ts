@@ -48,7 +48,7 @@ interface LatestSend {
 /** The ground's value; undefined if the run has no clocks. */
 export function latestSend(store: RunStore): LatestSend | undefined {
   const { clocks } = store;
-  if (!clocks?.ert) return undefined;
+  if (!clocks?.ert || !store.entryKnown) return undefined;
   const latest_s = secondsOfDayOfYear(clocks.latestUseful);
   return {
     next:

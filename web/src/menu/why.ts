@@ -30,8 +30,9 @@ export function sampleLines(run: RunStore, channel: DictionaryChannel, sample: S
   const alarm = run.alarmAt(channel.id, sample.sclk);
   const source = sample.recorded ? SOURCES.recording : SOURCES.uhf;
   return [
-    ['value', `${valueText(channel, sample.value)} ${channel.unit}`.trim()],
+    ['value', `${valueText(channel, sample.value, sample.text)} ${channel.unit}`.trim()],
     ['of', `${instant(run, sample.sclk)} (SCLK ${sample.sclk.toFixed(3)})`],
+    ...(sample.byReception ? [['time', 'of reception: its packet holds none'] as const] : []),
     ['known', `${source.shape} ${source.word}`],
     ...(whose ? [['whose', whose] as const] : []),
     ['alarm', alarm ? `${alarm.severity} since ${instant(run, alarm.sclk)}: ${alarm.limit}` : 'none in force'],

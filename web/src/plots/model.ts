@@ -28,6 +28,12 @@ const GAP_PERIODS = 2.5; // chosen: one lost sample of a slow channel is no line
 export const gapOf = (expected_rate_hz: number): number =>
   expected_rate_hz > 0 ? Math.max(GAP_S, GAP_PERIODS / expected_rate_hz) : GAP_S;
 
+/** Of a channel whose interval nobody promised, it is learnt from what was received. */
+export const gapIn = (run: RunStore, channel: DictionaryChannel): number =>
+  channel.expectedRateHz > 0
+    ? gapOf(channel.expectedRateHz)
+    : Math.max(GAP_S, GAP_PERIODS * run.spacing(channel.id), GAP_PERIODS * run.rhythm(channel.id));
+
 /**
  * Aligns both series for a plot `pixels` wide. Of the samples that share a pixel the least and the largest are drawn,
  * so that no peak is lost.

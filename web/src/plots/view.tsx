@@ -23,7 +23,7 @@ import type { RunStore } from '../run/store';
 import { fromEntry } from '../run/time';
 import { whoseAt } from '../run/whose';
 import { LIVE_LINKS, liveOutages, shortReason } from '../timeline/model';
-import { plotSpan } from '../run/window';
+import { plotSpan, plotSpanOf } from '../run/window';
 import {
   differenceOf,
   hasDifference,
@@ -34,7 +34,7 @@ import {
   prediction,
 } from '../prediction/model';
 import { predicted } from '../timeline/now';
-import { align, difference, gapOf, less, readingAt } from './model';
+import { align, difference, gapIn, gapOf, less, readingAt } from './model';
 import { drawOver, extremes, overVersions } from './over';
 import type { Aligned } from './model';
 import type { PredictedLine } from './predicted';
@@ -307,7 +307,7 @@ function Plot(properties: Properties) {
       const run = shownRun();
       const recorded = run?.recorded.get(channel.id);
       const live = run?.live.get(channel.id);
-      const span = plotSpan(run, isAhead());
+      const span = plotSpanOf(run, channel.id, isAhead());
       const isDifference = showsDifference(channel);
       const line = lineOf(channel, per);
       const newShape = `${palette().name} ${channel.id} ${over.map(({ id }) => id).join()}`;
@@ -339,7 +339,7 @@ function Plot(properties: Properties) {
               cutoff.value,
               per,
               width,
-              gapOf(channel.expectedRateHz),
+              gapIn(run, channel),
             )
           : ([[], [], []] as Aligned);
         const data =
@@ -373,22 +373,17 @@ function Plot(properties: Properties) {
   void tick.value;
   const run = shownRun();
   const at = cursor.value;
-  const now = run?.latest(channel.id, cutoff.value)?.value;
+  const newest = run?.latest(channel.id, cutoff.value);
+  const now = newest?.value;
   const shown =
-    at === undefined || !run ? undefined : readingAt(run, channel.id, at, cutoff.value, gapOf(channel.expectedRateHz));
+    at === undefined || !run ? undefined : readingAt(run, channel.id, at, cutoff.value, gapIn(run, channel));
   const value = at === undefined ? now : shown?.value;
   const sources = [run?.live.has(channel.id) && SOURCES.uhf, run?.recorded.has(channel.id) && SOURCES.recording].filter(
     (each) => each !== false && each !== undefined,
   );
-  const whose =
-    run &&
-    whoseAt(
-      run,
-      channel.name,
-      at === undefined ? (run.latest(channel.id, cutoff.value)?.sclk ?? -Infinity) : run.entrySclk + at,
-    );
+  const whose = run && whoseAt(run, channel.name, at === undefined ? (newest?.sclk ?? -Infinity) : run.entrySclk + at);
   const line = lineOf(channel, per);
-  const sample_sclk = run && (at === undefined ? run.latest(channel.id, cutoff.value)?.sclk : run.entrySclk + at);
+  const sample_sclk = run && (at === undefined ? newest?.sclk : run.entrySclk + at);
   const expected =
     line && sample_sclk !== undefined ? predictedAt(channel, line.series, sample_sclk, line.gap_s) : undefined;
   const off =
@@ -401,7 +396,7 @@ function Plot(properties: Properties) {
       ? '—'
       : hasDifference(channel)
         ? reading(of / per, digits)
-        : valueText(channel, of);
+        : valueText(channel, of, at === undefined ? newest?.text : undefined);
   const stale = at === undefined ? staleWords(run, channel, cutoff.value, isLost.value) : undefined;
   const name = title.toLowerCase();
   return (

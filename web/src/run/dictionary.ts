@@ -9,22 +9,14 @@ export class Dictionary {
   readonly tones = new Map<number, DictionaryTone>();
   private readonly byId = new Map<number, DictionaryChannel>();
   private readonly byName = new Map<string, DictionaryChannel>();
-  /** For each channel, all channels of the same packet. */
-  readonly packets = new Map<number, number[]>();
 
   constructor(readonly reply: DictionaryReply) {
     this.channels = reply.channels;
     this.commands = reply.commands;
     for (const tone of reply.tones) this.tones.set(tone.id, tone);
-    const inPacket = new Map<string, number[]>();
     for (const channel of reply.channels) {
       this.byId.set(channel.id, channel);
       this.byName.set(channel.name, channel);
-      if (channel.packet === '') continue;
-      const ids = inPacket.get(channel.packet) ?? [];
-      ids.push(channel.id);
-      inPacket.set(channel.packet, ids);
-      this.packets.set(channel.id, ids);
     }
   }
 
@@ -46,22 +38,30 @@ export class Dictionary {
   }
 
   label(channel: DictionaryChannel, value: number): string | undefined {
-    return channel.labels.find((label) => Number(label.value) === value)?.label;
+    return labelOf(channel, value);
   }
 }
+
+/** The label of a value, which may be one of a range. */
+const labelOf = (channel: DictionaryChannel | undefined, value: number): string | undefined =>
+  channel?.labels.find(({ value: first, last }) => value >= Number(first) && value <= Number(last ?? first))?.label;
 
 /** "heatshield_separation" → "heatshield separation". */
 export function inWords(name: string): string {
   return (LAYOUT.words as Record<string, string>)[name] ?? name.replaceAll('_', ' ').toLowerCase();
 }
 
-/** A value for display: its label, or five significant digits with at most four decimals. */
-export function valueText(channel: DictionaryChannel | undefined, value: number | undefined): string {
+/**
+ * A value for display: its exact text where a number does not hold it, its label, or five significant digits with at
+ * most four decimals.
+ */
+export function valueText(channel: DictionaryChannel | undefined, value: number | undefined, text?: string): string {
+  if (text !== undefined) return text;
   if (value === undefined) return '—';
   if (Number.isNaN(value)) return 'undefined';
-  const label = channel?.labels.find((candidate) => Number(candidate.value) === value)?.label;
+  const label = labelOf(channel, value);
   if (label !== undefined) return inWords(label);
-  return numberText(value);
+  return channel?.needsText ? `≈ ${value.toExponential(6)}` : numberText(value);
 }
 
 export function numberText(value: number): string {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import { describe, expect, it } from 'vitest';
-import { aStore, event, firing, samples, stage } from '../testing/fixtures';
+import { aRun, aStore, event, firing, samples, stage } from '../testing/fixtures';
 import { Series } from './series';
 import { dayOfYear, duration, fromEntry, readFromEntry, secondsOfDayOfYear, secondsOfErt } from './time';
 
@@ -13,6 +13,12 @@ describe('a series', () => {
     series.append(f(1, 2, 5), f(1, 2, 5));
     series.append(f(3, 3, 5, 6), f(3, 3, 5, 6));
     expect(sclks(series)).toEqual([1, 2, 3, 5, 6]);
+  });
+  it('keeps different samples of one instant, in the order of reception', () => {
+    const series = new Series();
+    series.append(f(1, 1, 1, 2), f(20, 21, 20, 22));
+    expect([...series.value.slice(0, series.length)]).toEqual([20, 21, 22]);
+    expect(series.at(1)).toEqual({ sclk: 1, value: 21 });
   });
   it('takes history without a seam: what is newer stays', () => {
     const series = new Series();
@@ -42,6 +48,38 @@ describe('a series', () => {
     series.append(f(1, 2, 3), f(10, 20, 30));
     expect(series.at(2.5)).toEqual({ sclk: 2, value: 20 });
     expect(series.at(0)).toBeUndefined();
+  });
+});
+
+describe('a run of a followed mission', () => {
+  const at = (second: number) => ({ ert: `2012-219T05:10:${String(second).padStart(2, '0')}.000` });
+  const followed = (items: Parameters<typeof aStore>[0]) =>
+    aStore(items, { ...aRun(), entrySclk: 0, clocks: undefined });
+
+  it('has as newest what was received last, though its clock restarted or stands still', () => {
+    const store = followed([
+      samples(5010, { 3: 10, 4: 1 }, 1, at(1)),
+      samples(5011, { 3: 11, 4: 2 }, 1, at(2)),
+      samples(0, { 3: 12 }, 1, at(3)),
+      samples(5011, { 4: 3 }, 1, at(4)),
+    ]);
+    expect(store.latest(3)).toMatchObject({ sclk: 0, value: 12 });
+    expect(store.latest(4)).toMatchObject({ sclk: 5011, value: 3 });
+    expect(store.latest(3, 5012)?.value).toBe(11); // the past goes by its clock
+    expect(store.ertNow_s - (store.latest(3)?.ert_s ?? 0)).toBe(1);
+  });
+  it('goes back with the only clock that it has', () => {
+    expect(followed([samples(5011, { 3: 1 }, 1, at(1)), samples(12, { 3: 2 }, 1, at(2))]).seenSclk).toBe(12);
+  });
+  it('says undefined where the newest sample is, and text exactly', () => {
+    const exact = [{ id: 4, text: 'naïve' }];
+    const store = followed([
+      samples(1, { 3: 5, 4: NaN }, 1, { ...at(1), exact }),
+      samples(2, { 3: NaN, 4: NaN }, 1, at(2)),
+    ]);
+    expect(store.latest(3)?.value).toBeNaN();
+    expect(store.latest(4)?.text).toBeUndefined();
+    expect(store.latest(4, 1.5)?.text).toBe('naïve');
   });
 });
 

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// One channel's samples in order of SCLK, bounded. Live samples are appended; history from the archive replaces the
-// samples in its range. When full, the older half is thinned to the least and the largest of every four.
+// One channel's samples in order of SCLK, bounded; those of one instant in the order of reception. Live samples are
+// appended; history from the archive replaces the samples in its range. An equal sample of the same instant is taken for
+// the same one, which history and stream both brought. When full, the older half is thinned to the least and the
+// largest of every four.
 
 const LIMIT = 1 << 16; // points: at most 1 MB a channel
+const SAME_INSTANT = 64; // chosen: samples of one instant among which a repeated one is looked for
 export const LIMIT_NOT_DRAWN = 1 << 11; // for a channel shown only as a number; a past view asks for its former value
 
 export class Series {
@@ -25,7 +28,7 @@ export class Series {
       const at = sclk[i] as number;
       const last = this.length > 0 ? (this.sclk[this.length - 1] as number) : -Infinity;
       if (at > last) this.push(at, value[i] as number);
-      else if (at < last) this.insert(at, value[i] as number);
+      else this.insert(at, value[i] as number);
     }
   }
 
@@ -100,8 +103,13 @@ export class Series {
 
   private insert(sclk: number, value: number): void {
     const index = this.firstAfter(sclk);
-    if (index > 0 && this.sclk[index - 1] === sclk) return; // a repeated sample
-    if (this.length === this.sclk.length) this.grow();
+    for (let i = index - 1; i >= 0 && i >= index - SAME_INSTANT && this.sclk[i] === sclk; --i)
+      if (Object.is(this.value[i], value)) return; // a repeated sample
+    if (this.length === this.sclk.length) {
+      this.grow();
+      this.insert(sclk, value); // its place may have moved
+      return;
+    }
     this.sclk.copyWithin(index + 1, index, this.length);
     this.value.copyWithin(index + 1, index, this.length);
     this.sclk[index] = sclk;

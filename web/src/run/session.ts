@@ -316,7 +316,7 @@ export async function begin(): Promise<void> {
   await Promise.race([looked, passed(FIRST_LOOK_MS)]);
   await known; // the answer carries the cookie by which the stream's server knows this browser
   startWorker();
-  post({ type: 'open', run: chosen, packets: Object.fromEntries(words.packets), ...channelsOf(words) });
+  post({ type: 'open', run: chosen, ...channelsOf(words) });
   let before = plottedChannels().join();
   effect(() => {
     const now = plottedChannels().join();

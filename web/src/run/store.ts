@@ -4,7 +4,7 @@
 import type { Clocks, Explanation, LinkChange, TimepointFiring, Unit } from '../gen/aeolis/v1/items_pb';
 import type { RunState } from '../gen/aeolis/v1/run_pb';
 import { SOURCE_RECORDED } from '../stream/columns';
-import type { BatchOfFacts, Column, Fact } from '../stream/messages';
+import type { BatchOfFacts, Column, Fact, Newest } from '../stream/messages';
 import type { NamedAlarm, NamedEvent, NamedSituation, NamedStage, NamedTone } from '../stream/names';
 import { LIMIT_NOT_DRAWN, Series } from './series';
 import { isGoing } from './start';
@@ -66,6 +66,20 @@ export interface Sample {
   sclk: number;
   value: number;
   recorded: boolean;
+  /** The exact value where a number does not hold it. */
+  text?: string | undefined;
+  /** Of the newest sample of a followed mission: when it was received, seconds since 1970. */
+  ert_s?: number;
+  /** Its packet holds no time: `sclk` is when it was received. */
+  byReception?: boolean;
+}
+
+const TEXT_LIMIT = 1 << 11; // exact values held of a channel
+const RHYTHM_FADES = 0.9; // chosen: an interval counts for some ten samples after it
+
+/** The newest sample of a channel by reception, and the longest interval lately between such samples. */
+interface NewestKnown extends Newest {
+  interval_s: number;
 }
 
 /** The later of two times; `b` may be NaN. */
@@ -90,6 +104,10 @@ class HeardSeries extends Map<number, Series> {
 export class RunStore {
   live = new Map<number, Series>();
   recorded = new Map<number, Series>();
+  /** Of live samples, by channel. */
+  private readonly newest = new Map<number, NewestKnown>();
+  /** By channel that needs text: the exact values of samples, in the order of reception. */
+  private readonly texts = new Map<number, { sclk: number; text: string | undefined }[]>();
   events: EventRow[] = [];
   explanations: ExplanationRow[] = [];
   tones: ToneRow[] = [];
@@ -154,9 +172,18 @@ export class RunStore {
   get entryKnown(): boolean {
     return this.run.entrySclk !== 0;
   }
-  /** Vehicle time of the signal that reaches Earth now. */
+  /**
+   * Vehicle time of the signal that reaches Earth now. Of a followed mission it is not known: the latest of the times
+   * that the channels have now, which goes back with their clock.
+   */
   get seenSclk(): number {
+    if (!this.entryKnown && this.newest.size > 0) return this.newestOfAll;
     return this.clocks?.seenSclk || this.clocks?.sclk || Math.max(this.run.startSclk, this.newestSclk);
+  }
+  /** The time on Earth now, as far as this run knows it, seconds since 1970. */
+  get ertNow_s(): number {
+    const newest = this.newestErt_s;
+    return this.clocks?.ert && this.going ? later(secondsOfDayOfYear(this.clocks.ert), newest) : newest;
   }
   get seenE(): number {
     return this.seenSclk - this.entrySclk;
@@ -252,12 +279,26 @@ export class RunStore {
     ++this.version;
   }
 
-  /** The newest sample of a channel at or before `cutoff`, from either source. */
+  /**
+   * The newest sample of a channel at or before `cutoff`, from either source. Now and of a followed mission it is the one
+   * received last: its clocks may restart, stand still, or be missing.
+   */
   latest(id: number, cutoff = Infinity): Sample | undefined {
+    const newest = cutoff === Infinity && !this.entryKnown ? this.newest.get(id) : undefined;
+    if (newest) return { ...newest, recorded: false };
     const live = this.live.get(id)?.at(cutoff);
     const recorded = this.recorded.get(id)?.at(cutoff);
     if (recorded && (!live || recorded.sclk >= live.sclk)) return { ...recorded, recorded: true };
-    return live && { ...live, recorded: false };
+    return live && { ...live, recorded: false, text: this.textAt(id, live.sclk) };
+  }
+
+  private textAt(id: number, sclk: number): string | undefined {
+    return this.texts.get(id)?.findLast((each) => each.sclk === sclk)?.text;
+  }
+
+  /** The longest interval lately between two receptions of a channel, in seconds; 0: not known. */
+  rhythm(id: number): number {
+    return this.newest.get(id)?.interval_s ?? 0;
   }
 
   /** The alarm of a channel in force at `cutoff`, as the ground raised it. */
@@ -283,6 +324,8 @@ export class RunStore {
     for (const column of batch.columns) {
       this.series(column).append(column.sclk, column.value);
       this.sawSclk(column.sclk.at(-1));
+      this.noteTexts(column, (known) => known);
+      if (column.newest) this.noteNewest(column.id, column.newest, column.sclk.length);
     }
     for (const fact of batch.facts) this.addFact(fact);
     if (this.events.length > EVENT_LIMIT) this.events.splice(0, this.events.length - EVENT_LIMIT);
@@ -303,7 +346,39 @@ export class RunStore {
       const last = column.sclk.at(-1) ?? -Infinity;
       if (liveAlone) this.liveAloneThrough.set(column.id, Math.max(through ?? -Infinity, last));
       this.sawSclk(last);
+      this.noteTexts(column, (known) => known.filter((each) => each.sclk > last));
+      if (column.newest) this.noteNewest(column.id, column.newest, 0);
     }
+  }
+
+  /** `keep`: of the texts that are known, those that stay behind the column's. */
+  private noteTexts(column: Column, keep: (known: { sclk: number; text: string | undefined }[]) => typeof known): void {
+    const { id, sclk, texts } = column;
+    if (!texts) return;
+    const added = texts.map((text, i) => ({ sclk: sclk[i] as number, text }));
+    const known = this.texts.get(id) ?? [];
+    const kept = keep(known);
+    this.texts.set(id, (kept === known ? [...known, ...added] : [...added, ...kept]).slice(-TEXT_LIMIT));
+  }
+
+  /** `samples`: received since the newest that was known; 0: not known. */
+  private noteNewest(id: number, newest: Newest, samples: number): void {
+    const before = this.newest.get(id);
+    if (before && newest.ert_s < before.ert_s) return;
+    const interval_s = before && samples > 0 ? (newest.ert_s - before.ert_s) / samples : 0;
+    this.newest.set(id, { ...newest, interval_s: Math.max(interval_s, RHYTHM_FADES * (before?.interval_s ?? 0)) });
+    this.newestErt_s = later(newest.ert_s, this.newestErt_s);
+    this.newestOfAllAt = -1;
+  }
+
+  private newestOfAllAt = -1;
+  private newestOfAllWas = -Infinity;
+  private get newestOfAll(): number {
+    if (this.newestOfAllAt !== this.version) {
+      this.newestOfAllAt = this.version;
+      this.newestOfAllWas = Math.max(...[...this.newest.values()].map(({ sclk }) => sclk));
+    }
+    return this.newestOfAllWas;
   }
 
   /** Adds a requested range, which is exact where the held samples were thinned. */

@@ -65,6 +65,20 @@ export function plotSpan(store: RunStore | undefined, isAhead = false): Span {
   return { from: span.from, to };
 }
 
+/**
+ * The stretch of a plot of one channel. Packets of a followed mission may have clocks of their own: where the channel's
+ * newest sample lies outside the common stretch, the plot ends at that sample.
+ */
+export function plotSpanOf(store: RunStore | undefined, channel: number, isAhead = false): Span {
+  const span = plotSpan(store, isAhead);
+  if (!store || store.entryKnown || zoomedTo() || fixedRange()) return span;
+  const newest = store.latest(channel)?.sclk;
+  if (newest === undefined || (newest - store.entrySclk >= span.from && newest - store.entrySclk <= span.to))
+    return span;
+  const to = newest - store.entrySclk + 8;
+  return { from: to - (span.to - span.from), to };
+}
+
 export function zoom(store: RunStore | undefined, factor: number, around?: number): void {
   const { from, to } = spanNow(store);
   const middle =

@@ -72,7 +72,7 @@ afterEach(() => {
 });
 
 function comes(...items: Item[]): void {
-  const collector = new ColumnCollector(aDictionary.packets);
+  const collector = new ColumnCollector();
   collector.add(aBatch(items));
   store.value?.add(collector.take());
   tick.value += 1;

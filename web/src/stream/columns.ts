@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Converts the stream's batches to columns: one series of samples per channel, and facts in order of sequence number.
+import type { Samples } from '../gen/aeolis/v1/items_pb';
 import type { Batch } from '../gen/aeolis/v1/stream_pb';
 import { secondsOfErt } from '../run/time';
-import type { BatchOfFacts, Column, Fact } from './messages';
+import type { BatchOfFacts, Column, Fact, Newest } from './messages';
 import { named } from './names';
 
 export const SOURCE_RECORDED = 2; // Source.RECORDED, so that the page need not load the schema
@@ -10,6 +11,8 @@ export const SOURCE_RECORDED = 2; // Source.RECORDED, so that the page need not 
 class GrowingColumn {
   sclk: number[] = [];
   value: number[] = [];
+  texts: (string | undefined)[] | undefined;
+  newest: Newest | undefined;
 }
 
 /** Collects batches until they are taken, so that the page gets one message for many. */
@@ -21,12 +24,6 @@ export class ColumnCollector {
   private completeThrough = 0;
   private run = 0;
   private any = false;
-
-  /**
-   * `packetOf[id]`: the channels of the same packet. A channel missing from a sample of its packet is undefined on
-   * board.
-   */
-  constructor(private readonly packetOf: ReadonlyMap<number, readonly number[]> = new Map()) {}
 
   get empty(): boolean {
     return !this.any;
@@ -43,7 +40,7 @@ export class ColumnCollector {
       if (kind === undefined) continue;
       if (kind === 'samples') {
         this.thinned ||= value.thinned;
-        this.addSamples(value.sclk, value.ids, value.values, value.source === SOURCE_RECORDED);
+        this.addSamples(value, secondsOfErt(item.ertUs));
       } else {
         this.facts.push({ kind, seq, ert_s: secondsOfErt(item.ertUs), fact: named(item.item) } as Fact);
       }
@@ -58,6 +55,8 @@ export class ColumnCollector {
         recorded: key[0] === 'r',
         sclk: Float64Array.from(column.sclk),
         value: Float64Array.from(column.value),
+        ...(column.texts && { texts: column.texts }),
+        ...(column.newest && { newest: column.newest }),
       });
     }
     const taken: BatchOfFacts = {
@@ -76,24 +75,30 @@ export class ColumnCollector {
     return taken;
   }
 
-  private addSamples(sclk: number, ids: readonly number[], values: readonly number[], recorded: boolean): void {
-    const prefix = recorded ? 'r' : 'l';
-    for (let i = 0; i < ids.length; ++i) this.push(prefix + ids[i], sclk, values[i] ?? NaN);
-    const first = ids[0];
-    const packet = first === undefined ? undefined : this.packetOf.get(first);
-    if (packet && packet.length > ids.length) {
-      const present = new Set(ids);
-      for (const id of packet) if (!present.has(id)) this.push(prefix + id, sclk, NaN);
+  private addSamples({ sclk, ids, values, source, exact, sclkByReception }: Samples, ert_s: number): void {
+    const recorded = source === SOURCE_RECORDED;
+    const texts = exact.length > 0 ? new Map(exact.map(({ id, text }) => [id, text])) : undefined;
+    for (let i = 0; i < ids.length; ++i) {
+      const id = ids[i] as number;
+      const column = this.column((recorded ? 'r' : 'l') + id);
+      const value = values[i] ?? NaN;
+      const text = texts?.get(id);
+      column.sclk.push(sclk);
+      column.value.push(value);
+      if (text !== undefined || column.texts) {
+        column.texts ??= column.value.slice(1).map(() => undefined);
+        column.texts.push(text);
+      }
+      if (!recorded) column.newest = { sclk, value, text, ert_s, byReception: sclkByReception };
     }
   }
 
-  private push(key: string, sclk: number, value: number): void {
+  private column(key: string): GrowingColumn {
     let column = this.columns.get(key);
     if (!column) {
       column = new GrowingColumn();
       this.columns.set(key, column);
     }
-    column.sclk.push(sclk);
-    column.value.push(value);
+    return column;
   }
 }

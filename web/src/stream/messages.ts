@@ -11,6 +11,20 @@ export interface Column {
   sclk: Float64Array;
   value: Float64Array;
   recorded: boolean;
+  /** Of a channel whose values a number does not hold, one a sample: its exact value; undefined on board: undefined. */
+  texts?: (string | undefined)[];
+  /** The sample received last, if the column knows it. */
+  newest?: Newest;
+}
+
+/** A sample with its time of reception, seconds since 1970. */
+export interface Newest {
+  sclk: number;
+  value: number;
+  text: string | undefined;
+  ert_s: number;
+  /** Its packet holds no time: `sclk` is when it was received. */
+  byReception: boolean;
 }
 
 /** A numbered item that is not a sample, flattened. `ert_s`: its ERT, seconds since 1970. */
@@ -86,7 +100,7 @@ export interface CommandIntent {
 export type QueueAction = 'release' | 'hold' | 'cancel' | 'approve';
 
 export type ToWorker =
-  | { type: 'open'; run: number; packets: Record<number, number[]>; plotted: string[]; others: string[] }
+  | { type: 'open'; run: number; plotted: string[]; others: string[] }
   // other channels are plotted from now on; live: as for refresh_history
   | { type: 'plot'; plotted: string[]; others: string[]; live: boolean }
   | { type: 'watch'; run: number }

@@ -33,6 +33,19 @@ describe('samples in Protobuf', () => {
       { id: 7, recorded: true, sclk: Float64Array.of(2), value: Float64Array.of(20) },
     ]);
   });
+  it('bring exact texts, undefined ones too, and the sample received last', () => {
+    const newest = { sclk: 1, value: NaN, text: '', ertUs: 397_501_174_984_375n, sclkByReception: true };
+    const text = [{ text: '9007199254740993' }, {}];
+    const [series] = readSeriesList(octetsOf([{ id: 7, sclk: [1, 2], value: [1, NaN], source: [1, 1], text, newest }]));
+    expect(series?.columns[0]?.texts).toEqual(['9007199254740993', undefined]);
+    expect(series?.columns[0]?.newest).toEqual({
+      sclk: 1,
+      value: NaN,
+      text: '',
+      ert_s: 946728000 + 397501174.984375,
+      byReception: true,
+    });
+  });
   it('of a prediction have no source, and are read by the same reader', () => {
     const answer = create(PredictionSchema, {
       state: 'ready',

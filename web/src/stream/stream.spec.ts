@@ -23,15 +23,21 @@ describe('the stream', () => {
     expect(collector.empty).toBe(true);
   });
 
-  it('says undefined for a channel that its packet left out', () => {
-    const collector = new ColumnCollector(
-      new Map([
-        [3, [3, 4]],
-        [4, [3, 4]],
+  it('keeps undefined samples, exact texts, and which sample was received last', () => {
+    const collector = new ColumnCollector();
+    const ert = '2012-219T05:10:00.000';
+    collector.add(
+      aBatch([
+        samples(5, { 3: NaN, 4: 2 ** 53 }, 1, { exact: [{ id: 4, text: '9007199254740993' }], ert }),
+        samples(2, { 3: 7, 4: NaN }, 1, { ert, sclkByReception: true }),
       ]),
     );
-    collector.add(aBatch([samples(5, { 3: 1 })]));
-    expect(collector.take().columns.find((column) => column.id === 4)?.value[0]).toBeNaN();
+    const [three, four] = collector.take().columns;
+    expect(three).toMatchObject({ sclk: Float64Array.of(5, 2), value: Float64Array.of(NaN, 7) });
+    expect(three?.texts).toBeUndefined();
+    expect(three?.newest).toMatchObject({ sclk: 2, value: 7, byReception: true });
+    expect(four?.texts).toEqual(['9007199254740993', undefined]);
+    expect(four?.newest).toMatchObject({ sclk: 2, value: NaN, text: undefined });
   });
 
   it('keeps facts in order of their sequence number', () => {

@@ -53,7 +53,7 @@ beforeEach(async () => {
     vi.fn((path: string) => (path === '/healthz' ? healthz() : new Promise(() => undefined))),
   );
   await import('./worker');
-  page.onmessage({ data: { type: 'open', run: 0, packets: {}, plotted: [], others: [] } });
+  page.onmessage({ data: { type: 'open', run: 0, plotted: [], others: [] } });
 });
 afterEach(() => {
   vi.useRealTimers();
@@ -121,7 +121,7 @@ it('takes samples up where their subscription is welcomed: what comes before lac
   vi.resetModules(); // a new worker, with a plotted channel
   await import('./worker');
   (self as unknown as { onmessage: (event: { data: ToWorker }) => void }).onmessage({
-    data: { type: 'open', run: 0, packets: {}, plotted: ['altitude_m'], others: [] },
+    data: { type: 'open', run: 0, plotted: ['altitude_m'], others: [] },
   });
   const socket = sockets.at(-1);
   sockets[0] = socket as FakeSocket;

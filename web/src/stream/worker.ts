@@ -55,7 +55,6 @@ let currentRun = 0;
 let known: RunState | undefined; // the newest reported state of the current run
 let serverVersion = '';
 let check = new SequenceCheck();
-let packetOf = new Map<number, readonly number[]>();
 let plotted: string[] = [];
 let others: string[] = [];
 let collector = new ColumnCollector();
@@ -173,7 +172,7 @@ function restart(run: number): void {
   known = undefined;
   lost = undefined;
   check = new SequenceCheck();
-  collector = new ColumnCollector(packetOf);
+  collector = new ColumnCollector();
   step = 'facts';
   stopAt = 0;
   historyDue = false;
@@ -371,8 +370,7 @@ self.onmessage = (event: MessageEvent<ToWorker>) => {
     case 'open':
       wantedRun = message.run;
       ({ plotted, others } = message);
-      packetOf = new Map(Object.entries(message.packets).map(([id, all]) => [Number(id), all]));
-      collector = new ColumnCollector(packetOf);
+      collector = new ColumnCollector();
       connect();
       setInterval(() => void watchSilence(), LOOK_EVERY_MS);
       break;

@@ -15,6 +15,7 @@ import {
   ExplanationSchema,
   ItemSchema,
   LinkChangeSchema,
+  SamplesSchema,
   SituationEntrySchema,
   SituationEntry_Rank,
   SituationSchema,
@@ -242,18 +243,25 @@ export const stage = ({
   );
 export const unit = ({ ert, ...fields }: Fields<typeof UnitSchema>) =>
   item({ case: 'unit', value: create(UnitSchema, { source: 1, link: 'uhf_live', ...fields }) }, ert);
-export const samples = (sclk: number, values: Record<number, number>, source = 1) =>
-  item({
-    case: 'samples',
-    value: {
-      $typeName: 'aeolis.v1.Samples',
-      sclk,
-      ids: Object.keys(values).map(Number),
-      values: Object.values(values),
-      source,
-      thinned: false,
+export const samples = (
+  sclk: number,
+  values: Record<number, number>,
+  source = 1,
+  { ert, ...more }: Fields<typeof SamplesSchema> = {},
+) =>
+  item(
+    {
+      case: 'samples',
+      value: create(SamplesSchema, {
+        sclk,
+        ids: Object.keys(values).map(Number),
+        values: Object.values(values),
+        source,
+        ...more,
+      }),
     },
-  });
+    ert,
+  );
 
 export function aBatch(items: Item[], completeThrough = seq) {
   return create(BatchSchema, { run: 1n, completeThrough: BigInt(completeThrough), items });
@@ -261,7 +269,7 @@ export function aBatch(items: Item[], completeThrough = seq) {
 
 export function aStore(items: Item[] = [], run = aRun()): RunStore {
   const store = new RunStore(run);
-  const collector = new ColumnCollector(aDictionary.packets);
+  const collector = new ColumnCollector();
   collector.add(aBatch(items));
   store.add(collector.take());
   return store;

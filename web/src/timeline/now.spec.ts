@@ -5,7 +5,7 @@ import { afterEach, describe, expect, it } from 'vitest';
 import { TimepointListSchema } from '../gen/aeolis/v1/run_pb';
 import { pastRange, store, withRecording } from '../run/shown';
 import { ColumnCollector } from '../stream/columns';
-import { aBatch, aDictionary, aRun, aStore, event, firing, stage, tone } from '../testing/fixtures';
+import { aBatch, aRun, aStore, event, firing, stage, tone } from '../testing/fixtures';
 import { TimelinePace, timelineAnswer, timelineQuestion } from './asked';
 import type { TimelineQuestion } from './asked';
 import { moved, predicted, predictedAsOf, predictionsOf } from './now';
@@ -120,7 +120,7 @@ describe('the timeline is asked for again', () => {
     expect(pace.isDue(aStore([], at(-100)), '', 1)).toBe(true);
     const after = (item: Parameters<typeof aBatch>[0][number]) => {
       const one = asked();
-      const collector = new ColumnCollector(aDictionary.packets);
+      const collector = new ColumnCollector();
       collector.add(aBatch([item]));
       one.run.add(collector.take());
       return one.pace.isDue(one.run, '', 1);

@@ -255,7 +255,7 @@ describe('waiting for', () => {
     const store = aStore([
       ...commanded,
       firing({ timepoint: 1, name: 'entry_interface', firedSclk: 890 }),
-      samples(899, { 1: 0, 5: 1 }),
+      samples(899, { 1: 0, 2: NaN, 5: 1 }),
     ]);
     expect(waitingFor(store, aDictionary, aPlan, Infinity).lines[0]).toMatchObject({
       words: 'the vehicle declares “parachute”',

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "server/archive/reader_state.hpp"
+
+#include <optional>
+#include <vector>
+
+// Samples decoded again from their packets, for what segments do not hold: exact texts, and the order of reception.
+namespace aeolis::archive {
+
+/// The newest sample of each channel, by ChannelId; none: no packet with the channel has been received.
+using Newest = std::vector<std::optional<ChannelValue>>;
+
+/// Takes into `newest` the values of a packet type's newest packet from one source, where they are newer than what is
+/// there. Of our mission, newer is what has the later time, because its clock is one and never goes back; of another
+/// mission, what was received later. Call within a read transaction.
+/// @param to_s  SCLK: later packets do not count
+Result<void> note_newest(Reader::State& reader, const RunInfo& run, std::size_t packet, Source source, double to_s,
+                         Newest& newest);
+
+/// The samples in a range of a channel whose type needs_text(), in order of SCLK. Call within a read transaction.
+/// @param only  only samples of this source; none: both
+Result<std::vector<ChannelValue>> text_samples(Reader::State& reader, const RunInfo& run, ChannelId channel,
+                                               const ClosedRange& range, std::optional<Source> only = std::nullopt);
+
+}  // namespace aeolis::archive
