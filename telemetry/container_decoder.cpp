@@ -351,18 +351,22 @@ class Reading {
         std::size_t terminator_bits = 0;
         if (coding.leading_size_bits > 0) {
             if (!has(coding.leading_size_bits)) return cut(name, coding.leading_size_bits, type.line);
-            const std::uint64_t size = read_bits(packet_, position_, coding.leading_size_bits);
+            const std::uint64_t units = read_bits(packet_, position_, coding.leading_size_bits);
             position_ += coding.leading_size_bits;
+            const std::uint64_t size = units > *bits ? units : units * coding.leading_size_unit_bits;
             if (size > *bits || !has(size)) return cut(name, size, type.line);
             bits = size;
-        } else if (coding.terminator) {
+        } else if (!coding.terminator.empty()) {
+            const auto step = static_cast<unsigned>(8 * coding.terminator.size());
+            std::uint64_t terminator = 0;
+            for (const std::uint8_t octet : coding.terminator) terminator = terminator << 8 | octet;
             std::size_t length = 0;
-            while (length + 8 <= *bits && has(length + 8) &&
-                   read_bits(packet_, position_ + length, 8) != *coding.terminator)
-                length += 8;
-            const bool ends = length + 8 <= *bits && has(length + 8);
+            while (length + step <= *bits && has(length + step) &&
+                   read_bits(packet_, position_ + length, step) != terminator)
+                length += step;
+            const bool ends = length + step <= *bits && has(length + step);
             bits = length;
-            terminator_bits = ends ? 8 : 0;
+            terminator_bits = ends ? step : 0;
         }
         if (!has(*bits)) return cut(name, *bits, type.line);
         auto octets = take_octets(*bits);

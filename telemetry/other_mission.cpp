@@ -284,16 +284,23 @@ class OtherMission::Builder {
     std::size_t fields_ = 0;
 };
 
-OtherMission::OtherMission(PacketModel model, std::uint16_t id) : model_(std::move(model)), decoder_(model_) {
+OtherMission::OtherMission(PacketModel model, std::uint16_t id, std::optional<TimeSource> time)
+    : model_(std::move(model)), decoder_(model_), time_(std::move(time)) {
     dictionary_.mission = model_.name;
     dictionary_.id = id;
     Builder{*this, model_}.build();
 }
 
+DecodedContents OtherMission::contents(std::span<const std::uint8_t> packet) const {
+    auto contents = decoder_.decode(packet);
+    if (time_) contents.time = time_->time_in(contents.values);
+    return contents;
+}
+
 std::optional<std::string> OtherMission::decode(std::span<const std::uint8_t> packet, Decoded& into) const {
     // Checks only what all missions' primary headers share: parts of segmented packets are packets too.
     if (space_packet_octets(packet) != packet.size()) return name_of(Refusal::not_a_packet);
-    const DecodedContents contents = decoder_.decode(packet);
+    const DecodedContents contents = this->contents(packet);
     if (model_.containers.empty() || contents.values.empty() || model_.containers[contents.container_index].abstract)
         return contents.problem.empty() ? std::string{"no container describes it"} : contents.problem;
     into.packet = contents.container_index;

@@ -4,6 +4,7 @@
 #include "dictionaries/dictionary.hpp"
 #include "telemetry/container_decoder.hpp"
 #include "telemetry/decommutator.hpp"
+#include "telemetry/time_source.hpp"
 
 #include <cstdint>
 #include <map>
@@ -35,8 +36,9 @@ class OtherMission {
     /// APID for a packet whose container asks for none; no real packet has it.
     static constexpr Apid any_apid{0xFFFF};
 
-    /// @param id  of the XTCE text, like the id of our dictionary
-    OtherMission(dictionary::xtce::PacketModel model, std::uint16_t id);
+    /// @param id    of the XTCE text, like the id of our dictionary
+    /// @param time  where packets hold their time; none: as ContainerDecoder finds it
+    OtherMission(dictionary::xtce::PacketModel model, std::uint16_t id, std::optional<TimeSource> time = {});
     OtherMission(const OtherMission&) = delete;
     OtherMission& operator=(const OtherMission&) = delete;
 
@@ -46,7 +48,7 @@ class OtherMission {
     /// What in the file's alarms is not judged, a line each.
     const std::vector<std::string>& not_judged() const { return not_judged_; }
 
-    DecodedContents contents(std::span<const std::uint8_t> packet) const { return decoder_.decode(packet); }
+    DecodedContents contents(std::span<const std::uint8_t> packet) const;
     /// Decodes a packet. Returns none when at least a part was decoded; after a refusal `into` is unspecified.
     std::optional<std::string> decode(std::span<const std::uint8_t> packet, Decoded& into) const;
 
@@ -56,6 +58,7 @@ class OtherMission {
 
     dictionary::xtce::PacketModel model_;
     ContainerDecoder decoder_;
+    std::optional<TimeSource> time_;
     dictionary::Dictionary dictionary_;
     std::vector<std::map<FieldKey, std::size_t>> fields_;  ///< by packet
     std::size_t left_out_ = 0;

@@ -60,8 +60,12 @@ std::int64_t negative(std::uint64_t magnitude) {
 }  // namespace
 
 RawNumber number_in(std::uint64_t field, unsigned bits, const Coding& coding) {
-    if (coding.least_significant_octet_first && bits % 8 == 0) field = octets_reversed(field, bits);
+    const bool octets = bits % 8 == 0;
+    // The order of bits is that within octets, the order of octets that among them; both least significant first are a
+    // field with its least significant bit first. A field of parts of octets has an order of bits alone.
+    if (coding.least_significant_octet_first && octets) field = octets_reversed(field, bits);
     if (coding.least_significant_bit_first) field = bits_reversed(field, bits);
+    if (coding.least_significant_bit_first && octets) field = octets_reversed(field, bits);
     const std::uint64_t sign = std::uint64_t{1} << (bits - 1);
     const std::uint64_t all = sign | (sign - 1);
     const bool below_zero = (field & sign) != 0;

@@ -20,7 +20,7 @@ std::unique_ptr<Document> Document::parse(const std::string& text, Findings& fin
                      std::string{"the XML does not parse: "} + result.description());
         return nullptr;
     }
-    document->drop_prefix();
+    document->drop_prefixes();
     if (!document->space_system()) {
         findings.add(1, "the root element is not SpaceSystem");
         return nullptr;
@@ -28,22 +28,40 @@ std::unique_ptr<Document> Document::parse(const std::string& text, Findings& fin
     return document;
 }
 
-/// Removes the root's prefix, which is that of XTCE whatever its name: "xtce:SpaceSystem". Elements with other prefixes
-/// keep theirs.
-void Document::drop_prefix() {
-    const std::string root = xml_.document_element().name();
-    const std::size_t colon = root.find(':');
-    if (colon == std::string::npos) return;
+/// Removes the prefixes that stand for XTCE: the root's, whatever it is bound to, and those bound to the same name as
+/// the root's or to a name of XTCE's. Elements with other prefixes keep theirs.
+void Document::drop_prefixes() {
     struct Shorten : pugi::xml_tree_walker {
-        std::string prefix;
+        std::vector<std::string> prefixes;  // with their colon
+        std::string root_space;
+
+        void note(pugi::xml_node node) {
+            for (const pugi::xml_attribute attribute : node.attributes()) {
+                const std::string_view name = attribute.name(), space = attribute.value();
+                constexpr std::string_view xmlns = "xmlns:";
+                const bool is_xtce = space == root_space || space.find("XTCE") != std::string_view::npos ||
+                                     space.find("/xtce") != std::string_view::npos;
+                if (name.starts_with(xmlns) && is_xtce)
+                    prefixes.push_back(std::string{name.substr(xmlns.size())} + ":");
+            }
+        }
         bool for_each(pugi::xml_node& node) override {
-            const std::string name = node.name();
+            note(node);
+            const std::string_view name = node.name();
+            const auto colon = name.find(':');
+            if (colon == std::string_view::npos) return true;
+            const bool shortened = std::ranges::find(prefixes, name.substr(0, colon + 1)) != prefixes.end();
             // A shorter name is written over the longer one in place, so that the line can still be found.
-            if (name.starts_with(prefix)) node.set_name(name.substr(prefix.size()).c_str());
+            if (shortened) node.set_name(std::string{name.substr(colon + 1)}.c_str());
             return true;
         }
     } shorten;
-    shorten.prefix = root.substr(0, colon + 1);
+    const pugi::xml_node root = xml_.document_element();
+    const std::string name = root.name();
+    const std::string prefix = name.substr(0, name.find(':') + 1);  // empty without a colon
+    if (!prefix.empty()) shorten.prefixes.push_back(prefix);
+    const std::string bound = prefix.empty() ? "xmlns" : "xmlns:" + prefix.substr(0, prefix.size() - 1);
+    shorten.root_space = root.attribute(bound.c_str()).value();
     xml_.traverse(shorten);
 }
 

@@ -20,22 +20,27 @@ class Document {
     static std::unique_ptr<Document> parse(const std::string& text, Findings& findings);
 
     pugi::xml_node space_system() const { return xml_.child("SpaceSystem"); }
+    bool holds(pugi::xml_node element) const { return element.root() == xml_; }
     unsigned line(pugi::xml_node element) const;
 
   private:
-    void drop_prefix();
+    void drop_prefixes();
     unsigned line_of_offset(std::ptrdiff_t offset) const;
 
     pugi::xml_document xml_;
     std::vector<std::ptrdiff_t> line_starts_;
 };
 
-/// Reports faults of elements, with their lines.
+/// Reports faults of elements, with their files and lines.
 class Reporter {
   public:
-    Reporter(const Document& document, Findings& findings) : document_(document), findings_(findings) {}
+    Reporter(const Document& document, Findings& findings) { add(document, findings); }
+    void add(const Document& document, Findings& findings) { files_.push_back({&document, &findings}); }
 
-    void fault(pugi::xml_node element, const std::string& message) { findings_.add(document_.line(element), message); }
+    void fault(pugi::xml_node element, const std::string& message) {
+        const File& file = file_of(element);
+        file.findings->add(file.document->line(element), message);
+    }
 
     /// Reports each child and attribute not named here: unread content is never ignored silently.
     void expect(pugi::xml_node element, std::initializer_list<std::string_view> children,
@@ -45,11 +50,20 @@ class Reporter {
     std::optional<double> number(pugi::xml_node element, const char* attribute);
     std::optional<std::int64_t> integer(pugi::xml_node element, const char* attribute, std::int64_t min,
                                         std::int64_t max);
-    unsigned line(pugi::xml_node element) const { return document_.line(element); }
+    unsigned line(pugi::xml_node element) const { return file_of(element).document->line(element); }
 
   private:
-    const Document& document_;
-    Findings& findings_;
+    struct File {
+        const Document* document;
+        Findings* findings;
+    };
+    const File& file_of(pugi::xml_node element) const {
+        for (const File& file : files_)
+            if (file.document->holds(element)) return file;
+        return files_.front();
+    }
+
+    std::vector<File> files_;
 };
 
 inline std::string name_of(pugi::xml_node element) {

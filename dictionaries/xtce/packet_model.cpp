@@ -5,6 +5,7 @@
 #include "dictionaries/xtce/packet_model_reader.hpp"
 
 #include <algorithm>
+#include <memory>
 #include <string_view>
 #include <utility>
 
@@ -26,18 +27,25 @@ std::optional<Condition::Operator> operator_of(std::string_view word) {
 
 }  // namespace
 
-ModelParts::ModelParts(const Symbols& symbols_in, Reporter& report_in) : symbols(symbols_in), report(report_in) {
+ModelParts::ModelParts(const Symbols& symbols_in, Reporter& report_in, const ReadAgreement& agreement_in)
+    : symbols(symbols_in), report(report_in), agreement(agreement_in) {
     for (const Symbol& symbol : symbols.all())
         if (symbol.kind == Kind::parameter) parameters_.emplace(symbol.path, parameters_.size());
 }
 
-/// Whether `path` ("flags/valid") leads to a member of the parameter's type.
+/// Whether `path` (".flags/valid", "[2].x") leads to a part of the parameter's type.
 bool ModelParts::has_member(const Symbol& parameter, std::string_view path) const {
     const Symbol* type =
         symbols.find(Kind::parameter_type, parameter.scope, parameter.element.attribute("parameterTypeRef").value());
     while (type != nullptr && !path.empty()) {
-        const std::string name{path.substr(0, path.find('/'))};
-        path.remove_prefix(std::min(path.size(), name.size() + 1));
+        if (path.front() == '[') {
+            path.remove_prefix(std::min(path.size(), path.find(']') + 1));
+            type = symbols.find(Kind::parameter_type, type->scope, type->element.attribute("arrayTypeRef").value());
+            continue;
+        }
+        path.remove_prefix(1);  // "." or "/"
+        const std::string name{path.substr(0, path.find_first_of("./["))};
+        path.remove_prefix(name.size());
         const pugi::xml_node member =
             type->element.child("MemberList").find_child_by_attribute("Member", "name", name.c_str());
         if (!member) return false;
@@ -51,11 +59,11 @@ std::optional<ModelParts::Reference> ModelParts::parameter(const std::string& sc
                                                            const char* attribute) const {
     const std::string word = at.attribute(attribute).value();
     const Symbol* symbol = symbols.find(Kind::parameter, scope, word);
-    // "STATUS/flags": the longest prefix that names a parameter, then its members.
+    // "STATUS/flags", "STATUS.flags", "LIST[2]": the longest prefix that names a parameter, then its members.
     std::size_t end = word.size();
-    while (symbol == nullptr && (end = word.rfind('/', end - 1)) != std::string::npos && end > 0)
+    while (symbol == nullptr && end > 0 && (end = word.find_last_of("/.[", end - 1)) != std::string::npos && end > 0)
         symbol = symbols.find(Kind::parameter, scope, std::string_view{word}.substr(0, end));
-    if (symbol == nullptr || (end < word.size() && !has_member(*symbol, std::string_view{word}.substr(end + 1)))) {
+    if (symbol == nullptr || (end < word.size() && !has_member(*symbol, std::string_view{word}.substr(end)))) {
         report.fault(at, "there is no parameter " + in_quotes(word));
         return std::nullopt;
     }
@@ -123,6 +131,7 @@ Condition ModelParts::part(const std::string& scope, pugi::xml_node element, uns
     Condition condition{.form = any ? Condition::Form::any : Condition::Form::all};
     for (const pugi::xml_node child : element.children())
         if (child.type() == pugi::node_element) condition.parts.push_back(part(scope, child, depth + 1));
+    if (condition.parts.empty()) return {};  // an empty list restricts nothing
     return condition;
 }
 
@@ -184,24 +193,55 @@ std::vector<Amount> read_last_indices(const ModelParts& parts, const std::string
     return last;
 }
 
-std::optional<PacketModel> read_packet_model(const std::string& text, Findings& findings) {
-    const auto document = Document::parse(text, findings);
-    if (!document) return std::nullopt;
-    Reporter report{*document, findings};
-    const Symbols symbols{*document, report};
-    const ModelParts parts{symbols, report};
+namespace {
+
+/// @param findings  of each document
+PacketModel model_of(const std::vector<const Document*>& documents, const std::vector<Findings*>& findings,
+                     const ReadAgreement& agreement) {
+    Reporter report{*documents.front(), *findings.front()};
+    for (std::size_t i = 1; i < documents.size(); ++i) report.add(*documents[i], *findings[i]);
+    const Symbols symbols{documents, report, Symbols::Names::any};
+    const ModelParts parts{symbols, report, agreement};
     ModelTypes types{parts};
     PacketModel model;
-    model.name = name_of(document->space_system());
+    model.name = name_of(documents.front()->space_system());
     for (const Symbol& symbol : symbols.all())
         if (symbol.kind == Kind::parameter)
             model.parameters.push_back(
                 {name_of(symbol.element), symbol.path, types.of(symbol.scope, symbol.element, "parameterTypeRef"),
-                 parts.condition(symbol.scope,
-                                 symbol.element.child("ParameterProperties").child("ValidityCondition"))});
+                 parts.condition(symbol.scope, symbol.element.child("ParameterProperties").child("ValidityCondition")),
+                 report.line(symbol.element)});
     model.containers = read_model_containers(parts);
     model.types = std::move(types.types);
     return model;
+}
+
+}  // namespace
+
+std::optional<PacketModel> read_packet_model(const std::string& text, Findings& findings) {
+    const auto document = Document::parse(text, findings);
+    if (!document) return std::nullopt;
+    return model_of({document.get()}, {&findings}, {});
+}
+
+std::optional<PacketModel> read_packet_model(const std::vector<XtceText>& texts, std::vector<Finding>& findings,
+                                             const ReadAgreement& agreement) {
+    std::vector<std::unique_ptr<Document>> documents;
+    std::vector<Findings> of_each;
+    of_each.reserve(texts.size());
+    for (const XtceText& text : texts) {
+        auto document = Document::parse(text.text, of_each.emplace_back(text.file, findings));
+        if (!document) return std::nullopt;
+        documents.push_back(std::move(document));
+    }
+    if (documents.empty()) return std::nullopt;
+    std::vector<const Document*> parsed;
+    std::vector<Findings*> into;
+    for (std::size_t i = 0; i < documents.size(); ++i) {
+        parsed.push_back(documents[i].get());
+        into.push_back(&of_each[i]);
+    }
+    return model_of(parsed, into, agreement);
 }
 
 }  // namespace aeolis::dictionary::xtce

@@ -80,11 +80,11 @@ struct Coding {
     Amount bits{};                             ///< of text and octets: without terminator or leading size
     bool least_significant_octet_first = false;
     bool least_significant_bit_first = false;
-    std::optional<std::uint8_t> terminator{};  ///< terminator of the text; `bits` is then its maximum size
-    unsigned leading_size_bits = 0;            ///< text: size in bits of the leading field that holds its number of
-                                               ///< bits
-    bool boxed = true;                         ///< text always takes `bits`, wherever it ends in them; false: only as
-                                               ///< many as it needs
+    std::vector<std::uint8_t> terminator{};  ///< a character that ends the text; `bits` is then its maximum size
+    unsigned leading_size_bits = 0;          ///< text: size in bits of the leading field that holds its size …
+    unsigned leading_size_unit_bits = 1;     ///< … in units of so many bits
+    bool boxed = true;                       ///< text always takes `bits`, wherever it ends in them; false: only as
+                                             ///< many as it needs
     Calibration calibration{};
     struct Context {
         Condition when;
@@ -143,6 +143,7 @@ struct PacketParameter {
     std::string path;      ///< "/MSL/Events/opcode": unique
     std::size_t type = 0;  ///< in PacketModel::types
     Condition valid{};     ///< where it is false, the value is undefined
+    unsigned line = 0;
 };
 
 struct PacketEntry {
@@ -178,8 +179,21 @@ struct PacketModel {
     std::optional<std::size_t> root{};  ///< the container with which packets begin, where the file leaves it open
 };
 
-/// Reads the model.
-/// None when the text is not XTCE; unsupported or wrong content becomes findings with lines.
+/// What a file does not say of itself.
+struct ReadAgreement {
+    unsigned leading_size_unit_bits = 1;  ///< LeadingSize counts bits (1, by [xtce-1.2]) or octets (8)
+};
+
+struct XtceText {
+    std::string file;  ///< for findings
+    std::string text;
+};
+
+/// Reads the model of one mission from its files, whose SpaceSystems may refer to each other. Its name is the first
+/// file's. None when a text is not XTCE; unsupported or wrong content becomes findings with file and line.
+std::optional<PacketModel> read_packet_model(const std::vector<XtceText>& texts, std::vector<Finding>& findings,
+                                             const ReadAgreement& agreement = {});
+/// The same of one text.
 std::optional<PacketModel> read_packet_model(const std::string& text, Findings& findings);
 
 }  // namespace aeolis::dictionary::xtce

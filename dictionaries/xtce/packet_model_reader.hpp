@@ -15,7 +15,7 @@ namespace aeolis::dictionary::xtce {
 /// Unsupported content is a finding.
 class ModelParts {
   public:
-    ModelParts(const Symbols& symbols, Reporter& report);
+    ModelParts(const Symbols& symbols, Reporter& report, const ReadAgreement& agreement);
 
     struct Reference {
         std::size_t parameter = 0;
@@ -29,6 +29,7 @@ class ModelParts {
 
     const Symbols& symbols;
     Reporter& report;
+    const ReadAgreement agreement;
 
   private:
     bool has_member(const Symbol& parameter, std::string_view path) const;

@@ -143,7 +143,8 @@ void ModelTypes::read_number(const Symbol& symbol, pugi::xml_node coding, Packet
     type.coding.bits = Amount::fixed(static_cast<double>(bits.value_or(0)));
     const bool ordered = read_order(coding, type.coding);
     read_calibrations(symbol, coding, type.coding);
-    const bool parts = type.coding.least_significant_octet_first && bits.value_or(0) % 8 != 0;
+    const bool parts = type.coding.least_significant_octet_first && !type.coding.least_significant_bit_first &&
+                       bits.value_or(0) % 8 != 0;
     if (parts)
         parts_.report.fault(coding, "least significant octet first is not supported for " +
                                         std::to_string(bits.value_or(0)) + " bits: octets are given");
@@ -190,19 +191,23 @@ void ModelTypes::read_text(const Symbol& symbol, pugi::xml_node coding, PacketTy
     type.coding.boxed = size.child("Fixed") || size.child("FixedValue") || size.child("DynamicValue") ||
                         size.child("DiscreteLookupList");
     if (type.coding.boxed) type.coding.bits = parts_.amount(symbol.scope, size);
-    if (const pugi::xml_node leading = size.child("LeadingSize"))
+    if (const pugi::xml_node leading = size.child("LeadingSize")) {
         type.coding.leading_size_bits = leading.attribute("sizeInBitsOfSizeTag").as_uint(16);
+        type.coding.leading_size_unit_bits = parts_.agreement.leading_size_unit_bits;
+    }
     if (const pugi::xml_node end = size.child("TerminationChar")) {
-        const auto octet = to_integer("0x" + std::string{end.text().as_string("00")});
         const auto wide = type.coding.characters;
-        if (wide == Coding::Characters::utf16_big_endian || wide == Coding::Characters::utf16_little_endian) {
-            parts_.report.fault(end, "a termination of UTF-16 is not supported: packets are read up to it");
-            type.kind = PacketType::Kind::unknown;
-        } else if (octet && *octet >= 0 && *octet <= 255) {
-            type.coding.terminator = static_cast<std::uint8_t>(*octet);
+        const bool two_octets =
+            wide == Coding::Characters::utf16_big_endian || wide == Coding::Characters::utf16_little_endian;
+        const std::string word = end.text().as_string(two_octets ? "0000" : "00");
+        const auto value = to_integer("0x" + word);
+        if (value && word.size() == (two_octets ? 4 : 2)) {
+            if (two_octets) type.coding.terminator.push_back(static_cast<std::uint8_t>(*value >> 8));
+            type.coding.terminator.push_back(static_cast<std::uint8_t>(*value & 0xFF));
         } else {
-            parts_.report.fault(end, "a termination of " + in_quotes(end.text().as_string()) +
-                                         " is not supported: packets are read up to it");
+            parts_.report.fault(end, "a termination of " + in_quotes(word) +
+                                         " is not one character of the encoding: "
+                                         "packets are read up to it");
             type.kind = PacketType::Kind::unknown;
         }
     }

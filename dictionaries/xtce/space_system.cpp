@@ -29,7 +29,7 @@ std::optional<SpaceSystem> read_space_system(const std::string& text, Findings& 
     const auto document = Document::parse(text, findings);
     if (!document) return std::nullopt;
     Reporter report{*document, findings};
-    const Symbols symbols{*document, report};
+    const Symbols symbols{{document.get()}, report};
     const Types types{symbols, report};
     Parameters parameters = read_parameters(symbols, types, report);
     read_context_alarms(symbols, parameters, report);

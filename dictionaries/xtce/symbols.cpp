@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dictionaries/xtce/symbols.hpp"
 
+#include <algorithm>
+
 namespace aeolis::dictionary::xtce {
 namespace {
 
@@ -9,8 +11,8 @@ constexpr unsigned system_depth_max =
 
 }  // namespace
 
-Symbols::Symbols(const Document& document, Reporter& report) {
-    read_space_system(document.space_system(), "", 0, report);
+Symbols::Symbols(const std::vector<const Document*>& documents, Reporter& report, Names names) : names_(names) {
+    for (const Document* document : documents) read_space_system(document->space_system(), "", 0, report);
 }
 
 void Symbols::read_space_system(pugi::xml_node system, const std::string& outer, unsigned depth, Reporter& report) {
@@ -25,7 +27,11 @@ void Symbols::read_space_system(pugi::xml_node system, const std::string& outer,
     const std::string scope = outer + "/" + name_of(system);
 
     const pugi::xml_node telemetry = system.child("TelemetryMetaData");
-    report.expect(telemetry, {"ParameterTypeSet", "ParameterSet", "ContainerSet"}, {});
+    report.expect(telemetry, {"ParameterTypeSet", "ParameterSet", "ContainerSet", "AlgorithmSet"}, {});
+    for (const pugi::xml_node algorithm : telemetry.child("AlgorithmSet").children())
+        if (algorithm.type() == pugi::node_element)
+            report.fault(algorithm,
+                         std::string{algorithm.name()} + " " + in_quotes(name_of(algorithm)) + " is not run");
     read_set(telemetry.child("ParameterTypeSet"), Kind::parameter_type, scope, report);
     read_set(telemetry.child("ParameterSet"), Kind::parameter, scope, report);
     read_set(telemetry.child("ContainerSet"), Kind::container, scope, report);
@@ -49,7 +55,7 @@ void Symbols::read_set(pugi::xml_node set, Kind kind, const std::string& scope, 
 
 void Symbols::add(Kind kind, const std::string& scope, pugi::xml_node element, Reporter& report) {
     const std::string name = name_of(element);
-    if (name.empty() || name.find_first_of("./:[] ") != std::string::npos) {
+    if (name.empty() || name.find_first_of(names_ == Names::strict ? "./:[] " : "/") != std::string::npos) {
         report.fault(element, std::string{element.name()} + " has no usable name");
         return;
     }
@@ -62,16 +68,39 @@ void Symbols::add(Kind kind, const std::string& scope, pugi::xml_node element, R
                                   std::to_string(report.line(all_[first->second].element)));
 }
 
+namespace {
+
+/// The path to which a reference with "." and ".." leads from a scope; empty when it leads out of the file.
+std::string path_from(const std::string& scope, std::string_view reference) {
+    std::string path = reference.starts_with('/') ? std::string{} : scope;
+    while (!reference.empty()) {
+        const std::string_view part = reference.substr(0, reference.find('/'));
+        reference.remove_prefix(std::min(reference.size(), part.size() + 1));
+        if (part.empty() || part == ".") continue;
+        if (part != "..")
+            path += "/" + std::string{part};
+        else if (path.empty())
+            return {};
+        else
+            path.erase(path.rfind('/'));
+    }
+    return path;
+}
+
+}  // namespace
+
 const Symbol* Symbols::find(Kind kind, const std::string& scope, std::string_view reference) const {
     const auto at = [&](const std::string& path) -> const Symbol* {
         const auto found = by_path_.find(std::pair{kind, path});
         return found == by_path_.end() ? nullptr : &all_[found->second];
     };
     if (reference.empty()) return nullptr;
-    if (reference.front() == '/') return at(std::string{reference});
-    for (std::string from = scope; !from.empty(); from.erase(from.rfind('/')))
-        if (const Symbol* found = at(from + "/" + std::string{reference})) return found;
-    return nullptr;
+    if (reference.front() == '/' || reference.starts_with("./") || reference.starts_with("../"))
+        return at(path_from(scope, reference));
+    for (std::string from = scope;; from.erase(from.rfind('/'))) {
+        if (const Symbol* found = at(path_from(from, reference))) return found;
+        if (from.empty()) return nullptr;
+    }
 }
 
 }  // namespace aeolis::dictionary::xtce

@@ -20,12 +20,17 @@ struct Symbol {
     pugi::xml_node element;
 };
 
-/// All names of a file. A reference is resolved in its own SpaceSystem, then outwards.
-/// "Events/X" and "/MSL/Events/X" lead into other SpaceSystems.
+/// All names of the files. A reference is resolved in its own SpaceSystem, then outwards.
+/// "Events/X" and "/MSL/Events/X" lead into other SpaceSystems; "./X" and "../X" are looked for there alone.
 class Symbols {
   public:
-    /// Duplicates within a SpaceSystem are findings.
-    Symbols(const Document& document, Reporter& report);
+    enum class Names : std::uint8_t {
+        strict,  ///< as XTCE permits: without any of ./:[] and blanks
+        any,     ///< also those, as other missions' files have them
+    };
+    /// Duplicates within a SpaceSystem are findings. The root SpaceSystems of several files are beside each other; where
+    /// they have the same name, they are one.
+    Symbols(const std::vector<const Document*>& documents, Reporter& report, Names names = Names::strict);
 
     const Symbol* find(Kind kind, const std::string& scope, std::string_view reference) const;
     /// All symbols, in the order of the file.
@@ -36,6 +41,7 @@ class Symbols {
     void read_set(pugi::xml_node set, Kind kind, const std::string& scope, Reporter& report);
     void add(Kind kind, const std::string& scope, pugi::xml_node element, Reporter& report);
 
+    Names names_;
     std::vector<Symbol> all_;
     std::map<std::pair<Kind, std::string>, std::size_t> by_path_;
 };

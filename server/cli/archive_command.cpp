@@ -88,7 +88,7 @@ int archive_verify(const VerifyOptions& options) {
     int exit_code = 0;
     const auto known = known_head(options);
     if (!known) return failed_at("verify", known.error());
-    const auto recorded = recorded_dictionary(options.shared.dictionary, options.xtce, options.root, exit_code);
+    const auto recorded = recorded_dictionary(options.shared.dictionary, options.xtce, exit_code);
     if (!recorded) return exit_code;
     const auto found = [&] {
         ProgressLine line;
@@ -109,7 +109,7 @@ int archive_verify(const VerifyOptions& options) {
 /// Returns 0 when every run was rebuilt.
 int archive_rebuild(const ArchiveOptions& options) {
     int exit_code = 0;
-    const auto recorded = recorded_dictionary(options.shared.dictionary, options.xtce, options.root, exit_code);
+    const auto recorded = recorded_dictionary(options.shared.dictionary, options.xtce, exit_code);
     if (!recorded) return exit_code;
     const auto rebuilt = [&] {
         ProgressLine line;

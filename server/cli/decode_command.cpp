@@ -22,8 +22,8 @@ namespace aeolis::server {
 namespace {
 
 struct DecodeOptions {
-    std::filesystem::path xtce, packets;
-    std::string root;
+    MissionXtce xtce;
+    std::filesystem::path packets;
     PacketStreamFormat format{};
     std::optional<std::filesystem::path> clock_kernel,
         leap_seconds;                      ///< SPICE text kernels: both, or the leap seconds alone
@@ -65,14 +65,17 @@ Result<telemetry::TimeKernels> time_kernels(const DecodeOptions& options) {
 /// Prints packets, one row each, or at the end a summary with one line per container.
 class Printed {
   public:
-    Printed(const telemetry::ContainerDecoder& decoder, const telemetry::TimeKernels& kernels, bool csv)
-        : decoder_(decoder), kernels_(kernels), csv_(csv) {
+    /// @param time  where packets hold their time; none: as the decoder finds it
+    Printed(const telemetry::ContainerDecoder& decoder, const telemetry::TimeKernels& kernels,
+            const std::optional<telemetry::TimeSource>& time, bool csv)
+        : decoder_(decoder), kernels_(kernels), time_(time), csv_(csv) {
         if (csv_) fmt::print("index,apid,count,time,values\n");
     }
 
     void add(std::span<const std::uint8_t> packet) {
         const auto apid = read_bits(packet, 5, 11);
-        const auto contents = decoder_.decode(packet);
+        auto contents = decoder_.decode(packet);
+        if (time_) contents.time = time_->time_in(contents.values);
         ++kinds_[{apid, contents.container}];
         if (!contents.problem.empty()) note(contents.problem);
         if (csv_) print_row(packet, apid, contents);
@@ -105,6 +108,7 @@ class Printed {
 
     const telemetry::ContainerDecoder& decoder_;
     const telemetry::TimeKernels& kernels_;
+    const std::optional<telemetry::TimeSource>& time_;
     bool csv_;
     std::uint64_t index_ = 0;
     std::map<std::pair<std::uint64_t, std::string>, std::uint64_t> kinds_;
@@ -142,7 +146,7 @@ int decode(const DecodeOptions& options) {
         return failed(packet_source(options.format, {}, true).error().message, 2);
     const auto kernels = time_kernels(options);
     if (!kernels) return failed(kernels.error().message, 2);
-    const auto xtce = read_xtce_file(options.xtce, options.root);
+    const auto xtce = read_xtce(options.xtce);
     if (!xtce) return xtce.exit_code;
     const auto& model = xtce.model;
 
@@ -162,7 +166,7 @@ int decode(const DecodeOptions& options) {
     if (!recognised->layout.empty()) fmt::print(stderr, "taken for {}\n", recognised->layout);
 
     const telemetry::ContainerDecoder decoder{*model};
-    Printed printed{decoder, *kernels, options.csv};
+    Printed printed{decoder, *kernels, xtce.time, options.csv};
     const auto take = [&] {
         while (const auto packet = source.next()) printed.add(*packet);
     };
@@ -183,8 +187,8 @@ void add_decode_command(CLI::App& program, int& exit_code) {
     auto& command = *program.add_subcommand(
         "decode",
         "decodes any mission's packets by its XTCE file; exit code 1 when anything but idle data was not decoded");
-    command.add_option("--xtce", options->xtce, "the mission's XTCE file, version 1.0 to 1.3")->required();
-    add_root(command, options->root);
+    add_mission_xtce(command, options->xtce, "the mission's XTCE file, version 1.0 to 1.3; may be given several times")
+        ->required();
     command.add_option("--packets", options->packets, "file of packets or frames")->required();
     add_stream_format(command, options->format);
     auto* leap_seconds = command.add_option(

@@ -6,6 +6,7 @@
 #include "server/cli/options.hpp"
 #include "server/cli/shipped_paths.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <fmt/format.h>
 #include <fstream>
@@ -16,6 +17,7 @@ namespace {
 
 struct DictionaryOptions {
     std::filesystem::path directory = SharedOptions{}.dictionary;
+    MissionXtce xtce;           ///< of another mission, instead of the directory
     std::filesystem::path out;  ///< empty: standard output
 };
 
@@ -49,6 +51,72 @@ int dictionary_check(const std::filesystem::path& directory) {
                dictionary->tones.size(), dictionary->parameters.size(), dictionary->constraints.size(),
                dictionary->state_machines.size(), dictionary->id, dictionary->timeline_version);
     return 0;
+}
+
+/// What of a model the packets reach.
+struct Used {
+    std::vector<bool> containers, parameters;
+
+    explicit Used(const dictionary::xtce::PacketModel& model)
+        : containers(model.containers.size()), parameters(model.parameters.size()), model_(model) {
+        if (!model.root) return;
+        // A container derived from one that is used is used; in files that follow from each other, in some rounds.
+        take(*model.root);
+        for (bool more = true; more;) {
+            more = false;
+            for (std::size_t i = 0; i < model.containers.size(); ++i) {
+                const auto& base = model.containers[i].base;
+                if (containers[i] || !base || !containers[*base]) continue;
+                take(i);
+                more = true;
+            }
+        }
+    }
+
+  private:
+    void take(std::size_t container) {
+        std::vector<std::size_t> open{container};
+        while (!open.empty()) {
+            const std::size_t at = open.back();
+            open.pop_back();
+            if (containers[at]) continue;
+            containers[at] = true;
+            for (const auto& entry : model_.containers[at].entries) {
+                if (entry.what == dictionary::xtce::PacketEntry::What::parameter) parameters[entry.index] = true;
+                if (entry.what == dictionary::xtce::PacketEntry::What::container) open.push_back(entry.index);
+            }
+        }
+    }
+    const dictionary::xtce::PacketModel& model_;
+};
+
+/// Prints what of any mission's XTCE is used, unused and not understood. @return 1 when something is not understood
+int xtce_check(const MissionXtce& files) {
+    const auto xtce = read_xtce(files);
+    if (!xtce) return xtce.exit_code;
+    const auto& model = *xtce.model;
+    const Used used{model};
+    const auto unused = [&](const char* what, const auto& all, const std::vector<bool>& is_used) {
+        for (std::size_t i = 0; i < all.size(); ++i)
+            if (!is_used[i]) fmt::print("unused {} {} (line {})\n", what, all[i].path, all[i].line);
+    };
+    unused("container", model.containers, used.containers);
+    unused("parameter", model.parameters, used.parameters);
+    fmt::print("{}: packets begin with {}; {} of {} containers and {} of {} parameters are used; {}\n", model.name,
+               model.containers[*model.root].path, std::ranges::count(used.containers, true), used.containers.size(),
+               std::ranges::count(used.parameters, true), used.parameters.size(),
+               xtce.findings == 0 ? "all is understood"
+                                  : fmt::format("not understood, as said above: {}", xtce.findings));
+    return xtce.findings == 0 ? 0 : 1;
+}
+
+/// Whether a path is an XTCE file without the sheets of a mission of ours.
+bool is_other_mission(const std::filesystem::path& path) {
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(path, error)) return false;
+    std::vector<dictionary::Finding> ignored;
+    const auto files = dictionary::read_mission_files(path, ignored);
+    return std::ranges::none_of(files.sheets, [](const auto& sheet) { return sheet.text.has_value(); });
 }
 
 /// Writes the whole dictionary as one XTCE file to `out`, or to standard output when it is empty.
@@ -88,8 +156,14 @@ void add_dictionary_command(CLI::App& program, int& exit_code) {
         subcommand.add_option("DIR", options->directory, description)->capture_default_str();
     };
     auto& check = *command.add_subcommand("check", "checks every rule, and names each error with file and line");
-    add_directory(check, "the dictionary's directory, or a file that export wrote");
-    check.callback([options, &exit_code] { exit_code = dictionary_check(options->directory); });
+    add_directory(check, "the dictionary's directory, a file that export wrote, or another mission's XTCE file");
+    add_mission_xtce(check, options->xtce,
+                     "another mission's XTCE file, of which is said what is used, unused and not understood; may be "
+                     "given several times");
+    check.callback([options, &exit_code] {
+        if (options->xtce.empty() && is_other_mission(options->directory)) options->xtce.files = {options->directory};
+        exit_code = options->xtce.empty() ? dictionary_check(options->directory) : xtce_check(options->xtce);
+    });
 
     auto& diagram = *command.add_subcommand("diagram", "prints the state machines as diagrams (Mermaid)");
     add_directory(diagram, "the dictionary's directory");

@@ -33,8 +33,7 @@ int each_row(const ExportOptions& options, const char* command, const Begin& beg
              const archive::Reader::TakeSamples& take) {
     const auto said = [&](const Error& error) { return failed(fmt::format("{}: {}", command, error.message)); };
     int exit_code = 0;
-    const auto recorded =
-        recorded_dictionary(options.of.shared.dictionary, options.of.xtce, options.of.root, exit_code);
+    const auto recorded = recorded_dictionary(options.of.shared.dictionary, options.of.xtce, exit_code);
     if (!recorded) return exit_code;
     auto reader = archive::Reader::open(options.of.archive, recorded->dictionary, recorded->other.get());
     if (!reader) return said(reader.error());

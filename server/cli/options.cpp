@@ -52,10 +52,24 @@ std::vector<CLI::Option*> add_stream_format(CLI::App& command, PacketStreamForma
             number("--virtual-channel", format.virtual_channel, "frames of this virtual channel only", 0, 63)};
 }
 
-CLI::Option* add_root(CLI::App& command, std::string& root) {
-    return command.add_option("--root", root,
-                              "name of the container with which packets begin, where several in the XTCE file have no "
-                              "base");
+CLI::Option* add_mission_xtce(CLI::App& command, MissionXtce& xtce, const std::string& description) {
+    auto* files = command.add_option("--xtce", xtce.files, description)->allow_extra_args(false);
+    command
+        .add_option("--root", xtce.root,
+                    "name of the container with which packets begin, where several in the XTCE files have no base")
+        ->needs(files);
+    command
+        .add_option("--leading-size", xtce.leading_size,
+                    "what the LeadingSize of a text counts, which XTCE files do not say: bits or octets")
+        ->check(CLI::IsMember({"bits", "octets"}))
+        ->capture_default_str()
+        ->needs(files);
+    command
+        .add_option("--time", xtce.time,
+                    "the parameter that holds a packet's time, where the XTCE files do not say; with :seconds, "
+                    ":milliseconds, :microseconds, :cuc or :cds behind it for how")
+        ->needs(files);
+    return files;
 }
 
 void add_archive_file(CLI::App& command, std::filesystem::path& archive) {
@@ -66,9 +80,8 @@ void add_archive_and_dictionary(CLI::App& command, ArchiveOptions& options) {
     add_archive_file(command, options.archive);
     command.add_option("--dictionary", options.shared.dictionary, "directory of the mission's dictionary")
         ->capture_default_str();
-    auto* xtce =
-        command.add_option("--xtce", options.xtce, "XTCE file of the followed mission, if the run followed one");
-    add_root(command, options.root)->needs(xtce);
+    add_mission_xtce(command, options.xtce,
+                     "XTCE file of the followed mission, if the run followed one; may be given several times");
 }
 
 }  // namespace aeolis::server

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "server/cli/shipped_paths.hpp"
+#include "server/cli/xtce_file.hpp"
 #include "server/links/frame_format.hpp"
 
 #include <CLI/CLI.hpp>
@@ -22,8 +23,8 @@ CLI::Validator whole_number();
 
 /// Adds the options for how a file or link carries packets. @return the options, each of which may need another
 std::vector<CLI::Option*> add_stream_format(CLI::App& command, PacketStreamFormat& format);
-/// Adds --root: with which container of an XTCE file packets begin.
-CLI::Option* add_root(CLI::App& command, std::string& root);
+/// Adds --xtce, which may be given several times, and what is said beside it: --root, --leading-size, --time. @return --xtce
+CLI::Option* add_mission_xtce(CLI::App& command, MissionXtce& xtce, const std::string& description);
 
 inline constexpr const char* default_archive = "run-data/aeolis.db";
 
@@ -31,12 +32,11 @@ inline constexpr const char* default_archive = "run-data/aeolis.db";
 struct ArchiveOptions {
     SharedOptions shared;
     std::filesystem::path archive = default_archive;
-    std::filesystem::path xtce;  ///< XTCE of the mission that was followed; empty: the dictionary's own
-    std::string root;            ///< with which container of it packets begin
+    MissionXtce xtce;  ///< of the mission that was followed; empty: the dictionary's own
     std::optional<std::uint32_t> run;
 };
 void add_archive_file(CLI::App& command, std::filesystem::path& archive);
-/// Adds --archive, --dictionary, --xtce and --root.
+/// Adds --archive, --dictionary, --xtce and what belongs to it.
 void add_archive_and_dictionary(CLI::App& command, ArchiveOptions& options);
 
 }  // namespace aeolis::server

@@ -2,21 +2,20 @@
 #include "server/cli/recorded_dictionary.hpp"
 
 #include "server/cli/shipped_paths.hpp"
-#include "server/cli/xtce_file.hpp"
 
 namespace aeolis::server {
 
-std::optional<RecordedDictionary> recorded_dictionary(const std::filesystem::path& dictionary,
-                                                      const std::filesystem::path& xtce, const std::string& root,
+std::optional<RecordedDictionary> recorded_dictionary(const std::filesystem::path& dictionary, const MissionXtce& xtce,
                                                       int& exit_code) {
     RecordedDictionary recorded;
     if (!xtce.empty()) {
-        auto file = read_xtce_file(xtce, root);
+        auto file = read_xtce(xtce);
         if (!file) {
             exit_code = file.exit_code;
             return {};
         }
-        recorded.other = std::make_unique<telemetry::OtherMission>(std::move(*file.model), file.id);
+        recorded.other =
+            std::make_unique<telemetry::OtherMission>(std::move(*file.model), file.id, std::move(file.time));
         recorded.dictionary = recorded.other->dictionary();
         return recorded;
     }

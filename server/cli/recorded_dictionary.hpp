@@ -2,6 +2,7 @@
 #pragma once
 
 #include "dictionaries/dictionary.hpp"
+#include "server/cli/xtce_file.hpp"
 #include "telemetry/other_mission.hpp"
 
 #include <filesystem>
@@ -15,10 +16,9 @@ struct RecordedDictionary {
     std::unique_ptr<telemetry::OtherMission> other;  ///< null: our own mission
     dictionary::Dictionary dictionary;
 };
-/// Loads the dictionary; with `xtce`, another mission's, whose packets begin with `root`. None: the fault was printed;
+/// Loads the dictionary; with `xtce`, another mission's. None: the fault was printed;
 /// end with `exit_code`.
-std::optional<RecordedDictionary> recorded_dictionary(const std::filesystem::path& dictionary,
-                                                      const std::filesystem::path& xtce, const std::string& root,
+std::optional<RecordedDictionary> recorded_dictionary(const std::filesystem::path& dictionary, const MissionXtce& xtce,
                                                       int& exit_code);
 
 }  // namespace aeolis::server

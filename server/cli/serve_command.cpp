@@ -39,8 +39,7 @@ struct ServeOptions {
     std::uint64_t seed = 1;
     double pace = 1.0;
     std::optional<std::string> downlink;  ///< "tcp://HOST:PORT", "udp://HOST:PORT": follow another mission
-    std::filesystem::path xtce;           ///< of the followed mission
-    std::string root;
+    MissionXtce xtce;                     ///< of the followed mission
     PacketStreamFormat format{};
     std::string log_level{default_log_level}, log_format = "text";
     bool log_level_given = false;  ///< by command line or environment, before which the file gives way
@@ -106,16 +105,16 @@ FollowedMission followed_mission(const ServeOptions& options) {
     if (!address) return refused(failed("--downlink " + address.error().message, 2));
     if (!telemetry::downlink_format(options.format.name))
         return refused(failed(packet_source(options.format, {}, true).error().message, 2));
-    auto xtce = read_xtce_file(options.xtce, options.root);
+    auto xtce = read_xtce(options.xtce);
     if (!xtce) return refused(xtce.exit_code);
     FollowedMission mission;
-    mission.model = std::make_unique<telemetry::OtherMission>(std::move(*xtce.model), xtce.id);
+    mission.model = std::make_unique<telemetry::OtherMission>(std::move(*xtce.model), xtce.id, std::move(xtce.time));
     if (mission.model->left_out() > 0)
-        spdlog::warn("{}: more numbers than can be channels: the rest is in the packets only", options.xtce.string());
-    for (const auto& line : mission.model->not_judged()) spdlog::warn("{}: {}", options.xtce.string(), line);
+        spdlog::warn("{}: more numbers than can be channels: the rest is in the packets only", options.xtce.text());
+    for (const auto& line : mission.model->not_judged()) spdlog::warn("{}: {}", options.xtce.text(), line);
     mission.link = DownlinkFollower::Settings{.address = *address,
                                               .format = options.format,
-                                              .xtce = options.xtce.filename().string(),
+                                              .xtce = options.xtce.text(),
                                               .retry_first = std::chrono::milliseconds{250},
                                               .retry_max = std::chrono::milliseconds{30'000}};
     return mission;
@@ -293,12 +292,10 @@ void add_run_options(CLI::App& command, ServeOptions& options) {
                         "--format packets each datagram holds whole packets). What arrives is a run of its own: "
                         "its packets, and their numbers as channels, are in stream, archive and API")
             ->excludes(scenario);
-    auto* xtce = command
-                     .add_option("--xtce", options.xtce,
-                                 "that mission's XTCE file; unsupported parts are named with their lines")
-                     ->needs(downlink);
-    downlink->needs(xtce);
-    add_root(command, options.root)->needs(xtce);
+    auto* xtce = add_mission_xtce(command, options.xtce,
+                                  "that mission's XTCE file; may be given several times. Unsupported parts are named "
+                                  "with their lines");
+    downlink->needs(xtce->needs(downlink));
     for (auto* option : add_stream_format(command, options.format)) option->needs(downlink);
     command.add_option("--seed", options.seed, "seed of that rehearsal's errors")
         ->check(whole_number())

@@ -36,22 +36,42 @@ Result<std::string> text_of_file(const std::filesystem::path& path) {
     return std::string{std::istreambuf_iterator<char>{in}, {}};
 }
 
-XtceFile read_xtce_file(const std::filesystem::path& path, const std::string& root) {
-    const auto text = text_of_file(path);
-    if (!text) return {std::nullopt, failed(text.error().message, 2), 0};
+std::string MissionXtce::text() const {
+    std::string names;
+    for (const auto& file : files) names += (names.empty() ? "" : " and ") + file.filename().string();
+    return names;
+}
+
+XtceFile read_xtce(const MissionXtce& xtce) {
+    std::vector<dictionary::xtce::XtceText> texts;
+    std::string all_text;
+    for (const auto& file : xtce.files) {
+        auto text = text_of_file(file);
+        if (!text) return {std::nullopt, failed(text.error().message, 2)};
+        all_text += *text;
+        texts.push_back({file.string(), std::move(*text)});
+    }
+    // Packets decoded otherwise are those of another dictionary.
+    if (xtce.leading_size != MissionXtce{}.leading_size) all_text += "\nleading-size " + xtce.leading_size;
+    if (!xtce.time.empty()) all_text += "\ntime " + xtce.time;
     std::vector<dictionary::Finding> all;
-    dictionary::Findings findings{path.string(), all};
-    XtceFile file{dictionary::xtce::read_packet_model(*text, findings), 0,
-                  crc16(std::vector<std::uint8_t>{text->begin(), text->end()})};
+    XtceFile file{dictionary::xtce::read_packet_model(
+                      texts, all, {.leading_size_unit_bits = xtce.leading_size == "octets" ? 8U : 1U}),
+                  0, crc16(std::vector<std::uint8_t>{all_text.begin(), all_text.end()})};
     print_findings(all);
+    file.findings = all.size();
     if (!file.model) {
         file.exit_code = 1;
         return file;
     }
-    const auto begins = telemetry::ContainerDecoder::root_of(*file.model, root);
-    if (!begins)
-        return {std::nullopt, failed(fmt::format("{}: {} (--root)", path.string(), begins.error().message), 2), 0};
+    const auto begins = telemetry::ContainerDecoder::root_of(*file.model, xtce.root);
+    if (!begins) return {std::nullopt, failed(fmt::format("{}: {} (--root)", xtce.text(), begins.error().message), 2)};
     file.model->root = *begins;
+    if (!xtce.time.empty()) {
+        auto time = telemetry::TimeSource::parse(*file.model, xtce.time);
+        if (!time) return {std::nullopt, failed(fmt::format("--time: {}", time.error().message), 2)};
+        file.time = std::move(*time);
+    }
     return file;
 }
 

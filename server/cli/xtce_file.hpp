@@ -3,25 +3,39 @@
 
 #include "common/result.hpp"
 #include "dictionaries/xtce/packet_model.hpp"
+#include "telemetry/time_source.hpp"
 
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace aeolis::server {
 
 /// Reads the text of a file. The Error is one line that names the file.
 Result<std::string> text_of_file(const std::filesystem::path& path);
 
-/// Any mission's XTCE file. Faults and unsupported elements have been printed to stderr with their lines.
+/// The XTCE of a mission of others, as it is given on the command line.
+struct MissionXtce {
+    std::vector<std::filesystem::path> files;
+    std::string root;  ///< name of the container with which packets begin; empty: the only one that can
+    std::string leading_size = "bits";  ///< what a LeadingSize counts: bits or octets
+    std::string time;                   ///< telemetry::TimeSource; empty: as the file says
+
+    bool empty() const { return files.empty(); }
+    std::string text() const;  ///< the names of the files, without folders
+};
+
+/// What was read of it. Faults and unsupported elements have been printed to stderr with their files and lines.
 struct XtceFile {
     std::optional<dictionary::xtce::PacketModel> model;  ///< none: the fault was printed
     int exit_code = 0;
-    std::uint16_t id = 0;  ///< changes with every change of the file
+    std::uint16_t id = 0;  ///< changes with every change of the files, and of what was said beside them
+    std::optional<telemetry::TimeSource> time{};
+    std::size_t findings = 0;  ///< what of the files is not understood
     explicit operator bool() const { return model.has_value(); }
 };
-/// @param root  name of the container with which packets begin; empty: the only one that can
-XtceFile read_xtce_file(const std::filesystem::path& path, const std::string& root);
+XtceFile read_xtce(const MissionXtce& xtce);
 
 }  // namespace aeolis::server

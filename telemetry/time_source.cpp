@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "telemetry/time_source.hpp"
+
+#include "common/bytes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <variant>
+
+namespace aeolis::telemetry {
+namespace {
+
+using dictionary::xtce::PacketModel;
+using Form = TimeSource::Form;
+
+// [ccsds-301.0-b-4]
+constexpr double day_s = 86400.0, milli = 1e-3, micro = 1e-6, pico = 1e-12;
+constexpr unsigned cuc_tai = 0b001, cuc_agency = 0b010, cds_code = 0b100;
+constexpr std::size_t cuc_counts_default = 4, cds_day_octets = 2, cds_ms_octets = 4;
+constexpr std::size_t number_octets_max = 8;
+
+const std::map<std::string_view, Form> forms{{"seconds", Form::seconds},
+                                             {"milliseconds", Form::milliseconds},
+                                             {"microseconds", Form::microseconds},
+                                             {"cuc", Form::cuc},
+                                             {"cds", Form::cds}};
+
+std::optional<double> number_of(const Datum& datum) {
+    if (const auto* value = std::get_if<double>(&datum)) return *value;
+    if (const auto* value = std::get_if<std::uint64_t>(&datum)) return static_cast<double>(*value);
+    if (const auto* value = std::get_if<std::int64_t>(&datum)) return static_cast<double>(*value);
+    return std::nullopt;
+}
+
+double number_in(std::span<const std::uint8_t> octets) {
+    std::uint64_t value = 0;
+    for (const std::uint8_t octet : octets.first(std::min(octets.size(), number_octets_max)))
+        value = value << 8 | octet;
+    return static_cast<double>(value);
+}
+
+double fraction_in(std::span<const std::uint8_t> octets) {
+    return std::ldexp(number_in(octets), -8 * static_cast<int>(std::min(octets.size(), number_octets_max)));
+}
+
+std::optional<PacketTime> cuc_of(std::span<const std::uint8_t> octets) {
+    const unsigned code = octets.empty() ? 0 : octets[0] >> 4 & 0b111;
+    const bool extended = !octets.empty() && (octets[0] & 0x80) != 0;
+    if (!extended && (code == cuc_tai || code == cuc_agency)) {
+        const std::size_t counts = (octets[0] >> 2 & 0b11) + 1, fraction = octets[0] & 0b11;
+        if (octets.size() == 1 + counts + fraction)
+            return PacketTime{number_in(octets.subspan(1, counts)) + fraction_in(octets.subspan(1 + counts)),
+                              code == cuc_tai ? "TAI" : ""};
+    }
+    if (octets.size() < cuc_counts_default || octets.size() > cuc_counts_default + 3) return std::nullopt;
+    return PacketTime{number_in(octets.first(cuc_counts_default)) + fraction_in(octets.subspan(cuc_counts_default)),
+                      {}};
+}
+
+std::optional<PacketTime> cds_of(std::span<const std::uint8_t> octets) {
+    std::size_t days = cds_day_octets;
+    std::string epoch;
+    const bool preamble = octets.size() % 2 == 1 && (octets[0] >> 4) == cds_code;  // without it the size is even
+    if (preamble) {
+        days = (octets[0] & 0b100) != 0 ? 3 : 2;
+        if ((octets[0] & 0b1000) == 0) epoch = "TAI";
+        octets = octets.subspan(1);
+    }
+    if (octets.size() < days + cds_ms_octets) return std::nullopt;
+    const auto below = octets.subspan(days + cds_ms_octets);
+    if (below.size() != 0 && below.size() != 2 && below.size() != 4) return std::nullopt;
+    const double ms = number_in(octets.subspan(days, cds_ms_octets));
+    return PacketTime{number_in(octets.first(days)) * day_s + ms * milli +
+                          number_in(below) * milli * (below.size() == 4 ? pico / milli : micro / milli),
+                      epoch};
+}
+
+}  // namespace
+
+Result<TimeSource> TimeSource::parse(const PacketModel& model, const std::string& text) {
+    TimeSource source;
+    std::string name = text;
+    if (const auto colon = name.rfind(':'); colon != std::string::npos) {
+        const auto form = forms.find(std::string_view{name}.substr(colon + 1));
+        if (form != forms.end()) {
+            source.form = form->second;
+            name.erase(colon);
+        }
+    }
+    for (std::size_t end = name.size(); end > 0 && end != std::string::npos; end = name.find_last_of("./[", end - 1)) {
+        const std::string whole = name.substr(0, end);
+        std::vector<std::size_t> found;
+        for (std::size_t i = 0; i < model.parameters.size(); ++i)
+            if (model.parameters[i].path == whole || model.parameters[i].name == whole) found.push_back(i);
+        if (found.size() > 1)
+            return Error{"several parameters are called '" + whole + "': say which by its path, such as " +
+                         model.parameters[found.front()].path};
+        if (found.size() == 1) {
+            const auto& parameter = model.parameters[found.front()];
+            source.parameter = found.front();
+            source.name = parameter.name;
+            source.member = name.substr(end);
+            std::ranges::replace(source.member, '/', '.');
+            source.epoch = model.types[parameter.type].epoch;
+            return source;
+        }
+        if (end == 0) break;
+    }
+    return Error{"there is no parameter '" + name +
+                 "' in the XTCE file; after ':' stand seconds, milliseconds, "
+                 "microseconds, cuc or cds"};
+}
+
+std::optional<PacketTime> TimeSource::time_in(std::span<const DecodedValue> values) const {
+    const std::string wanted = name + member;
+    // The parameter itself, or its members and elements, in the order of the packet.
+    std::vector<const DecodedValue*> parts;
+    for (const DecodedValue& value : values) {
+        if (value.parameter != parameter || !value.name.starts_with(wanted)) continue;
+        const bool inside = value.name.size() > wanted.size();
+        if (inside && value.name[wanted.size()] != '.' && value.name[wanted.size()] != '[') continue;
+        parts.push_back(&value);
+    }
+    if (parts.empty()) return std::nullopt;
+    const auto with_epoch = [&](std::optional<PacketTime> time) {
+        if (time && time->epoch.empty()) time->epoch = epoch;
+        return time;
+    };
+    if (const auto* octets = std::get_if<std::vector<std::uint8_t>>(&parts[0]->raw); octets != nullptr) {
+        if (parts.size() != 1 || (form != Form::as_fits && form != Form::cuc && form != Form::cds)) return std::nullopt;
+        return with_epoch(form == Form::cds ? cds_of(*octets) : cuc_of(*octets));
+    }
+    const auto number = [&](std::size_t i) {
+        return number_of(form == Form::cuc || form == Form::cds ? parts[i]->raw : parts[i]->calibrated);
+    };
+    const auto first = number(0);
+    if (!first) return std::nullopt;
+    const bool two = parts.size() == 2 && std::holds_alternative<std::uint64_t>(parts[1]->raw);
+    if (form == Form::cds) {
+        if (parts.size() < 2 || parts.size() > 3 || !number(1) || (parts.size() == 3 && !number(2)))
+            return std::nullopt;
+        const double below_s = parts.size() == 3 ? *number(2) * (parts[2]->bits > 16 ? pico : micro) : 0.0;
+        return PacketTime{*first * day_s + *number(1) * milli + below_s, epoch};
+    }
+    if (two && (form == Form::cuc || form == Form::as_fits)) {
+        const auto fraction = std::get<std::uint64_t>(parts[1]->raw);
+        return PacketTime{*first + std::ldexp(static_cast<double>(fraction), -static_cast<int>(parts[1]->bits)), epoch};
+    }
+    if (parts.size() != 1 || form == Form::cuc) return std::nullopt;
+    const double scale = form == Form::milliseconds ? milli : form == Form::microseconds ? micro : 1.0;
+    return PacketTime{*first * scale, epoch};
+}
+
+}  // namespace aeolis::telemetry

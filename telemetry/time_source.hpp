@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "common/result.hpp"
+#include "dictionaries/xtce/packet_model.hpp"
+#include "telemetry/container_decoder.hpp"
+
+#include <optional>
+#include <span>
+#include <string>
+
+namespace aeolis::telemetry {
+
+/// Where a packet's time is, as the user says who follows a mission whose XTCE file does not: "NAME" or "NAME:FORM".
+///
+/// NAME     a parameter by name or path, also with a member: "TIME", "/M/TIME", "HEADER.time"
+/// FORM     seconds, milliseconds, microseconds: of a number. cuc: counts and their binary fraction, of a parameter with
+///          two whole numbers, or of octets with the preamble (P-field) that says their sizes; of four octets or more
+///          without it the first four are counts. cds: days, milliseconds of the day and, where there are more octets or
+///          numbers, microseconds or picoseconds of the millisecond. [ccsds-301.0-b-4]
+///          Left out: seconds of a number; cuc of two whole numbers and of octets
+/// Epoch    that of the parameter's type; of cds and cuc octets whose preamble says so, TAI; else none is known
+struct TimeSource {
+    enum class Form : std::uint8_t { as_fits, seconds, milliseconds, microseconds, cuc, cds };
+
+    std::size_t parameter = 0;
+    std::string name;    ///< of the parameter, as values are named
+    std::string member;  ///< ".time"; empty: the parameter itself
+    std::string epoch;   ///< of its type
+    Form form = Form::as_fits;
+
+    /// The Error names what is wrong and what there is.
+    static Result<TimeSource> parse(const dictionary::xtce::PacketModel& model, const std::string& text);
+
+    /// The time among a packet's values; none: the packet does not hold it, or it is undefined.
+    std::optional<PacketTime> time_in(std::span<const DecodedValue> values) const;
+};
+
+}  // namespace aeolis::telemetry
