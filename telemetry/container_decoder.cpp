@@ -55,28 +55,6 @@ Datum defined(double value) {
     return std::isfinite(value) ? Datum{value} : Datum{};
 }
 
-Datum calibrated_by(const Calibration& calibration, double raw) {
-    if (!calibration.polynomial.empty()) {
-        double sum = 0.0;
-        for (auto term = calibration.polynomial.rbegin(); term != calibration.polynomial.rend(); ++term)
-            sum = sum * raw + *term;
-        return defined(sum);
-    }
-    const auto& points = calibration.spline;
-    auto above = std::ranges::upper_bound(points, raw, {}, [](const auto& point) { return point.first; });
-    const bool outside = above == points.begin() || (above == points.end() && raw != points.back().first);
-    if (outside && !calibration.extrapolate) return {};
-    if (calibration.flat || points.size() == 1)
-        return defined(above == points.begin() ? above->second : std::prev(above)->second);
-    // The closest outside point and the interpolation beside it extend outside. [xtce-1.2]
-    if (above == points.begin()) ++above;
-    if (above == points.end()) --above;
-    const auto below = std::prev(above);
-    if (raw == above->first) return defined(above->second);
-    const double part = (raw - below->first) / (above->first - below->first);
-    return defined(below->second + part * (above->second - below->second));
-}
-
 /// The decoding of one packet.
 class Reading {
   public:
@@ -335,7 +313,11 @@ class Reading {
             std::ranges::find_if(type.coding.contexts, [&](const auto& each) { return holds(each.when); });
         const Calibration& calibration =
             context == type.coding.contexts.end() ? type.coding.calibration : context->calibration;
-        Datum value = calibration.empty() ? raw : calibrated_by(calibration, static_cast<double>(number));
+        Datum value = raw;
+        if (!calibration.empty()) {
+            const auto calibrated = calibrated_by(calibration, static_cast<double>(number));
+            value = calibrated ? Datum{*calibrated} : Datum{};
+        }
         if (type.kind != PacketType::Kind::time) return value;
         const auto time = number_of(value);
         return time ? defined(type.time_offset_s + type.time_scale_s * static_cast<double>(*time)) : Datum{};
@@ -387,28 +369,34 @@ class Reading {
     std::optional<std::size_t> time_from_;  ///< the parameter that gave contents.time
 };
 
-bool is_named(const std::string& name, std::string_view part) {
+bool is_named(std::string_view name, std::string_view part) {
     const auto same = [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == b; };
     return !std::ranges::search(name, part, same).empty();
 }
 
 /// Recognises a clock by names alone, as in files of instruments that leave time to the reader.
 std::optional<PacketTime> coarse_and_fine(const std::vector<DecodedValue>& values) {
-    constexpr std::size_t coarse_bits_max = 32, fine_bits_max = 24;  // [ccsds-301.0-b-4], without its extension
     const auto coarse = std::ranges::find(values, primary_header_octets * 8, &DecodedValue::position_bits);
     if (coarse == values.end() || std::next(coarse) == values.end()) return std::nullopt;
     const auto fine = std::next(coarse);
     const auto* counts = std::get_if<std::uint64_t>(&coarse->raw);
     const auto* fraction = std::get_if<std::uint64_t>(&fine->raw);
-    if (counts == nullptr || fraction == nullptr || coarse->bits > coarse_bits_max || fine->bits > fine_bits_max ||
-        fine->position_bits != coarse->position_bits + coarse->bits || !is_named(coarse->name, "coarse") ||
-        !is_named(fine->name, "fine"))
+    if (counts == nullptr || fraction == nullptr ||
+        !are_coarse_and_fine({coarse->name, coarse->position_bits, coarse->bits},
+                             {fine->name, fine->position_bits, fine->bits}))
         return std::nullopt;
     return PacketTime{
         static_cast<double>(*counts) + std::ldexp(static_cast<double>(*fraction), -static_cast<int>(fine->bits)), {}};
 }
 
 }  // namespace
+
+bool are_coarse_and_fine(const NamedPlace& coarse, const NamedPlace& fine) {
+    constexpr std::size_t coarse_bits_max = 32, fine_bits_max = 24;  // [ccsds-301.0-b-4], without its extension
+    return coarse.bits <= coarse_bits_max && fine.bits <= fine_bits_max &&
+           fine.position_bits == coarse.position_bits + coarse.bits && is_named(coarse.name, "coarse") &&
+           is_named(fine.name, "fine");
+}
 
 std::string datum_text(const Datum& datum) {
     if (const auto* value = std::get_if<std::uint64_t>(&datum)) return std::to_string(*value);

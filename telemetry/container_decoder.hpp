@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -41,6 +42,14 @@ struct DecodedContents {
     std::optional<PacketTime> time;
     std::string problem;  ///< why the rest could not be read; empty: all was read
 };
+
+/// A number's name, and its place in the packet.
+struct NamedPlace {
+    std::string_view name;
+    std::size_t position_bits = 0, bits = 0;
+};
+/// Whether two numbers are, by names and places, the counts of a clock and their binary fraction.
+bool are_coarse_and_fine(const NamedPlace& coarse, const NamedPlace& fine);
 
 /// Decodes packets of any mission into values by the containers of its XTCE file.
 ///

@@ -74,6 +74,11 @@ dictionary::Type type_of(const PacketType& type) {
     return words;
 }
 
+PacketModel with_root(PacketModel model) {
+    if (const auto only = ContainerDecoder::root_of(model, {}); !model.root && only) model.root = *only;
+    return model;
+}
+
 std::optional<double> channel_value(const DecodedValue& value) {
     const auto number = [](const Datum& datum) -> std::optional<double> {
         if (const auto* real = std::get_if<double>(&datum)) return *real;
@@ -285,10 +290,21 @@ class OtherMission::Builder {
 };
 
 OtherMission::OtherMission(PacketModel model, std::uint16_t id, std::optional<TimeSource> time)
-    : model_(std::move(model)), decoder_(model_), time_(std::move(time)) {
+    : model_(with_root(std::move(model))), decoder_(model_), time_(std::move(time)) {
     dictionary_.mission = model_.name;
     dictionary_.id = id;
     Builder{*this, model_}.build();
+    if (time_) return;
+    std::vector<std::size_t> fields;
+    for (const auto& packet : dictionary_.packets) fields.push_back(packet.fields.size());
+    const auto field_of = [this](std::size_t container, std::size_t parameter, const std::string& name) {
+        const auto found = fields_[container].find({parameter, name});
+        return found == fields_[container].end() ? std::nullopt : std::optional{found->second};
+    };
+    const auto needs_text_at = [this](std::size_t container, std::size_t field) {
+        return needs_text(dictionary_.packets[container].fields[field].type);
+    };
+    plan_.emplace(model_, fields, field_of, needs_text_at);
 }
 
 DecodedContents OtherMission::contents(std::span<const std::uint8_t> packet) const {
@@ -300,12 +316,13 @@ DecodedContents OtherMission::contents(std::span<const std::uint8_t> packet) con
 std::optional<std::string> OtherMission::decode(std::span<const std::uint8_t> packet, Decoded& into) const {
     // Checks only what all missions' primary headers share: parts of segmented packets are packets too.
     if (space_packet_octets(packet) != packet.size()) return name_of(Refusal::not_a_packet);
+    into.header = {};
+    into.header.primary.apid = Apid{static_cast<std::uint16_t>(read_bits(packet, apid_position_bits, apid_bits))};
+    if (plan_ && plan_->decode(packet, into)) return std::nullopt;
     const DecodedContents contents = this->contents(packet);
     if (model_.containers.empty() || contents.values.empty() || model_.containers[contents.container_index].abstract)
         return contents.problem.empty() ? std::string{"no container describes it"} : contents.problem;
     into.packet = contents.container_index;
-    into.header = {};
-    into.header.primary.apid = Apid{static_cast<std::uint16_t>(read_bits(packet, apid_position_bits, apid_bits))};
     into.header.time = Sclk{contents.time ? contents.time->seconds : 0.0};
     into.timed = contents.time.has_value();
     into.texts.clear();

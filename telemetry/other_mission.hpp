@@ -3,6 +3,7 @@
 
 #include "dictionaries/dictionary.hpp"
 #include "telemetry/container_decoder.hpp"
+#include "telemetry/container_plan.hpp"
 #include "telemetry/decommutator.hpp"
 #include "telemetry/time_source.hpp"
 
@@ -26,6 +27,8 @@ namespace aeolis::telemetry {
 /// Alarms   those of the file; not_judged() names contexts that are no comparison of channels
 /// Names    those of the file; of two equal names the later is prefixed with its SpaceSystem's path
 /// Time     the packet's own time, as if from the spacecraft's clock; Decoded::timed says whether there is one
+/// Rate     containers whose fields stand at fixed places are compiled (telemetry/container_plan.hpp); others are looked
+///          up in the XTCE for each packet
 /// Faults   a partly readable packet is decoded in part; the rest is undefined
 /// Many threads may share one.
 class OtherMission {
@@ -61,6 +64,7 @@ class OtherMission {
     std::optional<TimeSource> time_;
     dictionary::Dictionary dictionary_;
     std::vector<std::map<FieldKey, std::size_t>> fields_;  ///< by packet
+    std::optional<ContainerPlan> plan_;                    ///< none: where a packet's time is has been named
     std::size_t left_out_ = 0;
     std::vector<std::string> not_judged_;
 };

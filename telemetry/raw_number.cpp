@@ -3,8 +3,10 @@
 
 #include "common/bytes.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
+#include <iterator>
 
 namespace aeolis::telemetry {
 namespace {
@@ -53,6 +55,10 @@ RawNumber bcd_of(std::uint64_t field, unsigned bits) {
     return value;
 }
 
+std::optional<double> defined(double value) {
+    return std::isfinite(value) ? std::optional{value} : std::nullopt;
+}
+
 std::int64_t negative(std::uint64_t magnitude) {
     return -static_cast<std::int64_t>(magnitude);
 }
@@ -82,6 +88,28 @@ RawNumber number_in(std::uint64_t field, unsigned bits, const Coding& coding) {
     case Coding::Form::octets: break;
     }
     return field;
+}
+
+std::optional<double> calibrated_by(const dictionary::xtce::Calibration& calibration, double raw) {
+    if (!calibration.polynomial.empty()) {
+        double sum = 0.0;
+        for (auto term = calibration.polynomial.rbegin(); term != calibration.polynomial.rend(); ++term)
+            sum = sum * raw + *term;
+        return defined(sum);
+    }
+    const auto& points = calibration.spline;
+    auto above = std::ranges::upper_bound(points, raw, {}, [](const auto& point) { return point.first; });
+    const bool outside = above == points.begin() || (above == points.end() && raw != points.back().first);
+    if (outside && !calibration.extrapolate) return std::nullopt;
+    if (calibration.flat || points.size() == 1)
+        return defined(above == points.begin() ? above->second : std::prev(above)->second);
+    // The closest outside point and the interpolation beside it extend outside. [xtce-1.2]
+    if (above == points.begin()) ++above;
+    if (above == points.end()) --above;
+    const auto below = std::prev(above);
+    if (raw == above->first) return defined(above->second);
+    const double part = (raw - below->first) / (above->first - below->first);
+    return defined(below->second + part * (above->second - below->second));
 }
 
 }  // namespace aeolis::telemetry

@@ -4,6 +4,7 @@
 #include "dictionaries/xtce/packet_model.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <variant>
 
 namespace aeolis::telemetry {
@@ -16,5 +17,8 @@ using RawNumber = std::variant<std::uint64_t, std::int64_t, double>;
 /// Source: [xtce-1.2]; [mil-std-1750a] for its real number of 24 bits mantissa and 8 bits exponent, both two's
 /// complement
 RawNumber number_in(std::uint64_t field, unsigned bits, const dictionary::xtce::Coding& coding);
+
+/// The calibrated value; none where it is undefined: outside a spline's points, or not finite.
+std::optional<double> calibrated_by(const dictionary::xtce::Calibration& calibration, double raw);
 
 }  // namespace aeolis::telemetry

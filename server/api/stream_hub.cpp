@@ -17,15 +17,16 @@ namespace {
 constexpr double pace_without_further_thinning = 8.0;
 
 constexpr std::size_t sessions_ahead = 4;  // chosen
+constexpr double seconds_per_us = 1e-6;
 
 /// The factor by which a client's intervals of vehicle time are longer at this pace.
 float stretch_of(const v1::RunState& state) {
     return static_cast<float>(std::max(1.0, state.attained_pace() / pace_without_further_thinning));
 }
 
-/// Whether a sample at `sclk` begins a new interval after the previous sample.
-bool begins_interval(double sclk, std::optional<double> previous, double interval_s) {
-    return !previous || std::floor(sclk / interval_s) != std::floor(*previous / interval_s);
+/// Whether a sample at `time_s` begins a new interval after the previous sample.
+bool begins_interval(double time_s, std::optional<double> previous_s, double interval_s) {
+    return !previous_s || std::floor(time_s / interval_s) != std::floor(*previous_s / interval_s);
 }
 
 /// The samples of the given channels, which ascend.
@@ -61,9 +62,9 @@ RatedItem rated(const ItemWithFacts& given, double interval_s) {
     const auto& [item, facts] = given;
     if (!item->has_samples() || interval_s <= 0.0) return {item, false, false, facts.ascend};
     const double now_s = interval_s * facts.stretch, before_s = interval_s * facts.previous_stretch;
-    const bool due = begins_interval(item->samples().sclk(), facts.previous_sclk, now_s);
+    const bool due = begins_interval(facts.time_s, facts.previous_s, now_s);
     const bool whole =
-        facts.previous_sclk ? begins_interval(*facts.previous_sclk, facts.before_previous_sclk, before_s) : facts.first;
+        facts.previous_s ? begins_interval(*facts.previous_s, facts.before_previous_s, before_s) : facts.first;
     return {item, !due, !whole, facts.ascend};
 }
 
@@ -121,24 +122,25 @@ SampleFacts SampleSpacing::next(const v1::Item& item, float stretch) {
     SampleFacts facts;
     if (!item.has_samples() || item.samples().ids_size() == 0) return facts;
     const auto& samples = item.samples();
+    facts.time_s = by_ == RateBy::vehicle ? samples.sclk() : static_cast<double>(item.ert_us()) * seconds_per_us;
     facts.stretch = stretch;
     facts.first = from_start_;
     facts.ascend = std::ranges::is_sorted(samples.ids());
     const std::uint64_t packet = (std::uint64_t{samples.ids(0)} << 8) | static_cast<std::uint64_t>(samples.source());
     const auto last = std::ranges::find(last_, packet, &Last::packet);
     if (last == last_.end()) {
-        last_.push_back({packet, samples.sclk(), std::nullopt, stretch});
+        last_.push_back({packet, facts.time_s, std::nullopt, stretch});
         return facts;
     }
-    facts.previous_sclk = last->sclk;
-    facts.before_previous_sclk = last->previous_sclk;
+    facts.previous_s = last->time_s;
+    facts.before_previous_s = last->previous_s;
     facts.previous_stretch = last->stretch;
-    *last = {packet, samples.sclk(), facts.previous_sclk, stretch};
+    *last = {packet, facts.time_s, facts.previous_s, stretch};
     return facts;
 }
 
 StreamHub::StreamHub(std::uint16_t dictionary_id, Services services)
-    : dictionary_id_(dictionary_id), services_(std::move(services)) {}
+    : dictionary_id_(dictionary_id), services_(std::move(services)), spacing_(true, services_.rate_by) {}
 
 void StreamHub::published(std::shared_ptr<const pipeline::PublishedBatch> batch) {
     if (batch->run.value != state_.run()) return;  // a run's state is published before its first batch
@@ -165,7 +167,7 @@ void StreamHub::forget_items() {
     range_.reset();
     held_.clear();
     held_items_ = 0;
-    spacing_ = SampleSpacing{last_seq_ == 0};
+    spacing_ = SampleSpacing{last_seq_ == 0, services_.rate_by};
 }
 
 void StreamHub::run_state(v1::RunState state) {

@@ -41,10 +41,11 @@ struct StreamSelection {
 /// Facts about an item's samples, computed once for all clients. They make thinning stateless per client: whether an
 /// item, and the one before it, goes out at some rate follows from them alone.
 struct SampleFacts {
-    std::optional<double> previous_sclk{}, before_previous_sclk{};  ///< of the same packet
-    float stretch = 1.0F, previous_stretch = 1.0F;                  ///< of the interval; see Held
-    bool first = true;                                              ///< without a previous one: whether none exists
-    bool ascend = false;                                            ///< their channel ids ascend: allows binary search
+    double time_s = 0.0;                                      ///< by which their rate counts; see SampleSpacing
+    std::optional<double> previous_s{}, before_previous_s{};  ///< of the same packet
+    float stretch = 1.0F, previous_stretch = 1.0F;            ///< of the interval; see Held
+    bool first = true;                                        ///< without a previous one: whether none exists
+    bool ascend = false;                                      ///< their channel ids ascend: allows binary search
 };
 /// A published item with the facts about its samples.
 struct ItemWithFacts {
@@ -66,22 +67,29 @@ struct RatedItem {
 void select_items(const StreamSelection& selection, double interval_s, std::span<const ItemWithFacts> items,
                   v1::Batch& batch);
 
+/// By which times a client's rate counts.
+enum class RateBy : std::uint8_t {
+    vehicle,    ///< the vehicle's time: of our mission, whose clock never stands still
+    reception,  ///< of another mission's packets, whose clocks may
+};
+
 /// Finds the samples before each item's samples. Call in item order.
 class SampleSpacing {
   public:
     /// @param from_start  no item of the run, or of the subscription, comes before the first one
-    explicit SampleSpacing(bool from_start = true) : from_start_(from_start) {}
+    explicit SampleSpacing(bool from_start = true, RateBy by = RateBy::vehicle) : from_start_(from_start), by_(by) {}
     /// @param stretch  factor by which intervals are longer now, >= 1
     SampleFacts next(const v1::Item& item, float stretch = 1.0F);
 
   private:
     struct Last {
         std::uint64_t packet = 0;  ///< its first channel, and source
-        double sclk = 0.0;
-        std::optional<double> previous_sclk;
+        double time_s = 0.0;
+        std::optional<double> previous_s;
         float stretch = 1.0F;
     };
     bool from_start_;
+    RateBy by_;
     std::vector<Last> last_;
 };
 
@@ -105,6 +113,7 @@ class StreamHub {
         std::function<void(bool wanted)> want_items;
         /// The clock for replays at a pace.
         std::function<std::chrono::steady_clock::time_point()> now = std::chrono::steady_clock::now;
+        RateBy rate_by = RateBy::vehicle;
     };
     StreamHub(std::uint16_t dictionary_id, Services services);
 

@@ -203,7 +203,7 @@ void StreamSession::follow(std::uint64_t run, archive::Sequence after) {
     cursor_ = sent_through_ = std::min(after, last);
     left_out_ = 0;
     page_.reset();
-    page_spacing_ = SampleSpacing{cursor_ == 0};
+    page_spacing_ = SampleSpacing{cursor_ == 0, hub_.services().rate_by};
     reading_ = exhausted_ = was_live_ = stall_told_ = false;
     retry_ = nullptr;
     welcome_due_ = true;
@@ -330,7 +330,8 @@ Encoded StreamSession::next_items() {
         const auto encoded = hub_.encoded_range(selection_, cursor_, sent_through_, left_out_);
         cursor_ = encoded.through;
         left_out_ = encoded.left_out;
-        page_spacing_ = SampleSpacing{false};  // a later page begins behind samples that were not seen here
+        page_spacing_ = SampleSpacing{
+            false, hub_.services().rate_by};  // a later page begins behind samples that were not seen here
         if (!encoded.message) continue;
         sent_through_ = encoded.through;
         left_out_ = 0;

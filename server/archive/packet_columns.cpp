@@ -37,6 +37,12 @@ std::vector<SampleText> PacketColumns::texts(const telemetry::Decoded& decoded) 
     return texts;
 }
 
+bool PacketColumns::defined(const telemetry::Decoded& decoded, std::size_t column) const {
+    const std::size_t field = packets_[decoded.packet].fields[column];
+    return decoded.value[field] ||
+           std::ranges::find(decoded.texts, field, &std::pair<std::size_t, std::string>::first) != decoded.texts.end();
+}
+
 double PacketColumns::value(const telemetry::Decoded& decoded, std::size_t column) const {
     return decoded.value[packets_[decoded.packet].fields[column]].value_or(undefined);
 }

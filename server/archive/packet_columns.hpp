@@ -28,6 +28,7 @@ class PacketColumns {
     /// Appends one value per column; NaN where undefined.
     void append_values(const telemetry::Decoded& decoded, std::vector<double>& values) const;
     double value(const telemetry::Decoded& decoded, std::size_t column) const;
+    bool defined(const telemetry::Decoded& decoded, std::size_t column) const;
     /// The exact values that doubles do not hold, by column.
     std::vector<SampleText> texts(const telemetry::Decoded& decoded) const;
 

@@ -59,7 +59,7 @@ Result<void> read_presences(Reader::State& reader, const RunInfo& run, PacketCol
             return Error{"the range holds more than " + std::to_string(exact_samples_max) +
                          " packets of the channel: ask for less, or without provenance"};
         if (!reader.decode(row.octets(2))) continue;
-        const bool defined = !std::isnan(reader.columns.value(reader.decoded, place.column));
+        const bool defined = reader.columns.defined(reader.decoded, place.column);
         presences.push_back(
             {row.real(0), row.integer(1), source, static_cast<PathComparison>(row.integer(3)), defined});
     }

@@ -244,6 +244,7 @@ RehearsalDesk::TimelineQuestions ConsoleBackend::timeline_questions() {
 
 StreamHub::Services ConsoleBackend::stream_services() {
     StreamHub::Services services;
+    services.rate_by = settings_.other != nullptr ? RateBy::reception : RateBy::vehicle;
     services.read_items = [this](archive::RunId run, archive::Sequence after, std::size_t limit,
                                  archive::Reader::ItemKinds kinds, const auto& done) {
         const bool taken = queries_->ask(

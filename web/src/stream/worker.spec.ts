@@ -138,6 +138,21 @@ it('takes samples up where their subscription is welcomed: what comes before lac
   await passes(1);
   expect(through()).toBe(5);
   expect(socket?.sent, 'nothing was missing').toBe(2);
+
+  // The last before a silence may be among those left out: the archive is asked once it is quiet, and once.
+  for (const through of [6n, 7n, 8n]) {
+    socket?.says({
+      case: 'batch',
+      value: { run: 1n, afterSeq: through - 1n, completeThrough: through, leftOut: 1n, items: [] },
+    });
+    await passes(1);
+    socket?.says({ case: 'batch', value: { run: 1n, afterSeq: through, completeThrough: through, items: [] } });
+    expect(history()).toBe(1);
+  }
+  await passes(3);
+  expect(history()).toBe(2);
+  await passes(10);
+  expect(history()).toBe(2);
 });
 
 it('says that a run is followed live when the page has been given all that came before, and not earlier', () => {

@@ -37,6 +37,7 @@ const CHANNELS_A_QUESTION = 64; // the server's limit
 const SILENT_MS = 5000; // chosen: a running run sends its clocks ten times a second
 const LOOKS = 3; // chosen: over a silence of fifteen seconds
 const LOOK_EVERY_MS = 1000;
+const QUIET_MS = 2000; // chosen: this long without a batch is a silence
 const MAX_RATE_HZ = 20; // the rate at which the page draws; history has the rest
 
 const post = (message: FromWorker, columns: Column[] = []) =>
@@ -57,6 +58,8 @@ let serverVersion = '';
 let check = new SequenceCheck();
 let plotted: string[] = [];
 let others: string[] = [];
+let leftOut = false;
+let quiet: ReturnType<typeof setTimeout> | undefined;
 let collector = new ColumnCollector();
 let posting: { timer: ReturnType<typeof setTimeout>; at_ms: number } | undefined;
 const posts = new Pace(POST_EVERY_MS, 5);
@@ -176,6 +179,8 @@ function restart(run: number): void {
   step = 'facts';
   stopAt = 0;
   historyDue = false;
+  leftOut = false;
+  clearTimeout(quiet);
 }
 
 /**
@@ -260,9 +265,21 @@ function receiveBatch(batch: Batch): void {
   }
   if (verdict === 'repeats') return;
   collector.add(batch);
+  const samples = batch.items.some(({ item }) => item.case === 'samples');
+  leftOut ||= batch.leftOut > 0n;
+  if (leftOut && (samples || batch.leftOut > 0n)) askOnceQuiet();
   if (step === 'facts' && check.completeThrough >= stopAt) goOnWithSamples();
   else if (step === 'samples' && state !== 'live' && check.completeThrough >= stopAt) say('live');
-  postSoon(batch.items.some(({ item }) => item.case === 'samples'));
+  postSoon(samples);
+}
+
+/** The last samples before a silence may be among those left out: once it is quiet, the archive is asked for them. */
+function askOnceQuiet(): void {
+  clearTimeout(quiet);
+  quiet = setTimeout(() => {
+    leftOut = false;
+    if (state === 'live') void fetchHistory(questions(true), false);
+  }, QUIET_MS);
 }
 
 /** Posts the collected batches when their pace allows; after a pause at once. */
