@@ -22,7 +22,7 @@ export function clocksOf(store: RunStore, past: number | undefined): { entry: st
   const lightTime = clocks?.lightTimeS ?? store.run.lightTimeS;
   const ert = store.ertOf(sclk);
   const others: Clock[] = [
-    { id: 'scet', label: 'at Mars (SCET)', value: dayOfYear(ert - lightTime) },
+    { id: 'scet', label: 'at Mars (SCET)', value: store.entryKnown ? dayOfYear(ert - lightTime) : '—' },
     { id: 'ert', label: 'on Earth (ERT)', value: dayOfYear(ert) },
     { id: 'sclk', label: 'SCLK', value: Number.isFinite(sclk) && sclk !== 0 ? sclk.toFixed(3) : '—' },
     {

@@ -235,7 +235,14 @@ function draw(surface: Surface): void {
   const run = shownRun();
   const altitude = dictionary.value?.pick(LAYOUT.altitude);
   const speed = dictionary.value?.pick(LAYOUT.speed);
-  if (!altitude || !speed) return;
+  if (!altitude || !speed) {
+    if (!dictionary.value) return;
+    c.font = `${TYPE.table}px ${colours.sans}`;
+    c.textAlign = 'center';
+    c.fillStyle = colours.dim;
+    c.fillText('No channel here is known as height or speed.', width / 2, height / 2);
+    return;
+  }
   const scales = scalesOf(width, height);
   const { x, y } = scales;
   drawCorridor(surface, scales);

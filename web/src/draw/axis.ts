@@ -50,6 +50,13 @@ export function axisTime(e_s: number, step_s: number): string {
     : `E${sign}${minutes}:${seconds}`;
 }
 
+/** The label of an instant of a run whose time of entry is not known: seconds of its clock. */
+const clockTime = (sclk: number, step_s: number): string => sclk.toFixed(step_s < 1 ? 1 : 0);
+
+/** How instants are written on an axis, long or short, of a run whose entry is known or not. */
+export const timeLabel = (entryKnown: boolean): typeof axisTime => (entryKnown ? axisTime : clockTime);
+export const shortLabel = (entryKnown: boolean): typeof axisTime => (entryKnown ? shortTime : clockTime);
+
 /** "+3:30", "−0:10", "E" at entry: labels for a plot, where every letter costs a tick. */
 export function shortTime(e_s: number, step_s: number): string {
   return Math.abs(e_s) < step_s / 2 ? 'E' : axisTime(e_s, step_s).slice(1);
@@ -59,10 +66,10 @@ export const CHARACTER_PX = 6.7; // of the axes' 11 px mono
 const BETWEEN_PX = 14;
 
 /** The smallest step whose short labels fit side by side in `wide_px`. */
-export function shortStep(from_e_s: number, to_e_s: number, wide_px: number): number {
+export function shortStep(from_e_s: number, to_e_s: number, wide_px: number, label = shortTime): number {
   return (
     TIME_STEPS_S.find((step) => {
-      const longest = Math.max(shortTime(from_e_s, step).length, shortTime(to_e_s, step).length);
+      const longest = Math.max(label(from_e_s, step).length, label(to_e_s, step).length);
       return (step / (to_e_s - from_e_s)) * wide_px >= longest * CHARACTER_PX + BETWEEN_PX;
     }) ?? 86400
   );

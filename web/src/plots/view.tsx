@@ -4,7 +4,7 @@ import { useLayoutEffect, useRef } from 'preact/hooks';
 import uPlot from 'uplot';
 import 'uplot/dist/uPlot.min.css';
 import { TYPE } from '../design/type';
-import { CHARACTER_PX, axisNumber, shortStep, shortTime, ticks, valueTicks } from '../draw/axis';
+import { CHARACTER_PX, axisNumber, shortLabel, shortStep, ticks, valueTicks } from '../draw/axis';
 import { grownBy } from '../draw/canvas';
 import { onDraw } from '../draw/loop';
 import { palette } from '../draw/palette';
@@ -105,6 +105,7 @@ function drawPredicted(plot: uPlot, channel: DictionaryChannel, per: number): vo
 
 function options(width: number, height: number, { channel, per, over }: Properties): uPlot.Options {
   const colours = palette();
+  const label = shortLabel(shownRun()?.entryKnown !== false);
   const axis = {
     stroke: colours.dim,
     font: `${TYPE.mark}px ${colours.mono}`,
@@ -124,11 +125,11 @@ function options(width: number, height: number, { channel, per, over }: Properti
         ...axis,
         size: X_AXIS_PX,
         gap: 3,
-        splits: (plot, _index, from, to) => ticks(from, to, shortStep(from, to, wideOf(plot))),
+        splits: (plot, _index, from, to) => ticks(from, to, shortStep(from, to, wideOf(plot), label)),
         values: (plot, splits) => {
           const { min = 0, max = 1 } = plot.scales.x ?? {};
-          const step = shortStep(min, max, wideOf(plot));
-          return splits.map((e_s) => shortTime(e_s, step));
+          const step = shortStep(min, max, wideOf(plot), label);
+          return splits.map((e_s) => label(e_s, step));
         },
       },
       {
@@ -310,7 +311,7 @@ function Plot(properties: Properties) {
       const span = plotSpanOf(run, channel.id, isAhead());
       const isDifference = showsDifference(channel);
       const line = lineOf(channel, per);
-      const newShape = `${palette().name} ${channel.id} ${over.map(({ id }) => id).join()}`;
+      const newShape = `${palette().name} ${run?.entryKnown} ${channel.id} ${over.map(({ id }) => id).join()}`;
       const changes = LIVE_LINKS.map((link) => run?.links.get(link) ?? []);
       const silences = changes.reduce((all, each) => all + each.length, 0);
       // a present silence grows with the clock, without new samples

@@ -5,7 +5,7 @@ import { Canvas } from '../draw/canvas';
 import { palette } from '../draw/palette';
 import { TYPE } from '../design/type';
 import type { Surface } from '../draw/canvas';
-import { axisTime, ticks, timeStep } from '../draw/axis';
+import { ticks, timeLabel, timeStep } from '../draw/axis';
 import { Panel } from '../design/panel';
 import { LAYOUT } from '../layout';
 import { cutoff, dictionary, pastRange, replay, runNow, shownRun, tick, timepoints, withRecording } from '../run/shown';
@@ -109,7 +109,7 @@ function drawTimeline({ context: c, width: width_px, height: height_px, colours 
     line(c, Math.round(x(e_s)) + 0.5, TOP - 6, Math.round(x(e_s)) + 0.5, bottom);
     c.fillStyle = colours.dim;
     if ([now_px, pointed_px].every((px) => Math.abs(x(e_s) - px) > flag_px))
-      c.fillText(axisTime(e_s, step), x(e_s), 11);
+      c.fillText(timeLabel(run?.entryKnown !== false)(e_s, step), x(e_s), 11);
   }
   c.font = `${TYPE.table}px ${colours.sans}`;
   c.textAlign = 'left';
@@ -128,7 +128,13 @@ function drawTimeline({ context: c, width: width_px, height: height_px, colours 
   c.clip();
   drawWindows(c, x, y, width, Math.min(run.seenE, pastRange.value?.to ?? Infinity), colours);
   drawOutages(c, lanes, x, y, width, run.seenE, colours);
-  if (!pastRange.value && lanes.relay < 1 && !lanes.recorded.some(({ e_s }) => e_s >= from && e_s <= to)) {
+  // Of a followed mission nothing is known of a recording.
+  if (
+    run.entryKnown &&
+    !pastRange.value &&
+    lanes.relay < 1 &&
+    !lanes.recorded.some(({ e_s }) => e_s >= from && e_s <= to)
+  ) {
     c.textAlign = 'center';
     const told = `${Math.floor(lanes.relay * 100)} % of the recording has come`;
     const words =

@@ -4,7 +4,7 @@ import { signal } from '@preact/signals';
 import { Canvas } from '../draw/canvas';
 import { TYPE } from '../design/type';
 import type { Surface } from '../draw/canvas';
-import { axisTime, ticks, timeStep } from '../draw/axis';
+import { ticks, timeLabel, timeStep } from '../draw/axis';
 import { Panel } from '../design/panel';
 import type { NamedTone } from '../stream/names';
 import { cursor } from '../run/cursor';
@@ -132,7 +132,8 @@ function draw(surface: Surface): void {
   const step = timeStep(to - from, Math.floor(width / 100));
   c.fillStyle = colours.dim;
   c.textAlign = 'center';
-  for (const e_s of ticks(from, to, step)) if (x(e_s) < width - 26) c.fillText(axisTime(e_s, step), x(e_s), height - 8);
+  const label = timeLabel(run?.entryKnown !== false);
+  for (const e_s of ticks(from, to, step)) if (x(e_s) < width - 26) c.fillText(label(e_s, step), x(e_s), height - 8);
   c.save();
   c.beginPath();
   c.rect(LEFT, 0, width - LEFT - 10, height);
@@ -206,7 +207,9 @@ export function Tones() {
             <b>at {fromEntry(at_e_s)}</b> ·{' '}
           </>
         )}
-        {toneEvidence(tone, run && toneSilence(run, cutoff.value))}
+        {run?.entryKnown === false && !tone
+          ? 'no tone comes over this link'
+          : toneEvidence(tone, run && toneSilence(run, cutoff.value))}
         {back && bestTones(tone) !== '' && ` · likeliest ${bestTones(tone)}`}
       </p>
       <div
