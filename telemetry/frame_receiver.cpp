@@ -12,6 +12,7 @@
 namespace aeolis::telemetry {
 namespace {
 
+constexpr std::ptrdiff_t header_octets = 6;
 constexpr std::size_t shortest_frame_octets = 9;  // a header, a CRC and one octet
 
 bool begins_with_marker(std::span<const std::uint8_t> octets) {
@@ -50,20 +51,91 @@ std::vector<T> known_or(const std::optional<T>& known, const std::array<T, size>
     return known ? std::vector<T>{*known} : std::vector<T>(possible.begin(), possible.end());
 }
 
+/// The codeblocks of `length` octets behind the first markers.
+std::vector<std::span<const std::uint8_t>> first_codeblocks(std::span<const std::uint8_t> octets, std::size_t length) {
+    constexpr std::size_t blocks_max = 32;  // chosen: among as many, some are correctable where a code is of use
+    std::vector<std::span<const std::uint8_t>> blocks;
+    const std::size_t unit = attached_sync_marker.size() + length;
+    for (std::size_t at = 0; blocks.size() < blocks_max && octets.size() >= at + unit;) {
+        at += find_octet(octets.subspan(at), attached_sync_marker.front());
+        if (octets.size() < at + unit) break;
+        if (begins_with_marker(octets.subspan(at))) {
+            blocks.push_back(octets.subspan(at + attached_sync_marker.size(), length));
+            at += unit;
+        } else {
+            ++at;
+        }
+    }
+    return blocks;
+}
+
+/// How many codeblocks are of a code: one without errors leaves no doubt, and so counts twice. Fill without a code is
+/// near a code word, of which the frame's header then is the error: where that would be corrected, nothing is told.
+std::size_t agreement_with(const ReedSolomonCode& code, bool randomised,
+                           std::span<const std::span<const std::uint8_t>> blocks) {
+    std::size_t agreement = 0;
+    std::vector<std::uint8_t> sent, block;
+    for (const auto& received : blocks) {
+        sent.assign(received.begin(), received.end());
+        if (randomised) randomise_tm(sent);
+        block = sent;
+        const auto found = correct_codeblock(code, block);
+        const bool header_is_right = std::equal(sent.begin(), sent.begin() + header_octets, block.begin());
+        if (found.uncorrectable_words == 0 && header_is_right) agreement += found.symbols == 0 ? 2 : 1;
+    }
+    return agreement;
+}
+
+/// The code that most of the first codeblocks are of; of two that hold, the one with more check symbols, since a word
+/// of it is a word of the other, too. Whether it is randomised remains open: the sequence may be a word itself.
+std::optional<ReedSolomonCode> code_of(std::span<const std::uint8_t> octets, std::size_t length,
+                                       const FrameHints& known) {
+    using Basis = ReedSolomonCode::Basis;
+    constexpr std::array<std::size_t, 2> check_symbols{32, 16};
+    constexpr std::array<std::size_t, 6> interleaves{1, 2, 3, 4, 5, 8};
+    const auto blocks = first_codeblocks(octets, length);
+    std::optional<ReedSolomonCode> best;
+    std::size_t most = 1;
+    for (const std::size_t symbols : known_or(known.check_symbols, check_symbols))
+        for (const std::size_t interleave : known_or(known.interleave, interleaves))
+            for (const Basis basis : known_or(known.basis, std::array{Basis::dual, Basis::conventional}))
+                for (const bool randomised : known_or(known.randomised, std::array{false, true})) {
+                    const ReedSolomonCode code{symbols, interleave, basis};
+                    if (!code.fits(length) ||
+                        (known.frame_octets && *known.frame_octets + code.check_octets() != length))
+                        continue;
+                    const std::size_t agreement = agreement_with(code, randomised, blocks);
+                    if (agreement <= most) continue;
+                    best = code;
+                    most = agreement;
+                }
+    return best;
+}
+
+/// The code that is known as a whole, without a codeblock to be seen.
+std::optional<ReedSolomonCode> code_told(const FrameHints& known) {
+    if (!known.check_symbols || !known.interleave) return std::nullopt;
+    return ReedSolomonCode{*known.check_symbols, *known.interleave, known.basis.value_or(ReedSolomonCode::Basis::dual)};
+}
+
 /// The layouts that frames of `length` octets between two markers may have.
-std::vector<FrameStream> layouts_of(std::size_t length, bool crc, const FrameHints& known) {
+std::vector<FrameStream> layouts_of(std::size_t length, bool crc, const std::optional<ReedSolomonCode>& code,
+                                    const FrameHints& known) {
     // Reed-Solomon: 32 or 16 check symbols a code word, 1 to 8 code words interleaved. [ccsds-131.0-b-5]
     constexpr std::array<std::size_t, 10> check_symbols{0, 16, 32, 48, 64, 80, 96, 128, 160, 256};
     std::vector<FrameStream> layouts;
     for (std::size_t symbols : known_or(known.suffix_octets, check_symbols)) {
-        if (known.frame_octets && length >= *known.frame_octets) symbols = length - *known.frame_octets;
+        if (known.frame_octets && length >= *known.frame_octets && !known.suffix_octets)
+            symbols = length - *known.frame_octets;
         if (length < symbols + shortest_frame_octets) continue;
+        if (known.frame_octets && *known.frame_octets + symbols != length) continue;
         for (const bool randomised : known_or(known.randomised, std::array{false, true}))
             for (const auto kind : {FrameStream::Kind::tm, FrameStream::Kind::aos}) {
                 FrameStream stream;
                 stream.kind = kind;
                 stream.frame_octets = length - symbols;
                 stream.suffix_octets = symbols;
+                stream.code = code;
                 stream.randomised = randomised;
                 stream.agreed = known.agreed;
                 stream.agreed.crc = crc;
@@ -79,6 +151,8 @@ std::vector<FrameStream> layouts_of(std::size_t length, bool crc, const FrameHin
 
 FrameReceiver::FrameReceiver(const FrameStream& stream) : stream_(stream) {
     AEOLIS_CHECK(stream.frame_octets >= shortest_frame_octets && stream.frame_octets <= transfer_frame_octets_max);
+    AEOLIS_CHECK(!stream.code || (stream.code->check_octets() == stream.suffix_octets &&
+                                  stream.code->fits(stream.frame_octets + stream.suffix_octets)));
 }
 
 void FrameReceiver::receive(std::span<const std::uint8_t> octets) {
@@ -114,25 +188,42 @@ bool FrameReceiver::at_marker() {
     }
 }
 
+/// Reads a frame with the suffix behind it, as they were sent.
+Parsed<TransferFrame> FrameReceiver::read_unit(std::span<const std::uint8_t> unit) {
+    block_.assign(unit.begin(), unit.end());
+    if (stream_.randomised) randomise_tm(block_);
+    correction_ = stream_.code ? correct_codeblock(*stream_.code, block_) : Correction{};
+    if (correction_.uncorrectable_words > 0 && !stream_.agreed.crc) return Malformed::bad_checksum;
+    const auto frame = std::span{block_}.first(stream_.frame_octets);
+    return stream_.kind == FrameStream::Kind::tm ? read_tm_frame(frame, stream_.agreed)
+                                                 : read_aos_frame(frame, stream_.agreed);
+}
+
+void FrameReceiver::count_unread(Malformed why) {
+    if (correction_.uncorrectable_words > 0)
+        ++counters_.uncorrectable_frames;
+    else
+        ++(why == Malformed::bad_checksum ? counters_.bad_crc : counters_.bad_header);
+}
+
 std::optional<FrameReceiver::Received> FrameReceiver::next() {
     while (!stream_.marker || at_marker()) {
         if (window_.rest().size() < unit_octets()) return std::nullopt;
         const std::size_t before = stream_.marker ? attached_sync_marker.size() : stream_.prefix_octets;
-        const auto octets = window_.rest().subspan(before, stream_.frame_octets);
-        frame_.assign(octets.begin(), octets.end());
-        if (stream_.randomised) randomise_tm(frame_);
-        const auto frame = stream_.kind == FrameStream::Kind::tm ? read_tm_frame(frame_, stream_.agreed)
-                                                                 : read_aos_frame(frame_, stream_.agreed);
+        const auto frame = read_unit(window_.rest().subspan(before, stream_.frame_octets + stream_.suffix_octets));
         if (!frame) {
-            ++(frame.why() == Malformed::bad_checksum ? counters_.bad_crc : counters_.bad_header);
+            count_unread(frame.why());
             skip(stream_.marker ? before : unit_octets());
             continue;
         }
         window_.use(unit_octets());
         ++counters_.frames;
+        if (correction_.symbols > 0) ++counters_.corrected_frames;
+        counters_.corrected_symbols += correction_.symbols;
         if (stream_.virtual_channel && frame->virtual_channel != *stream_.virtual_channel) continue;
         const std::uint32_t channel = frame->spacecraft * 64U + frame->virtual_channel;
-        const auto placed = channels_[channel].place(frame->count, frame->count_modulus, frame_, counters_);
+        const auto placed = channels_[channel].place(frame->count, frame->count_modulus,
+                                                     std::span{block_}.first(stream_.frame_octets), counters_);
         if (placed.place != FramePlace::repeated) return Received{*frame, placed.place};
     }
     return std::nullopt;
@@ -162,10 +253,18 @@ std::optional<FrameStream> recognise_cadus(std::span<const std::uint8_t> octets,
     octets = octets.first(std::min(octets.size(), looked_at_octets));
     const auto length = cadu_frame_octets(octets);
     if (!length) return std::nullopt;
+    FrameHints hints = known;
+    std::optional<ReedSolomonCode> code;
+    if (known.coded.value_or(!known.suffix_octets)) {
+        code = code_of(octets, *length, known);
+        if (!code && known.coded) code = code_told(known);
+        if (known.coded && (!code || !code->fits(*length))) return std::nullopt;
+        if (code) hints.suffix_octets = code->check_octets();
+    }
     std::optional<FrameStream> best;
     Agreement most;
     for (const bool crc : known_or(known.crc, std::array{true, false})) {
-        for (const auto& stream : layouts_of(*length, crc, known)) {
+        for (const auto& stream : layouts_of(*length, crc, code, hints)) {
             const auto agreement = agreement_of(stream, octets);
             if (agreement.frames == 0 || (best && agreement.packets <= most.packets)) continue;
             best = stream;

@@ -4,6 +4,7 @@
 #include "common/tm_frame.hpp"
 #include "telemetry/frame_order.hpp"
 #include "telemetry/octet_window.hpp"
+#include "telemetry/reed_solomon.hpp"
 
 #include <cstdint>
 #include <map>
@@ -20,8 +21,10 @@ struct FrameStream {
     std::size_t frame_octets = 1115;  ///< without marker; 1115: five interleaved code words of Reed–Solomon
     bool marker = true;               ///< each after the attached sync marker (CADU)
     std::size_t prefix_octets = 0;    ///< ignored before each frame, as a station's recorder adds; only without marker
-    std::size_t suffix_octets = 0;    ///< ignored after each frame: the code's check symbols
-    bool randomised = false;
+    std::size_t suffix_octets = 0;    ///< after each frame: the code's check symbols
+    /// With it the suffix is its check symbols, by which frames are corrected; without it the suffix is ignored.
+    std::optional<ReedSolomonCode> code{};
+    bool randomised = false;  ///< frames with their check symbols
     FrameAgreement agreed{};
     std::optional<std::uint8_t> virtual_channel{};  ///< none: frames of all
 };
@@ -32,8 +35,9 @@ struct FrameStream {
 ///          channel's sequence. Repeated ones are only counted
 /// Memory   the last piece and two frames
 /// Faults   with a marker, after anything but a good frame the search continues right behind the marker; without one,
-///          an unreadable frame is skipped whole
-/// Left out error correction: the stream is assumed decoded, or free of errors
+///          an unreadable frame is skipped whole. A frame that its code cannot correct is read only if its own CRC-16
+///          is right
+/// Left out convolutional, turbo and LDPC codes: the stream is assumed decoded by the station
 class FrameReceiver {
   public:
     struct Received {
@@ -54,11 +58,14 @@ class FrameReceiver {
   private:
     std::size_t unit_octets() const;
     bool at_marker();
+    Parsed<TransferFrame> read_unit(std::span<const std::uint8_t> unit);
+    void count_unread(Malformed why);
     void skip(std::size_t octets);
 
     FrameStream stream_;
     OctetWindow window_;
-    std::vector<std::uint8_t> frame_;
+    std::vector<std::uint8_t> block_;  ///< frame and suffix
+    Correction correction_;            ///< of that
     std::map<std::uint32_t, FrameOrder> channels_;
     LinkCounters counters_;
 };
@@ -75,6 +82,10 @@ std::optional<std::size_t> crc_frame_octets(std::span<const std::uint8_t> octets
 /// What is known of frames before any is seen.
 struct FrameHints {
     std::optional<std::size_t> frame_octets{}, suffix_octets{};
+    /// Of the code: whether there is one that is to be used, and what of it is known.
+    std::optional<bool> coded{};
+    std::optional<std::size_t> check_symbols{}, interleave{};
+    std::optional<ReedSolomonCode::Basis> basis{};
     std::optional<bool> crc{}, randomised{};
     FrameAgreement agreed{};  ///< but for its `crc`
     std::optional<std::uint8_t> virtual_channel{};
@@ -82,8 +93,8 @@ struct FrameHints {
 
 inline constexpr std::uint64_t frames_to_agree = 8;  ///< chosen: before a layout is believed in a stream that goes on
 
-/// Detects a CADU stream's layout by trial, as far as it is not known: frame length, TM or AOS, randomisation, the
-/// code's check symbols, CRC. None when no layout reads the frames.
+/// Detects a CADU stream's layout by trial, as far as it is not known: frame length, Reed–Solomon code, TM or AOS,
+/// randomisation, check symbols, CRC. A code is believed when two codeblocks are of it, or one without any error. None when no layout reads the frames.
 /// @param ended  no more octets come: fewer than frames_to_agree must do
 std::optional<FrameStream> recognise_cadus(std::span<const std::uint8_t> octets, const FrameHints& known, bool ended);
 

@@ -123,6 +123,9 @@ bool print_losses(const telemetry::PacketSource& source, const Printed& printed)
                    "{} restarts, {} cut off; {} octets skipped\n",
                    link.frames, link.bad_crc, link.bad_header, link.missing_frames, link.gaps, link.repeated_frames,
                    link.late_frames, link.restarts, link.cut_frames, link.skipped_octets);
+    if (link.corrected_frames + link.uncorrectable_frames > 0)
+        fmt::print(stderr, "Reed-Solomon: {} frames corrected, {} symbols; {} frames uncorrectable\n",
+                   link.corrected_frames, link.corrected_symbols, link.uncorrectable_frames);
     fmt::print(
         stderr,
         "packets: {}, {} idle, {} encapsulation packets not decoded, {} cut off, {} segments without the rest; {} "
@@ -130,8 +133,9 @@ bool print_losses(const telemetry::PacketSource& source, const Printed& printed)
         packets.packets, packets.idle_packets, packets.encapsulation_packets, packets.cut_packets,
         packets.lost_segments, packets.unreadable_octets);
     for (const auto& [problem, count] : printed.problems()) fmt::print(stderr, "{} packets: {}\n", count, problem);
-    return link.bad_crc + link.bad_header + link.missing_frames + link.cut_frames + packets.encapsulation_packets +
-                   packets.cut_packets + packets.lost_segments + packets.unreadable_octets ==
+    return link.bad_crc + link.bad_header + link.uncorrectable_frames + link.missing_frames + link.cut_frames +
+                   packets.encapsulation_packets + packets.cut_packets + packets.lost_segments +
+                   packets.unreadable_octets ==
                0 &&
            printed.problems().empty();
 }

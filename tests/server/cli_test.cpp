@@ -3,6 +3,7 @@
 #include "commands/parameter_table.hpp"
 #include "common/proximity_frame.hpp"
 #include "common/space_packet.hpp"
+#include "common/tm_frame.hpp"
 #include "flight/load.hpp"
 #include "server/archive/sqlite.hpp"
 #include "server/base/json.hpp"
@@ -11,6 +12,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/kernels.hpp"
 #include "tests/support/mission_copy.hpp"
+#include "tests/support/reed_solomon_encoder.hpp"
 #include "tests/support/shipped_dictionary.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -734,6 +736,83 @@ TEST_CASE("decode ends with 1 and says what it left, and asks where the file lea
         const auto ended = run(program(), "decode --csv --xtce " + arguments);
         INFO(arguments << " -> " << ended.code << ": " << ended.text);
         CHECK(ended.code == code);
+        CHECK_THAT(ended.text, Catch::Contains(says));
+    }
+}
+
+TEST_CASE("decode corrects what Reed-Solomon codeblocks hold, says how much, and refuses what contradicts the stream",
+          "[cli][decode][R54]") {
+    if (program() == nullptr) return;
+    using namespace aeolis;
+    const aeolis::test::TemporaryFolder folder;
+    const auto write = [&](const char* name, const std::string& text) {
+        std::ofstream{folder / name, std::ios::binary} << text;
+        return "'" + (folder / name).string() + "'";
+    };
+    const std::string mission = write(
+        "one.xml",
+        "<SpaceSystem name='T'><TelemetryMetaData><ParameterTypeSet>"
+        "<IntegerParameterType name='u16'><IntegerDataEncoding sizeInBits='16'/></IntegerParameterType>"
+        "<IntegerParameterType name='u48'><IntegerDataEncoding sizeInBits='48'/></IntegerParameterType>"
+        "</ParameterTypeSet><ParameterSet><Parameter name='H' parameterTypeRef='u48'/><Parameter name='W' "
+        "parameterTypeRef='u16'/></ParameterSet><ContainerSet><SequenceContainer name='P'><EntryList>"
+        "<ParameterRefEntry parameterRef='H'/><ParameterRefEntry parameterRef='W'/></EntryList></SequenceContainer>"
+        "</ContainerSet></TelemetryMetaData></SpaceSystem>");
+    constexpr std::size_t packets_a_frame = 26, frame_octets = 6 + packets_a_frame * 8;
+    std::mt19937 random{1};
+    unsigned count = 0;
+    const telemetry::ReedSolomonCode code{.check_symbols = 32, .interleave = 1};
+    const auto stream_with = [&](std::size_t wrong_symbols) {
+        std::string stream;
+        count = 0;
+        for (unsigned i = 0; i < 20; ++i) {
+            std::vector<std::uint8_t> data;
+            for (std::size_t packet = 0; packet < packets_a_frame; ++packet, ++count)
+                for (const unsigned octet : {0x01U, 0x23U, 0xC0U | (count >> 8U), count & 0xFFU, 0U, 1U,
+                                             static_cast<unsigned>(random() % 256), count & 0xFFU})
+                    data.push_back(static_cast<std::uint8_t>(octet));
+            TransferFrame frame;
+            frame.spacecraft = 76;
+            frame.count = i;
+            frame.first_header_pointer = 0;
+            frame.data = data;
+            std::vector<std::uint8_t> octets(frame_octets);
+            write_tm_frame(frame, static_cast<std::uint8_t>(i), false, octets);
+            auto block = test::codeblock_of(octets, code);
+            for (std::size_t at = 0; i == 9 && at < wrong_symbols; ++at) block[10 + at * 3] ^= 0x42;
+            stream.append(attached_sync_marker.begin(), attached_sync_marker.end());
+            stream.append(block.begin(), block.end());
+        }
+        return stream;
+    };
+    const std::string clean = write("clean", stream_with(0)), wrong = write("wrong", stream_with(16)),
+                      lost = write("lost", stream_with(17));
+    struct Case {
+        std::string arguments;
+        int code;
+        const char* says;
+    };
+    for (const auto& [arguments, expected, says] :
+         {Case{clean, 0,
+               "taken for TM frames of 214 octets without a CRC-16, in Reed-Solomon (255,223) codeblocks interleaved "
+               "1, dual basis, behind sync markers"},
+          Case{wrong, 0, "Reed-Solomon: 1 frames corrected, 16 symbols; 0 frames uncorrectable"},
+          Case{wrong + " --reed-solomon 223 --interleave 1 --basis dual", 0, "520 packets   APID  291"},
+          Case{lost, 1, "Reed-Solomon: 0 frames corrected, 0 symbols; 1 frames uncorrectable"},
+          Case{clean + " --check-symbols 32", 0, "32 check symbols behind each"},
+          Case{clean + " --reed-solomon no --frame-octets 214", 0, "32 check symbols behind each"},
+          Case{wrong + " --reed-solomon 239", 2, "no layout reads these frames"},
+          Case{wrong + " --reed-solomon 223 --check-symbols 32", 2, "say one of them"},
+          Case{wrong + " --reed-solomon 223 --interleave 1 --frame-octets 224", 2,
+               "hold 223 octets of a frame at most"},
+          Case{wrong + " --frame-octets 214 --check-symbols 16", 2,
+               "246 octets stand between sync markers: --frame-octets and --check-symbols of 230 are not right"},
+          Case{wrong + " --frame-octets 300", 2, "--frame-octets of 300 are not right"},
+          Case{wrong + " --interleave 6", 2, "--interleave"},
+          Case{wrong + " --interleave 5", 2, "--interleave requires --reed-solomon"}}) {
+        const auto ended = run(program(), "decode --xtce " + mission + " --format cadu --packets " + arguments);
+        INFO(arguments << " -> " << ended.code << ": " << ended.text);
+        CHECK(ended.code == expected);
         CHECK_THAT(ended.text, Catch::Contains(says));
     }
 }

@@ -3,6 +3,7 @@
 #include "telemetry/frame_receiver.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/octets.hpp"
+#include "tests/support/reed_solomon_encoder.hpp"
 
 #include <algorithm>
 
@@ -16,19 +17,20 @@ namespace {
 using Octets = std::vector<std::uint8_t>;
 constexpr std::size_t length = 120;
 
-Octets frame_octets(FrameStream::Kind kind, unsigned count, std::mt19937& random) {
+Octets frame_octets(FrameStream::Kind kind, unsigned count, std::mt19937& random, std::size_t octets_of_it = length,
+                    bool crc = true) {
     const bool tm = kind == FrameStream::Kind::tm;
-    const auto data = test::random_octets(random, length - (tm ? 8 : 10));
+    const auto data = test::random_octets(random, octets_of_it - (tm ? 6 : 8) - (crc ? 2 : 0));
     TransferFrame frame;
     frame.spacecraft = 76;
     frame.virtual_channel = static_cast<std::uint8_t>(count % 2);
     frame.count = count / 2;
     frame.data = data;
-    Octets octets(length);
+    Octets octets(octets_of_it);
     if (tm)
-        write_tm_frame(frame, static_cast<std::uint8_t>(count), true, octets);
+        write_tm_frame(frame, static_cast<std::uint8_t>(count), crc, octets);
     else
-        write_aos_frame(frame, true, octets);
+        write_aos_frame(frame, crc, octets);
     return octets;
 }
 
@@ -175,6 +177,133 @@ TEST_CASE("repeated frames are counted and not given out, and frames of another 
     CHECK(receiver.counters().repeated_frames == 39);
     FrameReceiver one{{.kind = FrameStream::Kind::aos, .frame_octets = length, .virtual_channel = 1}};
     CHECK(frames_in(one, stream, random) == 20);
+}
+
+namespace {
+
+/// CADUs of Reed–Solomon codeblocks of one virtual channel.
+std::vector<Octets> coded_cadus(const FrameStream& stream, unsigned frames, std::mt19937& random) {
+    std::vector<Octets> cadus;
+    for (unsigned i = 0; i < frames; ++i) {
+        const Octets frame = frame_octets(stream.kind, 2 * i, random, stream.frame_octets, stream.agreed.crc);
+        Octets block = test::codeblock_of(frame, *stream.code);
+        if (stream.randomised) randomise_tm(block);
+        cadus.push_back(test::copy_of(attached_sync_marker));
+        append(cadus.back(), block);
+    }
+    return cadus;
+}
+
+Octets joined(const std::vector<Octets>& pieces) {
+    Octets stream;
+    for (const Octets& piece : pieces) append(stream, piece);
+    return stream;
+}
+
+std::vector<Octets> data_of(const FrameStream& stream, std::span<const std::uint8_t> octets, LinkCounters& counters) {
+    FrameReceiver receiver{stream};
+    receiver.receive(octets);
+    std::vector<Octets> data;
+    while (const auto received = receiver.next()) data.push_back(test::copy_of(received->frame.data));
+    receiver.end();
+    counters = receiver.counters();
+    return data;
+}
+
+FrameStream coded(const ReedSolomonCode& code, std::size_t frame_octets, bool randomised, bool crc) {
+    FrameStream stream;
+    stream.frame_octets = frame_octets;
+    stream.code = code;
+    stream.suffix_octets = code.check_octets();
+    stream.randomised = randomised;
+    stream.agreed.crc = crc;
+    return stream;
+}
+
+}  // namespace
+
+TEST_CASE("CADUs of 65 frames with one wrong bit in 16 of them come out as the clean ones, and what code they have is "
+          "found by trying",
+          "[telemetry][R54]") {
+    std::mt19937 random{7};
+    for (const std::size_t symbols : {32U, 16U})
+        for (const std::size_t interleave : {1U, 2U, 3U, 4U, 5U, 8U})
+            for (const auto basis : {ReedSolomonCode::Basis::dual, ReedSolomonCode::Basis::conventional}) {
+                const std::size_t shorter = random() % 2 * 37;
+                const bool randomised = random() % 2 == 0, crc = random() % 2 == 0;
+                const ReedSolomonCode code{symbols, interleave, basis};
+                const auto sent = coded(code, code.data_octets_max() - shorter * interleave, randomised, crc);
+                auto cadus = coded_cadus(sent, 65, random);
+                const auto clean = joined(cadus);
+                std::vector<std::size_t> places(65);
+                for (std::size_t i = 0; i < places.size(); ++i) places[i] = i;
+                std::ranges::shuffle(places, random);
+                for (std::size_t i = 0; i < 16; ++i) {
+                    Octets& cadu = cadus[places[i]];
+                    cadu[4 + random() % (cadu.size() - 4)] ^= static_cast<std::uint8_t>(1U << random() % 8);
+                }
+                const auto damaged = joined(cadus);
+                INFO(symbols << " check symbols, interleaved " << interleave << ", dual "
+                             << (basis == ReedSolomonCode::Basis::dual) << ", randomised " << randomised << ", CRC "
+                             << crc);
+                const auto found = recognise_cadus(damaged, {}, true);
+                REQUIRE(found);
+                CHECK(found->code == code);
+                CHECK(found->randomised == randomised);
+                CHECK(found->agreed.crc == crc);
+                CHECK(found->frame_octets == sent.frame_octets);
+                LinkCounters counted, none;
+                const auto frames = data_of(*found, damaged, counted);
+                REQUIRE(frames.size() == 65);
+                CHECK(frames == data_of(sent, clean, none));
+                CHECK(counted.corrected_frames == 16);
+                CHECK(counted.corrected_symbols == 16);
+                CHECK(none.corrected_frames == 0);
+            }
+}
+
+TEST_CASE("a frame that its code cannot correct is counted and not read, unless its own CRC is right",
+          "[telemetry][R54]") {
+    std::mt19937 random{8};
+    for (const bool crc : {true, false}) {
+        const ReedSolomonCode code{.check_symbols = 32, .interleave = 2};
+        const auto sent = coded(code, 300, true, crc);
+        auto cadus = coded_cadus(sent, 20, random);
+        LinkCounters counted;
+        const auto clean = data_of(sent, joined(cadus), counted);
+        for (std::size_t i = 0; i < 20; ++i) {
+            cadus[7][4 + 2 * i] ^= 0x21;         // in the frame
+            cadus[12][4 + 300 + 2 * i] ^= 0x21;  // in the check symbols alone
+        }
+        auto left = clean;
+        if (!crc) left.erase(left.begin() + 12);
+        left.erase(left.begin() + 7);
+        CHECK(data_of(sent, joined(cadus), counted) == left);
+        CHECK(counted.uncorrectable_frames == (crc ? 1 : 2));
+        CHECK(counted.bad_crc == 0);
+        CHECK(counted.missing_frames == (crc ? 1 : 2));
+    }
+}
+
+TEST_CASE("frames of nothing but fill are taken for no code that they are not of", "[telemetry][R54]") {
+    // Not coded at all: a few symbols of a header before zeros are within the reach of the code word of zeros.
+    Octets stream;
+    for (unsigned i = 0; i < 20; ++i) {
+        const Octets zeros(1275 - 8);
+        TransferFrame frame;
+        frame.spacecraft = 76;
+        frame.count = i;
+        frame.first_header_pointer = only_idle_data;
+        frame.data = zeros;
+        Octets octets(1275);
+        write_tm_frame(frame, static_cast<std::uint8_t>(i), true, octets);
+        append(stream, attached_sync_marker);
+        append(stream, octets);
+    }
+    const auto found = recognise_cadus(stream, {}, true);
+    REQUIRE(found);
+    CHECK_FALSE(found->code);
+    CHECK(found->frame_octets == 1275);
 }
 
 }  // namespace telemetry_frame_receiver_test
