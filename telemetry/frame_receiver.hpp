@@ -5,6 +5,7 @@
 #include "telemetry/frame_order.hpp"
 #include "telemetry/octet_window.hpp"
 #include "telemetry/reed_solomon.hpp"
+#include "telemetry/sync_search.hpp"
 
 #include <cstdint>
 #include <map>
@@ -20,6 +21,7 @@ struct FrameStream {
     Kind kind = Kind::tm;
     std::size_t frame_octets = 1115;  ///< without marker; 1115: five interleaved code words of Reed–Solomon
     bool marker = true;               ///< each after the attached sync marker (CADU)
+    BitAlignment alignment{};         ///< of the first markers; others are found
     std::size_t prefix_octets = 0;    ///< ignored before each frame, as a station's recorder adds; only without marker
     std::size_t suffix_octets = 0;    ///< after each frame: the code's check symbols
     /// With it the suffix is its check symbols, by which frames are corrected; without it the suffix is ignored.
@@ -34,6 +36,9 @@ struct FrameStream {
 /// In       octets as received, in pieces of any size       Out   readable frames, and the place of each in its
 ///          channel's sequence. Repeated ones are only counted
 /// Memory   the last piece and two frames
+/// Sync     markers are searched at every bit, inverted too. One right behind a good frame may have wrong bits if the
+///          frame has a code or a CRC-16 to be known by. At another bit than before, a frame without either is believed
+///          when a marker follows it
 /// Faults   with a marker, after anything but a good frame the search continues right behind the marker; without one,
 ///          an unreadable frame is skipped whole. A frame that its code cannot correct is read only if its own CRC-16
 ///          is right
@@ -57,21 +62,35 @@ class FrameReceiver {
 
   private:
     std::size_t unit_octets() const;
-    bool at_marker();
-    Parsed<TransferFrame> read_unit(std::span<const std::uint8_t> unit);
+    bool checked() const { return stream_.agreed.crc || stream_.code; }
+    bool at_unit();
+    bool waits_for_octets() const;
+    Parsed<TransferFrame> read_unit();
+    void count_good();
     void count_unread(Malformed why);
     void skip(std::size_t octets);
 
     FrameStream stream_;
     OctetWindow window_;
+    BitAlignment alignment_;           ///< of the last good frame
+    BitAlignment found_;               ///< of the marker in front
+    bool expected_ = false;            ///< a good frame ended where the window begins
+    bool damaged_marker_ = false;      ///< in front
     std::vector<std::uint8_t> block_;  ///< frame and suffix
     Correction correction_;            ///< of that
     std::map<std::uint32_t, FrameOrder> channels_;
     LinkCounters counters_;
 };
 
-/// Length of a CADU stream's frames: the most frequent distance of two markers, without the marker. None with fewer
-/// than two markers.
+/// Most frequent distance of two markers with one alignment, without the marker.
+struct MarkerSpacing {
+    std::size_t octets = 0;
+    BitAlignment alignment;
+};
+/// None with fewer than two markers.
+std::optional<MarkerSpacing> marker_spacing(std::span<const std::uint8_t> octets);
+
+/// The octets of it: length of a CADU stream's frames with their check symbols.
 std::optional<std::size_t> cadu_frame_octets(std::span<const std::uint8_t> octets);
 
 /// Length of contiguous frames with a CRC-16, each after `prefix_octets`: the smallest at which the CRCs of the first

@@ -21,6 +21,7 @@ struct LinkCounters {
     std::uint64_t late_frames = 0;      ///< received behind later ones; not missing any more
     std::uint64_t restarts = 0;         ///< the sequence began anew
     std::uint64_t cut_frames = 0;       ///< the stream ended within it
+    std::uint64_t slips = 0;            ///< good frames at another bit, or inverted, than the one before
     // By a Reed–Solomon code.
     std::uint64_t corrected_frames = 0;      ///< of `frames`: with symbols that were corrected
     std::uint64_t corrected_symbols = 0;     ///< in those

@@ -123,6 +123,9 @@ bool print_losses(const telemetry::PacketSource& source, const Printed& printed)
                    "{} restarts, {} cut off; {} octets skipped\n",
                    link.frames, link.bad_crc, link.bad_header, link.missing_frames, link.gaps, link.repeated_frames,
                    link.late_frames, link.restarts, link.cut_frames, link.skipped_octets);
+    if (link.slips > 0)
+        fmt::print(stderr, "bits: {} times a frame began at another bit, or was inverted, than the one before\n",
+                   link.slips);
     if (link.corrected_frames + link.uncorrectable_frames > 0)
         fmt::print(stderr, "Reed-Solomon: {} frames corrected, {} symbols; {} frames uncorrectable\n",
                    link.corrected_frames, link.corrected_symbols, link.uncorrectable_frames);

@@ -63,7 +63,7 @@ Result<telemetry::FrameStream> cadu_stream(const PacketStreamFormat& format, std
     if (found) return *found;
     if (!telemetry::cadu_frame_octets(beginning)) {
         if (ended && format.frame_octets) return told(format);
-        return Error{"no two sync markers 1ACFFC1D: say --frame-octets"};
+        return Error{"no two sync markers 1ACFFC1D, at any bit, inverted or not: say --frame-octets"};
     }
     const auto distance = *telemetry::cadu_frame_octets(beginning);
     const auto agreed = format.frame_octets.value_or(0) + format.check_octets.value_or(0);
@@ -120,6 +120,14 @@ std::string words_of_code(const telemetry::FrameStream& stream) {
                            ReedSolomonCode::word_symbols_max - stream.code->check_symbols, stream.code->interleave,
                            stream.code->basis == ReedSolomonCode::Basis::dual ? "dual" : "conventional");
     return stream.suffix_octets > 0 ? fmt::format(", {} check symbols behind each", stream.suffix_octets) : "";
+}
+
+std::string words_of_markers(const telemetry::BitAlignment& alignment) {
+    return fmt::format(", behind sync markers{}{}",
+                       alignment.shift > 0
+                           ? fmt::format(" shifted by {} bit{}", alignment.shift, alignment.shift == 1 ? "" : "s")
+                           : "",
+                       alignment.inverted ? ", inverted" : "");
 }
 
 std::string words_of(const telemetry::FrameStream& stream) {

@@ -306,4 +306,121 @@ TEST_CASE("frames of nothing but fill are taken for no code that they are not of
     CHECK(found->frame_octets == 1275);
 }
 
+namespace {
+
+using Bits = std::vector<bool>;
+
+void append_bits(Bits& to, std::span<const std::uint8_t> octets) {
+    for (const std::uint8_t octet : octets)
+        for (int bit = 7; bit >= 0; --bit) to.push_back((octet >> bit & 1) != 0);
+}
+
+Octets octets_of(const Bits& bits) {
+    Octets octets((bits.size() + 7) / 8);
+    for (std::size_t i = 0; i < bits.size(); ++i)
+        octets[i / 8] |= static_cast<std::uint8_t>((bits[i] ? 0x80U : 0U) >> i % 8);
+    return octets;
+}
+
+/// CADUs of plain frames of two virtual channels.
+std::vector<Octets> plain_cadus(unsigned frames, bool crc, std::mt19937& random) {
+    std::vector<Octets> cadus;
+    for (unsigned i = 0; i < frames; ++i) {
+        cadus.push_back(test::copy_of(attached_sync_marker));
+        append(cadus.back(), frame_octets(FrameStream::Kind::tm, i, random, length, crc));
+    }
+    return cadus;
+}
+
+}  // namespace
+
+TEST_CASE("CADUs that begin at any bit, inverted or not, are found, recognised and read as those that do not",
+          "[telemetry][R54]") {
+    std::mt19937 random{10};
+    for (const bool crc : {true, false})
+        for (unsigned shift = 0; shift < 8; ++shift)
+            for (const bool inverted : {false, true}) {
+                const auto cadus = plain_cadus(20, crc, random);
+                Bits bits(shift);
+                for (const Octets& cadu : cadus) append_bits(bits, cadu);
+                if (inverted) bits.flip();
+                const Octets stream = octets_of(bits);
+                INFO("shifted by " << shift << ", inverted " << inverted << ", CRC " << crc);
+                const auto found = recognise_cadus(stream, {.crc = crc}, true);
+                REQUIRE(found);
+                CHECK(found->alignment == BitAlignment{shift, inverted});
+                FrameStream plain = *found;
+                plain.alignment = {};
+                LinkCounters counted, none;
+                const auto frames = data_of(*found, stream, counted);
+                CHECK(frames == data_of(plain, joined(cadus), none));
+                CHECK(frames.size() == 20);
+                CHECK(counted.slips == 0);
+                FrameReceiver receiver{*found};
+                std::size_t single = 0;
+                for (const std::uint8_t octet : stream) {
+                    receiver.receive({&octet, 1});
+                    while (receiver.next()) ++single;
+                }
+                CHECK(single == 20);
+            }
+}
+
+TEST_CASE("where bits are lost or added, or all are inverted from there on, the frames behind are found again",
+          "[telemetry][R54]") {
+    std::mt19937 random{11};
+    for (int round = 0; round < 60; ++round) {
+        const bool coded_frames = round % 3 == 0, crc = round % 3 != 1;
+        const FrameStream sent = coded_frames
+                                     ? coded({.check_symbols = 32, .interleave = 1}, length, round % 2 == 0, crc)
+                                     : FrameStream{.frame_octets = length, .agreed = {.crc = crc}};
+        const auto cadus = coded_frames ? coded_cadus(sent, 30, random) : plain_cadus(30, crc, random);
+        Bits bits;
+        for (const Octets& cadu : cadus) append_bits(bits, cadu);
+        const std::size_t cadu_bits = cadus[0].size() * 8;
+        const std::size_t at = 15 * cadu_bits + 40 + random() % (cadu_bits - 80);  // within a frame
+        const int slip = static_cast<int>(random() % 15) - 7;
+        if (slip < 0)
+            bits.erase(bits.begin() + static_cast<std::ptrdiff_t>(at),
+                       bits.begin() + static_cast<std::ptrdiff_t>(at) - slip);
+        for (int i = 0; i < slip; ++i) bits.insert(bits.begin() + static_cast<std::ptrdiff_t>(at), random() % 2 != 0);
+        const bool inverts = random() % 2 == 0;
+        if (inverts)
+            for (std::size_t i = at; i < bits.size(); ++i) bits[i] = !bits[i];
+        FrameReceiver receiver{sent};
+        const Octets stream = octets_of(bits);
+        INFO("round " << round << ": slip of " << slip << " bits, inverts " << inverts << ", CRC " << crc << ", coded "
+                      << coded_frames);
+        const std::size_t frames = frames_in(receiver, stream, random);
+        CHECK(frames >= 28);  // without a check the damaged frame counts, and a marker before its time is missed
+        if (crc || coded_frames) CHECK(receiver.counters().missing_frames <= 2);
+        CHECK(receiver.counters().slips == (slip != 0 || inverts ? 1 : 0));
+    }
+}
+
+TEST_CASE("a marker at another bit is not believed for itself, and one with wrong bits only before a good frame",
+          "[telemetry][R54]") {
+    std::mt19937 random{12};
+    for (const bool crc : {true, false}) {
+        auto cadus = plain_cadus(20, crc, random);
+        // In the data of a frame whose own marker is lost: markers of another alignment, of which none follows.
+        Bits other(3);
+        append_bits(other, attached_sync_marker);
+        other.flip();
+        const Octets false_marker = octets_of(other);
+        std::ranges::copy(false_marker, cadus[9].begin() + 40);
+        cadus[9][0] ^= 0xFF;
+        cadus[9][1] ^= 0xFF;
+        FrameReceiver receiver{{.frame_octets = length, .agreed = {.crc = crc}}};
+        CHECK(frames_in(receiver, joined(cadus), random) == 19);
+        CHECK(receiver.counters().slips == 0);
+        CHECK(receiver.counters().missing_frames == 1);
+        auto wrong = plain_cadus(20, crc, random);
+        wrong[5][1] ^= 0x11;
+        wrong[6][3] ^= 0x80;
+        FrameReceiver tolerant{{.frame_octets = length, .agreed = {.crc = crc}}};
+        CHECK(frames_in(tolerant, joined(wrong), random) == (crc ? 20 : 18));
+    }
+}
+
 }  // namespace telemetry_frame_receiver_test
