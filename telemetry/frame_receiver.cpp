@@ -95,7 +95,7 @@ std::optional<ReedSolomonCode> code_of(std::span<const std::uint8_t> octets, std
     const auto blocks = first_codeblocks(octets, length);
     std::optional<ReedSolomonCode> best;
     std::size_t most = 1;
-    for (const std::size_t symbols : known_or(known.check_symbols, check_symbols))
+    for (const std::size_t symbols : check_symbols)  // all: a told 16 must not hide that they are of 32
         for (const std::size_t interleave : known_or(known.interleave, interleaves))
             for (const Basis basis : known_or(known.basis, std::array{Basis::dual, Basis::conventional}))
                 for (const bool randomised : known_or(known.randomised, std::array{false, true})) {
@@ -302,6 +302,7 @@ std::optional<FrameStream> recognise_cadus(std::span<const std::uint8_t> octets,
     std::optional<ReedSolomonCode> code;
     if (known.coded.value_or(!known.suffix_octets)) {
         code = code_of(octets, length, known);
+        if (code && known.check_symbols && code->check_symbols != *known.check_symbols) return std::nullopt;
         if (!code && known.coded) code = code_told(known);
         if (known.coded && (!code || !code->fits(length))) return std::nullopt;
         if (code) hints.suffix_octets = code->check_octets();
