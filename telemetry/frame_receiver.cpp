@@ -8,16 +8,17 @@
 #include <algorithm>
 #include <array>
 #include <compare>
+#include <map>
+#include <string>
 
 namespace aeolis::telemetry {
 namespace {
 
+constexpr std::ptrdiff_t header_octets = 6;
 constexpr std::size_t shortest_frame_octets = 9;  // a header, a CRC and one octet
 
-bool begins_with_marker(std::span<const std::uint8_t> octets) {
-    return octets.size() >= attached_sync_marker.size() &&
-           std::equal(attached_sync_marker.begin(), attached_sync_marker.end(), octets.begin());
-}
+// Chosen: a marker that should be there, before a frame that is known to be right by its code or CRC.
+constexpr unsigned wrong_marker_bits_max = 4;
 
 /// How well a layout reads a stream.
 struct Agreement {
@@ -50,20 +51,92 @@ std::vector<T> known_or(const std::optional<T>& known, const std::array<T, size>
     return known ? std::vector<T>{*known} : std::vector<T>(possible.begin(), possible.end());
 }
 
+/// The codeblocks of `length` octets behind the first markers.
+std::vector<std::vector<std::uint8_t>> first_codeblocks(std::span<const std::uint8_t> octets, std::size_t length) {
+    constexpr std::size_t blocks_max = 32;  // chosen: among as many, some are correctable where a code is of use
+    std::vector<std::vector<std::uint8_t>> blocks;
+    const std::size_t unit = attached_sync_marker.size() + length;
+    for (std::size_t from = 0; blocks.size() < blocks_max;) {
+        const auto found = find_marker(octets, from);
+        if (!found || octets.size() < found->octet + unit + 1) {
+            if (found && found->alignment.shift == 0 && octets.size() == found->octet + unit)
+                align(octets, found->octet + attached_sync_marker.size(), length, found->alignment,
+                      blocks.emplace_back());
+            break;
+        }
+        align(octets, found->octet + attached_sync_marker.size(), length, found->alignment, blocks.emplace_back());
+        from = found->octet + unit;
+    }
+    return blocks;
+}
+
+/// How many codeblocks are of a code: one without errors leaves no doubt, and so counts twice. Fill without a code is
+/// near a code word, of which the frame's header then is the error: where that would be corrected, nothing is told.
+std::size_t agreement_with(const ReedSolomonCode& code, bool randomised,
+                           std::span<const std::vector<std::uint8_t>> blocks) {
+    std::size_t agreement = 0;
+    std::vector<std::uint8_t> sent, block;
+    for (const auto& received : blocks) {
+        sent = received;
+        if (randomised) randomise_tm(sent);
+        block = sent;
+        const auto found = correct_codeblock(code, block);
+        const bool header_is_right = std::equal(sent.begin(), sent.begin() + header_octets, block.begin());
+        if (found.uncorrectable_words == 0 && header_is_right) agreement += found.symbols == 0 ? 2 : 1;
+    }
+    return agreement;
+}
+
+/// The code that most of the first codeblocks are of; of two that hold, the one with more check symbols, since a word
+/// of it is a word of the other, too. Whether it is randomised remains open: the sequence may be a word itself.
+std::optional<ReedSolomonCode> code_of(std::span<const std::uint8_t> octets, std::size_t length,
+                                       const FrameHints& known) {
+    using Basis = ReedSolomonCode::Basis;
+    constexpr std::array<std::size_t, 2> check_symbols{32, 16};
+    constexpr std::array<std::size_t, 6> interleaves{1, 2, 3, 4, 5, 8};
+    const auto blocks = first_codeblocks(octets, length);
+    std::optional<ReedSolomonCode> best;
+    std::size_t most = 1;
+    for (const std::size_t symbols : check_symbols)  // all: a told 16 must not hide that they are of 32
+        for (const std::size_t interleave : known_or(known.interleave, interleaves))
+            for (const Basis basis : known_or(known.basis, std::array{Basis::dual, Basis::conventional}))
+                for (const bool randomised : known_or(known.randomised, std::array{false, true})) {
+                    const ReedSolomonCode code{symbols, interleave, basis};
+                    if (!code.fits(length) ||
+                        (known.frame_octets && *known.frame_octets + code.check_octets() != length))
+                        continue;
+                    const std::size_t agreement = agreement_with(code, randomised, blocks);
+                    if (agreement <= most) continue;
+                    best = code;
+                    most = agreement;
+                }
+    return best;
+}
+
+/// The code that is known as a whole, without a codeblock to be seen.
+std::optional<ReedSolomonCode> code_told(const FrameHints& known) {
+    if (!known.check_symbols || !known.interleave) return std::nullopt;
+    return ReedSolomonCode{*known.check_symbols, *known.interleave, known.basis.value_or(ReedSolomonCode::Basis::dual)};
+}
+
 /// The layouts that frames of `length` octets between two markers may have.
-std::vector<FrameStream> layouts_of(std::size_t length, bool crc, const FrameHints& known) {
+std::vector<FrameStream> layouts_of(std::size_t length, bool crc, const std::optional<ReedSolomonCode>& code,
+                                    const FrameHints& known) {
     // Reed-Solomon: 32 or 16 check symbols a code word, 1 to 8 code words interleaved. [ccsds-131.0-b-5]
     constexpr std::array<std::size_t, 10> check_symbols{0, 16, 32, 48, 64, 80, 96, 128, 160, 256};
     std::vector<FrameStream> layouts;
     for (std::size_t symbols : known_or(known.suffix_octets, check_symbols)) {
-        if (known.frame_octets && length >= *known.frame_octets) symbols = length - *known.frame_octets;
+        if (known.frame_octets && length >= *known.frame_octets && !known.suffix_octets)
+            symbols = length - *known.frame_octets;
         if (length < symbols + shortest_frame_octets) continue;
+        if (known.frame_octets && *known.frame_octets + symbols != length) continue;
         for (const bool randomised : known_or(known.randomised, std::array{false, true}))
             for (const auto kind : {FrameStream::Kind::tm, FrameStream::Kind::aos}) {
                 FrameStream stream;
                 stream.kind = kind;
                 stream.frame_octets = length - symbols;
                 stream.suffix_octets = symbols;
+                stream.code = code;
                 stream.randomised = randomised;
                 stream.agreed = known.agreed;
                 stream.agreed.crc = crc;
@@ -77,8 +150,11 @@ std::vector<FrameStream> layouts_of(std::size_t length, bool crc, const FrameHin
 
 }  // namespace
 
-FrameReceiver::FrameReceiver(const FrameStream& stream) : stream_(stream) {
+FrameReceiver::FrameReceiver(const FrameStream& stream)
+    : stream_(stream), alignment_(stream.alignment), found_(stream.alignment) {
     AEOLIS_CHECK(stream.frame_octets >= shortest_frame_octets && stream.frame_octets <= transfer_frame_octets_max);
+    AEOLIS_CHECK(!stream.code || (stream.code->check_octets() == stream.suffix_octets &&
+                                  stream.code->fits(stream.frame_octets + stream.suffix_octets)));
 }
 
 void FrameReceiver::receive(std::span<const std::uint8_t> octets) {
@@ -94,8 +170,8 @@ void FrameReceiver::skip(std::size_t octets) {
 void FrameReceiver::end() {
     while (next()) {
     }
-    const bool frame_begins = !stream_.marker || begins_with_marker(window_.rest());
-    if (!window_.rest().empty() && frame_begins) ++counters_.cut_frames;
+    const auto rest = window_.rest();
+    if (!rest.empty() && (!stream_.marker || marker_errors(rest, found_) == 0)) ++counters_.cut_frames;
     skip(window_.rest().size());
 }
 
@@ -104,75 +180,166 @@ std::size_t FrameReceiver::unit_octets() const {
            stream_.suffix_octets;
 }
 
-/// Skips to the next marker. Returns false when there is none.
-bool FrameReceiver::at_marker() {
-    while (true) {
-        skip(find_octet(window_.rest(), attached_sync_marker.front()));
-        if (window_.rest().size() < attached_sync_marker.size()) return false;
-        if (begins_with_marker(window_.rest())) return true;
-        skip(1);
+/// Skips to where a frame may begin. Returns false when more octets are needed to find such a place.
+bool FrameReceiver::at_unit() {
+    if (!stream_.marker) return true;
+    damaged_marker_ = false;
+    const std::size_t begun = attached_sync_marker.size();
+    if (expected_) {
+        if (window_.rest().size() <= begun) return false;
+        const unsigned errors = marker_errors(window_.rest(), alignment_);
+        found_ = alignment_;
+        damaged_marker_ = errors > 0;
+        if (errors <= (checked() ? wrong_marker_bits_max : 0)) return true;
+        expected_ = damaged_marker_ = false;
     }
+    const auto found = find_marker(window_.rest(), 0);
+    skip(found ? found->octet : window_.rest().size() - std::min(window_.rest().size(), begun));
+    if (found) found_ = found->alignment;
+    return found.has_value();
+}
+
+/// Whether it takes more octets to read what is in front.
+bool FrameReceiver::waits_for_octets() const {
+    const std::size_t of_shift = found_.shift > 0 ? 1 : 0;
+    const bool must_be_followed = found_ != alignment_ && !checked();
+    const std::size_t behind = must_be_followed ? attached_sync_marker.size() : 0;
+    return window_.rest().size() < unit_octets() + behind + of_shift;
+}
+
+/// Reads the frame in front with the suffix behind it.
+Parsed<TransferFrame> FrameReceiver::read_unit() {
+    const auto rest = window_.rest();
+    correction_ = {};
+    if (found_ != alignment_ && !checked() && marker_errors(rest.subspan(unit_octets()), found_) > 0)
+        return Malformed::bad_field;
+    align(rest, stream_.marker ? attached_sync_marker.size() : stream_.prefix_octets,
+          stream_.frame_octets + stream_.suffix_octets, found_, block_);
+    if (stream_.randomised) randomise_tm(block_);
+    if (stream_.code) correction_ = correct_codeblock(*stream_.code, block_);
+    if (correction_.uncorrectable_words > 0 && !stream_.agreed.crc) return Malformed::bad_checksum;
+    const auto frame = std::span{block_}.first(stream_.frame_octets);
+    return stream_.kind == FrameStream::Kind::tm ? read_tm_frame(frame, stream_.agreed)
+                                                 : read_aos_frame(frame, stream_.agreed);
+}
+
+void FrameReceiver::count_good() {
+    if (found_ != alignment_ && counters_.frames > 0) ++counters_.slips;
+    alignment_ = found_;
+    expected_ = true;
+    ++counters_.frames;
+    if (correction_.symbols > 0) ++counters_.corrected_frames;
+    counters_.corrected_symbols += correction_.symbols;
+}
+
+void FrameReceiver::count_unread(Malformed why) {
+    if (correction_.uncorrectable_words > 0)
+        ++counters_.uncorrectable_frames;
+    else
+        ++(why == Malformed::bad_checksum ? counters_.bad_crc : counters_.bad_header);
 }
 
 std::optional<FrameReceiver::Received> FrameReceiver::next() {
-    while (!stream_.marker || at_marker()) {
-        if (window_.rest().size() < unit_octets()) return std::nullopt;
-        const std::size_t before = stream_.marker ? attached_sync_marker.size() : stream_.prefix_octets;
-        const auto octets = window_.rest().subspan(before, stream_.frame_octets);
-        frame_.assign(octets.begin(), octets.end());
-        if (stream_.randomised) randomise_tm(frame_);
-        const auto frame = stream_.kind == FrameStream::Kind::tm ? read_tm_frame(frame_, stream_.agreed)
-                                                                 : read_aos_frame(frame_, stream_.agreed);
+    while (at_unit()) {
+        if (waits_for_octets()) return std::nullopt;
+        const auto frame = read_unit();
+        if (!frame && damaged_marker_) {  // another marker may stand here, at another bit
+            expected_ = false;
+            continue;
+        }
+        expected_ = false;
         if (!frame) {
-            ++(frame.why() == Malformed::bad_checksum ? counters_.bad_crc : counters_.bad_header);
-            skip(stream_.marker ? before : unit_octets());
+            count_unread(frame.why());
+            skip(stream_.marker ? attached_sync_marker.size() : unit_octets());
             continue;
         }
         window_.use(unit_octets());
-        ++counters_.frames;
+        count_good();
         if (stream_.virtual_channel && frame->virtual_channel != *stream_.virtual_channel) continue;
-        const std::uint32_t channel = frame->spacecraft * 64U + frame->virtual_channel;
-        const auto placed = channels_[channel].place(frame->count, frame->count_modulus, frame_, counters_);
+        Channel& channel = channels_.at(channel_number(*frame), [&](const Channel& forgotten) {
+            counters_ += forgotten.counters;
+            ++counters_.forgotten_channels;
+        });
+        const auto placed = channel.order.place(frame->count, frame->count_modulus,
+                                                std::span{block_}.first(stream_.frame_octets), channel.counters);
         if (placed.place != FramePlace::repeated) return Received{*frame, placed.place};
     }
     return std::nullopt;
 }
 
-std::optional<std::size_t> cadu_frame_octets(std::span<const std::uint8_t> octets) {
-    constexpr std::size_t markers_seen_max = 1000;
-    std::map<std::size_t, std::size_t> distances;
-    std::optional<std::size_t> last;
-    std::size_t seen = 0;
-    for (std::size_t at = 0; at < octets.size() && seen < markers_seen_max; ++at) {
-        at += find_octet(octets.subspan(at), attached_sync_marker.front());
-        if (at >= octets.size() || !begins_with_marker(octets.subspan(at))) continue;
-        const std::size_t least = attached_sync_marker.size() + shortest_frame_octets;
-        if (last && at - *last >= least && at - *last <= transfer_frame_octets_max + attached_sync_marker.size())
-            ++distances[at - *last];
-        last = at;
-        ++seen;
+LinkCounters FrameReceiver::counters() const {
+    LinkCounters sum = counters_;
+    channels_.each([&](ChannelNumber, const Channel& channel) { sum += channel.counters; });
+    return sum;
+}
+
+std::vector<SequenceTotals> FrameReceiver::sequences() const {
+    std::vector<SequenceTotals> totals;
+    channels_.each([&](ChannelNumber channel, const Channel& counted) {
+        totals.push_back({"spacecraft " + std::to_string(channel / virtual_channels_max) + ", virtual channel " +
+                              std::to_string(channel % virtual_channels_max),
+                          false, counted.counters});
+    });
+    return totals;
+}
+
+std::optional<MarkerSpacing> marker_spacing(std::span<const std::uint8_t> octets) {
+    constexpr std::size_t markers_seen_max = 1000, alignments = 16;
+    constexpr std::size_t least = attached_sync_marker.size() + shortest_frame_octets;
+    constexpr std::size_t most = attached_sync_marker.size() + transfer_frame_octets_max;
+    struct Seen {
+        std::size_t times = 0;
+        BitAlignment first;
+    };
+    std::map<std::size_t, Seen> distances;
+    std::array<std::optional<std::size_t>, alignments> last;
+    auto found = find_marker(octets, 0);
+    for (std::size_t seen = 0; found && seen < markers_seen_max; ++seen) {
+        auto& before = last.at(found->alignment.shift * 2 + (found->alignment.inverted ? 1 : 0));
+        if (before && found->octet - *before >= least && found->octet - *before <= most) {
+            auto& distance = distances[found->octet - *before];
+            if (distance.times++ == 0) distance.first = found->alignment;
+        }
+        before = found->octet;
+        found = find_marker(octets, found->octet + 1);
     }
-    const auto most = std::ranges::max_element(distances, {}, [](const auto& each) { return each.second; });
-    if (most == distances.end()) return std::nullopt;
-    return most->first - attached_sync_marker.size();
+    const auto best = std::ranges::max_element(distances, {}, [](const auto& each) { return each.second.times; });
+    if (best == distances.end()) return std::nullopt;
+    return MarkerSpacing{best->first - attached_sync_marker.size(), best->second.first};
+}
+
+std::optional<std::size_t> cadu_frame_octets(std::span<const std::uint8_t> octets) {
+    const auto spacing = marker_spacing(octets);
+    return spacing ? std::optional{spacing->octets} : std::nullopt;
 }
 
 std::optional<FrameStream> recognise_cadus(std::span<const std::uint8_t> octets, const FrameHints& known, bool ended) {
     constexpr std::size_t looked_at_octets = std::size_t{1} << 20U;
     octets = octets.first(std::min(octets.size(), looked_at_octets));
-    const auto length = cadu_frame_octets(octets);
-    if (!length) return std::nullopt;
+    const auto spacing = marker_spacing(octets);
+    if (!spacing) return std::nullopt;
+    const std::size_t length = spacing->octets;
+    FrameHints hints = known;
+    std::optional<ReedSolomonCode> code;
+    if (known.coded.value_or(!known.suffix_octets)) {
+        code = code_of(octets, length, known);
+        if (code && known.check_symbols && code->check_symbols != *known.check_symbols) return std::nullopt;
+        if (!code && known.coded) code = code_told(known);
+        if (known.coded && (!code || !code->fits(length))) return std::nullopt;
+        if (code) hints.suffix_octets = code->check_octets();
+    }
     std::optional<FrameStream> best;
     Agreement most;
     for (const bool crc : known_or(known.crc, std::array{true, false})) {
-        for (const auto& stream : layouts_of(*length, crc, known)) {
+        for (auto stream : layouts_of(length, crc, code, hints)) {
+            stream.alignment = spacing->alignment;
             const auto agreement = agreement_of(stream, octets);
             if (agreement.frames == 0 || (best && agreement.packets <= most.packets)) continue;
             best = stream;
             most = agreement;
         }
         // Right CRCs leave no doubt. One alone does, unless there can be no more: it may be chance.
-        const auto possible = octets.size() / (*length + attached_sync_marker.size());
+        const auto possible = octets.size() / (length + attached_sync_marker.size());
         if (best && (most.frames > 1 || possible <= 2)) break;
     }
     return best && (ended || most.frames >= frames_to_agree) ? best : std::nullopt;

@@ -4,9 +4,11 @@
 #include "common/tm_frame.hpp"
 #include "telemetry/frame_order.hpp"
 #include "telemetry/octet_window.hpp"
+#include "telemetry/recent_map.hpp"
+#include "telemetry/reed_solomon.hpp"
+#include "telemetry/sync_search.hpp"
 
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <span>
 #include <vector>
@@ -19,21 +21,37 @@ struct FrameStream {
     Kind kind = Kind::tm;
     std::size_t frame_octets = 1115;  ///< without marker; 1115: five interleaved code words of Reed–Solomon
     bool marker = true;               ///< each after the attached sync marker (CADU)
+    BitAlignment alignment{};         ///< of the first markers; others are found
     std::size_t prefix_octets = 0;    ///< ignored before each frame, as a station's recorder adds; only without marker
-    std::size_t suffix_octets = 0;    ///< ignored after each frame: the code's check symbols
-    bool randomised = false;
+    std::size_t suffix_octets = 0;    ///< after each frame: the code's check symbols
+    /// With it the suffix is its check symbols, by which frames are corrected; without it the suffix is ignored.
+    std::optional<ReedSolomonCode> code{};
+    bool randomised = false;  ///< frames with their check symbols
     FrameAgreement agreed{};
     std::optional<std::uint8_t> virtual_channel{};  ///< none: frames of all
 };
+
+/// A virtual channel of a spacecraft, as a number.
+using ChannelNumber = std::uint32_t;
+inline constexpr std::uint32_t virtual_channels_max = 64;
+constexpr ChannelNumber channel_number(const TransferFrame& frame) {
+    return frame.spacecraft * virtual_channels_max + frame.virtual_channel;
+}
+/// Chosen: followed at a time. Of more, which only damaged headers make, the one heard longest ago is forgotten.
+inline constexpr std::size_t channels_followed_max = 256;
 
 /// Finds TM or AOS frames in a stream of octets.
 ///
 /// In       octets as received, in pieces of any size       Out   readable frames, and the place of each in its
 ///          channel's sequence. Repeated ones are only counted
-/// Memory   the last piece and two frames
+/// Memory   the last piece, two frames, and 1 kB for each of channels_followed_max channels
+/// Sync     markers are searched at every bit, inverted too. One right behind a good frame may have wrong bits if the
+///          frame has a code or a CRC-16 to be known by. At another bit than before, a frame without either is believed
+///          when a marker follows it
 /// Faults   with a marker, after anything but a good frame the search continues right behind the marker; without one,
-///          an unreadable frame is skipped whole
-/// Left out error correction: the stream is assumed decoded, or free of errors
+///          an unreadable frame is skipped whole. A frame that its code cannot correct is read only if its own CRC-16
+///          is right
+/// Left out convolutional, turbo and LDPC codes: the stream is assumed decoded by the station
 class FrameReceiver {
   public:
     struct Received {
@@ -49,22 +67,45 @@ class FrameReceiver {
     /// Ends the stream: counts octets of an incomplete frame as skipped.
     void end();
 
-    const LinkCounters& counters() const { return counters_; }
+    LinkCounters counters() const;
+    /// Of the virtual channels that are followed.
+    std::vector<SequenceTotals> sequences() const;
 
   private:
     std::size_t unit_octets() const;
-    bool at_marker();
+    bool checked() const { return stream_.agreed.crc || stream_.code; }
+    bool at_unit();
+    bool waits_for_octets() const;
+    Parsed<TransferFrame> read_unit();
+    void count_good();
+    void count_unread(Malformed why);
     void skip(std::size_t octets);
 
     FrameStream stream_;
     OctetWindow window_;
-    std::vector<std::uint8_t> frame_;
-    std::map<std::uint32_t, FrameOrder> channels_;
-    LinkCounters counters_;
+    BitAlignment alignment_;           ///< of the last good frame
+    BitAlignment found_;               ///< of the marker in front
+    bool expected_ = false;            ///< a good frame ended where the window begins
+    bool damaged_marker_ = false;      ///< in front
+    std::vector<std::uint8_t> block_;  ///< frame and suffix
+    Correction correction_;            ///< of that
+    struct Channel {
+        FrameOrder order;
+        SequenceCounters counters;
+    };
+    RecentMap<ChannelNumber, Channel> channels_{channels_followed_max};
+    LinkCounters counters_;  ///< without the sequences of channels_
 };
 
-/// Length of a CADU stream's frames: the most frequent distance of two markers, without the marker. None with fewer
-/// than two markers.
+/// Most frequent distance of two markers with one alignment, without the marker.
+struct MarkerSpacing {
+    std::size_t octets = 0;
+    BitAlignment alignment;
+};
+/// None with fewer than two markers.
+std::optional<MarkerSpacing> marker_spacing(std::span<const std::uint8_t> octets);
+
+/// The octets of it: length of a CADU stream's frames with their check symbols.
 std::optional<std::size_t> cadu_frame_octets(std::span<const std::uint8_t> octets);
 
 /// Length of contiguous frames with a CRC-16, each after `prefix_octets`: the smallest at which the CRCs of the first
@@ -75,6 +116,10 @@ std::optional<std::size_t> crc_frame_octets(std::span<const std::uint8_t> octets
 /// What is known of frames before any is seen.
 struct FrameHints {
     std::optional<std::size_t> frame_octets{}, suffix_octets{};
+    /// Of the code: whether there is one that is to be used, and what of it is known.
+    std::optional<bool> coded{};
+    std::optional<std::size_t> check_symbols{}, interleave{};
+    std::optional<ReedSolomonCode::Basis> basis{};
     std::optional<bool> crc{}, randomised{};
     FrameAgreement agreed{};  ///< but for its `crc`
     std::optional<std::uint8_t> virtual_channel{};
@@ -82,8 +127,8 @@ struct FrameHints {
 
 inline constexpr std::uint64_t frames_to_agree = 8;  ///< chosen: before a layout is believed in a stream that goes on
 
-/// Detects a CADU stream's layout by trial, as far as it is not known: frame length, TM or AOS, randomisation, the
-/// code's check symbols, CRC. None when no layout reads the frames.
+/// Detects a CADU stream's layout by trial, as far as it is not known: frame length, Reed–Solomon code, TM or AOS,
+/// randomisation, check symbols, CRC. A code is believed when two codeblocks are of it, or one without any error. None when no layout reads the frames.
 /// @param ended  no more octets come: fewer than frames_to_agree must do
 std::optional<FrameStream> recognise_cadus(std::span<const std::uint8_t> octets, const FrameHints& known, bool ended);
 

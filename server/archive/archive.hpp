@@ -8,13 +8,14 @@
 #include "server/archive/records.hpp"
 
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <vector>
 
 namespace aeolis::archive {
 
 inline constexpr std::int32_t application_id = 0x41454F4C;  ///< "AEOL": identifies the file to file(1) and to Aeolis
-inline constexpr std::int32_t schema_version = 3;           ///< PRAGMA user_version
+inline constexpr std::int32_t schema_version = 4;           ///< PRAGMA user_version
 
 /// The writer of an archive: one SQLite file, many runs, rows only ever added (docs/archive.md).
 ///
@@ -39,6 +40,9 @@ class Archive {
 
     /// Continues a run that was cut off; durable when it returns. Fails when the run was not cut off.
     Result<void> continue_run(RunId run);
+
+    /// The octets of each link of a run that have been stored as they came, also those removed since.
+    Result<std::map<std::string, std::uint64_t>> raw_ends(RunId run);
 
     /// Stores all of `batch` or none of it; durable when it returns. `batch.end` finishes the run, whose
     /// fingerprint is then in the audit.

@@ -34,22 +34,50 @@ std::vector<CLI::Option*> add_stream_format(CLI::App& command, PacketStreamForma
     const auto number = [&](const char* name, auto& value, const char* text, std::size_t least, std::size_t most) {
         return command.add_option(name, value, text)->check(whole_number())->check(CLI::Range(least, most));
     };
-    return {command.add_option("--format", format.name, "packets, tm, aos, cadu or pltu")->capture_default_str(),
-            number("--skip", format.skip, "octets to skip before each packet, TM or AOS frame", 0, decode_skip_max)
-                ->capture_default_str(),
-            number("--frame-octets", format.frame_octets,
-                   "octets of a TM or AOS frame, without marker and check symbols; found by trying if left out", 9,
-                   65536),
-            number("--check-symbols", format.check_octets,
-                   "octets of a code's check symbols behind each frame; found by trying for cadu, else 0", 0, 256),
-            yes_or_no("--randomised", format.randomised, "whether frames are randomised; found by trying for cadu"),
-            yes_or_no("--fecf", format.crc, "whether frames end with a CRC-16; found by trying if left out"),
-            command.add_flag("--control-field", format.agreed.control_field,
-                             "AOS frames have an operational control field of 4 octets; a TM frame says so itself"),
-            command.add_flag("--header-error-control", format.agreed.header_error_control,
-                             "the headers of AOS frames have 2 octets of error control"),
-            number("--insert-octets", format.agreed.insert_octets, "octets of the insert zone of AOS frames", 0, 255),
-            number("--virtual-channel", format.virtual_channel, "frames of this virtual channel only", 0, 63)};
+    auto* reed_solomon =
+        command
+            .add_option_function<std::string>(
+                "--reed-solomon",
+                [&format](const std::string& word) {
+                    format.coded = word != "no";
+                    if (word == "223") format.check_symbols = 32;
+                    if (word == "239") format.check_symbols = 16;
+                },
+                "frames are in Reed-Solomon codeblocks of (255,223) or (255,239), and are corrected; no: never. Code, "
+                "interleaving and basis are found by trying for cadu")
+            ->check(CLI::IsMember({"223", "239", "no"}));
+    return {
+        command.add_option("--format", format.name, "packets, tm, aos, cadu or pltu")->capture_default_str(),
+        number("--skip", format.skip, "octets to skip before each packet, TM or AOS frame", 0, decode_skip_max)
+            ->capture_default_str(),
+        number("--frame-octets", format.frame_octets,
+               "octets of a TM or AOS frame, without marker and check symbols; found by trying if left out", 9, 65536),
+        number(
+            "--check-symbols", format.check_octets,
+            "octets behind each frame to skip, such as the check symbols of a code; found by trying for cadu, else 0",
+            0, 256),
+        reed_solomon,
+        number("--interleave", format.interleave, "code words of a Reed-Solomon codeblock: 1, 2, 3, 4, 5 or 8", 1, 8)
+            ->check(CLI::IsMember({1, 2, 3, 4, 5, 8}))
+            ->needs(reed_solomon),
+        command
+            .add_option_function<std::string>(
+                "--basis",
+                [&format](const std::string& word) {
+                    format.basis = word == "dual" ? telemetry::ReedSolomonCode::Basis::dual
+                                                  : telemetry::ReedSolomonCode::Basis::conventional;
+                },
+                "basis of Reed-Solomon symbols, dual or conventional; for tm and aos dual if left out")
+            ->check(CLI::IsMember({"dual", "conventional"}))
+            ->needs(reed_solomon),
+        yes_or_no("--randomised", format.randomised, "whether frames are randomised; found by trying for cadu"),
+        yes_or_no("--fecf", format.crc, "whether frames end with a CRC-16; found by trying if left out"),
+        command.add_flag("--control-field", format.agreed.control_field,
+                         "AOS frames have an operational control field of 4 octets; a TM frame says so itself"),
+        command.add_flag("--header-error-control", format.agreed.header_error_control,
+                         "the headers of AOS frames have 2 octets of error control"),
+        number("--insert-octets", format.agreed.insert_octets, "octets of the insert zone of AOS frames", 0, 255),
+        number("--virtual-channel", format.virtual_channel, "frames of this virtual channel only", 0, 63)};
 }
 
 CLI::Option* add_mission_xtce(CLI::App& command, MissionXtce& xtce, const std::string& description) {

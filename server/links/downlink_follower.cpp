@@ -13,6 +13,7 @@ namespace {
 constexpr std::chrono::milliseconds connect_limit{10'000};  // chosen
 constexpr std::chrono::milliseconds receive_limit{1'000};
 constexpr std::int64_t pass_interval_us = 1'000'000;
+constexpr std::int64_t fault_log_interval_us = 10'000'000;  // chosen: a link that is bad throughout fills no disk
 
 }  // namespace
 
@@ -60,6 +61,7 @@ void DownlinkFollower::follow() {
         receive_until_end();
         end_of_stream();
     }
+    tell_totals(clock_.now(), true);
     const auto finished = pipeline_.finish({"stopped", "stopped", "", wall_clock_text()});
     if (!finished) spdlog::error("run {}: its end could not be stored: {}", run_.value, finished.error().message);
     spdlog::info("run {} ends: {} packets", run_.value, packets_);
@@ -97,8 +99,9 @@ void DownlinkFollower::receive_until_end() {
         if (received.got == DownlinkSocket::Got::end)
             return lost(telemetry::SilenceClass::ground_fault, received.reason);
         if (received.got == DownlinkSocket::Got::nothing) continue;
+        ledger_.received(clock_.now(), received.octets);
         take(std::span{piece}.first(received.octets));
-        if (settings_.address.udp && source_) source_->end_datagram();
+        if (settings_.address.udp && source_ && !source_->end_datagram()) ledger_.bad_datagram();
         if (stop_) return;
         if (out_of_step_ && !settings_.address.udp) {
             socket_.close();
@@ -109,8 +112,10 @@ void DownlinkFollower::receive_until_end() {
 }
 
 void DownlinkFollower::take(std::span<const std::uint8_t> octets) {
+    brought_ = telemetry::ReceivedOctets{
+        telemetry::downlink_link, clock_.now(), {octets.begin(), octets.end()}, settings_.address.udp};
     if (!source_) {
-        if (!recognise(octets)) return;
+        if (!recognise(octets)) return deliver_packets();
         octets = {};
     }
     if (!octets.empty()) source_->receive(octets);
@@ -127,6 +132,7 @@ bool DownlinkFollower::recognise(std::span<const std::uint8_t> octets) {
     if (!told && !full && beginning_.size() < 2 * tried_octets_) return false;
     tried_octets_ = beginning_.size();
     const auto recognised = begin_source(full);
+    if (!recognised && full) ledger_.unread(beginning_.size());
     if (recognised || full) {
         beginning_.clear();
         tried_octets_ = 0;
@@ -148,14 +154,18 @@ Result<void> DownlinkFollower::begin_source(bool ended) {
 
 void DownlinkFollower::end_of_stream() {
     if (!source_ && !beginning_.empty())
-        if (const auto recognised = begin_source(true); !recognised)
+        if (const auto recognised = begin_source(true); !recognised) {
+            ledger_.unread(beginning_.size());
             spdlog::warn("downlink {}: {} octets are not read: {}", settings_.address.text(), beginning_.size(),
                          recognised.error().message);
+        }
     if (source_) {
         source_->end();
         deliver_packets();
+        ledger_.end(*source_);
     }
     source_.reset();
+    tell_totals(clock_.now(), false);
     beginning_.clear();
     tried_octets_ = 0;
 }
@@ -163,15 +173,23 @@ void DownlinkFollower::end_of_stream() {
 void DownlinkFollower::deliver_packets() {
     Delivery delivery;
     const Ert ert = clock_.now();
-    while (const auto packet = source_->next())
+    if (brought_ && !brought_->octets.empty()) delivery.entries.emplace_back(std::move(*brought_));
+    brought_.reset();
+    std::uint64_t packets = 0;
+    for (; source_; ++packets) {
+        const auto packet = source_->next();
+        if (!packet) break;
         delivery.entries.emplace_back(
             telemetry::ReceivedPacket{telemetry::downlink_link, ert, {packet->begin(), packet->end()}});
+    }
     if (delivery.entries.empty()) return;
-    packets_ += delivery.entries.size();
-    rhythm_.heard(ert);
-    // Before the packets: what comes with them is then known to come over a link that is up.
-    if (!up_) say({telemetry::downlink_link, ert, true, "packets come"});
-    wait_ = settings_.retry_first;
+    packets_ += packets;
+    if (packets > 0) {
+        wait_ = settings_.retry_first;
+        rhythm_.heard(ert);
+        // Before the packets: what comes with them is then known to come over a link that is up.
+        if (!up_) say({telemetry::downlink_link, ert, true, "packets come"});
+    }
     if (!pipeline_.deliver(std::move(delivery))) stop_ = true;
 }
 
@@ -189,6 +207,22 @@ void DownlinkFollower::pass() {
     on_clock_(std::move(clocks));
     Delivery delivery;
     delivery.entries.emplace_back(telemetry::EarthTime{now});
+    if (!pipeline_.deliver(std::move(delivery))) stop_ = true;
+    tell_totals(now, false);
+}
+
+/// Hands on the link's totals, and logs what went wrong. @param last  the run ends: however short ago the last line was
+void DownlinkFollower::tell_totals(Ert now, bool last) {
+    auto totals = ledger_.totals(source_ ? &*source_ : nullptr, now);
+    const bool due =
+        !faults_logged_ || now.microseconds - faults_logged_->microseconds >= fault_log_interval_us || last;
+    if (const auto faults = due ? ledger_.faults_since(totals) : std::string{}; !faults.empty()) {
+        faults_logged_ = now;
+        spdlog::warn("downlink {}: {}", settings_.address.text(), faults);
+    }
+    if (!ledger_.changed(totals)) return;
+    Delivery delivery;
+    delivery.links.push_back(std::move(totals));
     if (!pipeline_.deliver(std::move(delivery))) stop_ = true;
 }
 

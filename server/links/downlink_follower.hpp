@@ -5,6 +5,7 @@
 #include "server/base/clock_watch.hpp"
 #include "server/links/downlink_socket.hpp"
 #include "server/links/frame_format.hpp"
+#include "server/links/link_ledger.hpp"
 #include "server/pipeline/pipeline_thread.hpp"
 #include "telemetry/link_rhythm.hpp"
 #include "telemetry/station/silence_classifier.hpp"
@@ -20,9 +21,12 @@ namespace aeolis::server {
 
 /// Follows another mission in its own thread: receives octets, finds packets, hands them to the archive as one run.
 ///
-/// In       octets of a TCP connection or of datagrams       Out   deliveries to the pipeline; run states on change
+/// In       octets of a TCP connection or of datagrams       Out   deliveries to the pipeline, the octets as they came
+///          among them; run states on change
 /// TCP      connects, and reconnects after every end: first after `retry_first`, then doubling up to `retry_max`
 /// UDP      bare packets: each datagram holds whole packets. Frames: datagrams are pieces of one stream
+/// Counts   totals of the link and of its sequences once a second, over all connections; what went wrong is logged at
+///          most every ten seconds, as numbers by kind
 /// Faults   octets that are no packet are counted and skipped. When bare packets cannot be found any more, it
 ///          reconnects. Each change is logged and is an item of the run
 /// Silence  the link is up once packets come. It is lost when the connection breaks, and when packets stay out longer than
@@ -66,6 +70,7 @@ class DownlinkFollower {
     bool recognise(std::span<const std::uint8_t> octets);
     void end_of_stream();
     void pass();
+    void tell_totals(Ert now, bool last);
     void deliver_packets();
     void say(telemetry::LinkState state);
     void waits(const std::string& how);
@@ -81,7 +86,10 @@ class DownlinkFollower {
     std::uint16_t port_ = 0;
     archive::RunId run_;
     archive::RunStart start_;
+    std::optional<telemetry::ReceivedOctets> brought_;  ///< not yet delivered
     std::optional<telemetry::PacketSource> source_;
+    LinkLedger ledger_{telemetry::downlink_link.name};
+    std::optional<Ert> faults_logged_;
     std::vector<std::uint8_t> beginning_;  ///< of a stream whose frames are not yet recognised
     std::size_t tried_octets_ = 0;
     std::string said_;  ///< the last message, so that a lasting fault is reported once

@@ -16,6 +16,10 @@ telemetry::FrameHints hints_of(const PacketStreamFormat& format) {
     telemetry::FrameHints hints;
     hints.frame_octets = format.frame_octets;
     hints.suffix_octets = format.check_octets;
+    hints.coded = format.coded;
+    hints.check_symbols = format.check_symbols;
+    hints.interleave = format.interleave;
+    hints.basis = format.basis;
     hints.crc = format.crc;
     hints.randomised = format.randomised;
     hints.agreed = format.agreed;
@@ -28,11 +32,29 @@ telemetry::FrameStream told(const PacketStreamFormat& format) {
     telemetry::FrameStream stream;
     stream.frame_octets = format.frame_octets.value_or(stream.frame_octets);
     stream.suffix_octets = format.check_octets.value_or(0);
+    if (format.coded.value_or(false) && format.check_symbols && format.interleave) {
+        stream.code = telemetry::ReedSolomonCode{*format.check_symbols, *format.interleave,
+                                                 format.basis.value_or(telemetry::ReedSolomonCode::Basis::dual)};
+        stream.suffix_octets = stream.code->check_octets();
+        stream.frame_octets = format.frame_octets.value_or(stream.code->data_octets_max());
+    }
     stream.randomised = format.randomised.value_or(false);
     stream.agreed = format.agreed;
     stream.agreed.crc = format.crc.value_or(true);
     stream.virtual_channel = format.virtual_channel;
     return stream;
+}
+
+/// What is told of a Reed–Solomon code and contradicts itself.
+Result<void> check_code(const PacketStreamFormat& format) {
+    if (!format.coded.value_or(false)) return {};
+    if (format.check_octets) return Error{"--check-symbols skips what --reed-solomon uses: say one of them"};
+    if (!format.frame_octets || !format.check_symbols || !format.interleave) return {};
+    const telemetry::ReedSolomonCode code{*format.check_symbols, *format.interleave};
+    if (code.fits(*format.frame_octets + code.check_octets())) return {};
+    return Error{fmt::format("--frame-octets {}: Reed-Solomon codeblocks interleaved {} hold {} octets of a frame at "
+                             "most, and a multiple of {}",
+                             *format.frame_octets, *format.interleave, code.data_octets_max(), *format.interleave)};
 }
 
 Result<telemetry::FrameStream> cadu_stream(const PacketStreamFormat& format, std::span<const std::uint8_t> beginning,
@@ -41,10 +63,15 @@ Result<telemetry::FrameStream> cadu_stream(const PacketStreamFormat& format, std
     if (found) return *found;
     if (!telemetry::cadu_frame_octets(beginning)) {
         if (ended && format.frame_octets) return told(format);
-        return Error{"no two sync markers 1ACFFC1D: say --frame-octets"};
+        return Error{"no two sync markers 1ACFFC1D, at any bit, inverted or not: say --frame-octets"};
     }
-    return Error{"no layout reads these frames: say what is agreed (--frame-octets, --check-symbols, --randomised, "
-                 "--fecf, --insert-octets, …)"};
+    const auto distance = *telemetry::cadu_frame_octets(beginning);
+    const auto agreed = format.frame_octets.value_or(0) + format.check_octets.value_or(0);
+    if (format.frame_octets && (distance < agreed || (format.check_octets && distance != agreed)))
+        return Error{fmt::format("{} octets stand between sync markers: --frame-octets{} of {} are not right", distance,
+                                 format.check_octets ? " and --check-symbols" : "", agreed)};
+    return Error{"no layout reads these frames: say what is agreed (--frame-octets, --reed-solomon, --check-symbols, "
+                 "--randomised, --fecf, --insert-octets, …)"};
 }
 
 /// Whether frames that stand every `distance` octets end with a right CRC-16, most of the first three; none: too few.
@@ -53,9 +80,11 @@ std::optional<bool> has_crc(std::span<const std::uint8_t> octets, std::size_t di
     constexpr std::size_t frames_wanted = 3;
     std::size_t frames = 0, right = 0;
     for (; frames < frames_wanted && octets.size() >= distance; ++frames, octets = octets.subspan(distance)) {
-        const auto frame = octets.subspan(stream.prefix_octets, stream.frame_octets);
-        std::vector<std::uint8_t> plain{frame.begin(), frame.end()};
+        const auto unit = octets.subspan(stream.prefix_octets, stream.frame_octets + stream.suffix_octets);
+        std::vector<std::uint8_t> plain{unit.begin(), unit.end()};
         if (stream.randomised) randomise_tm(plain);
+        if (stream.code) telemetry::correct_codeblock(*stream.code, plain);
+        plain.resize(stream.frame_octets);
         right += crc16(plain) == 0 ? 1 : 0;
     }
     if (frames < frames_wanted && !ended) return std::nullopt;
@@ -69,8 +98,10 @@ Result<telemetry::FrameStream> bare_stream(const PacketStreamFormat& format, Dow
     stream.kind = kind == DownlinkFormat::tm ? telemetry::FrameStream::Kind::tm : telemetry::FrameStream::Kind::aos;
     stream.marker = false;
     stream.prefix_octets = format.skip;
-    if (format.frame_octets && format.crc) return stream;
-    if (format.frame_octets) {
+    if (format.coded.value_or(false) && !stream.code)
+        return Error{"frames without sync markers: say --reed-solomon 223 or 239, and --interleave"};
+    if ((format.frame_octets || stream.code) && format.crc) return stream;
+    if (format.frame_octets || stream.code) {
         const auto crc = has_crc(beginning, format.skip + stream.frame_octets + stream.suffix_octets, stream, ended);
         if (!crc) return Error{"too few frames have come to tell whether they end with a CRC-16: say --fecf"};
         stream.agreed.crc = *crc;
@@ -82,12 +113,28 @@ Result<telemetry::FrameStream> bare_stream(const PacketStreamFormat& format, Dow
     return stream;
 }
 
+std::string words_of_code(const telemetry::FrameStream& stream) {
+    using telemetry::ReedSolomonCode;
+    if (stream.code)
+        return fmt::format(", in Reed-Solomon (255,{}) codeblocks interleaved {}, {} basis",
+                           ReedSolomonCode::word_symbols_max - stream.code->check_symbols, stream.code->interleave,
+                           stream.code->basis == ReedSolomonCode::Basis::dual ? "dual" : "conventional");
+    return stream.suffix_octets > 0 ? fmt::format(", {} check symbols behind each", stream.suffix_octets) : "";
+}
+
+std::string words_of_markers(const telemetry::BitAlignment& alignment) {
+    return fmt::format(", behind sync markers{}{}",
+                       alignment.shift > 0
+                           ? fmt::format(" shifted by {} bit{}", alignment.shift, alignment.shift == 1 ? "" : "s")
+                           : "",
+                       alignment.inverted ? ", inverted" : "");
+}
+
 std::string words_of(const telemetry::FrameStream& stream) {
     return fmt::format("{} frames of {} octets{}{}{}{}", stream.kind == telemetry::FrameStream::Kind::tm ? "TM" : "AOS",
                        stream.frame_octets, stream.agreed.crc ? " with a CRC-16" : " without a CRC-16",
-                       stream.suffix_octets > 0 ? fmt::format(", {} check symbols behind each", stream.suffix_octets)
-                                                : "",
-                       stream.randomised ? ", randomised" : "", stream.marker ? ", behind sync markers" : "");
+                       words_of_code(stream), stream.randomised ? ", randomised" : "",
+                       stream.marker ? words_of_markers(stream.alignment) : "");
 }
 
 }  // namespace
@@ -97,6 +144,7 @@ Result<RecognisedSource> packet_source(const PacketStreamFormat& format, std::sp
     using telemetry::PacketSource;
     const auto kind = telemetry::downlink_format(format.name);
     if (!kind) return Error{"there is no format '" + format.name + "': packets, tm, aos, cadu or pltu"};
+    if (const auto checked = check_code(format); !checked) return checked.error();
     if (*kind == DownlinkFormat::packets) return RecognisedSource{PacketSource::of_packets(format.skip), {}};
     if (*kind == DownlinkFormat::pltu) return RecognisedSource{PacketSource::of_pltus(), {}};
     const auto frames = *kind == DownlinkFormat::cadu ? cadu_stream(format, beginning, ended)

@@ -18,6 +18,9 @@ struct PacketStreamFormat {
     // None: found by trying.
     std::optional<std::size_t> frame_octets{}, check_octets{};
     std::optional<bool> crc{}, randomised{};
+    std::optional<bool> coded{};  ///< in Reed–Solomon codeblocks, by which frames are corrected
+    std::optional<std::size_t> check_symbols{}, interleave{};  ///< of the code: of a word, 32 or 16; 1 … 8
+    std::optional<telemetry::ReedSolomonCode::Basis> basis{};
     FrameAgreement agreed{};  ///< but for its `crc`
     std::optional<std::uint8_t> virtual_channel{};
 };

@@ -46,6 +46,7 @@ Result<void> same_items(archive::Reader& stored, const pipeline::PublishedBatch&
 }  // namespace
 
 void Delivery::add(const telemetry::Received& received) {
+    entries.insert(entries.end(), received.octets.begin(), received.octets.end());
     entries.insert(entries.end(), received.packets.begin(), received.packets.end());
     entries.insert(entries.end(), received.tones.begin(), received.tones.end());
     entries.insert(entries.end(), received.links.begin(), received.links.end());
@@ -226,6 +227,7 @@ void PipelineThread::note_received(const Delivery& delivery) {
             add(packet->link.name, packet->octets.size());
         if (std::holds_alternative<telemetry::ReceivedTone>(entry)) add("tones", 0);
     }
+    for (const auto& told : delivery.links) archive::merge(totals_[told.link], told);
 }
 
 bool PipelineThread::deliver(Delivery delivery) {
@@ -312,6 +314,7 @@ PipelineThread::Figures PipelineThread::figures() const {
     figures.commit_s = commit_s_;
     figures.longest_commit_s = longest_commit_s_;
     figures.links = links_;
+    figures.totals = totals_;
     return figures;
 }
 

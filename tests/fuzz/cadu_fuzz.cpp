@@ -22,6 +22,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                   .header_error_control = (data[2] & 128) != 0,
                   .insert_octets = static_cast<std::uint8_t>(data[0] >> 5)};
     how.frame_octets = 9 + data[1];
+    if (how.marker) how.alignment = {(data[2] & 7U), (data[2] & 8U) != 0};
+    if (how.marker && data[1] % 4 == 0) {
+        how.code = ReedSolomonCode{.check_symbols = 16, .interleave = 1};
+        how.frame_octets = std::min<std::size_t>(how.frame_octets, 239);
+        how.suffix_octets = how.code->check_octets();
+    }
     how.prefix_octets = how.marker ? 0 : data[2] % 8;
     const std::size_t piece = data[3] + std::size_t{1};
     const std::span<const std::uint8_t> given{data + 4, size - 4};
@@ -45,7 +51,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 
     FrameReceiver receiver{how};
     PacketExtractor packets;
-    const std::size_t unit = how.frame_octets + (how.marker ? 4 : how.prefix_octets);
+    const std::size_t unit = how.frame_octets + how.suffix_octets + (how.marker ? 4 : how.prefix_octets);
     for (std::size_t at = 0; at < stream.size(); at += piece) {
         receiver.receive(std::span{stream}.subspan(at, std::min(piece, stream.size() - at)));
         while (const auto received = receiver.next()) {

@@ -3,14 +3,17 @@
 #include "commands/parameter_table.hpp"
 #include "common/proximity_frame.hpp"
 #include "common/space_packet.hpp"
+#include "common/tm_frame.hpp"
 #include "flight/load.hpp"
 #include "server/archive/sqlite.hpp"
 #include "server/base/json.hpp"
+#include "server/base/pcap.hpp"
 #include "tests/server/running_server.hpp"
 #include "tests/server/web_client.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/kernels.hpp"
 #include "tests/support/mission_copy.hpp"
+#include "tests/support/reed_solomon_encoder.hpp"
 #include "tests/support/shipped_dictionary.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -736,6 +739,165 @@ TEST_CASE("decode ends with 1 and says what it left, and asks where the file lea
         CHECK(ended.code == code);
         CHECK_THAT(ended.text, Catch::Contains(says));
     }
+}
+
+TEST_CASE("decode corrects what Reed-Solomon codeblocks hold, says how much, and refuses what contradicts the stream",
+          "[cli][decode][R54]") {
+    if (program() == nullptr) return;
+    using namespace aeolis;
+    const aeolis::test::TemporaryFolder folder;
+    const auto write = [&](const char* name, const std::string& text) {
+        std::ofstream{folder / name, std::ios::binary} << text;
+        return "'" + (folder / name).string() + "'";
+    };
+    const std::string mission = write(
+        "one.xml",
+        "<SpaceSystem name='T'><TelemetryMetaData><ParameterTypeSet>"
+        "<IntegerParameterType name='u16'><IntegerDataEncoding sizeInBits='16'/></IntegerParameterType>"
+        "<IntegerParameterType name='u48'><IntegerDataEncoding sizeInBits='48'/></IntegerParameterType>"
+        "</ParameterTypeSet><ParameterSet><Parameter name='H' parameterTypeRef='u48'/><Parameter name='W' "
+        "parameterTypeRef='u16'/></ParameterSet><ContainerSet><SequenceContainer name='P'><EntryList>"
+        "<ParameterRefEntry parameterRef='H'/><ParameterRefEntry parameterRef='W'/></EntryList></SequenceContainer>"
+        "</ContainerSet></TelemetryMetaData></SpaceSystem>");
+    constexpr std::size_t packets_a_frame = 26, frame_octets = 6 + packets_a_frame * 8;
+    std::mt19937 random{1};
+    unsigned count = 0;
+    const telemetry::ReedSolomonCode code{.check_symbols = 32, .interleave = 1};
+    const auto stream_with = [&](std::size_t wrong_symbols) {
+        std::string stream;
+        count = 0;
+        for (unsigned i = 0; i < 20; ++i) {
+            std::vector<std::uint8_t> data;
+            for (std::size_t packet = 0; packet < packets_a_frame; ++packet, ++count)
+                for (const unsigned octet : {0x01U, 0x23U, 0xC0U | (count >> 8U), count & 0xFFU, 0U, 1U,
+                                             static_cast<unsigned>(random() % 256), count & 0xFFU})
+                    data.push_back(static_cast<std::uint8_t>(octet));
+            TransferFrame frame;
+            frame.spacecraft = 76;
+            frame.count = i;
+            frame.first_header_pointer = 0;
+            frame.data = data;
+            std::vector<std::uint8_t> octets(frame_octets);
+            write_tm_frame(frame, static_cast<std::uint8_t>(i), false, octets);
+            auto block = test::codeblock_of(octets, code);
+            for (std::size_t at = 0; i == 9 && at < wrong_symbols; ++at) block[10 + at * 3] ^= 0x42;
+            stream.append(attached_sync_marker.begin(), attached_sync_marker.end());
+            stream.append(block.begin(), block.end());
+        }
+        return stream;
+    };
+    const std::string clean = write("clean", stream_with(0)), wrong = write("wrong", stream_with(16)),
+                      lost = write("lost", stream_with(17));
+    struct Case {
+        std::string arguments;
+        int code;
+        const char* says;
+    };
+    for (const auto& [arguments, expected, says] :
+         {Case{clean, 0,
+               "taken for TM frames of 214 octets without a CRC-16, in Reed-Solomon (255,223) codeblocks interleaved "
+               "1, dual basis, behind sync markers"},
+          Case{wrong, 0, "Reed-Solomon: 1 frames corrected, 16 symbols; 0 frames uncorrectable"},
+          Case{wrong + " --reed-solomon 223 --interleave 1 --basis dual", 0, "520 packets   APID  291"},
+          Case{lost, 1, "Reed-Solomon: 0 frames corrected, 0 symbols; 1 frames uncorrectable"},
+          Case{clean + " --check-symbols 32", 0, "32 check symbols behind each"},
+          Case{clean + " --reed-solomon no --frame-octets 214", 0, "32 check symbols behind each"},
+          Case{wrong + " --reed-solomon 239", 2, "no layout reads these frames"},
+          Case{wrong + " --reed-solomon 223 --check-symbols 32", 2, "say one of them"},
+          Case{wrong + " --reed-solomon 223 --interleave 1 --frame-octets 224", 2,
+               "hold 223 octets of a frame at most"},
+          Case{wrong + " --frame-octets 214 --check-symbols 16", 2,
+               "246 octets stand between sync markers: --frame-octets and --check-symbols of 230 are not right"},
+          Case{wrong + " --frame-octets 300", 2, "--frame-octets of 300 are not right"},
+          Case{wrong + " --interleave 6", 2, "--interleave"},
+          Case{wrong + " --interleave 5", 2, "--interleave requires --reed-solomon"}}) {
+        const auto ended = run(program(), "decode --xtce " + mission + " --format cadu --packets " + arguments);
+        INFO(arguments << " -> " << ended.code << ": " << ended.text);
+        CHECK(ended.code == expected);
+        CHECK_THAT(ended.text, Catch::Contains(says));
+    }
+}
+
+TEST_CASE("a recorded capture becomes a run, and what is exported of it is what was ingested", "[cli][ingest][R55]") {
+    if (program() == nullptr) return;
+    using namespace aeolis;
+    const aeolis::test::TemporaryFolder folder;
+    const auto write = [&](const char* name, const std::string& text) {
+        std::ofstream{folder / name, std::ios::binary} << text;
+        return "'" + (folder / name).string() + "'";
+    };
+    const std::string mission = write(
+        "one.xml",
+        "<SpaceSystem name='T'><TelemetryMetaData><ParameterTypeSet>"
+        "<IntegerParameterType name='u16'><IntegerDataEncoding sizeInBits='16'/></IntegerParameterType>"
+        "<IntegerParameterType name='u48'><IntegerDataEncoding sizeInBits='48'/></IntegerParameterType>"
+        "</ParameterTypeSet><ParameterSet><Parameter name='H' parameterTypeRef='u48'/><Parameter name='W' "
+        "parameterTypeRef='u16'/></ParameterSet><ContainerSet><SequenceContainer name='P'><EntryList>"
+        "<ParameterRefEntry parameterRef='H'/><ParameterRefEntry parameterRef='W'/></EntryList></SequenceContainer>"
+        "</ContainerSet></TelemetryMetaData></SpaceSystem>");
+    std::string capture = server::pcap::head(), plain;
+    for (unsigned i = 0; i < 300; ++i) {
+        const std::vector<std::uint8_t> packet{0x01,
+                                               0x23,
+                                               static_cast<std::uint8_t>(0xC0 | i >> 8U),
+                                               static_cast<std::uint8_t>(i),
+                                               0,
+                                               1,
+                                               0,
+                                               static_cast<std::uint8_t>(i)};
+        server::pcap::append(capture, Ert{397'500'000'000'000 + i * 100'000}, 5000, packet);
+        plain.append(packet.begin(), packet.end());
+    }
+    const std::vector<std::uint8_t> bad{0xEE, 0xEE, 0xEE, 0xEE, 0xEE, 0xEE, 0xEE};
+    std::string damaged = capture;
+    server::pcap::append(damaged, Ert{397'500'040'000'000}, 5000, bad);
+    server::pcap::append(damaged, Ert{397'500'040'000'000}, 5001, bad);
+    const std::string whole = write("whole.pcap", capture), hurt = write("hurt.pcap", damaged),
+                      stream = write("plain", plain), newer = write("newer", "\x0A\x0D\x0D\x0A and so on");
+    const std::string archive = "'" + (folder / "a.db").string() + "'";
+    const auto ingest = [&](const std::string& arguments) {
+        return run(program(), "ingest --archive " + archive + " --xtce " + mission + " " + arguments);
+    };
+    const auto first = ingest(whole);
+    INFO(first.text);
+    CHECK(first.code == 0);
+    CHECK_THAT(first.text, Catch::Contains("run 1") && Catch::Contains("300 packets of 2400 octets"));
+    const auto second = ingest(hurt + " --udp-port 5000");
+    INFO(second.text);
+    CHECK(second.code == 1);
+    CHECK_THAT(second.text, Catch::Contains("1 bad datagrams") && Catch::Contains("1 datagrams to other ports"));
+    const auto third = ingest(stream + " --start 2012-219T05:10:00 --bits-per-second 1920");
+    INFO(third.text);
+    CHECK(third.code == 0);
+    const auto refused = ingest(newer);
+    CHECK(refused.code == 2);
+    CHECK_THAT(refused.text, Catch::Contains("editcap"));
+    CHECK_THAT(ingest(whole + " --start 2012-219T05:10:00").text, Catch::Contains("times of its own"));
+
+    const auto exported = [&](const std::string& arguments) {
+        const auto out = folder / "out";
+        std::filesystem::remove(out);
+        const auto ended =
+            run(program(), "export --archive " + archive + " --out '" + out.string() + "' --run " + arguments);
+        INFO(arguments << " -> " << ended.code << ": " << ended.text);
+        CHECK(ended.code == 0);
+        std::ifstream in{out, std::ios::binary};
+        return std::string{std::istreambuf_iterator<char>{in}, {}};
+    };
+    CHECK(exported("1 --raw") == plain);
+    CHECK(exported("1 --packets --format bin") == plain);
+    CHECK(exported("2 --raw") == plain + std::string(bad.begin(), bad.end()));
+    const auto second_of_it = exported("3 --raw --from 2012-219T05:10:05 --to 2012-219T05:10:06");
+    CHECK_FALSE(second_of_it.empty());
+    CHECK(second_of_it.size() <= 300);  // 240 octets a second, in pieces of up to a quarter
+    CHECK(plain.find(second_of_it) != std::string::npos);
+    auto same = capture;  // but for the port
+    for (std::size_t at = 24; at < same.size(); at += 16 + 36) same.replace(at + 36, 4, "\x10\x68\x10\x68");
+    CHECK(exported("1 --raw --format pcap") == same);
+    const auto no_link = run(program(), "export --archive " + archive + " --run 1 --raw --link relay");
+    CHECK(no_link.code == 1);
+    CHECK_THAT(no_link.text, Catch::Contains("no octets of 'relay'"));
+    CHECK(run(program(), "export --archive " + archive + " --run 1 --format pcap").code == 2);
 }
 
 TEST_CASE("a landing's samples and their predict are made together, and decode reads the tones out of them",

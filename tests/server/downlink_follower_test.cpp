@@ -3,6 +3,7 @@
 #include "common/proximity_frame.hpp"
 #include "dictionaries/xtce/packet_model.hpp"
 #include "server/access/this_user.hpp"
+#include "server/base/pcap.hpp"
 #include "server/links/downlink_follower.hpp"
 #include "server/net/console_backend.hpp"
 #include "server/pipeline/derivation.hpp"
@@ -237,6 +238,11 @@ TEST_CASE("packets in frames with garbage between, over TCP in odd pieces, are a
     CHECK_THAT(words, Catch::Contains("\"name\":\"BUS_VOLTAGE\""));
     CHECK_THAT(follower.ask("/runs/1"), Catch::Contains("\"venue\":\"downlink\"") && Catch::Contains("pltu by m.xml"));
     CHECK_THAT(follower.ask("/runs/1/state"), Catch::Contains("\"BUS_VOLTAGE\""));
+    CHECK(follower.ask("/runs/1/raw?format=bin") == std::string(stream.begin(), stream.end()));
+    CHECK_THAT(follower.ask("/runs/1/raw?link=relay"),
+               Catch::Contains("no octets of 'relay'; it has those of downlink"));
+    CHECK_THAT(follower.ask("/runs/1/raw?format=csv"), Catch::Contains("'csv' is neither bin nor pcap"));
+    CHECK_THAT(follower.ask("/runs/1/raw?from=yesterday"), Catch::Contains("'yesterday' is no UTC time"));
     CHECK_THAT(follower.ask("/runs/1/prediction"),
                Catch::Contains("\"state\":\"none\"") && Catch::Contains("run 1 has no scenario: it follows another"));
 }
@@ -284,12 +290,63 @@ TEST_CASE("each datagram stands for itself: garbage and packets of nobody are ke
     send_datagram(port, two);
     const auto packets =
         follower.ask_until("/runs/1/packets", [](const std::string& text) { return count_of(text, "\"Power\"") == 3; });
+    const auto captured = follower.ask("/runs/1/raw");
+    const std::vector<std::uint8_t> capture{captured.begin(), captured.end()};
+    auto kept = pcap::File::open(capture);
+    REQUIRE(kept);
+    for (const Octets& sent : {power_packet(1, 10, 4), Octets(200, 0xEE), cut, power_packet(3, 12, 6, 99), two}) {
+        const auto datagram = kept->next();
+        REQUIRE(datagram);
+        CHECK(Octets(datagram->octets.begin(), datagram->octets.end()) == sent);
+    }
+    CHECK_FALSE(kept->next());
+    CHECK(follower.ask("/runs/1/raw?of=packets&format=bin").size() ==
+          3 * power_packet(1, 10, 4).size() + power_packet(3, 12, 6, 99).size());
     CHECK(count_of(packets, "\"Power\"") == 3);
     CHECK(count_of(packets, "\"hex\"") == 4);
     CHECK_THAT(packets, Catch::Contains("not decoded: no container describes it: Header is abstract"));
     CHECK(follower.ask("/runs/1/channels?names=BUS_VOLTAGE&format=csv") ==
           "channel,unit,sclk_s,value,source\nBUS_VOLTAGE,V,10.5,2,realtime\nBUS_VOLTAGE,V,13.5,4,realtime\nBUS_VOLTAGE,"
           "V,14.5,5,realtime\n");
+}
+
+TEST_CASE("a followed link has totals: what was lost, repeated, late, cut and bad is counted over all connections",
+          "[server][downlink][R54]") {
+    const auto mission = mission_of(small_xtce);
+    Sender sender;
+    Follower tcp{*mission, "tcp://127.0.0.1:" + std::to_string(sender.port), {.name = "packets"}};
+    Octets first;
+    for (const std::uint16_t count : {1, 2, 5, 4, 4, 6}) {
+        const auto packet = power_packet(count, count, count);
+        first.insert(first.end(), packet.begin(), packet.end());
+    }
+    const auto half = power_packet(7, 7, 7);
+    first.insert(first.end(), half.begin(), half.begin() + 8);
+    sender.give(first);
+    sender.give(power_packet(8, 8, 8));
+    const auto told = tcp.ask_until(
+        "/runs/1/proof", [](const std::string& text) { return text.find("\"packets\":\"7\"") != std::string::npos; });
+    CHECK_THAT(told, Catch::Contains("\"link\":\"downlink\"") && Catch::Contains("\"cut_packets\":\"1\"") &&
+                         Catch::Contains("\"unreadable_octets\":\"8\""));
+    CHECK_THAT(told, Catch::Contains("\"name\":\"APID 77\"") && Catch::Contains("\"received\":\"7\"") &&
+                         Catch::Contains("\"missing\":\"1\"") && Catch::Contains("\"repeated\":\"1\"") &&
+                         Catch::Contains("\"late\":\"1\""));
+    const auto metrics = web_request(tcp.port(), "GET", "/metrics").body;
+    CHECK_THAT(metrics, Catch::Contains("aeolis_link_faults_total{link=\"downlink\",kind=\"cut_packets\"} 1\n"));
+    CHECK_THAT(metrics,
+               Catch::Contains(
+                   "aeolis_sequence_total{link=\"downlink\",of=\"packets\",sequence=\"APID 77\",kind=\"late\"} 1\n"));
+
+    Follower udp{*mission, "udp://127.0.0.1:0", {.name = "packets"}};
+    send_datagram(udp.downlink_port(), Octets(200, 0xEE));
+    Octets cut = power_packet(2, 11, 6);
+    cut.resize(cut.size() - 3);
+    send_datagram(udp.downlink_port(), cut);
+    send_datagram(udp.downlink_port(), power_packet(3, 12, 6));
+    CHECK_THAT(
+        udp.ask_until("/runs/1/proof",
+                      [](const std::string& text) { return text.find("\"packets\":\"1\"") != std::string::npos; }),
+        Catch::Contains("\"bad_datagrams\":\"2\"") && Catch::Contains("\"cut_packets\":\"1\""));
 }
 
 TEST_CASE("who follows a downlink rehearses nothing, and says so", "[server][downlink]") {
