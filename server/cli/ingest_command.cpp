@@ -32,8 +32,8 @@ constexpr std::size_t delivery_entries = 256;
 
 struct IngestOptions {
     std::vector<std::filesystem::path> files;
-    std::filesystem::path archive, xtce;
-    std::string root;
+    std::filesystem::path archive;
+    MissionXtce xtce;
     PacketStreamFormat format{};
     std::optional<std::uint16_t> port;      ///< of a capture's datagrams
     std::optional<std::string> start;       ///< UTC at which the first octet was received
@@ -257,9 +257,9 @@ int ingest(const IngestOptions& options) {
         if (!recording) return failed(name.string() + ": " + recording.error().message, 2);
         recordings.push_back(std::move(*recording));
     }
-    auto xtce = read_xtce_file(options.xtce, options.root);
+    auto xtce = read_xtce(options.xtce);
     if (!xtce) return xtce.exit_code;
-    const telemetry::OtherMission mission{std::move(*xtce.model), xtce.id};
+    const telemetry::OtherMission mission{std::move(*xtce.model), xtce.id, std::move(xtce.time)};
     auto archive = archive::Archive::open(options.archive);
     if (!archive) return failed(archive.error().message);
     PipelineThread pipeline{std::move(*archive), mission.dictionary(), PipelineThread::Faults::give_up,
@@ -268,7 +268,7 @@ int ingest(const IngestOptions& options) {
     archive::RunStart run_start;
     run_start.scenario = run_start.venue = "downlink";
     run_start.title = fmt::format("{}, {} by {}", options.files.front().filename().string(), options.format.name,
-                                  options.xtce.filename().string());
+                                  options.xtce.text());
     run_start.pace = 1.0;
     run_start.started = wall_clock_text();
     const auto run = pipeline.begin(run_start);
@@ -296,8 +296,7 @@ void add_ingest_command(CLI::App& program, int& exit_code) {
                   "octets, or pcap with the times of reception. Exit code 1 when anything was lost or not used");
     command.add_option("files", options->files, "recorded files, in the order of reception")->required();
     command.add_option("--archive", options->archive, "SQLite file that keeps everything")->required();
-    command.add_option("--xtce", options->xtce, "the mission's XTCE file")->required();
-    add_root(command, options->root);
+    add_mission_xtce(command, options->xtce, "the mission's XTCE file; may be given several times")->required();
     add_stream_format(command, options->format);
     command.add_option("--udp-port", options->port, "of a pcap file: datagrams to this port only; all if left out");
     command.add_option("--start", options->start,
