@@ -9,7 +9,10 @@
 #include "telemetry/raw_number.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
+#include <functional>
 
 namespace aeolis::telemetry {
 namespace {
@@ -19,7 +22,8 @@ namespace xtce = dictionary::xtce;
 
 constexpr unsigned depth_max = 16;                  // as ContainerDecoder has it
 constexpr std::size_t packet_bits_max = 8 * 65542;  // the longest space packet
-constexpr double exact_max = 9007199254740992.0;    // whole numbers up to here are exact as doubles
+constexpr double repetitions_max = packet_bits_max;
+constexpr double exact_max = 9007199254740992.0;  // whole numbers up to here are exact as doubles
 
 std::optional<std::uint32_t> fixed_bits(const Amount& amount) {
     const double value = amount.intercept;
@@ -55,6 +59,18 @@ bool compared(double left, xtce::Condition::Operator op, double right) {
     return false;
 }
 
+std::optional<double> defined(double value) {
+    return std::isfinite(value) ? std::optional{value} : std::nullopt;
+}
+
+/// A whole number from octets, the most significant first.
+template <unsigned count>
+std::uint64_t octets(const std::uint8_t* at) {
+    std::uint64_t value = 0;
+    for (unsigned i = 0; i < count; ++i) value = value << 8U | at[i];
+    return value;
+}
+
 std::string exact_text(const RawNumber& number) {
     if (const auto* value = std::get_if<std::uint64_t>(&number)) return std::to_string(*value);
     return std::to_string(std::get<std::int64_t>(number));
@@ -77,30 +93,36 @@ class ContainerPlan::Compiler {
     }
 
   private:
-    /// A number at a fixed place.
+    /// A number, at a fixed place or behind a repetition.
     struct Place {
         std::size_t parameter = 0;
         std::string name;
         std::uint32_t position_bits = 0, bits = 0;
         const PacketType* type = nullptr;
+        bool moves = false;
+        const Amount* repeated = nullptr;
     };
-    /// The numbers of a container and its bases, in the order of the packet.
+    /// The numbers of a container and its bases, in the order of the packet. Behind a repetition, positions count from
+    /// the end of the number before.
     struct Chain {
         std::vector<Place> places;
         std::uint32_t position_bits = 0, furthest_bits = 0;
+        bool moves = false;
     };
 
     void compile_from(std::size_t index, Chain chain, unsigned depth) {
         Node& node = plan_.nodes_[index];
         if (depth == depth_max || !add_entries(model_.containers[index], chain)) return;
         node.bits = chain.furthest_bits;
+        node.fixed = !chain.moves;
         node.abstract = model_.containers[index].abstract;
         node.fields = fields_[index];
         for (const Place& place : chain.places)
-            if (const auto field = field_of_(index, place.parameter, place.name))
-                node.steps.push_back({place.position_bits, static_cast<std::uint16_t>(*field),
-                                      static_cast<std::uint8_t>(place.bits), needs_text_(index, *field),
-                                      &place.type->coding, calibration_of(*place.type)});
+            if (!add_step(index, place, chain, node)) return;
+        std::vector<bool> filled(node.fields, false);
+        for (const Step& step : node.steps)
+            if (step.count == once && !step.skipped) filled[step.field] = true;
+        node.fills = std::ranges::all_of(filled, std::identity{});
         node.clock = clock_of(chain);
         for (const std::size_t derived : node.derived) {
             auto& tests = plan_.nodes_[derived].tests;
@@ -111,18 +133,110 @@ class ContainerPlan::Compiler {
         for (const std::size_t derived : node.derived) compile_from(derived, chain, depth + 1);
     }
 
+    bool add_step(std::size_t container, const Place& place, const Chain& chain, Node& node) const {
+        Step step{.position_bits = place.position_bits,
+                  .bits = static_cast<std::uint8_t>(place.bits),
+                  .moves = place.moves,
+                  .coding = &place.type->coding,
+                  .calibration = calibration_of(*place.type)};
+        // By Horner's rule, as longer ones are.
+        if (step.calibration != nullptr && step.calibration->polynomial.size() == 2)
+            step.line = step.calibration->polynomial.data();
+        if (place.repeated != nullptr) {
+            const auto count = count_of(*place.repeated, chain, node);
+            if (!count) return false;
+            step.count = static_cast<std::uint32_t>(plan_.counts_.size());
+            plan_.counts_.push_back(*count);
+            step.first_field = static_cast<std::uint32_t>(plan_.fields_.size());
+            for (std::size_t i = 0;; ++i) {
+                const auto field = field_of_(container, place.parameter, place.name + "[" + std::to_string(i) + "]");
+                if (!field) break;
+                if (needs_text_(container, *field)) return false;
+                plan_.fields_.push_back(static_cast<std::uint16_t>(*field));
+                ++step.fields;
+            }
+        } else {
+            const auto field = field_of_(container, place.parameter, place.name);
+            step.skipped = !field;
+            step.field = static_cast<std::uint16_t>(field.value_or(0));
+            step.text = field && needs_text_(container, *field);
+        }
+        step.load = load_of(place, step);
+        node.steps.push_back(step);
+        return true;
+    }
+
+    static bool is_plain(const Coding& coding) {
+        return coding.form == Coding::Form::unsigned_integer && !coding.least_significant_octet_first &&
+               !coding.least_significant_bit_first;
+    }
+
+    /// The quick ways of reading are for numbers in the usual order.
+    static Load load_of(const Place& place, const Step& step) {
+        const Coding& coding = *step.coding;
+        const bool in_order = !coding.least_significant_octet_first && !coding.least_significant_bit_first &&
+                              !step.text && !place.moves && place.position_bits % 8 == 0;
+        constexpr std::array sizes{8U, 16U, 32U, 64U};
+        const auto size = std::ranges::find(sizes, place.bits);
+        if (!in_order) return Load::any;
+        if (place.moves || place.position_bits % 8 != 0 || size == sizes.end())
+            return coding.form == Coding::Form::unsigned_integer ? Load::bits : Load::any;
+        constexpr std::array whole{Load::u8, Load::u16, Load::u32, Load::u64};
+        constexpr std::array twos_complement{Load::i8, Load::i16, Load::i32, Load::i64};
+        constexpr std::array real{Load::any, Load::any, Load::f32, Load::f64};
+        const auto which = static_cast<std::size_t>(size - sizes.begin());
+        switch (coding.form) {
+        case Coding::Form::unsigned_integer: return whole[which];
+        case Coding::Form::twos_complement: return twos_complement[which];
+        case Coding::Form::ieee754: return real[which];
+        default: return Load::any;
+        }
+    }
+
+    /// A count that is a number read before it, once, and without a choice of raw or calibrated.
+    std::optional<Count> count_of(const Amount& amount, const Chain& chain, const Node& node) const {
+        if (!amount.known || !amount.parameter || !amount.cases.empty()) return std::nullopt;
+        const std::string name = model_.parameters[*amount.parameter].name + amount.member;
+        std::optional<std::uint32_t> found;
+        for (std::size_t i = 0; i < node.steps.size(); ++i) {
+            const Place& place = chain.places[i];
+            if (place.parameter != *amount.parameter || place.name != name) continue;
+            const bool plain = place.type->kind == PacketType::Kind::integer && place.type->coding.calibration.empty();
+            if (found || !plain || place.repeated != nullptr || node.steps[i].skipped) return std::nullopt;
+            found = static_cast<std::uint32_t>(i);
+        }
+        if (!found) return std::nullopt;
+        return Count{*found, amount.slope, amount.intercept};
+    }
+
     bool add_entries(const PacketContainer& container, Chain& chain) const {
         for (const PacketEntry& entry : container.entries) {
             const auto offset = fixed_bits(entry.offset_bits), count = fixed_bits(entry.count);
-            if (entry.what != PacketEntry::What::parameter || !offset || count != 1U ||
-                entry.when.form != xtce::Condition::Form::always || !entry.last_indices.empty())
+            const bool repeated = entry.count.parameter.has_value();
+            if (entry.what != PacketEntry::What::parameter || !offset || (!repeated && count != 1U) ||
+                fixed_bits(entry.gap_bits) != 0U || entry.when.form != xtce::Condition::Form::always ||
+                !entry.last_indices.empty())
                 return false;
             const PacketParameter& parameter = model_.parameters[entry.index];
             if (parameter.valid.form != xtce::Condition::Form::always) return false;
-            const std::uint32_t from = entry.from == PacketEntry::From::container_start ? 0 : chain.position_bits;
-            chain.position_bits = from + *offset;
+            const bool from_start = entry.from == PacketEntry::From::container_start;
+            if (from_start && (chain.moves || repeated)) return false;
+            chain.position_bits = (from_start ? 0 : chain.position_bits) + *offset;
+            if (repeated && !add_repeated(entry, parameter, chain)) return false;
+            if (repeated) continue;
             if (!add_type(entry.index, parameter.name, model_.types[parameter.type], chain, 0)) return false;
         }
+        return true;
+    }
+
+    bool add_repeated(const PacketEntry& entry, const PacketParameter& parameter, Chain& chain) const {
+        const PacketType& type = model_.types[parameter.type];
+        const auto bits = fixed_bits(type.coding.bits);
+        if (!is_number(type) || !bits || *bits == 0 || *bits > 64) return false;
+        chain.places.push_back(
+            {entry.index, parameter.name, chain.position_bits, *bits, &type, chain.moves, &entry.count});
+        chain.position_bits = 0;  // from its end
+        chain.moves = true;
         return true;
     }
 
@@ -136,9 +250,9 @@ class ContainerPlan::Compiler {
         const auto bits = fixed_bits(type.coding.bits);
         if (!is_number(type) || !bits || *bits == 0 || *bits > 64 || chain.position_bits > packet_bits_max)
             return false;
-        chain.places.push_back({parameter, name, chain.position_bits, *bits, &type});
-        chain.position_bits += *bits;
-        chain.furthest_bits = std::max(chain.furthest_bits, chain.position_bits);
+        chain.places.push_back({parameter, name, chain.position_bits, *bits, &type, chain.moves, nullptr});
+        chain.position_bits = chain.moves ? 0 : chain.position_bits + *bits;
+        chain.furthest_bits = std::max(chain.furthest_bits, chain.moves ? 0 : chain.position_bits);
         return true;
     }
 
@@ -153,7 +267,7 @@ class ContainerPlan::Compiler {
         const Place* found = nullptr;
         for (const Place& place : chain.places) {
             if (place.parameter != when.parameter || place.name != name) continue;
-            if (found != nullptr) return false;  // twice in the packet
+            if (found != nullptr || place.moves || place.repeated != nullptr) return false;
             found = &place;
         }
         const auto wanted = dictionary::to_integer(when.value);
@@ -161,8 +275,8 @@ class ContainerPlan::Compiler {
             !found->type->coding.calibration.empty() || found->bits > 53 || !wanted ||
             std::abs(static_cast<double>(*wanted)) > exact_max)
             return false;
-        tests.push_back(
-            {found->position_bits, found->bits, &found->type->coding, when.op, static_cast<double>(*wanted)});
+        tests.push_back({found->position_bits, found->bits, is_plain(found->type->coding), &found->type->coding,
+                         when.op, static_cast<double>(*wanted)});
         return true;
     }
 
@@ -210,7 +324,9 @@ const ContainerPlan::Node* ContainerPlan::node_of(std::span<const std::uint8_t> 
     const std::size_t packet_bits = packet.size() * 8;
     const auto holds = [&](const Test& test) {
         const std::uint64_t field = read_bits(packet, test.position_bits, test.bits);
-        return compared(as_double(number_in(field, test.bits, *test.coding)), test.op, test.wanted);
+        const double number =
+            test.plain ? static_cast<double>(field) : as_double(number_in(field, test.bits, *test.coding));
+        return compared(number, test.op, test.wanted);
     };
     const Node* node = root_ ? &nodes_[*root_] : nullptr;
     while (node != nullptr && node->compiled && node->bits <= packet_bits) {
@@ -229,34 +345,123 @@ const ContainerPlan::Node* ContainerPlan::node_of(std::span<const std::uint8_t> 
     return nullptr;
 }
 
+// Inlined: a call would cost as much as the reading.
+[[gnu::always_inline]] inline void ContainerPlan::read(const Step& step, std::span<const std::uint8_t> packet,
+                                                       std::size_t position_bits, std::size_t field, const Into& into) {
+    const std::uint8_t* const at = packet.data() + position_bits / 8;
+    const auto put = [&](double number) {
+        if (step.calibration == nullptr)
+            into.value[field] = std::optional{number};
+        else
+            into.value[field] = step.line != nullptr ? defined(step.line[1] * number + step.line[0])
+                                                     : calibrated_by(*step.calibration, number);
+    };
+    const auto whole = [&](std::uint64_t number) {
+        into.raw[field] = number;
+        put(static_cast<double>(number));
+    };
+    const auto signed_whole = [&](std::int64_t number) {
+        into.raw[field] = 0;
+        put(static_cast<double>(number));
+    };
+    const auto real = [&](double number, std::uint64_t bits) {
+        const bool is_defined = std::isfinite(number);
+        into.raw[field] = is_defined ? 0 : bits;
+        if (is_defined)
+            put(number);
+        else
+            into.value[field].reset();
+    };
+    switch (step.load) {
+    case Load::u8: return whole(at[0]);
+    case Load::u16: return whole(octets<2>(at));
+    case Load::u32: return whole(octets<4>(at));
+    case Load::u64: return whole(octets<8>(at));
+    case Load::i8: return signed_whole(static_cast<std::int8_t>(at[0]));
+    case Load::i16: return signed_whole(static_cast<std::int16_t>(octets<2>(at)));
+    case Load::i32: return signed_whole(static_cast<std::int32_t>(octets<4>(at)));
+    case Load::i64: return signed_whole(static_cast<std::int64_t>(octets<8>(at)));
+    case Load::f32: {
+        const auto bits = static_cast<std::uint32_t>(octets<4>(at));
+        return real(static_cast<double>(std::bit_cast<float>(bits)), bits);
+    }
+    case Load::f64: {
+        const auto bits = octets<8>(at);
+        return real(std::bit_cast<double>(bits), bits);
+    }
+    case Load::bits: return whole(read_bits(packet, position_bits, step.bits));
+    case Load::any: break;
+    }
+    const std::uint64_t bits = read_bits(packet, position_bits, step.bits);
+    const RawNumber number = number_in(bits, step.bits, *step.coding);
+    const double value = as_double(number);
+    const auto* raw = std::get_if<std::uint64_t>(&number);
+    if (!std::isfinite(value)) {
+        into.raw[field] = bits;
+        into.value[field].reset();
+        return;
+    }
+    into.raw[field] = raw != nullptr ? *raw : 0;
+    put(value);
+    if (step.text) into.texts->emplace_back(field, exact_text(number));
+}
+
+bool ContainerPlan::read_repeated(const Step& step, const Node& node, std::span<const std::uint8_t> packet,
+                                  std::size_t& position_bits, const Into& into) const {
+    const Count& count = counts_[step.count];
+    const auto& of = into.value[node.steps[count.step].field];
+    if (!of) return false;
+    const double times = count.slope * *of + count.intercept;
+    if (!(times >= 0.0) || times > repetitions_max || times != std::floor(times)) return false;
+    const auto repetitions = static_cast<std::size_t>(times);
+    if (repetitions * step.bits > packet.size() * 8 - position_bits) return false;
+    for (std::size_t i = 0; i < std::min<std::size_t>(repetitions, step.fields); ++i)
+        read(step, packet, position_bits + i * step.bits, fields_[step.first_field + i], into);
+    position_bits += repetitions * step.bits;
+    return true;
+}
+
 bool ContainerPlan::decode(std::span<const std::uint8_t> packet, dictionary::Decoded& into) const {
     const Node* node = node_of(packet);
     if (node == nullptr) return false;
-    const std::size_t behind_bits = packet.size() * 8 - node->bits;
-    if (behind_bits != 0 && (behind_bits != 8 * packet_crc_octets || crc16(packet) != 0)) return false;
     into.packet = static_cast<std::size_t>(node - nodes_.data());
-    into.raw.assign(node->fields, 0);
-    into.value.assign(node->fields, std::nullopt);
-    into.texts.clear();
-    for (const Step& step : node->steps) {
-        const std::uint64_t field = read_bits(packet, step.position_bits, step.bits);
-        const RawNumber number = number_in(field, step.bits, *step.coding);
-        const double value = as_double(number);
-        if (const auto* whole = std::get_if<std::uint64_t>(&number)) into.raw[step.field] = *whole;
-        if (!std::isfinite(value)) {
-            into.raw[step.field] = field;
-            continue;
-        }
-        into.value[step.field] = step.calibration == nullptr ? value : calibrated_by(*step.calibration, value);
-        if (step.text) into.texts.emplace_back(step.field, exact_text(number));
+    into.raw.resize(node->fields);
+    into.value.resize(node->fields);
+    if (!node->fills) {
+        std::ranges::fill(into.raw, 0);
+        std::ranges::fill(into.value, std::nullopt);
     }
+    into.texts.clear();
+    const Into fields{into.raw.data(), into.value.data(), &into.texts};
+    const std::size_t packet_bits = packet.size() * 8;
+    std::size_t end_bits = node->bits;
+    if (node->fixed) {
+        for (const Step& step : node->steps)
+            if (!step.skipped) read(step, packet, step.position_bits, step.field, fields);
+    } else {
+        std::size_t at = 0;
+        for (const Step& step : node->steps) {
+            at = step.moves ? at + step.position_bits : step.position_bits;
+            if (at > packet_bits) return false;
+            if (step.count != once) {
+                if (!read_repeated(step, *node, packet, at, fields)) return false;
+            } else {
+                if (step.bits > packet_bits - at) return false;
+                if (!step.skipped) read(step, packet, at, step.field, fields);
+                at += step.bits;
+            }
+            end_bits = std::max(end_bits, at);
+        }
+    }
+    const std::size_t behind_bits = packet_bits - end_bits;
+    if (behind_bits != 0 && (behind_bits != 8 * packet_crc_octets || crc16(packet) != 0)) return false;
     into.timed = node->clock.has_value();
     into.header.time = {};
     if (node->clock) {
         const auto& [fine_bit, coarse_bits, fine_bits] = *node->clock;
-        into.header.time.seconds =
-            static_cast<double>(read_bits(packet, primary_header_octets * 8, coarse_bits)) +
-            std::ldexp(static_cast<double>(read_bits(packet, fine_bit, fine_bits)), -static_cast<int>(fine_bits));
+        into.header.time.seconds = static_cast<double>(read_bits(packet, primary_header_octets * 8, coarse_bits)) +
+                                   static_cast<double>(read_bits(packet, fine_bit, fine_bits)) /
+                                       static_cast<double>(std::uint64_t{1} << fine_bits);
     }
     return true;
 }

@@ -13,13 +13,15 @@
 
 namespace aeolis::telemetry {
 
-/// The containers of a model whose fields stand at fixed places, compiled once: their packets are decoded without
-/// looking at the XTCE again, to the same values as by ContainerDecoder.
+/// The containers of a model whose layout is fixed, or depends on counts alone, compiled once: their packets are decoded
+/// without looking at the XTCE again, to the same values as by ContainerDecoder.
 ///
 /// In       the octets of a packet, any octets     Out   true, and the decoded fields; or false: the packet is none of
 ///          those, or not whole, and ContainerDecoder has to say what it is
-/// Compiled numbers, labels and flags, in aggregates too; restrictions that compare whole numbers. Not compiled: text,
-///          octets, arrays, repetitions, conditions on entries, times but coarse and fine counts, calibrations by context
+/// Compiled numbers, labels and flags, in aggregates too; repetitions as often as a number before them says;
+///          restrictions that compare whole numbers. Not compiled: text, octets, arrays, conditions on entries, times but
+///          coarse and fine counts, calibrations by context
+/// Rate     half of what a decoder written by hand reaches, for repetitions a quarter (bench/mission_decode_bench.cpp)
 /// Memory   some 64 octets a field and container
 /// Many threads may share one.
 class ContainerPlan {
@@ -39,17 +41,33 @@ class ContainerPlan {
     std::size_t compiled() const;
 
   private:
+    /// How a number is read; any: by its coding.
+    enum class Load : std::uint8_t { u8, u16, u32, u64, i8, i16, i32, i64, f32, f64, bits, any };
+    /// The number of repetitions: intercept + slope × the value of an earlier step.
+    struct Count {
+        std::uint32_t step = 0;
+        double slope = 1.0, intercept = 0.0;
+    };
+    static constexpr std::uint32_t once = 0xFFFFFFFF;
     struct Step {
-        std::uint32_t position_bits = 0;
+        std::uint32_t position_bits =
+            0;  ///< where the layout before it is fixed; else from the end of the step before it
         std::uint16_t field = 0;
         std::uint8_t bits = 0;
-        bool text = false;  ///< its exact value is needed
+        Load load = Load::any;
+        bool text = false;                          ///< its exact value is needed
+        bool moves = false;                         ///< position_bits counts from the end of the step before it
+        bool skipped = false;                       ///< it is no field
+        std::uint32_t count = once;                 ///< in counts_
+        std::uint32_t first_field = 0, fields = 0;  ///< of repetitions: in fields_
         const dictionary::xtce::Coding* coding = nullptr;
         const dictionary::xtce::Calibration* calibration = nullptr;  ///< null: none
+        const double* line = nullptr;  ///< its two coefficients where it is a straight line
     };
     struct Test {
         std::uint32_t position_bits = 0;
         unsigned bits = 0;
+        bool plain = false;  ///< unsigned, in the usual order
         const dictionary::xtce::Coding* coding = nullptr;
         dictionary::xtce::Condition::Operator op{};
         double wanted = 0.0;
@@ -62,8 +80,10 @@ class ContainerPlan {
     struct Node {
         bool compiled = false;  ///< false: packets that reach it are not decoded here
         bool abstract = false;
-        std::uint32_t bits = 0;  ///< of a whole packet
+        bool fixed = true;       ///< all its steps stand at fixed places
+        std::uint32_t bits = 0;  ///< of a whole packet, or up to the first repetition
         std::size_t fields = 0;
+        bool fills = false;  ///< each field has its step
         std::vector<Step> steps;
         std::optional<Clock> clock;
         std::vector<Test> tests;  ///< all must hold, on the packet of its base; none: it has no restriction
@@ -72,9 +92,21 @@ class ContainerPlan {
     class Compiler;
 
     const Node* node_of(std::span<const std::uint8_t> packet) const;
+    /// Where a packet's fields are written.
+    struct Into {
+        std::uint64_t* raw;
+        std::optional<double>* value;
+        std::vector<std::pair<std::size_t, std::string>>* texts;
+    };
+    static void read(const Step& step, std::span<const std::uint8_t> packet, std::size_t position_bits,
+                     std::size_t field, const Into& into);
+    bool read_repeated(const Step& step, const Node& node, std::span<const std::uint8_t> packet,
+                       std::size_t& position_bits, const Into& into) const;
 
     std::optional<std::size_t> root_;
     std::vector<Node> nodes_;  ///< by container
+    std::vector<Count> counts_;
+    std::vector<std::uint16_t> fields_;  ///< of repetitions
 };
 
 }  // namespace aeolis::telemetry

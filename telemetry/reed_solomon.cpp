@@ -39,7 +39,7 @@ struct Field {
         return a == 0 ? std::uint8_t{0} : power[std::size_t{log[a]} + order - log[b]];
     }
 };
-constexpr Field field;
+constexpr Field gf;
 
 /// alpha^(11 n)
 constexpr unsigned root_log(unsigned n) {
@@ -56,8 +56,8 @@ struct Bases {
         for (unsigned symbol = 1; symbol <= order; ++symbol) {
             unsigned sent = 0;
             for (unsigned i = 0; i < bits; ++i) {
-                unsigned log = (field.log[symbol] + basis_log * i) % order, trace = 0;
-                for (unsigned term = 0; term < bits; ++term, log = 2 * log % order) trace ^= field.power[log];
+                unsigned log = (gf.log[symbol] + basis_log * i) % order, trace = 0;
+                for (unsigned term = 0; term < bits; ++term, log = 2 * log % order) trace ^= gf.power[log];
                 sent = 2 * sent + (trace & 1U);
             }
             dual[symbol] = static_cast<std::uint8_t>(sent);
@@ -79,15 +79,15 @@ struct Division {
     constexpr Division() {
         std::array<std::uint8_t, checks + 1> generator{1};  // from the lowest power up
         for (unsigned n = 0; n < checks; ++n) {
-            const auto root = field.power[root_log(middle_root - checks / 2 + n)];
+            const auto root = gf.power[root_log(middle_root - checks / 2 + n)];
             for (std::size_t i = n + 1; i > 0; --i)
-                generator[i] = static_cast<std::uint8_t>(generator[i - 1] ^ field.times(root, generator[i]));
-            generator[0] = field.times(root, generator[0]);
+                generator[i] = static_cast<std::uint8_t>(generator[i - 1] ^ gf.times(root, generator[i]));
+            generator[0] = gf.times(root, generator[0]);
         }
         for (unsigned symbol = 0; symbol <= order; ++symbol)
             for (std::size_t i = 0; i < checks; ++i) {
                 auto& word = multiples[symbol][i / 8];
-                word = word << 8U | field.times(static_cast<std::uint8_t>(symbol), generator[checks - 1 - i]);
+                word = word << 8U | gf.times(static_cast<std::uint8_t>(symbol), generator[checks - 1 - i]);
             }
     }
 };
@@ -115,10 +115,10 @@ template <std::size_t checks>
 Polynomial syndromes_of(const Remainder<checks>& rest) {
     Polynomial syndromes{};
     for (unsigned n = 0; n < checks; ++n) {
-        const auto root = field.power[root_log(middle_root - checks / 2 + n)];
+        const auto root = gf.power[root_log(middle_root - checks / 2 + n)];
         std::uint8_t sum = 0;
         for (std::size_t i = 0; i < checks; ++i)
-            sum = static_cast<std::uint8_t>(field.times(sum, root) ^ (rest[i / 8] >> (56U - 8U * (i % 8)) & 0xFFU));
+            sum = static_cast<std::uint8_t>(gf.times(sum, root) ^ (rest[i / 8] >> (56U - 8U * (i % 8)) & 0xFFU));
         syndromes[n] = sum;
     }
     return syndromes;
@@ -139,12 +139,12 @@ Locator locator_of(const Polynomial& syndromes, std::size_t checks) {
     for (std::size_t n = 0; n < checks; ++n, ++shift) {
         std::uint8_t discrepancy = syndromes[n];
         for (std::size_t i = 1; i <= locator.errors; ++i)
-            discrepancy = static_cast<std::uint8_t>(discrepancy ^ field.times(locator.terms[i], syndromes[n - i]));
+            discrepancy = static_cast<std::uint8_t>(discrepancy ^ gf.times(locator.terms[i], syndromes[n - i]));
         if (discrepancy == 0) continue;
         const Polynomial last = locator.terms;
-        const auto factor = field.over(discrepancy, before_discrepancy);
+        const auto factor = gf.over(discrepancy, before_discrepancy);
         for (std::size_t i = shift; i <= checks; ++i)
-            locator.terms[i] = static_cast<std::uint8_t>(locator.terms[i] ^ field.times(factor, before[i - shift]));
+            locator.terms[i] = static_cast<std::uint8_t>(locator.terms[i] ^ gf.times(factor, before[i - shift]));
         if (2 * locator.errors > n) continue;
         locator.errors = n + 1 - locator.errors;
         before = last;
@@ -166,14 +166,14 @@ Places places_of(const Locator& locator, std::size_t symbols) {
     std::size_t terms = 0;
     for (std::size_t i = 0; i <= locator.errors; ++i) {
         if (locator.terms[i] == 0) continue;
-        logs[terms] = field.log[locator.terms[i]];
+        logs[terms] = gf.log[locator.terms[i]];
         steps[terms] = (order - root_log(static_cast<unsigned>(i))) % order;
         ++terms;
     }
     for (unsigned power = 0; power < symbols && places.size < locator.errors; ++power) {
         unsigned sum = 0;
         for (std::size_t i = 0; i < terms; ++i) {
-            sum ^= field.power[logs[i]];
+            sum ^= gf.power[logs[i]];
             logs[i] += steps[i];
             if (logs[i] >= order) logs[i] -= order;
         }
@@ -185,15 +185,15 @@ Places places_of(const Locator& locator, std::size_t symbols) {
 /// What is wrong at one place (Forney).
 std::uint8_t error_at(unsigned power, const Locator& locator, const Polynomial& evaluator, std::size_t checks) {
     const unsigned inverse_log = (order - root_log(power)) % order;
-    const auto inverse = field.power[inverse_log];
-    const auto square = field.times(inverse, inverse);
+    const auto inverse = gf.power[inverse_log];
+    const auto square = gf.times(inverse, inverse);
     std::uint8_t numerator = 0, derivative = 0;
     for (std::size_t i = locator.errors; i-- > 0;)
-        numerator = static_cast<std::uint8_t>(field.times(numerator, inverse) ^ evaluator[i]);
+        numerator = static_cast<std::uint8_t>(gf.times(numerator, inverse) ^ evaluator[i]);
     for (std::size_t i = (locator.errors - 1) / 2 + 1; i-- > 0;)
-        derivative = static_cast<std::uint8_t>(field.times(derivative, square) ^ locator.terms[2 * i + 1]);
+        derivative = static_cast<std::uint8_t>(gf.times(derivative, square) ^ locator.terms[2 * i + 1]);
     const auto first_root = static_cast<unsigned>(middle_root - checks / 2);
-    return field.times(field.power[inverse_log * (first_root - 1) % order], field.over(numerator, derivative));
+    return gf.times(gf.power[inverse_log * (first_root - 1) % order], gf.over(numerator, derivative));
 }
 
 /// Corrects a word in the conventional basis. @return symbols corrected; none: it cannot be
@@ -209,7 +209,7 @@ std::optional<std::size_t> correct_word(std::span<std::uint8_t> word) {
     Polynomial evaluator{};
     for (std::size_t i = 0; i < locator.errors; ++i)
         for (std::size_t k = 0; k <= i; ++k)
-            evaluator[i] = static_cast<std::uint8_t>(evaluator[i] ^ field.times(locator.terms[k], syndromes[i - k]));
+            evaluator[i] = static_cast<std::uint8_t>(evaluator[i] ^ gf.times(locator.terms[k], syndromes[i - k]));
     for (std::size_t i = 0; i < places.size; ++i)
         word[word.size() - 1 - places.power[i]] ^= error_at(places.power[i], locator, evaluator, checks);
     return places.size;

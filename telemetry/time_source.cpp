@@ -148,8 +148,8 @@ std::optional<PacketTime> TimeSource::time_in(std::span<const DecodedValue> valu
         return PacketTime{*first + std::ldexp(static_cast<double>(fraction), -static_cast<int>(parts[1]->bits)), epoch};
     }
     if (parts.size() != 1 || form == Form::cuc) return std::nullopt;
-    const double scale = form == Form::milliseconds ? milli : form == Form::microseconds ? micro : 1.0;
-    return PacketTime{*first * scale, epoch};
+    const double a_second = form == Form::milliseconds ? 1e3 : form == Form::microseconds ? 1e6 : 1.0;
+    return PacketTime{*first / a_second, epoch};
 }
 
 }  // namespace aeolis::telemetry

@@ -2,6 +2,9 @@
 #include "telemetry/link_rhythm.hpp"
 #include "tests/support/catch.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace telemetry_link_rhythm_test {
 
 using namespace aeolis;
@@ -10,7 +13,7 @@ using namespace aeolis::telemetry;
 namespace {
 
 Ert at_s(double seconds) {
-    return Ert{static_cast<std::int64_t>(seconds * 1e6)};
+    return Ert{std::llround(seconds * 1e6)};
 }
 
 }  // namespace
