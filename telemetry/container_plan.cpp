@@ -47,7 +47,7 @@ double as_double(const RawNumber& number) {
     return std::visit([](auto value) { return static_cast<double>(value); }, number);
 }
 
-bool compared(double left, xtce::Condition::Operator op, double right) {
+bool meets(double left, xtce::Condition::Operator op, double right) {
     switch (op) {
     case xtce::Condition::Operator::equal: return left == right;
     case xtce::Condition::Operator::not_equal: return left != right;
@@ -59,13 +59,13 @@ bool compared(double left, xtce::Condition::Operator op, double right) {
     return false;
 }
 
-std::optional<double> defined(double value) {
+std::optional<double> finite(double value) {
     return std::isfinite(value) ? std::optional{value} : std::nullopt;
 }
 
 /// A whole number from octets, the most significant first.
 template <unsigned count>
-std::uint64_t octets(const std::uint8_t* at) {
+std::uint64_t big_endian(const std::uint8_t* at) {
     std::uint64_t value = 0;
     for (unsigned i = 0; i < count; ++i) value = value << 8U | at[i];
     return value;
@@ -326,7 +326,7 @@ const ContainerPlan::Node* ContainerPlan::node_of(std::span<const std::uint8_t> 
         const std::uint64_t field = read_bits(packet, test.position_bits, test.bits);
         const double number =
             test.plain ? static_cast<double>(field) : as_double(number_in(field, test.bits, *test.coding));
-        return compared(number, test.op, test.wanted);
+        return meets(number, test.op, test.wanted);
     };
     const Node* node = root_ ? &nodes_[*root_] : nullptr;
     while (node != nullptr && node->compiled && node->bits <= packet_bits) {
@@ -353,7 +353,7 @@ const ContainerPlan::Node* ContainerPlan::node_of(std::span<const std::uint8_t> 
         if (step.calibration == nullptr)
             into.value[field] = std::optional{number};
         else
-            into.value[field] = step.line != nullptr ? defined(step.line[1] * number + step.line[0])
+            into.value[field] = step.line != nullptr ? finite(step.line[1] * number + step.line[0])
                                                      : calibrated_by(*step.calibration, number);
     };
     const auto whole = [&](std::uint64_t number) {
@@ -374,19 +374,19 @@ const ContainerPlan::Node* ContainerPlan::node_of(std::span<const std::uint8_t> 
     };
     switch (step.load) {
     case Load::u8: return whole(at[0]);
-    case Load::u16: return whole(octets<2>(at));
-    case Load::u32: return whole(octets<4>(at));
-    case Load::u64: return whole(octets<8>(at));
+    case Load::u16: return whole(big_endian<2>(at));
+    case Load::u32: return whole(big_endian<4>(at));
+    case Load::u64: return whole(big_endian<8>(at));
     case Load::i8: return signed_whole(static_cast<std::int8_t>(at[0]));
-    case Load::i16: return signed_whole(static_cast<std::int16_t>(octets<2>(at)));
-    case Load::i32: return signed_whole(static_cast<std::int32_t>(octets<4>(at)));
-    case Load::i64: return signed_whole(static_cast<std::int64_t>(octets<8>(at)));
+    case Load::i16: return signed_whole(static_cast<std::int16_t>(big_endian<2>(at)));
+    case Load::i32: return signed_whole(static_cast<std::int32_t>(big_endian<4>(at)));
+    case Load::i64: return signed_whole(static_cast<std::int64_t>(big_endian<8>(at)));
     case Load::f32: {
-        const auto bits = static_cast<std::uint32_t>(octets<4>(at));
+        const auto bits = static_cast<std::uint32_t>(big_endian<4>(at));
         return real(static_cast<double>(std::bit_cast<float>(bits)), bits);
     }
     case Load::f64: {
-        const auto bits = octets<8>(at);
+        const auto bits = big_endian<8>(at);
         return real(std::bit_cast<double>(bits), bits);
     }
     case Load::bits: return whole(read_bits(packet, position_bits, step.bits));

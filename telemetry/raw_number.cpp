@@ -55,7 +55,7 @@ RawNumber bcd_of(std::uint64_t field, unsigned bits) {
     return value;
 }
 
-std::optional<double> defined(double value) {
+std::optional<double> finite_or_none(double value) {
     return std::isfinite(value) ? std::optional{value} : std::nullopt;
 }
 
@@ -95,21 +95,21 @@ std::optional<double> calibrated_by(const dictionary::xtce::Calibration& calibra
         double sum = 0.0;
         for (auto term = calibration.polynomial.rbegin(); term != calibration.polynomial.rend(); ++term)
             sum = sum * raw + *term;
-        return defined(sum);
+        return finite_or_none(sum);
     }
     const auto& points = calibration.spline;
     auto above = std::ranges::upper_bound(points, raw, {}, [](const auto& point) { return point.first; });
     const bool outside = above == points.begin() || (above == points.end() && raw != points.back().first);
     if (outside && !calibration.extrapolate) return std::nullopt;
     if (calibration.flat || points.size() == 1)
-        return defined(above == points.begin() ? above->second : std::prev(above)->second);
+        return finite_or_none(above == points.begin() ? above->second : std::prev(above)->second);
     // The closest outside point and the interpolation beside it extend outside. [xtce-1.2]
     if (above == points.begin()) ++above;
     if (above == points.end()) --above;
     const auto below = std::prev(above);
-    if (raw == above->first) return defined(above->second);
+    if (raw == above->first) return finite_or_none(above->second);
     const double part = (raw - below->first) / (above->first - below->first);
-    return defined(below->second + part * (above->second - below->second));
+    return finite_or_none(below->second + part * (above->second - below->second));
 }
 
 }  // namespace aeolis::telemetry

@@ -26,7 +26,7 @@ const std::map<std::string_view, Form> forms{{"seconds", Form::seconds},
                                              {"cuc", Form::cuc},
                                              {"cds", Form::cds}};
 
-std::optional<double> number_of(const Datum& datum) {
+std::optional<double> seconds_in(const Datum& datum) {
     if (const auto* value = std::get_if<double>(&datum)) return *value;
     if (const auto* value = std::get_if<std::uint64_t>(&datum)) return static_cast<double>(*value);
     if (const auto* value = std::get_if<std::int64_t>(&datum)) return static_cast<double>(*value);
@@ -132,7 +132,7 @@ std::optional<PacketTime> TimeSource::time_in(std::span<const DecodedValue> valu
         return with_epoch(form == Form::cds ? cds_of(*octets) : cuc_of(*octets));
     }
     const auto number = [&](std::size_t i) {
-        return number_of(form == Form::cuc || form == Form::cds ? parts[i]->raw : parts[i]->calibrated);
+        return seconds_in(form == Form::cuc || form == Form::cds ? parts[i]->raw : parts[i]->calibrated);
     };
     const auto first = number(0);
     if (!first) return std::nullopt;

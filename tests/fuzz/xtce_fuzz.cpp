@@ -29,8 +29,17 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     for (const auto& value : contents.values) (void)telemetry::datum_text(value.calibrated);
     const telemetry::OtherMission mission{*model, 1};
     telemetry::Decoded decoded;
-    if (!mission.decode(std::span{data + 1 + start, text.size() - start}, decoded) &&
-        decoded.value.size() != mission.dictionary().packets[decoded.packet].fields.size())
-        std::abort();
+    const std::span packet{data + 1 + start, text.size() - start};
+    if (mission.decode(packet, decoded)) return 0;
+    const auto& fields = mission.dictionary().packets[decoded.packet].fields;
+    if (decoded.value.size() != fields.size()) std::abort();
+    // Compiled or not, the values are those of the decoder of all containers.
+    const auto whole = mission.contents(packet);
+    if (decoded.packet != whole.container_index || decoded.timed != whole.time.has_value()) std::abort();
+    std::size_t defined = 0, in_contents = 0;
+    for (const auto& value : decoded.value) defined += value ? 1 : 0;
+    for (const auto& value : whole.values)
+        in_contents += std::holds_alternative<std::monostate>(value.calibrated) ? 0 : 1;
+    if (defined > in_contents) std::abort();
     return 0;
 }
