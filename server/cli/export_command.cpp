@@ -103,8 +103,7 @@ int export_raw(const ExportOptions& options) {
     const auto from = ert_of("--from", options.from), to = ert_of("--to", options.to);
     if (!from || !to) return failed((from ? to : from).error().message, 2);
     int exit_code = 0;
-    const auto recorded =
-        recorded_dictionary(options.of.shared.dictionary, options.of.xtce, options.of.root, exit_code);
+    const auto recorded = recorded_dictionary(options.of.shared.dictionary, options.of.xtce, exit_code);
     if (!recorded) return exit_code;
     auto reader = archive::Reader::open(options.of.archive, recorded->dictionary, recorded->other.get());
     if (!reader) return said(reader.error());

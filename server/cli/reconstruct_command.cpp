@@ -97,7 +97,7 @@ void print_path(const Path& path, const RecordedLanding& recorded) {
 int reconstruct(const ReconstructOptions& options) {
     int exit_code = 0;
     const auto said = [](const Error& error) { return failed("reconstruct: " + error.message); };
-    const auto with = recorded_dictionary(options.of.shared.dictionary, {}, {}, exit_code);
+    const auto with = recorded_dictionary(options.of.shared.dictionary, {}, exit_code);
     if (!with) return exit_code;
     auto reader = archive::Reader::open(options.of.archive, with->dictionary);
     if (!reader) return said(reader.error());

@@ -135,7 +135,7 @@ Result<void> complete(archive::Reader& reader, archive::RunId run, v1::AsFlownRe
 /// Prints the as-flown report of a run.
 int report(const ReportOptions& options) {
     int exit_code = 0;
-    const auto recorded = recorded_dictionary(options.of.shared.dictionary, {}, {}, exit_code);
+    const auto recorded = recorded_dictionary(options.of.shared.dictionary, {}, exit_code);
     if (!recorded) return exit_code;
     auto reader = archive::Reader::open(options.of.archive, recorded->dictionary);
     if (!reader) return failed(reader.error().message);
