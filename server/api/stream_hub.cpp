@@ -53,6 +53,16 @@ v1::Samples some_of(const v1::Samples& samples, const std::vector<std::uint32_t>
     return chosen;
 }
 
+/// Tells packets apart by all of their channels, and their source: packets of other missions share the channels of their
+/// headers. (FNV-1a)
+std::uint64_t packet_of(const v1::Samples& samples) {
+    std::uint64_t hash = 14695981039346656037ULL;
+    const auto add = [&](std::uint64_t value) { hash = (hash ^ value) * 1099511628211ULL; };
+    add(static_cast<std::uint64_t>(samples.source()));
+    for (const auto id : samples.ids()) add(id);
+    return hash;
+}
+
 /// Whether any of the samples is of the given channels, which ascend.
 bool has_any(const v1::Samples& samples, const std::vector<std::uint32_t>& channels) {
     return std::ranges::any_of(samples.ids(), [&](auto id) { return std::ranges::binary_search(channels, id); });
@@ -126,7 +136,7 @@ SampleFacts SampleSpacing::next(const v1::Item& item, float stretch) {
     facts.stretch = stretch;
     facts.first = from_start_;
     facts.ascend = std::ranges::is_sorted(samples.ids());
-    const std::uint64_t packet = (std::uint64_t{samples.ids(0)} << 8) | static_cast<std::uint64_t>(samples.source());
+    const std::uint64_t packet = packet_of(samples);
     const auto last = std::ranges::find(last_, packet, &Last::packet);
     if (last == last_.end()) {
         last_.push_back({packet, facts.time_s, std::nullopt, stretch});

@@ -83,7 +83,7 @@ class SampleSpacing {
 
   private:
     struct Last {
-        std::uint64_t packet = 0;  ///< its first channel, and source
+        std::uint64_t packet = 0;  ///< its channels, and source
         double time_s = 0.0;
         std::optional<double> previous_s;
         float stretch = 1.0F;

@@ -438,6 +438,35 @@ TEST_CASE("only the channels of the subscription are sent", "[stream]") {
     CHECK(batch.items_size() == 0);
 }
 
+TEST_CASE("packets that share their header's channels have a rate each; another mission's rate counts by reception, "
+          "because its clock may stand still",
+          "[server][stream][downlink][R54]") {
+    std::vector<v1::Item> items;
+    for (int i = 0; i < 10; ++i)
+        for (const std::uint32_t own : {1U, 2U}) {
+            v1::Item& item = items.emplace_back();
+            item.set_seq(items.size());
+            item.set_ert_us(60'000 * i);
+            item.mutable_samples()->set_sclk(1000.0);
+            item.mutable_samples()->set_source(v1::SOURCE_REALTIME);
+            for (const std::uint32_t id : {0U, own}) {
+                item.mutable_samples()->add_ids(id);
+                item.mutable_samples()->add_values(i);
+            }
+        }
+    const auto given = [&](RateBy by) {
+        SampleSpacing spacing{true, by};
+        std::vector<ItemWithFacts> with_facts;
+        for (const auto& item : items) with_facts.push_back({&item, spacing.next(item)});
+        v1::Batch batch;
+        select_items({StreamFormat::json, true, {}, 20.0}, 0.05, with_facts, batch);
+        CHECK(batch.items_size() + static_cast<int>(batch.left_out()) == 20);
+        return batch.items_size();
+    };
+    CHECK(given(RateBy::vehicle) == 2);
+    CHECK(given(RateBy::reception) == 20);
+}
+
 TEST_CASE("channels that ascend are found as those that do not", "[stream]") {
     std::mt19937 random{7};
     for (int round = 0; round < 300; ++round) {
