@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <array>
 #include <compare>
+#include <map>
+#include <string>
 
 namespace aeolis::telemetry {
 namespace {
@@ -95,7 +97,7 @@ std::optional<ReedSolomonCode> code_of(std::span<const std::uint8_t> octets, std
     const auto blocks = first_codeblocks(octets, length);
     std::optional<ReedSolomonCode> best;
     std::size_t most = 1;
-    for (const std::size_t symbols : known_or(known.check_symbols, check_symbols))
+    for (const std::size_t symbols : check_symbols)  // all: a told 16 must not hide that they are of 32
         for (const std::size_t interleave : known_or(known.interleave, interleaves))
             for (const Basis basis : known_or(known.basis, std::array{Basis::dual, Basis::conventional}))
                 for (const bool randomised : known_or(known.randomised, std::array{false, true})) {
@@ -254,12 +256,31 @@ std::optional<FrameReceiver::Received> FrameReceiver::next() {
         window_.use(unit_octets());
         count_good();
         if (stream_.virtual_channel && frame->virtual_channel != *stream_.virtual_channel) continue;
-        const std::uint32_t channel = frame->spacecraft * 64U + frame->virtual_channel;
-        const auto placed = channels_[channel].place(frame->count, frame->count_modulus,
-                                                     std::span{block_}.first(stream_.frame_octets), counters_);
+        Channel& channel = channels_.at(channel_number(*frame), [&](const Channel& forgotten) {
+            counters_ += forgotten.counters;
+            ++counters_.forgotten_channels;
+        });
+        const auto placed = channel.order.place(frame->count, frame->count_modulus,
+                                                std::span{block_}.first(stream_.frame_octets), channel.counters);
         if (placed.place != FramePlace::repeated) return Received{*frame, placed.place};
     }
     return std::nullopt;
+}
+
+LinkCounters FrameReceiver::counters() const {
+    LinkCounters sum = counters_;
+    channels_.each([&](ChannelNumber, const Channel& channel) { sum += channel.counters; });
+    return sum;
+}
+
+std::vector<SequenceTotals> FrameReceiver::sequences() const {
+    std::vector<SequenceTotals> totals;
+    channels_.each([&](ChannelNumber channel, const Channel& counted) {
+        totals.push_back({"spacecraft " + std::to_string(channel / virtual_channels_max) + ", virtual channel " +
+                              std::to_string(channel % virtual_channels_max),
+                          false, counted.counters});
+    });
+    return totals;
 }
 
 std::optional<MarkerSpacing> marker_spacing(std::span<const std::uint8_t> octets) {
@@ -302,6 +323,7 @@ std::optional<FrameStream> recognise_cadus(std::span<const std::uint8_t> octets,
     std::optional<ReedSolomonCode> code;
     if (known.coded.value_or(!known.suffix_octets)) {
         code = code_of(octets, length, known);
+        if (code && known.check_symbols && code->check_symbols != *known.check_symbols) return std::nullopt;
         if (!code && known.coded) code = code_told(known);
         if (known.coded && (!code || !code->fits(length))) return std::nullopt;
         if (code) hints.suffix_octets = code->check_octets();

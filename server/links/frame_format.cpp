@@ -134,7 +134,7 @@ std::string words_of(const telemetry::FrameStream& stream) {
     return fmt::format("{} frames of {} octets{}{}{}{}", stream.kind == telemetry::FrameStream::Kind::tm ? "TM" : "AOS",
                        stream.frame_octets, stream.agreed.crc ? " with a CRC-16" : " without a CRC-16",
                        words_of_code(stream), stream.randomised ? ", randomised" : "",
-                       stream.marker ? ", behind sync markers" : "");
+                       stream.marker ? words_of_markers(stream.alignment) : "");
 }
 
 }  // namespace
