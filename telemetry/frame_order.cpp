@@ -21,10 +21,11 @@ std::size_t hash_of(std::span<const std::uint8_t> octets) {
 }  // namespace
 
 FrameOrder::Placed FrameOrder::place(std::uint32_t count, std::uint32_t modulus, std::span<const std::uint8_t> octets,
-                                     LinkCounters& counters) {
+                                     SequenceCounters& counters) {
     AEOLIS_CHECK(modulus > 0 && (modulus & (modulus - 1)) == 0);
     const std::uint32_t mask = modulus - 1;
     const auto hash = hash_of(octets);
+    ++counters.received;
     if (last_ == 0) {
         begin(count, modulus, hash);
         return {};
@@ -39,11 +40,13 @@ FrameOrder::Placed FrameOrder::place(std::uint32_t count, std::uint32_t modulus,
         begin(count, modulus, hash);
         return {.place = FramePlace::restarted};
     }
+    const auto turns = last_ / modulus;
     last_ += missing + std::uint64_t{1};
+    counters.wraps += last_ / modulus - turns;
     seen_.at(last_ % window_max) = {last_, hash};
     if (missing == 0) return {};
     ++counters.gaps;
-    counters.missing_frames += missing;
+    counters.missing += missing;
     return {.place = FramePlace::after_gap, .missing = missing};
 }
 
@@ -54,16 +57,16 @@ void FrameOrder::begin(std::uint32_t count, std::uint32_t modulus, std::size_t h
 }
 
 FrameOrder::Placed FrameOrder::place_earlier(std::uint64_t index, std::uint32_t count, std::uint32_t modulus,
-                                             std::size_t hash, LinkCounters& counters) {
+                                             std::size_t hash, SequenceCounters& counters) {
     auto& seen = seen_.at(index % window_max);
     if (seen.index != index) {
         seen = {index, hash};
-        ++counters.late_frames;
-        if (index > first_) --counters.missing_frames;  // as which it was counted
+        ++counters.late;
+        if (index > first_) --counters.missing;  // as which it was counted
         return {.place = FramePlace::late};
     }
     if (seen.hash == hash) {
-        ++counters.repeated_frames;
+        ++counters.repeated;
         return {.place = FramePlace::repeated};
     }
     ++counters.restarts;

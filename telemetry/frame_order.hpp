@@ -18,7 +18,7 @@ enum class FramePlace : std::uint8_t {
     restarted,  ///< the count began anew: what it continues is not known
 };
 
-/// Orders the frames of one channel by their count.
+/// Orders the frames of one channel, or the packets of one id, by their count.
 ///
 /// Rule     a count within the last `window_max` frames, or a quarter of the modulus, is an earlier frame: repeated
 ///          when its octets are those received with that count, restarted when they differ, late when none was
@@ -34,7 +34,7 @@ class FrameOrder {
     };
     /// Counts a frame in `counters`. @param modulus  of the count, a power of two @param octets  of the whole frame
     Placed place(std::uint32_t count, std::uint32_t modulus, std::span<const std::uint8_t> octets,
-                 LinkCounters& counters);
+                 SequenceCounters& counters);
 
   private:
     struct Seen {
@@ -43,7 +43,7 @@ class FrameOrder {
     };
     void begin(std::uint32_t count, std::uint32_t modulus, std::size_t hash);
     Placed place_earlier(std::uint64_t index, std::uint32_t count, std::uint32_t modulus, std::size_t hash,
-                         LinkCounters& counters);
+                         SequenceCounters& counters);
 
     std::uint64_t first_ = 0, last_ = 0;  ///< counts without their wrap; 0: none yet
     std::array<Seen, window_max> seen_{};

@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <array>
 #include <compare>
+#include <map>
+#include <string>
 
 namespace aeolis::telemetry {
 namespace {
@@ -254,12 +256,31 @@ std::optional<FrameReceiver::Received> FrameReceiver::next() {
         window_.use(unit_octets());
         count_good();
         if (stream_.virtual_channel && frame->virtual_channel != *stream_.virtual_channel) continue;
-        const std::uint32_t channel = frame->spacecraft * 64U + frame->virtual_channel;
-        const auto placed = channels_[channel].place(frame->count, frame->count_modulus,
-                                                     std::span{block_}.first(stream_.frame_octets), counters_);
+        Channel& channel = channels_.at(channel_number(*frame), [&](const Channel& forgotten) {
+            counters_ += forgotten.counters;
+            ++counters_.forgotten_channels;
+        });
+        const auto placed = channel.order.place(frame->count, frame->count_modulus,
+                                                std::span{block_}.first(stream_.frame_octets), channel.counters);
         if (placed.place != FramePlace::repeated) return Received{*frame, placed.place};
     }
     return std::nullopt;
+}
+
+LinkCounters FrameReceiver::counters() const {
+    LinkCounters sum = counters_;
+    channels_.each([&](ChannelNumber, const Channel& channel) { sum += channel.counters; });
+    return sum;
+}
+
+std::vector<SequenceTotals> FrameReceiver::sequences() const {
+    std::vector<SequenceTotals> totals;
+    channels_.each([&](ChannelNumber channel, const Channel& counted) {
+        totals.push_back({"spacecraft " + std::to_string(channel / virtual_channels_max) + ", virtual channel " +
+                              std::to_string(channel % virtual_channels_max),
+                          false, counted.counters});
+    });
+    return totals;
 }
 
 std::optional<MarkerSpacing> marker_spacing(std::span<const std::uint8_t> octets) {

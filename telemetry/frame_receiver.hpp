@@ -4,11 +4,11 @@
 #include "common/tm_frame.hpp"
 #include "telemetry/frame_order.hpp"
 #include "telemetry/octet_window.hpp"
+#include "telemetry/recent_map.hpp"
 #include "telemetry/reed_solomon.hpp"
 #include "telemetry/sync_search.hpp"
 
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <span>
 #include <vector>
@@ -31,11 +31,20 @@ struct FrameStream {
     std::optional<std::uint8_t> virtual_channel{};  ///< none: frames of all
 };
 
+/// A virtual channel of a spacecraft, as a number.
+using ChannelNumber = std::uint32_t;
+inline constexpr std::uint32_t virtual_channels_max = 64;
+constexpr ChannelNumber channel_number(const TransferFrame& frame) {
+    return frame.spacecraft * virtual_channels_max + frame.virtual_channel;
+}
+/// Chosen: followed at a time. Of more, which only damaged headers make, the one heard longest ago is forgotten.
+inline constexpr std::size_t channels_followed_max = 256;
+
 /// Finds TM or AOS frames in a stream of octets.
 ///
 /// In       octets as received, in pieces of any size       Out   readable frames, and the place of each in its
 ///          channel's sequence. Repeated ones are only counted
-/// Memory   the last piece and two frames
+/// Memory   the last piece, two frames, and 1 kB for each of channels_followed_max channels
 /// Sync     markers are searched at every bit, inverted too. One right behind a good frame may have wrong bits if the
 ///          frame has a code or a CRC-16 to be known by. At another bit than before, a frame without either is believed
 ///          when a marker follows it
@@ -58,7 +67,9 @@ class FrameReceiver {
     /// Ends the stream: counts octets of an incomplete frame as skipped.
     void end();
 
-    const LinkCounters& counters() const { return counters_; }
+    LinkCounters counters() const;
+    /// Of the virtual channels that are followed.
+    std::vector<SequenceTotals> sequences() const;
 
   private:
     std::size_t unit_octets() const;
@@ -78,8 +89,12 @@ class FrameReceiver {
     bool damaged_marker_ = false;      ///< in front
     std::vector<std::uint8_t> block_;  ///< frame and suffix
     Correction correction_;            ///< of that
-    std::map<std::uint32_t, FrameOrder> channels_;
-    LinkCounters counters_;
+    struct Channel {
+        FrameOrder order;
+        SequenceCounters counters;
+    };
+    RecentMap<ChannelNumber, Channel> channels_{channels_followed_max};
+    LinkCounters counters_;  ///< without the sequences of channels_
 };
 
 /// Most frequent distance of two markers with one alignment, without the marker.

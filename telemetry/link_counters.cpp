@@ -14,6 +14,46 @@ std::int64_t whole_seconds(Ert at) {
 
 }  // namespace
 
+SequenceCounters& SequenceCounters::operator+=(const SequenceCounters& other) {
+    received += other.received;
+    gaps += other.gaps;
+    missing += other.missing;
+    repeated += other.repeated;
+    late += other.late;
+    restarts += other.restarts;
+    wraps += other.wraps;
+    return *this;
+}
+
+LinkCounters& LinkCounters::operator+=(const SequenceCounters& frames_of_channel) {
+    gaps += frames_of_channel.gaps;
+    missing_frames += frames_of_channel.missing;
+    repeated_frames += frames_of_channel.repeated;
+    late_frames += frames_of_channel.late;
+    restarts += frames_of_channel.restarts;
+    return *this;
+}
+
+LinkCounters& LinkCounters::operator+=(const LinkCounters& other) {
+    octets += other.octets;
+    frames += other.frames;
+    bad_crc += other.bad_crc;
+    bad_header += other.bad_header;
+    skipped_octets += other.skipped_octets;
+    gaps += other.gaps;
+    missing_frames += other.missing_frames;
+    repeated_frames += other.repeated_frames;
+    late_frames += other.late_frames;
+    restarts += other.restarts;
+    cut_frames += other.cut_frames;
+    slips += other.slips;
+    corrected_frames += other.corrected_frames;
+    corrected_symbols += other.corrected_symbols;
+    uncorrectable_frames += other.uncorrectable_frames;
+    forgotten_channels += other.forgotten_channels;
+    return *this;
+}
+
 void RateMeter::add(Ert at, std::uint64_t amount) {
     const std::int64_t now_s = std::max(whole_seconds(at), newest_s_);
     const auto passed = std::min<std::int64_t>(now_s - newest_s_, places);

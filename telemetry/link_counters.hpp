@@ -5,8 +5,30 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 
 namespace aeolis::telemetry {
+
+/// Counters of one sequence: the frames of a virtual channel, or the packets of an id.
+struct SequenceCounters {
+    std::uint64_t received = 0;  ///< also repeated ones
+    std::uint64_t gaps = 0;      ///< counts that do not continue the last
+    std::uint64_t missing = 0;   ///< by the count; multiples of its modulus go unnoticed
+    std::uint64_t repeated = 0;  ///< received before
+    std::uint64_t late = 0;      ///< received behind later ones; not missing any more
+    std::uint64_t restarts = 0;  ///< the count began anew
+    std::uint64_t wraps = 0;     ///< the count went from its largest value on to 0
+
+    SequenceCounters& operator+=(const SequenceCounters& other);
+    bool operator==(const SequenceCounters&) const = default;
+};
+
+/// A sequence by name, such as "spacecraft 76, virtual channel 1" or "virtual channel 1, APID 291".
+struct SequenceTotals {
+    std::string name;
+    bool packets = false;  ///< of packets; false: of frames
+    SequenceCounters counters;
+};
 
 /// Counters of a link's reception. Every received octet counts once: in a good frame, or as skipped.
 struct LinkCounters {
@@ -27,6 +49,12 @@ struct LinkCounters {
     std::uint64_t corrected_symbols = 0;     ///< in those
     std::uint64_t uncorrectable_frames = 0;  ///< not read: too many symbols are wrong
 
+    /// Channels given up because more were heard than are followed; the count of each begins anew.
+    std::uint64_t forgotten_channels = 0;
+
+    /// Adds frames' sequences.
+    LinkCounters& operator+=(const SequenceCounters& frames);
+    LinkCounters& operator+=(const LinkCounters& other);
     bool operator==(const LinkCounters&) const = default;
 };
 

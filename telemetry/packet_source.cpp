@@ -1,12 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "telemetry/packet_source.hpp"
 
+#include "common/bytes.hpp"
 #include "common/space_packet.hpp"
 
 #include <array>
+#include <string>
 #include <utility>
 
 namespace aeolis::telemetry {
+namespace {
+
+// Of the first two octets of a packet.
+constexpr unsigned secondary_header_flag = 0x0800, command_flag = 0x1000, apid_mask = 0x07FF;
+constexpr std::size_t count_bit = 18, count_bits = 14;
+
+}  // namespace
 
 std::optional<DownlinkFormat> downlink_format(std::string_view name) {
     constexpr std::array<std::pair<std::string_view, DownlinkFormat>, 5> formats{{{"packets", DownlinkFormat::packets},
@@ -41,9 +50,11 @@ void BarePackets::end() {
     lost_ = true;
 }
 
-void BarePackets::end_datagram() {
+bool BarePackets::end_datagram() {
+    const bool whole = window_.rest().empty();
     end();
     lost_ = false;
+    return whole;
 }
 
 void PacketSource::take_from(BarePackets& packets) {
@@ -52,9 +63,13 @@ void PacketSource::take_from(BarePackets& packets) {
 
 void PacketSource::take_from(Frames& frames) {
     while (const auto received = frames.receiver.next()) {
-        PacketExtractor& channel = frames.channels[received->frame.spacecraft * 64U + received->frame.virtual_channel];
+        const ChannelNumber number = channel_number(received->frame);
+        PacketExtractor& channel = frames.channels.at(number, [&](PacketExtractor& forgotten) {
+            forgotten.end();
+            frames.forgotten += forgotten.counters();
+        });
         channel.add(received->frame, received->place);
-        while (const auto packet = channel.next()) keep(*packet);
+        while (const auto packet = channel.next()) keep(*packet, number);
     }
 }
 
@@ -86,16 +101,22 @@ void PacketSource::end() {
         take_from(*pltus);
     }
     if (auto* frames = std::get_if<Frames>(&source_))
-        for (auto& [id, channel] : frames->channels) channel.end();
+        frames->channels.each([](ChannelNumber, PacketExtractor& channel) { channel.end(); });
     segments_.end();
 }
 
-void PacketSource::end_datagram() {
-    if (auto* packets = std::get_if<BarePackets>(&source_)) packets->end_datagram();
+bool PacketSource::end_datagram() {
+    auto* packets = std::get_if<BarePackets>(&source_);
+    return packets == nullptr || packets->end_datagram();
 }
 
-void PacketSource::keep(std::span<const std::uint8_t> packet) {
-    if (const auto whole = segments_.add(packet)) whole_.emplace_back(whole->begin(), whole->end());
+void PacketSource::keep(std::span<const std::uint8_t> packet, std::optional<ChannelNumber> channel) {
+    const auto id = static_cast<std::uint16_t>(read_bits(packet, 0, 16) & ~secondary_header_flag);
+    auto& sequence = packet_ids_.at({channel, id}, [](const PacketSequence&) {});
+    sequence.order.place(static_cast<std::uint32_t>(read_bits(packet, count_bit, count_bits)), 1U << count_bits, packet,
+                         sequence.counters);
+    if (const auto whole = segments_.add(packet, channel ? *channel + 1 : 0))
+        whole_.emplace_back(whole->begin(), whole->end());
 }
 
 std::optional<std::span<const std::uint8_t>> PacketSource::next() {
@@ -120,10 +141,29 @@ PacketCounters PacketSource::packets() const {
     PacketCounters sum;
     if (const auto* packets = std::get_if<BarePackets>(&source_)) sum = packets->counters();
     if (const auto* pltus = std::get_if<Pltus>(&source_)) sum = pltus->packets.counters();
-    if (const auto* frames = std::get_if<Frames>(&source_))
-        for (const auto& [id, channel] : frames->channels) sum += channel.counters();
+    if (const auto* frames = std::get_if<Frames>(&source_)) {
+        sum = frames->forgotten;
+        frames->channels.each([&](ChannelNumber, const PacketExtractor& channel) { sum += channel.counters(); });
+    }
     sum.lost_segments += segments_.lost_segments();
     return sum;
+}
+
+std::vector<SequenceTotals> PacketSource::sequences() const {
+    std::vector<SequenceTotals> totals;
+    if (const auto* frames = std::get_if<Frames>(&source_)) totals = frames->receiver.sequences();
+    if (const auto* pltus = std::get_if<Pltus>(&source_)) totals = pltus->receiver.sequences();
+    packet_ids_.each([&](const PacketKey& key, const PacketSequence& sequence) {
+        const auto& [channel, id] = key;
+        std::string name;
+        if (channel)
+            name = "spacecraft " + std::to_string(*channel / virtual_channels_max) + ", virtual channel " +
+                   std::to_string(*channel % virtual_channels_max) + ", ";
+        name += "APID " + std::to_string(id & apid_mask);
+        if ((id & command_flag) != 0) name += " (telecommand)";
+        totals.push_back({name, true, sequence.counters});
+    });
+    return totals;
 }
 
 }  // namespace aeolis::telemetry

@@ -7,10 +7,10 @@
 
 #include <cstdint>
 #include <deque>
-#include <map>
 #include <optional>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -29,8 +29,8 @@ class BarePackets {
     std::optional<std::span<const std::uint8_t>> next();
     /// Ends the stream.
     void end();
-    /// Ends a datagram: the next octets begin with a packet, whatever stands before them.
-    void end_datagram();
+    /// Ends a datagram: the next octets begin with a packet, whatever stands before them. False when octets were left.
+    bool end_datagram();
     bool lost() const { return lost_; }
     const PacketCounters& counters() const { return counters_; }
 
@@ -48,14 +48,15 @@ class BarePackets {
 class PacketSource {
   public:
     static PacketSource of_packets(std::size_t prefix_octets) { return PacketSource{BarePackets{prefix_octets}}; }
-    static PacketSource of_frames(const FrameStream& stream) { return PacketSource{Frames{FrameReceiver{stream}, {}}}; }
+    static PacketSource of_frames(const FrameStream& stream) { return PacketSource{Frames{FrameReceiver{stream}}}; }
     static PacketSource of_pltus() { return PacketSource{Pltus{}}; }
 
     void receive(std::span<const std::uint8_t> octets);
     /// Ends the stream; next() may then return more packets.
     void end();
-    /// Ends a datagram, which holds whole packets or frames.
-    void end_datagram();
+    /// Ends a datagram, which holds whole packets, or a piece of a stream of frames. False when it held anything else
+    /// than whole packets.
+    bool end_datagram();
     /// The next packet; valid until the next call of any function.
     std::optional<std::span<const std::uint8_t>> next();
 
@@ -63,11 +64,15 @@ class PacketSource {
     bool lost() const;
     LinkCounters link() const;  ///< of frames; zero for bare packets
     PacketCounters packets() const;
+    /// Of the virtual channels of frames, and of packets by virtual channel and id (APID, type and version).
+    std::vector<SequenceTotals> sequences() const;
+    static constexpr std::size_t packet_ids_followed_max = 4096;  ///< chosen: 1 kB each
 
   private:
     struct Frames {
         FrameReceiver receiver;
-        std::map<std::uint32_t, PacketExtractor> channels;  ///< by spacecraft and virtual channel
+        RecentMap<ChannelNumber, PacketExtractor> channels{channels_followed_max};
+        PacketCounters forgotten{};  ///< of channels that were given up
     };
     struct Pltus {
         PltuReceiver receiver;
@@ -78,9 +83,17 @@ class PacketSource {
     void take_from(Frames& frames);
     void take_from(Pltus& pltus);
     void take_from(BarePackets& packets);
-    void keep(std::span<const std::uint8_t> packet);
+    /// @param channel  of the frame; none: bare packets, PLTUs
+    void keep(std::span<const std::uint8_t> packet, std::optional<ChannelNumber> channel = {});
+
+    struct PacketSequence {
+        FrameOrder order;
+        SequenceCounters counters;
+    };
+    using PacketKey = std::pair<std::optional<ChannelNumber>, std::uint16_t>;  ///< channel; version, type and APID
 
     Source source_;
+    RecentMap<PacketKey, PacketSequence> packet_ids_{packet_ids_followed_max};
     SegmentAssembler segments_;
     std::deque<std::vector<std::uint8_t>> whole_;
     std::vector<std::uint8_t> given_;

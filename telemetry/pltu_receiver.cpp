@@ -2,6 +2,7 @@
 #include "telemetry/pltu_receiver.hpp"
 
 #include <algorithm>
+#include <string>
 
 namespace aeolis::telemetry {
 
@@ -47,9 +48,25 @@ std::optional<PltuReceiver::Received> PltuReceiver::next() {
         ++counters_.frames;
         const ProximityHeader& header = frame->header;
         const std::uint32_t stream = header.spacecraft * 4U + header.physical_channel * 2U + header.expedited;
-        const auto placed = streams_[stream].place(header.sequence, 256, rest.first(size), counters_);
+        Stream& counted = streams_[stream];
+        const auto placed = counted.order.place(header.sequence, 256, rest.first(size), counted.counters);
         if (placed.place != FramePlace::repeated) return Received{*frame, placed.place};
     }
+}
+
+LinkCounters PltuReceiver::counters() const {
+    LinkCounters sum = counters_;
+    for (const auto& [id, stream] : streams_) sum += stream.counters;
+    return sum;
+}
+
+std::vector<SequenceTotals> PltuReceiver::sequences() const {
+    std::vector<SequenceTotals> totals;
+    for (const auto& [id, stream] : streams_)
+        totals.push_back({"spacecraft " + std::to_string(id / 4) + ", physical channel " + std::to_string(id / 2 % 2) +
+                              (id % 2 != 0 ? ", expedited" : ", sequence controlled"),
+                          false, stream.counters});
+    return totals;
 }
 
 }  // namespace aeolis::telemetry

@@ -9,6 +9,7 @@
 #include <map>
 #include <optional>
 #include <span>
+#include <vector>
 
 namespace aeolis::telemetry {
 
@@ -35,14 +36,20 @@ class PltuReceiver {
     /// Marks a pause or the end of the stream: next() then searches an incomplete frame too, until more octets arrive.
     void end() { ended_ = true; }
 
-    const LinkCounters& counters() const { return counters_; }
+    LinkCounters counters() const;
+    /// Of each spacecraft, channel and service.
+    std::vector<SequenceTotals> sequences() const;
 
   private:
     void skip(std::size_t octets);
 
     OctetWindow window_;
-    std::map<std::uint32_t, FrameOrder> streams_;
-    LinkCounters counters_;
+    struct Stream {
+        FrameOrder order;
+        SequenceCounters counters;
+    };
+    std::map<std::uint32_t, Stream> streams_;
+    LinkCounters counters_;  ///< without the sequences of streams_
     bool ended_ = false;
 };
 

@@ -17,25 +17,26 @@ constexpr std::uint8_t whole_flags = 0xC0;
 
 }  // namespace
 
-std::optional<std::span<const std::uint8_t>> SegmentAssembler::add(std::span<const std::uint8_t> packet) {
+std::optional<std::span<const std::uint8_t>> SegmentAssembler::add(std::span<const std::uint8_t> packet,
+                                                                   std::uint32_t channel) {
     AEOLIS_CHECK(packet.size() > primary_header_octets);
     const auto part = static_cast<Part>(read_bits(packet, flags_octet * 8, 2));
     if (part == Part::whole) return packet;
     const bool secondary_header = read_bits(packet, 4, 1) != 0;
-    const auto apid = static_cast<std::uint16_t>(read_bits(packet, 5, 11));
+    const Key key{channel, static_cast<std::uint16_t>(read_bits(packet, 3, 1) << 11U | read_bits(packet, 5, 11))};
     const auto count = static_cast<std::uint16_t>(read_bits(packet, flags_octet * 8 + 2, 14));
     if (part == Part::first) {
-        give_up(apid);
-        if (begun_.size() == apids_max) give_up(begun_.begin()->first);
-        begun_[apid] = {{packet.begin(), packet.end()}, 1, count};
+        give_up(key);
+        if (begun_.size() == unfinished_max) give_up(Key{begun_.begin()->first});
+        begun_[key] = {{packet.begin(), packet.end()}, 1, count};
         return std::nullopt;
     }
-    const auto found = begun_.find(apid);
+    const auto found = begun_.find(key);
     const auto data = packet.subspan(primary_header_octets);
     const bool continues = found != begun_.end() && count == ((found->second.count + 1) & packet_count_mask) &&
                            !secondary_header && found->second.octets.size() + data.size() <= space_packet_octets_max;
     if (!continues) {
-        give_up(apid);
+        give_up(key);
         ++lost_;
         return std::nullopt;
     }
@@ -53,15 +54,15 @@ std::optional<std::span<const std::uint8_t>> SegmentAssembler::add(std::span<con
     return whole_;
 }
 
-void SegmentAssembler::give_up(std::uint16_t apid) {
-    const auto found = begun_.find(apid);
+void SegmentAssembler::give_up(const Key& key) {
+    const auto found = begun_.find(key);
     if (found == begun_.end()) return;
     lost_ += found->second.segments;
     begun_.erase(found);
 }
 
 void SegmentAssembler::end() {
-    while (!begun_.empty()) give_up(begun_.begin()->first);
+    while (!begun_.empty()) give_up(Key{begun_.begin()->first});
 }
 
 }  // namespace aeolis::telemetry

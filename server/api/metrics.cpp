@@ -5,11 +5,13 @@
 #include "server/base/digest.hpp"
 #include "server/base/version.hpp"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <fstream>
 #include <iterator>
 #include <sys/resource.h>
 #include <unistd.h>
+#include <utility>
 
 namespace aeolis::server {
 namespace {
@@ -75,6 +77,54 @@ void write(MetricsText& text, const PipelineThread::Figures& pipeline) {
         text.line("link_octets_total", fmt::format("{{link=\"{}\"}}", link), received.octets);
 }
 
+/// Of the run that goes on, or the last one: counters begin anew with each run.
+void write(MetricsText& text, const std::map<std::string, archive::LinkTotals>& totals) {
+    constexpr std::size_t sequences_max = 256;  // chosen: of a link here; all are in /proof
+    text.begin("link_frames_total", "counter", "frames of a link, by what became of them");
+    for (const auto& [link, told] : totals) {
+        const auto& counted = told.counters;
+        for (const auto& [kind, number] : {std::pair{"good", counted.frames},
+                                           {"bad_crc", counted.bad_crc},
+                                           {"bad_header", counted.bad_header},
+                                           {"missing", counted.missing_frames},
+                                           {"repeated", counted.repeated_frames},
+                                           {"late", counted.late_frames},
+                                           {"cut", counted.cut_frames},
+                                           {"corrected", counted.corrected_frames},
+                                           {"uncorrectable", counted.uncorrectable_frames}})
+            text.line("link_frames_total", fmt::format("{{link=\"{}\",kind=\"{}\"}}", link, kind), number);
+    }
+    text.begin("link_faults_total", "counter", "what else was wrong on a link, and what was made good");
+    for (const auto& [link, told] : totals)
+        for (const auto& [kind, number] : {std::pair{"gaps", told.counters.gaps},
+                                           {"restarts", told.counters.restarts},
+                                           {"slips", told.counters.slips},
+                                           {"skipped_octets", told.counters.skipped_octets},
+                                           {"corrected_symbols", told.counters.corrected_symbols},
+                                           {"forgotten_channels", told.counters.forgotten_channels},
+                                           {"encapsulation_packets", told.packets.encapsulation_packets},
+                                           {"cut_packets", told.packets.cut_packets},
+                                           {"lost_segments", told.packets.lost_segments},
+                                           {"unreadable_octets", told.packets.unreadable_octets},
+                                           {"bad_datagrams", told.bad_datagrams}})
+            text.line("link_faults_total", fmt::format("{{link=\"{}\",kind=\"{}\"}}", link, kind), number);
+    text.begin("sequence_total", "counter", "frames of a virtual channel or packets of an id, by their counts");
+    for (const auto& [link, told] : totals)
+        for (std::size_t i = 0; i < std::min(told.sequences.size(), sequences_max); ++i) {
+            const auto& [name, packets, counted] = told.sequences[i];
+            for (const auto& [kind, number] : {std::pair{"received", counted.received},
+                                               {"missing", counted.missing},
+                                               {"repeated", counted.repeated},
+                                               {"late", counted.late},
+                                               {"restarts", counted.restarts},
+                                               {"wraps", counted.wraps}})
+                text.line("sequence_total",
+                          fmt::format("{{link=\"{}\",of=\"{}\",sequence=\"{}\",kind=\"{}\"}}", link,
+                                      packets ? "packets" : "frames", name, kind),
+                          number);
+        }
+}
+
 void write(MetricsText& text, const StreamHub& hub) {
     const auto& figures = hub.figures;
     text.gauge("stream_clients", "WebSocket clients", hub.sessions());
@@ -122,7 +172,9 @@ void Api::metrics(const ApiRequest& call) {
               fmt::format("{{version=\"{}\",schema=\"{}\",dictionary=\"{}\"}}", version, archive::schema_version,
                           parts_.dictionary.id),
               1);
-    write(text, parts_.pipeline.figures());
+    const auto figures = parts_.pipeline.figures();
+    write(text, figures);
+    write(text, figures.totals);
     text.gauge("archive_fault", "1 while nothing can be stored; /healthz says why",
                parts_.pipeline.fault().empty() ? 0 : 1);
     text.counter("clock_jumps_total", "jumps of the system's clock against the monotonic clock",

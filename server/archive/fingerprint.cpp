@@ -52,6 +52,8 @@ const std::vector<Rows>& rows_of_run() {
         for (const std::string name : {"requests", "run_solution", "run_anchors"})
             rows.push_back({name, "SELECT * FROM " + name + " WHERE run = ?1 ORDER BY 2", true});
         rows.push_back({"link_totals", "SELECT * FROM link_totals WHERE run = ?1 ORDER BY link", true});
+        rows.push_back(
+            {"sequence_totals", "SELECT * FROM sequence_totals WHERE run = ?1 ORDER BY link, packets, name", true});
         for (const std::string column : {"outcome", "outcome_reason", "seed", "digest", "scenario_text"})
             rows.push_back({"runs." + column, "SELECT " + column + " FROM runs WHERE run = ?1", true});
         rows.push_back({"runs",

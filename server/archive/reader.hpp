@@ -260,6 +260,7 @@ class Reader {
     explicit Reader(std::unique_ptr<State> state);
     Result<void> add_tones(RunId run, bool complete, v1::ProofReport& report);
     Result<void> add_counters(RunId run, v1::ProofReport& report);
+    Result<void> add_sequences(RunId run, v1::ProofReport& report);
     Result<telemetry::AlarmDesk> alarm_desk(RunId run, std::vector<v1::Item>& changes);
     std::unique_ptr<State> state_;
 };

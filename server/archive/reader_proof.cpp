@@ -41,7 +41,12 @@ constexpr char selections_sql[] =
 
 constexpr char counters_sql[] =
     "SELECT link, octets, frames, bad_crc, bad_header, skipped_octets, gaps, missing_frames,"
-    " repeated_frames, octets_per_s, late_frames, restarts FROM link_totals WHERE run = ?1 ORDER BY link";
+    " repeated_frames, octets_per_s, late_frames, restarts, cut_frames, slips, corrected_frames, corrected_symbols,"
+    " uncorrectable_frames, forgotten_channels, packets, idle_packets, encapsulation_packets, cut_packets,"
+    " lost_segments, unreadable_octets, bad_datagrams FROM link_totals WHERE run = ?1 ORDER BY link";
+constexpr char sequences_sql[] =
+    "SELECT link, packets, name, received, gaps, missing, repeated, late, restarts, wraps FROM sequence_totals"
+    " WHERE run = ?1 ORDER BY link, packets, name";
 
 constexpr double half_a_symbol_s = 5.0;  // a tone lasts 10 s; no two begin within less
 
@@ -206,7 +211,7 @@ Result<void> Reader::add_counters(RunId run, v1::ProofReport& report) {
     for (;;) {
         auto found = (*rows)->step();
         if (!found) return found.error();
-        if (!*found) return {};
+        if (!*found) return add_sequences(run, report);
         const auto& row = **rows;
         const auto number = [&](int column) { return static_cast<std::uint64_t>(row.integer(column)); };
         auto& counters = *report.add_counters();
@@ -222,6 +227,46 @@ Result<void> Reader::add_counters(RunId run, v1::ProofReport& report) {
         counters.set_octets_per_s(row.real(9));
         counters.set_late_frames(number(10));
         counters.set_restarts(number(11));
+        counters.set_cut_frames(number(12));
+        counters.set_slips(number(13));
+        counters.set_corrected_frames(number(14));
+        counters.set_corrected_symbols(number(15));
+        counters.set_uncorrectable_frames(number(16));
+        counters.set_forgotten_channels(number(17));
+        counters.set_packets(number(18));
+        counters.set_idle_packets(number(19));
+        counters.set_encapsulation_packets(number(20));
+        counters.set_cut_packets(number(21));
+        counters.set_lost_segments(number(22));
+        counters.set_unreadable_octets(number(23));
+        counters.set_bad_datagrams(number(24));
+    }
+}
+
+/// Adds the sequences of each link to its counters, which come in the same order.
+Result<void> Reader::add_sequences(RunId run, v1::ProofReport& report) {
+    auto rows = state_->query(sequences_sql);
+    if (!rows) return rows.error();
+    (*rows)->bind(1, std::int64_t{run.value});
+    for (;;) {
+        auto found = (*rows)->step();
+        if (!found) return found.error();
+        if (!*found) return {};
+        const auto& row = **rows;
+        const auto number = [&](int column) { return static_cast<std::uint64_t>(row.integer(column)); };
+        auto& links = *report.mutable_counters();
+        const auto link = std::ranges::find(links, row.text(0), &v1::LinkCounters::link);
+        if (link == links.end()) continue;
+        auto& sequence = *link->add_sequences();
+        sequence.set_packets(number(1) != 0);
+        sequence.set_name(std::string{row.text(2)});
+        sequence.set_received(number(3));
+        sequence.set_gaps(number(4));
+        sequence.set_missing(number(5));
+        sequence.set_repeated(number(6));
+        sequence.set_late(number(7));
+        sequence.set_restarts(number(8));
+        sequence.set_wraps(number(9));
     }
 }
 

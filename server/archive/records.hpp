@@ -9,6 +9,7 @@
 #include "telemetry/alarm_desk.hpp"
 #include "telemetry/explanation.hpp"
 #include "telemetry/link_counters.hpp"
+#include "telemetry/packet_extractor.hpp"
 #include "telemetry/situation.hpp"
 #include "telemetry/unit_identity.hpp"
 
@@ -219,11 +220,14 @@ struct RecordingTotals {
     double progress = 0.0;
 };
 
-/// Totals of a UHF link since the start of the run; see telemetry::LinkCounters.
+/// Totals of a link since the start of the run; see telemetry::LinkCounters.
 struct LinkTotals {
     std::string link;
     telemetry::LinkCounters counters;
     double octets_per_s = 0.0;
+    telemetry::PacketCounters packets{};
+    std::uint64_t bad_datagrams = 0;  ///< that hold anything but whole packets
+    std::vector<telemetry::SequenceTotals> sequences{};
 };
 
 struct RunStart {

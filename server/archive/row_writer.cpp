@@ -57,7 +57,9 @@ Result<RowWriter> RowWriter::open(sqlite::Database& database) {
         {&RowWriter::column_, "INSERT INTO segment_columns VALUES (?,?,?,?,?,?,?,?,?)"},
         {&RowWriter::link_number_, "SELECT number FROM words WHERE kind = 'link' AND word = ?"},
         {&RowWriter::link_word_, "INSERT INTO words SELECT 'link', max(number) + 1, ? FROM words WHERE kind = 'link'"},
-        {&RowWriter::link_totals_, "INSERT OR REPLACE INTO link_totals VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?)"},
+        {&RowWriter::link_totals_,
+         "INSERT OR REPLACE INTO link_totals VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)"},
+        {&RowWriter::sequence_totals_, "INSERT OR REPLACE INTO sequence_totals VALUES (?,?,?,?,?,?,?,?,?,?,?)"},
         {&RowWriter::request_,
          "INSERT INTO requests SELECT ?1, coalesce(max(position), 0) + 1, ?2, ?3 FROM requests WHERE run = ?1"},
         {&RowWriter::totals_, "INSERT OR REPLACE INTO recordings VALUES (?,?,?,?,?,?,?,?,?)"},
@@ -248,8 +250,40 @@ Result<void> RowWriter::link_totals(RunId run, const LinkTotals& totals) {
         .bind(10, sqlite::number(counted.repeated_frames))
         .bind(11, totals.octets_per_s)
         .bind(12, sqlite::number(counted.late_frames))
-        .bind(13, sqlite::number(counted.restarts));
-    return link_totals_.run();
+        .bind(13, sqlite::number(counted.restarts))
+        .bind(14, sqlite::number(counted.cut_frames))
+        .bind(15, sqlite::number(counted.slips))
+        .bind(16, sqlite::number(counted.corrected_frames))
+        .bind(17, sqlite::number(counted.corrected_symbols))
+        .bind(18, sqlite::number(counted.uncorrectable_frames))
+        .bind(19, sqlite::number(counted.forgotten_channels))
+        .bind(20, sqlite::number(totals.packets.packets))
+        .bind(21, sqlite::number(totals.packets.idle_packets))
+        .bind(22, sqlite::number(totals.packets.encapsulation_packets))
+        .bind(23, sqlite::number(totals.packets.cut_packets))
+        .bind(24, sqlite::number(totals.packets.lost_segments))
+        .bind(25, sqlite::number(totals.packets.unreadable_octets))
+        .bind(26, sqlite::number(totals.bad_datagrams));
+    if (auto done = link_totals_.run(); !done) return done;
+    for (const auto& sequence : totals.sequences)
+        if (auto done = sequence_totals(run, totals.link, sequence); !done) return done;
+    return {};
+}
+
+Result<void> RowWriter::sequence_totals(RunId run, const std::string& link, const telemetry::SequenceTotals& totals) {
+    const telemetry::SequenceCounters& counted = totals.counters;
+    sequence_totals_.bind(1, std::int64_t{run.value})
+        .bind(2, std::string_view(link))
+        .bind(3, std::int64_t{totals.packets})
+        .bind(4, std::string_view(totals.name))
+        .bind(5, sqlite::number(counted.received))
+        .bind(6, sqlite::number(counted.gaps))
+        .bind(7, sqlite::number(counted.missing))
+        .bind(8, sqlite::number(counted.repeated))
+        .bind(9, sqlite::number(counted.late))
+        .bind(10, sqlite::number(counted.restarts))
+        .bind(11, sqlite::number(counted.wraps));
+    return sequence_totals_.run();
 }
 
 }  // namespace aeolis::archive

@@ -71,7 +71,15 @@ CREATE TABLE link_totals (
     run INTEGER NOT NULL, link TEXT NOT NULL, octets INTEGER NOT NULL, frames INTEGER NOT NULL, bad_crc INTEGER NOT NULL,
     bad_header INTEGER NOT NULL, skipped_octets INTEGER NOT NULL, gaps INTEGER NOT NULL, missing_frames INTEGER NOT NULL,
     repeated_frames INTEGER NOT NULL, octets_per_s REAL NOT NULL, late_frames INTEGER NOT NULL,
-    restarts INTEGER NOT NULL, PRIMARY KEY (run, link)) STRICT, WITHOUT ROWID;
+    restarts INTEGER NOT NULL, cut_frames INTEGER NOT NULL, slips INTEGER NOT NULL, corrected_frames INTEGER NOT NULL,
+    corrected_symbols INTEGER NOT NULL, uncorrectable_frames INTEGER NOT NULL, forgotten_channels INTEGER NOT NULL,
+    packets INTEGER NOT NULL, idle_packets INTEGER NOT NULL, encapsulation_packets INTEGER NOT NULL,
+    cut_packets INTEGER NOT NULL, lost_segments INTEGER NOT NULL, unreadable_octets INTEGER NOT NULL,
+    bad_datagrams INTEGER NOT NULL, PRIMARY KEY (run, link)) STRICT, WITHOUT ROWID;
+CREATE TABLE sequence_totals (
+    run INTEGER NOT NULL, link TEXT NOT NULL, packets INTEGER NOT NULL, name TEXT NOT NULL, received INTEGER NOT NULL,
+    gaps INTEGER NOT NULL, missing INTEGER NOT NULL, repeated INTEGER NOT NULL, late INTEGER NOT NULL,
+    restarts INTEGER NOT NULL, wraps INTEGER NOT NULL, PRIMARY KEY (run, link, packets, name)) STRICT, WITHOUT ROWID;
 
 CREATE TABLE audit (
     entry INTEGER PRIMARY KEY, at TEXT NOT NULL, who TEXT NOT NULL, peer TEXT NOT NULL, action TEXT NOT NULL,
@@ -190,12 +198,10 @@ constexpr char by_block[] = "key BETWEEN ?1 << 39 AND (?1 << 39) + 0x7FFFFFFFFF"
 constexpr char by_rowid[] = "rowid BETWEEN ?1 << 40 AND ?1 << 40 | 0xFFFFFFFFFF";
 std::vector<RunTable> tables_of_runs() {
     std::vector<RunTable> tables{
-        {"search", by_rowid, false},     {"segment_columns", by_block, true},
-        {"segments", by_run, true},      {"pyramid_columns", by_block, true},
-        {"pyramid", by_run, true},       {"recordings", by_run, true},
-        {"link_totals", by_run, false},  {"requests", by_run, false},
-        {"run_solution", by_run, false}, {"run_anchors", by_run, false},
-        {"runs", by_run, false},
+        {"search", by_rowid, false},         {"segment_columns", by_block, true}, {"segments", by_run, true},
+        {"pyramid_columns", by_block, true}, {"pyramid", by_run, true},           {"recordings", by_run, true},
+        {"link_totals", by_run, false},      {"requests", by_run, false},         {"sequence_totals", by_run, false},
+        {"run_solution", by_run, false},     {"run_anchors", by_run, false},      {"runs", by_run, false},
     };
     for_item_kinds([&]<typename Record>(ItemKind<Record>) {
         if constexpr (HasParts<Record>)

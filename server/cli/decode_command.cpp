@@ -112,6 +112,24 @@ class Printed {
     std::map<std::string, std::uint64_t> problems_;
 };
 
+/// Prints the virtual channels, and what packet counts are not in order.
+void print_sequences(const telemetry::PacketSource& source) {
+    constexpr std::size_t lines_max = 100;  // chosen: nobody reads more
+    std::size_t lines = 0, left = 0;
+    for (const auto& [name, packets, counted] : source.sequences()) {
+        if (packets && counted.missing + counted.repeated + counted.late + counted.restarts == 0) continue;
+        if (lines == lines_max) {
+            ++left;
+            continue;
+        }
+        ++lines;
+        fmt::print(stderr, "{}: {} {}, {} missing in {} gaps, {} repeated, {} late, {} restarts\n", name,
+                   counted.received, packets ? "packets" : "frames", counted.missing, counted.gaps, counted.repeated,
+                   counted.late, counted.restarts);
+    }
+    if (left > 0) fmt::print(stderr, "{} more virtual channels and packet ids\n", left);
+}
+
 /// Prints the losses in the file; true when there are none.
 bool print_losses(const telemetry::PacketSource& source, const Printed& printed) {
     const auto link = source.link();
@@ -135,6 +153,10 @@ bool print_losses(const telemetry::PacketSource& source, const Printed& printed)
         "octets unreadable\n",
         packets.packets, packets.idle_packets, packets.encapsulation_packets, packets.cut_packets,
         packets.lost_segments, packets.unreadable_octets);
+    if (link.forgotten_channels > 0)
+        fmt::print(stderr, "virtual channels: {} more than are followed at a time were forgotten\n",
+                   link.forgotten_channels);
+    print_sequences(source);
     for (const auto& [problem, count] : printed.problems()) fmt::print(stderr, "{} packets: {}\n", count, problem);
     return link.bad_crc + link.bad_header + link.uncorrectable_frames + link.missing_frames + link.cut_frames +
                    packets.encapsulation_packets + packets.cut_packets + packets.lost_segments +

@@ -13,6 +13,7 @@ namespace {
 constexpr std::chrono::milliseconds connect_limit{10'000};  // chosen
 constexpr std::chrono::milliseconds receive_limit{1'000};
 constexpr std::int64_t pass_interval_us = 1'000'000;
+constexpr std::int64_t fault_log_interval_us = 10'000'000;  // chosen: a link that is bad throughout fills no disk
 
 }  // namespace
 
@@ -60,6 +61,7 @@ void DownlinkFollower::follow() {
         receive_until_end();
         end_of_stream();
     }
+    tell_totals(clock_.now(), true);
     const auto finished = pipeline_.finish({"stopped", "stopped", "", wall_clock_text()});
     if (!finished) spdlog::error("run {}: its end could not be stored: {}", run_.value, finished.error().message);
     spdlog::info("run {} ends: {} packets", run_.value, packets_);
@@ -96,8 +98,9 @@ void DownlinkFollower::receive_until_end() {
         pass();
         if (received.got == DownlinkSocket::Got::end) return say(false, received.reason);
         if (received.got == DownlinkSocket::Got::nothing) continue;
+        ledger_.received(clock_.now(), received.octets);
         take(std::span{piece}.first(received.octets));
-        if (settings_.address.udp && source_) source_->end_datagram();
+        if (settings_.address.udp && source_ && !source_->end_datagram()) ledger_.bad_datagram();
         if (stop_) return;
         if (lost_ && !settings_.address.udp) {
             socket_.close();
@@ -125,6 +128,7 @@ bool DownlinkFollower::recognise(std::span<const std::uint8_t> octets) {
     if (!told && !full && beginning_.size() < 2 * tried_octets_) return false;
     tried_octets_ = beginning_.size();
     const auto recognised = begin_source(full);
+    if (!recognised && full) ledger_.unread(beginning_.size());
     if (recognised || full) {
         beginning_.clear();
         tried_octets_ = 0;
@@ -146,14 +150,18 @@ Result<void> DownlinkFollower::begin_source(bool ended) {
 
 void DownlinkFollower::end_of_stream() {
     if (!source_ && !beginning_.empty())
-        if (const auto recognised = begin_source(true); !recognised)
+        if (const auto recognised = begin_source(true); !recognised) {
+            ledger_.unread(beginning_.size());
             spdlog::warn("downlink {}: {} octets are not read: {}", settings_.address.text(), beginning_.size(),
                          recognised.error().message);
+        }
     if (source_) {
         source_->end();
         deliver_packets();
+        ledger_.end(*source_);
     }
     source_.reset();
+    tell_totals(clock_.now(), false);
     beginning_.clear();
     tried_octets_ = 0;
 }
@@ -177,6 +185,21 @@ void DownlinkFollower::pass() {
     passed_ = now;
     Delivery delivery;
     delivery.entries.emplace_back(telemetry::EarthTime{now});
+    if (!pipeline_.deliver(std::move(delivery))) stop_ = true;
+    tell_totals(now, false);
+}
+
+/// Hands on the link's totals, and logs what went wrong. @param last  the run ends: however short ago the last line was
+void DownlinkFollower::tell_totals(Ert now, bool last) {
+    auto totals = ledger_.totals(source_ ? &*source_ : nullptr, now);
+    const bool due =
+        !faults_logged_ || now.microseconds - faults_logged_->microseconds >= fault_log_interval_us || last;
+    if (const auto faults = due ? ledger_.faults_since(totals) : std::string{}; !faults.empty()) {
+        faults_logged_ = now;
+        spdlog::warn("downlink {}: {}", settings_.address.text(), faults);
+    }
+    Delivery delivery;
+    delivery.links.push_back(std::move(totals));
     if (!pipeline_.deliver(std::move(delivery))) stop_ = true;
 }
 

@@ -5,6 +5,7 @@
 #include "server/base/clock_watch.hpp"
 #include "server/links/downlink_socket.hpp"
 #include "server/links/frame_format.hpp"
+#include "server/links/link_ledger.hpp"
 #include "server/pipeline/pipeline_thread.hpp"
 
 #include <chrono>
@@ -21,6 +22,8 @@ namespace aeolis::server {
 /// In       octets of a TCP connection or of datagrams       Out   deliveries to the pipeline; run states on change
 /// TCP      connects, and reconnects after every end: first after `retry_first`, then doubling up to `retry_max`
 /// UDP      bare packets: each datagram holds whole packets. Frames: datagrams are pieces of one stream
+/// Counts   totals of the link and of its sequences once a second, over all connections; what went wrong is logged at
+///          most every ten seconds, as numbers by kind
 /// Faults   octets that are no packet are counted and skipped. When bare packets cannot be found any more, it
 ///          reconnects. Each change is logged and is an item of the run
 /// Times    Earth received times go on with the monotonic clock when the system's clock jumps (EarthClock)
@@ -61,6 +64,7 @@ class DownlinkFollower {
     bool recognise(std::span<const std::uint8_t> octets);
     void end_of_stream();
     void pass();
+    void tell_totals(Ert now, bool last);
     void deliver_packets();
     void say(bool up, const std::string& reason);
     v1::RunState state(const std::string& word) const;
@@ -74,6 +78,8 @@ class DownlinkFollower {
     archive::RunId run_;
     archive::RunStart start_;
     std::optional<telemetry::PacketSource> source_;
+    LinkLedger ledger_{telemetry::downlink_link.name};
+    std::optional<Ert> faults_logged_;
     std::vector<std::uint8_t> beginning_;  ///< of a stream whose frames are not yet recognised
     std::size_t tried_octets_ = 0;
     std::string said_;  ///< the last message, so that a lasting fault is reported once

@@ -226,6 +226,22 @@ void PipelineThread::note_received(const Delivery& delivery) {
             add(packet->link.name, packet->octets.size());
         if (std::holds_alternative<telemetry::ReceivedTone>(entry)) add("tones", 0);
     }
+    for (const auto& told : delivery.links) {
+        auto& totals = totals_[told.link];
+        auto sequences = std::move(totals.sequences);
+        for (const auto& each : told.sequences) {
+            const auto same = [&](const auto& other) {
+                return other.name == each.name && other.packets == each.packets;
+            };
+            const auto known = std::ranges::find_if(sequences, same);
+            if (known == sequences.end())
+                sequences.push_back(each);
+            else
+                known->counters = each.counters;
+        }
+        totals = told;
+        totals.sequences = std::move(sequences);
+    }
 }
 
 bool PipelineThread::deliver(Delivery delivery) {
@@ -312,6 +328,7 @@ PipelineThread::Figures PipelineThread::figures() const {
     figures.commit_s = commit_s_;
     figures.longest_commit_s = longest_commit_s_;
     figures.links = links_;
+    figures.totals = totals_;
     return figures;
 }
 

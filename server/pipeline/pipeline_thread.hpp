@@ -116,6 +116,7 @@ class PipelineThread {
         std::uint64_t commits = 0;                          ///< that made something durable
         double commit_s = 0.0, longest_commit_s = 0.0;      ///< of all commits; of one
         std::map<std::string, Received> links;              ///< by name: packets and tones that reached Earth
+        std::map<std::string, archive::LinkTotals> totals;  ///< by link: of the run, as last told
     };
     Figures figures() const;
 
@@ -171,6 +172,7 @@ class PipelineThread {
     std::atomic<std::size_t> pending_octets_{0};
     mutable std::mutex figures_mutex_;
     std::map<std::string, Received> links_;
+    std::map<std::string, archive::LinkTotals> totals_;
     std::uint64_t commits_ = 0;
     double commit_s_ = 0.0, longest_commit_s_ = 0.0;
     mutable std::mutex audit_mutex_;

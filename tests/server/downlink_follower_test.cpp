@@ -290,6 +290,45 @@ TEST_CASE("each datagram stands for itself: garbage and packets of nobody are ke
           "V,14.5,5,realtime\n");
 }
 
+TEST_CASE("a followed link has totals: what was lost, repeated, late, cut and bad is counted over all connections",
+          "[server][downlink][R54]") {
+    const auto mission = mission_of(small_xtce);
+    Sender sender;
+    Follower tcp{*mission, "tcp://127.0.0.1:" + std::to_string(sender.port), {.name = "packets"}};
+    Octets first;
+    for (const std::uint16_t count : {1, 2, 5, 4, 4, 6}) {
+        const auto packet = power_packet(count, count, count);
+        first.insert(first.end(), packet.begin(), packet.end());
+    }
+    const auto half = power_packet(7, 7, 7);
+    first.insert(first.end(), half.begin(), half.begin() + 8);
+    sender.give(first);
+    sender.give(power_packet(8, 8, 8));
+    const auto told = tcp.ask_until(
+        "/runs/1/proof", [](const std::string& text) { return text.find("\"packets\":\"7\"") != std::string::npos; });
+    CHECK_THAT(told, Catch::Contains("\"link\":\"downlink\"") && Catch::Contains("\"cut_packets\":\"1\"") &&
+                         Catch::Contains("\"unreadable_octets\":\"8\""));
+    CHECK_THAT(told, Catch::Contains("\"name\":\"APID 77\"") && Catch::Contains("\"received\":\"7\"") &&
+                         Catch::Contains("\"missing\":\"1\"") && Catch::Contains("\"repeated\":\"1\"") &&
+                         Catch::Contains("\"late\":\"1\""));
+    const auto metrics = web_request(tcp.port(), "GET", "/metrics").body;
+    CHECK_THAT(metrics, Catch::Contains("aeolis_link_faults_total{link=\"downlink\",kind=\"cut_packets\"} 1\n"));
+    CHECK_THAT(metrics,
+               Catch::Contains(
+                   "aeolis_sequence_total{link=\"downlink\",of=\"packets\",sequence=\"APID 77\",kind=\"late\"} 1\n"));
+
+    Follower udp{*mission, "udp://127.0.0.1:0", {.name = "packets"}};
+    send_datagram(udp.downlink_port(), Octets(200, 0xEE));
+    Octets cut = power_packet(2, 11, 6);
+    cut.resize(cut.size() - 3);
+    send_datagram(udp.downlink_port(), cut);
+    send_datagram(udp.downlink_port(), power_packet(3, 12, 6));
+    CHECK_THAT(
+        udp.ask_until("/runs/1/proof",
+                      [](const std::string& text) { return text.find("\"packets\":\"1\"") != std::string::npos; }),
+        Catch::Contains("\"bad_datagrams\":\"2\"") && Catch::Contains("\"cut_packets\":\"1\""));
+}
+
 TEST_CASE("who follows a downlink rehearses nothing, and says so", "[server][downlink]") {
     const auto mission = mission_of(small_xtce);
     Follower follower{*mission, "udp://127.0.0.1:0", {.name = "packets", .skip = 0, .frame_octets = {}}};

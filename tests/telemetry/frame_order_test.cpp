@@ -23,7 +23,7 @@ struct Channel {
     }
     std::uint32_t modulus;
     FrameOrder order;
-    LinkCounters counters;
+    SequenceCounters counters;
 };
 
 }  // namespace
@@ -31,9 +31,9 @@ struct Channel {
 TEST_CASE("frames that follow each other leave no gap, also where the count wraps", "[telemetry][R55]") {
     for (const std::uint32_t modulus : {256U, 1U << 24U}) {
         Channel channel{modulus};
-        for (std::uint64_t i = modulus - 300; i < modulus + 300ULL; ++i)
+        for (std::uint64_t i = 4ULL * modulus - 300; i < 4ULL * modulus + 300; ++i)
             CHECK(channel.place(i).place == FramePlace::next);
-        CHECK(channel.counters == LinkCounters{});
+        CHECK(channel.counters == SequenceCounters{.received = 600, .wraps = modulus == 256U ? 3U : 1U});
     }
 }
 
@@ -46,9 +46,9 @@ TEST_CASE("missing frames are counted, and one that comes late is not missing an
     CHECK(channel.place(1002).place == FramePlace::late);
     CHECK(channel.place(1002).place == FramePlace::repeated);
     CHECK(channel.place(1005).place == FramePlace::next);
-    CHECK(channel.counters == LinkCounters{.gaps = 1, .missing_frames = 2, .repeated_frames = 1, .late_frames = 1});
+    CHECK(channel.counters == SequenceCounters{.received = 5, .gaps = 1, .missing = 2, .repeated = 1, .late = 1});
     CHECK(channel.place(999).place == FramePlace::late);  // before the first one: nobody missed it
-    CHECK(channel.counters.missing_frames == 2);
+    CHECK(channel.counters.missing == 2);
 }
 
 TEST_CASE("a count that begins anew is a restart and not millions of missing frames", "[telemetry][R55]") {
@@ -58,7 +58,16 @@ TEST_CASE("a count that begins anew is a restart and not millions of missing fra
     for (std::uint64_t i = 1; i < 20; ++i) CHECK(channel.place(i).place == FramePlace::next);
     CHECK(channel.place(0, 1).place == FramePlace::restarted);  // known from its content alone
     CHECK(channel.place(1, 1).place == FramePlace::next);
-    CHECK(channel.counters == LinkCounters{.restarts = 2});
+    CHECK(channel.counters == SequenceCounters{.received = 122, .restarts = 2});
+}
+
+TEST_CASE("one late packet is one late packet: its count of 14 bits wraps, too", "[telemetry][R54]") {
+    Channel channel{1U << 14U};
+    for (std::uint64_t i = 16'300; i < 16'410; ++i)
+        if (i != 16'383) channel.place(i);
+    CHECK(channel.place(16'383).place == FramePlace::late);
+    CHECK(channel.place(16'410).place == FramePlace::next);
+    CHECK(channel.counters == SequenceCounters{.received = 111, .gaps = 1, .late = 1, .wraps = 1});
 }
 
 TEST_CASE(
@@ -96,8 +105,8 @@ TEST_CASE(
             }
         }
         for (const auto number : delayed) put(number);
-        CHECK(channel.counters.missing_frames == lost);
-        CHECK(channel.counters.repeated_frames == repeated);
+        CHECK(channel.counters.missing == lost);
+        CHECK(channel.counters.repeated == repeated);
         CHECK(given.size() + lost == 2000);
     }
 }

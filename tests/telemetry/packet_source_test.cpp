@@ -182,4 +182,70 @@ TEST_CASE("each format has its name, and no other name a format", "[telemetry]")
     CHECK_FALSE(downlink_format(""));
 }
 
+TEST_CASE("counts are kept by virtual channel and by packet id, and segments of two channels never make one packet",
+          "[telemetry][R54]") {
+    std::mt19937 random{5};
+    const auto segment = [&](unsigned flags, unsigned count) {
+        Octets packet = test::hex("0123000000ff");
+        packet[2] = static_cast<std::uint8_t>(flags << 6U);
+        packet[3] = static_cast<std::uint8_t>(count);
+        packet[5] = 205;
+        append(packet, test::random_octets(random, 206));
+        return packet;
+    };
+    // Channel 0 begins a packet, channel 1 has the end of another: count and APID fit.
+    const std::vector<Octets> packets{segment(1, 0), segment(2, 1), segment(3, 2), segment(3, 4), segment(3, 3)};
+    const std::vector<unsigned> channels{0, 1, 0, 0, 0};
+    Octets stream;
+    for (std::size_t i = 0; i < packets.size(); ++i) {
+        TransferFrame frame;
+        frame.spacecraft = 76;
+        frame.virtual_channel = static_cast<std::uint8_t>(channels[i]);
+        frame.count = static_cast<std::uint32_t>(channels[i] == 0 ? i * 2 : 7);
+        frame.first_header_pointer = 0;
+        frame.data = packets[i];
+        Octets octets(packets[i].size() + 8);
+        write_tm_frame(frame, static_cast<std::uint8_t>(i), true, octets);
+        append(stream, octets);
+    }
+    PacketSource source = PacketSource::of_frames({.frame_octets = packets[0].size() + 8, .marker = false});
+    source.receive(stream);
+    source.end();
+    std::size_t whole = 0;
+    while (source.next()) ++whole;
+    CHECK(whole == 3);
+    CHECK(source.packets().lost_segments == 2);
+    const auto sequences = source.sequences();
+    REQUIRE(sequences.size() == 4);
+    CHECK(sequences[0].name == "spacecraft 76, virtual channel 0");
+    CHECK(sequences[0].counters == SequenceCounters{.received = 4, .gaps = 3, .missing = 5});
+    CHECK(sequences[1].counters == SequenceCounters{.received = 1});
+    CHECK(sequences[2].name == "spacecraft 76, virtual channel 0, APID 291");
+    CHECK(sequences[2].packets);
+    CHECK(sequences[2].counters == SequenceCounters{.received = 4, .gaps = 2, .missing = 1, .late = 1});
+    CHECK(source.link().missing_frames == 5);
+}
+
+TEST_CASE("however many channels damaged headers name, a bounded number is followed, and what is forgotten is counted",
+          "[telemetry][R54]") {
+    Octets stream;
+    const Octets data(20, 0x55);
+    for (unsigned i = 0; i < 2000; ++i) {
+        TransferFrame frame;
+        frame.spacecraft = static_cast<std::uint16_t>(i % 1000);
+        frame.virtual_channel = static_cast<std::uint8_t>(i / 1000);
+        frame.count = 3;
+        frame.data = data;
+        Octets octets(26);
+        write_tm_frame(frame, 0, false, octets);
+        append(stream, octets);
+    }
+    PacketSource source = PacketSource::of_frames({.frame_octets = 26, .marker = false, .agreed = {.crc = false}});
+    source.receive(stream);
+    source.end();
+    CHECK(source.link().frames == 2000);
+    CHECK(source.link().forgotten_channels == 2000 - channels_followed_max);
+    CHECK(source.sequences().size() == channels_followed_max);
+}
+
 }  // namespace telemetry_packet_source_test

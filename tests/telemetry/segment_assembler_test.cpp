@@ -78,7 +78,7 @@ TEST_CASE("what is not whole is never a packet, and each of its segments is coun
 TEST_CASE("unfinished packets take bounded memory", "[telemetry][bounds]") {
     SegmentAssembler assembler;
     for (unsigned apid = 0; apid < 2047; ++apid) CHECK_FALSE(assembler.add(packet(first, 0, {1}, apid)));
-    CHECK(assembler.lost_segments() == 2047 - SegmentAssembler::apids_max);
+    CHECK(assembler.lost_segments() == 2047 - SegmentAssembler::unfinished_max);
 }
 
 }  // namespace telemetry_segment_assembler_test

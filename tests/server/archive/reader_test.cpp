@@ -465,7 +465,11 @@ TEST_CASE("one bit that differs between live and recorded is found, with the oct
                             .gaps = 1,
                             .missing_frames = 2,
                             .repeated_frames = 0},
-                           12.5}});
+                           12.5,
+                           {.packets = 9, .cut_packets = 2},
+                           4,
+                           {{"spacecraft 76, virtual channel 1", false, {.received = 3, .gaps = 1, .missing = 2}},
+                            {"APID 5", true, {.received = 9, .wraps = 1}}}}});
     REQUIRE(pipeline.commit().ok());
 
     const auto report = reader.proof(RunId{1});
@@ -484,6 +488,12 @@ TEST_CASE("one bit that differs between live and recorded is found, with the oct
     CHECK(report->links(2).identical() == 1);
     REQUIRE(report->counters_size() == 1);
     CHECK(report->counters(0).missing_frames() == 2);
+    CHECK(report->counters(0).cut_packets() == 2);
+    CHECK(report->counters(0).bad_datagrams() == 4);
+    REQUIRE(report->counters(0).sequences_size() == 2);
+    CHECK(report->counters(0).sequences(0).missing() == 2);
+    CHECK(report->counters(0).sequences(1).name() == "APID 5");
+    CHECK(report->counters(0).sequences(1).packets());
 
     archive::PacketQuery differing;
     differing.verdict = "differs";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Each link: its reported state and silences, its traffic, and the damaged part of it.
-import type { LinkCounters, ProofReport } from '../gen/aeolis/v1/run_pb';
+import type { LinkCounters, ProofReport, SequenceCounters } from '../gen/aeolis/v1/run_pb';
 import { linkLook } from '../design/status';
 import type { LinkLook } from '../design/status';
 import { linkTotals } from '../packets/model';
@@ -77,4 +77,12 @@ function byImportance(a: string, b: string): number {
 export function framesKept(counters: LinkCounters): number | undefined {
   const due = Number(counters.frames) + Number(counters.missingFrames);
   return due === 0 ? undefined : Number(counters.frames) / due;
+}
+
+/** The sequences of all links: those first whose counts are not in order, then as they come. */
+export function sequenceRows(views: LinkView[]): { link: string; counted: SequenceCounters }[] {
+  const rows = views.flatMap(({ link, counters }) => (counters?.sequences ?? []).map((counted) => ({ link, counted })));
+  const calm = ({ counted }: { counted: SequenceCounters }) =>
+    counted.missing + counted.repeated + counted.late + counted.restarts === 0n ? 1 : 0;
+  return rows.sort((a, b) => calm(a) - calm(b));
 }

@@ -3,7 +3,7 @@ import { create } from '@bufbuild/protobuf';
 import { describe, expect, it } from 'vitest';
 import { LinkCountersSchema, ProofReportSchema } from '../gen/aeolis/v1/run_pb';
 import { aStore, link } from '../testing/fixtures';
-import { framesKept, linkTitle, linkViews } from './model';
+import { framesKept, linkTitle, linkViews, sequenceRows } from './model';
 
 describe('the links', () => {
   it('have names that people say', () => {
@@ -44,6 +44,19 @@ describe('the links', () => {
       link({ link: 'uhf_live', up: false, reason: 'plasma blackout', ert: '2012-219T04:59:00.0' }),
     ]);
     expect(linkViews(store, undefined, 830)[0]?.state).toBe('up');
+  });
+  it('list their sequences, those first whose counts are not in order', () => {
+    const proof = create(ProofReportSchema, {
+      counters: [
+        { link: 'uhf_live', sequences: [{ name: 'virtual channel 0', received: 9n }] },
+        { link: 'downlink', sequences: [{ name: 'APID 1', packets: true, received: 3n, late: 1n }, { name: 'APID 2' }] },
+      ],
+    });
+    expect(sequenceRows(linkViews(aStore([]), proof, Infinity)).map((row) => row.counted.name)).toEqual([
+      'APID 1',
+      'virtual channel 0',
+      'APID 2',
+    ]);
   });
   it('count the part of the frames that came', () => {
     expect(framesKept(create(LinkCountersSchema, { frames: 90n, missingFrames: 10n }))).toBe(0.9);

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The links side by side: which are up, which are silent and why, and the traffic and losses of each.
 import { LINK_STATUS, STATUS } from '../design/status';
+import type { LinkCounters } from '../gen/aeolis/v1/run_pb';
 import { proofOfRun } from '../proof/report';
 import { stream } from '../run/connection';
 import { cutoff, pastRange, runNow } from '../run/shown';
 import { duration, fromEntry } from '../run/time';
-import { framesKept, linkTitle, linkViews } from './model';
+import { framesKept, linkTitle, linkViews, sequenceRows } from './model';
 import type { LinkView } from './model';
 import './style.css';
 
@@ -56,13 +57,19 @@ function Row({ view }: { view: LinkView }) {
           <td class="number">{count(counters.gaps)}</td>
           <td class={hurt(counters.badCrc)}>{count(counters.badCrc)}</td>
           <td class={hurt(counters.badHeader)}>{count(counters.badHeader)}</td>
+          <td class={hurt(counters.uncorrectableFrames)}>
+            {count(counters.uncorrectableFrames)}
+            {counters.correctedFrames > 0n && <small> {count(counters.correctedFrames)} corrected</small>}
+          </td>
           <td class="number">{count(counters.repeatedFrames)}</td>
+          <td class="number">{count(counters.lateFrames)}</td>
+          <td class={hurt(counters.restarts)}>{count(counters.restarts)}</td>
           <td class="number">{count(counters.octets)}</td>
           <td class={hurt(counters.skippedOctets)}>{count(counters.skippedOctets)}</td>
           <td class="number">{((counters.octetsPerS * 8) / 1000).toFixed(1)} kb/s</td>
         </>
       ) : (
-        <td colSpan={10} class="status-dim">
+        <td colSpan={13} class="status-dim">
           {NO_FRAMES[view.link] ?? 'no frames counted'}
         </td>
       )}
@@ -74,6 +81,76 @@ function Row({ view }: { view: LinkView }) {
     </tr>
   );
 }
+
+/** What of a link's packets did not come whole, in words; empty: nothing. */
+function packetFaults(counters: LinkCounters): string {
+  return (
+    [
+      [counters.cutPackets, 'packets cut off'],
+      [counters.lostSegments, 'segments without the rest'],
+      [counters.encapsulationPackets, 'encapsulation packets not decoded'],
+      [counters.unreadableOctets, 'octets unreadable'],
+      [counters.badDatagrams, 'bad datagrams'],
+      [counters.slips, 'slips of bits'],
+      [counters.forgottenChannels, 'virtual channels forgotten'],
+    ] as const
+  )
+    .filter(([number]) => number > 0n)
+    .map(([number, what]) => `${count(number)} ${what}`)
+    .join(', ');
+}
+
+/** The virtual channels and packet ids of each link, those first whose counts are not in order. */
+function Sequences({ views }: { views: LinkView[] }) {
+  const faults = views.flatMap(({ link, counters }) => {
+    const words = counters ? packetFaults(counters) : '';
+    return words ? [{ link, words }] : [];
+  });
+  const rows = sequenceRows(views);
+  if (rows.length === 0 && faults.length === 0) return null;
+  return (
+    <section class="sequences" data-testid="sequences">
+      {faults.map(({ link, words }) => (
+        <p key={link} class="status-caution">
+          {linkTitle(link)}: {words}
+        </p>
+      ))}
+      <table class="link-table">
+        <thead>
+          <tr>
+            <th>link</th>
+            <th>sequence</th>
+            {['received', 'missing', 'gaps', 'repeated', 'late', 'restarts', 'wraps'].map((each) => (
+              <th key={each} class="number">
+                {each}
+              </th>
+            ))}
+          </tr>
+        </thead>
+        <tbody>
+          {rows.slice(0, SEQUENCES_SHOWN).map(({ link, counted }) => (
+            <tr key={`${link} ${counted.packets} ${counted.name}`}>
+              <td>{linkTitle(link)}</td>
+              <td>
+                {counted.name}, {counted.packets ? 'packets' : 'frames'}
+              </td>
+              <td class="number">{count(counted.received)}</td>
+              <td class={hurt(counted.missing)}>{count(counted.missing)}</td>
+              <td class="number">{count(counted.gaps)}</td>
+              <td class="number">{count(counted.repeated)}</td>
+              <td class="number">{count(counted.late)}</td>
+              <td class={hurt(counted.restarts)}>{count(counted.restarts)}</td>
+              <td class="number">{count(counted.wraps)}</td>
+            </tr>
+          ))}
+        </tbody>
+      </table>
+      {rows.length > SEQUENCES_SHOWN && <p>{rows.length - SEQUENCES_SHOWN} more</p>}
+    </section>
+  );
+}
+
+const SEQUENCES_SHOWN = 200;
 
 function Silences({ views }: { views: LinkView[] }) {
   const all = views
@@ -125,7 +202,10 @@ export function Links() {
                 <th class="number">gaps</th>
                 <th class="number">bad CRC</th>
                 <th class="number">bad header</th>
+                <th class="number">uncorrectable</th>
                 <th class="number">repeated</th>
+                <th class="number">late</th>
+                <th class="number">restarts</th>
                 <th class="number">octets</th>
                 <th class="number">skipped</th>
                 <th class="number">rate</th>
@@ -140,6 +220,7 @@ export function Links() {
             </tbody>
           </table>
         )}
+        <Sequences views={views} />
         <Silences views={views} />
       </div>
     </div>

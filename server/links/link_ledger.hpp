@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "server/archive/records.hpp"
+#include "telemetry/packet_source.hpp"
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace aeolis::server {
+
+/// What a followed link has brought since its run began, over all its connections, and what of it was bad.
+///
+/// In       each piece of octets, the sources that read them       Out   totals for archive, metrics and console; a line
+///          of what went wrong since the last line
+class LinkLedger {
+  public:
+    explicit LinkLedger(std::string link) : link_(std::move(link)) {}
+
+    void received(Ert ert, std::size_t octets);
+    /// Octets of a stream whose layout was not found.
+    void unread(std::size_t octets) { ended_.skipped_octets += octets; }
+    void bad_datagram() { ++bad_datagrams_; }
+    /// Adds what a source has counted, which is not used any more.
+    void end(const telemetry::PacketSource& source);
+
+    /// The totals with those of `source`, if there is one. Of sequences only those that changed since the last call.
+    archive::LinkTotals totals(const telemetry::PacketSource* source, Ert now);
+    /// What went wrong since the last such line, such as "2 frames with a wrong CRC, 1 bad datagram"; empty: nothing.
+    std::string faults_since(const archive::LinkTotals& totals);
+
+  private:
+    using Key = std::pair<bool, std::string>;
+    using Sequences = std::map<Key, telemetry::SequenceCounters>;
+
+    std::string link_;
+    telemetry::RateMeter rate_;
+    std::uint64_t octets_ = 0, bad_datagrams_ = 0;
+    telemetry::LinkCounters ended_;
+    telemetry::PacketCounters ended_packets_;
+    Sequences ended_sequences_, told_;
+    std::vector<std::uint64_t> logged_;
+};
+
+}  // namespace aeolis::server
