@@ -39,6 +39,7 @@ struct ReceivedOctets {
     Link link;
     Ert ert;  ///< of the last octet
     std::vector<std::uint8_t> octets;
+    bool datagram = false;  ///< they are a datagram of their own; false: a piece of a stream
 };
 
 /// Samples of X-band: complex baseband with ground's predict removed, noise of power 1 a sample.

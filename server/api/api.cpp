@@ -163,6 +163,7 @@ std::span<const Api::Route> Api::routes() {
         {"GET", "/api/v1/runs/{run}", Right::watch, &Api::run_question, Query::own},
         {"DELETE", "/api/v1/runs/{run}", Right::rehearse, &Api::remove_run, Query::none, "prune", Audited::refusals},
         {"GET", "/api/v1/runs/{run}/samples", Right::watch, &Api::export_samples, Query::own},
+        {"GET", "/api/v1/runs/{run}/raw", Right::watch, &Api::export_raw, Query::own},
         {"GET", "/api/v1/runs/{run}/prediction", Right::watch, &Api::prediction, Query::own},
         {"GET", "/api/v1/runs/{run}/{question}", Right::watch, &Api::run_question, Query::own},
         {"GET", "/api/v1/layouts", Right::watch, &Api::list_layouts},

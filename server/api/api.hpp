@@ -100,6 +100,7 @@ class Api {
     void health(const ApiRequest& call);
     // sample_export.cpp
     void export_samples(const ApiRequest& call);
+    void export_raw(const ApiRequest& call);
     // prediction_routes.cpp
     void prediction(const ApiRequest& call);
     // schema_routes.cpp

@@ -182,6 +182,20 @@ Result<RunId> Archive::begin_run(const RunStart& start, const dictionary::Dictio
     return run;
 }
 
+Result<std::map<std::string, std::uint64_t>> Archive::raw_ends(RunId run) {
+    auto rows = state_->database.prepare(
+        "SELECT link, max(first + length(octets)) FROM raw_octets WHERE run = ? GROUP BY link");
+    if (!rows) return rows.error();
+    rows->bind(1, std::int64_t{run.value});
+    std::map<std::string, std::uint64_t> ends;
+    for (;;) {
+        auto found = rows->step();
+        if (!found) return found.error();
+        if (!*found) return ends;
+        ends.emplace(rows->text(0), static_cast<std::uint64_t>(rows->integer(1)));
+    }
+}
+
 Result<void> Archive::continue_run(RunId run) {
     if (auto done = state_->in_place(); !done) return done;
     auto transaction = sqlite::Transaction::begin_write(state_->database);

@@ -95,6 +95,32 @@ struct CommandQuery {
     Order order{};
 };
 
+/// What to export of what links brought.
+struct RawQuery {
+    bool packets = false;             ///< the packets found in it; false: the octets as they came
+    std::string link;                 ///< empty: of all
+    std::optional<Ert> from{}, to{};  ///< received between these, both included
+};
+/// Octets of a link in one piece: as they came together, or a packet.
+struct RawPiece {
+    std::string link;
+    Ert ert;
+    std::uint64_t first = 0;  ///< octets of the link before it; of a packet: its number in the run
+    std::vector<std::uint8_t> octets;
+};
+/// Pieces by link and order of reception; packets by order of reception.
+struct RawPage {
+    std::vector<RawPiece> pieces;
+    bool last = true;
+};
+inline constexpr std::size_t raw_page_max = 64;  ///< chosen: 4 MB at most, octets and packets being of 64 kB at most
+/// A link of which octets are kept.
+struct RawLink {
+    std::string link;
+    std::uint64_t first = 0;  ///< octets before the oldest that is kept
+    std::uint64_t octets = 0;
+};
+
 struct RunQuery {
     std::uint32_t after = 0;  ///< number of a run
     std::size_t limit = 1'000;
@@ -176,6 +202,11 @@ class Reader {
     /// A page of runs. A run in progress is `running`; the rehearsal fills in its pace and clocks.
     Result<v1::RunList> runs(const RunQuery& query = {});
     Result<v1::RunState> run(RunId run);
+
+    /// The links of which octets are kept as they came.
+    Result<std::vector<RawLink>> raw_links(RunId run);
+    /// A page of what links brought. @param after  the last piece of the page before; none: the first page
+    Result<RawPage> raw(RunId run, const RawQuery& query, const std::optional<RawPiece>& after);
 
     /// The kinds of items to include. complete_through counts excluded ones as given.
     struct ItemKinds {

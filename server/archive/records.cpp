@@ -3,6 +3,9 @@
 
 #include "server/archive/item_tables.hpp"
 
+#include <algorithm>
+#include <utility>
+
 namespace aeolis::archive {
 
 void Extremes::add(const Extremes& later) {
@@ -16,6 +19,20 @@ void Extremes::add(const Extremes& later) {
         largest_sclk_s = later.largest_sclk_s;
     }
     defined += later.defined;
+}
+
+void merge(LinkTotals& into, LinkTotals later) {
+    auto sequences = std::move(into.sequences);
+    for (auto& each : later.sequences) {
+        const auto same = [&](const auto& other) { return other.name == each.name && other.packets == each.packets; };
+        const auto known = std::ranges::find_if(sequences, same);
+        if (known == sequences.end())
+            sequences.push_back(std::move(each));
+        else
+            known->counters = each.counters;
+    }
+    into = std::move(later);
+    into.sequences = std::move(sequences);
 }
 
 void Batch::add(Annotation annotation) {
@@ -36,6 +53,8 @@ void Batch::clear() {
     pyramid.clear();
     totals.reset();
     link_totals.clear();
+    raw.clear();
+    raw_octets = 0;
     end.reset();
 }
 

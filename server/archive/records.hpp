@@ -230,6 +230,22 @@ struct LinkTotals {
     std::vector<telemetry::SequenceTotals> sequences{};
 };
 
+/// Adds what was told later of the same link.
+void merge(LinkTotals& into, LinkTotals later);
+
+/// Octets of a link as they came, good and bad. They have no number as items have: what is made of them has.
+struct RawRecord {
+    static constexpr std::size_t octets_max = 65536;        ///< pieces of a stream are joined up to here
+    static constexpr std::int64_t joined_us_max = 250'000;  ///< chosen: and as long as they came within this time
+    std::string link;
+    Ert begun, ert;           ///< of the first and of the last piece of them
+    std::uint64_t first = 0;  ///< number of octets of this link before them in the run
+    std::vector<std::uint8_t> octets;
+    bool datagram = false;  ///< joined with no other
+};
+/// Chosen: octets of a link kept of a run, by default; of more, the oldest are removed.
+inline constexpr std::uint64_t raw_octets_kept = std::uint64_t{1} << 30U;
+
 struct RunStart {
     std::string scenario, title;
     std::string venue = "rehearsal";
@@ -296,10 +312,14 @@ struct Batch {
     std::vector<PyramidRecord> pyramid;
     std::optional<RecordingTotals> totals;
     std::vector<LinkTotals> link_totals;  ///< only those that changed
+    std::vector<RawRecord> raw;
+    std::size_t raw_octets = 0;                ///< in them
+    std::uint64_t raw_kept = raw_octets_kept;  ///< of each link of the run
     std::optional<RunEnd> end;
 
     bool empty() const {
-        return last_seq == 0 && segments.empty() && requests.empty() && !totals && link_totals.empty() && !end;
+        return last_seq == 0 && segments.empty() && requests.empty() && !totals && link_totals.empty() && raw.empty() &&
+               !end;
     }
     void add(Annotation annotation);
     void clear();  ///< keeps the capacity

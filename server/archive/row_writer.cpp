@@ -60,6 +60,8 @@ Result<RowWriter> RowWriter::open(sqlite::Database& database) {
         {&RowWriter::link_totals_,
          "INSERT OR REPLACE INTO link_totals VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)"},
         {&RowWriter::sequence_totals_, "INSERT OR REPLACE INTO sequence_totals VALUES (?,?,?,?,?,?,?,?,?,?,?)"},
+        {&RowWriter::raw_, "INSERT OR IGNORE INTO raw_octets VALUES (?,?,?,?,?)"},
+        {&RowWriter::raw_removed_, "DELETE FROM raw_octets WHERE run = ?1 AND link = ?2 AND first < ?3"},
         {&RowWriter::request_,
          "INSERT INTO requests SELECT ?1, coalesce(max(position), 0) + 1, ?2, ?3 FROM requests WHERE run = ?1"},
         {&RowWriter::totals_, "INSERT OR REPLACE INTO recordings VALUES (?,?,?,?,?,?,?,?,?)"},
@@ -95,6 +97,7 @@ Result<void> RowWriter::write(RunId run, const Batch& batch) {
     }
     if (auto done = each(batch.requests, [&](const auto& r) { return request(run, r); }); !done) return done;
     if (auto done = each(batch.link_totals, [&](const auto& r) { return link_totals(run, r); }); !done) return done;
+    if (auto done = each(batch.raw, [&](const auto& r) { return raw(run, r, batch.raw_kept); }); !done) return done;
     if (batch.totals) return totals(run, *batch.totals);
     return {};
 }
@@ -268,6 +271,22 @@ Result<void> RowWriter::link_totals(RunId run, const LinkTotals& totals) {
     for (const auto& sequence : totals.sequences)
         if (auto done = sequence_totals(run, totals.link, sequence); !done) return done;
     return {};
+}
+
+/// Adds a piece, and removes those of its link that end before the last `kept` octets.
+Result<void> RowWriter::raw(RunId run, const RawRecord& record, std::uint64_t kept) {
+    raw_.bind(1, std::int64_t{run.value})
+        .bind(2, std::string_view(record.link))
+        .bind(3, sqlite::number(record.first))
+        .bind(4, record.ert.microseconds)
+        .bind_octets(5, record.octets);
+    if (auto done = raw_.run(); !done) return done;
+    const std::uint64_t end = record.first + record.octets.size();
+    if (end <= kept) return {};
+    raw_removed_.bind(1, std::int64_t{run.value})
+        .bind(2, std::string_view(record.link))
+        .bind(3, sqlite::number(end - kept));
+    return raw_removed_.run();
 }
 
 Result<void> RowWriter::sequence_totals(RunId run, const std::string& link, const telemetry::SequenceTotals& totals) {

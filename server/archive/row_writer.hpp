@@ -30,6 +30,7 @@ class RowWriter {
     Result<void> block(RunId run, const PyramidRecord& record, std::int64_t number);
     Result<void> totals(RunId run, const RecordingTotals& totals);
     Result<void> link_totals(RunId run, const LinkTotals& totals);
+    Result<void> raw(RunId run, const RawRecord& record, std::uint64_t kept);
     Result<void> sequence_totals(RunId run, const std::string& link, const telemetry::SequenceTotals& totals);
 
     /// The INSERT statements for one kind of item and its parts.
@@ -39,7 +40,7 @@ class RowWriter {
     };
     OfItemKinds<ItemStatements> items_;
     sqlite::Statement search_, segment_number_, segment_, column_, block_number_, block_, block_column_, link_number_,
-        link_word_, totals_, link_totals_, sequence_totals_, request_;
+        link_word_, totals_, link_totals_, sequence_totals_, request_, raw_, raw_removed_;
     ColumnCodec codec_;
 };
 

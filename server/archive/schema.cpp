@@ -80,6 +80,9 @@ CREATE TABLE sequence_totals (
     run INTEGER NOT NULL, link TEXT NOT NULL, packets INTEGER NOT NULL, name TEXT NOT NULL, received INTEGER NOT NULL,
     gaps INTEGER NOT NULL, missing INTEGER NOT NULL, repeated INTEGER NOT NULL, late INTEGER NOT NULL,
     restarts INTEGER NOT NULL, wraps INTEGER NOT NULL, PRIMARY KEY (run, link, packets, name)) STRICT, WITHOUT ROWID;
+CREATE TABLE raw_octets (
+    run INTEGER NOT NULL, link TEXT NOT NULL, first INTEGER NOT NULL, ert_us INTEGER NOT NULL, octets BLOB NOT NULL,
+    PRIMARY KEY (run, link, first)) STRICT, WITHOUT ROWID;
 
 CREATE TABLE audit (
     entry INTEGER PRIMARY KEY, at TEXT NOT NULL, who TEXT NOT NULL, peer TEXT NOT NULL, action TEXT NOT NULL,
@@ -198,10 +201,19 @@ constexpr char by_block[] = "key BETWEEN ?1 << 39 AND (?1 << 39) + 0x7FFFFFFFFF"
 constexpr char by_rowid[] = "rowid BETWEEN ?1 << 40 AND ?1 << 40 | 0xFFFFFFFFFF";
 std::vector<RunTable> tables_of_runs() {
     std::vector<RunTable> tables{
-        {"search", by_rowid, false},         {"segment_columns", by_block, true}, {"segments", by_run, true},
-        {"pyramid_columns", by_block, true}, {"pyramid", by_run, true},           {"recordings", by_run, true},
-        {"link_totals", by_run, false},      {"requests", by_run, false},         {"sequence_totals", by_run, false},
-        {"run_solution", by_run, false},     {"run_anchors", by_run, false},      {"runs", by_run, false},
+        {"search", by_rowid, false},
+        {"segment_columns", by_block, true},
+        {"segments", by_run, true},
+        {"pyramid_columns", by_block, true},
+        {"pyramid", by_run, true},
+        {"recordings", by_run, true},
+        {"link_totals", by_run, false},
+        {"requests", by_run, false},
+        {"sequence_totals", by_run, false},
+        {"raw_octets", by_run, false},
+        {"run_solution", by_run, false},
+        {"run_anchors", by_run, false},
+        {"runs", by_run, false},
     };
     for_item_kinds([&]<typename Record>(ItemKind<Record>) {
         if constexpr (HasParts<Record>)

@@ -16,6 +16,7 @@ void add_decode_command(CLI::App& program, int& exit_code);
 void add_dictionary_command(CLI::App& program, int& exit_code);
 void add_entry_command(CLI::App& program, int& exit_code);
 void add_export_command(CLI::App& program, int& exit_code);
+void add_ingest_command(CLI::App& program, int& exit_code);
 void add_modules_command(CLI::App& program, int& exit_code);
 void add_parameters_command(CLI::App& program, int& exit_code);
 void add_reconstruct_command(CLI::App& program, int& exit_code);

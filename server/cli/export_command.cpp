@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "server/api/raw_export.hpp"
 #include "server/api/sample_text.hpp"
 #include "server/archive/reader.hpp"
 #include "server/archive/sample_table.hpp"
@@ -7,6 +8,7 @@
 #include "server/cli/recorded_dictionary.hpp"
 #include "server/cli/shipped_paths.hpp"
 
+#include <charconv>
 #include <cstdio>
 #include <fmt/format.h>
 #include <memory>
@@ -18,12 +20,31 @@ namespace {
 
 struct ExportOptions {
     ArchiveOptions of;
-    std::vector<std::string> channels;   ///< empty: all
-    std::optional<double> from_s, to_s;  ///< SCLK, both included
-    std::string format = "csv";          ///< csv, jsonl
-    std::string align;                   ///< as in SampleText::Options
-    std::filesystem::path out;           ///< empty: standard output
+    std::vector<std::string> channels;        ///< empty: all
+    std::optional<std::string> from{}, to{};  ///< both included: SCLK [s]; of raw octets and packets UTC of reception
+    std::string format;                       ///< csv, jsonl; of raw octets and packets bin, pcap; empty: the first
+    bool raw = false, packets = false;        ///< octets of links as they came; packets found in them
+    std::string link;                         ///< of those; empty: all
+    std::string align;                        ///< as in SampleText::Options
+    std::filesystem::path out;                ///< empty: standard output
 };
+
+/// Reads an end of a range of samples.
+Result<std::optional<double>> sclk_of(const char* name, const std::optional<std::string>& text) {
+    if (!text) return std::optional<double>{};
+    double seconds = 0.0;
+    const auto [end, error] = std::from_chars(text->data(), text->data() + text->size(), seconds);
+    if (error != std::errc{} || end != text->data() + text->size())
+        return Error{fmt::format("{} {}: not a number of seconds", name, *text)};
+    return std::optional{seconds};
+}
+
+/// Reads an end of a range of receptions.
+Result<std::optional<Ert>> ert_of(const char* name, const std::optional<std::string>& text) {
+    if (!text) return std::optional<Ert>{};
+    if (const auto ert = ert_from_text(*text)) return std::optional{*ert};
+    return Error{fmt::format("{} {}: no UTC time, such as 2012-219T05:10:47.4", name, *text)};
+}
 
 using Begin = std::function<Result<void>(const v1::RunState&, const dictionary::Dictionary&)>;
 
@@ -32,6 +53,8 @@ using Begin = std::function<Result<void>(const v1::RunState&, const dictionary::
 int each_row(const ExportOptions& options, const char* command, const Begin& begin,
              const archive::Reader::TakeSamples& take) {
     const auto said = [&](const Error& error) { return failed(fmt::format("{}: {}", command, error.message)); };
+    const auto from_s = sclk_of("--from", options.from), to_s = sclk_of("--to", options.to);
+    if (!from_s || !to_s) return failed((from_s ? to_s : from_s).error().message, 2);
     int exit_code = 0;
     const auto recorded =
         recorded_dictionary(options.of.shared.dictionary, options.of.xtce, options.of.root, exit_code);
@@ -42,7 +65,7 @@ int each_row(const ExportOptions& options, const char* command, const Begin& beg
     const auto state = reader->run(run);
     if (!state) return said(state.error());
     if (auto begun = begin(*state, recorded->dictionary); !begun) return said(begun.error());
-    const auto done = reader->each_sample(run, options.channels, {options.from_s, options.to_s}, take);
+    const auto done = reader->each_sample(run, options.channels, {*from_s, *to_s}, take);
     return done ? 0 : said(done.error());
 }
 
@@ -50,25 +73,73 @@ struct CloseFile {
     void operator()(std::FILE* file) const { std::fclose(file); }
 };
 
+/// The new file that is written, or the standard output.
+class Output {
+  public:
+    Result<void> open(const std::filesystem::path& name) {
+        if (name.empty()) return {};
+        name_ = name.string();
+        file_.reset(std::fopen(name.c_str(), "wx"));
+        if (file_ != nullptr) return {};
+        return Error{name_ + " cannot be made, or is there already"};
+    }
+    Result<void> write(std::string_view text) {
+        if (std::fwrite(text.data(), 1, text.size(), to()) == text.size()) return {};
+        return Error{name_ + " takes no more"};
+    }
+    Result<void> finish() {
+        if (std::fflush(to()) == 0) return {};
+        return Error{"what was written could not be kept"};
+    }
+
+  private:
+    std::FILE* to() const { return file_ != nullptr ? file_.get() : stdout; }
+    std::string name_ = "the standard output";
+    std::unique_ptr<std::FILE, CloseFile> file_;
+};
+
+/// Writes octets of links, or the packets found in them.
+int export_raw(const ExportOptions& options) {
+    const auto said = [](const Error& error) { return failed("export: " + error.message); };
+    const auto from = ert_of("--from", options.from), to = ert_of("--to", options.to);
+    if (!from || !to) return failed((from ? to : from).error().message, 2);
+    int exit_code = 0;
+    const auto recorded =
+        recorded_dictionary(options.of.shared.dictionary, options.of.xtce, options.of.root, exit_code);
+    if (!recorded) return exit_code;
+    auto reader = archive::Reader::open(options.of.archive, recorded->dictionary, recorded->other.get());
+    if (!reader) return said(reader.error());
+    const archive::RunId run{options.of.run.value_or(0)};
+    if (const auto state = reader->run(run); !state) return said(state.error());
+    auto pages = RawExport::begin(*reader, run, {options.packets, options.link, *from, *to},
+                                  options.format.empty() ? "bin" : options.format);
+    if (!pages) return said(pages.error());
+    Output output;
+    if (auto opened = output.open(options.out); !opened) return said(opened.error());
+    if (auto done = output.write(pages->head()); !done) return said(done.error());
+    for (;;) {
+        const auto page = pages->page(*reader);
+        if (!page) return said(page.error());
+        if (!*page) break;
+        if (auto done = output.write(**page); !done) return said(done.error());
+    }
+    if (auto done = output.finish(); !done) return said(done.error());
+    if (options.packets || pages->octets_removed() == 0) return 0;
+    return failed(fmt::format("export: {} octets before are no longer kept", pages->octets_removed()));
+}
+
 /// Writes one line per sample, or per instant.
 int export_samples(const ExportOptions& options) {
-    std::unique_ptr<std::FILE, CloseFile> file;
-    if (!options.out.empty()) {
-        file.reset(std::fopen(options.out.c_str(), "wx"));
-        if (file == nullptr)
-            return failed(fmt::format("export: {} cannot be made, or is there already", options.out.string()));
-    }
-    std::FILE* const to = file != nullptr ? file.get() : stdout;
-    const auto write = [&](std::string_view text) -> Result<void> {
-        if (std::fwrite(text.data(), 1, text.size(), to) == text.size()) return {};
-        return Error{(file != nullptr ? options.out.string() : std::string("the standard output")) + " takes no more"};
-    };
+    Output output;
+    if (auto opened = output.open(options.out); !opened) return failed("export: " + opened.error().message);
+    const auto write = [&](std::string_view text) { return output.write(text); };
     std::optional<SampleText> lines;  // made once the run's dictionary is known
     std::string text;
     const int ended = each_row(
         options, "export",
         [&](const auto& state, const auto& dictionary) -> Result<void> {
-            auto made = SampleText::make(dictionary, options.channels, {options.format, options.align});
+            auto made = SampleText::make(dictionary, options.channels,
+                                         {options.format.empty() ? "csv" : options.format, options.align});
             if (!made) return made.error();
             lines = std::move(*made);
             lines->set_entry(Sclk{state.entry_sclk()});
@@ -83,7 +154,8 @@ int export_samples(const ExportOptions& options) {
     text.clear();
     lines->finish(text);
     if (auto done = write(text); !done) return failed("export: " + done.error().message);
-    return std::fflush(to) == 0 ? 0 : failed("export: what was written could not be kept");
+    const auto finished = output.finish();
+    return finished ? 0 : failed("export: " + finished.error().message);
 }
 
 /// Writes the same samples as a table of an SQLite file `out`.
@@ -119,8 +191,8 @@ void add_selection(CLI::App& command, ExportOptions& options) {
         .add_option("--channel,--channels", options.channels,
                     "names or aliases, separated by blanks or commas; all if left out")
         ->delimiter(',');
-    command.add_option("--from", options.from_s, "first SCLK [s]");
-    command.add_option("--to", options.to_s, "last SCLK [s]");
+    command.add_option("--from", options.from, "first SCLK [s]; of raw octets and packets UTC of reception");
+    command.add_option("--to", options.to, "last SCLK [s], or UTC");
 }
 
 }  // namespace
@@ -129,17 +201,36 @@ void add_export_command(CLI::App& program, int& exit_code) {
     const auto options = std::make_shared<ExportOptions>();
     auto& command =
         *program.add_subcommand("export", "prints a run's samples in order of SCLK, live and recorded as one series, a "
-                                          "row a sample");
+                                          "row a sample; or what its links brought, as it came (--raw), or the packets "
+                                          "found in that (--packets)");
     add_selection(command, *options);
-    auto* format = command.add_option("--format", options->format, "csv or jsonl")
-                       ->check(CLI::IsMember({"csv", "jsonl"}))
-                       ->capture_default_str();
+    auto* format = command
+                       .add_option("--format", options->format,
+                                   "of samples csv (the default) or jsonl; of raw octets and packets bin (the default: "
+                                   "the octets alone) or pcap (UDP datagrams with their times, port 4200 and on, a "
+                                   "port a link)")
+                       ->check(CLI::IsMember({"csv", "jsonl", "bin", "pcap"}));
+    auto* raw = command.add_flag("--raw", options->raw, "octets of links as they came, good and bad");
+    command.add_flag("--packets", options->packets, "packets, in the order of reception")->excludes(raw);
+    command.add_option("--link", options->link, "raw octets or packets of this link only");
     command.add_flag("--csv")->description("as CSV, the default")->excludes(format);
     command.add_option("--align", options->align,
                        "print a line an instant and a column a channel, each with its newest value: at the "
                        "times of the named channel, or at multiples of so many seconds");
     command.add_option("--out", options->out, "new file; standard output if left out");
-    command.callback([options, &exit_code] { exit_code = export_samples(*options); });
+    command.callback([options, &exit_code] {
+        const bool raw_format = options->format == "bin" || options->format == "pcap";
+        if (options->raw || options->packets) {
+            const bool samples =
+                (!options->format.empty() && !raw_format) || !options->align.empty() || !options->channels.empty();
+            exit_code = samples ? failed("export: octets and packets are bin or pcap, without channels", 2)
+                                : export_raw(*options);
+        } else {
+            exit_code = raw_format || !options->link.empty()
+                            ? failed("export: bin, pcap and --link are of --raw and --packets", 2)
+                            : export_samples(*options);
+        }
+    });
 }
 
 void add_archive_samples(CLI::App& archive, int& exit_code) {

@@ -42,6 +42,7 @@ struct ServeOptions {
     std::filesystem::path xtce;           ///< of the followed mission
     std::string root;
     PacketStreamFormat format{};
+    std::uint64_t keep_raw_mb = archive::raw_octets_kept >> 20U;  ///< of each link of a run
     std::string log_level{default_log_level}, log_format = "text";
     bool log_level_given = false;  ///< by command line or environment, before which the file gives way
 };
@@ -222,7 +223,8 @@ int serve(const ServeOptions& options) {
                                         .archive = options.archive,
                                         .scenarios = options.shared.scenarios,
                                         .web = options.web,
-                                        .other = followed.model.get()},
+                                        .other = followed.model.get(),
+                                        .raw_octets_kept = options.keep_raw_mb << 20U},
                                        *dictionary);
     if (!opened) return failed(opened.error().message);
     auto& backend = **opened;
@@ -262,6 +264,13 @@ void add_backend_options(CLI::App& command, ServeOptions& options) {
                     "told apart by the X-Forwarded-For that these send")
         ->delimiter(',');
     command.add_option("--archive", options.archive, "SQLite file that keeps everything")->capture_default_str();
+    command
+        .add_option(
+            "--keep-raw", options.keep_raw_mb,
+            "MB (of 2^20 octets) of each link of a run that are kept as they came, bad frames too; of more, the "
+            "oldest are removed; 0: none")
+        ->check(CLI::Range(0, 1 << 20))
+        ->capture_default_str();
     command.add_option("--web", options.web, "directory of the built console")->capture_default_str();
     command.add_option("--log-level", options.log_level, "what is logged to standard error")
         ->check(CLI::IsMember(std::vector<std::string>{log_levels.begin(), log_levels.end()}))

@@ -110,8 +110,10 @@ void DownlinkFollower::receive_until_end() {
 }
 
 void DownlinkFollower::take(std::span<const std::uint8_t> octets) {
+    brought_ = telemetry::ReceivedOctets{
+        telemetry::downlink_link, clock_.now(), {octets.begin(), octets.end()}, settings_.address.udp};
     if (!source_) {
-        if (!recognise(octets)) return;
+        if (!recognise(octets)) return deliver_packets();
         octets = {};
     }
     if (!octets.empty()) source_->receive(octets);
@@ -169,12 +171,18 @@ void DownlinkFollower::end_of_stream() {
 void DownlinkFollower::deliver_packets() {
     Delivery delivery;
     const Ert ert = clock_.now();
-    while (const auto packet = source_->next())
+    if (brought_ && !brought_->octets.empty()) delivery.entries.emplace_back(std::move(*brought_));
+    brought_.reset();
+    std::uint64_t packets = 0;
+    for (; source_; ++packets) {
+        const auto packet = source_->next();
+        if (!packet) break;
         delivery.entries.emplace_back(
             telemetry::ReceivedPacket{telemetry::downlink_link, ert, {packet->begin(), packet->end()}});
+    }
     if (delivery.entries.empty()) return;
-    packets_ += delivery.entries.size();
-    wait_ = settings_.retry_first;
+    packets_ += packets;
+    if (packets > 0) wait_ = settings_.retry_first;
     if (!pipeline_.deliver(std::move(delivery))) stop_ = true;
 }
 

@@ -19,7 +19,8 @@ namespace aeolis::server {
 
 /// Follows another mission in its own thread: receives octets, finds packets, hands them to the archive as one run.
 ///
-/// In       octets of a TCP connection or of datagrams       Out   deliveries to the pipeline; run states on change
+/// In       octets of a TCP connection or of datagrams       Out   deliveries to the pipeline, the octets as they came
+///          among them; run states on change
 /// TCP      connects, and reconnects after every end: first after `retry_first`, then doubling up to `retry_max`
 /// UDP      bare packets: each datagram holds whole packets. Frames: datagrams are pieces of one stream
 /// Counts   totals of the link and of its sequences once a second, over all connections; what went wrong is logged at
@@ -77,6 +78,7 @@ class DownlinkFollower {
     std::uint16_t port_ = 0;
     archive::RunId run_;
     archive::RunStart start_;
+    std::optional<telemetry::ReceivedOctets> brought_;  ///< not yet delivered
     std::optional<telemetry::PacketSource> source_;
     LinkLedger ledger_{telemetry::downlink_link.name};
     std::optional<Ert> faults_logged_;

@@ -83,6 +83,7 @@ Result<std::unique_ptr<ConsoleBackend>> ConsoleBackend::open(Settings settings,
             post([self, batch = std::move(batch)]() mutable { self->hub_->published(std::move(batch)); });
         },
         chosen.other);
+    backend->pipeline_->keep_raw(chosen.raw_octets_kept);
     backend->pipeline_->want_items(false);
     backend->pipeline_->on_fault(
         [self, post](const std::string& fault) { post([self, fault] { self->hub_->archive_fault(fault); }); });

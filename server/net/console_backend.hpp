@@ -4,6 +4,7 @@
 #include "common/result.hpp"
 #include "dictionaries/dictionary.hpp"
 #include "server/api/api.hpp"
+#include "server/archive/records.hpp"
 #include "server/base/clock_watch.hpp"
 #include "server/links/downlink_follower.hpp"
 #include "server/net/web_server.hpp"
@@ -28,6 +29,7 @@ class ConsoleBackend {
         /// Null: our own mission; else that of the dictionary, and must outlive this.
         const telemetry::OtherMission* other = nullptr;
         ReadClocks clocks = read_clocks;
+        std::uint64_t raw_octets_kept = archive::raw_octets_kept;  ///< of each link of a run, as they came
     };
     /// Opens all parts. Fails with one line that names the archive or the address. The dictionary must outlive this.
     static Result<std::unique_ptr<ConsoleBackend>> open(Settings settings, const dictionary::Dictionary& dictionary);

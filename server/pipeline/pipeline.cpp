@@ -9,6 +9,7 @@
 #include "telemetry/staleness.hpp"
 
 #include <algorithm>
+#include <map>
 
 namespace aeolis::pipeline {
 
@@ -35,6 +36,10 @@ struct Pipeline::State {
         Sequence repeat_until = 0;  ///< items up to here are already durable
         Compare compare;            ///< not null while items are repeated
         std::optional<Error> differs;
+        struct RawLink {
+            std::uint64_t received = 0, stored = 0;  ///< octets; the first `stored` are durable
+        };
+        std::map<std::string, RawLink> raw;
 
         bool repeats() const { return compare != nullptr; }
         archive::RecordingTotals totals() const {
@@ -46,6 +51,7 @@ struct Pipeline::State {
 
     Result<void> room();
     std::size_t pending_octets() const;
+    void take(const telemetry::ReceivedOctets& piece);
     void take(const telemetry::ReceivedPacket& packet);
     /// Notes that the newest packet of the batch was received.
     void heard();
@@ -64,6 +70,7 @@ struct Pipeline::State {
     Publish publish;
     Observer observer;
     bool items_wanted = true;
+    std::uint64_t raw_kept = archive::raw_octets_kept;
     std::optional<Run> run;
     std::chrono::steady_clock::time_point last_commit{};
 };
@@ -94,7 +101,7 @@ Sequence Pipeline::last_durable() const {
 std::size_t Pipeline::pending_items() const {
     if (!state_->run) return 0;
     const auto& pending = state_->run->pending;
-    return pending.requests.size() +
+    return pending.requests.size() + pending.raw.size() +
            (pending.last_seq == 0 ? 0 : static_cast<std::size_t>(pending.last_seq - pending.first_seq + 1));
 }
 
@@ -114,6 +121,12 @@ Result<void> Pipeline::resume(RunId run, const archive::RunStart& start, Sequenc
     state_->run->repeat_until = durable;
     state_->run->last_durable = durable;
     state_->run->compare = std::move(compare);
+    auto stored = state_->archive.raw_ends(run);
+    if (!stored) {
+        state_->run.reset();
+        return stored.error();
+    }
+    for (const auto& [link, octets] : *stored) state_->run->raw[link].stored = octets;
     return {};
 }
 
@@ -125,7 +138,10 @@ void Pipeline::State::compare_with_archive() {
                   std::to_string(run->pending.last_seq - run->repeat_until) + " more items"};
     if (!run->differs && run->pending.last_seq != 0)
         if (auto same = run->compare(*published(run->id, run->pending, true)); !same) run->differs = same.error();
+    auto not_stored = std::move(run->pending.raw);  // what came since the last commit before the run was cut off
     run->pending.clear();
+    for (const auto& piece : not_stored) run->pending.raw_octets += piece.octets.size();
+    run->pending.raw = std::move(not_stored);
 }
 
 /// Continues the run once its last durable item was repeated; does nothing before that or when not repeating.
@@ -152,7 +168,8 @@ void Pipeline::abandon() {
 }
 
 std::size_t Pipeline::State::pending_octets() const {
-    return run ? run->pending.octets.size() + run->pending.values.size() * sizeof(double) : 0;
+    if (!run) return 0;
+    return run->pending.octets.size() + run->pending.values.size() * sizeof(double) + run->pending.raw_octets;
 }
 
 std::size_t Pipeline::pending_octets() const {
@@ -169,12 +186,20 @@ Result<void> Pipeline::State::room() {
 }
 
 Result<void> Pipeline::accept(const telemetry::Received& received) {
-    if (received.packets.empty() && received.tones.empty() && received.links.empty()) return {};
+    if (received.packets.empty() && received.tones.empty() && received.links.empty() && received.octets.empty())
+        return {};
     // All or nothing: otherwise a retry would store items twice.
     if (auto room = state_->room(); !room) return room;
+    for (const auto& piece : received.octets) state_->take(piece);
     for (const auto& link : received.links) state_->take(link);
     for (const auto& packet : received.packets) state_->take(packet);
     for (const auto& tone : received.tones) state_->take(tone);
+    return {};
+}
+
+Result<void> Pipeline::accept(const telemetry::ReceivedOctets& octets) {
+    if (auto room = state_->room(); !room) return room;
+    state_->take(octets);
     return {};
 }
 
@@ -238,6 +263,30 @@ Result<void> Pipeline::accept(archive::StageRecord stage) {
     run.pending.stages.push_back(std::move(stage));
     run.situation.follow(run.pending);
     return {};
+}
+
+void Pipeline::State::take(const telemetry::ReceivedOctets& piece) {
+    auto& link = run->raw[piece.link.name];
+    const std::uint64_t first = link.received;
+    link.received += piece.octets.size();
+    const std::uint64_t durable = link.stored > first ? std::min(link.stored, link.received) - first : 0;
+    const auto octets = std::span{piece.octets}.subspan(static_cast<std::size_t>(durable));
+    if (octets.empty() || raw_kept == 0) return;
+    auto& pieces = run->pending.raw;
+    run->pending.raw_kept = raw_kept;
+    run->pending.raw_octets += octets.size();
+    const auto last = std::find_if(pieces.rbegin(), pieces.rend(),
+                                   [&](const archive::RawRecord& each) { return each.link == piece.link.name; });
+    const bool joins = last != pieces.rend() && !last->datagram && !piece.datagram &&
+                       last->octets.size() + octets.size() <= archive::RawRecord::octets_max &&
+                       piece.ert.microseconds - last->begun.microseconds <= archive::RawRecord::joined_us_max;
+    if (joins) {
+        last->octets.insert(last->octets.end(), octets.begin(), octets.end());
+        last->ert = piece.ert;
+    } else {
+        pieces.push_back(
+            {piece.link.name, piece.ert, piece.ert, first + durable, {octets.begin(), octets.end()}, piece.datagram});
+    }
 }
 
 void Pipeline::State::take(const telemetry::ReceivedPacket& packet) {
@@ -322,8 +371,20 @@ void Pipeline::relay_progress(double progress) {
     state_->run->progress = progress;
 }
 
+void Pipeline::keep_raw(std::uint64_t octets) {
+    state_->raw_kept = octets;
+}
+
 void Pipeline::link_totals(std::vector<archive::LinkTotals> links) {
-    if (state_->run) state_->run->pending.link_totals = std::move(links);
+    if (!state_->run) return;
+    auto& pending = state_->run->pending.link_totals;
+    for (auto& told : links) {
+        const auto known = std::ranges::find(pending, told.link, &archive::LinkTotals::link);
+        if (known == pending.end())
+            pending.push_back(std::move(told));
+        else
+            archive::merge(*known, std::move(told));
+    }
 }
 
 archive::RecordingTotals Pipeline::totals() const {

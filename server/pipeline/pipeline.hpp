@@ -91,6 +91,8 @@ class Pipeline {
 
     /// Takes all of it or, with an Error, nothing.
     Result<void> accept(const telemetry::Received& received);
+    /// Keeps octets of a link as they came; stored with the next commit.
+    Result<void> accept(const telemetry::ReceivedOctets& octets);
     Result<void> accept(const telemetry::ReceivedPacket& packet);
     Result<void> accept(const telemetry::ReceivedTone& tone);
     Result<void> accept(const telemetry::LinkState& link);
@@ -103,6 +105,8 @@ class Pipeline {
     Result<archive::Annotation> annotate(RunId run, archive::Annotation annotation);
     /// Sets the fraction of the recording that is down, 0 … 1; durable with the next commit.
     void relay_progress(double progress);
+    /// Sets how many octets of each link of a run are kept as they came; 0: none.
+    void keep_raw(std::uint64_t octets);
     /// Sets the counters of links; stored with the next commit.
     void link_totals(std::vector<archive::LinkTotals> links);
 

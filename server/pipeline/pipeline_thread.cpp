@@ -46,6 +46,7 @@ Result<void> same_items(archive::Reader& stored, const pipeline::PublishedBatch&
 }  // namespace
 
 void Delivery::add(const telemetry::Received& received) {
+    entries.insert(entries.end(), received.octets.begin(), received.octets.end());
     entries.insert(entries.end(), received.packets.begin(), received.packets.end());
     entries.insert(entries.end(), received.tones.begin(), received.tones.end());
     entries.insert(entries.end(), received.links.begin(), received.links.end());
@@ -226,22 +227,7 @@ void PipelineThread::note_received(const Delivery& delivery) {
             add(packet->link.name, packet->octets.size());
         if (std::holds_alternative<telemetry::ReceivedTone>(entry)) add("tones", 0);
     }
-    for (const auto& told : delivery.links) {
-        auto& totals = totals_[told.link];
-        auto sequences = std::move(totals.sequences);
-        for (const auto& each : told.sequences) {
-            const auto same = [&](const auto& other) {
-                return other.name == each.name && other.packets == each.packets;
-            };
-            const auto known = std::ranges::find_if(sequences, same);
-            if (known == sequences.end())
-                sequences.push_back(each);
-            else
-                known->counters = each.counters;
-        }
-        totals = told;
-        totals.sequences = std::move(sequences);
-    }
+    for (const auto& told : delivery.links) archive::merge(totals_[told.link], told);
 }
 
 bool PipelineThread::deliver(Delivery delivery) {

@@ -21,8 +21,9 @@ namespace aeolis::server {
 
 /// Entries that a run hands to the archive together, in the order in which they reached Earth.
 struct Delivery {
-    using Entry = std::variant<telemetry::ReceivedPacket, telemetry::ReceivedTone, telemetry::LinkState,
-                               telemetry::EarthTime, archive::StageRecord, archive::RequestRecord>;
+    using Entry =
+        std::variant<telemetry::ReceivedOctets, telemetry::ReceivedPacket, telemetry::ReceivedTone,
+                     telemetry::LinkState, telemetry::EarthTime, archive::StageRecord, archive::RequestRecord>;
     std::vector<Entry> entries;
     double relay_progress = 0.0;
     std::vector<archive::LinkTotals> links;           ///< empty: unchanged
@@ -95,6 +96,8 @@ class PipelineThread {
     bool prune(archive::RunId run, archive::AuditRecord by, std::function<void(Result<void>)> done);
 
     void want_items(bool wanted) { items_wanted_ = wanted; }
+    /// Sets how many octets of each link of a run are kept as they came. Call before the first run.
+    void keep_raw(std::uint64_t octets) { pipeline_.keep_raw(octets); }
     /// Sets the callback, called on this thread, for each change of fault(). Call before the first run.
     void on_fault(std::function<void(const std::string& fault)> told) { on_fault_ = std::move(told); }
     /// Sets the callback, called on this thread, for each durable entry that is the audit's newest. Call before the

@@ -13,6 +13,7 @@ const Received& GroundStation::receive(const Downlink& downlink) {
     received_.clear();
     received_.links = downlink.links;
     received_.tones = downlink.tones;
+    received_.octets = downlink.octets;
     for (const LinkState& state : downlink.links) note(state);
     for (const ReceivedOctets& piece : downlink.octets) receive(piece);
     for (LinkReceiver& link : links_)

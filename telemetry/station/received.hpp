@@ -25,8 +25,10 @@ struct Received {
     std::vector<ReceivedPacket> packets;
     std::vector<ReceivedTone> tones;
     std::vector<LinkState> links;
+    std::vector<ReceivedOctets> octets;  ///< of which all that is above was made, good and bad
 
     void clear() {
+        octets.clear();
         packets.clear();
         tones.clear();
         links.clear();

@@ -7,6 +7,7 @@
 #include "flight/load.hpp"
 #include "server/archive/sqlite.hpp"
 #include "server/base/json.hpp"
+#include "server/base/pcap.hpp"
 #include "tests/server/running_server.hpp"
 #include "tests/server/web_client.hpp"
 #include "tests/support/catch.hpp"
@@ -815,6 +816,88 @@ TEST_CASE("decode corrects what Reed-Solomon codeblocks hold, says how much, and
         CHECK(ended.code == expected);
         CHECK_THAT(ended.text, Catch::Contains(says));
     }
+}
+
+TEST_CASE("a recorded capture becomes a run, and what is exported of it is what was ingested", "[cli][ingest][R55]") {
+    if (program() == nullptr) return;
+    using namespace aeolis;
+    const aeolis::test::TemporaryFolder folder;
+    const auto write = [&](const char* name, const std::string& text) {
+        std::ofstream{folder / name, std::ios::binary} << text;
+        return "'" + (folder / name).string() + "'";
+    };
+    const std::string mission = write(
+        "one.xml",
+        "<SpaceSystem name='T'><TelemetryMetaData><ParameterTypeSet>"
+        "<IntegerParameterType name='u16'><IntegerDataEncoding sizeInBits='16'/></IntegerParameterType>"
+        "<IntegerParameterType name='u48'><IntegerDataEncoding sizeInBits='48'/></IntegerParameterType>"
+        "</ParameterTypeSet><ParameterSet><Parameter name='H' parameterTypeRef='u48'/><Parameter name='W' "
+        "parameterTypeRef='u16'/></ParameterSet><ContainerSet><SequenceContainer name='P'><EntryList>"
+        "<ParameterRefEntry parameterRef='H'/><ParameterRefEntry parameterRef='W'/></EntryList></SequenceContainer>"
+        "</ContainerSet></TelemetryMetaData></SpaceSystem>");
+    std::string capture = server::pcap::head(), plain;
+    for (unsigned i = 0; i < 300; ++i) {
+        const std::vector<std::uint8_t> packet{0x01,
+                                               0x23,
+                                               static_cast<std::uint8_t>(0xC0 | i >> 8U),
+                                               static_cast<std::uint8_t>(i),
+                                               0,
+                                               1,
+                                               0,
+                                               static_cast<std::uint8_t>(i)};
+        server::pcap::append(capture, Ert{397'500'000'000'000 + i * 100'000}, 5000, packet);
+        plain.append(packet.begin(), packet.end());
+    }
+    const std::vector<std::uint8_t> bad{0xEE, 0xEE, 0xEE, 0xEE, 0xEE, 0xEE, 0xEE};
+    std::string damaged = capture;
+    server::pcap::append(damaged, Ert{397'500'040'000'000}, 5000, bad);
+    server::pcap::append(damaged, Ert{397'500'040'000'000}, 5001, bad);
+    const std::string whole = write("whole.pcap", capture), hurt = write("hurt.pcap", damaged),
+                      stream = write("plain", plain), newer = write("newer", "\x0A\x0D\x0D\x0A and so on");
+    const std::string archive = "'" + (folder / "a.db").string() + "'";
+    const auto ingest = [&](const std::string& arguments) {
+        return run(program(), "ingest --archive " + archive + " --xtce " + mission + " " + arguments);
+    };
+    const auto first = ingest(whole);
+    INFO(first.text);
+    CHECK(first.code == 0);
+    CHECK_THAT(first.text, Catch::Contains("run 1") && Catch::Contains("300 packets of 2400 octets"));
+    const auto second = ingest(hurt + " --udp-port 5000");
+    INFO(second.text);
+    CHECK(second.code == 1);
+    CHECK_THAT(second.text, Catch::Contains("1 bad datagrams") && Catch::Contains("1 datagrams to other ports"));
+    const auto third = ingest(stream + " --start 2012-219T05:10:00 --bits-per-second 1920");
+    INFO(third.text);
+    CHECK(third.code == 0);
+    const auto refused = ingest(newer);
+    CHECK(refused.code == 2);
+    CHECK_THAT(refused.text, Catch::Contains("editcap"));
+    CHECK_THAT(ingest(whole + " --start 2012-219T05:10:00").text, Catch::Contains("times of its own"));
+
+    const auto exported = [&](const std::string& arguments) {
+        const auto out = folder / "out";
+        std::filesystem::remove(out);
+        const auto ended =
+            run(program(), "export --archive " + archive + " --out '" + out.string() + "' --run " + arguments);
+        INFO(arguments << " -> " << ended.code << ": " << ended.text);
+        CHECK(ended.code == 0);
+        std::ifstream in{out, std::ios::binary};
+        return std::string{std::istreambuf_iterator<char>{in}, {}};
+    };
+    CHECK(exported("1 --raw") == plain);
+    CHECK(exported("1 --packets --format bin") == plain);
+    CHECK(exported("2 --raw") == plain + std::string(bad.begin(), bad.end()));
+    const auto second_of_it = exported("3 --raw --from 2012-219T05:10:05 --to 2012-219T05:10:06");
+    CHECK_FALSE(second_of_it.empty());
+    CHECK(second_of_it.size() <= 300);  // 240 octets a second, in pieces of up to a quarter
+    CHECK(plain.find(second_of_it) != std::string::npos);
+    auto same = capture;  // but for the port
+    for (std::size_t at = 24; at < same.size(); at += 16 + 36) same.replace(at + 36, 4, "\x10\x68\x10\x68");
+    CHECK(exported("1 --raw --format pcap") == same);
+    const auto no_link = run(program(), "export --archive " + archive + " --run 1 --raw --link relay");
+    CHECK(no_link.code == 1);
+    CHECK_THAT(no_link.text, Catch::Contains("no octets of 'relay'"));
+    CHECK(run(program(), "export --archive " + archive + " --run 1 --format pcap").code == 2);
 }
 
 TEST_CASE("a landing's samples and their predict are made together, and decode reads the tones out of them",

@@ -3,6 +3,7 @@
 #include "common/proximity_frame.hpp"
 #include "dictionaries/xtce/packet_model.hpp"
 #include "server/access/this_user.hpp"
+#include "server/base/pcap.hpp"
 #include "server/links/downlink_follower.hpp"
 #include "server/net/console_backend.hpp"
 #include "telemetry/other_mission.hpp"
@@ -235,6 +236,11 @@ TEST_CASE("packets in frames with garbage between, over TCP in odd pieces, are a
     CHECK_THAT(words, Catch::Contains("\"name\":\"BUS_VOLTAGE\""));
     CHECK_THAT(follower.ask("/runs/1"), Catch::Contains("\"venue\":\"downlink\"") && Catch::Contains("pltu by m.xml"));
     CHECK_THAT(follower.ask("/runs/1/state"), Catch::Contains("\"BUS_VOLTAGE\""));
+    CHECK(follower.ask("/runs/1/raw?format=bin") == std::string(stream.begin(), stream.end()));
+    CHECK_THAT(follower.ask("/runs/1/raw?link=relay"),
+               Catch::Contains("no octets of 'relay'; it has those of downlink"));
+    CHECK_THAT(follower.ask("/runs/1/raw?format=csv"), Catch::Contains("'csv' is neither bin nor pcap"));
+    CHECK_THAT(follower.ask("/runs/1/raw?from=yesterday"), Catch::Contains("'yesterday' is no UTC time"));
     CHECK_THAT(follower.ask("/runs/1/prediction"),
                Catch::Contains("\"state\":\"none\"") && Catch::Contains("run 1 has no scenario: it follows another"));
 }
@@ -282,6 +288,18 @@ TEST_CASE("each datagram stands for itself: garbage and packets of nobody are ke
     send_datagram(port, two);
     const auto packets =
         follower.ask_until("/runs/1/packets", [](const std::string& text) { return count_of(text, "\"Power\"") == 3; });
+    const auto captured = follower.ask("/runs/1/raw");
+    const std::vector<std::uint8_t> capture{captured.begin(), captured.end()};
+    auto kept = pcap::File::open(capture);
+    REQUIRE(kept);
+    for (const Octets& sent : {power_packet(1, 10, 4), Octets(200, 0xEE), cut, power_packet(3, 12, 6, 99), two}) {
+        const auto datagram = kept->next();
+        REQUIRE(datagram);
+        CHECK(Octets(datagram->octets.begin(), datagram->octets.end()) == sent);
+    }
+    CHECK_FALSE(kept->next());
+    CHECK(follower.ask("/runs/1/raw?of=packets&format=bin").size() ==
+          3 * power_packet(1, 10, 4).size() + power_packet(3, 12, 6, 99).size());
     CHECK(count_of(packets, "\"Power\"") == 3);
     CHECK(count_of(packets, "\"hex\"") == 4);
     CHECK_THAT(packets, Catch::Contains("not decoded: no container describes it: Header is abstract"));

@@ -49,13 +49,16 @@ describe('the links', () => {
     const proof = create(ProofReportSchema, {
       counters: [
         { link: 'uhf_live', sequences: [{ name: 'virtual channel 0', received: 9n }] },
-        { link: 'downlink', sequences: [{ name: 'APID 1', packets: true, received: 3n, late: 1n }, { name: 'APID 2' }] },
+        {
+          link: 'downlink',
+          sequences: [{ name: 'APID 1', packets: true, received: 3n, late: 1n }, { name: 'APID 2' }],
+        },
       ],
     });
     expect(sequenceRows(linkViews(aStore([]), proof, Infinity)).map((row) => row.counted.name)).toEqual([
       'APID 1',
-      'virtual channel 0',
       'APID 2',
+      'virtual channel 0',
     ]);
   });
   it('count the part of the frames that came', () => {

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "server/archive/reader.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace aeolis::server {
+
+/// Writes what links brought as `aeolis export --raw` and GET /api/v1/runs/{run}/raw do: the octets as they came, good
+/// and bad, or the packets found in them.
+///
+/// Formats  bin: the octets alone, of one link; pcap: each piece or packet with its time, a UDP port a link
+/// Memory   a page
+class RawExport {
+  public:
+    /// Fails on an unknown format, and when the run has nothing of the kind that is asked for.
+    static Result<RawExport> begin(archive::Reader& reader, archive::RunId run, archive::RawQuery query,
+                                   const std::string& format);
+
+    std::string head() const;
+    /// The next page, perhaps empty; none at the end.
+    Result<std::optional<std::string>> page(archive::Reader& reader);
+    bool done() const { return done_; }
+    bool is_pcap() const { return pcap_; }
+    /// Octets of the asked links that are no longer kept, since newer ones took their place.
+    std::uint64_t octets_removed() const { return octets_removed_; }
+
+  private:
+    archive::RunId run_;
+    archive::RawQuery query_;
+    bool pcap_ = false, done_ = false;
+    std::vector<std::string> links_;  ///< in the order of their ports
+    std::uint64_t octets_removed_ = 0;
+    std::optional<archive::RawPiece> after_;
+};
+
+}  // namespace aeolis::server

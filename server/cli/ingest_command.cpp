@@ -1,0 +1,313 @@
+// SPDX-License-Identifier: Apache-2.0
+// aeolis ingest: what was recorded elsewhere becomes a run of the archive, by the road of a followed link.
+#include "server/base/clock_watch.hpp"
+#include "server/base/pcap.hpp"
+#include "server/base/wall_clock.hpp"
+#include "server/cli/commands.hpp"
+#include "server/cli/options.hpp"
+#include "server/cli/xtce_file.hpp"
+#include "server/links/link_ledger.hpp"
+#include "server/pipeline/pipeline_thread.hpp"
+
+#include <algorithm>
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <spdlog/spdlog.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <thread>
+#include <unistd.h>
+#include <vector>
+
+namespace aeolis::server {
+namespace {
+
+constexpr std::size_t piece_octets = 65536;
+constexpr std::size_t beginning_octets_max = std::size_t{1} << 20U;  // by which a layout is recognised
+constexpr std::int64_t microseconds_a_second = 1'000'000;
+constexpr std::size_t delivery_entries = 256;
+
+struct IngestOptions {
+    std::vector<std::filesystem::path> files;
+    std::filesystem::path archive, xtce;
+    std::string root;
+    PacketStreamFormat format{};
+    std::optional<std::uint16_t> port;      ///< of a capture's datagrams
+    std::optional<std::string> start;       ///< UTC at which the first octet was received
+    std::optional<double> bits_per_second;  ///< at which the octets came
+    double pace = 0.0;                      ///< seconds of reception a second; 0: at once
+};
+
+/// The octets of a file, read as they are needed.
+class MappedFile {
+  public:
+    static Result<MappedFile> open(const std::filesystem::path& name) {
+        const Error refused{name.string() + " cannot be read"};
+        const int file = ::open(name.c_str(), O_RDONLY | O_CLOEXEC);
+        if (file < 0) return refused;
+        struct stat about{};
+        MappedFile mapped;
+        const bool regular = ::fstat(file, &about) == 0 && S_ISREG(about.st_mode);
+        mapped.size_ = regular ? static_cast<std::size_t>(about.st_size) : 0;
+        void* octets = mapped.size_ > 0 ? ::mmap(nullptr, mapped.size_, PROT_READ, MAP_PRIVATE, file, 0) : nullptr;
+        ::close(file);
+        if (!regular || octets == MAP_FAILED) return refused;
+        mapped.octets_ = octets;
+        return mapped;
+    }
+    MappedFile(MappedFile&& other) noexcept : octets_(std::exchange(other.octets_, nullptr)), size_(other.size_) {}
+    MappedFile& operator=(MappedFile&&) = delete;
+    ~MappedFile() {
+        if (octets_ != nullptr) ::munmap(octets_, size_);
+    }
+    std::span<const std::uint8_t> octets() const { return {static_cast<const std::uint8_t*>(octets_), size_}; }
+
+  private:
+    MappedFile() = default;
+    void* octets_ = nullptr;
+    std::size_t size_ = 0;
+};
+
+struct Piece {
+    Ert ert;
+    std::span<const std::uint8_t> octets;
+    bool datagram = false;
+};
+using TakePiece = std::function<bool(const Piece&)>;  ///< false: no more are wanted
+
+/// What a recorded file holds, in order.
+class Recording {
+  public:
+    static Result<Recording> open(std::span<const std::uint8_t> octets, const IngestOptions& options, Ert start) {
+        Recording recording{octets, options, start};
+        if (!pcap::File::is(octets)) return recording;
+        if (options.start || options.bits_per_second)
+            return Error{"a pcap file has times of its own: --start and --bits-per-second are of plain files"};
+        const auto capture = pcap::File::open(octets);
+        if (!capture) return capture.error();
+        recording.capture_ = *capture;
+        return recording;
+    }
+
+    /// Gives each piece to `take`. @return what of a capture was not used, in words; empty: nothing
+    std::string each(const TakePiece& take) const {
+        if (!capture_) {
+            each_of_plain(take);
+            return {};
+        }
+        auto capture = *capture_;
+        std::uint64_t other_ports = 0;
+        while (const auto datagram = capture.next()) {
+            if (options_->port && datagram->port != *options_->port)
+                ++other_ports;
+            else if (!take({datagram->ert, datagram->octets, true}))
+                return {};
+        }
+        std::string words;
+        if (capture.others() > 0) words += fmt::format("; {} packets are no whole UDP over IPv4", capture.others());
+        if (other_ports > 0) words += fmt::format("; {} datagrams to other ports", other_ports);
+        if (capture.cut()) words += "; the capture is cut off";
+        return words.empty() ? words : words.substr(2);
+    }
+
+  private:
+    Recording(std::span<const std::uint8_t> octets, const IngestOptions& options, Ert start)
+        : octets_(octets), options_(&options), start_(start) {}
+
+    void each_of_plain(const TakePiece& take) const {
+        // With a rate in pieces of a tenth of a second: the time of each is that of its last octet.
+        constexpr double bits_an_octet = 8.0, piece_s = 0.1;
+        const double rate = options_->bits_per_second.value_or(0.0) / bits_an_octet;
+        const auto piece =
+            rate > 0.0 ? static_cast<std::size_t>(std::clamp(rate * piece_s, 1.0, static_cast<double>(piece_octets)))
+                       : piece_octets;
+        for (std::size_t at = 0; at < octets_.size(); at += piece) {
+            const std::size_t size = std::min(piece, octets_.size() - at);
+            const double passed_s = rate > 0.0 ? static_cast<double>(at + size) / rate : 0.0;
+            const Ert ert{start_.microseconds + static_cast<std::int64_t>(passed_s * microseconds_a_second)};
+            if (!take({ert, octets_.subspan(at, size), false})) return;
+        }
+    }
+
+    std::span<const std::uint8_t> octets_;
+    const IngestOptions* options_;
+    Ert start_;
+    std::optional<pcap::File> capture_;
+};
+
+/// Hands the pieces of a recording to the archive as a link does.
+class Ingest {
+  public:
+    Ingest(const IngestOptions& options, PipelineThread& pipeline) : options_(options), pipeline_(pipeline) {}
+
+    Result<void> add(const Recording& recording, const std::string& name) {
+        std::vector<std::uint8_t> beginning;
+        bool datagrams = false;
+        recording.each([&](const Piece& piece) {
+            beginning.insert(beginning.end(), piece.octets.begin(), piece.octets.end());
+            datagrams = datagrams || piece.datagram;
+            return beginning.size() < beginning_octets_max;
+        });
+        const bool whole = beginning.size() < beginning_octets_max;
+        auto recognised = packet_source(options_.format, beginning, whole);
+        if (!recognised) return Error{name + ": " + recognised.error().message};
+        if (!recognised->layout.empty()) fmt::print(stderr, "{}: taken for {}\n", name, recognised->layout);
+        auto& source = recognised->source;
+        const auto unused = recording.each([&](const Piece& piece) { return take(piece, source); });
+        if (!unused.empty()) {
+            ++faults_;
+            fmt::print(stderr, "{}: {}\n", name, unused);
+        }
+        source.end();
+        take_packets(source);
+        ledger_.end(source);
+        return hand_over();
+    }
+
+    /// Hands over the totals. True when everything was as it should be.
+    Result<bool> finish() {
+        auto totals = ledger_.totals(nullptr, now_);
+        const auto faults = ledger_.faults_since(totals);
+        fmt::print("{} packets of {} octets\n", packets_, totals.counters.octets);
+        if (!faults.empty()) fmt::print(stderr, "{}\n", faults);
+        delivery_.links.push_back(std::move(totals));
+        if (auto done = hand_over(); !done) return done.error();
+        return faults.empty() && faults_ == 0;
+    }
+
+  private:
+    bool take(const Piece& piece, telemetry::PacketSource& source) {
+        wait_for(piece.ert);
+        if (!began_) {
+            began_ = true;
+            delivery_.entries.emplace_back(
+                telemetry::LinkState{telemetry::downlink_link, piece.ert, true, "recorded", false});
+        }
+        if (piece.ert.microseconds - passed_.microseconds >= microseconds_a_second) {
+            passed_ = piece.ert;
+            delivery_.entries.emplace_back(telemetry::EarthTime{piece.ert});
+            delivery_.links.push_back(ledger_.totals(&source, piece.ert));
+        }
+        now_ = piece.ert;
+        ledger_.received(piece.ert, piece.octets.size());
+        if (!piece.octets.empty())
+            delivery_.entries.emplace_back(telemetry::ReceivedOctets{
+                telemetry::downlink_link, piece.ert, {piece.octets.begin(), piece.octets.end()}, piece.datagram});
+        source.receive(piece.octets);
+        take_packets(source);
+        if (piece.datagram && !source.end_datagram()) ledger_.bad_datagram();
+        take_packets(source);
+        const bool due = delivery_.entries.size() >= delivery_entries || options_.pace > 0.0;
+        return !due || hand_over().ok();
+    }
+
+    void take_packets(telemetry::PacketSource& source) {
+        for (; const auto packet = source.next(); ++packets_)
+            delivery_.entries.emplace_back(
+                telemetry::ReceivedPacket{telemetry::downlink_link, now_, {packet->begin(), packet->end()}});
+    }
+
+    Result<void> hand_over() {
+        if (pipeline_.deliver(std::exchange(delivery_, {}))) return {};
+        return Error{pipeline_.fault()};
+    }
+
+    /// Waits until it is the piece's turn at the pace.
+    void wait_for(Ert ert) {
+        if (options_.pace <= 0.0) return;
+        if (!began_) {
+            first_ = ert;
+            started_ = std::chrono::steady_clock::now();
+        }
+        const double passed_s = static_cast<double>(ert.microseconds - first_.microseconds) / microseconds_a_second;
+        std::this_thread::sleep_until(started_ + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+                                                     std::chrono::duration<double>(passed_s / options_.pace)));
+    }
+
+    const IngestOptions& options_;
+    PipelineThread& pipeline_;
+    LinkLedger ledger_{telemetry::downlink_link.name};
+    Delivery delivery_;
+    Ert now_, passed_, first_;
+    std::chrono::steady_clock::time_point started_;
+    std::uint64_t packets_ = 0, faults_ = 0;
+    bool began_ = false;
+};
+
+int ingest(const IngestOptions& options) {
+    if (!telemetry::downlink_format(options.format.name))
+        return failed(packet_source(options.format, {}, true).error().message, 2);
+    if (options.bits_per_second && *options.bits_per_second <= 0.0) return failed("--bits-per-second: more than 0", 2);
+    Ert start = EarthClock{read_clocks}.now();
+    if (options.start) {
+        const auto told = ert_from_text(*options.start);
+        if (!told) return failed("--start " + *options.start + ": no UTC time, such as 2012-219T05:10:47.4", 2);
+        start = *told;
+    }
+    std::vector<MappedFile> files;
+    std::vector<Recording> recordings;
+    for (const auto& name : options.files) {
+        auto file = MappedFile::open(name);
+        if (!file) return failed(file.error().message, 2);
+        files.push_back(std::move(*file));
+        auto recording = Recording::open(files.back().octets(), options, start);
+        if (!recording) return failed(name.string() + ": " + recording.error().message, 2);
+        recordings.push_back(std::move(*recording));
+    }
+    auto xtce = read_xtce_file(options.xtce, options.root);
+    if (!xtce) return xtce.exit_code;
+    const telemetry::OtherMission mission{std::move(*xtce.model), xtce.id};
+    auto archive = archive::Archive::open(options.archive);
+    if (!archive) return failed(archive.error().message);
+    PipelineThread pipeline{std::move(*archive), mission.dictionary(), PipelineThread::Faults::give_up,
+                            pipeline::Publish{}, &mission};
+    pipeline.want_items(false);
+    archive::RunStart run_start;
+    run_start.scenario = run_start.venue = "downlink";
+    run_start.title = fmt::format("{}, {} by {}", options.files.front().filename().string(), options.format.name,
+                                  options.xtce.filename().string());
+    run_start.pace = 1.0;
+    run_start.started = wall_clock_text();
+    const auto run = pipeline.begin(run_start);
+    if (!run) return failed(run.error().message);
+    fmt::print("run {}\n", run->value);
+    Ingest ingest{options, pipeline};
+    std::optional<Error> broken;
+    for (std::size_t i = 0; i < recordings.size() && !broken; ++i)
+        if (auto added = ingest.add(recordings[i], options.files[i].string()); !added) broken = added.error();
+    const auto right = ingest.finish();
+    const auto finished =
+        pipeline.finish({"stopped", broken ? broken->message : "the recording ended", "", wall_clock_text()});
+    if (broken) return failed(broken->message);
+    if (!right) return failed(right.error().message);
+    if (!finished) return failed(finished.error().message);
+    return *right ? 0 : 1;
+}
+
+}  // namespace
+
+void add_ingest_command(CLI::App& program, int& exit_code) {
+    const auto options = std::make_shared<IngestOptions>();
+    auto& command = *program.add_subcommand(
+        "ingest", "takes recorded files of a mission into a run of the archive, as a followed link brings it: plain "
+                  "octets, or pcap with the times of reception. Exit code 1 when anything was lost or not used");
+    command.add_option("files", options->files, "recorded files, in the order of reception")->required();
+    command.add_option("--archive", options->archive, "SQLite file that keeps everything")->required();
+    command.add_option("--xtce", options->xtce, "the mission's XTCE file")->required();
+    add_root(command, options->root);
+    add_stream_format(command, options->format);
+    command.add_option("--udp-port", options->port, "of a pcap file: datagrams to this port only; all if left out");
+    command.add_option("--start", options->start,
+                       "of a plain file: when its first octet was received, UTC; now if left out");
+    command.add_option("--bits-per-second", options->bits_per_second,
+                       "of a plain file: the rate at which it was received; all at once if left out");
+    command.add_option("--pace", options->pace, "seconds of reception a second; 0: as fast as it goes")
+        ->check(CLI::Range(0.0, 1.0e6))
+        ->capture_default_str();
+    command.callback([options, &exit_code] { exit_code = ingest(*options); });
+}
+
+}  // namespace aeolis::server
