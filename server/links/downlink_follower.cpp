@@ -206,6 +206,7 @@ void DownlinkFollower::tell_totals(Ert now, bool last) {
         faults_logged_ = now;
         spdlog::warn("downlink {}: {}", settings_.address.text(), faults);
     }
+    if (!ledger_.changed(totals)) return;
     Delivery delivery;
     delivery.links.push_back(std::move(totals));
     if (!pipeline_.deliver(std::move(delivery))) stop_ = true;

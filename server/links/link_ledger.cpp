@@ -37,6 +37,14 @@ archive::LinkTotals LinkLedger::totals(const telemetry::PacketSource* source, Er
     return totals;
 }
 
+bool LinkLedger::changed(const archive::LinkTotals& totals) {
+    const bool same = last_ && totals.sequences.empty() && last_->counters == totals.counters &&
+                      last_->packets == totals.packets && last_->bad_datagrams == totals.bad_datagrams &&
+                      last_->octets_per_s == totals.octets_per_s;
+    last_ = totals;
+    return !same;
+}
+
 std::string LinkLedger::faults_since(const archive::LinkTotals& totals) {
     const auto& link = totals.counters;
     const auto& packets = totals.packets;

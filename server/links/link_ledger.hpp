@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -29,6 +30,8 @@ class LinkLedger {
 
     /// The totals with those of `source`, if there is one. Of sequences only those that changed since the last call.
     archive::LinkTotals totals(const telemetry::PacketSource* source, Ert now);
+    /// Whether these totals differ from those that this was last asked of.
+    bool changed(const archive::LinkTotals& totals);
     /// What went wrong since the last such line, such as "2 frames with a wrong CRC, 1 bad datagram"; empty: nothing.
     std::string faults_since(const archive::LinkTotals& totals);
 
@@ -42,6 +45,7 @@ class LinkLedger {
     telemetry::LinkCounters ended_;
     telemetry::PacketCounters ended_packets_;
     Sequences ended_sequences_, told_;
+    std::optional<archive::LinkTotals> last_;
     std::vector<std::uint64_t> logged_;
 };
 

@@ -101,7 +101,7 @@ Sequence Pipeline::last_durable() const {
 std::size_t Pipeline::pending_items() const {
     if (!state_->run) return 0;
     const auto& pending = state_->run->pending;
-    return pending.requests.size() + pending.raw.size() +
+    return pending.requests.size() + pending.raw.size() + pending.link_totals.size() +
            (pending.last_seq == 0 ? 0 : static_cast<std::size_t>(pending.last_seq - pending.first_seq + 1));
 }
 

@@ -32,6 +32,8 @@ TEST_CASE("a link's totals go on over its connections, and what went wrong is sa
     const auto between = ledger.totals(nullptr, Ert{0});
     CHECK(between.packets == one.packets);
     CHECK(between.sequences.empty());  // unchanged
+    CHECK(ledger.changed(between));
+    CHECK_FALSE(ledger.changed(between));
     CHECK(ledger.faults_since(between) == "1 bad datagrams");
     CHECK(ledger.faults_since(between).empty());
     const auto second = connection(8);

@@ -91,7 +91,7 @@ TEST_CASE("what is not an archive is refused by name and left as it was", "[arch
             auto other = sqlite::Database::open(file.string(), sqlite::Mode::read_write_create);
             REQUIRE(other->execute("PRAGMA user_version = 8").ok());
         }
-        const std::string line = file.string() + " has archive schema 8, this program has 3: open it with the Aeolis "
+        const std::string line = file.string() + " has archive schema 8, this program has 4: open it with the Aeolis "
                                                  "that wrote it, or name another file";
         const auto opened = Archive::open(file);
         REQUIRE_FALSE(opened.ok());
