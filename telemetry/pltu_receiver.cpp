@@ -62,6 +62,7 @@ LinkCounters PltuReceiver::counters() const {
 
 std::vector<SequenceTotals> PltuReceiver::sequences() const {
     std::vector<SequenceTotals> totals;
+    totals.reserve(streams_.size());
     for (const auto& [id, stream] : streams_)
         totals.push_back({"spacecraft " + std::to_string(id / 4) + ", physical channel " + std::to_string(id / 2 % 2) +
                               (id % 2 != 0 ? ", expedited" : ", sequence controlled"),

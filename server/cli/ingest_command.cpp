@@ -255,7 +255,7 @@ int ingest(const IngestOptions& options) {
         files.push_back(std::move(*file));
         auto recording = Recording::open(files.back().octets(), options, start);
         if (!recording) return failed(name.string() + ": " + recording.error().message, 2);
-        recordings.push_back(std::move(*recording));
+        recordings.push_back(*recording);
     }
     auto xtce = read_xtce_file(options.xtce, options.root);
     if (!xtce) return xtce.exit_code;
