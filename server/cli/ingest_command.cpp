@@ -25,10 +25,10 @@
 namespace aeolis::server {
 namespace {
 
-constexpr std::size_t piece_octets = 65536;
+constexpr std::size_t plain_piece_octets = 65536;
 constexpr std::size_t beginning_octets_max = std::size_t{1} << 20U;  // by which a layout is recognised
 constexpr std::int64_t microseconds_a_second = 1'000'000;
-constexpr std::size_t delivery_entries = 256;
+constexpr std::size_t ingest_delivery_entries = 256;
 
 struct IngestOptions {
     std::vector<std::filesystem::path> files;
@@ -122,8 +122,9 @@ class Recording {
         constexpr double bits_an_octet = 8.0, piece_s = 0.1;
         const double rate = options_->bits_per_second.value_or(0.0) / bits_an_octet;
         const auto piece =
-            rate > 0.0 ? static_cast<std::size_t>(std::clamp(rate * piece_s, 1.0, static_cast<double>(piece_octets)))
-                       : piece_octets;
+            rate > 0.0
+                ? static_cast<std::size_t>(std::clamp(rate * piece_s, 1.0, static_cast<double>(plain_piece_octets)))
+                : plain_piece_octets;
         for (std::size_t at = 0; at < octets_.size(); at += piece) {
             const std::size_t size = std::min(piece, octets_.size() - at);
             const double passed_s = rate > 0.0 ? static_cast<double>(at + size) / rate : 0.0;
@@ -200,7 +201,7 @@ class Ingest {
         take_packets(source);
         if (piece.datagram && !source.end_datagram()) ledger_.bad_datagram();
         take_packets(source);
-        const bool due = delivery_.entries.size() >= delivery_entries || options_.pace > 0.0;
+        const bool due = delivery_.entries.size() >= ingest_delivery_entries || options_.pace > 0.0;
         return !due || hand_over().ok();
     }
 
