@@ -29,6 +29,7 @@ Result<RawExport> RawExport::begin(archive::Reader& reader, archive::RunId run, 
             return Error{
                 fmt::format("link: one of {}: the octets of several make no stream", fmt::join(wanted.links_, ", "))};
     }
+    if (!query.link.empty()) wanted.links_ = {query.link};
     wanted.query_ = std::move(query);
     return wanted;
 }
