@@ -139,24 +139,22 @@ class Recording {
     std::optional<pcap::File> capture_;
 };
 
+/// Recognises the layout of a recording by its first octets.
+Result<RecognisedSource> source_of(const Recording& recording, const PacketStreamFormat& format) {
+    std::vector<std::uint8_t> beginning;
+    recording.each([&](const Piece& piece) {
+        beginning.insert(beginning.end(), piece.octets.begin(), piece.octets.end());
+        return beginning.size() < beginning_octets_max;
+    });
+    return packet_source(format, beginning, beginning.size() < beginning_octets_max);
+}
+
 /// Hands the pieces of a recording to the archive as a link does.
 class Ingest {
   public:
     Ingest(const IngestOptions& options, PipelineThread& pipeline) : options_(options), pipeline_(pipeline) {}
 
-    Result<void> add(const Recording& recording, const std::string& name) {
-        std::vector<std::uint8_t> beginning;
-        bool datagrams = false;
-        recording.each([&](const Piece& piece) {
-            beginning.insert(beginning.end(), piece.octets.begin(), piece.octets.end());
-            datagrams = datagrams || piece.datagram;
-            return beginning.size() < beginning_octets_max;
-        });
-        const bool whole = beginning.size() < beginning_octets_max;
-        auto recognised = packet_source(options_.format, beginning, whole);
-        if (!recognised) return Error{name + ": " + recognised.error().message};
-        if (!recognised->layout.empty()) fmt::print(stderr, "{}: taken for {}\n", name, recognised->layout);
-        auto& source = recognised->source;
+    Result<void> add(const Recording& recording, telemetry::PacketSource& source, const std::string& name) {
         const auto unused = recording.each([&](const Piece& piece) { return take(piece, source); });
         if (!unused.empty()) {
             ++faults_;
@@ -250,13 +248,18 @@ int ingest(const IngestOptions& options) {
     }
     std::vector<MappedFile> files;
     std::vector<Recording> recordings;
+    std::vector<telemetry::PacketSource> sources;
     for (const auto& name : options.files) {
         auto file = MappedFile::open(name);
         if (!file) return failed(file.error().message, 2);
         files.push_back(std::move(*file));
         auto recording = Recording::open(files.back().octets(), options, start);
         if (!recording) return failed(name.string() + ": " + recording.error().message, 2);
+        auto source = source_of(*recording, options.format);
+        if (!source) return failed(name.string() + ": " + source.error().message, 2);
+        if (!source->layout.empty()) fmt::print(stderr, "{}: taken for {}\n", name.string(), source->layout);
         recordings.push_back(*recording);
+        sources.push_back(std::move(source->source));
     }
     auto xtce = read_xtce_file(options.xtce, options.root);
     if (!xtce) return xtce.exit_code;
@@ -278,7 +281,8 @@ int ingest(const IngestOptions& options) {
     Ingest ingest{options, pipeline};
     std::optional<Error> broken;
     for (std::size_t i = 0; i < recordings.size() && !broken; ++i)
-        if (auto added = ingest.add(recordings[i], options.files[i].string()); !added) broken = added.error();
+        if (auto added = ingest.add(recordings[i], sources[i], options.files[i].string()); !added)
+            broken = added.error();
     const auto right = ingest.finish();
     const auto finished =
         pipeline.finish({"stopped", broken ? broken->message : "the recording ended", "", wall_clock_text()});

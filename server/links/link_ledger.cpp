@@ -48,7 +48,7 @@ bool LinkLedger::changed(const archive::LinkTotals& totals) {
 std::string LinkLedger::faults_since(const archive::LinkTotals& totals) {
     const auto& link = totals.counters;
     const auto& packets = totals.packets;
-    const std::array<std::pair<std::string_view, std::uint64_t>, 14> faults{
+    const std::array<std::pair<std::string_view, std::uint64_t>, 13> faults{
         {{"frames with a wrong CRC", link.bad_crc},
          {"frames with a wrong header", link.bad_header},
          {"frames that Reed-Solomon could not correct", link.uncorrectable_frames},
@@ -57,7 +57,6 @@ std::string LinkLedger::faults_since(const archive::LinkTotals& totals) {
          {"frames late", link.late_frames},
          {"restarts of a count", link.restarts},
          {"slips of bits", link.slips},
-         {"octets between frames", link.skipped_octets},
          {"encapsulation packets not decoded", packets.encapsulation_packets},
          {"packets cut off", packets.cut_packets},
          {"segments without the rest", packets.lost_segments},
