@@ -111,6 +111,7 @@ Result<bool> Pruning::remove_piece(RunId run) {
     auto removed = remove_items(run);
     if (removed && !*removed) removed = remove_blocks(run, first_segment_sql, remove_segments_sql);
     if (removed && !*removed) removed = remove_blocks(run, first_block_sql, remove_blocks_sql);
+    if (removed && !*removed) removed = remove_raw(run);
     if (!removed) return removed;
     if (!*removed)
         for (const char* table : tables_of_run) {
@@ -149,6 +150,19 @@ Result<bool> Pruning::remove_blocks(RunId run, const char* first_sql, std::span<
     for (const char* sql : remove_sql)
         if (auto done = remove_rows(*database_, sql, bound); !done) return done.error();
     return true;
+}
+
+Result<bool> Pruning::remove_raw(RunId run) {
+    const std::array bound{std::int64_t{run.value}, raw_pieces_a_step};
+    if (auto done = remove_rows(*database_,
+                                "DELETE FROM raw_octets WHERE (run, link, first) IN"
+                                " (SELECT run, link, first FROM raw_octets WHERE run = ?1 LIMIT ?2)",
+                                bound);
+        !done)
+        return done.error();
+    const auto removed = database_->integer_of("SELECT changes()");
+    if (!removed) return removed.error();
+    return *removed > 0;
 }
 
 Result<bool> Pruning::return_pages() {

@@ -20,9 +20,10 @@ Result<void> mark_pruned(sqlite::Database& database, std::span<const RunId> runs
 /// a writer proceeds between. After a crash the next one goes on: all it needs to know is in the archive.
 class Pruning {
   public:
-    static constexpr std::int64_t items_a_step = 512;    ///< chosen: some milliseconds, most of it one commit
-    static constexpr std::int64_t segments_a_step = 16;  ///< chosen, likewise: of 1024 samples, with their columns
-    static constexpr int pages_a_step = 128;             ///< chosen: 2 MB
+    static constexpr std::int64_t items_a_step = 512;      ///< chosen: some milliseconds, most of it one commit
+    static constexpr std::int64_t segments_a_step = 16;    ///< chosen, likewise: of 1024 samples, with their columns
+    static constexpr std::int64_t raw_pieces_a_step = 16;  ///< chosen, likewise: 1 MB at most
+    static constexpr int pages_a_step = 128;               ///< chosen: 2 MB
 
     explicit Pruning(sqlite::Database& database) : database_(&database) {}
 
@@ -33,6 +34,7 @@ class Pruning {
     /// Removes a piece of the run; false: it has nothing left.
     Result<bool> remove_piece(RunId run);
     Result<bool> remove_items(RunId run);
+    Result<bool> remove_raw(RunId run);
     Result<bool> remove_blocks(RunId run, const char* first_sql, std::span<const char* const> remove_sql);
     Result<bool> return_pages();
 

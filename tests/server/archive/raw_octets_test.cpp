@@ -154,4 +154,20 @@ TEST_CASE("a run that is flown again from its beginning keeps each octet once, w
     }
 }
 
+TEST_CASE("a run that is removed leaves none of its octets", "[archive][R55]") {
+    Ground ground;
+    for (int run = 0; run < 2; ++run) {
+        REQUIRE(ground.pipeline.begin({}).ok());
+        for (std::int64_t i = 0; i < 100; ++i) ground.take("downlink", i, Octets(100, 7), true);
+        REQUIRE(ground.pipeline.finish({"stopped", "", "", ""}).ok());
+    }
+    REQUIRE(ground.archive->prune(RunId{1}, {}).ok());
+    int steps = 0;
+    for (auto more = ground.archive->remove_pruned(); more && *more; more = ground.archive->remove_pruned()) ++steps;
+    CHECK(steps > 100 / 16);  // a piece at a time
+    CHECK(ground.octets().empty());
+    auto reader = std::move(Reader::open(ground.folder / "a.db", ground.dictionary)).value();
+    CHECK(reader.raw_links(RunId{2})->at(0).octets == 10'000);
+}
+
 }  // namespace archive_raw_octets_test
