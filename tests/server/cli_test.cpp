@@ -183,7 +183,7 @@ TEST_CASE("bad use of the program is answered in one line that names it, with ex
         {"archive prune --archive /nope", "--run or --keep must name the runs, not both"},
         {"archive samples --run 1", "--out is required"},
         {"export --archive /nope", "--run is required"},
-        {"export --run 1 --format xml", "xml not in {csv,jsonl}"},
+        {"export --run 1 --format xml", "xml not in {csv,jsonl,bin,pcap}"},
         {"export --run 1 --csv --format jsonl", "excludes"},
         {"tones", "subcommand"},
         {"reconstruct --archive /nope", "--run is required"},
