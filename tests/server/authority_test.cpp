@@ -84,6 +84,7 @@ const Row rows[] = {
     {"GET", "/api/v1/runs/{run}", "observer", "/api/v1/runs/latest", "", 404},
     {"GET", "/api/v1/runs/{run}/prediction", "observer", "/api/v1/runs/latest/prediction", "", 404},
     {"GET", "/api/v1/runs/{run}/samples", "observer", "/api/v1/runs/latest/samples", "", 404},
+    {"GET", "/api/v1/runs/{run}/raw", "observer", "/api/v1/runs/latest/raw", "", 404},
     {"GET", "/api/v1/runs/{run}/{question}", "observer", "/api/v1/runs/latest/events", "", 404},
     {"GET", "/api/v1/layouts", "observer", "/api/v1/layouts", "", 200},
     {"PUT", "/api/v1/layouts/{layout}", "observer", "/api/v1/layouts/mine", "{", 400},
