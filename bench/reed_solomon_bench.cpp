@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reed-Solomon codeblocks corrected a second on one core: (255,223) interleaved 4, dual basis, in octets of codeblocks.
 //
-// Goals: 20 MB/s without errors, 5 MB/s with as many wrong symbols in every code word as can be corrected, and with more.
+// Goals: 20 MB/s without errors, 5 MB/s with as many wrong symbols in every code word as can be corrected, and with
+// more.
 // Beside them the least work of any decoder that knows a block to be clean: one copy of it through a table of symbols.
 #include "telemetry/reed_solomon.hpp"
 #include "tests/support/octets.hpp"

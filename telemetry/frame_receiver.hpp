@@ -128,7 +128,8 @@ struct FrameHints {
 inline constexpr std::uint64_t frames_to_agree = 8;  ///< chosen: before a layout is believed in a stream that goes on
 
 /// Detects a CADU stream's layout by trial, as far as it is not known: frame length, Reed–Solomon code, TM or AOS,
-/// randomisation, check symbols, CRC. A code is believed when two codeblocks are of it, or one without any error. None when no layout reads the frames.
+/// randomisation, check symbols, CRC. A code is believed when two codeblocks are of it, or one without any error. None
+/// when no layout reads the frames.
 /// @param ended  no more octets come: fewer than frames_to_agree must do
 std::optional<FrameStream> recognise_cadus(std::span<const std::uint8_t> octets, const FrameHints& known, bool ended);
 

@@ -15,8 +15,8 @@ namespace aeolis::server {
 
 /// What a followed link has brought since its run began, over all its connections, and what of it was bad.
 ///
-/// In       each piece of octets, the sources that read them       Out   totals for archive, metrics and console; a line
-///          of what went wrong since the last line
+/// In       each piece of octets, the sources that read them
+/// Out      totals for archive, metrics and console; a line of what went wrong since the last line
 class LinkLedger {
   public:
     explicit LinkLedger(std::string link) : link_(std::move(link)) {}

@@ -169,9 +169,9 @@ TEST_CASE("what no container describes, or more than one, is not decoded further
     CHECK(text(rest.decode("02 0007")) == "kind=2|2 b=7|7");
 
     const Mission unresolved{"", parameters,
-                             root + container("Science", entry("b"), base("../T/Root", when("kind", "==", "9")))};
+                             root + container("Science", entry("b"), base("../X/Root", when("kind", "==", "9")))};
     REQUIRE(unresolved.findings.size() == 1);
-    CHECK(unresolved.findings[0].message == "there is no container '../T/Root'");
+    CHECK(unresolved.findings[0].message == "there is no container '../X/Root'");
     const auto contents = unresolved.decode("09 0102");
     CHECK(text(contents) == "kind=9|9");
     CHECK_THAT(contents.problem, Catch::StartsWith("16 bits are behind the last entry of Root"));

@@ -59,9 +59,11 @@ struct Long {
     }
 };
 
+/// The defined points.
 std::vector<std::pair<double, double>> points_of(const v1::ChannelSeries& series) {
     std::vector<std::pair<double, double>> points;
-    for (int i = 0; i < series.sclk_size(); ++i) points.emplace_back(series.sclk(i), series.value(i));
+    for (int i = 0; i < series.sclk_size(); ++i)
+        if (!std::isnan(series.value(i))) points.emplace_back(series.sclk(i), series.value(i));
     return points;
 }
 
