@@ -142,10 +142,10 @@ TEST_CASE("whole numbers of 64 bits and text are channels with their exact value
         "<ParameterRefEntry parameterRef='a'/><ParameterRefEntry parameterRef='b'/><ParameterRefEntry "
         "parameterRef='c'/><ParameterRefEntry parameterRef='pad'/><ParameterRefEntry parameterRef='name'/>"
         "<ParameterRefEntry parameterRef='bad'/></EntryList></SequenceContainer>"));
-    const auto packet = test::hex("0000c000001b"
+    const auto packet = test::hex("0000c000001a"
                                   "0020000000000001"
                                   "8000000000000001"
-                                  "fffffffffffffff8"
+                                  "ffffffffffffff"
                                   "c4d641"
                                   "ff");
     Decoded decoded;
