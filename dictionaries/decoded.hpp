@@ -20,7 +20,8 @@ struct Decoded {
     std::vector<std::optional<double>> value;  ///< one per field: calibrated; none when undefined, and of text
     /// Exact values of fields whose type needs_text(): field and text. A field without one here is undefined.
     std::vector<std::pair<std::size_t, std::string>> texts;
-    bool timed = true;  ///< false: the packet holds no time, and header.time says nothing
+    std::string problem;  ///< of another mission's packet: why the rest of it is not decoded; empty: all is
+    bool timed = true;    ///< false: the packet holds no time, and header.time says nothing
 };
 
 }  // namespace aeolis::dictionary

@@ -220,7 +220,8 @@ class Reading {
 
     bool read_type(const PacketType& type, const std::string& name, unsigned depth) {
         if (depth >= 2 * ContainerDecoder::depth_max) return stop("types are nested too deep", type.line);
-        if (contents.values.size() >= ContainerDecoder::values_max)
+        // Types without size could be nested without end.
+        if (contents.values.size() >= ContainerDecoder::values_max || ++steps_ > steps_max)
             return stop("there are more values than a packet may have", type.line);
         switch (type.kind) {
         case PacketType::Kind::unknown: return stop("the type of " + name + " is not supported", type.line);
@@ -336,7 +337,10 @@ class Reading {
             const std::uint64_t units = read_bits(packet_, position_, coding.leading_size_bits);
             position_ += coding.leading_size_bits;
             const std::uint64_t size = units > *bits ? units : units * coding.leading_size_unit_bits;
-            if (size > *bits || !has(size)) return cut(name, size, type.line);
+            // In a box stands the leading size, too.
+            const std::size_t room =
+                *bits - (coding.boxed ? std::min<std::size_t>(*bits, coding.leading_size_bits) : 0);
+            if (size > room || !has(size)) return cut(name, size, type.line);
             bits = size;
         } else if (!coding.terminator.empty()) {
             const auto step = static_cast<unsigned>(8 * coding.terminator.size());

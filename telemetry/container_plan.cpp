@@ -113,6 +113,9 @@ class ContainerPlan::Compiler {
     void compile_from(std::size_t index, Chain chain, unsigned depth) {
         Node& node = plan_.nodes_[index];
         if (depth == depth_max || !add_entries(model_.containers[index], chain)) return;
+        // Each container has the steps of its bases, too.
+        steps_ += chain.places.size();
+        if (steps_ > steps_max) return;
         node.bits = chain.furthest_bits;
         node.fixed = !chain.moves;
         node.abstract = model_.containers[index].abstract;
@@ -123,7 +126,7 @@ class ContainerPlan::Compiler {
         for (const Step& step : node.steps)
             if (step.count == once && !step.skipped) filled[step.field] = true;
         node.fills = std::ranges::all_of(filled, std::identity{});
-        node.clock = clock_of(chain);
+        if (!find_clock(chain, node.clock)) return;
         for (const std::size_t derived : node.derived) {
             auto& tests = plan_.nodes_[derived].tests;
             // Which of several holds is then not known here.
@@ -209,7 +212,7 @@ class ContainerPlan::Compiler {
         return Count{*found, amount.slope, amount.intercept};
     }
 
-    bool add_entries(const PacketContainer& container, Chain& chain) const {
+    bool add_entries(const PacketContainer& container, Chain& chain) {
         for (const PacketEntry& entry : container.entries) {
             const auto offset = fixed_bits(entry.offset_bits), count = fixed_bits(entry.count);
             const bool repeated = entry.count.parameter.has_value();
@@ -241,8 +244,8 @@ class ContainerPlan::Compiler {
     }
 
     bool add_type(std::size_t parameter, const std::string& name, const PacketType& type, Chain& chain,
-                  unsigned depth) const {
-        if (depth == depth_max) return false;
+                  unsigned depth) {
+        if (depth == depth_max || ++types_ > steps_max) return false;
         if (type.kind == PacketType::Kind::aggregate)
             return std::ranges::all_of(type.members, [&](const auto& member) {
                 return add_type(parameter, name + "." + member.name, model_.types[member.type], chain, depth + 1);
@@ -285,22 +288,27 @@ class ContainerPlan::Compiler {
         return has_one && !type.coding.calibration.empty() ? &type.coding.calibration : nullptr;
     }
 
-    static std::optional<Clock> clock_of(const Chain& chain) {
-        const auto coarse = std::ranges::find(chain.places, primary_header_octets * 8, &Place::position_bits);
-        if (coarse == chain.places.end() || std::next(coarse) == chain.places.end()) return std::nullopt;
+    /// False: the clock is one that only ContainerDecoder reads.
+    static bool find_clock(const Chain& chain, std::optional<Clock>& clock) {
+        const auto coarse = std::ranges::find_if(chain.places, [](const Place& place) {
+            return !place.moves && place.position_bits == primary_header_octets * 8;
+        });
+        if (coarse == chain.places.end() || std::next(coarse) == chain.places.end()) return true;
         const auto fine = std::next(coarse);
-        const auto counts = [](const Place& place) {
-            const auto form = place.type->coding.form;
-            return form == Coding::Form::unsigned_integer;
-        };
-        if (!counts(*coarse) || !counts(*fine) ||
-            !are_coarse_and_fine({coarse->name, coarse->position_bits, coarse->bits},
+        if (!are_coarse_and_fine({coarse->name, coarse->position_bits, coarse->bits},
                                  {fine->name, fine->position_bits, fine->bits}))
-            return std::nullopt;
-        return Clock{fine->position_bits, static_cast<std::uint8_t>(coarse->bits),
-                     static_cast<std::uint8_t>(fine->bits)};
+            return true;
+        const auto quick = [](const Place& place) {
+            return is_plain(place.type->coding) && !place.moves && place.repeated == nullptr;
+        };
+        if (!quick(*coarse) || !quick(*fine)) return false;
+        clock =
+            Clock{fine->position_bits, static_cast<std::uint8_t>(coarse->bits), static_cast<std::uint8_t>(fine->bits)};
+        return true;
     }
 
+    static constexpr std::size_t steps_max = std::size_t{1} << 18U;  ///< chosen: 20 MB of them
+    std::size_t steps_ = 0, types_ = 0;
     ContainerPlan& plan_;
     const PacketModel& model_;
     const std::vector<std::size_t>& fields_;
@@ -432,6 +440,7 @@ bool ContainerPlan::decode(std::span<const std::uint8_t> packet, dictionary::Dec
         std::ranges::fill(into.value, std::nullopt);
     }
     into.texts.clear();
+    into.problem.clear();
     const Into fields{into.raw.data(), into.value.data(), &into.texts};
     const std::size_t packet_bits = packet.size() * 8;
     std::size_t end_bits = node->bits;

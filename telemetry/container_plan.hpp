@@ -22,7 +22,7 @@ namespace aeolis::telemetry {
 ///          restrictions that compare whole numbers. Not compiled: text, octets, arrays, conditions on entries, times but
 ///          coarse and fine counts, calibrations by context
 /// Rate     half of what a decoder written by hand reaches, for repetitions a quarter (bench/mission_decode_bench.cpp)
-/// Memory   some 64 octets a field and container
+/// Memory   some 64 octets a field and container, at most 20 MB; what is beyond is not compiled
 /// Many threads may share one.
 class ContainerPlan {
   public:

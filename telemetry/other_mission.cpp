@@ -17,6 +17,8 @@ namespace xtce = dictionary::xtce;  // telemetry has a Condition of its own
 
 constexpr unsigned apid_position_bits = 5, apid_bits = 11;  // [ccsds-133.0-b-2]
 constexpr unsigned number_bits_max = 64;
+constexpr double time_max_s =
+    1e12;  // chosen, 30 000 years: a time beyond is none, and an axis to it would show nothing
 
 std::optional<std::size_t> fixed_amount(const Amount& amount) {
     const double value = amount.intercept;
@@ -323,8 +325,9 @@ std::optional<std::string> OtherMission::decode(std::span<const std::uint8_t> pa
     if (model_.containers.empty() || contents.values.empty() || model_.containers[contents.container_index].abstract)
         return contents.problem.empty() ? std::string{"no container describes it"} : contents.problem;
     into.packet = contents.container_index;
-    into.header.time = Sclk{contents.time ? contents.time->seconds : 0.0};
-    into.timed = contents.time.has_value();
+    into.problem = contents.problem;
+    into.timed = contents.time && std::abs(contents.time->seconds) <= time_max_s;
+    into.header.time = Sclk{into.timed ? contents.time->seconds : 0.0};
     into.texts.clear();
     const auto& known = dictionary_.packets[into.packet].fields;
     const std::size_t fields = known.size();

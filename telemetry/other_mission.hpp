@@ -29,7 +29,8 @@ namespace aeolis::telemetry {
 /// Time     the packet's own time, as if from the spacecraft's clock; Decoded::timed says whether there is one
 /// Rate     containers whose fields stand at fixed places are compiled (telemetry/container_plan.hpp); others are looked
 ///          up in the XTCE for each packet
-/// Faults   a partly readable packet is decoded in part; the rest is undefined
+///          Its absolute value is 1e12 s at most; beyond, there is none
+/// Faults   a partly readable packet is decoded in part; the rest is undefined, and Decoded::problem says why
 /// Many threads may share one.
 class OtherMission {
   public:

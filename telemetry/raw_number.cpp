@@ -91,6 +91,7 @@ RawNumber number_in(std::uint64_t field, unsigned bits, const Coding& coding) {
 }
 
 std::optional<double> calibrated_by(const dictionary::xtce::Calibration& calibration, double raw) {
+    if (!calibration.known) return std::nullopt;
     if (!calibration.polynomial.empty()) {
         double sum = 0.0;
         for (auto term = calibration.polynomial.rbegin(); term != calibration.polynomial.rend(); ++term)

@@ -4,6 +4,7 @@
 #include "common/bytes.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <variant>
@@ -17,14 +18,13 @@ using Form = TimeSource::Form;
 // [ccsds-301.0-b-4]
 constexpr double day_s = 86400.0, milli = 1e-3, micro = 1e-6, pico = 1e-12;
 constexpr unsigned cuc_tai = 0b001, cuc_agency = 0b010, cds_code = 0b100;
-constexpr std::size_t cuc_counts_default = 4, cds_day_octets = 2, cds_ms_octets = 4;
+constexpr std::size_t cuc_counts = 4, cds_ms_octets = 4, cds_octets = 6;
 constexpr std::size_t number_octets_max = 8;
 
-const std::map<std::string_view, Form> forms{{"seconds", Form::seconds},
-                                             {"milliseconds", Form::milliseconds},
-                                             {"microseconds", Form::microseconds},
-                                             {"cuc", Form::cuc},
-                                             {"cds", Form::cds}};
+const std::map<std::string_view, Form> forms{{"seconds", Form::seconds},           {"milliseconds", Form::milliseconds},
+                                             {"microseconds", Form::microseconds}, {"cuc", Form::cuc},
+                                             {"cuc-preamble", Form::cuc_preamble}, {"cds", Form::cds},
+                                             {"cds-preamble", Form::cds_preamble}};
 
 std::optional<double> seconds_in(const Datum& datum) {
     if (const auto* value = std::get_if<double>(&datum)) return *value;
@@ -44,36 +44,46 @@ double fraction_in(std::span<const std::uint8_t> octets) {
     return std::ldexp(number_in(octets), -8 * static_cast<int>(std::min(octets.size(), number_octets_max)));
 }
 
-std::optional<PacketTime> cuc_of(std::span<const std::uint8_t> octets) {
-    const unsigned code = octets.empty() ? 0 : octets[0] >> 4 & 0b111;
-    const bool extended = !octets.empty() && (octets[0] & 0x80) != 0;
-    if (!extended && (code == cuc_tai || code == cuc_agency)) {
-        const std::size_t counts = (octets[0] >> 2 & 0b11) + 1, fraction = octets[0] & 0b11;
-        if (octets.size() == 1 + counts + fraction)
-            return PacketTime{number_in(octets.subspan(1, counts)) + fraction_in(octets.subspan(1 + counts)),
-                              code == cuc_tai ? "TAI" : ""};
-    }
-    if (octets.size() < cuc_counts_default || octets.size() > cuc_counts_default + 3) return std::nullopt;
-    return PacketTime{number_in(octets.first(cuc_counts_default)) + fraction_in(octets.subspan(cuc_counts_default)),
-                      {}};
+std::optional<PacketTime> cuc_of(std::span<const std::uint8_t> octets, std::size_t counts, const std::string& epoch) {
+    constexpr std::size_t counts_max = 4, fraction_max = 3;  // without the preamble's extension
+    if (counts > counts_max || octets.size() < counts || octets.size() > counts + fraction_max) return std::nullopt;
+    return PacketTime{number_in(octets.first(counts)) + fraction_in(octets.subspan(counts)), epoch};
 }
 
-std::optional<PacketTime> cds_of(std::span<const std::uint8_t> octets) {
-    std::size_t days = cds_day_octets;
-    std::string epoch;
-    const bool preamble = octets.size() % 2 == 1 && (octets[0] >> 4) == cds_code;  // without it the size is even
-    if (preamble) {
-        days = (octets[0] & 0b100) != 0 ? 3 : 2;
-        if ((octets[0] & 0b1000) == 0) epoch = "TAI";
-        octets = octets.subspan(1);
-    }
-    if (octets.size() < days + cds_ms_octets) return std::nullopt;
-    const auto below = octets.subspan(days + cds_ms_octets);
-    if (below.size() != 0 && below.size() != 2 && below.size() != 4) return std::nullopt;
-    const double ms = number_in(octets.subspan(days, cds_ms_octets));
-    return PacketTime{number_in(octets.first(days)) * day_s + ms * milli +
-                          number_in(below) * milli * (below.size() == 4 ? pico / milli : micro / milli),
+std::optional<PacketTime> cuc_by_preamble(std::span<const std::uint8_t> octets) {
+    if (octets.empty() || (octets[0] & 0x80) != 0) return std::nullopt;
+    const unsigned code = octets[0] >> 4;
+    const std::size_t counts = (octets[0] >> 2 & 0b11) + 1, fraction = octets[0] & 0b11;
+    if ((code != cuc_tai && code != cuc_agency) || octets.size() != 1 + counts + fraction) return std::nullopt;
+    return cuc_of(octets.subspan(1), counts, code == cuc_tai ? "TAI" : "");
+}
+
+/// @param below  octets of the part of a millisecond
+std::optional<PacketTime> cds_of(std::span<const std::uint8_t> octets, std::size_t days, std::size_t below,
+                                 const std::string& epoch) {
+    if ((below != 0 && below != 2 && below != 4) || octets.size() != days + cds_ms_octets + below) return std::nullopt;
+    const double part_s = below == 4 ? pico : micro;
+    return PacketTime{number_in(octets.first(days)) * day_s + number_in(octets.subspan(days, cds_ms_octets)) * milli +
+                          number_in(octets.subspan(days + cds_ms_octets)) * part_s,
                       epoch};
+}
+
+std::optional<PacketTime> cds_by_preamble(std::span<const std::uint8_t> octets) {
+    if (octets.empty() || octets[0] >> 4 != cds_code) return std::nullopt;
+    const std::size_t days = (octets[0] & 0b100) != 0 ? 3 : 2;
+    constexpr std::array<std::size_t, 4> below{0, 2, 4, 99};  // the last is reserved
+    return cds_of(octets.subspan(1), days, below[octets[0] & 0b11], (octets[0] & 0b1000) == 0 ? "TAI" : "");
+}
+
+std::optional<PacketTime> time_of(Form form, std::span<const std::uint8_t> octets) {
+    switch (form) {
+    case Form::cuc: return cuc_of(octets, cuc_counts, {});
+    case Form::cuc_preamble: return cuc_by_preamble(octets);
+    case Form::cds:
+        return octets.size() < cds_octets ? std::nullopt : cds_of(octets, 2, octets.size() - cds_octets, {});
+    case Form::cds_preamble: return cds_by_preamble(octets);
+    default: return std::nullopt;
+    }
 }
 
 }  // namespace
@@ -102,14 +112,17 @@ Result<TimeSource> TimeSource::parse(const PacketModel& model, const std::string
             source.name = parameter.name;
             source.member = name.substr(end);
             std::ranges::replace(source.member, '/', '.');
-            source.epoch = model.types[parameter.type].epoch;
+            const auto& type = model.types[parameter.type];
+            source.epoch = type.epoch;
+            if (type.kind == dictionary::xtce::PacketType::Kind::octets && source.form == Form::as_fits)
+                return Error{"'" + name + "' is octets: say :cuc, :cuc-preamble, :cds or :cds-preamble behind it"};
             return source;
         }
         if (end == 0) break;
     }
     return Error{"there is no parameter '" + name +
                  "' in the XTCE file; after ':' stand seconds, milliseconds, "
-                 "microseconds, cuc or cds"};
+                 "microseconds, cuc, cuc-preamble, cds or cds-preamble"};
 }
 
 std::optional<PacketTime> TimeSource::time_in(std::span<const DecodedValue> values) const {
@@ -128,8 +141,7 @@ std::optional<PacketTime> TimeSource::time_in(std::span<const DecodedValue> valu
         return time;
     };
     if (const auto* octets = std::get_if<std::vector<std::uint8_t>>(&parts[0]->raw); octets != nullptr) {
-        if (parts.size() != 1 || (form != Form::as_fits && form != Form::cuc && form != Form::cds)) return std::nullopt;
-        return with_epoch(form == Form::cds ? cds_of(*octets) : cuc_of(*octets));
+        return parts.size() == 1 ? with_epoch(time_of(form, *octets)) : std::nullopt;
     }
     const auto number = [&](std::size_t i) {
         return seconds_in(form == Form::cuc || form == Form::cds ? parts[i]->raw : parts[i]->calibrated);

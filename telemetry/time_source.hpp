@@ -15,13 +15,24 @@ namespace aeolis::telemetry {
 ///
 /// NAME     a parameter by name or path, also with a member: "TIME", "/M/TIME", "HEADER.time"
 /// FORM     seconds, milliseconds, microseconds: of a number. cuc: counts and their binary fraction, of a parameter with
-///          two whole numbers, or of octets with the preamble (P-field) that says their sizes; of four octets or more
-///          without it the first four are counts. cds: days, milliseconds of the day and, where there are more octets or
-///          numbers, microseconds or picoseconds of the millisecond. [ccsds-301.0-b-4]
-///          Left out: seconds of a number; cuc of two whole numbers and of octets
-/// Epoch    that of the parameter's type; of cds and cuc octets whose preamble says so, TAI; else none is known
+///          two whole numbers, or of four to seven octets, of which the first four are counts. cds: days, milliseconds of
+///          the day and, where there are more, microseconds or picoseconds of the millisecond, of two or three numbers,
+///          or of 6, 8 or 10 octets with 16 bits of days. cuc-preamble, cds-preamble: octets that begin with the preamble
+///          (P-field), which says their sizes. [ccsds-301.0-b-4]
+///          Left out: seconds of a number, cuc of two whole numbers. Of octets it must be said: the values of a clock may
+///          look like a preamble
+/// Epoch    that of the parameter's type; TAI where a preamble says so; else none is known
 struct TimeSource {
-    enum class Form : std::uint8_t { as_fits, seconds, milliseconds, microseconds, cuc, cds };
+    enum class Form : std::uint8_t {
+        as_fits,
+        seconds,
+        milliseconds,
+        microseconds,
+        cuc,
+        cuc_preamble,
+        cds,
+        cds_preamble
+    };
 
     std::size_t parameter = 0;
     std::string name;    ///< of the parameter, as values are named

@@ -39,7 +39,9 @@ bool ModelParts::has_member(const Symbol& parameter, std::string_view path) cons
         symbols.find(Kind::parameter_type, parameter.scope, parameter.element.attribute("parameterTypeRef").value());
     while (type != nullptr && !path.empty()) {
         if (path.front() == '[') {
-            path.remove_prefix(std::min(path.size(), path.find(']') + 1));
+            const auto end = path.find(']');
+            if (end == std::string_view::npos) return false;
+            path.remove_prefix(end + 1);
             type = symbols.find(Kind::parameter_type, type->scope, type->element.attribute("arrayTypeRef").value());
             continue;
         }
@@ -137,13 +139,20 @@ Condition ModelParts::part(const std::string& scope, pugi::xml_node element, uns
 
 Condition ModelParts::condition(const std::string& scope, pugi::xml_node parent) const {
     Condition found;
+    bool one = false;
     for (const pugi::xml_node child : parent.children()) {
         if (child.type() != pugi::node_element) continue;
-        if (found.form != Condition::Form::always)
-            report.fault(child,
-                         std::string{child.name()} + " beside another condition is not supported: it is left out");
-        else
-            found = part(scope, child, 0);
+        // It says which container follows, and restricts nothing.
+        if (one && std::string_view{child.name()} == "NextContainer") {
+            report.fault(child, "NextContainer beside another condition is not supported: it is left out");
+            continue;
+        }
+        if (std::exchange(one, true)) {
+            report.fault(child, std::string{child.name()} +
+                                    " beside another condition is not supported: both are taken as false");
+            return {.form = Condition::Form::unknown};
+        }
+        found = part(scope, child, 0);
     }
     return found;
 }
@@ -185,10 +194,11 @@ Amount ModelParts::amount(const std::string& scope, pugi::xml_node parent) const
 std::vector<Amount> read_last_indices(const ModelParts& parts, const std::string& scope, pugi::xml_node list) {
     std::vector<Amount> last;
     for (const pugi::xml_node dimension : list.children("Dimension")) {
-        const pugi::xml_node start = dimension.child("StartingIndex");
-        if (start && std::string_view{start.child("FixedValue").text().as_string("0")} != "0")
-            parts.report.fault(start, "an array that does not begin at 0 is read as if it did");
         last.push_back(parts.amount(scope, dimension.child("EndingIndex")));
+        const pugi::xml_node start = dimension.child("StartingIndex");
+        if (!start || std::string_view{start.child("FixedValue").text().as_string()} == "0") continue;
+        parts.report.fault(start, "an array that does not begin at 0 is not supported: packets are read up to it");
+        last.back().known = false;
     }
     return last;
 }

@@ -58,7 +58,8 @@ struct Calibration {
     std::vector<std::pair<double, double>> spline{};  ///< raw, calibrated; sorted; linear between points
     bool flat = false;                                ///< spline of order 0: steps
     bool extrapolate = false;                         ///< outside the points, too; else it is undefined there
-    bool empty() const { return polynomial.empty() && spline.empty(); }
+    bool known = true;                                ///< false: not supported; the value is undefined
+    bool empty() const { return known && polynomial.empty() && spline.empty(); }
 };
 
 struct Coding {

@@ -3,6 +3,7 @@
 #include "dictionaries/xtce/packet_model_reader.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string_view>
 
@@ -251,12 +252,16 @@ Calibration ModelTypes::calibration(pugi::xml_node calibrator) {
         const int order = spline.attribute("order").as_int(1);
         result.flat = order == 0;
         result.extrapolate = spline.attribute("extrapolate").as_bool(false);
-        if (order > 1)
-            parts_.report.fault(spline, "a spline of order " + std::to_string(order) + " is read as straight lines");
+        if (order > 1) {
+            parts_.report.fault(spline, "a spline of order " + std::to_string(order) +
+                                            " is not supported: its values are undefined");
+            result.known = false;
+        }
         return result;
     }
-    parts_.report.fault(calibrator,
-                        "a calibrator that is neither polynomial nor spline is not supported: values stay raw");
+    parts_.report.fault(
+        calibrator, "a calibrator that is neither polynomial nor spline is not supported: its values are undefined");
+    result.known = false;
     return result;
 }
 
@@ -276,14 +281,19 @@ void ModelTypes::read_labels(pugi::xml_node element, PacketType& type) {
 void ModelTypes::read_time(const Symbol& symbol, PacketType& type) {
     const pugi::xml_node encoding = symbol.element.child("Encoding");
     const std::string_view units = encoding.attribute("units").as_string("seconds");
-    if (units != "seconds")
-        parts_.report.fault(encoding, "time in " + in_quotes(units) + " is given as it is, without offset and scale");
-    else {
-        type.time_offset_s = encoding.attribute("offset").as_double(0.0);
-        type.time_scale_s = encoding.attribute("scale").as_double(1.0);
-    }
+    constexpr std::array<std::pair<std::string_view, double>, 3> seconds_in{
+        {{"seconds", 1.0}, {"picoSeconds", 1e-12}, {"days", 86400.0}}};
+    const auto unit = std::ranges::find(seconds_in, units, &std::pair<std::string_view, double>::first);
+    const double unit_s = unit == seconds_in.end() ? 1.0 : unit->second;
+    type.time_offset_s = unit_s * encoding.attribute("offset").as_double(0.0);
+    type.time_scale_s = unit_s * encoding.attribute("scale").as_double(1.0);
     read_reference_time(symbol, type);
     read_coding(symbol, encoding ? encoding : symbol.element, type);
+    if (unit == seconds_in.end()) {
+        parts_.report.fault(encoding,
+                            "time in " + in_quotes(std::string{units}) + " is not supported: it is undefined");
+        type.coding.calibration = {.known = false};
+    }
     if (type.kind == PacketType::Kind::time && type.coding.form == Coding::Form::octets)
         parts_.report.fault(encoding, "a time that is no number is given as its octets");
 }

@@ -122,7 +122,7 @@ Result<void> note_newest(Reader::State& reader, const RunInfo& run, std::size_t 
     auto found =
         reader.other != nullptr ? newest_by_reception(reader, run, of, to_s) : newest_by_clock(reader, of, to_s);
     if (!found) return found.error();
-    if (!*found || !reader.decode((**found)->octets(0))) return {};
+    if (!*found || !reader.decode((**found)->octets(0), packet)) return {};
     for (std::size_t i = 0; i < channels.size(); ++i) {
         auto& known = newest[channels[i].value];
         auto value = sample_of(reader, ***found, source, channels[i], i);
@@ -146,7 +146,7 @@ Result<std::vector<ChannelValue>> text_samples(Reader::State& reader, const RunI
                 auto found = (*rows)->step();
                 if (!found) return found.error();
                 if (!*found) break;
-                if (!reader.decode((*rows)->octets(0))) continue;
+                if (!reader.decode((*rows)->octets(0), place.packet)) continue;
                 if (samples.size() == exact_samples_max)
                     return Error{"the range holds more than " + std::to_string(exact_samples_max) + " samples of '" +
                                  reader.dictionary.channels[channel.value].name + "': ask for less"};

@@ -106,7 +106,7 @@ Result<void> collect_packets(Reader::State& reader, const RunInfo& info, Page& p
         // With another dictionary the values are unknown; the item still keeps its number.
         SampleRecord sample{{record.seq + 1, record.ert}, record.packet.value_or(0), record.sclk, record.source, {}};
         values.clear();
-        if (words != nullptr && reader.decode(octets_of_packet(**rows))) {
+        if (words != nullptr && record.packet && reader.decode(octets_of_packet(**rows), *record.packet)) {
             reader.columns.append_values(reader.decoded, values);
             sample.texts = reader.columns.texts(reader.decoded);
             sample.sclk_by_reception = !reader.decoded.timed;

@@ -159,11 +159,12 @@ Result<v1::PacketList> Reader::packets(RunId run, const PacketQuery& query) {
         written.set_other_hex(hex(verdict->other_octets));
         *written.mutable_unit() = std::move(*to_item(record, words).mutable_unit());
         written.set_ert_us(record.ert.microseconds);
+        written.set_problem(record.refusal);
         const auto octets = octets_of_packet(row);
         written.set_hex(hex(octets));
         if (query.fields && words != nullptr && state_->other != nullptr)
             add_contents(written, state_->other->contents(octets));
-        else if (query.fields && words != nullptr && record.packet && state_->decode(octets))
+        else if (query.fields && words != nullptr && record.packet && state_->decode(octets, *record.packet))
             add_fields(written, words->packets[state_->decoded.packet], state_->decoded);
         size.add(written.ByteSizeLong());
         return size.full();

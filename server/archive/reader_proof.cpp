@@ -89,7 +89,9 @@ Result<std::vector<Selection>> selections(Reader::State& reader, RunId run) {
         auto found = (*rows)->step();
         if (!found) return found.error();
         if (!*found) return all;
-        if (!tone || !started || !reader.decode((*rows)->octets(0))) continue;
+        if (!tone || !started ||
+            !reader.decode((*rows)->octets(0), static_cast<std::size_t>(packet - reader.dictionary.packets.data())))
+            continue;
         const auto at = reader.decoded.value[*started], number = reader.decoded.value[*tone];
         if (at && number) all.push_back({*at, static_cast<std::uint32_t>(*number)});
     }

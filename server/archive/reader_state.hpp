@@ -90,9 +90,11 @@ struct Reader::State {
         if (other == nullptr) decommutator.emplace(dictionary_in);
     }
 
-    /// Decodes a packet into `decoded`; false when it was not decoded.
-    bool decode(std::span<const std::uint8_t> packet) {
-        return other != nullptr ? !other->decode(packet, decoded) : !decommutator->decode(packet, decoded);
+    /// Decodes a packet into `decoded`; false when it was not decoded as the packet that was stored. The id of another
+    /// mission's XTCE has 16 bits and may be that of another file by chance.
+    bool decode(std::span<const std::uint8_t> octets, std::size_t packet) {
+        const bool done = other != nullptr ? !other->decode(octets, decoded) : !decommutator->decode(octets, decoded);
+        return done && decoded.packet == packet;
     }
 
     /// A statement, prepared once. `sql` must be a constant.

@@ -154,7 +154,7 @@ report_of(Reader::State& reader, const RunInfo& run, const dictionary::AnchorRow
                                                     : std::numeric_limits<std::int64_t>::max());
             auto found = (*rows)->step();
             if (!found) return found.error();
-            if (!*found || !reader.decode((*rows)->octets(0))) continue;
+            if (!*found || !reader.decode((*rows)->octets(0), packet)) continue;
             const double at_e_s = reader.decoded.header.time - run.entry;
             const double sclk_s = reader.columns.value(reader.decoded, column);
             if (!std::isnan(sclk_s) && (!newest || at_e_s > newest->at_e_s))

@@ -50,7 +50,7 @@ struct ItemRecord {
 struct PacketRecord : ItemRecord {
     Apid apid;
     std::optional<std::uint16_t> packet;  ///< index of its definition in the dictionary; none: not decoded
-    std::string refusal;                  ///< why not decoded
+    std::string refusal;                  ///< why not decoded, or not to its end
     Sclk sclk;
     std::string link;  ///< "uhf_live", "uhf_<orbiter>", "relay", …
     Source source{};

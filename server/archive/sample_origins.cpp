@@ -58,7 +58,7 @@ Result<void> read_presences(Reader::State& reader, const RunInfo& run, PacketCol
         if (presences.size() == exact_samples_max)
             return Error{"the range holds more than " + std::to_string(exact_samples_max) +
                          " packets of the channel: ask for less, or without provenance"};
-        if (!reader.decode(row.octets(2))) continue;
+        if (!reader.decode(row.octets(2), place.packet)) continue;
         const bool defined = reader.columns.defined(reader.decoded, place.column);
         presences.push_back(
             {row.real(0), row.integer(1), source, static_cast<PathComparison>(row.integer(3)), defined});

@@ -136,7 +136,7 @@ Result<void> read_tail(Reader::State& reader, const SealedSeries& series, std::s
         auto found = (*rows)->step();
         if (!found) return found.error();
         if (!*found) return {};
-        if (!reader.decode((*rows)->octets(0))) continue;
+        if (!reader.decode((*rows)->octets(0), series.packet)) continue;
         take(Sample{(*rows)->real(1), reader.columns.value(reader.decoded, column), series.source});
     }
 }

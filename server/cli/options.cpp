@@ -95,7 +95,7 @@ CLI::Option* add_mission_xtce(CLI::App& command, MissionXtce& xtce, const std::s
     command
         .add_option("--time", xtce.time,
                     "the parameter that holds a packet's time, where the XTCE files do not say; with :seconds, "
-                    ":milliseconds, :microseconds, :cuc or :cds behind it for how")
+                    ":milliseconds, :microseconds, :cuc, :cuc-preamble, :cds or :cds-preamble behind it for how")
         ->needs(files);
     return files;
 }

@@ -56,8 +56,7 @@ XtceFile read_xtce(const MissionXtce& xtce) {
     if (!xtce.time.empty()) all_text += "\ntime " + xtce.time;
     std::vector<dictionary::Finding> all;
     XtceFile file{dictionary::xtce::read_packet_model(
-                      texts, all, {.leading_size_unit_bits = xtce.leading_size == "octets" ? 8U : 1U}),
-                  0, crc16(std::vector<std::uint8_t>{all_text.begin(), all_text.end()})};
+        texts, all, {.leading_size_unit_bits = xtce.leading_size == "octets" ? 8U : 1U})};
     print_findings(all);
     file.findings = all.size();
     if (!file.model) {
@@ -67,6 +66,9 @@ XtceFile read_xtce(const MissionXtce& xtce) {
     const auto begins = telemetry::ContainerDecoder::root_of(*file.model, xtce.root);
     if (!begins) return {std::nullopt, failed(fmt::format("{}: {} (--root)", xtce.text(), begins.error().message), 2)};
     file.model->root = *begins;
+    if (telemetry::ContainerDecoder::roots_of(*file.model).size() > 1)
+        all_text += "\nroot " + file.model->containers[*begins].path;
+    file.id = crc16(std::vector<std::uint8_t>{all_text.begin(), all_text.end()});
     if (!xtce.time.empty()) {
         auto time = telemetry::TimeSource::parse(*file.model, xtce.time);
         if (!time) return {std::nullopt, failed(fmt::format("--time: {}", time.error().message), 2)};

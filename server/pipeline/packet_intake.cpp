@@ -77,6 +77,8 @@ void PacketIntake::take(const telemetry::ReceivedPacket& packet, Numbering& numb
     if (auto refusal = decode(packet.octets)) {
         ++not_decoded_;
         record.refusal = std::move(*refusal);
+        if (other_ != nullptr)
+            tell_once("a packet of APID " + std::to_string(record.apid.value) + " is not decoded: " + record.refusal);
         batch.packets.push_back(std::move(record));
         return;
     }
@@ -87,6 +89,12 @@ void PacketIntake::take(const telemetry::ReceivedPacket& packet, Numbering& numb
         auto place = clocks_.place(decoded_.packet, dictionary_.packets[decoded_.packet].name, own, packet.ert);
         record.sclk = place.sclk;
         remark_ = std::move(place.remark).value_or("");
+        if (!decoded_.problem.empty()) {
+            ++not_decoded_;
+            record.refusal = decoded_.problem;
+            tell_once("a packet " + dictionary_.packets[decoded_.packet].name +
+                      " is not decoded to its end: " + decoded_.problem);
+        }
     }
     if (other_ == nullptr)
         record.standing =
@@ -100,6 +108,11 @@ void PacketIntake::take(const telemetry::ReceivedPacket& packet, Numbering& numb
     if (other_ != nullptr) return;
     interpret(record, numbering, batch);
     if (observer) observer(decoded_, packet.octets, record.source, record.ert);
+}
+
+void PacketIntake::tell_once(const std::string& words) {
+    if (told_.size() == told_max || !told_.insert(words).second) return;
+    remark_ += (remark_.empty() ? "" : "; ") + words;
 }
 
 std::optional<std::string> PacketIntake::decode(std::span<const std::uint8_t> packet) {

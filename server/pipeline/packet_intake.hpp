@@ -11,6 +11,7 @@
 #include "telemetry/unit_identity.hpp"
 
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -47,6 +48,8 @@ class Numbering {
 ///
 /// In       packets in the order of receipt               Out   records, appended to a batch
 /// Time     another mission's packet without a time of its own stands at its reception (telemetry/packet_clocks.hpp)
+/// Partly   another mission's packet that is not decoded to its end is sampled as far as it is; it has the reason, counts
+///          as not decoded, and the first of each kind is told
 /// Newest   of real time: ours by its clock, which never goes back; another mission's by reception, because its clocks
 ///          may restart and stand still
 /// Rules    a packet seen before on the other path is stored (it is the proof) and marked, but its samples are not
@@ -66,7 +69,7 @@ class PacketIntake {
     archive::RecordingTotals totals() const;
     /// The newest value of each channel in real time.
     const std::vector<std::optional<LatestValue>>& latest() const { return latest_; }
-    /// What the last packet showed of its clock, for people; empty: nothing.
+    /// What the last packet showed of its clock, or that it was not decoded, for people; empty: nothing new.
     const std::string& remark() const { return remark_; }
     /// The label of the vehicle's phase as last reported in real time; empty: not reported. Reported by the phase
     /// channel or by the event of its change, whichever is newer on board: the channel is sent every two seconds and
@@ -88,6 +91,7 @@ class PacketIntake {
                archive::Batch& batch);
 
     void note_phase(const archive::PacketRecord& record);
+    void tell_once(const std::string& words);
 
     const dictionary::Dictionary& dictionary_;
     const archive::PacketColumns& columns_;
@@ -105,6 +109,8 @@ class PacketIntake {
     std::vector<std::optional<LatestValue>> latest_;
     telemetry::PacketClocks clocks_;  ///< of another mission's packets
     std::string remark_;
+    static constexpr std::size_t told_max = 20;  ///< chosen: nobody reads more; all are counted
+    std::set<std::string> told_;                 ///< kinds of packets that were not decoded whole
     std::uint64_t recorded_octets_ = 0;
     std::uint64_t not_decoded_ = 0;
     std::uint64_t of_others_ = 0;  ///< packets of another mission

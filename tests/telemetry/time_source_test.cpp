@@ -71,9 +71,8 @@ TEST_CASE("a packet's time is found in any parameter that is named: numbers, CUC
     CHECK(time_by("N") == "1001");
     CHECK(time_by("/S/N:milliseconds") == "1.001");
     CHECK(time_by("N:microseconds") == "0.001001");
-    CHECK(time_by("B6") == "16.5");
     CHECK(time_by("B6:cuc") == "16.5");
-    CHECK(time_by("B7") == "16.25 TAI");
+    CHECK(time_by("B7:cuc-preamble") == "16.25 TAI");
     CHECK(time_by("B8:cds") == "172800.0105");
     CHECK(time_by("CUC") == "32.75");
     CHECK(time_by("CUC.m0") == "32");
@@ -82,7 +81,10 @@ TEST_CASE("a packet's time is found in any parameter that is named: numbers, CUC
 
 TEST_CASE("a time that is not there, or not in that form, is none; a name that is not there is named",
           "[telemetry][downlink][R54]") {
-    CHECK(time_by("B8:cuc") == "none");  // eight octets are no CUC without its preamble
+    CHECK(time_by("B8:cuc") == "none");  // of eight octets it is none
+    CHECK(time_by("B6:cuc-preamble") == "none");
+    CHECK(time_by("B8:cds-preamble") == "none");
+    CHECK_THAT(time_by("B6"), Catch::Contains("'B6' is octets: say :cuc, :cuc-preamble, :cds or :cds-preamble"));
     CHECK(time_by("B6:milliseconds") == "none");
     CHECK(time_by("N:cuc") == "none");
     CHECK(time_by("CDS") == "none");
