@@ -23,7 +23,16 @@ Result<TimeTable> TimeTable::make(std::vector<double> time_s, std::vector<double
 double TimeTable::slope(std::size_t row) const {
     const std::size_t before = row == 0 ? 0 : row - 1;
     const std::size_t after = std::min(row + 1, time_s_.size() - 1);
-    return after == before ? 0.0 : (value_[after] - value_[before]) / (time_s_[after] - time_s_[before]);
+    if (after == before) return 0.0;
+    const auto chord = [&](std::size_t from, std::size_t to) {
+        return (value_[to] - value_[from]) / (time_s_[to] - time_s_[from]);
+    };
+    const double mean = chord(before, after);
+    if (before == row || after == row) return mean;
+    // Within three times both chords the cubic stays between the rows.
+    const double left = chord(before, row), right = chord(row, after);
+    if (left * right <= 0.0) return 0.0;
+    return std::copysign(std::min({std::abs(mean), 3.0 * std::abs(left), 3.0 * std::abs(right)}), mean);
 }
 
 TimeTable::Piece TimeTable::piece_at(double time_s) const {

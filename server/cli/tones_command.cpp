@@ -8,11 +8,15 @@
 #include "server/tones/sample_file.hpp"
 #include "server/tones/tone_bench.hpp"
 #include "simulation/links/x_band_channel.hpp"
+#include "telemetry/mfsk/doppler_slope.hpp"
 #include "telemetry/mfsk/tone_receiver.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <fstream>
 #include <memory>
+#include <tuple>
 
 namespace aeolis::server {
 namespace {
@@ -20,10 +24,14 @@ namespace {
 struct TonesDecodeOptions {
     SharedOptions shared;
     std::filesystem::path samples;
-    double rate_hz = 0.0;
-    std::string format;
-    std::optional<std::filesystem::path> predict;  ///< Doppler removed before sampling
-    double start_s = 0.0;                          ///< of the first sample, on the predict's time axis
+    std::optional<double> rate_hz;                  ///< none: as the file says
+    std::optional<std::string> format;              ///< the same
+    std::optional<std::filesystem::path> predict;   ///< Doppler removed before sampling
+    std::optional<std::filesystem::path> expected;  ///< Doppler still in the samples
+    std::optional<std::filesystem::path> carrier;   ///< the carrier is written here
+    double start_s = 0.0;                           ///< of the first sample, on the predict's time axis
+    std::vector<double> excluded_hz;                ///< lines in the samples that are left out
+    std::optional<double> symbols_from_s;           ///< symbols begin then and directly after each other
     bool json = false;
 };
 
@@ -114,24 +122,151 @@ Result<Sending> sending_of_files(const TonesSimulateOptions& options, const dict
     return sending;
 }
 
-/// Prints one line per symbol. Returns 1 for silence, no carrier, or a long carrier without symbols.
+/// A recording with its rate and format, from the file or, where it says nothing, from the options.
+Result<Recording> recording_of(const TonesDecodeOptions& options) {
+    auto looked = look_at_recording(options.samples);
+    if (!looked) return looked;
+    Recording& recording = *looked;
+    if (options.format) {
+        const auto format = sample_format(*options.format);
+        if (!format) return format.error();
+        if (recording.format && *recording.format != *format)
+            recording.told.push_back(fmt::format("{}: is {} by its header, not {} as --format says; the header is used",
+                                                 options.samples.string(), recording.format->name(), format->name()));
+        if (!recording.format) recording.format = *format;
+    }
+    if (options.rate_hz) {
+        if (recording.rate_hz && *recording.rate_hz != *options.rate_hz)
+            recording.told.push_back(
+                fmt::format("{}: has {} samples a second by its header, not {} as --rate says; the "
+                            "header is used",
+                            options.samples.string(), *recording.rate_hz, *options.rate_hz));
+        if (!recording.rate_hz) recording.rate_hz = options.rate_hz;
+    }
+    if (!recording.format)
+        return Error{fmt::format("{}: {} that do not say their format; give --format", options.samples.string(),
+                                 recording.kind)};
+    if (!recording.rate_hz)
+        return Error{
+            fmt::format("{}: {} that do not say their rate; give --rate", options.samples.string(), recording.kind)};
+    return looked;
+}
+
+/// What was heard in a recording.
+struct Heard {
+    telemetry::ReceiverStatus status;
+    std::size_t symbols = 0, tones = 0;
+    double length_s = 0.0;
+    std::vector<telemetry::CarrierReport> carrier;  ///< each second's first, for the slope
+};
+
+/// Adds the counts of a receiver that began anew behind a hole in the file.
+void add(const telemetry::ReceiverStatus& part, telemetry::ReceiverStatus& sum) {
+    telemetry::ReceiverStatus all = part;
+    all.carrier_s += sum.carrier_s;
+    all.without_s += sum.without_s;
+    all.gap_s += sum.gap_s;
+    all.acquisitions += sum.acquisitions;
+    all.contradicted += sum.contradicted;
+    all.loudest = std::max(all.loudest, sum.loudest);
+    if (!all.clock_error_ppm) all.clock_error_ppm = sum.clock_error_ppm;
+    sum = all;
+}
+
+void write_carrier(std::ofstream& file, const telemetry::CarrierReport& report) {
+    if (report.lock == CarrierLock::searching)
+        file << fmt::format("{:.4f},{},,,,\n", report.time_s, to_text(report.lock));
+    else if (std::isnan(report.total_c_n0_dbhz))
+        file << fmt::format("{:.4f},{},{:.3f},,{:.2f},\n", report.time_s, to_text(report.lock), report.frequency_hz,
+                            report.rate_hzps);
+    else
+        file << fmt::format("{:.4f},{},{:.3f},{:.3f},{:.2f},{:.2f}\n", report.time_s, to_text(report.lock),
+                            report.frequency_hz, report.frequency_deviation_hz, report.rate_hzps,
+                            report.total_c_n0_dbhz);
+}
+
+/// Lines on what is not as it should be, though tones may have been decoded. True: the exit code is 1.
+bool tell_faults(const TonesDecodeOptions& options, const Heard& heard, const TimeTable& predict_hz,
+                 const TimeTable& expected_hz) {
+    const std::string file = options.samples.string();
+    bool is_fault = false;
+    const auto tell = [&](bool fault, const std::string& line) {
+        fmt::print(stderr, "{}: {}\n", file, line);
+        is_fault = is_fault || fault;
+    };
+    const telemetry::ReceiverStatus& status = heard.status;
+    if (status.gap_s > 0.0) tell(false, fmt::format("{:.1f} s without usable samples", status.gap_s));
+    if (status.clock_error_ppm && std::abs(*status.clock_error_ppm) > 30.0)
+        tell(false, fmt::format("the samples' clock runs {} by {:.0f} ppm, which was corrected",
+                                *status.clock_error_ppm > 0.0 ? "fast" : "slow", std::abs(*status.clock_error_ppm)));
+    if (status.contradicted > 0)
+        tell(true, fmt::format("{} tones erased, as most lie between the tones' frequencies: the rate is wrong",
+                               status.contradicted));
+    for (const auto& [table, name, is_expected] :
+         {std::tuple{&predict_hz, "--predict", false}, std::tuple{&expected_hz, "--expected", true}}) {
+        const auto slope = table->empty() ? std::nullopt : telemetry::doppler_slope(heard.carrier, *table);
+        if (!slope) continue;
+        if (std::abs(*slope - 1.0) < 0.3 && !is_expected)
+            tell(true, "the Doppler of --predict is still in the samples; give it by --expected");
+        if (std::abs(*slope + 1.0) < 0.3)
+            tell(true, is_expected
+                           ? "the Doppler of --expected is no longer in the samples; give it by --predict"
+                           : "in-phase and quadrature are exchanged, and the Doppler of --predict is in the samples");
+        if (std::abs(*slope + 2.0) < 0.3)
+            tell(true, fmt::format("the carrier moves against {}: in-phase and quadrature are exchanged", name));
+    }
+    return is_fault;
+}
+
+/// Prints one line per symbol. Returns 1 for silence, no carrier, a long carrier without symbols, and whatever
+/// contradicts what is said of the samples.
 int tones_decode(const TonesDecodeOptions& options) {
     const auto dictionary = loaded_dictionary(options.shared.dictionary);
     if (!dictionary) return 1;
-    const auto format = sample_format(options.format);
-    if (!format) return failed(format.error().message, 2);
+    const auto recording = recording_of(options);
+    if (!recording) return failed(recording.error().message, 2);
+    for (const std::string& line : recording->told) fmt::print(stderr, "{}\n", line);
+    const double rate_hz = *recording->rate_hz;
     const auto predict = optional_doppler(options.predict);
     if (!predict) return failed(predict.error().message);
-    auto receiver = telemetry::ToneReceiver::make(dictionary->mfsk, options.rate_hz, *predict, options.start_s);
-    if (!receiver) return failed(receiver.error().message, 2);
-    auto reader = SampleReader::open(options.samples, *format);
+    const auto expected = optional_doppler(options.expected);
+    if (!expected) return failed(expected.error().message);
+    auto reader = SampleReader::open(*recording);
     if (!reader) return failed(reader.error().message);
+    if (recording->kind != "raw samples")
+        fmt::print(stderr, "{}: {}, {} at {} Hz{}{}\n", options.samples.string(), recording->kind,
+                   recording->format->name(), rate_hz,
+                   recording->frequency_hz ? fmt::format(", middle {} Hz", *recording->frequency_hz) : "",
+                   recording->datetime.empty() ? "" : ", from " + recording->datetime);
+    std::ofstream carrier;
+    if (options.carrier) {
+        carrier.open(*options.carrier);
+        carrier << "time_s,lock,frequency_hz,frequency_deviation_hz,rate_hzps,c_n0_dbhz\n";
+    }
 
-    std::size_t symbols = 0;
-    const auto print_new = [&] {
-        for (const auto& heard : receiver->take()) {
-            print(heard, *dictionary, options.json);
-            ++symbols;
+    std::optional<telemetry::ToneReceiver> receiver;
+    std::uint64_t passed = 0;
+    const auto begin = [&]() -> Result<void> {
+        const double start_s = options.start_s + static_cast<double>(passed) / rate_hz;
+        auto made = telemetry::ToneReceiver::make(
+            dictionary->mfsk, rate_hz, {*predict, start_s, *expected, options.excluded_hz, options.symbols_from_s});
+        if (!made) return made.error();
+        receiver.emplace(std::move(*made));
+        return {};
+    };
+    if (const auto begun = begin(); !begun) return failed(begun.error().message, 2);
+
+    Heard heard;
+    const auto take = [&] {
+        for (const telemetry::ToneReception& symbol : receiver->take()) {
+            print(symbol, *dictionary, options.json);
+            ++heard.symbols;
+            heard.tones += symbol.tone ? 1 : 0;
+        }
+        for (const telemetry::CarrierReport& report : receiver->take_carrier()) {
+            if (carrier.is_open()) write_carrier(carrier, report);
+            if (heard.carrier.empty() || report.time_s >= heard.carrier.back().time_s + 1.0)
+                heard.carrier.push_back(report);
         }
     };
     std::vector<std::complex<float>> room(block_samples);
@@ -140,24 +275,42 @@ int tones_decode(const TonesDecodeOptions& options) {
         if (!block) return failed(block.error().message);
         if (block->empty()) break;
         receiver->push(*block);
-        print_new();
+        passed += block->size();
+        take();
+        // What a sparse file does not store needs no receiver.
+        if (std::ranges::any_of(*block, [](const auto& sample) { return sample != std::complex<float>{}; })) continue;
+        const std::uint64_t hole = reader->skip_hole();
+        if (hole == 0) continue;
+        receiver->finish();
+        take();
+        add(receiver->status(), heard.status);
+        heard.status.gap_s += static_cast<double>(hole) / rate_hz;
+        passed += hole;
+        if (const auto begun = begin(); !begun) return failed(begun.error().message, 2);
     }
     receiver->finish();
-    print_new();
-    const telemetry::ReceiverStatus& status = receiver->status();
-    const double length_s = static_cast<double>(reader->samples()) / options.rate_hz;
-    if (status.loudest == 0.0)
-        return failed(fmt::format("{}: silence, {:.1f} s of it", options.samples.string(), length_s));
+    take();
+    add(receiver->status(), heard.status);
+    if (options.carrier) {
+        carrier.close();
+        if (!carrier) return failed(fmt::format("{} cannot be written", options.carrier->string()));
+    }
+
+    const telemetry::ReceiverStatus& status = heard.status;
+    const std::string file = options.samples.string(), format = recording->format->name();
+    const double length_s = static_cast<double>(reader->samples()) / rate_hz;
+    if (status.loudest == 0.0) return failed(fmt::format("{}: silence, {:.1f} s of it", file, length_s));
+    const bool is_fault = tell_faults(options, heard, *predict, *expected) || !recording->told.empty();
     if (status.carrier_s == 0.0)
-        return failed(fmt::format("{}: no carrier within {:.1f} s; rate {} Hz, format {}", options.samples.string(),
-                                  length_s, options.rate_hz, options.format));
-    if (symbols == 0 && length_s > dictionary->mfsk.symbol_s)
-        return failed(fmt::format("{}: a carrier for {:.1f} s, and no tone on it; is {} Hz its rate?",
-                                  options.samples.string(), status.carrier_s, options.rate_hz));
+        return failed(
+            fmt::format("{}: no carrier within {:.1f} s; rate {} Hz, format {}", file, length_s, rate_hz, format));
+    if (heard.symbols == 0 && length_s > dictionary->mfsk.symbol_s)
+        return failed(fmt::format("{}: a carrier for {:.1f} s, and no tone on it; is {} Hz its rate?", file,
+                                  status.carrier_s, rate_hz));
     if (reader->left_over_octets() > 0)
-        return failed(fmt::format("{}: {} octets behind the last whole sample: truncated, or not {}",
-                                  options.samples.string(), reader->left_over_octets(), options.format));
-    return 0;
+        return failed(fmt::format("{}: {} octets behind the last whole sample: truncated, or not {}", file,
+                                  reader->left_over_octets(), format));
+    return is_fault ? 1 : 0;
 }
 
 /// Writes a file of simulated samples.
@@ -191,7 +344,11 @@ int tones_simulate(const TonesSimulateOptions& options) {
     sending->path.rate_hz = options.rate_hz;
     sending->path.total_c_n0_dbhz = options.c_n0_dbhz;
 
-    auto writer = SampleWriter::open(options.out, *format);
+    const std::string extension = options.out.extension().string();
+    const bool is_sigmf = extension == ".sigmf-meta" || extension == ".sigmf-data" || extension == ".sigmf";
+    std::filesystem::path data = options.out, meta = options.out;
+    if (is_sigmf) data.replace_extension(".sigmf-data");
+    auto writer = SampleWriter::open(data, *format);
     if (!writer) return failed(writer.error().message);
     simulation::XBandChannel channel{words->mfsk, sending->path, sending->tones, options.seed, options.case_number};
     std::vector<std::complex<float>> block(block_samples);
@@ -204,6 +361,13 @@ int tones_simulate(const TonesSimulateOptions& options) {
         left -= count;
     }
     if (const auto closed = writer->close(); !closed) return failed(closed.error().message);
+    if (is_sigmf) {
+        std::ofstream stream{meta.replace_extension(".sigmf-meta")};
+        stream << sigmf_meta(*format, options.rate_hz, words->mfsk.carrier_hz,
+                             fmt::format("simulated X-band tones from {} s on", sending->path.start_s));
+        stream.close();
+        if (!stream) return failed(fmt::format("{} cannot be written", meta.string()));
+    }
     fmt::print("{}: {:.1f} s from {:.3f} s on, {} tones, {} at {} Hz, {} dB-Hz total\n", options.out.string(),
                sending->length_s, sending->path.start_s, sending->tones.size(), options.format, options.rate_hz,
                options.c_n0_dbhz);
@@ -229,11 +393,20 @@ int tones_bench(const TonesBenchOptions& options) {
 void add_tones_decode(CLI::App& tones, int& exit_code) {
     const auto options = std::make_shared<TonesDecodeOptions>();
     auto& command = *tones.add_subcommand("decode", "prints the tones in a file of complex samples, a line a symbol");
-    command.add_option("--samples", options->samples, "the file: in-phase and quadrature, little-endian")->required();
-    command.add_option("--rate", options->rate_hz, "samples a second")->required();
-    command.add_option("--format", options->format, "cf32 or ci16")->required();
+    command.add_option("--samples", options->samples, "the file: SigMF, WAV of two channels, or raw samples")
+        ->required();
+    command.add_option("--rate", options->rate_hz, "samples a second; SigMF and WAV say it");
+    command.add_option("--format", options->format,
+                       "of raw samples: cf32, cf64, ci8, cu8, ci16, ci32; big-endian with _be");
     command.add_option("--predict", options->predict, "CSV of the Doppler that was removed: time, doppler_hz");
     command.add_option("--start", options->start_s, "time of the first sample [s]")->capture_default_str();
+    command.add_option("--expected", options->expected,
+                       "CSV of the Doppler that is still in the samples, of a fixed oscillator: time, doppler_hz");
+    command.add_option("--carrier", options->carrier, "CSV to write: the carrier, eight rows a second");
+    command.add_option("--exclude", options->excluded_hz, "lines in the samples to leave out [Hz]; 0 is a DC block")
+        ->delimiter(',');
+    command.add_option("--symbols-from", options->symbols_from_s,
+                       "symbols begin at this time [s] and directly after each other: each is decided at its end");
     command.add_flag("--json", options->json, "a JSON object a line");
     add_shared(command, options->shared);
     command.callback([options, &exit_code] { exit_code = tones_decode(*options); });
@@ -242,9 +415,11 @@ void add_tones_decode(CLI::App& tones, int& exit_code) {
 void add_tones_simulate(CLI::App& tones, int& exit_code) {
     const auto options = std::make_shared<TonesSimulateOptions>();
     auto& command = *tones.add_subcommand("simulate", "writes a file of samples, from lists or from a landing");
-    command.add_option("--out", options->out, "file to write")->required();
+    command.add_option("--out", options->out, "file to write; as SigMF if it ends in .sigmf-meta or .sigmf-data")
+        ->required();
     command.add_option("--rate", options->rate_hz, "samples a second")->capture_default_str();
-    command.add_option("--format", options->format, "cf32 or ci16")->capture_default_str();
+    command.add_option("--format", options->format, "cf32, cf64, ci8, cu8, ci16, ci32; big-endian with _be")
+        ->capture_default_str();
     auto* list = command.add_option("--tones", options->tones, "CSV: start_s,tone");
     auto* doppler = command.add_option("--doppler", options->doppler, "CSV of the Doppler: time, doppler_hz");
     auto* scenario = command.add_option("--scenario", options->scenario, "tones and Doppler of this landing instead");

@@ -16,41 +16,19 @@ namespace {
 using telemetry::ToneSums;
 
 constexpr int baseband_hops = 80;
-constexpr double baseband_rate_hz = 1200.0;         // chosen: just above twice the highest tone
-constexpr int frequency_steps = 2, rate_steps = 4;  // chosen; to either side of the middle
+constexpr double baseband_rate_hz = 1200.0;  // chosen: just above twice the highest tone
 constexpr double full_turn_rad = 2.0 * std::numbers::pi;
 
 double power_ratio(double db) {
     return std::pow(10.0, 0.1 * db);
 }
 
-/// The tone with the greatest sum over the hops at any offset of the grid.
-int likeliest(const std::vector<ToneSums>& hops, double hop_s, const BasebandTrial& trial) {
-    const int aside_f = trial.frequency_offset_hz > 0.0 ? frequency_steps : 0;
-    const int aside_r = trial.rate_offset_hzps > 0.0 ? rate_steps : 0;
-    float most = -1.0F;
-    int best = 0;
-    for (int r = -aside_r; r <= aside_r; ++r)
-        for (int f = -aside_f; f <= aside_f; ++f) {
-            ToneSums total{};
-            for (std::size_t i = 0; i < hops.size(); ++i) {
-                const double t = (static_cast<double>(i) + 0.5 - 0.5 * static_cast<double>(hops.size())) * hop_s;
-                const double frequency_hz = aside_f == 0 ? 0.0 : trial.frequency_offset_hz * f / aside_f;
-                const double rate_hzps = aside_r == 0 ? 0.0 : trial.rate_offset_hzps * r / aside_r;
-                const auto turn = static_cast<std::complex<float>>(
-                    std::polar(1.0, -full_turn_rad * (frequency_hz * t + 0.5 * rate_hzps * t * t)));
-                for (std::size_t tone = 0; tone < total.size(); ++tone)
-                    total[tone] +=
-                        std::complex<float>{turn.real() * hops[i][tone].real() - turn.imag() * hops[i][tone].imag(),
-                                            turn.real() * hops[i][tone].imag() + turn.imag() * hops[i][tone].real()};
-            }
-            for (std::size_t tone = 0; tone < total.size(); ++tone)
-                if (std::norm(total[tone]) > most) {
-                    most = std::norm(total[tone]);
-                    best = static_cast<int>(tone);
-                }
-        }
-    return best;
+/// The tone with the greatest sum over the hops.
+std::ptrdiff_t likeliest(const std::vector<ToneSums>& hops) {
+    ToneSums total{};
+    for (const ToneSums& hop : hops)
+        for (std::size_t tone = 0; tone < total.size(); ++tone) total[tone] += hop[tone];
+    return std::ranges::max_element(total, {}, [](const auto& sum) { return std::norm(sum); }) - total.begin();
 }
 
 }  // namespace
@@ -70,7 +48,7 @@ double loss_db(double tone_c_n0_dbhz, double symbol_s, double error_rate) {
     return tone_c_n0_dbhz - 10.0 * std::log10(energy / symbol_s);
 }
 
-ErrorCount baseband_errors(const MfskWaveform& waveform, const BasebandTrial& trial, std::uint64_t symbols,
+ErrorCount baseband_errors(const MfskWaveform& waveform, double tone_c_n0_dbhz, std::uint64_t symbols,
                            std::uint64_t seed) {
     const int samples = static_cast<int>(baseband_rate_hz * waveform.symbol_s) / baseband_hops;
     const double hop_s = samples / baseband_rate_hz;
@@ -78,24 +56,17 @@ ErrorCount baseband_errors(const MfskWaveform& waveform, const BasebandTrial& tr
     simulation::Random random{seed, 0, simulation::Stream::x_band};
     simulation::FastNormal noise{seed, 0, simulation::Stream::x_band_noise};
     // Noise of deviation 1 per sample has density 2/rate.
-    const double amplitude = std::sqrt(2.0 * power_ratio(trial.tone_c_n0_dbhz) * 2.0 / baseband_rate_hz);
+    const double amplitude = std::sqrt(2.0 * power_ratio(tone_c_n0_dbhz) * 2.0 / baseband_rate_hz);
     std::vector<ToneSums> hops(baseband_hops);
     std::vector<float> hop(static_cast<std::size_t>(samples));
     ErrorCount count;
     for (; count.trials < symbols; ++count.trials) {
         const int sent = static_cast<int>(random.uniform() * MfskWaveform::tones);
-        const double offset_hz = trial.frequency_offset_hz * (2.0 * random.uniform() - 1.0);
-        const double rate_hzps = trial.rate_offset_hzps * (2.0 * random.uniform() - 1.0);
         const double phase_rad = full_turn_rad * random.uniform();
         for (int h = 0; h < baseband_hops; ++h) {
             const double begin_s = h * hop_s;
-            const double from_middle_s = begin_s - 0.5 * waveform.symbol_s;
-            // Within a hop the drift is a frequency step: 0.02 Hz/s changes the phase by 1e-3 rad.
-            const double frequency_hz = waveform.tone_hz(sent) + offset_hz + rate_hzps * (from_middle_s + 0.5 * hop_s);
-            const double begin_rad =
-                phase_rad + full_turn_rad * (waveform.tone_hz(sent) * begin_s + offset_hz * from_middle_s +
-                                             0.5 * rate_hzps * from_middle_s * from_middle_s);
-            const double step_rad = full_turn_rad * frequency_hz / baseband_rate_hz;
+            const double begin_rad = phase_rad + full_turn_rad * waveform.tone_hz(sent) * begin_s;
+            const double step_rad = full_turn_rad * waveform.tone_hz(sent) / baseband_rate_hz;
             std::complex<double> phasor = std::polar(amplitude, begin_rad + 0.5 * step_rad);
             const std::complex<double> step = std::polar(1.0, step_rad);
             for (float& sample : hop) {
@@ -105,7 +76,7 @@ ErrorCount baseband_errors(const MfskWaveform& waveform, const BasebandTrial& tr
             }
             correlator.correlate(hop, begin_s, hops[static_cast<std::size_t>(h)]);
         }
-        if (likeliest(hops, hop_s, trial) != sent) ++count.errors;
+        if (likeliest(hops) != sent) ++count.errors;
     }
     return count;
 }
@@ -135,7 +106,7 @@ ErrorCount carrier_aided_errors(const MfskWaveform& waveform, double carrier_c_n
     }
     path.doppler_hz = TimeTable::make(std::move(time_s), std::move(doppler_hz)).value();
     simulation::XBandChannel channel{split, path, tones, seed, 1};
-    telemetry::CarrierTracker tracker{layout, split.carrier_fraction()};
+    telemetry::CarrierTracker tracker{layout};
     tracker.start(0, 0.0, 0.0);
     const telemetry::ToneCorrelator correlator{waveform, layout.thinned_rate_hz(), layout.thinned_samples()};
 

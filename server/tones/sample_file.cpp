@@ -2,62 +2,69 @@
 #include "server/tones/sample_file.hpp"
 
 #include <algorithm>
-#include <bit>
+#include <cerrno>
 #include <cmath>
-#include <cstring>
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <numbers>
+#include <unistd.h>
 
 namespace aeolis::server {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "sample files are little-endian");
-
-constexpr double noise_in_ci16 = 2000.0 * std::numbers::sqrt2;  // chosen: clips at 16 deviations
+constexpr double noise_of_range = 1.0 / 16.0;  // chosen: integers clip at 16 deviations
 
 }  // namespace
 
-Result<SampleFormat> sample_format(std::string_view name) {
-    if (name == "cf32") return SampleFormat::cf32;
-    if (name == "ci16") return SampleFormat::ci16;
-    return Error{fmt::format("there is no sample format '{}': cf32 or ci16", name)};
-}
-
-std::size_t octets_a_sample(SampleFormat format) {
-    return format == SampleFormat::cf32 ? 2 * sizeof(float) : 2 * sizeof(std::int16_t);
-}
-
 Result<SampleReader> SampleReader::open(const std::filesystem::path& file, SampleFormat format) {
-    SampleReader reader{file, format};
+    Recording recording;
+    recording.samples = file;
+    recording.format = format;
+    return open(recording);
+}
+
+Result<SampleReader> SampleReader::open(const Recording& recording) {
+    const std::filesystem::path& file = recording.samples;
+    SampleReader reader{file, recording.format.value()};
     std::error_code error;
-    const std::uint64_t octets = std::filesystem::file_size(file, error);
+    const std::uint64_t all = std::filesystem::file_size(file, error);
     if (error) return Error{fmt::format("{}: {}", file.string(), error.message())};
+    const std::uint64_t behind = all - std::min(all, recording.first_octet);
+    const std::uint64_t octets = std::min(recording.octets.value_or(behind), behind);
     reader.stream_.open(file, std::ios::binary);
     if (!reader.stream_) return Error{fmt::format("{} cannot be read", file.string())};
     if (octets == 0) return Error{fmt::format("{} is empty", file.string())};
-    reader.left_over_octets_ = octets % octets_a_sample(format);
-    reader.samples_ = octets / octets_a_sample(format);
+    reader.stream_.seekg(static_cast<std::streamoff>(recording.first_octet));
+    reader.first_octet_ = recording.first_octet;
+    reader.left_over_octets_ = octets % recording.format->octets_a_sample();
+    reader.samples_ = octets / recording.format->octets_a_sample();
     return reader;
 }
 
 Result<std::span<const std::complex<float>>> SampleReader::next(std::span<std::complex<float>> room) {
     const auto count = static_cast<std::size_t>(std::min<std::uint64_t>(room.size(), samples_ - read_));
-    octets_.resize(count * octets_a_sample(format_));
+    octets_.resize(count * format_.octets_a_sample());
     if (!stream_.read(octets_.data(), static_cast<std::streamsize>(octets_.size())))
         return Error{fmt::format("{} ended after {} of {} samples", file_.string(), read_, samples_)};
-    for (std::size_t i = 0; i < count; ++i) {
-        if (format_ == SampleFormat::cf32) {
-            float parts[2];
-            std::memcpy(parts, octets_.data() + i * sizeof parts, sizeof parts);
-            room[i] = {parts[0], parts[1]};
-        } else {
-            std::int16_t parts[2];
-            std::memcpy(parts, octets_.data() + i * sizeof parts, sizeof parts);
-            room[i] = {static_cast<float>(parts[0]), static_cast<float>(parts[1])};
-        }
-    }
+    format_.decode(octets_, room.first(count));
     read_ += count;
     return std::span<const std::complex<float>>{room.first(count)};
+}
+
+std::uint64_t SampleReader::skip_hole() {
+    const std::size_t octets = format_.octets_a_sample();
+    const int file = ::open(file_.c_str(), O_RDONLY | O_CLOEXEC);
+    if (file < 0) return 0;
+    const std::uint64_t at = first_octet_ + read_ * octets;
+    const off_t stored = ::lseek(file, static_cast<off_t>(at), SEEK_DATA);
+    const bool none_stored = stored < 0 && errno == ENXIO;
+    ::close(file);
+    if (stored < 0 && !none_stored) return 0;
+    const std::uint64_t hole = none_stored ? samples_ - read_ : (static_cast<std::uint64_t>(stored) - at) / octets;
+    const std::uint64_t skipped = std::min(hole, samples_ - read_);
+    read_ += skipped;
+    stream_.seekg(static_cast<std::streamoff>(first_octet_ + read_ * octets));
+    return skipped;
 }
 
 Result<SampleWriter> SampleWriter::open(const std::filesystem::path& file, SampleFormat format) {
@@ -73,20 +80,10 @@ Result<void> SampleWriter::state() const {
 }
 
 Result<void> SampleWriter::add(std::span<const std::complex<float>> samples) {
-    octets_.resize(samples.size() * octets_a_sample(format_));
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-        if (format_ == SampleFormat::cf32) {
-            const float parts[2]{samples[i].real(), samples[i].imag()};
-            std::memcpy(octets_.data() + i * sizeof parts, parts, sizeof parts);
-        } else {
-            const auto to_integer = [](float part) {
-                return static_cast<std::int16_t>(
-                    std::lround(std::clamp(static_cast<double>(part) * noise_in_ci16, -32768.0, 32767.0)));
-            };
-            const std::int16_t parts[2]{to_integer(samples[i].real()), to_integer(samples[i].imag())};
-            std::memcpy(octets_.data() + i * sizeof parts, parts, sizeof parts);
-        }
-    }
+    const double scale =
+        std::ldexp(noise_of_range * std::numbers::sqrt2, 8 * format_.part_octets - 1);  // 2048 for ci16
+    octets_.clear();
+    format_.encode(samples, scale, octets_);
     stream_.write(octets_.data(), static_cast<std::streamsize>(octets_.size()));
     return state();
 }

@@ -2,48 +2,47 @@
 #pragma once
 
 #include "common/result.hpp"
+#include "server/tones/recording.hpp"
+#include "server/tones/sample_format.hpp"
 
 #include <complex>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <span>
-#include <string_view>
 #include <vector>
 
 namespace aeolis::server {
-
-/// The layout of complex samples in a file: in-phase then quadrature, little-endian, nothing else.
-enum class SampleFormat {
-    cf32,  ///< two 32-bit floats
-    ci16,  ///< two 16-bit integers
-};
-Result<SampleFormat> sample_format(std::string_view name);
-std::size_t octets_a_sample(SampleFormat format);
 
 /// Reads samples block by block.
 class SampleReader {
   public:
     /// Opens a file. Fails when it does not exist, cannot be read, or is empty.
     static Result<SampleReader> open(const std::filesystem::path& file, SampleFormat format);
+    /// Opens the samples of a recording. Its format must be known.
+    static Result<SampleReader> open(const Recording& recording);
 
     /// Reads the next samples, at most room.size(); empty at the end.
     Result<std::span<const std::complex<float>>> next(std::span<std::complex<float>> room);
     std::uint64_t samples() const { return samples_; }
     /// The octets after the last whole sample: the file is truncated or of another format.
     std::uint64_t left_over_octets() const { return left_over_octets_; }
+    /// Passes over samples that a sparse file does not store, all of them zero: how many.
+    std::uint64_t skip_hole();
 
   private:
     SampleReader(std::filesystem::path file, SampleFormat format) : file_(std::move(file)), format_(format) {}
     std::filesystem::path file_;
     SampleFormat format_;
     std::uint64_t left_over_octets_ = 0;
+    std::uint64_t first_octet_ = 0;
     std::uint64_t samples_ = 0, read_ = 0;
     std::ifstream stream_;
     std::vector<char> octets_;
 };
 
-/// Writes samples. ci16 is scaled so that noise of power 1 per sample has a deviation of 2000 in each part.
+/// Writes samples. Integers are scaled so that noise of power 1 per sample has a deviation of a sixteenth of their range
+/// in each part.
 class SampleWriter {
   public:
     static Result<SampleWriter> open(const std::filesystem::path& file, SampleFormat format);

@@ -36,22 +36,27 @@ RateInterval interval_of(const ErrorCount& count);
 /// @param tone_c_n0_dbhz  tone power to noise density, for a symbol of `symbol_s` with 256 tones
 double loss_db(double tone_c_n0_dbhz, double symbol_s, double error_rate);
 
-/// A trial of correlator and statistic at baseband, with a search over frequency and rate.
-struct BasebandTrial {
-    double tone_c_n0_dbhz = 0.0;
-    double frequency_offset_hz = 0.0;  ///< the tone's offset is uniform within ± this
-    double rate_offset_hzps = 0.0;     ///< and its drift within ± this
-};
-ErrorCount baseband_errors(const MfskWaveform& waveform, const BasebandTrial& trial, std::uint64_t symbols,
+/// Symbol errors of correlator and statistic at baseband, with frequency and beginnings known.
+ErrorCount baseband_errors(const MfskWaveform& waveform, double tone_c_n0_dbhz, std::uint64_t symbols,
                            std::uint64_t seed);
 
 /// Symbol errors with the carrier's phase from the tracker, at `carrier_c_n0_dbhz`; the symbols' starts are known.
 ErrorCount carrier_aided_errors(const MfskWaveform& waveform, double carrier_c_n0_dbhz, double tone_c_n0_dbhz,
                                 std::uint64_t symbols, std::uint64_t seed);
 
-/// Symbol errors, with erasures, of the whole receiver at `total_c_n0_dbhz`. It acquires at 26 dB-Hz.
+/// Symbol errors, with erasures, of the whole receiver at `total_c_n0_dbhz`; symbols begin at any time. It acquires at
+/// 26 dB-Hz.
 ErrorCount receiver_errors(const MfskWaveform& waveform, double total_c_n0_dbhz, std::uint64_t symbols,
                            std::uint64_t seed);
+
+/// The same when it is told when symbols begin, one after the other on a steady carrier. An error: the likeliest tone is
+/// another, erased or not, or there is none.
+struct SteadyCount {
+    ErrorCount errors;
+    double c_n0_dbhz = 0.0;  ///< as the receiver measured it, mean
+};
+SteadyCount steady_errors(const MfskWaveform& waveform, double total_c_n0_dbhz, std::uint64_t symbols,
+                          std::uint64_t seed);
 
 /// Acquisition in windows of 1 s over 100 kHz and ±1200 Hz/s; an error is a carrier not found within 50 Hz.
 struct AcquisitionCount {

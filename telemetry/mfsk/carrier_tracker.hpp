@@ -3,6 +3,7 @@
 
 #include "common/tone_evidence.hpp"
 #include "telemetry/mfsk/carrier_fit.hpp"
+#include "telemetry/mfsk/spectrum.hpp"
 
 #include <array>
 #include <complex>
@@ -18,10 +19,18 @@ struct CarrierHop {
     std::int64_t first_sample = 0;  ///< counted from the first sample ever pushed to the tracker
     CarrierLock lock = CarrierLock::searching;
     bool found = false;                          ///< false: `quadrature` is empty
+    bool gap = false;                            ///< too few samples to tell
     double frequency_hz = 0.0, rate_hzps = 0.0;  ///< of the carrier in the samples, at the hop's middle
-    double carrier_n0_hz = 0.0;                  ///< carrier power to noise density
-    /// Component in quadrature to the carrier, with noise of deviation 1 a sample: the tone, if any.
-    std::vector<float> quadrature;
+    double frequency_deviation_hz = 0.0;         ///< standard deviation of the frequency; 0 unless found
+    double carrier_n0_hz = 0.0;                  ///< carrier power to noise density, of the window that was fitted
+    double seen = 0.0;                           ///< fraction of the hop that is not a gap
+    /// Components in quadrature to the carrier, the tone, if any, and in phase with it, less the carrier; with noise of
+    /// deviation about 1 a sample, by the hop's own noise. Gaps are 0.
+    std::vector<float> quadrature, in_phase;
+    /// Powers around `spectrum_hz` in the samples, near the carrier, as Spectrum gives them; of the hop's noise each has
+    /// mean 1.
+    std::vector<float> spectrum;
+    double spectrum_hz = 0.0;
 };
 
 /// The division of samples into hops, for the tracker and the tone correlator.
@@ -42,14 +51,20 @@ struct HopLayout {
 /// Tracks a carrier of known initial frequency. Each hop is fitted in the middle of a window of hops.
 ///
 /// Frequency and rate of the newest fit predict where the next is searched.
-/// In      hops of samples, contiguous     Out   each hop once, in order, up to half a window later
-/// Effort  a narrow fit over 0.6 s, a wide one when that fails; windows of 1.4, 2.6 and 5.1 s for a weak carrier
+/// In      hops of samples, contiguous; a sample of exactly 0 is a gap
+/// Out     each hop once, in order, up to half a window later
+/// Noise   of each hop by itself: the median of its spectrum around the carrier. All else is relative to it, so that a
+///         change of gain changes nothing. Parts of 4 ms with four times a hop's usual power are gaps
+/// Effort  a narrow fit over 0.6 s, a wide one when that fails or has too little energy, then over 0.4 and 0.1 s for a
+///         carrier that swings; windows of 1.4, 2.6 and 5.1 s for a weak one
 /// Memory  the longest window
-/// Faults  the carrier is lost after 1.5 s, or three quarters of a window, without it (20 s when it has long been too
-///         weak to be acquired again): hops in memory are then reported as not found
+/// Faults  a line beyond the parts' band, which the fit sees at another frequency, is not in the samples there: it is lost
+///         at once. The carrier is lost after 1.5 s, or three quarters of a window, without it (20 s when it has long been too
+///         weak to be acquired again), gaps not counted, or after a gap of 10 s: hops in memory are then reported as not
+///         found
 class CarrierTracker {
   public:
-    explicit CarrierTracker(const HopLayout& layout, double carrier_fraction);
+    explicit CarrierTracker(const HopLayout& layout);
 
     /// Starts tracking with the hop that begins at `first_sample`.
     void start(std::int64_t first_sample, double frequency_hz, double rate_hzps);
@@ -60,15 +75,21 @@ class CarrierTracker {
     void finish(std::vector<CarrierHop>& out);
 
     bool lost() const { return lost_; }
+    /// False once the line that was followed proved to be elsewhere.
+    bool genuine() const { return genuine_ >= genuine_least; }
+    /// Hops since the last that was found, gaps not counted.
+    int missed() const { return missed_; }
     std::int64_t next_sample() const { return next_sample_; }  ///< start of the next hop
 
   private:
-    struct Wiped {  ///< a hop with the predicted phase removed
+    static constexpr double genuine_least = 0.4;  ///< chosen
+    struct Wiped {                                ///< a hop with the predicted phase removed
         std::int64_t first_sample = 0;
         double phase_cycles = 0.0, frequency_hz = 0.0, rate_hzps = 0.0;  ///< of the prediction, at the hop's start
         std::vector<std::complex<float>> thinned;
         std::array<std::complex<float>, HopLayout::parts> parts{};
-        double noise = 0.0;  ///< noise density N0 at the time, in power per hertz
+        double seen = 0.0;  ///< fraction that is not a gap
+        std::vector<float> spectrum;
         double cycles_at(double from_begin_s) const {
             return phase_cycles + frequency_hz * from_begin_s + 0.5 * rate_hzps * from_begin_s * from_begin_s;
         }
@@ -80,19 +101,27 @@ class CarrierTracker {
         FitSpan narrow, wide;
         double least_energy(bool with_wide) const;
     };
+    struct Fitted {
+        CarrierLine line;  ///< with noise of density 1
+        double length_s = 0.0, seen = 0.0;
+        bool found = false, wide = false;
+    };
 
     Wiped wipe(std::span<const std::complex<float>> hop);
+    void leave_out_bursts(Wiped& wiped) const;
+    void normalize(Wiped& wiped);
     void fit_waiting(std::vector<CarrierHop>& out);
-    CarrierLine fit_around(std::size_t middle, Window& window, bool wide);
-    CarrierHop demodulated(const Wiped& hop, const CarrierLine& line) const;
-    void follow(const Wiped& hop, const CarrierLine& line);
+    Fitted fit_around(std::size_t middle, Window& window, bool wide);
+    Fitted fit_swinging(std::size_t middle, const Fitted& usual);
+    CarrierHop demodulated(const Wiped& hop, const CarrierLine& line, const Fitted& fitted);
+    void follow(const Wiped& hop, const Fitted& fitted);
     void choose_window(double energy);
     void shorten();
 
     HopLayout layout_;
-    double carrier_fraction_;
-    std::vector<Window> windows_;
+    std::vector<Window> windows_, swinging_;
     std::size_t window_ = 0;
+    Spectrum spectrum_;  ///< of a hop
     std::vector<std::complex<float>> aligned_;
 
     std::deque<Wiped> hops_;
@@ -101,9 +130,11 @@ class CarrierTracker {
     double phase_cycles_ = 0.0;
     double frequency_hz_ = 0.0, rate_hzps_ = 0.0;  ///< of the newest fit
     std::int64_t frequency_sample_ = 0;            ///< the sample at which that holds
-    double noise_density_ = 0.0, carrier_power_ = 0.0;
+    double noise_density_ = 0.0;
     double level_hz_ = 0.0;  ///< carrier to noise density, a long average
-    int missed_ = 0;
+    double genuine_ = 1.0;   ///< of the amplitude that was fitted, what the samples have at the frequency; running mean
+    int missed_ = 0, gap_hops_ = 0;
+    int short_in_row_ = 0;  ///< hops found by a shorter window alone
     bool lost_ = true, settled_ = false;
     double energy_before_longer_ = 0.0;  ///< positive while a longer window is on trial
     int short_for_ = 0;                  ///< hops for which no longer window is tried

@@ -13,19 +13,32 @@ constexpr int settle_hops = 8;         // chosen: decisions are sought once a se
 
 /// Sum of the hops' evidence, the newest hop first.
 struct Gathered {
-    ToneSums sums{};
+    ToneSums sums{}, in_phase{};
+    ToneTilt tilt = level_tilt();
     double energy = 0.0;
     void add(const HopEvidence& hop) {
         if (!hop.found) return;
+        tilt = hop.tilt;
         energy += hop.energy;
-        for (std::size_t tone = 0; tone < sums.size(); ++tone) sums[tone] += hop.sums[tone];
+        for (std::size_t tone = 0; tone < sums.size(); ++tone) {
+            sums[tone] += hop.sums[tone];
+            in_phase[tone] += hop.in_phase[tone];
+        }
     }
+    ToneEvidence weighed() const { return weigh(sums, in_phase, tilt, energy); }
 };
 
 }  // namespace
 
-SymbolSequence::SymbolSequence(int symbol_hops, std::int64_t hop_samples)
-    : symbol_hops_(symbol_hops), hop_samples_(hop_samples), states_(1) {}
+SymbolSequence::SymbolSequence(int symbol_hops, std::int64_t hop_samples, std::optional<Grid> grid)
+    : symbol_hops_(symbol_hops), hop_samples_(hop_samples), grid_(grid), states_(1) {}
+
+bool SymbolSequence::ends_by_grid() const {
+    const auto symbol = [&](std::int64_t hops) {
+        return std::floor((static_cast<double>(hops) - grid_->first_hop + 0.5) / grid_->symbol_hops);
+    };
+    return symbol(hops_seen_) > symbol(hops_seen_ - 1);
+}
 
 double SymbolSequence::begin_cost() const {
     return std::log(static_cast<double>(symbol_hops_));
@@ -45,7 +58,7 @@ DecidedSymbol SymbolSequence::decide() const {
         total += hop.total_n0_hz;
         symbol.doppler_hz += hop.doppler_hz;
     }
-    symbol.evidence = weigh(gathered.sums, gathered.energy);
+    symbol.evidence = gathered.weighed();
     if (gathered.energy < energy_of_use)
         symbol.evidence.log_likelihood_ratio = -std::numeric_limits<double>::infinity();
     if (seen > 0) {
@@ -63,6 +76,12 @@ void SymbolSequence::push(const HopEvidence& hop, std::vector<DecidedSymbol>& ou
     hops_.push_back(hop);
     if (std::ssize(hops_) > symbol_hops_) hops_.pop_front();
     ++hops_seen_;
+    if (grid_) {
+        if (!ends_by_grid()) return;
+        if (const DecidedSymbol ending = decide(); std::isfinite(ending.evidence.log_likelihood_ratio))
+            out.push_back(ending);
+        return;
+    }
     State next{states_.back().score, states_.back().last_end, std::nullopt};
     if (const auto from = std::max<std::int64_t>(hops_seen_ - symbol_hops_, 0); from >= first_state_) {
         const DecidedSymbol ending = decide();
@@ -86,7 +105,7 @@ bool SymbolSequence::is_same(std::int64_t end, std::int64_t other_end) const {
 }
 
 void SymbolSequence::settle(std::vector<DecidedSymbol>& out) {
-    if (hops_.empty()) return;
+    if (hops_.empty() || grid_) return;
     // Every later path leads through one of the last symbol's worth of states, with the part of a symbol seen since.
     struct Survivor {
         double score;
@@ -97,8 +116,7 @@ void SymbolSequence::settle(std::vector<DecidedSymbol>& out) {
     const std::int64_t oldest_survivor = std::max({hops_seen_ - std::ssize(hops_) + 1, first_state_, came_out_});
     for (std::int64_t hops = hops_seen_; hops >= oldest_survivor; --hops) {
         if (hops < hops_seen_) since.add(hops_[hops_.size() - static_cast<std::size_t>(hops_seen_ - hops)]);
-        const double partial =
-            since.energy < energy_of_use ? 0.0 : weigh(since.sums, since.energy).log_likelihood_ratio - begin_cost();
+        const double partial = since.energy < energy_of_use ? 0.0 : since.weighed().log_likelihood_ratio - begin_cost();
         survivors.push_back({state(hops).score + std::max(partial, 0.0), hops});
     }
     for (;;) {

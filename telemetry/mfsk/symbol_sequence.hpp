@@ -14,11 +14,16 @@ namespace aeolis::telemetry {
 struct HopEvidence {
     std::int64_t first_sample = 0;
     CarrierLock lock = CarrierLock::searching;
-    bool found = false;   ///< false: the following fields are zero
-    double energy = 0.0;  ///< expected energy of a tone in this hop over the noise density, from the carrier
-    ToneSums sums{};      ///< scaled: noise has E|G|² = energy, a tone adds |G| = energy
+    bool found = false;            ///< false: the following fields are zero
+    double energy = 0.0;           ///< expected energy of a tone in this hop over the noise density, from the carrier
+    ToneSums sums{};               ///< scaled: noise has E|G|² = energy, a tone adds |G| = energy
+    ToneSums in_phase{};           ///< the same of the component in phase with the carrier, where a tone adds nothing
+    ToneTilt tilt = level_tilt();  ///< of the noise
     double total_n0_hz = 0.0;
-    double doppler_hz = 0.0;  ///< predicted plus tracked
+    double doppler_hz = 0.0;                                                   ///< predicted plus tracked
+    double frequency_hz = 0.0, frequency_deviation_hz = 0.0, rate_hzps = 0.0;  ///< tracked
+    double lead_s = 0.0;                                                       ///< of the subcarriers' time, by Doppler
+    bool gap = false;                                                          ///< too few samples to tell
 };
 
 /// A decided symbol.
@@ -39,7 +44,7 @@ struct DecidedSymbol {
 /// most likely path, including the symbol now being received, leads every path without that symbol (the same tone, the
 /// same start to a tenth of a symbol) by `decided_lead`; at the latest two symbols after its end. Erased: a symbol
 /// whose best tone has less than `least_likelihood`, or of which less than a quarter was seen. Source: [forney-1973]
-/// for the search over survivors; the early decision is our design.
+/// for the search over survivors; the early decision is our design. With a grid each symbol is decided at its end.
 class SymbolSequence {
   public:
     static constexpr double least_likelihood = 0.9;  ///< chosen, as in the statistical model
@@ -47,7 +52,11 @@ class SymbolSequence {
         0.25;                                     ///< chosen: a smaller part is seen only while the carrier swerves
     static constexpr double decided_lead = 20.0;  ///< e^20 times likelier; chosen
 
-    explicit SymbolSequence(int symbol_hops, std::int64_t hop_samples);
+    /// When symbols begin, if that is known: in hops, which need not be whole.
+    struct Grid {
+        double first_hop = 0.0, symbol_hops = 0.0;
+    };
+    explicit SymbolSequence(int symbol_hops, std::int64_t hop_samples, std::optional<Grid> grid = {});
 
     void push(const HopEvidence& hop, std::vector<DecidedSymbol>& out);
     /// Decides the remaining symbols as if no more signal came.
@@ -61,6 +70,7 @@ class SymbolSequence {
     };
     DecidedSymbol decide() const;
     double begin_cost() const;
+    bool ends_by_grid() const;
     const State& state(std::int64_t hops) const { return states_[static_cast<std::size_t>(hops - first_state_)]; }
     std::int64_t before(std::int64_t end) const { return std::max(end - symbol_hops_, first_state_); }
     /// End of the first undecided symbol on the path to `hops`; −1: none.
@@ -71,6 +81,7 @@ class SymbolSequence {
 
     int symbol_hops_;
     std::int64_t hop_samples_;
+    std::optional<Grid> grid_;
     std::deque<HopEvidence> hops_;  ///< the newest symbol_hops
     std::deque<State> states_;
     std::int64_t first_state_ = 0, hops_seen_ = 0, came_out_ = 0;  ///< came_out_: everything up to here is decided

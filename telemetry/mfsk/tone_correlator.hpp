@@ -25,6 +25,9 @@ class ToneCorrelator {
 
     /// Correlates one hop. `begin_s`: the subcarriers' time at its start; sums of consecutive hops may then be added.
     void correlate(std::span<const float> quadrature, double begin_s, ToneSums& sums) const;
+    /// The same for the component in phase with the carrier as well.
+    void correlate(std::span<const float> quadrature, std::span<const float> in_phase, double begin_s, ToneSums& sums,
+                   ToneSums& in_phase_sums) const;
 
   private:
     struct State;

@@ -14,11 +14,23 @@ struct ToneEvidence {
     double log_likelihood_ratio = 0.0;
 };
 
+/// The density of noise in the upper sideband of each tone over that in the lower.
+using ToneTilt = std::array<float, MfskWaveform::tones>;
+constexpr ToneTilt level_tilt() {
+    ToneTilt tilt{};
+    tilt.fill(1.0F);
+    return tilt;
+}
+
 /// Weighs the tones by the exact non-coherent statistic.
 ///
 /// With `sums` scaled so that noise has E|G|² = `energy` and the tone adds |G| = energy, tone k is likelier than none
 /// by I0(2|G_k|) exp(−energy). `energy`: expected E/N0 of the symbol, from the carrier. Source:
 /// [proakis-digital-communications].
-ToneEvidence weigh(const ToneSums& sums, double energy);
+///
+/// `in_phase`: the same sums of the component in phase with the carrier. A tone has none, and thus two sidebands alike; a
+/// line in the samples has one. So a tone is weighed, beside noise, against a line of any strength at either sideband.
+/// `tilt`: a filter's, by which the sidebands differ.
+ToneEvidence weigh(const ToneSums& sums, const ToneSums& in_phase, const ToneTilt& tilt, double energy);
 
 }  // namespace aeolis::telemetry

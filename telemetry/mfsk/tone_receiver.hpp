@@ -3,11 +3,17 @@
 
 #include "common/result.hpp"
 #include "common/time_table.hpp"
+#include "telemetry/mfsk/carrier_report.hpp"
 #include "telemetry/mfsk/carrier_search.hpp"
+#include "telemetry/mfsk/doppler_remover.hpp"
+#include "telemetry/mfsk/sample_conditioner.hpp"
 #include "telemetry/mfsk/symbol_sequence.hpp"
 
+#include <array>
 #include <complex>
 #include <cstdint>
+#include <deque>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -30,68 +36,145 @@ struct ReceiverStatus {
     CarrierLock lock = CarrierLock::searching;
     double total_c_n0_dbhz = 0.0, doppler_hz = 0.0;
     double carrier_s = 0.0, without_s = 0.0;  ///< present times with and without a carrier
+    double gap_s = 0.0;                       ///< of those, without usable samples
     int acquisitions = 0;
     double loudest = 0.0;  ///< largest power of a sample
+    int contradicted = 0;  ///< tones erased, as others lie between the tones' frequencies: a wrong rate
+    std::optional<double> clock_error_ppm;  ///< of the samples' clock, from the tones' frequencies; none: not yet known
+};
+
+/// What a receiver is told of its samples.
+struct ReceiverInput {
+    TimeTable predict_hz;                  ///< Doppler removed before sampling
+    double start_s = 0.0;                  ///< the first sample's time on the predict's scale
+    TimeTable expected_hz;                 ///< Doppler still in the samples, as of a fixed oscillator: removed here
+    std::vector<double> excluded_hz;       ///< lines in the samples that are left out; 0 is a DC block
+    std::optional<double> symbols_from_s;  ///< symbols begin then, and directly after each other; none: at any time
 };
 
 /// Ground's receiver of X-band tones: complex samples in, decisions out.
 ///
-/// In      blocks of samples of any length, at a fixed rate; the predict that was removed before sampling
-/// Out     one reception a symbol by take(), 1 to 20 s after the symbol's end
-/// Memory  4 s of samples in search, 5 s in tracking, the sums of a few symbols
-/// Faults  silence, noise and values that are not numbers give no reception; a pulse far above the rest is blanked; a
-///         lost carrier is searched for again
+/// In       blocks of samples of any length, at a fixed rate; the predict that was removed before sampling
+/// Out      one reception a symbol by take(), 1 to 20 s after the symbol's end
+/// Carriers three are followed at a time at most. Of those the one with tones is the vehicle's: another takes its place
+///          when it is lost, or when the other shows a tone and it has shown none for two symbols
+/// Noise    of tones: what is in phase with the carrier at their frequencies, the median over their neighbours
+/// Clock    an error of the samples' clock to 600 ppm shifts the tones. It is found when tones agree on it, and those
+///          of the last 45 s are then decided. Where most of them contradict the clock, tones are erased
+/// Memory   6 s of samples, and the sums of 45 s
+/// Faults   silence, noise, gaps and values that are not numbers give no reception; a pulse far above the rest is
+///          blanked; a lost carrier is searched for again
 class ToneReceiver {
   public:
     static constexpr double rate_least_hz = 3000.0, rate_greatest_hz = 1.0e6;  ///< chosen
 
-    /// Fails for a rate out of range or too low for the tones. `start_s`: the first sample's time on the scale of
-    /// `predict_hz`.
-    static Result<ToneReceiver> make(const MfskWaveform& waveform, double rate_hz, TimeTable predict_hz = {},
-                                     double start_s = 0.0);
+    /// Fails for a rate out of range or too low for the tones.
+    static Result<ToneReceiver> make(const MfskWaveform& waveform, double rate_hz, ReceiverInput input = {});
 
     void push(std::span<const std::complex<float>> samples);
     /// Decides everything that still waits, as if no more samples came.
     void finish();
     /// Receptions since the last call, in the order of time.
     std::vector<ToneReception> take();
+    /// The carrier since the last call, hop by hop.
+    std::vector<CarrierReport> take_carrier();
 
     const ReceiverStatus& status() const { return status_; }
 
   private:
-    ToneReceiver(const MfskWaveform& waveform, double rate_hz, TimeTable predict_hz, double start_s);
+    /// A carrier that is followed, and what it brought.
+    struct Track {
+        Track(const HopLayout& layout, SymbolSequence symbols);
+        CarrierTracker tracker;
+        std::int64_t first_hop = 0, next_hop = 0;  ///< numbers of hops
+        std::deque<HopEvidence> hops;              ///< that have not gone on, from first_hop
+        SymbolSequence own;                        ///< on probation
+        std::vector<DecidedSymbol> shown;
+        std::int64_t began_hop = 0;
+        double frequency_hz = 0.0, rate_hzps = 0.0, carrier_n0_hz = 0.0;
+        std::int64_t frequency_hop = 0;
+        double lead_s = 0.0;
+        double noise_ratio = 1.0;                       ///< of the density beside the carrier to the hops' own
+        std::array<float, MfskWaveform::tones> noise;   ///< of each tone, running means
+        std::array<float, MfskWaveform::tones> smooth;  ///< medians over the neighbours
+        std::vector<float> spectrum;                    ///< around the carrier, running means
+        ToneTilt tilt;
+        int noise_hops = 0;
+        bool ended = false;
+    };
 
-    bool is_pulse(const std::complex<float>& sample);
-    std::span<const std::complex<float>> kept() const { return std::span{samples_}.subspan(head_); }
-    void drop(std::size_t count);
-    void work();
-    bool search();
-    bool track();
-    void pass_without_carrier();  ///< drops the first kept hop
-    void weigh_hops();
-    void publish();
+    ToneReceiver(const MfskWaveform& waveform, double rate_hz, ReceiverInput input);
+
+    SymbolSequence new_sequence(std::int64_t first_hop) const;
+    void take_in(std::size_t from);
+    double removed_hz(double time_s) const { return input_.predict_hz.at(time_s) + input_.expected_hz.at(time_s); }
+    void work(bool last);
+    void consider(const CarrierFound& found);
+    bool is_known(double frequency_hz, std::int64_t hop, double n0_hz) const;
+    void follow(Track& track);
+    HopEvidence evidence_of(Track& track, const CarrierHop& hop);
+    void learn_noise(Track& track, const CarrierHop& hop, const ToneSums& in_phase);
+    void judge();
+    void feed(bool last);
+    void pass(HopEvidence hop);
+    bool passes_main(bool last);
+    bool passes_without_main(bool last);
+    void learn_clock(const HopEvidence& hop);
+    void judge_clock();
+    void set_clock(double error);
+    bool clock_contradicts() const;
+    void refine_clock(const DecidedSymbol& symbol);
+    void turn(HopEvidence& hop, double lead_s) const;
+    void publish(std::vector<DecidedSymbol>& decided);
+    void publish_held(bool all);
+    void come_out(const DecidedSymbol& symbol, bool contradicted);
+    Track* main() { return main_ ? &tracks_[*main_] : nullptr; }
+    void drop(std::size_t track);
+    bool shows_tones() const;
 
     MfskWaveform waveform_;
     HopLayout layout_;
-    TimeTable predict_hz_;
-    double start_s_;
+    ReceiverInput input_;
+    SampleConditioner conditioner_;
+    std::optional<DopplerRemover> remover_;
     CarrierSearch carrier_search_;
-    CarrierTracker tracker_;
     ToneCorrelator correlator_;
+    int symbol_hops_;
     SymbolSequence sequence_;
 
-    std::vector<std::complex<float>> samples_;  ///< from head_: not yet tracked
-    std::size_t head_ = 0;
-    std::int64_t first_kept_ = 0;                   ///< number of the sample at head_
-    std::int64_t search_began_ = 0, searched_ = 0;  ///< numbers of samples
-    bool tracking_ = false;
+    std::vector<std::complex<float>> samples_;  ///< the last seconds
+    std::int64_t first_kept_ = 0;               ///< number of the first of them
+    std::vector<CarrierFound> found_;
+    std::vector<Track> tracks_;
+    std::optional<std::size_t> main_;  ///< of tracks_
+    std::int64_t fed_ = 0;             ///< hops given to the sequence
+    std::int64_t last_tone_hop_ = -1;  ///< the end of the newest tone
+    std::int64_t no_earlier_sample_ = std::numeric_limits<std::int64_t>::min();
+    struct Silent {
+        double frequency_hz;
+        std::int64_t until_hop;
+    };
+    std::vector<Silent> silent_;  ///< carriers without tones, not followed for a while
 
-    std::vector<CarrierHop> hops_;
+    double lead_s_ = 0.0, lead_rate_ = 0.0;  ///< of the subcarriers' time at the hop fed_, by Doppler
+    double clock_lead_s_ = 0.0;              ///< the same by the clock's error
+    std::deque<HopEvidence> recent_;         ///< given to the sequence, for a clock that is found late
+    std::int64_t received_ = 0;              ///< hops received
+    struct Clock {
+        std::vector<ToneSums> sums, turns, steps;  ///< by hypothesis
+        double energy = 0.0;
+        int hops = 0;
+        double error = 0.0, weight = 0.0;
+        struct Look {
+            std::uint8_t tone;
+            double error;
+        };
+        std::deque<Look> looks;  ///< the newest that showed a tone
+    } clock_;
     std::vector<DecidedSymbol> decided_;
+    std::deque<DecidedSymbol> held_;  ///< that contradict the clock, which may yet turn out to be wrong
     std::vector<ToneReception> receptions_;
-    double mean_power_ = 0.0;  ///< recent mean of the samples; 0: none yet
-    double lead_s_ = 0.0;      ///< of the subcarriers' time, by Doppler
-    double carrier_n0_hz_ = 0.0;
+    std::vector<CarrierReport> reports_;
     ReceiverStatus status_;
 };
 

@@ -20,7 +20,7 @@ void ToneStation::receive(const Downlink& downlink, Received& out) {
     for (const XBandSamples& piece : downlink.x_band) {
         if (!receiver_) {
             const double start_s = static_cast<double>(piece.ert.microseconds - entry_.microseconds) * 1.0e-6;
-            auto made = ToneReceiver::make(waveform_, x_band_rate_hz, predict_hz_, start_s);
+            auto made = ToneReceiver::make(waveform_, x_band_rate_hz, {predict_hz_, start_s, {}, {}, {}});
             AEOLIS_CHECK(made.ok());
             receiver_.emplace(std::move(*made));
         }
@@ -37,6 +37,7 @@ void ToneStation::receive(const Downlink& downlink, Received& out) {
 void ToneStation::push(Received& out) {
     receiver_->push(samples_);
     samples_.clear();
+    receiver_->take_carrier();  // goes nowhere yet
     if (ended_) receiver_->finish();
     for (const ToneReception& reception : receiver_->take()) out.tones.push_back(told(reception));
 }

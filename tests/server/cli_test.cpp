@@ -931,6 +931,46 @@ TEST_CASE("a landing's samples and their predict are made together, and decode r
     std::filesystem::remove_all(directory);
 }
 
+TEST_CASE("a fixed oscillator's Doppler is removed from SigMF samples, and options that contradict a file are told",
+          "[cli][tones][R56]") {
+    if (program() == nullptr) return;
+    const aeolis::test::TemporaryFolder folder;
+    std::ofstream{folder / "tones.csv"} << "start_s,tone\n3,17\n13,200\n23,99\n";
+    std::ofstream{folder / "doppler.csv"} << "time_s,doppler_hz\n0,-5000\n20,4000\n40,6000\n";
+    const auto path = [&](const char* name) { return " '" + (folder / name).string() + "'"; };
+    const auto made = run(program(), "tones simulate --tones" + path("tones.csv") + " --doppler" + path("doppler.csv") +
+                                         " --c-n0 24 --length 40 --format ci16_be --out" + path("s.sigmf-meta"));
+    INFO(made.text);
+    REQUIRE(made.code == 0);
+    const std::string decode = "tones decode --samples" + path("s.sigmf-data");
+    const auto found =
+        run(program(), decode + " --expected" + path("doppler.csv") + " --carrier" + path("carrier.csv"));
+    INFO(found.text);
+    CHECK(found.code == 0);
+    for (const char* tone : {"tone 17 ", "tone 200 ", "tone 99 "}) CHECK_THAT(found.text, Catch::Contains(tone));
+    CHECK_THAT(found.text, Catch::Contains("SigMF, ci16_be at 16384 Hz"));
+    std::ifstream carrier{folder / "carrier.csv"};
+    std::string line;
+    int rows = 0;
+    while (std::getline(carrier, line)) ++rows;
+    CHECK(rows > 300);
+
+    const auto other = run(program(), decode + " --rate 8192 --format cf32 --expected" + path("doppler.csv"));
+    CHECK(other.code == 1);
+    CHECK_THAT(other.text, Catch::Contains("as --rate says") && Catch::Contains("as --format says") &&
+                               Catch::Contains("tone 200 "));
+    // In-phase and quadrature exchanged, the carrier moves against the Doppler.
+    std::ofstream{folder / "against.csv"} << "time_s,doppler_hz\n0,5000\n20,-4000\n40,-6000\n";
+    const auto exchanged = run(program(), decode + " --expected" + path("against.csv"));
+    CHECK(exchanged.code == 1);
+    CHECK_THAT(exchanged.text, Catch::Contains("in-phase and quadrature are exchanged"));
+    const auto still = run(program(), decode + " --predict" + path("doppler.csv"));
+    CHECK(still.code == 1);
+    CHECK_THAT(still.text, Catch::Contains("give it by --expected"));
+    std::ofstream{folder / "raw.cf32"} << std::string(80000, 'x');
+    CHECK_THAT(run(program(), "tones decode --samples" + path("raw.cf32")).text, Catch::Contains("give --format"));
+}
+
 TEST_CASE("the program writes the command file that changes parameters, with the CRC that flight wants",
           "[cli][parameters][R25][R48]") {
     if (program() == nullptr) return;

@@ -26,7 +26,7 @@ TEST_CASE("samples are read back as they were written, in both formats", "[tones
     std::vector<std::complex<float>> samples;
     for (int i = 0; i < 1000; ++i) samples.emplace_back(0.01F * static_cast<float>(i), -0.5F);
     for (const auto& [name, format, scale] :
-         {std::tuple{"cf32", SampleFormat::cf32, 1.0F}, std::tuple{"ci16", SampleFormat::ci16, 2828.4F}}) {
+         {std::tuple{"cf32", SampleFormat::cf32, 1.0F}, std::tuple{"ci16", SampleFormat::ci16, 2896.3F}}) {
         const auto file = scratch(name);
         auto writer = SampleWriter::open(file, format);
         REQUIRE(writer);
@@ -61,7 +61,7 @@ TEST_CASE(
     std::vector<std::complex<float>> room(10);
     CHECK(reader->next(room)->size() == 2);
     CHECK(reader->next(room)->empty());
-    CHECK(sample_format("wav").error().message == "there is no sample format 'wav': cf32 or ci16");
+    CHECK(sample_format("wav").error().message.starts_with("there is no sample format 'wav': cf32, "));
     CHECK_FALSE(SampleWriter::open("/no/such/folder/file", SampleFormat::cf32));
     std::filesystem::remove(empty);
     std::filesystem::remove(cut);

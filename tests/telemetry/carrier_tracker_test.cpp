@@ -8,7 +8,6 @@ namespace telemetry_carrier_tracker_test {
 
 using namespace aeolis;
 using namespace aeolis::telemetry;
-using aeolis::tests::mfsk;
 using aeolis::tests::samples_of;
 using aeolis::tests::table;
 
@@ -17,7 +16,7 @@ namespace {
 std::vector<CarrierHop> tracked(const simulation::XBandPath& path, double length_s, double from_hz,
                                 double from_hzps = 0.0) {
     const HopLayout layout{path.rate_hz};
-    CarrierTracker tracker{layout, mfsk.carrier_fraction()};
+    CarrierTracker tracker{layout};
     tracker.start(0, from_hz, from_hzps);
     const auto samples = samples_of(path, {}, length_s);
     std::vector<CarrierHop> hops;

@@ -22,7 +22,7 @@ namespace {
 constexpr double rate_hz = 8192.0;
 
 ToneReceiver receiver(double hz = rate_hz, TimeTable predict = {}, double start_s = 0.0) {
-    auto made = ToneReceiver::make(mfsk, hz, std::move(predict), start_s);
+    auto made = ToneReceiver::make(mfsk, hz, {std::move(predict), start_s, {}, {}, {}});
     REQUIRE(made);
     return std::move(*made);
 }

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "telemetry/mfsk/tone_receiver.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/impaired_signal.hpp"
+
+#include <algorithm>
+#include <array>
+#include <numbers>
+#include <ostream>
+
+// The receiver among what real samples suffer: filters, spurs, gaps, steps of gain, clocks, swings.
+namespace telemetry_impaired_tones_test {
+
+using namespace aeolis;
+using namespace aeolis::telemetry;
+using namespace aeolis::tests::impaired;
+
+namespace {
+
+constexpr MfskWaveform mfsk{8.4e9, 300.0, 1.0, 10.0, 32.0 * std::numbers::pi / 180.0};
+
+/// What was counted over some signals.
+struct Count {
+    int sent = 0, right = 0, wrong = 0, invented = 0;
+    double blind_s = 0.0;   ///< the longest, once there was a carrier
+    double locked_s = 0.0;  ///< the latest first lock
+    double heard_s = 0.0;
+    /// Of best tones by their likelihood, 0.9 to 0.99, to 0.999, above: how many, how many right, and the sum promised.
+    struct Promise {
+        int said = 0, right = 0;
+        double promised = 0.0;
+    };
+    std::array<Promise, 3> promises;
+    ReceiverStatus status;
+
+    void add(const Count& other) {
+        sent += other.sent;
+        right += other.right;
+        wrong += other.wrong;
+        invented += other.invented;
+        blind_s = std::max(blind_s, other.blind_s);
+        locked_s = std::max(locked_s, other.locked_s);
+        heard_s += other.heard_s;
+        for (std::size_t i = 0; i < promises.size(); ++i) {
+            promises[i].said += other.promises[i].said;
+            promises[i].right += other.promises[i].right;
+            promises[i].promised += other.promises[i].promised;
+        }
+    }
+};
+
+Count counted(const Signal& signal, const Samples& samples, std::vector<double> excluded_hz = {}) {
+    auto made = ToneReceiver::make(mfsk, signal.rate_hz, {{}, 0.0, {}, std::move(excluded_hz), {}});
+    REQUIRE(made);
+    for (std::size_t at = 0; at < samples.size(); at += 8192)
+        made->push(std::span{samples}.subspan(at, std::min<std::size_t>(8192, samples.size() - at)));
+    made->finish();
+
+    Count count;
+    count.sent = static_cast<int>(signal.tones.size());
+    count.heard_s = signal.length_s;
+    std::vector<bool> heard(signal.tones.size());
+    for (const ToneReception& each : made->take()) {
+        double apart_s = 1e9;
+        std::size_t nearest = 0;
+        for (std::size_t i = 0; i < signal.tones.size(); ++i) {
+            const double stated_s = signal.tones[i].start_s * (1.0 + signal.clock_error);
+            if (std::abs(each.start_s - stated_s) >= apart_s) continue;
+            apart_s = std::abs(each.start_s - stated_s);
+            nearest = i;
+        }
+        const bool was_sent = apart_s < 5.0,
+                   is_right = was_sent && signal.tones[nearest].tone == each.evidence.best[0].tone;
+        if (each.tone) {
+            const double likelihood = each.evidence.best[0].likelihood;
+            auto& promise = count.promises[likelihood < 0.99 ? 0 : likelihood < 0.999 ? 1 : 2];
+            ++promise.said;
+            promise.right += is_right ? 1 : 0;
+            promise.promised += likelihood;
+            count.wrong += was_sent && !is_right ? 1 : 0;
+            count.invented += was_sent ? 0 : 1;
+            if (is_right && !heard[nearest]) {
+                heard[nearest] = true;
+                ++count.right;
+            }
+        }
+    }
+    double blind_s = 0.0;
+    bool found = false;
+    for (const CarrierReport& report : made->take_carrier()) {
+        const bool locked = report.lock <= CarrierLock::fluctuating;
+        if (locked && !found) count.locked_s = report.time_s;
+        found = found || locked;
+        blind_s = locked ? 0.0 : blind_s + 0.125;
+        if (found) count.blind_s = std::max(count.blind_s, blind_s);
+    }
+    count.status = made->status();
+    return count;
+}
+
+Count run(const Case& one, double length_s, std::uint64_t seed, bool is_noise_only = false) {
+    Signal signal;
+    signal.length_s = length_s;
+    signal.seed = seed;
+    signal.tones = tones_until(length_s, seed);
+    one.sent(signal);
+    Signal nothing = signal;
+    nothing.c_n0_dbhz = -60.0;
+    nothing.tones.clear();
+    Samples samples = transmitted(is_noise_only ? nothing : signal);
+    one.spoiled(samples, signal);
+    return counted(is_noise_only ? nothing : signal, samples);
+}
+
+std::ostream& operator<<(std::ostream& stream, const Count& count) {
+    return stream << count.right << " right of " << count.sent << ", " << count.wrong << " wrong, " << count.invented
+                  << " invented; locked after " << count.locked_s << " s, blind for " << count.blind_s << " s";
+}
+
+}  // namespace
+
+TEST_CASE("no kind of spoiled samples gives a wrong tone or one that was not sent, and tones are heard on",
+          "[tones][R56]") {
+    for (const Case& one : cases()) {
+        if (!one.is_short) continue;
+        const Count count = run(one, 40.0, 11);
+        INFO(one.kind << ", " << one.level << ": " << count);
+        CHECK(count.wrong == 0);
+        CHECK(count.invented == 0);
+        CHECK(count.right >= static_cast<int>(std::floor(one.usable * count.sent - 0.5)));
+    }
+}
+
+TEST_CASE("noise through filters, with spurs, steps and bursts holds no tone", "[tones][R56]") {
+    for (const Case& one : cases()) {
+        if (!one.is_short || (one.kind != "narrow passband" && one.kind != "slope" && one.kind != "bursts of noise" &&
+                              one.kind != "passband aside" && one.kind != "gain steps"))
+            continue;
+        const Count count = run(one, 60.0, 12, true);
+        INFO(one.kind << ", " << one.level << ": " << count);
+        CHECK(count.invented == 0);
+    }
+}
+
+TEST_CASE("an error of the samples' clock is estimated within 20 ppm, and tones are decoded in spite of it",
+          "[tones][R56]") {
+    for (const double ppm : {500.0, -350.0, 120.0}) {
+        Signal signal;
+        signal.clock_error = 1e-6 * ppm;
+        signal.tones = tones_until(60.0, 21);
+        signal.seed = 21;
+        const Count count = counted(signal, transmitted(signal));
+        INFO(ppm << ": " << count);
+        CHECK(count.right == count.sent);
+        REQUIRE(count.status.clock_error_ppm);
+        CHECK(*count.status.clock_error_ppm == Approx(ppm).margin(20.0));
+    }
+}
+
+TEST_CASE("a line forty decibels above the signal in the midst of its tones is left out on demand", "[tones][R56]") {
+    Signal signal;
+    signal.tones = tones_until(50.0, 31);
+    signal.length_s = 50.0;
+    Samples samples = transmitted(signal);
+    add_line(samples, signal.rate_hz, signal.c_n0_dbhz, 40.0, [](double) { return 0.0; });
+    const Count count = counted(signal, samples, {0.0});
+    INFO(count);
+    CHECK(count.right == count.sent);
+    CHECK(count.wrong + count.invented == 0);
+    CHECK_FALSE(ToneReceiver::make(mfsk, 8192.0, {{}, 0.0, {}, {5000.0}, {}}));
+}
+
+TEST_CASE("over all kinds and levels of spoiled samples no tone is wrong, and likelihoods promise what they keep",
+          "[.long][tones][R56]") {
+    Count all;
+    for (const Case& one : cases()) {
+        Count count;
+        for (std::uint64_t seed = 1; seed <= 6; ++seed) count.add(run(one, 80.0, 100 * seed + 3));
+        INFO(one.kind << ", " << one.level << ": " << count);
+        CHECK(count.invented == 0);
+        if (one.kind != "rate wrong") CHECK(count.wrong == 0);
+        CHECK(count.right >= static_cast<int>(std::floor(one.usable * count.sent - 0.5)));
+        CHECK(count.blind_s <= 10.0);
+        if (one.kind != "rate wrong") all.add(count);
+    }
+    for (const double c_n0_dbhz : {7.0, 8.0, 9.0, 10.0}) {  // where likelihoods are not all near 1
+        Signal signal;
+        signal.length_s = 2000.0;
+        signal.tones = tones_until(signal.length_s, 41);
+        signal.c_n0_dbhz = 22.0;
+        signal.gain_db = [=](double t) { return (c_n0_dbhz - 22.0) * std::clamp((t - 20.0) / 20.0, 0.0, 1.0); };
+        all.add(counted(signal, transmitted(signal)));
+    }
+    for (const Count::Promise& promise : all.promises) {
+        const double expected = promise.promised, deviation = std::sqrt(std::max(promise.said - expected, 0.25));
+        INFO(promise.right << " right of " << promise.said << ", " << expected << " promised");
+        CHECK(promise.right >= expected - 3.0 * deviation - 1.0);
+    }
+}
+
+TEST_CASE("forty hours of noise of all kinds hold at most one invented tone an hour", "[.long][tones][R56]") {
+    Count all;
+    const auto kinds = cases();
+    for (std::uint64_t seed = 1; all.heard_s < 40.0 * 3600.0; ++seed)
+        for (const Case& one : kinds) all.add(run(one, 300.0, seed, true));
+    INFO(all);
+    // The upper 95 % bound of a Poisson mean: 3.0 for none, 4.7 for one; to twenty it stays below 30.
+    CHECK(all.invented <= 25);
+}
+
+}  // namespace telemetry_impaired_tones_test
