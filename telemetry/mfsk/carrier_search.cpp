@@ -24,6 +24,7 @@ constexpr double rate_max_hzps = 1200.0;  // our assumption: the largest residua
 constexpr int noise_bins = 24;            // 600 Hz to either side; chosen
 constexpr int noise_gap = 4;              // between a bin and its noise; chosen
 constexpr int noise_step = 4;             // chosen: from each median to the next
+constexpr float uneven = 1.3F;            // of one estimate of the noise to another: chosen
 constexpr int hump_gap = 3;               // of a bin from the noise of a narrow hump; chosen
 constexpr int hump_bins = 6;              // to either side; chosen
 constexpr double kept_rate_hz = 200e3;    // to this rate powers are kept though nobody looks; chosen, for the effort
@@ -157,8 +158,12 @@ struct CarrierSearch::State {
                 near.push_back(mean[(i - k + bins) % bins]);
             }
             std::ranges::nth_element(near, near.begin() + hump_bins);
-            noise[guard + i] = std::max(
-                {medians[static_cast<std::size_t>(before)], medians[static_cast<std::size_t>(after)], near[hump_bins]});
+            const float left = medians[static_cast<std::size_t>(before)];
+            const float right = medians[static_cast<std::size_t>(after)];
+            const float most = std::max(left, right);
+            // In even noise the greatest of several estimates would be above it.
+            const float beside = most < uneven * std::min(left, right) ? 0.5F * (left + right) : most;
+            noise[guard + i] = near[hump_bins] > uneven * beside ? near[hump_bins] : beside;
         }
         // A band without noise, cut off by a filter, hides nothing: it counts as 40 dB below the strongest.
         const float least = 1e-4F * noise.segment(guard, bins).maxCoeff();
