@@ -97,7 +97,8 @@ Result<v1::ChannelSeries> text_series(Reader::State& reader, const RunInfo& run,
                                       const ClosedRange& range, const SeriesQuery& query, v1::ChannelSeries series) {
     const auto samples = text_samples(reader, run, channel.id, range, query.source);
     if (!samples) return samples.error();
-    series.set_samples(samples->size());
+    series.set_samples(static_cast<std::uint64_t>(
+        std::ranges::count_if(*samples, [](const ChannelValue& sample) { return sample.text.has_value(); })));
     const std::size_t left_out = query.points && samples->size() > *query.points ? samples->size() - *query.points : 0;
     series.set_thinned(left_out > 0);
     for (const ChannelValue& sample : std::span{*samples}.subspan(left_out)) write(sample, series);
@@ -128,7 +129,8 @@ Result<v1::ChannelSeries> one_series(Reader::State& reader, const RunInfo& run, 
     if (auto fits = check_exact(count, channel); !fits) return fits.error();
     const auto samples = exact_samples(reader, *sources);
     if (!samples) return samples.error();
-    series.set_samples(samples->size());
+    series.set_samples(static_cast<std::uint64_t>(
+        std::ranges::count_if(*samples, [](const Sample& sample) { return !std::isnan(sample.value); })));
     write(series, *samples);
     return series;
 }
@@ -243,10 +245,11 @@ class Thinning {
         : range_(range), intervals_(points ? *points / 2 : 0) {}
 
     Result<void> add(const Sample& sample) {
-        if (intervals_ > 0 && std::isnan(sample.value)) return {};
-        ++count_;
+        const bool defined = !std::isnan(sample.value);
+        if (defined) ++count_;
+        if (intervals_ > 0 && !defined) return {};
         if (intervals_ == 0) {
-            if (count_ > exact_samples_max)
+            if (all_.size() >= exact_samples_max)
                 return Error{"the range holds more than " + std::to_string(exact_samples_max) +
                              " values: ask for points, or less"};
             all_.push_back(sample);

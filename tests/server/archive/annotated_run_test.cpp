@@ -6,6 +6,7 @@
 #include "tests/support/catch.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <atomic>
 
@@ -380,7 +381,9 @@ TEST_CASE("a formula gives exact values at its first channel's times, and thinne
     CHECK(*std::ranges::min_element(thin->value()) == 0.5);
     CHECK(std::ranges::is_sorted(thin->sclk()));
     CHECK(reader.derived(first_run, "speed_mps + moon", {}, {}).error().message == "no channel 'moon'");
-    CHECK(reader.derived(first_run, "sqrt(-speed_mps-1)", {}, {})->sclk_size() == 0);
+    const auto undefined = reader.derived(first_run, "sqrt(-speed_mps-1)", {}, {});
+    CHECK(undefined->samples() == 0);
+    CHECK(std::ranges::all_of(undefined->value(), [](double value) { return std::isnan(value); }));
 }
 
 TEST_CASE("a question ends soon after it shall stop, says so, and the next one is answered", "[reader][bounds]") {
