@@ -363,6 +363,11 @@ function Packet({ packet }: { packet: PacketRow }) {
           close <kbd>Esc</kbd>
         </button>
       </p>
+      {packet.problem !== '' && packet.unit?.name.startsWith('not decoded') !== true && (
+        <p class="status-caution" data-testid="packet-problem">
+          not decoded to its end: {packet.problem}
+        </p>
+      )}
       <Contents packet={packet} />
     </div>
   );
