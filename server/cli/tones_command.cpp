@@ -123,10 +123,10 @@ Result<Sending> sending_of_files(const TonesSimulateOptions& options, const dict
 }
 
 /// A recording with its rate and format, from the file or, where it says nothing, from the options.
-Result<Recording> recording_of(const TonesDecodeOptions& options) {
+Result<SampleRecording> recording_of(const TonesDecodeOptions& options) {
     auto looked = look_at_recording(options.samples);
     if (!looked) return looked;
-    Recording& recording = *looked;
+    SampleRecording& recording = *looked;
     if (options.format) {
         const auto format = sample_format(*options.format);
         if (!format) return format.error();

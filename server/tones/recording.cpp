@@ -51,7 +51,7 @@ Result<std::uint64_t> count_in(const std::filesystem::path& file, const Struct& 
     return static_cast<std::uint64_t>(told);
 }
 
-Result<Recording> look_at_sigmf(const std::filesystem::path& meta, std::filesystem::path data) {
+Result<SampleRecording> look_at_sigmf(const std::filesystem::path& meta, std::filesystem::path data) {
     std::error_code ignored;
     const std::uint64_t size = std::filesystem::file_size(meta, ignored);
     std::ifstream stream{meta, std::ios::binary};
@@ -65,7 +65,7 @@ Result<Recording> look_at_sigmf(const std::filesystem::path& meta, std::filesyst
         return error_of(meta, "is not SigMF metadata: there is no 'global'");
     const Struct& global = global_value->struct_value();
 
-    Recording recording;
+    SampleRecording recording;
     recording.kind = "SigMF";
     if (const std::string dataset = text(global, "core:dataset"); !dataset.empty()) {
         if (std::filesystem::path{dataset}.filename() != std::filesystem::path{dataset})
@@ -129,10 +129,10 @@ std::uint32_t little(const char* octets, int count) {
 }
 
 /// @param stream  behind the RIFF header
-Result<Recording> look_at_wav(const std::filesystem::path& file, std::ifstream& stream, bool is_rf64) {
+Result<SampleRecording> look_at_wav(const std::filesystem::path& file, std::ifstream& stream, bool is_rf64) {
     std::error_code ignored;
     const std::uint64_t size = std::filesystem::file_size(file, ignored);
-    Recording recording;
+    SampleRecording recording;
     recording.samples = file;
     recording.kind = is_rf64 ? "WAV (RF64)" : "WAV";
     std::optional<std::uint64_t> long_octets;
@@ -223,7 +223,7 @@ constexpr std::array known_files{Known{"fLaC", "FLAC audio"},
 
 }  // namespace
 
-Result<Recording> look_at_recording(const std::filesystem::path& file) {
+Result<SampleRecording> look_at_recording(const std::filesystem::path& file) {
     std::error_code ignored;
     if (std::filesystem::is_directory(file, ignored)) return error_of(file, "is a folder");
     std::filesystem::path meta = file, data = file;
@@ -247,7 +247,7 @@ Result<Recording> look_at_recording(const std::filesystem::path& file) {
     if (head.size() >= 262 && head.substr(257, 5) == "ustar") return error_of(file, "is a tar archive; unpack it");
     if (head.find("core:datatype") != std::string::npos)
         return error_of(file, "is SigMF metadata; name it .sigmf-meta");
-    Recording recording;
+    SampleRecording recording;
     recording.samples = file;
     return recording;
 }

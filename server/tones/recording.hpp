@@ -12,7 +12,7 @@
 namespace aeolis::server {
 
 /// Where a recording's samples are, and what its file says of them.
-struct Recording {
+struct SampleRecording {
     std::filesystem::path samples;        ///< the file that has them
     std::uint64_t first_octet = 0;        ///< of the first sample
     std::optional<std::uint64_t> octets;  ///< of all samples; none: to the end of the file
@@ -28,7 +28,7 @@ struct Recording {
 ///
 /// Fails in one line for what has no complex samples: mono audio, real samples, other kinds of files that are known by
 /// their first octets, metadata that cannot be read. Sources: [sigmf], [wave], [rf64].
-Result<Recording> look_at_recording(const std::filesystem::path& file);
+Result<SampleRecording> look_at_recording(const std::filesystem::path& file);
 
 /// The metadata of a SigMF recording.
 std::string sigmf_meta(const SampleFormat& format, double rate_hz, double frequency_hz, const std::string& description);

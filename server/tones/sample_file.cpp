@@ -17,13 +17,13 @@ constexpr double noise_of_range = 1.0 / 16.0;  // chosen: integers clip at 16 de
 }  // namespace
 
 Result<SampleReader> SampleReader::open(const std::filesystem::path& file, SampleFormat format) {
-    Recording recording;
+    SampleRecording recording;
     recording.samples = file;
     recording.format = format;
     return open(recording);
 }
 
-Result<SampleReader> SampleReader::open(const Recording& recording) {
+Result<SampleReader> SampleReader::open(const SampleRecording& recording) {
     const std::filesystem::path& file = recording.samples;
     SampleReader reader{file, recording.format.value()};
     std::error_code error;

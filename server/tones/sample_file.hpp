@@ -20,7 +20,7 @@ class SampleReader {
     /// Opens a file. Fails when it does not exist, cannot be read, or is empty.
     static Result<SampleReader> open(const std::filesystem::path& file, SampleFormat format);
     /// Opens the samples of a recording. Its format must be known.
-    static Result<SampleReader> open(const Recording& recording);
+    static Result<SampleReader> open(const SampleRecording& recording);
 
     /// Reads the next samples, at most room.size(); empty at the end.
     Result<std::span<const std::complex<float>>> next(std::span<std::complex<float>> room);
