@@ -256,12 +256,10 @@ std::optional<FrameReceiver::Received> FrameReceiver::next() {
         window_.use(unit_octets());
         count_good();
         if (stream_.virtual_channel && frame->virtual_channel != *stream_.virtual_channel) continue;
-        Channel& channel = channels_.at(channel_number(*frame), [&](const Channel& forgotten) {
-            counters_ += forgotten.counters;
-            ++counters_.forgotten_channels;
-        });
-        const auto placed = channel.order.place(frame->count, frame->count_modulus,
-                                                std::span{block_}.first(stream_.frame_octets), channel.counters);
+        const ChannelNumber channel = channel_number(*frame);
+        FrameOrder& order = orders_.at(channel, [&](const FrameOrder&) { ++counters_.forgotten_channels; });
+        const auto placed = order.place(frame->count, frame->count_modulus,
+                                        std::span{block_}.first(stream_.frame_octets), sequences_.of(channel));
         if (placed.place != FramePlace::repeated) return Received{*frame, placed.place};
     }
     return std::nullopt;
@@ -269,17 +267,18 @@ std::optional<FrameReceiver::Received> FrameReceiver::next() {
 
 LinkCounters FrameReceiver::counters() const {
     LinkCounters sum = counters_;
-    channels_.each([&](ChannelNumber, const Channel& channel) { sum += channel.counters; });
+    for (const auto& [channel, counted] : sequences_.rows()) sum += counted;
+    sum += sequences_.others();
     return sum;
 }
 
 std::vector<SequenceTotals> FrameReceiver::sequences() const {
     std::vector<SequenceTotals> totals;
-    channels_.each([&](ChannelNumber channel, const Channel& counted) {
+    for (const auto& [channel, counted] : sequences_.rows())
         totals.push_back({"spacecraft " + std::to_string(channel / virtual_channels_max) + ", virtual channel " +
                               std::to_string(channel % virtual_channels_max),
-                          false, counted.counters});
-    });
+                          false, counted});
+    if (sequences_.others().received > 0) totals.push_back({other_sequences, false, sequences_.others()});
     return totals;
 }
 

@@ -6,6 +6,7 @@
 #include "telemetry/octet_window.hpp"
 #include "telemetry/recent_map.hpp"
 #include "telemetry/reed_solomon.hpp"
+#include "telemetry/sequence_table.hpp"
 #include "telemetry/sync_search.hpp"
 
 #include <cstdint>
@@ -68,7 +69,7 @@ class FrameReceiver {
     void end();
 
     LinkCounters counters() const;
-    /// Of the virtual channels that are followed.
+    /// Of virtual channels, also of those that are not followed any more.
     std::vector<SequenceTotals> sequences() const;
 
   private:
@@ -89,12 +90,9 @@ class FrameReceiver {
     bool damaged_marker_ = false;      ///< in front
     std::vector<std::uint8_t> block_;  ///< frame and suffix
     Correction correction_;            ///< of that
-    struct Channel {
-        FrameOrder order;
-        SequenceCounters counters;
-    };
-    RecentMap<ChannelNumber, Channel> channels_{channels_followed_max};
-    LinkCounters counters_;  ///< without the sequences of channels_
+    RecentMap<ChannelNumber, FrameOrder> orders_{channels_followed_max};
+    SequenceTable<ChannelNumber> sequences_;
+    LinkCounters counters_;  ///< without sequences_
 };
 
 /// Most frequent distance of two markers with one alignment, without the marker.

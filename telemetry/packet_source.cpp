@@ -112,9 +112,9 @@ bool PacketSource::end_datagram() {
 
 void PacketSource::keep(std::span<const std::uint8_t> packet, std::optional<ChannelNumber> channel) {
     const auto id = static_cast<std::uint16_t>(read_bits(packet, 0, 16) & ~secondary_header_flag);
-    auto& sequence = packet_ids_.at({channel, id}, [](const PacketSequence&) {});
-    sequence.order.place(static_cast<std::uint32_t>(read_bits(packet, count_bit, count_bits)), 1U << count_bits, packet,
-                         sequence.counters);
+    auto& order = packet_orders_.at({channel, id}, [](const FrameOrder&) {});
+    order.place(static_cast<std::uint32_t>(read_bits(packet, count_bit, count_bits)), 1U << count_bits, packet,
+                packet_ids_.of({channel, id}));
     if (const auto whole = segments_.add(packet, channel ? *channel + 1 : 0))
         whole_.emplace_back(whole->begin(), whole->end());
 }
@@ -153,7 +153,7 @@ std::vector<SequenceTotals> PacketSource::sequences() const {
     std::vector<SequenceTotals> totals;
     if (const auto* frames = std::get_if<Frames>(&source_)) totals = frames->receiver.sequences();
     if (const auto* pltus = std::get_if<Pltus>(&source_)) totals = pltus->receiver.sequences();
-    packet_ids_.each([&](const PacketKey& key, const PacketSequence& sequence) {
+    for (const auto& [key, counters] : packet_ids_.rows()) {
         const auto& [channel, id] = key;
         std::string name;
         if (channel)
@@ -161,8 +161,9 @@ std::vector<SequenceTotals> PacketSource::sequences() const {
                    std::to_string(*channel % virtual_channels_max) + ", ";
         name += "APID " + std::to_string(id & apid_mask);
         if ((id & command_flag) != 0) name += " (telecommand)";
-        totals.push_back({name, true, sequence.counters});
-    });
+        totals.push_back({name, true, counters});
+    }
+    if (packet_ids_.others().received > 0) totals.push_back({other_sequences, true, packet_ids_.others()});
     return totals;
 }
 

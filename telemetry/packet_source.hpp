@@ -64,7 +64,8 @@ class PacketSource {
     bool lost() const;
     LinkCounters link() const;  ///< of frames; zero for bare packets
     PacketCounters packets() const;
-    /// Of the virtual channels of frames, and of packets by virtual channel and id (APID, type and version).
+    /// Of the virtual channels of frames, and of packets by virtual channel and id (APID, type and version). Counters of
+    /// a name never fall: what is followed no more keeps them.
     std::vector<SequenceTotals> sequences() const;
     static constexpr std::size_t packet_ids_followed_max = 4096;  ///< chosen: 1 kB each
 
@@ -86,14 +87,11 @@ class PacketSource {
     /// @param channel  of the frame; none: bare packets, PLTUs
     void keep(std::span<const std::uint8_t> packet, std::optional<ChannelNumber> channel = {});
 
-    struct PacketSequence {
-        FrameOrder order;
-        SequenceCounters counters;
-    };
     using PacketKey = std::pair<std::optional<ChannelNumber>, std::uint16_t>;  ///< channel; version, type and APID
 
     Source source_;
-    RecentMap<PacketKey, PacketSequence> packet_ids_{packet_ids_followed_max};
+    RecentMap<PacketKey, FrameOrder> packet_orders_{packet_ids_followed_max};
+    SequenceTable<PacketKey> packet_ids_;
     SegmentAssembler segments_;
     std::deque<std::vector<std::uint8_t>> whole_;
     std::vector<std::uint8_t> given_;
