@@ -175,6 +175,13 @@ void FrameReceiver::end() {
     skip(window_.rest().size());
 }
 
+bool FrameReceiver::end_datagram() {
+    if (stream_.marker || window_.rest().empty()) return true;
+    ++counters_.cut_frames;
+    skip(window_.rest().size());
+    return false;
+}
+
 std::size_t FrameReceiver::unit_octets() const {
     return (stream_.marker ? attached_sync_marker.size() : stream_.prefix_octets) + stream_.frame_octets +
            stream_.suffix_octets;

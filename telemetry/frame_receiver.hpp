@@ -67,6 +67,9 @@ class FrameReceiver {
     std::optional<Received> next();
     /// Ends the stream: counts octets of an incomplete frame as skipped.
     void end();
+    /// Ends a datagram. Without markers it ends the frame, too: the next octets begin with one. False when octets of an
+    /// incomplete one were left.
+    bool end_datagram();
 
     LinkCounters counters() const;
     /// Of virtual channels, also of those that are not followed any more.

@@ -106,8 +106,9 @@ void PacketSource::end() {
 }
 
 bool PacketSource::end_datagram() {
-    auto* packets = std::get_if<BarePackets>(&source_);
-    return packets == nullptr || packets->end_datagram();
+    if (auto* packets = std::get_if<BarePackets>(&source_)) return packets->end_datagram();
+    if (auto* frames = std::get_if<Frames>(&source_)) return frames->receiver.end_datagram();
+    return true;
 }
 
 void PacketSource::keep(std::span<const std::uint8_t> packet, std::optional<ChannelNumber> channel) {

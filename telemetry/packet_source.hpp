@@ -54,8 +54,8 @@ class PacketSource {
     void receive(std::span<const std::uint8_t> octets);
     /// Ends the stream; next() may then return more packets.
     void end();
-    /// Ends a datagram, which holds whole packets, or a piece of a stream of frames. False when it held anything else
-    /// than whole packets.
+    /// Ends a datagram, which holds whole packets, whole frames without markers, or a piece of a stream of frames with
+    /// markers. False when it held anything else.
     bool end_datagram();
     /// The next packet; valid until the next call of any function.
     std::optional<std::span<const std::uint8_t>> next();

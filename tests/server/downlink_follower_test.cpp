@@ -546,4 +546,28 @@ TEST_CASE("addresses that cannot be are refused in one line", "[server][downlink
     CHECK(DownlinkAddress::parse("udp://0.0.0.0:0")->udp);
 }
 
+TEST_CASE(
+    "a short datagram of frames without markers is a bad one, and no other is lost, also while the frames are not "
+    "yet recognised",
+    "[server][downlink]") {
+    const auto mission = mission_of(small_xtce);
+    Follower follower{*mission, "udp://127.0.0.1:0", {.name = "tm", .skip = 0, .frame_octets = {}}};
+    for (std::uint16_t i = 0; i < 12; ++i) {
+        const auto packet = power_packet(i, 10U + i, 4);
+        TransferFrame frame;
+        frame.spacecraft = 76;
+        frame.count = i;
+        frame.first_header_pointer = 0;
+        frame.data = packet;
+        Octets octets(6 + packet.size() + 2);
+        write_tm_frame(frame, static_cast<std::uint8_t>(i), true, octets);
+        if (i == 3 || i == 7) octets.resize(octets.size() - 5);
+        send_datagram(follower.downlink_port(), octets);
+    }
+    const auto told = follower.ask_until(
+        "/runs/1/proof", [](const std::string& text) { return text.find("\"frames\":\"10\"") != std::string::npos; });
+    CHECK_THAT(told, Catch::Contains("\"frames\":\"10\"") && Catch::Contains("\"bad_datagrams\":\"2\"") &&
+                         Catch::Contains("\"cut_frames\":\"2\""));
+}
+
 }  // namespace server_downlink_follower_test

@@ -423,4 +423,25 @@ TEST_CASE("a marker at another bit is not believed for itself, and one with wron
     }
 }
 
+TEST_CASE("a datagram ends the frame where there is no marker, and a short one is cut and loses no other",
+          "[telemetry]") {
+    std::mt19937 random{11};
+    for (const bool marker : {false, true}) {
+        FrameReceiver receiver{{.frame_octets = length, .marker = marker}};
+        std::size_t frames = 0, bad = 0;
+        for (unsigned i = 0; i < 20; ++i) {
+            Octets datagram;
+            if (marker) append(datagram, attached_sync_marker);
+            append(datagram, frame_octets(FrameStream::Kind::tm, i, random));
+            if (i == 3) datagram.resize(50);
+            receiver.receive(datagram);
+            while (receiver.next()) ++frames;
+            bad += receiver.end_datagram() ? 0 : 1;
+        }
+        CHECK(frames == 19);
+        CHECK(bad == (marker ? 0 : 1));
+        CHECK(receiver.counters().cut_frames == bad);
+    }
+}
+
 }  // namespace telemetry_frame_receiver_test

@@ -288,4 +288,21 @@ TEST_CASE("however many packet ids and channels random headers name, no total of
     CHECK(told.at(other_sequences) == 2000);
 }
 
+TEST_CASE("a short datagram of bare frames or packets loses nothing that comes behind it", "[telemetry]") {
+    std::mt19937 random{6};
+    const auto packets = some_packets(random);
+    auto frames = frames_of(packets, FrameStream::Kind::tm, 223);
+    auto source = PacketSource::of_frames({.frame_octets = 223, .marker = false});
+    std::size_t bad = 0, whole = 0;
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+        source.receive(std::span{frames[i]}.first(i == 2 ? 100 : 223));
+        bad += source.end_datagram() ? 0 : 1;
+        while (source.next()) ++whole;
+    }
+    CHECK(bad == 1);
+    CHECK(source.link().frames == frames.size() - 1);
+    CHECK(source.link().cut_frames == 1);
+    CHECK(whole > packets.size() - 10);
+}
+
 }  // namespace telemetry_packet_source_test
