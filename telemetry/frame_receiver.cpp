@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <array>
-#include <compare>
 #include <map>
 #include <string>
 
@@ -23,10 +22,10 @@ constexpr unsigned wrong_marker_bits_max = 4;
 /// How well a layout reads a stream.
 struct Agreement {
     std::uint64_t frames = 0;
+    std::uint64_t unread = 0;  ///< that stand behind a marker, or after another
     /// The number of whole packets less those that the stream's own frames contradict: with check symbols read as data,
     /// a packet ends where no frame says that the next begins.
     std::int64_t packets = 0;
-    auto operator<=>(const Agreement&) const = default;
 };
 
 Agreement agreement_of(const FrameStream& stream, std::span<const std::uint8_t> octets) {
@@ -43,7 +42,9 @@ Agreement agreement_of(const FrameStream& stream, std::span<const std::uint8_t> 
     for (const auto& [id, channel] : channels) sum += channel.counters();
     const auto read = sum.packets + sum.idle_packets + sum.encapsulation_packets;
     const auto against = sum.cut_packets + (sum.unreadable_octets > 0 ? 1 : 0);
-    return {receiver.counters().frames, static_cast<std::int64_t>(read) - static_cast<std::int64_t>(against)};
+    const auto link = receiver.counters();
+    return {link.frames, link.bad_crc + link.bad_header + link.uncorrectable_frames,
+            static_cast<std::int64_t>(read) - static_cast<std::int64_t>(against)};
 }
 
 template <typename T, std::size_t size>
@@ -117,6 +118,16 @@ std::optional<ReedSolomonCode> code_of(std::span<const std::uint8_t> octets, std
 std::optional<ReedSolomonCode> code_told(const FrameHints& known) {
     if (!known.check_symbols || !known.interleave) return std::nullopt;
     return ReedSolomonCode{*known.check_symbols, *known.interleave, known.basis.value_or(ReedSolomonCode::Basis::dual)};
+}
+
+/// Where one marker stands alone: the frame of known length behind it.
+std::optional<MarkerSpacing> only_frame(std::span<const std::uint8_t> octets, const FrameHints& known) {
+    const auto code = code_told(known);
+    if (!known.frame_octets && !code) return std::nullopt;
+    const std::size_t suffix = code ? code->check_octets() : known.suffix_octets.value_or(0);
+    const auto found = find_marker(octets, 0);
+    if (!found) return std::nullopt;
+    return MarkerSpacing{known.frame_octets.value_or(code ? code->data_octets_max() : 0) + suffix, found->alignment};
 }
 
 /// The layouts that frames of `length` octets between two markers may have.
@@ -322,7 +333,8 @@ std::optional<std::size_t> cadu_frame_octets(std::span<const std::uint8_t> octet
 std::optional<FrameStream> recognise_cadus(std::span<const std::uint8_t> octets, const FrameHints& known, bool ended) {
     constexpr std::size_t looked_at_octets = std::size_t{1} << 20U;
     octets = octets.first(std::min(octets.size(), looked_at_octets));
-    const auto spacing = marker_spacing(octets);
+    auto spacing = marker_spacing(octets);
+    if (!spacing && ended) spacing = only_frame(octets, known);
     if (!spacing) return std::nullopt;
     const std::size_t length = spacing->octets;
     FrameHints hints = known;
@@ -348,6 +360,9 @@ std::optional<FrameStream> recognise_cadus(std::span<const std::uint8_t> octets,
         const auto possible = octets.size() / (length + attached_sync_marker.size());
         if (best && (most.frames > 1 || possible <= 2)) break;
     }
+    // Without a code and a CRC any octets are a frame now and then.
+    if (best && !best->code && (!best->agreed.crc || most.frames == 1) && most.frames < most.unread)
+        return std::nullopt;
     return best && (ended || most.frames >= frames_to_agree) ? best : std::nullopt;
 }
 

@@ -444,4 +444,28 @@ TEST_CASE("a datagram ends the frame where there is no marker, and a short one i
     }
 }
 
+TEST_CASE(
+    "no layout is told of sync markers with anything but frames between, and a single frame is read as it is told",
+    "[telemetry][R55]") {
+    std::mt19937 random{12};
+    for (int round = 0; round < 20; ++round) {
+        Octets noise;
+        for (int i = 0; i < 20; ++i) {
+            append(noise, attached_sync_marker);
+            append(noise, test::random_octets(random, 200));
+        }
+        CHECK_FALSE(recognise_cadus(noise, {}, true));
+    }
+    Octets one = test::random_octets(random, 30);
+    append(one, attached_sync_marker);
+    append(one, frame_octets(FrameStream::Kind::aos, 1, random));
+    CHECK_FALSE(recognise_cadus(one, {}, true));
+    CHECK_FALSE(recognise_cadus(one, {.frame_octets = length}, false));
+    const auto found = recognise_cadus(one, {.frame_octets = length}, true);
+    REQUIRE(found);
+    CHECK(found->kind == FrameStream::Kind::aos);
+    CHECK(found->agreed.crc);
+    CHECK_FALSE(recognise_cadus(test::random_octets(random, 500), {.frame_octets = length}, true));
+}
+
 }  // namespace telemetry_frame_receiver_test
