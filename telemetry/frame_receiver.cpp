@@ -174,6 +174,7 @@ void FrameReceiver::receive(std::span<const std::uint8_t> octets) {
 }
 
 void FrameReceiver::skip(std::size_t octets) {
+    stray_.skipped(window_.rest().first(octets));
     window_.use(octets);
     counters_.skipped_octets += octets;
 }
@@ -183,6 +184,11 @@ void FrameReceiver::end() {
     }
     const auto rest = window_.rest();
     if (!rest.empty() && (!stream_.marker || marker_errors(rest, found_) == 0)) ++counters_.cut_frames;
+    // Bits behind the last frame that fill its last octet are not stray.
+    if (expected_ && alignment_.shift > 0 && rest.size() == 1) {
+        window_.use(1);
+        ++counters_.skipped_octets;
+    }
     skip(window_.rest().size());
 }
 
@@ -246,6 +252,7 @@ void FrameReceiver::count_good() {
     alignment_ = found_;
     expected_ = true;
     ++counters_.frames;
+    stray_.frame();
     if (correction_.symbols > 0) ++counters_.corrected_frames;
     counters_.corrected_symbols += correction_.symbols;
 }

@@ -7,6 +7,7 @@
 #include "telemetry/recent_map.hpp"
 #include "telemetry/reed_solomon.hpp"
 #include "telemetry/sequence_table.hpp"
+#include "telemetry/stray_octets.hpp"
 #include "telemetry/sync_search.hpp"
 
 #include <cstdint>
@@ -72,6 +73,8 @@ class FrameReceiver {
     bool end_datagram();
 
     LinkCounters counters() const;
+    /// Of the skipped octets those that are no fill.
+    std::uint64_t stray_octets() const { return stray_.number(); }
     /// Of virtual channels, also of those that are not followed any more.
     std::vector<SequenceTotals> sequences() const;
 
@@ -95,6 +98,7 @@ class FrameReceiver {
     Correction correction_;            ///< of that
     RecentMap<ChannelNumber, FrameOrder> orders_{channels_followed_max};
     SequenceTable<ChannelNumber> sequences_;
+    StrayOctets stray_;
     LinkCounters counters_;  ///< without sequences_
 };
 

@@ -138,6 +138,12 @@ LinkCounters PacketSource::link() const {
     return {};
 }
 
+std::uint64_t PacketSource::stray_octets() const {
+    if (const auto* frames = std::get_if<Frames>(&source_)) return frames->receiver.stray_octets();
+    if (const auto* pltus = std::get_if<Pltus>(&source_)) return pltus->receiver.stray_octets();
+    return 0;
+}
+
 PacketCounters PacketSource::packets() const {
     PacketCounters sum;
     if (const auto* packets = std::get_if<BarePackets>(&source_)) sum = packets->counters();

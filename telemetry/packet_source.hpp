@@ -64,6 +64,8 @@ class PacketSource {
     bool lost() const;
     LinkCounters link() const;  ///< of frames; zero for bare packets
     PacketCounters packets() const;
+    /// Octets between frames or PLTUs that are no fill; zero for bare packets, which count them as unreadable.
+    std::uint64_t stray_octets() const;
     /// Of the virtual channels of frames, and of packets by virtual channel and id (APID, type and version). Counters of
     /// a name never fall: what is followed no more keeps them.
     std::vector<SequenceTotals> sequences() const;

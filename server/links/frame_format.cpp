@@ -155,6 +155,16 @@ Result<RecognisedSource> packet_source(const PacketStreamFormat& format, std::sp
     return RecognisedSource{PacketSource::of_frames(*frames), words_of(*frames)};
 }
 
+std::string nothing_found(const PacketStreamFormat& format, const telemetry::PacketSource& source) {
+    const auto link = source.link();
+    const auto packets = source.packets();
+    if (link.frames > 0 && format.virtual_channel && source.sequences().empty())
+        return fmt::format("no frame is of virtual channel {}: look at --virtual-channel", *format.virtual_channel);
+    if (link.frames + packets.packets + packets.idle_packets + packets.encapsulation_packets > 0) return {};
+    return fmt::format("nothing that is {} was found: look at --format {}, and whether this is the right file",
+                       format.name == "packets" ? "a packet" : "a frame", format.name);
+}
+
 bool needs_beginning(const PacketStreamFormat& format) {
     const auto kind = telemetry::downlink_format(format.name);
     return kind && *kind != DownlinkFormat::packets && *kind != DownlinkFormat::pltu;

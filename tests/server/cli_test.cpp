@@ -719,6 +719,8 @@ TEST_CASE("decode ends with 1 and says what it left, and asks where the file lea
     const std::string half = write("half", "\x01\x23\x40\x00\x00\x01\x00\x07"s);
     const std::string other = write("other", "\xE9\x03\xFF\x01\x23\xC0\x00\x00\x01\x00\x07"s);
     const std::string idle = write("idle", "\xE0\x07\xFF\xC0\x00\x00\x00\x00"s);
+    const std::string zeros = write("zeros", std::string(5000, '\0')), empty = write("empty", ""),
+                      text = write("text", "this is no telemetry, but a text of some lines"s);
     struct Case {
         std::string arguments;
         int code;
@@ -731,6 +733,12 @@ TEST_CASE("decode ends with 1 and says what it left, and asks where the file lea
           Case{one + " --packets " + half, 1, "1 segments without the rest"},
           Case{one + " --packets " + other, 1, "1 encapsulation packets not decoded"},
           Case{one + " --packets " + idle, 0, "packets: 0, 2 idle"},
+          Case{one + " --packets " + empty, 1, "empty is empty"},
+          Case{one + " --format pltu --packets " + zeros, 1,
+               "skipped: 5000 octets that are neither good frames nor fill"},
+          Case{one + " --format pltu --packets " + text, 1, "nothing that is a frame was found: look at --format pltu"},
+          Case{one + " --format cadu --frame-octets 20 --packets " + text, 2, "no sync marker 1ACFFC1D"},
+          Case{one + " --packets " + text, 1, "nothing that is a packet was found: look at --format packets"},
           Case{two + " --packets " + right, 2, "say with which one packets begin: /T/P, /T/Q"},
           Case{two + " --root Q --packets " + right, 0, ",W=7|7"},
           Case{two + " --root R --packets " + right, 2, "no packet begins with a container 'R'"}}) {
@@ -787,7 +795,8 @@ TEST_CASE("decode corrects what Reed-Solomon codeblocks hold, says how much, and
         return stream;
     };
     const std::string clean = write("clean", stream_with(0)), wrong = write("wrong", stream_with(16)),
-                      lost = write("lost", stream_with(17));
+                      lost = write("lost", stream_with(17)),
+                      behind = write("behind", stream_with(0) + std::string(100, 'x'));
     struct Case {
         std::string arguments;
         int code;
@@ -799,6 +808,8 @@ TEST_CASE("decode corrects what Reed-Solomon codeblocks hold, says how much, and
                "1, dual basis, behind sync markers"},
           Case{wrong, 0, "Reed-Solomon: 1 frames corrected, 16 symbols; 0 frames uncorrectable"},
           Case{wrong + " --reed-solomon 223 --interleave 1 --basis dual", 0, "520 packets   APID  291"},
+          Case{behind, 1, "skipped: 100 octets that are neither good frames nor fill"},
+          Case{clean + " --virtual-channel 5", 1, "no frame is of virtual channel 5: look at --virtual-channel"},
           Case{lost, 1, "Reed-Solomon: 0 frames corrected, 0 symbols; 1 frames uncorrectable"},
           Case{clean + " --check-symbols 32", 0, "32 check symbols behind each"},
           Case{clean + " --reed-solomon no --frame-octets 214", 0, "32 check symbols behind each"},

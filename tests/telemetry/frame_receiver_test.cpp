@@ -468,4 +468,28 @@ TEST_CASE(
     CHECK_FALSE(recognise_cadus(test::random_octets(random, 500), {.frame_octets = length}, true));
 }
 
+TEST_CASE("octets between and behind frames are stray, but for the bits that fill the last octet", "[telemetry][R55]") {
+    std::mt19937 random{13};
+    Octets stream;
+    for (unsigned i = 0; i < 5; ++i) {
+        append(stream, attached_sync_marker);
+        append(stream, frame_octets(FrameStream::Kind::tm, i, random));
+    }
+    Octets shifted(stream.size() + 1);
+    for (std::size_t i = 0; i < shifted.size(); ++i) {
+        const unsigned before = i > 0 ? stream[i - 1] : 0U, here = i < stream.size() ? stream[i] : 0U;
+        shifted[i] = static_cast<std::uint8_t>(before << 5U | here >> 3U);
+    }
+    const auto stray = [&](const Octets& octets, const BitAlignment& alignment) {
+        FrameReceiver receiver{{.frame_octets = length, .alignment = alignment}};
+        CHECK(frames_in(receiver, octets, random) == 5);
+        CHECK(receiver.counters().octets == receiver.counters().skipped_octets + 5 * (length + 4));
+        return receiver.stray_octets();
+    };
+    CHECK(stray(stream, {}) == 0);
+    CHECK(stray(shifted, {.shift = 3}) == 0);
+    append(stream, Octets(40, 0));
+    CHECK(stray(stream, {}) == 40);
+}
+
 }  // namespace telemetry_frame_receiver_test
