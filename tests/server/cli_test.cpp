@@ -880,6 +880,36 @@ TEST_CASE("a recorded capture becomes a run, and what is exported of it is what 
     const auto third = ingest(stream + " --start 2012-219T05:10:00 --bits-per-second 1920");
     INFO(third.text);
     CHECK(third.code == 0);
+    // In two files, cut within a packet: one stream, whose times go on.
+    const auto halves = ingest(write("half1", plain.substr(0, 1203)) + " " + write("half2", plain.substr(1203)) +
+                               " --start 2012-219T05:10:00 --bits-per-second 1920");
+    INFO(halves.text);
+    CHECK(halves.code == 0);
+    CHECK_THAT(halves.text, Catch::Contains("run 4") && Catch::Contains("300 packets of 2400 octets"));
+    for (const auto& [arguments, code, says] :
+         {std::tuple{write("empty", ""), 1, "no octets of a link are in it"},
+          {stream + " " + write("empty", ""), 1, "empty: no octets of a link are in it"},
+          {write("zeros", std::string(5000, '\0')) + " --format pltu", 1, "nothing that is a frame was found"},
+          {stream + " --bits-per-second nan", 2, "--bits-per-second: a number, more than 0"},
+          {stream + " --bits-per-second inf", 2, "--bits-per-second: a number, more than 0"},
+          {stream + " --bits-per-second -1", 2, "--bits-per-second"},
+          {stream + " --bits-per-second 1e-300", 2, "would take more than 100 years"}}) {
+        const auto ended = ingest(arguments);
+        INFO(arguments << " -> " << ended.code << ": " << ended.text);
+        CHECK(ended.code == code);
+        CHECK_THAT(ended.text, Catch::Contains(says));
+    }
+    const std::string abstract = write(
+        "abstract.xml",
+        "<SpaceSystem name='T'><TelemetryMetaData><ParameterTypeSet>"
+        "<IntegerParameterType name='u48'><IntegerDataEncoding sizeInBits='48'/></IntegerParameterType>"
+        "</ParameterTypeSet><ParameterSet><Parameter name='H' parameterTypeRef='u48'/></ParameterSet><ContainerSet>"
+        "<SequenceContainer name='P' abstract='true'><EntryList><ParameterRefEntry parameterRef='H'/></EntryList>"
+        "</SequenceContainer></ContainerSet></TelemetryMetaData></SpaceSystem>");
+    const auto not_decoded = run(program(), "ingest --archive " + archive + " --xtce " + abstract + " " + stream);
+    INFO(not_decoded.text);
+    CHECK(not_decoded.code == 1);
+    CHECK_THAT(not_decoded.text, Catch::Contains("300 packets not decoded"));
     const auto refused = ingest(newer);
     CHECK(refused.code == 2);
     CHECK_THAT(refused.text, Catch::Contains("editcap"));
@@ -905,6 +935,14 @@ TEST_CASE("a recorded capture becomes a run, and what is exported of it is what 
     auto same = capture;  // but for the port
     for (std::size_t at = 24; at < same.size(); at += 16 + 36) same.replace(at + 36, 4, "\x10\x68\x10\x68");
     CHECK(exported("1 --raw --format pcap") == same);
+    CHECK(exported("4 --raw") == plain);
+    CHECK(exported("4 --packets --format bin") == plain);
+    const auto late = exported("4 --raw --from 2012-219T05:10:07 --to 2012-219T05:10:08");
+    CHECK((!late.empty() && plain.find(late) != std::string::npos));
+    const auto no_packets = run(program(), "export --archive " + archive + " --run 1 --packets --link relay");
+    INFO(no_packets.text);
+    CHECK(no_packets.code == 1);
+    CHECK_THAT(no_packets.text, Catch::Contains("link: run 1 has no packets of 'relay'; it has octets of downlink"));
     const auto no_link = run(program(), "export --archive " + archive + " --run 1 --raw --link relay");
     CHECK(no_link.code == 1);
     CHECK_THAT(no_link.text, Catch::Contains("no octets of 'relay'"));
