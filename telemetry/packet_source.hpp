@@ -66,8 +66,8 @@ class PacketSource {
     PacketCounters packets() const;
     /// Octets between frames or PLTUs that are no fill; zero for bare packets, which count them as unreadable.
     std::uint64_t stray_octets() const;
-    /// Of the virtual channels of frames, and of packets by virtual channel and id (APID, type and version). Counters of
-    /// a name never fall: what is followed no more keeps them.
+    /// Of the virtual channels of frames, and of packets by virtual channel and id (APID, type and version). Counters
+    /// never fall: what is followed no more keeps them.
     std::vector<SequenceTotals> sequences() const;
     static constexpr std::size_t packet_ids_followed_max = 4096;  ///< chosen: 1 kB each
 
