@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <array>
-#include <compare>
 #include <map>
 #include <string>
 
@@ -23,10 +22,10 @@ constexpr unsigned wrong_marker_bits_max = 4;
 /// How well a layout reads a stream.
 struct Agreement {
     std::uint64_t frames = 0;
+    std::uint64_t unread = 0;  ///< that stand behind a marker, or after another
     /// The number of whole packets less those that the stream's own frames contradict: with check symbols read as data,
     /// a packet ends where no frame says that the next begins.
     std::int64_t packets = 0;
-    auto operator<=>(const Agreement&) const = default;
 };
 
 Agreement agreement_of(const FrameStream& stream, std::span<const std::uint8_t> octets) {
@@ -43,7 +42,9 @@ Agreement agreement_of(const FrameStream& stream, std::span<const std::uint8_t> 
     for (const auto& [id, channel] : channels) sum += channel.counters();
     const auto read = sum.packets + sum.idle_packets + sum.encapsulation_packets;
     const auto against = sum.cut_packets + (sum.unreadable_octets > 0 ? 1 : 0);
-    return {receiver.counters().frames, static_cast<std::int64_t>(read) - static_cast<std::int64_t>(against)};
+    const auto link = receiver.counters();
+    return {link.frames, link.bad_crc + link.bad_header + link.uncorrectable_frames,
+            static_cast<std::int64_t>(read) - static_cast<std::int64_t>(against)};
 }
 
 template <typename T, std::size_t size>
@@ -119,6 +120,16 @@ std::optional<ReedSolomonCode> code_told(const FrameHints& known) {
     return ReedSolomonCode{*known.check_symbols, *known.interleave, known.basis.value_or(ReedSolomonCode::Basis::dual)};
 }
 
+/// Where one marker stands alone: the frame of known length behind it.
+std::optional<MarkerSpacing> only_frame(std::span<const std::uint8_t> octets, const FrameHints& known) {
+    const auto code = code_told(known);
+    if (!known.frame_octets && !code) return std::nullopt;
+    const std::size_t suffix = code ? code->check_octets() : known.suffix_octets.value_or(0);
+    const auto found = find_marker(octets, 0);
+    if (!found) return std::nullopt;
+    return MarkerSpacing{known.frame_octets.value_or(code ? code->data_octets_max() : 0) + suffix, found->alignment};
+}
+
 /// The layouts that frames of `length` octets between two markers may have.
 std::vector<FrameStream> layouts_of(std::size_t length, bool crc, const std::optional<ReedSolomonCode>& code,
                                     const FrameHints& known) {
@@ -163,6 +174,7 @@ void FrameReceiver::receive(std::span<const std::uint8_t> octets) {
 }
 
 void FrameReceiver::skip(std::size_t octets) {
+    stray_.skipped(window_.rest().first(octets));
     window_.use(octets);
     counters_.skipped_octets += octets;
 }
@@ -172,7 +184,19 @@ void FrameReceiver::end() {
     }
     const auto rest = window_.rest();
     if (!rest.empty() && (!stream_.marker || marker_errors(rest, found_) == 0)) ++counters_.cut_frames;
+    // Bits behind the last frame that fill its last octet are not stray.
+    if (expected_ && alignment_.shift > 0 && rest.size() == 1) {
+        window_.use(1);
+        ++counters_.skipped_octets;
+    }
     skip(window_.rest().size());
+}
+
+bool FrameReceiver::end_datagram() {
+    if (stream_.marker || window_.rest().empty()) return true;
+    ++counters_.cut_frames;
+    skip(window_.rest().size());
+    return false;
 }
 
 std::size_t FrameReceiver::unit_octets() const {
@@ -228,6 +252,7 @@ void FrameReceiver::count_good() {
     alignment_ = found_;
     expected_ = true;
     ++counters_.frames;
+    stray_.frame();
     if (correction_.symbols > 0) ++counters_.corrected_frames;
     counters_.corrected_symbols += correction_.symbols;
 }
@@ -256,12 +281,10 @@ std::optional<FrameReceiver::Received> FrameReceiver::next() {
         window_.use(unit_octets());
         count_good();
         if (stream_.virtual_channel && frame->virtual_channel != *stream_.virtual_channel) continue;
-        Channel& channel = channels_.at(channel_number(*frame), [&](const Channel& forgotten) {
-            counters_ += forgotten.counters;
-            ++counters_.forgotten_channels;
-        });
-        const auto placed = channel.order.place(frame->count, frame->count_modulus,
-                                                std::span{block_}.first(stream_.frame_octets), channel.counters);
+        const ChannelNumber channel = channel_number(*frame);
+        FrameOrder& order = orders_.at(channel, [&](const FrameOrder&) { ++counters_.forgotten_channels; });
+        const auto placed = order.place(frame->count, frame->count_modulus,
+                                        std::span{block_}.first(stream_.frame_octets), sequences_.of(channel));
         if (placed.place != FramePlace::repeated) return Received{*frame, placed.place};
     }
     return std::nullopt;
@@ -269,17 +292,18 @@ std::optional<FrameReceiver::Received> FrameReceiver::next() {
 
 LinkCounters FrameReceiver::counters() const {
     LinkCounters sum = counters_;
-    channels_.each([&](ChannelNumber, const Channel& channel) { sum += channel.counters; });
+    for (const auto& [channel, counted] : sequences_.rows()) sum += counted;
+    sum += sequences_.others();
     return sum;
 }
 
 std::vector<SequenceTotals> FrameReceiver::sequences() const {
     std::vector<SequenceTotals> totals;
-    channels_.each([&](ChannelNumber channel, const Channel& counted) {
+    for (const auto& [channel, counted] : sequences_.rows())
         totals.push_back({"spacecraft " + std::to_string(channel / virtual_channels_max) + ", virtual channel " +
                               std::to_string(channel % virtual_channels_max),
-                          false, counted.counters});
-    });
+                          false, counted});
+    if (sequences_.others().received > 0) totals.push_back({other_sequences, false, sequences_.others()});
     return totals;
 }
 
@@ -316,7 +340,8 @@ std::optional<std::size_t> cadu_frame_octets(std::span<const std::uint8_t> octet
 std::optional<FrameStream> recognise_cadus(std::span<const std::uint8_t> octets, const FrameHints& known, bool ended) {
     constexpr std::size_t looked_at_octets = std::size_t{1} << 20U;
     octets = octets.first(std::min(octets.size(), looked_at_octets));
-    const auto spacing = marker_spacing(octets);
+    auto spacing = marker_spacing(octets);
+    if (!spacing && ended) spacing = only_frame(octets, known);
     if (!spacing) return std::nullopt;
     const std::size_t length = spacing->octets;
     FrameHints hints = known;
@@ -342,6 +367,9 @@ std::optional<FrameStream> recognise_cadus(std::span<const std::uint8_t> octets,
         const auto possible = octets.size() / (length + attached_sync_marker.size());
         if (best && (most.frames > 1 || possible <= 2)) break;
     }
+    // Without a code and a CRC any octets are a frame now and then.
+    if (best && !best->code && (!best->agreed.crc || most.frames == 1) && most.frames < most.unread)
+        return std::nullopt;
     return best && (ended || most.frames >= frames_to_agree) ? best : std::nullopt;
 }
 

@@ -6,6 +6,8 @@
 #include "telemetry/octet_window.hpp"
 #include "telemetry/recent_map.hpp"
 #include "telemetry/reed_solomon.hpp"
+#include "telemetry/sequence_table.hpp"
+#include "telemetry/stray_octets.hpp"
 #include "telemetry/sync_search.hpp"
 
 #include <cstdint>
@@ -66,9 +68,14 @@ class FrameReceiver {
     std::optional<Received> next();
     /// Ends the stream: counts octets of an incomplete frame as skipped.
     void end();
+    /// Ends a datagram. Without markers it ends the frame, too: the next octets begin with one. False when octets of an
+    /// incomplete one were left.
+    bool end_datagram();
 
     LinkCounters counters() const;
-    /// Of the virtual channels that are followed.
+    /// Of the skipped octets those that are no fill.
+    std::uint64_t stray_octets() const { return stray_.number(); }
+    /// Of virtual channels, also of those that are not followed any more.
     std::vector<SequenceTotals> sequences() const;
 
   private:
@@ -89,12 +96,10 @@ class FrameReceiver {
     bool damaged_marker_ = false;      ///< in front
     std::vector<std::uint8_t> block_;  ///< frame and suffix
     Correction correction_;            ///< of that
-    struct Channel {
-        FrameOrder order;
-        SequenceCounters counters;
-    };
-    RecentMap<ChannelNumber, Channel> channels_{channels_followed_max};
-    LinkCounters counters_;  ///< without the sequences of channels_
+    RecentMap<ChannelNumber, FrameOrder> orders_{channels_followed_max};
+    SequenceTable<ChannelNumber> sequences_;
+    StrayOctets stray_;
+    LinkCounters counters_;  ///< without sequences_
 };
 
 /// Most frequent distance of two markers with one alignment, without the marker.

@@ -106,15 +106,16 @@ void PacketSource::end() {
 }
 
 bool PacketSource::end_datagram() {
-    auto* packets = std::get_if<BarePackets>(&source_);
-    return packets == nullptr || packets->end_datagram();
+    if (auto* packets = std::get_if<BarePackets>(&source_)) return packets->end_datagram();
+    if (auto* frames = std::get_if<Frames>(&source_)) return frames->receiver.end_datagram();
+    return true;
 }
 
 void PacketSource::keep(std::span<const std::uint8_t> packet, std::optional<ChannelNumber> channel) {
     const auto id = static_cast<std::uint16_t>(read_bits(packet, 0, 16) & ~secondary_header_flag);
-    auto& sequence = packet_ids_.at({channel, id}, [](const PacketSequence&) {});
-    sequence.order.place(static_cast<std::uint32_t>(read_bits(packet, count_bit, count_bits)), 1U << count_bits, packet,
-                         sequence.counters);
+    auto& order = packet_orders_.at({channel, id}, [](const FrameOrder&) {});
+    order.place(static_cast<std::uint32_t>(read_bits(packet, count_bit, count_bits)), 1U << count_bits, packet,
+                packet_ids_.of({channel, id}));
     if (const auto whole = segments_.add(packet, channel ? *channel + 1 : 0))
         whole_.emplace_back(whole->begin(), whole->end());
 }
@@ -137,6 +138,12 @@ LinkCounters PacketSource::link() const {
     return {};
 }
 
+std::uint64_t PacketSource::stray_octets() const {
+    if (const auto* frames = std::get_if<Frames>(&source_)) return frames->receiver.stray_octets();
+    if (const auto* pltus = std::get_if<Pltus>(&source_)) return pltus->receiver.stray_octets();
+    return 0;
+}
+
 PacketCounters PacketSource::packets() const {
     PacketCounters sum;
     if (const auto* packets = std::get_if<BarePackets>(&source_)) sum = packets->counters();
@@ -153,7 +160,7 @@ std::vector<SequenceTotals> PacketSource::sequences() const {
     std::vector<SequenceTotals> totals;
     if (const auto* frames = std::get_if<Frames>(&source_)) totals = frames->receiver.sequences();
     if (const auto* pltus = std::get_if<Pltus>(&source_)) totals = pltus->receiver.sequences();
-    packet_ids_.each([&](const PacketKey& key, const PacketSequence& sequence) {
+    for (const auto& [key, counters] : packet_ids_.rows()) {
         const auto& [channel, id] = key;
         std::string name;
         if (channel)
@@ -161,8 +168,9 @@ std::vector<SequenceTotals> PacketSource::sequences() const {
                    std::to_string(*channel % virtual_channels_max) + ", ";
         name += "APID " + std::to_string(id & apid_mask);
         if ((id & command_flag) != 0) name += " (telecommand)";
-        totals.push_back({name, true, sequence.counters});
-    });
+        totals.push_back({name, true, counters});
+    }
+    if (packet_ids_.others().received > 0) totals.push_back({other_sequences, true, packet_ids_.others()});
     return totals;
 }
 

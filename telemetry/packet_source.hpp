@@ -54,8 +54,8 @@ class PacketSource {
     void receive(std::span<const std::uint8_t> octets);
     /// Ends the stream; next() may then return more packets.
     void end();
-    /// Ends a datagram, which holds whole packets, or a piece of a stream of frames. False when it held anything else
-    /// than whole packets.
+    /// Ends a datagram, which holds whole packets, whole frames without markers, or a piece of a stream of frames with
+    /// markers. False when it held anything else.
     bool end_datagram();
     /// The next packet; valid until the next call of any function.
     std::optional<std::span<const std::uint8_t>> next();
@@ -64,7 +64,10 @@ class PacketSource {
     bool lost() const;
     LinkCounters link() const;  ///< of frames; zero for bare packets
     PacketCounters packets() const;
-    /// Of the virtual channels of frames, and of packets by virtual channel and id (APID, type and version).
+    /// Octets between frames or PLTUs that are no fill; zero for bare packets, which count them as unreadable.
+    std::uint64_t stray_octets() const;
+    /// Of the virtual channels of frames, and of packets by virtual channel and id (APID, type and version). Counters
+    /// never fall: what is followed no more keeps them.
     std::vector<SequenceTotals> sequences() const;
     static constexpr std::size_t packet_ids_followed_max = 4096;  ///< chosen: 1 kB each
 
@@ -86,14 +89,11 @@ class PacketSource {
     /// @param channel  of the frame; none: bare packets, PLTUs
     void keep(std::span<const std::uint8_t> packet, std::optional<ChannelNumber> channel = {});
 
-    struct PacketSequence {
-        FrameOrder order;
-        SequenceCounters counters;
-    };
     using PacketKey = std::pair<std::optional<ChannelNumber>, std::uint16_t>;  ///< channel; version, type and APID
 
     Source source_;
-    RecentMap<PacketKey, PacketSequence> packet_ids_{packet_ids_followed_max};
+    RecentMap<PacketKey, FrameOrder> packet_orders_{packet_ids_followed_max};
+    SequenceTable<PacketKey> packet_ids_;
     SegmentAssembler segments_;
     std::deque<std::vector<std::uint8_t>> whole_;
     std::vector<std::uint8_t> given_;

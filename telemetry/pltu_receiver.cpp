@@ -13,6 +13,7 @@ void PltuReceiver::receive(std::span<const std::uint8_t> octets) {
 }
 
 void PltuReceiver::skip(std::size_t octets) {
+    stray_.skipped(window_.rest().first(octets));
     window_.use(octets);
     counters_.skipped_octets += octets;
 }
@@ -46,6 +47,7 @@ std::optional<PltuReceiver::Received> PltuReceiver::next() {
         }
         window_.use(size);
         ++counters_.frames;
+        stray_.frame();
         const ProximityHeader& header = frame->header;
         const std::uint32_t stream = header.spacecraft * 4U + header.physical_channel * 2U + header.expedited;
         Stream& counted = streams_[stream];

@@ -4,6 +4,7 @@
 #include "common/proximity_frame.hpp"
 #include "telemetry/frame_order.hpp"
 #include "telemetry/octet_window.hpp"
+#include "telemetry/stray_octets.hpp"
 
 #include <cstdint>
 #include <map>
@@ -37,6 +38,8 @@ class PltuReceiver {
     void end() { ended_ = true; }
 
     LinkCounters counters() const;
+    /// Of the skipped octets those that are no fill.
+    std::uint64_t stray_octets() const { return stray_.number(); }
     /// Of each spacecraft, channel and service.
     std::vector<SequenceTotals> sequences() const;
 
@@ -49,6 +52,7 @@ class PltuReceiver {
         SequenceCounters counters;
     };
     std::map<std::uint32_t, Stream> streams_;
+    StrayOctets stray_;
     LinkCounters counters_;  ///< without the sequences of streams_
     bool ended_ = false;
 };

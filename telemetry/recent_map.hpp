@@ -3,11 +3,9 @@
 
 #include "common/check.hpp"
 
-#include <algorithm>
 #include <cstddef>
-#include <cstdint>
+#include <list>
 #include <map>
-#include <utility>
 
 namespace aeolis::telemetry {
 
@@ -16,6 +14,8 @@ template <typename Key, typename Value>
 class RecentMap {
   public:
     explicit RecentMap(std::size_t most) : most_(most) { AEOLIS_CHECK(most > 0); }
+    RecentMap(RecentMap&&) = default;
+    RecentMap& operator=(RecentMap&&) = default;
 
     /// The value of `key`; a new one when there is none. `forget(Value&)` is called before a value is forgotten.
     template <typename Forget>
@@ -23,14 +23,15 @@ class RecentMap {
         auto found = values_.find(key);
         if (found == values_.end()) {
             if (values_.size() == most_) {
-                const auto oldest =
-                    std::ranges::min_element(values_, {}, [](const auto& each) { return each.second.asked; });
+                const auto oldest = values_.find(order_.front());
                 forget(oldest->second.value);
                 values_.erase(oldest);
+                order_.pop_front();
             }
             found = values_.try_emplace(key).first;
+            found->second.place = order_.insert(order_.end(), key);
         }
-        found->second.asked = ++asked_;
+        order_.splice(order_.end(), order_, found->second.place);
         return found->second.value;
     }
     /// Calls `use(key, value)` for each, by key.
@@ -47,10 +48,10 @@ class RecentMap {
   private:
     struct Entry {
         Value value{};
-        std::uint64_t asked = 0;
+        std::list<Key>::iterator place{};
     };
     std::size_t most_;
-    std::uint64_t asked_ = 0;
+    std::list<Key> order_;  ///< the one asked for longest ago first
     std::map<Key, Entry> values_;
 };
 

@@ -29,6 +29,13 @@ Result<RawExport> RawExport::begin(archive::Reader& reader, archive::RunId run, 
             return Error{
                 fmt::format("link: one of {}: the octets of several make no stream", fmt::join(wanted.links_, ", "))};
     }
+    if (query.packets && !query.link.empty() && std::ranges::find(wanted.links_, query.link) == wanted.links_.end()) {
+        const auto any = reader.raw(run, {.packets = true, .link = query.link}, {});
+        if (!any) return any.error();
+        if (any->pieces.empty())
+            return Error{fmt::format("link: run {} has no packets of '{}'{}{}", run.value, query.link,
+                                     links->empty() ? "" : "; it has octets of ", fmt::join(wanted.links_, ", "))};
+    }
     if (!query.link.empty()) wanted.links_ = {query.link};
     wanted.query_ = std::move(query);
     return wanted;

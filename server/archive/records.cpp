@@ -3,7 +3,7 @@
 
 #include "server/archive/item_tables.hpp"
 
-#include <algorithm>
+#include <map>
 #include <utility>
 
 namespace aeolis::archive {
@@ -23,13 +23,15 @@ void Extremes::add(const Extremes& later) {
 
 void merge(LinkTotals& into, LinkTotals later) {
     auto sequences = std::move(into.sequences);
+    std::map<std::pair<bool, std::string>, std::size_t> places;
+    if (!later.sequences.empty())
+        for (std::size_t i = 0; i < sequences.size(); ++i) places[{sequences[i].packets, sequences[i].name}] = i;
     for (auto& each : later.sequences) {
-        const auto same = [&](const auto& other) { return other.name == each.name && other.packets == each.packets; };
-        const auto known = std::ranges::find_if(sequences, same);
-        if (known == sequences.end())
+        const auto [place, is_new] = places.try_emplace({each.packets, each.name}, sequences.size());
+        if (is_new)
             sequences.push_back(std::move(each));
         else
-            known->counters = each.counters;
+            sequences[place->second].counters = each.counters;
     }
     into = std::move(later);
     into.sequences = std::move(sequences);

@@ -61,7 +61,8 @@ Result<RowWriter> RowWriter::open(sqlite::Database& database) {
          "INSERT OR REPLACE INTO link_totals VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)"},
         {&RowWriter::sequence_totals_, "INSERT OR REPLACE INTO sequence_totals VALUES (?,?,?,?,?,?,?,?,?,?,?)"},
         {&RowWriter::raw_, "INSERT OR IGNORE INTO raw_octets VALUES (?,?,?,?,?)"},
-        {&RowWriter::raw_removed_, "DELETE FROM raw_octets WHERE run = ?1 AND link = ?2 AND first < ?3"},
+        {&RowWriter::raw_removed_, "DELETE FROM raw_octets WHERE run = ?1 AND link = ?2 AND first < ?3"
+                                   " AND first + length(octets) <= ?3"},
         {&RowWriter::request_,
          "INSERT INTO requests SELECT ?1, coalesce(max(position), 0) + 1, ?2, ?3 FROM requests WHERE run = ?1"},
         {&RowWriter::totals_, "INSERT OR REPLACE INTO recordings VALUES (?,?,?,?,?,?,?,?,?)"},

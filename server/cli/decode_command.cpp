@@ -160,11 +160,13 @@ bool print_losses(const telemetry::PacketSource& source, const Printed& printed)
     if (link.forgotten_channels > 0)
         fmt::print(stderr, "virtual channels: {} more than are followed at a time were forgotten\n",
                    link.forgotten_channels);
+    if (source.stray_octets() > 0)
+        fmt::print(stderr, "skipped: {} octets that are neither good frames nor fill\n", source.stray_octets());
     print_sequences(source);
     for (const auto& [problem, count] : printed.problems()) fmt::print(stderr, "{} packets: {}\n", count, problem);
     return link.bad_crc + link.bad_header + link.uncorrectable_frames + link.missing_frames + link.cut_frames +
                    packets.encapsulation_packets + packets.cut_packets + packets.lost_segments +
-                   packets.unreadable_octets ==
+                   packets.unreadable_octets + source.stray_octets() ==
                0 &&
            printed.problems().empty();
 }
@@ -189,6 +191,7 @@ int decode(const DecodeOptions& options) {
     if (!in || std::filesystem::is_directory(options.packets))
         return failed(options.packets.string() + " cannot be read", 2);
     auto octets = read_piece();
+    if (octets.empty()) return failed(options.packets.string() + " is empty");
     auto recognised = packet_source(options.format, octets, octets.size() < piece_octets);
     if (!recognised) return failed(options.packets.string() + ": " + recognised.error().message, 2);
     auto& source = recognised->source;
@@ -206,7 +209,10 @@ int decode(const DecodeOptions& options) {
     source.end();
     take();
     printed.print_kinds();
-    return print_losses(source, printed) ? 0 : 1;
+    const bool all_decoded = print_losses(source, printed);
+    if (const auto words = nothing_found(options.format, source); !words.empty())
+        return failed(options.packets.string() + ": " + words);
+    return all_decoded ? 0 : 1;
 }
 
 }  // namespace

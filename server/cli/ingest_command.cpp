@@ -10,6 +10,7 @@
 #include "server/pipeline/pipeline_thread.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <functional>
@@ -28,6 +29,7 @@ namespace {
 constexpr std::size_t plain_piece_octets = 65536;
 constexpr std::size_t beginning_octets_max = std::size_t{1} << 20U;  // by which a layout is recognised
 constexpr std::int64_t microseconds_a_second = 1'000'000;
+constexpr double bits_an_octet = 8.0;
 constexpr std::size_t ingest_delivery_entries = 256;
 
 struct IngestOptions {
@@ -119,7 +121,7 @@ class Recording {
 
     void each_of_plain(const TakePiece& take) const {
         // With a rate in pieces of a tenth of a second: the time of each is that of its last octet.
-        constexpr double bits_an_octet = 8.0, piece_s = 0.1;
+        constexpr double piece_s = 0.1;
         const double rate = options_->bits_per_second.value_or(0.0) / bits_an_octet;
         const auto piece =
             rate > 0.0
@@ -139,14 +141,41 @@ class Recording {
     std::optional<pcap::File> capture_;
 };
 
-/// Recognises the layout of a recording by its first octets.
-Result<RecognisedSource> source_of(const Recording& recording, const PacketStreamFormat& format) {
+/// Recognises the layout of recordings, which are one stream, by their first octets.
+Result<RecognisedSource> source_of(const std::vector<Recording>& recordings, const PacketStreamFormat& format) {
     std::vector<std::uint8_t> beginning;
-    recording.each([&](const Piece& piece) {
-        beginning.insert(beginning.end(), piece.octets.begin(), piece.octets.end());
-        return beginning.size() < beginning_octets_max;
-    });
+    for (const auto& recording : recordings) {
+        if (beginning.size() >= beginning_octets_max) break;
+        recording.each([&](const Piece& piece) {
+            beginning.insert(beginning.end(), piece.octets.begin(), piece.octets.end());
+            return beginning.size() < beginning_octets_max;
+        });
+    }
     return packet_source(format, beginning, beginning.size() < beginning_octets_max);
+}
+
+/// Microseconds in which octets of a plain file came.
+std::int64_t duration_us(std::size_t octets, const IngestOptions& options) {
+    if (!options.bits_per_second) return 0;
+    return static_cast<std::int64_t>(static_cast<double>(octets) * bits_an_octet / *options.bits_per_second *
+                                     microseconds_a_second);
+}
+
+/// Whether times of reception are in range at the rate that is told.
+Result<void> check_rate(const IngestOptions& options) {
+    constexpr double years_max = 100.0, seconds_a_year = 31'557'600.0;  // chosen
+    if (!options.bits_per_second) return {};
+    if (!std::isfinite(*options.bits_per_second) || *options.bits_per_second <= 0.0)
+        return Error{"--bits-per-second: a number, more than 0"};
+    double octets = 0.0;
+    for (const auto& file : options.files) {
+        std::error_code error;
+        const auto size = std::filesystem::file_size(file, error);
+        if (!error) octets += static_cast<double>(size);
+    }
+    if (octets * bits_an_octet / *options.bits_per_second <= years_max * seconds_a_year) return {};
+    return Error{fmt::format("--bits-per-second {:g}: {:.0f} octets would take more than {:.0f} years",
+                             *options.bits_per_second, octets, years_max)};
 }
 
 /// Hands the pieces of a recording to the archive as a link does.
@@ -155,29 +184,48 @@ class Ingest {
     Ingest(const IngestOptions& options, PipelineThread& pipeline) : options_(options), pipeline_(pipeline) {}
 
     Result<void> add(const Recording& recording, telemetry::PacketSource& source, const std::string& name) {
-        const auto unused = recording.each([&](const Piece& piece) { return take(piece, source); });
-        if (!unused.empty()) {
-            ++faults_;
-            fmt::print(stderr, "{}: {}\n", name, unused);
+        bool empty = true;
+        const auto unused = recording.each([&](const Piece& piece) {
+            empty = empty && piece.octets.empty();
+            return take(piece, source);
+        });
+        if (!unused.empty()) fault(name + ": " + unused);
+        if (empty) fault(name + ": no octets of a link are in it");
+        if (source.lost()) {  // bare packets that no other can follow: the next recording begins with one
+            end(source);
+            source = telemetry::PacketSource::of_packets(options_.format.skip);
         }
-        source.end();
-        take_packets(source);
-        ledger_.end(source);
         return hand_over();
     }
 
-    /// Hands over the totals. True when everything was as it should be.
-    Result<bool> finish() {
+    /// Ends the stream and hands over the totals. False when it was not as it should be.
+    Result<bool> finish(telemetry::PacketSource& source) {
+        end(source);
         auto totals = ledger_.totals(nullptr, now_);
         const auto faults = ledger_.faults_since(totals);
         fmt::print("{} packets of {} octets\n", packets_, totals.counters.octets);
-        if (!faults.empty()) fmt::print(stderr, "{}\n", faults);
+        if (!faults.empty()) fault(faults);
+        if (source.stray_octets() > 0)
+            fault(fmt::format("{} octets skipped that are neither good frames nor fill", source.stray_octets()));
+        if (packets_ + totals.packets.idle_packets == 0)
+            if (const auto words = nothing_found(options_.format, source); !words.empty()) fault(words);
         delivery_.links.push_back(std::move(totals));
         if (auto done = hand_over(); !done) return done.error();
-        return faults.empty() && faults_ == 0;
+        return faults_ == 0;
     }
 
   private:
+    void fault(const std::string& words) {
+        ++faults_;
+        fmt::print(stderr, "{}\n", words);
+    }
+
+    void end(telemetry::PacketSource& source) {
+        source.end();
+        take_packets(source);
+        ledger_.end(source);
+    }
+
     bool take(const Piece& piece, telemetry::PacketSource& source) {
         wait_for(piece.ert);
         if (!began_) {
@@ -239,7 +287,7 @@ class Ingest {
 int ingest(const IngestOptions& options) {
     if (!telemetry::downlink_format(options.format.name))
         return failed(packet_source(options.format, {}, true).error().message, 2);
-    if (options.bits_per_second && *options.bits_per_second <= 0.0) return failed("--bits-per-second: more than 0", 2);
+    if (const auto checked = check_rate(options); !checked) return failed(checked.error().message, 2);
     Ert start = EarthClock{read_clocks}.now();
     if (options.start) {
         const auto told = ert_from_text(*options.start);
@@ -248,19 +296,22 @@ int ingest(const IngestOptions& options) {
     }
     std::vector<MappedFile> files;
     std::vector<Recording> recordings;
-    std::vector<telemetry::PacketSource> sources;
+    std::size_t before = 0;  // octets of the files before
     for (const auto& name : options.files) {
         auto file = MappedFile::open(name);
         if (!file) return failed(file.error().message, 2);
         files.push_back(std::move(*file));
-        auto recording = Recording::open(files.back().octets(), options, start);
+        const Ert begun{start.microseconds + duration_us(before, options)};
+        auto recording = Recording::open(files.back().octets(), options, begun);
         if (!recording) return failed(name.string() + ": " + recording.error().message, 2);
-        auto source = source_of(*recording, options.format);
-        if (!source) return failed(name.string() + ": " + source.error().message, 2);
-        if (!source->layout.empty()) fmt::print(stderr, "{}: taken for {}\n", name.string(), source->layout);
+        before += files.back().octets().size();
         recordings.push_back(*recording);
-        sources.push_back(std::move(source->source));
     }
+    const auto& first = options.files.front();
+    if (before == 0) return failed(first.string() + ": no octets of a link are in it");
+    auto source = source_of(recordings, options.format);
+    if (!source) return failed(first.string() + ": " + source.error().message, 2);
+    if (!source->layout.empty()) fmt::print(stderr, "{}: taken for {}\n", first.string(), source->layout);
     auto xtce = read_xtce(options.xtce);
     if (!xtce) return xtce.exit_code;
     const telemetry::OtherMission mission{std::move(*xtce.model), xtce.id, std::move(xtce.time)};
@@ -281,15 +332,16 @@ int ingest(const IngestOptions& options) {
     Ingest ingest{options, pipeline};
     std::optional<Error> broken;
     for (std::size_t i = 0; i < recordings.size() && !broken; ++i)
-        if (auto added = ingest.add(recordings[i], sources[i], options.files[i].string()); !added)
+        if (auto added = ingest.add(recordings[i], source->source, options.files[i].string()); !added)
             broken = added.error();
-    const auto right = ingest.finish();
+    const auto right = ingest.finish(source->source);
     const auto finished =
         pipeline.finish({"stopped", broken ? broken->message : "the recording ended", "", wall_clock_text()});
     if (broken) return failed(broken->message);
     if (!right) return failed(right.error().message);
     if (!finished) return failed(finished.error().message);
-    return *right ? 0 : 1;
+    if (pipeline.not_decoded() > 0) fmt::print(stderr, "{} packets not decoded\n", pipeline.not_decoded());
+    return *right && pipeline.not_decoded() == 0 ? 0 : 1;
 }
 
 }  // namespace
@@ -299,7 +351,7 @@ void add_ingest_command(CLI::App& program, int& exit_code) {
     auto& command = *program.add_subcommand(
         "ingest", "takes recorded files of a mission into a run of the archive, as a followed link brings it: plain "
                   "octets, or pcap with the times of reception. Exit code 1 when anything was lost or not used");
-    command.add_option("files", options->files, "recorded files, in the order of reception")->required();
+    command.add_option("files", options->files, "recorded files, in the order of reception: one stream")->required();
     command.add_option("--archive", options->archive, "SQLite file that keeps everything")->required();
     add_mission_xtce(command, options->xtce, "the mission's XTCE file; may be given several times")->required();
     add_stream_format(command, options->format);

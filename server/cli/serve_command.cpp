@@ -295,11 +295,12 @@ void add_run_options(CLI::App& command, ServeOptions& options) {
                                         "rehearsal to start at once: a file, or the name of a shipped one");
     auto* downlink =
         command
-            .add_option("--downlink", options.downlink,
-                        "follow another mission instead of rehearsing: tcp://HOST:PORT connects, and reconnects "
-                        "after every end, waiting longer each time up to 30 s; udp://HOST:PORT listens (with "
-                        "--format packets each datagram holds whole packets). What arrives is a run of its own: "
-                        "its packets, and their numbers as channels, are in stream, archive and API")
+            .add_option(
+                "--downlink", options.downlink,
+                "follow another mission instead of rehearsing: tcp://HOST:PORT connects, and reconnects "
+                "after every end, waiting longer each time up to 30 s; udp://HOST:PORT listens (with "
+                "--format packets, tm and aos each datagram holds whole ones). What arrives is a run of its own: "
+                "its packets, and their numbers as channels, are in stream, archive and API")
             ->excludes(scenario);
     auto* xtce = add_mission_xtce(command, options.xtce,
                                   "that mission's XTCE file; may be given several times. Unsupported parts are named "

@@ -101,7 +101,6 @@ void DownlinkFollower::receive_until_end() {
         if (received.got == DownlinkSocket::Got::nothing) continue;
         ledger_.received(clock_.now(), received.octets);
         take(std::span{piece}.first(received.octets));
-        if (settings_.address.udp && source_ && !source_->end_datagram()) ledger_.bad_datagram();
         if (stop_) return;
         if (out_of_step_ && !settings_.address.udp) {
             socket_.close();
@@ -118,7 +117,10 @@ void DownlinkFollower::take(std::span<const std::uint8_t> octets) {
         if (!recognise(octets)) return deliver_packets();
         octets = {};
     }
-    if (!octets.empty()) source_->receive(octets);
+    if (!octets.empty()) {
+        source_->receive(octets);
+        end_datagram();
+    }
     deliver_packets();
     out_of_step_ = source_->lost();
 }
@@ -126,6 +128,8 @@ void DownlinkFollower::take(std::span<const std::uint8_t> octets) {
 /// Makes the packet source once the frame length is known, and passes it all octets received.
 bool DownlinkFollower::recognise(std::span<const std::uint8_t> octets) {
     beginning_.insert(beginning_.end(), octets.begin(), octets.end());
+    if (!settings_.address.udp) datagrams_.clear();
+    datagrams_.push_back(settings_.address.udp ? octets.size() : beginning_.size());
     // Retried each time the octets have doubled, so that octets received one by one cost at most twice the work.
     const bool full = beginning_.size() >= beginning_octets_max;
     const bool told = !needs_beginning(settings_.format);
@@ -135,6 +139,7 @@ bool DownlinkFollower::recognise(std::span<const std::uint8_t> octets) {
     if (!recognised && full) ledger_.unread(beginning_.size());
     if (recognised || full) {
         beginning_.clear();
+        datagrams_.clear();
         tried_octets_ = 0;
     }
     if (full && !recognised) lost(telemetry::SilenceClass::ground_fault, recognised.error().message);
@@ -148,8 +153,17 @@ Result<void> DownlinkFollower::begin_source(bool ended) {
     if (!recognised->layout.empty())
         spdlog::info("downlink {}: taken for {}", settings_.address.text(), recognised->layout);
     source_.emplace(std::move(recognised->source));
-    source_->receive(beginning_);
+    auto rest = std::span<const std::uint8_t>{beginning_};
+    for (const std::size_t size : datagrams_) {
+        source_->receive(rest.first(size));
+        end_datagram();
+        rest = rest.subspan(size);
+    }
     return {};
+}
+
+void DownlinkFollower::end_datagram() {
+    if (settings_.address.udp && !source_->end_datagram()) ledger_.bad_datagram();
 }
 
 void DownlinkFollower::end_of_stream() {
@@ -167,6 +181,7 @@ void DownlinkFollower::end_of_stream() {
     source_.reset();
     tell_totals(clock_.now(), false);
     beginning_.clear();
+    datagrams_.clear();
     tried_octets_ = 0;
 }
 

@@ -24,7 +24,8 @@ namespace aeolis::server {
 /// In       octets of a TCP connection or of datagrams       Out   deliveries to the pipeline, the octets as they came
 ///          among them; run states on change
 /// TCP      connects, and reconnects after every end: first after `retry_first`, then doubling up to `retry_max`
-/// UDP      bare packets: each datagram holds whole packets. Frames: datagrams are pieces of one stream
+/// UDP      bare packets, and frames without markers: each datagram holds whole ones. CADUs and PLTUs: datagrams are
+///          pieces of one stream
 /// Counts   totals of the link and of its sequences once a second, over all connections; what went wrong is logged at
 ///          most every ten seconds, as numbers by kind
 /// Faults   octets that are no packet are counted and skipped. When bare packets cannot be found any more, it
@@ -68,6 +69,7 @@ class DownlinkFollower {
     void take(std::span<const std::uint8_t> octets);
     Result<void> begin_source(bool ended);
     bool recognise(std::span<const std::uint8_t> octets);
+    void end_datagram();
     void end_of_stream();
     void pass();
     void tell_totals(Ert now, bool last);
@@ -91,6 +93,7 @@ class DownlinkFollower {
     LinkLedger ledger_{telemetry::downlink_link.name};
     std::optional<Ert> faults_logged_;
     std::vector<std::uint8_t> beginning_;  ///< of a stream whose frames are not yet recognised
+    std::vector<std::size_t> datagrams_;   ///< sizes of the datagrams in it; of TCP its own
     std::size_t tried_octets_ = 0;
     std::string said_;  ///< the last message, so that a lasting fault is reported once
     std::uint64_t packets_ = 0;

@@ -61,10 +61,12 @@ Result<telemetry::FrameStream> cadu_stream(const PacketStreamFormat& format, std
                                            bool ended) {
     const auto found = telemetry::recognise_cadus(beginning, hints_of(format), ended);
     if (found) return *found;
-    if (!telemetry::cadu_frame_octets(beginning)) {
-        if (ended && format.frame_octets) return told(format);
-        return Error{"no two sync markers 1ACFFC1D, at any bit, inverted or not: say --frame-octets"};
-    }
+    if (!telemetry::find_marker(beginning, 0))
+        return Error{"no sync marker 1ACFFC1D, at any bit, inverted or not: these are no CADUs"};
+    if (!telemetry::cadu_frame_octets(beginning))
+        return Error{format.frame_octets
+                         ? "behind the only sync marker 1ACFFC1D stands no frame as it is told"
+                         : "no two sync markers 1ACFFC1D, at any bit, inverted or not: say --frame-octets"};
     const auto distance = *telemetry::cadu_frame_octets(beginning);
     const auto agreed = format.frame_octets.value_or(0) + format.check_octets.value_or(0);
     if (format.frame_octets && (distance < agreed || (format.check_octets && distance != agreed)))
@@ -151,6 +153,16 @@ Result<RecognisedSource> packet_source(const PacketStreamFormat& format, std::sp
                                                       : bare_stream(format, *kind, beginning, ended);
     if (!frames) return frames.error();
     return RecognisedSource{PacketSource::of_frames(*frames), words_of(*frames)};
+}
+
+std::string nothing_found(const PacketStreamFormat& format, const telemetry::PacketSource& source) {
+    const auto link = source.link();
+    const auto packets = source.packets();
+    if (link.frames > 0 && format.virtual_channel && source.sequences().empty())
+        return fmt::format("no frame is of virtual channel {}: look at --virtual-channel", *format.virtual_channel);
+    if (link.frames + packets.packets + packets.idle_packets + packets.encapsulation_packets > 0) return {};
+    return fmt::format("nothing that is {} was found: look at --format {}, and whether this is the right file",
+                       format.name == "packets" ? "a packet" : "a frame", format.name);
 }
 
 bool needs_beginning(const PacketStreamFormat& format) {

@@ -36,6 +36,9 @@ struct RecognisedSource {
 Result<RecognisedSource> packet_source(const PacketStreamFormat& format, std::span<const std::uint8_t> beginning,
                                        bool ended);
 
+/// What to look at when nothing, not even idle data, was found in all that a source received; empty: something was.
+std::string nothing_found(const PacketStreamFormat& format, const telemetry::PacketSource& source);
+
 /// Whether packet_source() uses the beginning at all.
 bool needs_beginning(const PacketStreamFormat& format);
 

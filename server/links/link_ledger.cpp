@@ -16,22 +16,36 @@ void LinkLedger::end(const telemetry::PacketSource& source) {
     ended_ += source.link();
     ended_packets_ += source.packets();
     for (const auto& sequence : source.sequences())
-        ended_sequences_[{sequence.packets, sequence.name}] += sequence.counters;
+        sequences_[row_of({sequence.packets, sequence.name})].ended += sequence.counters;
+}
+
+/// The row that a sequence is counted in, always the same: its own, or that of the others.
+LinkLedger::Key LinkLedger::row_of(Key name) {
+    constexpr std::size_t rows_of_others = 2;
+    for (const bool packets : {false, true}) sequences_.try_emplace({packets, telemetry::other_sequences});
+    const bool room = sequences_.size() < telemetry::sequences_named_max + rows_of_others;
+    if (!room && !sequences_.contains(name)) name.second = telemetry::other_sequences;
+    return name;
 }
 
 archive::LinkTotals LinkLedger::totals(const telemetry::PacketSource* source, Ert now) {
     archive::LinkTotals totals{link_, ended_, rate_.per_second(now), ended_packets_, bad_datagrams_, {}};
-    Sequences sequences = ended_sequences_;
+    std::map<Key, telemetry::SequenceCounters> of_source;
     if (source != nullptr) {
         totals.counters += source->link();
         totals.packets += source->packets();
-        for (const auto& each : source->sequences()) sequences[{each.packets, each.name}] += each.counters;
+        for (const auto& each : source->sequences()) {
+            const auto row = row_of({each.packets, each.name});
+            sequences_.try_emplace(row);
+            of_source[row] += each.counters;
+        }
     }
     totals.counters.octets = octets_;
-    for (const auto& [key, counters] : sequences) {
-        auto& told = told_[key];
-        if (told == counters) continue;
-        told = counters;
+    for (auto& [key, sequence] : sequences_) {
+        auto counters = sequence.ended;
+        if (const auto more = of_source.find(key); more != of_source.end()) counters += more->second;
+        if (sequence.told == counters) continue;
+        sequence.told = counters;
         totals.sequences.push_back({key.second, key.first, counters});
     }
     return totals;

@@ -16,7 +16,9 @@ namespace aeolis::server {
 /// What a followed link has brought since its run began, over all its connections, and what of it was bad.
 ///
 /// In       each piece of octets, the sources that read them
-/// Out      totals for archive, metrics and console; a line of what went wrong since the last line
+/// Out      totals for archive, metrics and console, none of which ever falls; a line of what went wrong since the last
+///          line
+/// Memory   the first `sequences_named_max` sequences by name; all others are counted in one row "others"
 class LinkLedger {
   public:
     explicit LinkLedger(std::string link) : link_(std::move(link)) {}
@@ -36,15 +38,18 @@ class LinkLedger {
     std::string faults_since(const archive::LinkTotals& totals);
 
   private:
-    using Key = std::pair<bool, std::string>;
-    using Sequences = std::map<Key, telemetry::SequenceCounters>;
+    struct Sequence {
+        telemetry::SequenceCounters ended, told;
+    };
+    using Key = std::pair<bool, std::string>;  ///< of packets; name
+    Key row_of(Key name);
 
     std::string link_;
     telemetry::RateMeter rate_;
     std::uint64_t octets_ = 0, bad_datagrams_ = 0;
     telemetry::LinkCounters ended_;
     telemetry::PacketCounters ended_packets_;
-    Sequences ended_sequences_, told_;
+    std::map<Key, Sequence> sequences_;  ///< `sequences_named_max` and the others of frames and of packets
     std::optional<archive::LinkTotals> last_;
     std::vector<std::uint64_t> logged_;
 };

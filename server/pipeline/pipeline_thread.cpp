@@ -345,6 +345,7 @@ void PipelineThread::run() {
 }
 
 void PipelineThread::finish(Finish& finish) {
+    not_decoded_ = pipeline_.totals().not_decoded;
     const bool stored = retry_until_stored([&] { return pipeline_.finish(finish.end); });
     tell_audit_head();  // the run's fingerprint
     finish.done.set_value(stored ? Result<void>{} : Error{fault()});

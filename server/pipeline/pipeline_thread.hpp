@@ -70,6 +70,8 @@ class PipelineThread {
     bool deliver(Delivery delivery);
     /// Waits until all deliveries are durable and the run is marked finished.
     Result<void> finish(const archive::RunEnd& end);
+    /// Packets of the run finished last that were not decoded.
+    std::uint64_t not_decoded() const { return not_decoded_; }
     /// Announces the end of the program. A working disk still stores everything; when it fails, callers that wait get
     /// the Error after some tries, and the run stays interrupted. From any thread.
     void closing() { closing_ = true; }
@@ -171,7 +173,7 @@ class PipelineThread {
     Faults faults_;
     BoundedQueue<Job> jobs_{deliveries_max};
     std::atomic<bool> items_wanted_{true}, given_up_{false}, closing_{false}, blocked_{false};
-    std::atomic<std::uint64_t> deliveries_{0}, failed_commits_{0}, batches_{0}, items_{0};
+    std::atomic<std::uint64_t> deliveries_{0}, failed_commits_{0}, batches_{0}, items_{0}, not_decoded_{0};
     std::atomic<std::size_t> pending_octets_{0};
     mutable std::mutex figures_mutex_;
     std::map<std::string, Received> links_;

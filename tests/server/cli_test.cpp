@@ -719,6 +719,8 @@ TEST_CASE("decode ends with 1 and says what it left, and asks where the file lea
     const std::string half = write("half", "\x01\x23\x40\x00\x00\x01\x00\x07"s);
     const std::string other = write("other", "\xE9\x03\xFF\x01\x23\xC0\x00\x00\x01\x00\x07"s);
     const std::string idle = write("idle", "\xE0\x07\xFF\xC0\x00\x00\x00\x00"s);
+    const std::string zeros = write("zeros", std::string(5000, '\0')), empty = write("empty", ""),
+                      text = write("text", "this is no telemetry, but a text of some lines"s);
     struct Case {
         std::string arguments;
         int code;
@@ -731,6 +733,12 @@ TEST_CASE("decode ends with 1 and says what it left, and asks where the file lea
           Case{one + " --packets " + half, 1, "1 segments without the rest"},
           Case{one + " --packets " + other, 1, "1 encapsulation packets not decoded"},
           Case{one + " --packets " + idle, 0, "packets: 0, 2 idle"},
+          Case{one + " --packets " + empty, 1, "empty is empty"},
+          Case{one + " --format pltu --packets " + zeros, 1,
+               "skipped: 5000 octets that are neither good frames nor fill"},
+          Case{one + " --format pltu --packets " + text, 1, "nothing that is a frame was found: look at --format pltu"},
+          Case{one + " --format cadu --frame-octets 20 --packets " + text, 2, "no sync marker 1ACFFC1D"},
+          Case{one + " --packets " + text, 1, "nothing that is a packet was found: look at --format packets"},
           Case{two + " --packets " + right, 2, "say with which one packets begin: /T/P, /T/Q"},
           Case{two + " --root Q --packets " + right, 0, ",W=7|7"},
           Case{two + " --root R --packets " + right, 2, "no packet begins with a container 'R'"}}) {
@@ -787,7 +795,8 @@ TEST_CASE("decode corrects what Reed-Solomon codeblocks hold, says how much, and
         return stream;
     };
     const std::string clean = write("clean", stream_with(0)), wrong = write("wrong", stream_with(16)),
-                      lost = write("lost", stream_with(17));
+                      lost = write("lost", stream_with(17)),
+                      behind = write("behind", stream_with(0) + std::string(100, 'x'));
     struct Case {
         std::string arguments;
         int code;
@@ -799,6 +808,8 @@ TEST_CASE("decode corrects what Reed-Solomon codeblocks hold, says how much, and
                "1, dual basis, behind sync markers"},
           Case{wrong, 0, "Reed-Solomon: 1 frames corrected, 16 symbols; 0 frames uncorrectable"},
           Case{wrong + " --reed-solomon 223 --interleave 1 --basis dual", 0, "520 packets   APID  291"},
+          Case{behind, 1, "skipped: 100 octets that are neither good frames nor fill"},
+          Case{clean + " --virtual-channel 5", 1, "no frame is of virtual channel 5: look at --virtual-channel"},
           Case{lost, 1, "Reed-Solomon: 0 frames corrected, 0 symbols; 1 frames uncorrectable"},
           Case{clean + " --check-symbols 32", 0, "32 check symbols behind each"},
           Case{clean + " --reed-solomon no --frame-octets 214", 0, "32 check symbols behind each"},
@@ -869,6 +880,36 @@ TEST_CASE("a recorded capture becomes a run, and what is exported of it is what 
     const auto third = ingest(stream + " --start 2012-219T05:10:00 --bits-per-second 1920");
     INFO(third.text);
     CHECK(third.code == 0);
+    // In two files, cut within a packet: one stream, whose times go on.
+    const auto halves = ingest(write("half1", plain.substr(0, 1203)) + " " + write("half2", plain.substr(1203)) +
+                               " --start 2012-219T05:10:00 --bits-per-second 1920");
+    INFO(halves.text);
+    CHECK(halves.code == 0);
+    CHECK_THAT(halves.text, Catch::Contains("run 4") && Catch::Contains("300 packets of 2400 octets"));
+    for (const auto& [arguments, code, says] :
+         {std::tuple{write("empty", ""), 1, "no octets of a link are in it"},
+          {stream + " " + write("empty", ""), 1, "empty: no octets of a link are in it"},
+          {write("zeros", std::string(5000, '\0')) + " --format pltu", 1, "nothing that is a frame was found"},
+          {stream + " --bits-per-second nan", 2, "--bits-per-second: a number, more than 0"},
+          {stream + " --bits-per-second inf", 2, "--bits-per-second: a number, more than 0"},
+          {stream + " --bits-per-second -1", 2, "--bits-per-second"},
+          {stream + " --bits-per-second 1e-300", 2, "would take more than 100 years"}}) {
+        const auto ended = ingest(arguments);
+        INFO(arguments << " -> " << ended.code << ": " << ended.text);
+        CHECK(ended.code == code);
+        CHECK_THAT(ended.text, Catch::Contains(says));
+    }
+    const std::string abstract = write(
+        "abstract.xml",
+        "<SpaceSystem name='T'><TelemetryMetaData><ParameterTypeSet>"
+        "<IntegerParameterType name='u48'><IntegerDataEncoding sizeInBits='48'/></IntegerParameterType>"
+        "</ParameterTypeSet><ParameterSet><Parameter name='H' parameterTypeRef='u48'/></ParameterSet><ContainerSet>"
+        "<SequenceContainer name='P' abstract='true'><EntryList><ParameterRefEntry parameterRef='H'/></EntryList>"
+        "</SequenceContainer></ContainerSet></TelemetryMetaData></SpaceSystem>");
+    const auto not_decoded = run(program(), "ingest --archive " + archive + " --xtce " + abstract + " " + stream);
+    INFO(not_decoded.text);
+    CHECK(not_decoded.code == 1);
+    CHECK_THAT(not_decoded.text, Catch::Contains("300 packets not decoded"));
     const auto refused = ingest(newer);
     CHECK(refused.code == 2);
     CHECK_THAT(refused.text, Catch::Contains("editcap"));
@@ -894,6 +935,14 @@ TEST_CASE("a recorded capture becomes a run, and what is exported of it is what 
     auto same = capture;  // but for the port
     for (std::size_t at = 24; at < same.size(); at += 16 + 36) same.replace(at + 36, 4, "\x10\x68\x10\x68");
     CHECK(exported("1 --raw --format pcap") == same);
+    CHECK(exported("4 --raw") == plain);
+    CHECK(exported("4 --packets --format bin") == plain);
+    const auto late = exported("4 --raw --from 2012-219T05:10:07 --to 2012-219T05:10:08");
+    CHECK((!late.empty() && plain.find(late) != std::string::npos));
+    const auto no_packets = run(program(), "export --archive " + archive + " --run 1 --packets --link relay");
+    INFO(no_packets.text);
+    CHECK(no_packets.code == 1);
+    CHECK_THAT(no_packets.text, Catch::Contains("link: run 1 has no packets of 'relay'; it has octets of downlink"));
     const auto no_link = run(program(), "export --archive " + archive + " --run 1 --raw --link relay");
     CHECK(no_link.code == 1);
     CHECK_THAT(no_link.text, Catch::Contains("no octets of 'relay'"));

@@ -3,6 +3,8 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/octets.hpp"
 
+#include <map>
+
 namespace server_link_ledger_test {
 
 using namespace aeolis;
@@ -43,6 +45,43 @@ TEST_CASE("a link's totals go on over its connections, and what went wrong is sa
     REQUIRE(both.sequences.size() == 1);
     CHECK(both.sequences[0].counters.received == 2);
     CHECK(ledger.faults_since(both).empty());
+}
+
+TEST_CASE("sequences of a link beyond a number are told in one row, in time in proportion, and no total falls",
+          "[server][downlink][R54]") {
+    constexpr std::size_t prefixes = 3, apids = 2000;
+    LinkLedger ledger{"downlink"};
+    archive::LinkTotals all;
+    for (std::size_t connection = 0; connection < 2 * prefixes; ++connection) {
+        // Packets in frames of another spacecraft each: as many names again.
+        auto source =
+            telemetry::PacketSource::of_frames({.frame_octets = 15, .marker = false, .agreed = {.crc = false}});
+        for (std::size_t apid = 0; apid < apids; ++apid) {
+            auto packet = test::hex("0000c0000002aabbcc");
+            packet[0] = static_cast<std::uint8_t>(apid / 256);
+            packet[1] = static_cast<std::uint8_t>(apid % 256);
+            TransferFrame frame;
+            frame.spacecraft = static_cast<std::uint16_t>(connection % prefixes);
+            frame.count = static_cast<std::uint32_t>(apid % 256);
+            frame.first_header_pointer = 0;
+            frame.data = packet;
+            std::vector<std::uint8_t> octets(15);
+            write_tm_frame(frame, 0, false, octets);
+            source.receive(octets);
+            while (source.next()) {
+            }
+        }
+        auto told = ledger.totals(&source, Ert{0});
+        std::map<std::pair<bool, std::string>, std::uint64_t> before;
+        for (const auto& each : all.sequences) before[{each.packets, each.name}] = each.counters.received;
+        for (const auto& each : told.sequences) CHECK(each.counters.received > before[{each.packets, each.name}]);
+        archive::merge(all, std::move(told));
+        ledger.end(source);
+    }
+    CHECK(all.sequences.size() == telemetry::sequences_named_max + 1);
+    std::uint64_t packets = 0;
+    for (const auto& each : all.sequences) packets += each.packets ? each.counters.received : 0;
+    CHECK(packets == 2 * prefixes * apids);
 }
 
 }  // namespace server_link_ledger_test

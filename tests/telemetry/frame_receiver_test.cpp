@@ -423,4 +423,73 @@ TEST_CASE("a marker at another bit is not believed for itself, and one with wron
     }
 }
 
+TEST_CASE("a datagram ends the frame where there is no marker, and a short one is cut and loses no other",
+          "[telemetry]") {
+    std::mt19937 random{11};
+    for (const bool marker : {false, true}) {
+        FrameReceiver receiver{{.frame_octets = length, .marker = marker}};
+        std::size_t frames = 0, bad = 0;
+        for (unsigned i = 0; i < 20; ++i) {
+            Octets datagram;
+            if (marker) append(datagram, attached_sync_marker);
+            append(datagram, frame_octets(FrameStream::Kind::tm, i, random));
+            if (i == 3) datagram.resize(50);
+            receiver.receive(datagram);
+            while (receiver.next()) ++frames;
+            bad += receiver.end_datagram() ? 0 : 1;
+        }
+        CHECK(frames == 19);
+        CHECK(bad == (marker ? 0 : 1));
+        CHECK(receiver.counters().cut_frames == bad);
+    }
+}
+
+TEST_CASE(
+    "no layout is told of sync markers with anything but frames between, and a single frame is read as it is told",
+    "[telemetry][R55]") {
+    std::mt19937 random{12};
+    for (int round = 0; round < 20; ++round) {
+        Octets noise;
+        for (int i = 0; i < 20; ++i) {
+            append(noise, attached_sync_marker);
+            append(noise, test::random_octets(random, 200));
+        }
+        CHECK_FALSE(recognise_cadus(noise, {}, true));
+    }
+    Octets one = test::random_octets(random, 30);
+    append(one, attached_sync_marker);
+    append(one, frame_octets(FrameStream::Kind::aos, 1, random));
+    CHECK_FALSE(recognise_cadus(one, {}, true));
+    CHECK_FALSE(recognise_cadus(one, {.frame_octets = length}, false));
+    const auto found = recognise_cadus(one, {.frame_octets = length}, true);
+    REQUIRE(found);
+    CHECK(found->kind == FrameStream::Kind::aos);
+    CHECK(found->agreed.crc);
+    CHECK_FALSE(recognise_cadus(test::random_octets(random, 500), {.frame_octets = length}, true));
+}
+
+TEST_CASE("octets between and behind frames are stray, but for the bits that fill the last octet", "[telemetry][R55]") {
+    std::mt19937 random{13};
+    Octets stream;
+    for (unsigned i = 0; i < 5; ++i) {
+        append(stream, attached_sync_marker);
+        append(stream, frame_octets(FrameStream::Kind::tm, i, random));
+    }
+    Octets shifted(stream.size() + 1);
+    for (std::size_t i = 0; i < shifted.size(); ++i) {
+        const unsigned before = i > 0 ? stream[i - 1] : 0U, here = i < stream.size() ? stream[i] : 0U;
+        shifted[i] = static_cast<std::uint8_t>(before << 5U | here >> 3U);
+    }
+    const auto stray = [&](const Octets& octets, const BitAlignment& alignment) {
+        FrameReceiver receiver{{.frame_octets = length, .alignment = alignment}};
+        CHECK(frames_in(receiver, octets, random) == 5);
+        CHECK(receiver.counters().octets == receiver.counters().skipped_octets + 5 * (length + 4));
+        return receiver.stray_octets();
+    };
+    CHECK(stray(stream, {}) == 0);
+    CHECK(stray(shifted, {.shift = 3}) == 0);
+    append(stream, Octets(40, 0));
+    CHECK(stray(stream, {}) == 40);
+}
+
 }  // namespace telemetry_frame_receiver_test

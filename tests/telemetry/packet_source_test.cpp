@@ -6,6 +6,8 @@
 #include "tests/support/octets.hpp"
 
 #include <algorithm>
+#include <map>
+#include <string>
 
 namespace telemetry_packet_source_test {
 
@@ -245,7 +247,62 @@ TEST_CASE("however many channels damaged headers name, a bounded number is follo
     source.end();
     CHECK(source.link().frames == 2000);
     CHECK(source.link().forgotten_channels == 2000 - channels_followed_max);
-    CHECK(source.sequences().size() == channels_followed_max);
+    const auto sequences = source.sequences();
+    CHECK(sequences.size() == 2000);  // what is followed no more keeps its counters
+    CHECK(std::ranges::all_of(sequences, [](const auto& each) { return each.counters.received == 1; }));
+}
+
+TEST_CASE("however many packet ids and channels random headers name, no total of them ever falls", "[telemetry][R54]") {
+    constexpr std::size_t ids = 2000;
+    PacketSource source = PacketSource::of_frames({.frame_octets = 15, .marker = false, .agreed = {.crc = false}});
+    const auto send = [&](std::size_t id, std::uint8_t count) {
+        TransferFrame frame;
+        frame.spacecraft = static_cast<std::uint16_t>(id / ids);
+        frame.count = count;
+        frame.first_header_pointer = 0;
+        Octets packet = test::hex("0000c0000002aabbcc");
+        packet[0] = static_cast<std::uint8_t>(id % ids / 256);
+        packet[1] = static_cast<std::uint8_t>(id % ids % 256);
+        packet[3] = count;
+        frame.data = packet;
+        Octets octets(15);
+        write_tm_frame(frame, 0, false, octets);
+        source.receive(octets);
+        while (source.next()) {
+        }
+    };
+    std::map<std::string, std::uint64_t> told;
+    std::uint64_t sum = 0;
+    for (std::uint8_t round = 0; round < 2; ++round) {
+        for (std::size_t id = 0; id < sequences_named_max + 1000; ++id) send(id, round);
+        sum = 0;
+        for (const auto& each : source.sequences()) {
+            if (!each.packets) continue;
+            sum += each.counters.received;
+            CHECK(each.counters.received >= told[each.name]);
+            told[each.name] = each.counters.received;
+        }
+        CHECK(sum == (round + 1U) * (sequences_named_max + 1000));
+    }
+    CHECK(told.size() == sequences_named_max + 1);
+    CHECK(told.at(other_sequences) == 2000);
+}
+
+TEST_CASE("a short datagram of bare frames or packets loses nothing that comes behind it", "[telemetry]") {
+    std::mt19937 random{6};
+    const auto packets = some_packets(random);
+    auto frames = frames_of(packets, FrameStream::Kind::tm, 223);
+    auto source = PacketSource::of_frames({.frame_octets = 223, .marker = false});
+    std::size_t bad = 0, whole = 0;
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+        source.receive(std::span{frames[i]}.first(i == 2 ? 100 : 223));
+        bad += source.end_datagram() ? 0 : 1;
+        while (source.next()) ++whole;
+    }
+    CHECK(bad == 1);
+    CHECK(source.link().frames == frames.size() - 1);
+    CHECK(source.link().cut_frames == 1);
+    CHECK(whole > packets.size() - 10);
 }
 
 }  // namespace telemetry_packet_source_test

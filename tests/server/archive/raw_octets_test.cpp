@@ -114,6 +114,17 @@ TEST_CASE("of more octets than are to be kept of a link the newest are kept, and
     CHECK(ground.octets({.link = "x_band"}) == Octets{1, 2, 3});
 }
 
+TEST_CASE("a piece of octets goes only when all of it ends before those that are to be kept", "[archive][R55]") {
+    Ground ground;
+    ground.pipeline.keep_raw(1000);
+    REQUIRE(ground.pipeline.begin({}).ok());
+    for (std::int64_t i = 0; i < 10; ++i) {
+        ground.take("downlink", i, Octets(300, static_cast<std::uint8_t>(i)), true);
+        REQUIRE(ground.pipeline.commit().ok());
+    }
+    CHECK(ground.octets({.link = "downlink"}).size() == 1200);  // 900 are fewer than 1000
+}
+
 TEST_CASE("a run that is flown again from its beginning keeps each octet once, wherever it was cut off",
           "[archive][R55]") {
     std::mt19937 random{3};
