@@ -298,6 +298,7 @@ OtherMission::OtherMission(PacketModel model, std::uint16_t id, std::optional<Ti
     Builder{*this, model_}.build();
     if (time_) return;
     std::vector<std::size_t> fields;
+    fields.reserve(dictionary_.packets.size());
     for (const auto& packet : dictionary_.packets) fields.push_back(packet.fields.size());
     const auto field_of = [this](std::size_t container, std::size_t parameter, const std::string& name) {
         const auto found = fields_[container].find({parameter, name});
