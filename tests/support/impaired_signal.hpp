@@ -51,7 +51,8 @@ inline Samples transmitted(const Signal& signal) {
     constexpr double turn = 2.0 * std::numbers::pi, index = 32.0 * std::numbers::pi / 180.0;
     std::mt19937_64 random{signal.seed};
     std::normal_distribution<float> normal{0.0F, std::sqrt(0.5F)};
-    std::normal_distribution<double> walk{0.0, signal.phase_walk_rad / std::sqrt(signal.rate_hz)};
+    std::normal_distribution<double> walk;
+    const double walk_rad = signal.phase_walk_rad / std::sqrt(signal.rate_hz);  // a sample
     const double true_rate_hz = signal.rate_hz * (1.0 + signal.clock_error);
     const double amplitude = std::sqrt(std::pow(10.0, 0.1 * signal.c_n0_dbhz) / true_rate_hz);
     Samples samples(static_cast<std::size_t>(signal.length_s * signal.rate_hz));
@@ -66,7 +67,7 @@ inline Samples transmitted(const Signal& signal) {
         }
         cycles += frequency / true_rate_hz;
         cycles -= std::floor(cycles);
-        if (signal.phase_walk_rad > 0.0) wander += walk(random);
+        if (signal.phase_walk_rad > 0.0) wander += walk_rad * walk(random);
         while (next < signal.tones.size() && t >= signal.tones[next].start_s + 10.0) ++next;
         double phase = 0.0;
         if (next < signal.tones.size() && t >= signal.tones[next].start_s) {
