@@ -2,7 +2,6 @@
 // The page: the whole console or, at ?panel=NAME, one panel of it for another monitor.
 import type { FunctionComponent } from 'preact';
 import { access } from './access/model';
-import { ExpiredBar, LogIn } from './access/view';
 import { Channels } from './channels/view';
 import { Header } from './clocks/view';
 import { step } from './commands/line';
@@ -23,12 +22,15 @@ import { dismissNotice, modeNow, notices, runNow } from './run/shown';
 import type { Tab } from './places/model';
 import { TABS, full, low, middle, showAt, tab } from './places/model';
 import { helpShown, ignoreHeldEnter } from './shortcuts/model';
-import { Help } from './shortcuts/view';
 import { Menu } from './menu/shown';
 import { Situation } from './situation/view';
 import { Timeline } from './timeline/view';
 import { Tones } from './tones/view';
 import { WaitingFor } from './waiting/view';
+
+const Help = openedLater(async () => (await import('./shortcuts/view')).Help);
+const LogIn = openedLater(async () => (await import('./access/log_in')).LogIn);
+const ExpiredBar = openedLater(async () => (await import('./access/log_in')).ExpiredBar);
 
 /** The tabs of the data panel. */
 const DATA = {
@@ -167,7 +169,7 @@ export function App({ panel }: { panel?: string | undefined }) {
         <PaceBar />
       </section>
       <div class="bars">
-        {run && <ExpiredBar />}
+        {run && ['out', 'choose'].includes(access.value.state) && <ExpiredBar />}
         <PastBar />
         <ReplayBar />
         <Notices />
@@ -191,7 +193,7 @@ export function App({ panel }: { panel?: string | undefined }) {
           </div>
         </main>
       )}
-      <Help />
+      {helpShown.value && <Help />}
       <Menu />
     </div>
   );

@@ -9,7 +9,8 @@ import { takesCommands } from '../run/shown';
 import { aDictionary, aStore } from '../testing/fixtures';
 import { aServer } from '../testing/server';
 import { access, choosePassword, learnAccess, logIn, mayAct, problem } from './model';
-import { ExpiredBar, LogIn, Who } from './view';
+import { ExpiredBar, LogIn } from './log_in';
+import { Who } from './view';
 
 const server = aServer();
 const session = (user: string, role = 'controller') => ({ json: { accounts: true, user, role, rights: ['command'] } });
