@@ -29,28 +29,50 @@ bool begins_interval(double time_s, std::optional<double> previous_s, double int
     return !previous_s || std::floor(time_s / interval_s) != std::floor(*previous_s / interval_s);
 }
 
-/// The samples of the given channels, which ascend.
-v1::Samples some_of(const v1::Samples& samples, const std::vector<std::uint32_t>& channels, bool ascend) {
-    v1::Samples chosen;
+/// Calls `visit` with the place of each of the samples that is of the given channels, which ascend, until it returns
+/// false. Where the ids ascend too, whole stretches of either that the other lacks are passed over.
+template <typename Visit>
+void each_chosen(const v1::Samples& samples, const std::vector<std::uint32_t>& channels, bool ascend, Visit visit) {
     const auto& ids = samples.ids();
-    const auto add = [&](int i) {
-        chosen.add_ids(ids[i]);
-        chosen.add_values(samples.values(i));
-    };
-    for (const auto& exact : samples.exact())
-        if (std::ranges::binary_search(channels, exact.id())) *chosen.add_exact() = exact;
     if (!ascend) {
         for (int i = 0; i < ids.size(); ++i)
-            if (std::ranges::binary_search(channels, ids[i])) add(i);
-        return chosen;
+            if (std::ranges::binary_search(channels, ids[i]) && !visit(i)) return;
+        return;
     }
-    auto at = ids.begin();
-    for (auto channel = std::ranges::lower_bound(channels, ids[0]); channel != channels.end(); ++channel) {
-        at = std::lower_bound(at, ids.end(), *channel);
-        if (at == ids.end()) break;
-        if (*at == *channel) add(static_cast<int>(at - ids.begin()));
+    auto id = ids.begin();
+    auto channel = channels.begin();
+    while (id != ids.end() && channel != channels.end()) {
+        if (*id < *channel) {
+            id = std::lower_bound(id, ids.end(), *channel);
+        } else if (*channel < *id) {
+            channel = std::lower_bound(channel, channels.end(), *id);
+        } else {
+            if (!visit(static_cast<int>(id - ids.begin()))) return;
+            ++id;
+            ++channel;
+        }
     }
+}
+
+v1::Samples some_of(const v1::Samples& samples, const std::vector<std::uint32_t>& channels, bool ascend) {
+    v1::Samples chosen;
+    for (const auto& exact : samples.exact())
+        if (std::ranges::binary_search(channels, exact.id())) *chosen.add_exact() = exact;
+    each_chosen(samples, channels, ascend, [&](int i) {
+        chosen.add_ids(samples.ids(i));
+        chosen.add_values(samples.values(i));
+        return true;
+    });
     return chosen;
+}
+
+bool has_any(const v1::Samples& samples, const std::vector<std::uint32_t>& channels, bool ascend) {
+    bool any = false;
+    each_chosen(samples, channels, ascend, [&](int) {
+        any = true;
+        return false;
+    });
+    return any;
 }
 
 /// Tells packets apart by all of their channels, and their source: packets of other missions share the channels of their
@@ -61,11 +83,6 @@ std::uint64_t packet_of(const v1::Samples& samples) {
     add(static_cast<std::uint64_t>(samples.source()));
     for (const auto id : samples.ids()) add(id);
     return hash;
-}
-
-/// Whether any of the samples is of the given channels, which ascend.
-bool has_any(const v1::Samples& samples, const std::vector<std::uint32_t>& channels) {
-    return std::ranges::any_of(samples.ids(), [&](auto id) { return std::ranges::binary_search(channels, id); });
 }
 
 RatedItem rated(const ItemWithFacts& given, double interval_s) {
@@ -94,7 +111,7 @@ void add_items(const StreamSelection& selection, std::span<const RatedItem> item
     std::uint64_t left_out_count = 0;
     for (const auto& [item, left_out, thinned, ascend] : items) {
         if (left_out) {
-            left_out_count += selection.all_channels || has_any(item->samples(), selection.channels) ? 1 : 0;
+            left_out_count += selection.all_channels || has_any(item->samples(), selection.channels, ascend) ? 1 : 0;
             continue;
         }
         if (!item->has_samples() || selection.all_channels) {
