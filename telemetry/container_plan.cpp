@@ -124,7 +124,7 @@ class ContainerPlan::Compiler {
             if (!add_step(index, place, chain, node)) return;
         std::vector<bool> filled(node.fields, false);
         for (const Step& step : node.steps)
-            if (step.count == once && !step.skipped) filled[step.field] = true;
+            if (step.count == once && !step.skipped) std::fill_n(filled.begin() + step.field, step.times, true);
         node.fills = std::ranges::all_of(filled, std::identity{});
         if (!find_clock(chain, node.clock)) return;
         for (const std::size_t derived : node.derived) {
@@ -146,17 +146,17 @@ class ContainerPlan::Compiler {
         if (step.calibration != nullptr && step.calibration->polynomial.size() == 2)
             step.line = step.calibration->polynomial.data();
         if (place.repeated != nullptr) {
-            const auto count = count_of(*place.repeated, chain, node);
+            const auto count = count_of(container, place, chain);
             if (!count) return false;
             step.count = static_cast<std::uint32_t>(plan_.counts_.size());
             plan_.counts_.push_back(*count);
-            step.first_field = static_cast<std::uint32_t>(plan_.fields_.size());
-            for (std::size_t i = 0;; ++i) {
+            step.times = 0;
+            for (std::uint32_t i = 0;; ++i) {
                 const auto field = field_of_(container, place.parameter, place.name + "[" + std::to_string(i) + "]");
                 if (!field) break;
-                if (needs_text_(container, *field)) return false;
-                plan_.fields_.push_back(static_cast<std::uint16_t>(*field));
-                ++step.fields;
+                if (i == 0) step.field = static_cast<std::uint16_t>(*field);
+                if (needs_text_(container, *field) || *field != step.field + i) return false;
+                ++step.times;
             }
         } else {
             const auto field = field_of_(container, place.parameter, place.name);
@@ -165,8 +165,20 @@ class ContainerPlan::Compiler {
             step.text = field && needs_text_(container, *field);
         }
         step.load = load_of(place, step);
-        node.steps.push_back(step);
+        if (node.steps.empty() || !goes_on(node.steps.back(), step))
+            node.steps.push_back(step);
+        else
+            ++node.steps.back().times;
         return true;
+    }
+
+    /// Whether a number is read as those of the step before, stands right behind them, and its field behind theirs.
+    static bool goes_on(const Step& before, const Step& step) {
+        const auto once_each = [](const Step& one) { return one.count == once && !one.skipped; };
+        return once_each(before) && once_each(step) && step.load != Load::any && before.load == step.load &&
+               before.bits == step.bits && before.calibration == step.calibration && !before.moves && !step.moves &&
+               step.position_bits == before.position_bits + before.times * before.bits &&
+               step.field == before.field + before.times;
     }
 
     static bool is_plain(const Coding& coding) {
@@ -177,8 +189,8 @@ class ContainerPlan::Compiler {
     /// The quick ways of reading are for numbers in the usual order.
     static Load load_of(const Place& place, const Step& step) {
         const Coding& coding = *step.coding;
-        const bool in_order = !coding.least_significant_octet_first && !coding.least_significant_bit_first &&
-                              !step.text && !place.moves && place.position_bits % 8 == 0;
+        const bool in_order =
+            !coding.least_significant_octet_first && !coding.least_significant_bit_first && !step.text;
         constexpr std::array sizes{8U, 16U, 32U, 64U};
         const auto size = std::ranges::find(sizes, place.bits);
         if (!in_order) return Load::any;
@@ -197,19 +209,21 @@ class ContainerPlan::Compiler {
     }
 
     /// A count that is a number read before it, once, and without a choice of raw or calibrated.
-    std::optional<Count> count_of(const Amount& amount, const Chain& chain, const Node& node) const {
+    std::optional<Count> count_of(std::size_t container, const Place& repeated, const Chain& chain) const {
+        const Amount& amount = *repeated.repeated;
         if (!amount.known || !amount.parameter || !amount.cases.empty()) return std::nullopt;
         const std::string name = model_.parameters[*amount.parameter].name + amount.member;
-        std::optional<std::uint32_t> found;
-        for (std::size_t i = 0; i < node.steps.size(); ++i) {
-            const Place& place = chain.places[i];
+        const Place* found = nullptr;
+        for (const Place& place : chain.places) {
+            if (&place == &repeated) break;
             if (place.parameter != *amount.parameter || place.name != name) continue;
             const bool plain = place.type->kind == PacketType::Kind::integer && place.type->coding.calibration.empty();
-            if (found || !plain || place.repeated != nullptr || node.steps[i].skipped) return std::nullopt;
-            found = static_cast<std::uint32_t>(i);
+            if (found != nullptr || !plain || place.repeated != nullptr) return std::nullopt;
+            found = &place;
         }
-        if (!found) return std::nullopt;
-        return Count{*found, amount.slope, amount.intercept};
+        const auto field = found != nullptr ? field_of_(container, found->parameter, found->name) : std::nullopt;
+        if (!field) return std::nullopt;
+        return Count{static_cast<std::uint32_t>(*field), amount.slope, amount.intercept};
     }
 
     bool add_entries(const PacketContainer& container, Chain& chain) {
@@ -353,78 +367,94 @@ const ContainerPlan::Node* ContainerPlan::node_of(std::span<const std::uint8_t> 
     return nullptr;
 }
 
-// Inlined: a call would cost as much as the reading.
-[[gnu::always_inline]] inline void ContainerPlan::read(const Step& step, std::span<const std::uint8_t> packet,
-                                                       std::size_t position_bits, std::size_t field, const Into& into) {
-    const std::uint8_t* const at = packet.data() + position_bits / 8;
-    const auto put = [&](double number) {
-        if (step.calibration == nullptr)
-            into.value[field] = std::optional{number};
-        else
-            into.value[field] = step.line != nullptr ? finite(step.line[1] * number + step.line[0])
-                                                     : calibrated_by(*step.calibration, number);
-    };
-    const auto whole = [&](std::uint64_t number) {
-        into.raw[field] = number;
-        put(static_cast<double>(number));
-    };
-    const auto signed_whole = [&](std::int64_t number) {
-        into.raw[field] = 0;
-        put(static_cast<double>(number));
-    };
-    const auto real = [&](double number, std::uint64_t bits) {
-        const bool is_defined = std::isfinite(number);
-        into.raw[field] = is_defined ? 0 : bits;
-        if (is_defined)
-            put(number);
-        else
-            into.value[field].reset();
-    };
-    switch (step.load) {
-    case Load::u8: return whole(at[0]);
-    case Load::u16: return whole(big_endian<2>(at));
-    case Load::u32: return whole(big_endian<4>(at));
-    case Load::u64: return whole(big_endian<8>(at));
-    case Load::i8: return signed_whole(static_cast<std::int8_t>(at[0]));
-    case Load::i16: return signed_whole(static_cast<std::int16_t>(big_endian<2>(at)));
-    case Load::i32: return signed_whole(static_cast<std::int32_t>(big_endian<4>(at)));
-    case Load::i64: return signed_whole(static_cast<std::int64_t>(big_endian<8>(at)));
-    case Load::f32: {
-        const auto bits = static_cast<std::uint32_t>(big_endian<4>(at));
-        return real(static_cast<double>(std::bit_cast<float>(bits)), bits);
-    }
-    case Load::f64: {
-        const auto bits = big_endian<8>(at);
-        return real(std::bit_cast<double>(bits), bits);
-    }
-    case Load::bits: return whole(read_bits(packet, position_bits, step.bits));
-    case Load::any: break;
-    }
-    const std::uint64_t bits = read_bits(packet, position_bits, step.bits);
-    const RawNumber number = number_in(bits, step.bits, *step.coding);
-    const double value = as_double(number);
-    const auto* raw = std::get_if<std::uint64_t>(&number);
-    if (!std::isfinite(value)) {
-        into.raw[field] = bits;
-        into.value[field].reset();
-        return;
-    }
-    into.raw[field] = raw != nullptr ? *raw : 0;
-    put(value);
-    if (step.text) into.texts->emplace_back(field, exact_text(number));
+namespace {
+
+/// A number, and the octets that stand for it where they say more than it.
+struct Loaded {
+    double number = 0.0;
+    std::uint64_t raw = 0;
+};
+Loaded whole(std::uint64_t number) {
+    return {static_cast<double>(number), number};
+}
+Loaded signed_whole(std::int64_t number) {
+    return {static_cast<double>(number), 0};
+}
+Loaded real(double number, std::uint64_t bits) {
+    return {number, std::isfinite(number) ? 0 : bits};
 }
 
-bool ContainerPlan::read_repeated(const Step& step, const Node& node, std::span<const std::uint8_t> packet,
-                                  std::size_t& position_bits, const Into& into) const {
+}  // namespace
+
+/// Reads numbers of one kind, one after another, into fields that follow one another.
+template <typename LoadOne>
+void ContainerPlan::read_each(const Step& step, std::size_t times, const Into& into, LoadOne load) {
+    const auto each = [&](auto calibrated) {
+        for (std::size_t i = 0; i < times; ++i) {
+            const Loaded one = load(i);
+            into.raw[step.field + i] = one.raw;
+            into.value[step.field + i] = std::isfinite(one.number) ? calibrated(one.number) : std::nullopt;
+        }
+    };
+    if (step.calibration == nullptr)
+        each([](double number) { return std::optional{number}; });
+    else if (step.line != nullptr)
+        each([line = step.line](double number) { return finite(line[1] * number + line[0]); });
+    else
+        each([&](double number) { return calibrated_by(*step.calibration, number); });
+}
+
+void ContainerPlan::read(const Step& step, std::span<const std::uint8_t> packet, std::size_t position_bits,
+                         std::size_t times, const Into& into) {
+    const std::uint8_t* const at = packet.data() + position_bits / 8;
+    const auto each = [&](auto load) { read_each(step, times, into, load); };
+    switch (step.load) {
+    case Load::u8: return each([at](std::size_t i) { return whole(at[i]); });
+    case Load::u16: return each([at](std::size_t i) { return whole(big_endian<2>(at + 2 * i)); });
+    case Load::u32: return each([at](std::size_t i) { return whole(big_endian<4>(at + 4 * i)); });
+    case Load::u64: return each([at](std::size_t i) { return whole(big_endian<8>(at + 8 * i)); });
+    case Load::i8: return each([at](std::size_t i) { return signed_whole(static_cast<std::int8_t>(at[i])); });
+    case Load::i16:
+        return each([at](std::size_t i) { return signed_whole(static_cast<std::int16_t>(big_endian<2>(at + 2 * i))); });
+    case Load::i32:
+        return each([at](std::size_t i) { return signed_whole(static_cast<std::int32_t>(big_endian<4>(at + 4 * i))); });
+    case Load::i64:
+        return each([at](std::size_t i) { return signed_whole(static_cast<std::int64_t>(big_endian<8>(at + 8 * i))); });
+    case Load::f32:
+        return each([at](std::size_t i) {
+            const auto bits = static_cast<std::uint32_t>(big_endian<4>(at + 4 * i));
+            return real(static_cast<double>(std::bit_cast<float>(bits)), bits);
+        });
+    case Load::f64:
+        return each([at](std::size_t i) {
+            const auto bits = big_endian<8>(at + 8 * i);
+            return real(std::bit_cast<double>(bits), bits);
+        });
+    case Load::bits:
+        return each([&](std::size_t i) { return whole(read_bits(packet, position_bits + i * step.bits, step.bits)); });
+    case Load::any: break;
+    }
+    each([&](std::size_t i) {
+        const std::uint64_t bits = read_bits(packet, position_bits + i * step.bits, step.bits);
+        const RawNumber number = number_in(bits, step.bits, *step.coding);
+        const double value = as_double(number);
+        if (!std::isfinite(value)) return Loaded{value, bits};
+        if (step.text) into.texts->emplace_back(step.field + i, exact_text(number));
+        const auto* raw = std::get_if<std::uint64_t>(&number);
+        return Loaded{value, raw != nullptr ? *raw : 0};
+    });
+}
+
+bool ContainerPlan::read_repeated(const Step& step, std::span<const std::uint8_t> packet, std::size_t& position_bits,
+                                  const Into& into) const {
     const Count& count = counts_[step.count];
-    const auto& of = into.value[node.steps[count.step].field];
+    const auto& of = into.value[count.field];
     if (!of) return false;
     const double times = count.slope * *of + count.intercept;
     if (!(times >= 0.0) || times > repetitions_max || times != std::floor(times)) return false;
     const auto repetitions = static_cast<std::size_t>(times);
     if (repetitions * step.bits > packet.size() * 8 - position_bits) return false;
-    for (std::size_t i = 0; i < std::min<std::size_t>(repetitions, step.fields); ++i)
-        read(step, packet, position_bits + i * step.bits, fields_[step.first_field + i], into);
+    read(step, packet, position_bits, std::min<std::size_t>(repetitions, step.times), into);
     position_bits += repetitions * step.bits;
     return true;
 }
@@ -446,18 +476,19 @@ bool ContainerPlan::decode(std::span<const std::uint8_t> packet, dictionary::Dec
     std::size_t end_bits = node->bits;
     if (node->fixed) {
         for (const Step& step : node->steps)
-            if (!step.skipped) read(step, packet, step.position_bits, step.field, fields);
+            if (!step.skipped) read(step, packet, step.position_bits, step.times, fields);
     } else {
         std::size_t at = 0;
         for (const Step& step : node->steps) {
             at = step.moves ? at + step.position_bits : step.position_bits;
             if (at > packet_bits) return false;
             if (step.count != once) {
-                if (!read_repeated(step, *node, packet, at, fields)) return false;
+                if (!read_repeated(step, packet, at, fields)) return false;
             } else {
-                if (step.bits > packet_bits - at) return false;
-                if (!step.skipped) read(step, packet, at, step.field, fields);
-                at += step.bits;
+                const std::size_t bits = std::size_t{step.times} * step.bits;
+                if (bits > packet_bits - at) return false;
+                if (!step.skipped) read(step, packet, at, step.times, fields);
+                at += bits;
             }
             end_bits = std::max(end_bits, at);
         }

@@ -43,23 +43,24 @@ class ContainerPlan {
   private:
     /// How a number is read; any: by its coding.
     enum class Load : std::uint8_t { u8, u16, u32, u64, i8, i16, i32, i64, f32, f64, bits, any };
-    /// The number of repetitions: intercept + slope × the value of an earlier step.
+    /// The number of repetitions: intercept + slope × the value of an earlier field.
     struct Count {
-        std::uint32_t step = 0;
+        std::uint32_t field = 0;
         double slope = 1.0, intercept = 0.0;
     };
     static constexpr std::uint32_t once = 0xFFFFFFFF;
+    /// Numbers of one kind that stand one after another, and so do their fields.
     struct Step {
         std::uint32_t position_bits =
-            0;  ///< where the layout before it is fixed; else from the end of the step before it
-        std::uint16_t field = 0;
-        std::uint8_t bits = 0;
+            0;                    ///< where the layout before it is fixed; else from the end of the step before it
+        std::uint32_t times = 1;  ///< repeated: at most so many are fields
+        std::uint16_t field = 0;  ///< of the first
+        std::uint8_t bits = 0;    ///< of one
         Load load = Load::any;
-        bool text = false;                          ///< its exact value is needed
-        bool moves = false;                         ///< position_bits counts from the end of the step before it
-        bool skipped = false;                       ///< it is no field
-        std::uint32_t count = once;                 ///< in counts_
-        std::uint32_t first_field = 0, fields = 0;  ///< of repetitions: in fields_
+        bool text = false;           ///< its exact value is needed
+        bool moves = false;          ///< position_bits counts from the end of the step before it
+        bool skipped = false;        ///< it is no field
+        std::uint32_t count = once;  ///< of repetitions: in counts_
         const dictionary::xtce::Coding* coding = nullptr;
         const dictionary::xtce::Calibration* calibration = nullptr;  ///< null: none
         const double* line = nullptr;  ///< its two coefficients where it is a straight line
@@ -98,15 +99,16 @@ class ContainerPlan {
         std::optional<double>* value;
         std::vector<std::pair<std::size_t, std::string>>* texts;
     };
+    template <typename LoadOne>
+    static void read_each(const Step& step, std::size_t times, const Into& into, LoadOne load);
     static void read(const Step& step, std::span<const std::uint8_t> packet, std::size_t position_bits,
-                     std::size_t field, const Into& into);
-    bool read_repeated(const Step& step, const Node& node, std::span<const std::uint8_t> packet,
-                       std::size_t& position_bits, const Into& into) const;
+                     std::size_t times, const Into& into);
+    bool read_repeated(const Step& step, std::span<const std::uint8_t> packet, std::size_t& position_bits,
+                       const Into& into) const;
 
     std::optional<std::size_t> root_;
     std::vector<Node> nodes_;  ///< by container
     std::vector<Count> counts_;
-    std::vector<std::uint16_t> fields_;  ///< of repetitions
 };
 
 }  // namespace aeolis::telemetry
