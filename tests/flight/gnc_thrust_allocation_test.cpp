@@ -3,6 +3,9 @@
 #include "flight/gnc/powered_descent/thrust_allocation.hpp"
 #include "tests/support/catch.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace flight_gnc_thrust_allocation_test {
 
 using namespace aeolis::flight::gnc;
@@ -91,6 +94,24 @@ TEST_CASE("engines at their limit give way to a torque: attitude comes before th
     }
     CHECK(most_N == Approx(parameters.engine_used_max_N));
     CHECK(sum_N < given_N - 1000.0);
+}
+
+// Found by mailbox_fuzz: the two ends of what was left passed each other by one rounding. R21
+TEST_CASE("a torque of any size leaves the engines within their range", "[gnc][R27]") {
+    const powered_descent::TorqueAllocation allocation;
+    for (const int engines : {8, 4}) {
+        for (int step = 0; step < 4000; ++step) {
+            const double size_Nm = std::pow(10.0, 2.0 + step * 0.004), angle = step * 0.7;
+            const Vector3 torque{size_Nm * std::cos(angle), size_Nm * std::sin(angle), size_Nm * std::cos(3.0 * angle)};
+            double given_N = 0.0;
+            auto throttle = powered_descent::throttles_for(parameters, 1400.0 * engines, engines, largest_N, given_N);
+            allocation.add(parameters, torque, engines, largest_N, throttle);
+            for (std::size_t i = 0; i < throttle.size(); i += engines == 4 ? 2 : 1) {
+                REQUIRE(throttle[i] * largest_N >= parameters.engine_used_min_N - 1e-6);
+                REQUIRE(throttle[i] * largest_N <= parameters.engine_used_max_N + 1e-6);
+            }
+        }
+    }
 }
 
 }  // namespace flight_gnc_thrust_allocation_test

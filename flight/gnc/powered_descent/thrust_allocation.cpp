@@ -42,7 +42,9 @@ void TorqueAllocation::add(const Parameters& parameters, const Vector3& torque_B
     const double most_N = change_N.maxCoeff(), least_N = change_N.minCoeff();
     const double part = std::min(1.0, (engine_used_max_N - engine_used_min_N) / std::max(most_N - least_N, 1.0));
     double each_N = throttle[0] * engine_max_thrust_N;
-    each_N = std::clamp(each_N, engine_used_min_N - part * least_N, engine_used_max_N - part * most_N);
+    // A torque that takes the whole range leaves one value, to which both ends round in their own way.
+    const double lowest_N = engine_used_min_N - part * least_N;
+    each_N = std::clamp(each_N, lowest_N, std::max(lowest_N, engine_used_max_N - part * most_N));
     const std::size_t stride = engines == 4 ? 2 : 1;
     for (std::size_t i = 0; i < throttle.size(); i += stride)
         throttle[i] = (each_N + part * change_N[static_cast<Eigen::Index>(i)]) / engine_max_thrust_N;
