@@ -307,10 +307,10 @@ test('commands are held, released, timed and cancelled by keyboard, and what the
     /queued[^]*authorised[^]*released[^]*held until[^]*radiated[^]*executed[^]*verified[^]*17 of 17 arguments equal/,
   );
   const { commands } = await server.get('/runs/latest/commands');
-  assert.ok(
-    (await text('command-details'))
-      .replaceAll(/\s/g, '')
-      .includes(commands.find((each) => each.command === '1').octets),
+  // The octets are asked for when the details are opened.
+  await waitFor(
+    async () => (await text('command-details')).replaceAll(/\s/g, ''),
+    (shown) => shown.includes(commands.find((each) => each.command === '1').octets),
   );
 
   await page.keyboard.press('Escape');

@@ -77,11 +77,12 @@ async function toggle(command: number): Promise<void> {
   opened.value = opened.value === command ? undefined : command;
   const run = store.value;
   if (opened.value === undefined || !run) return;
+  octets.value = undefined;
   try {
     const list = await ask<CommandList>('commands', `/runs/${run.id}/commands?after=${command - 1}&limit=1`);
     octets.value = { run: run.id, of: new Map(list.commands.map((each) => [Number(each.command), each.octets])) };
   } catch {
-    // The line of octets then says that they are not known.
+    octets.value = { run: run.id, of: new Map() };
   }
 }
 
@@ -201,7 +202,7 @@ function Details({
         </p>
       )}
       <p class="encoded" tabIndex={0} role="group" aria-label="octets as sent">
-        {raw === undefined ? 'octets not known' : `${raw.length / 2} octets: ${raw.replace(/../g, '$& ')}`}
+        {!octets.value ? 'asking for the octets' : raw === undefined ? 'octets not known' : `${raw.length / 2} octets: ${raw.replace(/../g, '$& ')}`}
       </p>
     </div>
   );
