@@ -13,6 +13,7 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <ranges>
 #include <unordered_map>
 #include <utility>
 
@@ -65,7 +66,7 @@ class Reading {
         if (depth == ContainerDecoder::depth_max) return stop("containers are nested too deep", container.line);
         for (const PacketEntry& entry : container.entries)
             if (!read_entry(container, entry, start_bits, depth)) return false;
-        return true;
+        return !container.bits || end_container(container, start_bits);
     }
 
     bool holds(const xtce::Condition& condition) const {
@@ -139,24 +140,56 @@ class Reading {
         return number && wanted && compared(*number, condition.op, *wanted);
     }
 
-    /// A whole number of at most 2^40; none when it is unknown, negative or not a number.
-    std::optional<std::size_t> evaluate(const Amount& amount) const {
+    /// The member of that name of the innermost aggregate that is being read and has it.
+    const DecodedValue* sibling(const std::string& member) const {
+        for (const std::string& aggregate : std::views::reverse(aggregates_)) {
+            const std::string name = aggregate + "." + member;
+            const auto found = std::ranges::find(std::views::reverse(contents.values), name, &DecodedValue::name);
+            if (found != contents.values.rend()) return &*found;
+        }
+        return nullptr;
+    }
+
+    /// A whole number of at least `least` and at most 2^40; none when it is unknown, less, or not a number. A calibrated
+    /// count is whole within the digits of its coefficients.
+    std::optional<std::int64_t> evaluate_from(std::int64_t least, const Amount& amount) const {
         double value = amount.intercept;
         if (!amount.cases.empty()) {
             const auto found = std::ranges::find_if(amount.cases, [&](const auto& each) { return holds(each.when); });
             if (found == amount.cases.end()) return std::nullopt;
             value = found->value;
-        } else if (amount.parameter) {
-            const DecodedValue* known = value_of(*amount.parameter, amount.member);
+        } else if (amount.parameter || !amount.sibling.empty()) {
+            const DecodedValue* known =
+                amount.parameter ? value_of(*amount.parameter, amount.member) : sibling(amount.sibling);
             if (known == nullptr) return std::nullopt;
             auto number = number_of(amount.calibrated ? known->calibrated : known->raw);
             if (!number) number = number_of(known->raw);
             if (!number) return std::nullopt;
             value = amount.slope * static_cast<double>(*number) + amount.intercept;
         }
-        constexpr double most = 1099511627776.0;
-        if (!amount.known || !(value >= 0.0) || value > most || value != std::floor(value)) return std::nullopt;
-        return static_cast<std::size_t>(value);
+        constexpr double most = 1099511627776.0, digits = 1e-9;
+        const double whole = std::round(value);
+        if (!amount.known || !(std::abs(value - whole) <= digits * std::max(1.0, std::abs(whole))) ||
+            whole < static_cast<double>(least) || whole > most)
+            return std::nullopt;
+        return static_cast<std::int64_t>(whole);
+    }
+    std::optional<std::size_t> evaluate(const Amount& amount) const {
+        const auto value = evaluate_from(0, amount);
+        return value ? std::optional{static_cast<std::size_t>(*value)} : std::nullopt;
+    }
+
+    /// Goes to the end of a container whose size is told.
+    bool end_container(const PacketContainer& container, std::size_t start_bits) {
+        const auto bits = evaluate(*container.bits);
+        if (!bits) return stop("the size of " + container.name + " cannot be known", container.line);
+        if (position_ > start_bits + *bits)
+            return stop("the entries of " + container.name + " are longer than its size, " + std::to_string(*bits) +
+                            " bits",
+                        container.line);
+        if (start_bits + *bits > packet_.size() * 8) return cut("the end of " + container.name, *bits, container.line);
+        position_ = start_bits + *bits;
+        return true;
     }
 
     bool read_entry(const PacketContainer& container, const PacketEntry& entry, std::size_t start_bits,
@@ -225,10 +258,14 @@ class Reading {
             return stop("there are more values than a packet may have", type.line);
         switch (type.kind) {
         case PacketType::Kind::unknown: return stop("the type of " + name + " is not supported", type.line);
-        case PacketType::Kind::aggregate:
-            for (const auto& member : type.members)
-                if (!read_type(model_.types[member.type], name + "." + member.name, depth + 1)) return false;
-            return true;
+        case PacketType::Kind::aggregate: {
+            aggregates_.push_back(name);
+            const bool read = std::ranges::all_of(type.members, [&](const auto& member) {
+                return read_type(model_.types[member.type], name + "." + member.name, depth + 1);
+            });
+            aggregates_.pop_back();
+            return read;
+        }
         case PacketType::Kind::array: return read_array(type, type.last_indices, name, depth + 1);
         default: break;
         }
@@ -246,10 +283,10 @@ class Reading {
         std::vector<std::size_t> sizes;
         std::size_t elements = 1;
         for (const Amount& last : last_indices) {
-            const auto index = evaluate(last);
+            const auto index = evaluate_from(-1, last);  // -1: it is empty
             if (!index) return stop("the dimensions of " + name + " cannot be known", type.line);
-            sizes.push_back(*index + 1);
-            if (sizes.back() > ContainerDecoder::values_max / elements)
+            sizes.push_back(static_cast<std::size_t>(*index + 1));
+            if (sizes.back() > ContainerDecoder::values_max / std::max<std::size_t>(1, elements))
                 return stop("there are more values than a packet may have", type.line);
             elements *= sizes.back();
         }
@@ -351,6 +388,8 @@ class Reading {
                    read_bits(packet_, position_ + length, step) != terminator)
                 length += step;
             const bool ends = length + step <= *bits && has(length + step);
+            if (!ends && !coding.boxed && length + step <= *bits)
+                return stop("the packet ends before the end of " + name, type.line);
             bits = length;
             terminator_bits = ends ? step : 0;
         }
@@ -369,6 +408,7 @@ class Reading {
         latest_;  ///< by parameter; only those in the packet, as a model has thousands
     std::size_t position_ = 0, furthest_ = 0;
     std::size_t steps_ = 0;
+    std::vector<std::string> aggregates_;   ///< being read, outermost first
     std::size_t reading_ = 0;               ///< the parameter
     std::optional<std::size_t> time_from_;  ///< the parameter that gave contents.time
 };

@@ -27,8 +27,7 @@ constexpr double exact_max = 9007199254740992.0;  // whole numbers up to here ar
 
 std::optional<std::uint32_t> fixed_bits(const Amount& amount) {
     const double value = amount.intercept;
-    if (!amount.known || amount.parameter || !amount.cases.empty() || !(value >= 0.0) || value > packet_bits_max ||
-        value != std::floor(value))
+    if (!amount.is_fixed() || !(value >= 0.0) || value > packet_bits_max || value != std::floor(value))
         return std::nullopt;
     return static_cast<std::uint32_t>(value);
 }
@@ -112,7 +111,8 @@ class ContainerPlan::Compiler {
 
     void compile_from(std::size_t index, Chain chain, unsigned depth) {
         Node& node = plan_.nodes_[index];
-        if (depth == depth_max || !add_entries(model_.containers[index], chain)) return;
+        const PacketContainer& container = model_.containers[index];
+        if (depth == depth_max || container.bits || !add_entries(container, chain)) return;
         // Each container has the steps of its bases, too.
         steps_ += chain.places.size();
         if (steps_ > steps_max) return;

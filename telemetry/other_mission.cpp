@@ -22,8 +22,7 @@ constexpr double time_max_s =
 
 std::optional<std::size_t> fixed_amount(const Amount& amount) {
     const double value = amount.intercept;
-    if (!amount.known || amount.parameter || !amount.cases.empty() || !(value >= 0.0) || value > 1.0e6)
-        return std::nullopt;
+    if (!amount.is_fixed() || !(value >= 0.0) || value > 1.0e6) return std::nullopt;
     return static_cast<std::size_t>(value);
 }
 

@@ -81,7 +81,8 @@ void Reporter::expect(pugi::xml_node element, std::initializer_list<std::string_
         if (child.type() == pugi::node_element && std::ranges::find(children, child.name()) == children.end())
             fault(child, "element " + in_quotes(child.name()) + " in " + parent + " is unknown or not supported");
     for (const pugi::xml_attribute attribute : element.attributes())
-        if (std::ranges::find(attributes, attribute.name()) == attributes.end())
+        if (!std::string_view{attribute.name()}.starts_with("xmlns") &&
+            std::ranges::find(attributes, attribute.name()) == attributes.end())
             fault(element,
                   "attribute " + in_quotes(attribute.name()) + " of " + parent + " is unknown or not supported");
 }

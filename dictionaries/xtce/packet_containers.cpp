@@ -15,19 +15,18 @@ class ContainerReader {
 
     PacketContainer read(const Symbol& symbol) {
         const pugi::xml_node element = symbol.element;
-        PacketContainer container{name_of(element),
-                                  symbol.path,
-                                  parts_.report.line(element),
-                                  element.attribute("abstract").as_bool(),
-                                  std::nullopt,
-                                  {},
-                                  {}};
+        PacketContainer container{.name = name_of(element),
+                                  .path = symbol.path,
+                                  .line = parts_.report.line(element),
+                                  .abstract = element.attribute("abstract").as_bool()};
         if (const pugi::xml_node base = element.child("BaseContainer")) {
             container.base = index_of(symbol, base);
             container.when = parts_.condition(symbol.scope, base.child("RestrictionCriteria"));
             // Without its base, a container would be mistaken for a packet of its own.
             if (!container.base) container.when.form = Condition::Form::unknown;
         }
+        if (const pugi::xml_node size = element.child("BinaryEncoding").child("SizeInBits"))
+            container.bits = parts_.amount(symbol.scope, size);
         for (const pugi::xml_node entry : element.child("EntryList").children())
             if (entry.type() == pugi::node_element) container.entries.push_back(read_entry(symbol, entry));
         return container;
@@ -67,6 +66,8 @@ class ContainerReader {
         read_location(symbol, element, entry);
         if (const pugi::xml_node include = element.child("IncludeCondition"))
             entry.when = parts_.condition(symbol.scope, include);
+        if (const pugi::xml_node time = element.child("TimeAssociation"))
+            parts_.report.fault(time, "TimeAssociation is not read: the entry has the time of its packet");
         if (const pugi::xml_node repeat = element.child("RepeatEntry")) {
             entry.count = parts_.amount(symbol.scope, repeat.child("Count"));
             if (const pugi::xml_node offset = repeat.child("Offset"))

@@ -25,6 +25,13 @@ std::optional<Condition::Operator> operator_of(std::string_view word) {
     return std::nullopt;
 }
 
+/// Whether a reference is to a member of the aggregate around it: an extension of Yamcs, under a prefix of its own.
+bool is_of_aggregate(pugi::xml_node reference) {
+    return std::ranges::any_of(reference.attributes(), [](const pugi::xml_attribute attribute) {
+        return std::string_view{attribute.name()}.ends_with(":aggregateMember") && attribute.as_bool();
+    });
+}
+
 }  // namespace
 
 ModelParts::ModelParts(const Symbols& symbols_in, Reporter& report_in, const ReadAgreement& agreement_in)
@@ -170,12 +177,17 @@ Amount ModelParts::amount(const std::string& scope, pugi::xml_node parent) const
     }
     if (const pugi::xml_node dynamic = parent.child("DynamicValue")) {
         const pugi::xml_node reference = dynamic.child("ParameterInstanceRef");
-        const auto found = parameter(scope, reference, "parameterRef");
-        if (!found) return unknown;
         const pugi::xml_node line = dynamic.child("LinearAdjustment");
         Amount amount;
-        amount.parameter = found->parameter;
-        amount.member = found->member;
+        if (is_of_aggregate(reference)) {
+            amount.sibling = reference.attribute("parameterRef").value();
+            std::ranges::replace(amount.sibling, '/', '.');
+        } else {
+            const auto found = parameter(scope, reference, "parameterRef");
+            if (!found) return unknown;
+            amount.parameter = found->parameter;
+            amount.member = found->member;
+        }
         amount.calibrated = reference.attribute("useCalibratedValue").as_bool(true);
         amount.slope = line.attribute("slope").as_double(1.0);
         amount.intercept = line.attribute("intercept").as_double(0.0);

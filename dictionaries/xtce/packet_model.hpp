@@ -44,6 +44,7 @@ struct Amount {
     };
     std::optional<std::size_t> parameter{};  ///< intercept + slope × its value
     std::string member{};                    ///< of a composite value: ".length"
+    std::string sibling{};                   ///< instead of a parameter: a member of the aggregate that it is part of
     bool calibrated = true;
     double slope = 1.0;
     double intercept = 0.0;     ///< without parameter: the amount itself
@@ -51,6 +52,7 @@ struct Amount {
     bool known = true;          ///< false: not supported
 
     static Amount fixed(double value) { return {.intercept = value}; }
+    bool is_fixed() const { return known && !parameter && sibling.empty() && cases.empty(); }
 };
 
 struct Calibration {
@@ -167,9 +169,10 @@ struct PacketContainer {
     std::string path;  ///< unique
     unsigned line = 0;
     bool abstract = false;
-    std::optional<std::size_t> base;
-    Condition when;  ///< on the fields of the base
-    std::vector<PacketEntry> entries;
+    std::optional<std::size_t> base{};
+    Condition when{};  ///< on the fields of the base
+    std::vector<PacketEntry> entries{};
+    std::optional<Amount> bits{};  ///< from its start to what follows it; none: up to the end of its entries
 };
 
 struct PacketModel {

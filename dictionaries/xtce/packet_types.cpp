@@ -189,8 +189,12 @@ void ModelTypes::read_text(const Symbol& symbol, pugi::xml_node coding, PacketTy
     const pugi::xml_node variable = coding.child("Variable");
     if (!size) size = variable;
     type.coding.bits = Amount::fixed(variable.attribute("maxSizeInBits").as_double(8.0 * 65536));
-    type.coding.boxed = size.child("Fixed") || size.child("FixedValue") || size.child("DynamicValue") ||
-                        size.child("DiscreteLookupList");
+    // XTCE 1.2 demands a size where the text itself says where it ends; in files for Yamcs this name fills the place.
+    const bool delimited = size.child("LeadingSize") || size.child("TerminationChar");
+    const std::string_view sized_by =
+        size.child("DynamicValue").child("ParameterInstanceRef").attribute("parameterRef").value();
+    type.coding.boxed = size.child("Fixed") || size.child("FixedValue") || size.child("DiscreteLookupList") ||
+                        (size.child("DynamicValue") && !(delimited && sized_by == "_yamcs_ignore"));
     if (type.coding.boxed) type.coding.bits = parts_.amount(symbol.scope, size);
     if (const pugi::xml_node leading = size.child("LeadingSize")) {
         type.coding.leading_size_bits = leading.attribute("sizeInBitsOfSizeTag").as_uint(16);

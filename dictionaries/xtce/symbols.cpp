@@ -23,7 +23,7 @@ void Symbols::read_space_system(pugi::xml_node system, const std::string& outer,
     report.expect(
         system,
         {"LongDescription", "AncillaryDataSet", "Header", "TelemetryMetaData", "CommandMetaData", "SpaceSystem"},
-        {"name", "shortDescription", "xmlns", "xmlns:xtce", "xmlns:xsi", "xsi:schemaLocation"});
+        {"name", "shortDescription", "operationalStatus", "systemType", "xsi:schemaLocation"});
     const std::string scope = outer + "/" + name_of(system);
 
     const pugi::xml_node telemetry = system.child("TelemetryMetaData");

@@ -175,4 +175,127 @@ TEST_CASE("an algorithm is named as not run, and the packets are read", "[teleme
     CHECK(found.findings[0] == "m.xml: MathAlgorithm 'Power' is not run");
 }
 
+// Constructs that were met in public databases, written anew: docs/missions.md names them.
+
+TEST_CASE("an array may be empty: its last index is then −1", "[telemetry][xtce][R54]") {
+    const std::string list =
+        "<ArrayParameterType name='list' arrayTypeRef='u8'><DimensionList><Dimension><StartingIndex><FixedValue>0"
+        "</FixedValue></StartingIndex><EndingIndex><DynamicValue><ParameterInstanceRef parameterRef='n'/>"
+        "<LinearAdjustment intercept='-1'/></DynamicValue></EndingIndex></Dimension></DimensionList>"
+        "</ArrayParameterType>";
+    const auto of = [&](std::string_view packet) {
+        return read(
+                   {{"m.xml", system_of(u8 + list, parameter("n", "u8") + parameter("l", "list") + parameter("z", "u8"),
+                                        container("P", {"n", "l", "z"}))}},
+                   packet)
+            .values;
+    };
+    CHECK(of("00 09") == "n=0 z=9");
+    CHECK(of("02 0506 09") == "n=2 l[0]=5 l[1]=6 z=9");
+    CHECK_THAT(of("03 0506"), Catch::Contains("the packet ends before l[2]"));
+}
+
+TEST_CASE("a size that counts a member of the aggregate around it is that member's, whatever else has its name",
+          "[telemetry][xtce][R54]") {
+    const auto array = [](const std::string& name, const std::string& of, const std::string& count) {
+        return "<ArrayParameterType name='" + name + "' arrayTypeRef='" + of +
+               "'><DimensionList><Dimension><StartingIndex><FixedValue>0</FixedValue></StartingIndex><EndingIndex>"
+               "<DynamicValue><ParameterInstanceRef parameterRef='" +
+               count +
+               "' y:aggregateMember='true'/><LinearAdjustment intercept='-1'/></DynamicValue></EndingIndex>"
+               "</Dimension></DimensionList></ArrayParameterType>";
+    };
+    const auto aggregate = [](const std::string& name, const std::string& count, const std::string& list,
+                              const std::string& type) {
+        return "<AggregateParameterType name='" + name + "'><MemberList><Member name='" + count +
+               "' typeRef='u8'/><Member name='" + list + "' typeRef='" + type +
+               "'/></MemberList></AggregateParameterType>";
+    };
+    auto text = system_of(u8 + array("inner", "u8", "n") + aggregate("item", "n", "v", "inner") +
+                              array("outer", "item", "count") + aggregate("report", "count", "items", "outer"),
+                          parameter("count", "u8") + parameter("r", "report"), container("P", {"count", "r"}));
+    text.insert(text.find(" xmlns="), " xmlns:y='urn:some:extension'");
+    const auto found = read({{"m.xml", text}}, "07 02 01 0a 02 0b0c");
+    CHECK(found.findings.empty());
+    CHECK(found.values == "count=7 r.count=2 r.items[0].n=1 r.items[0].v[0]=10 r.items[1].n=2 r.items[1].v[0]=11 "
+                          "r.items[1].v[1]=12");
+}
+
+TEST_CASE("a calibrated count is whole within the digits of its coefficients, and no further",
+          "[telemetry][xtce][R54]") {
+    const auto of = [&](const std::string& slope) {
+        const std::string count =
+            "<IntegerParameterType name='c'><IntegerDataEncoding><DefaultCalibrator><PolynomialCalibrator>"
+            "<Term coefficient='-3' exponent='0'/><Term coefficient='" +
+            slope +
+            "' exponent='1'/></PolynomialCalibrator></DefaultCalibrator></IntegerDataEncoding></IntegerParameterType>";
+        const std::string packet =
+            "<SequenceContainer name='P'><EntryList><ParameterRefEntry parameterRef='n'/><ParameterRefEntry "
+            "parameterRef='a'><RepeatEntry><Count><DynamicValue><ParameterInstanceRef parameterRef='n'/>"
+            "</DynamicValue></Count></RepeatEntry></ParameterRefEntry></EntryList></SequenceContainer>";
+        return read({{"m.xml", system_of(count + u8, parameter("n", "c") + parameter("a", "u8"), packet)}}, "41 0506")
+            .values;  // 65/13 − 3
+    };
+    CHECK_THAT(of("0.07692307692308"), Catch::EndsWith("a[0]=5 a[1]=6"));
+    CHECK_THAT(of("0.0769"), Catch::Contains("cannot be known"));
+}
+
+TEST_CASE("a container of a told size ends there, whatever its entries take", "[telemetry][xtce][R54]") {
+    const auto of = [&](const std::string& bits, std::string_view packet) {
+        const std::string record = "<SequenceContainer name='Record'><BinaryEncoding><SizeInBits><FixedValue>" + bits +
+                                   "</FixedValue></SizeInBits></BinaryEncoding><EntryList><ParameterRefEntry "
+                                   "parameterRef='a'/></EntryList></SequenceContainer>";
+        const std::string outer =
+            "<SequenceContainer name='P'><EntryList><ContainerRefEntry containerRef='Record'><RepeatEntry><Count>"
+            "<FixedValue>2</FixedValue></Count></RepeatEntry></ContainerRefEntry><ParameterRefEntry parameterRef='z'/>"
+            "</EntryList></SequenceContainer>";
+        return read({{"m.xml", system_of(u8, parameter("a", "u8") + parameter("z", "u8"), outer + record)}}, packet)
+            .values;
+    };
+    CHECK(of("16", "01ff 02ff 09") == "a=1 a=2 z=9");
+    CHECK_THAT(of("16", "01ff 02"), Catch::Contains("the packet ends before the end of Record"));
+    CHECK_THAT(of("4", "0102 09"), Catch::Contains("the entries of Record are longer than its size, 4 bits"));
+}
+
+TEST_CASE("text that tells its own end has no box, though a size that means nothing stands beside it",
+          "[telemetry][xtce][R54]") {
+    const auto variable = [](const std::string& size) {
+        return "<StringParameterType name='t'><StringDataEncoding encoding='UTF-8'><Variable maxSizeInBits='48'>" +
+               size + "</Variable></StringDataEncoding></StringParameterType>";
+    };
+    const auto of = [&](const std::string& size, std::string_view packet) {
+        return read(
+            {{"m.xml", system_of(variable(size) + u8, parameter("n", "u8") + parameter("s", "t") + parameter("z", "u8"),
+                                 container("P", {"n", "s", "z"}))}},
+            packet);
+    };
+    const std::string ignored = "<DynamicValue><ParameterInstanceRef parameterRef='_yamcs_ignore'/></DynamicValue>";
+    CHECK(of(ignored + "<TerminationChar>00</TerminationChar>", "04 414200 09").values == "n=4 s=AB z=9");
+    CHECK(of(ignored + "<TerminationChar>00</TerminationChar>", "04 414200 09").findings.empty());
+    CHECK(of(ignored + "<LeadingSize sizeInBitsOfSizeTag='16'/>", "04 0010 4142 09").values == "n=4 s=AB z=9");
+    CHECK(of("<DynamicValue><ParameterInstanceRef parameterRef='n'/><LinearAdjustment slope='8'/></DynamicValue>"
+             "<TerminationChar>00</TerminationChar>",
+             "04 414200ff 09")
+              .values == "n=4 s=AB z=9");  // in a box of four octets
+    CHECK_THAT(of(ignored + "<TerminationChar>00</TerminationChar>", "04 4142").values,
+               Catch::Contains("the packet ends before the end of s"));
+    CHECK(of(ignored, "04 41").findings.size() == 1);  // alone, it is a parameter that there is not
+}
+
+TEST_CASE("what is told of a packet's time and not read is a finding", "[telemetry][xtce][R54]") {
+    const std::string packet =
+        "<SequenceContainer name='P'><EntryList><ParameterRefEntry parameterRef='a'><TimeAssociation parameterRef='a' "
+        "interpolateTime='false'/></ParameterRefEntry></EntryList></SequenceContainer>";
+    const auto found = read({{"m.xml", system_of(u8, parameter("a", "u8"), packet)}}, "05");
+    CHECK(found.values == "a=5");
+    REQUIRE(found.findings.size() == 1);
+    CHECK_THAT(found.findings[0], Catch::Contains("TimeAssociation is not read"));
+}
+
+TEST_CASE("what a root says of itself and its name spaces is no finding", "[telemetry][xtce][R54]") {
+    auto text = system_of(u8, parameter("a", "u8"), container("P", {"a"}));
+    text.insert(text.find(" xmlns="), " xmlns:y='urn:some:extension' operationalStatus='unittest' systemType='bus'");
+    CHECK(read({{"m.xml", text}}, "05").findings.empty());
+}
+
 }  // namespace telemetry_xtce_as_written_test

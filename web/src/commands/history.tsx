@@ -202,7 +202,11 @@ function Details({
         </p>
       )}
       <p class="encoded" tabIndex={0} role="group" aria-label="octets as sent">
-        {!octets.value ? 'asking for the octets' : raw === undefined ? 'octets not known' : `${raw.length / 2} octets: ${raw.replace(/../g, '$& ')}`}
+        {!octets.value
+          ? 'asking for the octets'
+          : raw === undefined
+            ? 'octets not known'
+            : `${raw.length / 2} octets: ${raw.replace(/../g, '$& ')}`}
       </p>
     </div>
   );
