@@ -31,7 +31,8 @@ listenForMenus();
 listenForCalls();
 
 /** What is opened in a hurry, perhaps when there is no connection any more, is loaded before that. */
-const loadSoon = () => Promise.all([import('./alarms/view'), import('./menu/view')]).catch(() => undefined); // then when it is opened
+const loadSoon = () =>
+  Promise.all([import('./alarms/view'), import('./menu/view'), import('./commands/details')]).catch(() => undefined); // then when it is opened
 
 /** Resolves once the content is known or a log-in is needed. */
 const known = new Promise<void>(

@@ -36,13 +36,13 @@ import {
   fieldsOf,
   intentOf,
   isHazardous,
-  readBackOf,
   readLine,
   readReleaseAt,
   stageCells,
   unitText,
   waitingCommands,
 } from './model';
+import { readBackOf } from './read_back';
 import { Commands } from './view';
 
 const set = aDictionary.command('EDL_SET_PARAMETERS');

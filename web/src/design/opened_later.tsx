@@ -2,11 +2,13 @@
 import { signal } from '@preact/signals';
 import type { FunctionComponent } from 'preact';
 
-/** A panel whose script is loaded when it is first opened, so that the page's first load stays small. */
-export function openedLater(load: () => Promise<FunctionComponent>): FunctionComponent {
-  const panel = signal<{ Shown: FunctionComponent } | 'failed'>();
+/** A part whose script is loaded when it is first opened, so that the page's first load stays small. */
+export function openedLater<Props extends object = object>(
+  load: () => Promise<FunctionComponent<Props>>,
+): FunctionComponent<Props> {
+  const panel = signal<{ Shown: FunctionComponent<Props> } | 'failed'>();
   let begun = false;
-  return () => {
+  return (props) => {
     if (!begun) {
       begun = true;
       load().then(
@@ -14,7 +16,7 @@ export function openedLater(load: () => Promise<FunctionComponent>): FunctionCom
         () => (panel.value = 'failed'),
       );
     }
-    if (panel.value === 'failed') return <p role="alert">This panel could not be loaded. Reload the page.</p>;
-    return panel.value ? <panel.value.Shown /> : <p data-loading>Loading …</p>;
+    if (panel.value === 'failed') return <p role="alert">This part could not be loaded. Reload the page.</p>;
+    return panel.value ? <panel.value.Shown {...props} /> : <p data-loading>Loading …</p>;
   };
 }
