@@ -53,7 +53,7 @@ CommandGateway::CommandGateway(const dictionary::Dictionary& dictionary, double 
                                TrackingSchedule stations, std::optional<Scet> entry,
                                std::optional<ClockCorrelation> clock)
     : dictionary_(dictionary), light_time_s_(light_time_s), clcw_(clcw_places(dictionary)), link_(light_time_s),
-      solution_(std::move(solution)), second_person_(std::move(second_person)), stations_(std::move(stations)),
+      solutions_(std::move(solution)), second_person_(std::move(second_person)), stations_(std::move(stations)),
       deadlines_(dictionary, entry, light_time_s), judge_(dictionary), clock_(clock),
       heard_(dictionary.channels.size()) {}
 
@@ -85,7 +85,7 @@ Result<CommandGateway::Prepared> CommandGateway::prepare(const Request& request,
     if (auto room = takes(1, asker_of(request.browser, request.controller)); !room) return room.error();
 
     std::vector<NamedValue> arguments = request.arguments;
-    if (request.from_solution) arguments = fill_from_solution(*command, arguments, solution_);
+    if (request.from_solution) arguments = fill_from_solution(*command, arguments, solutions_.latest());
     auto packet = encode(*command, arguments, count_);
     if (!packet) return packet.error();
     const auto wanted = service_named(request.service);
@@ -150,6 +150,8 @@ Reply CommandGateway::submit(const Request& request, Ert now, std::vector<StageR
     const auto authorised = authorise(*prepared->command, {request.armed, request.confirmation},
                                       waits ? std::span<const PreconditionState>{} : prepared->preconditions);
     if (!authorised) return refuse(authorised.error().message);
+    if (auto apart = apart_from_solutions(*prepared->command, prepared->packet); !apart.empty())
+        return refuse(std::move(apart));
     if (!waits)
         if (auto unsafe = unsafe_on_timeline(*prepared->command, prepared->packet, leaves); !unsafe.empty())
             return refuse(std::move(unsafe));
@@ -282,6 +284,12 @@ std::optional<timeline::Change> CommandGateway::timeline_change(const dictionary
     return change ? std::optional{change->what} : std::nullopt;
 }
 
+std::string CommandGateway::apart_from_solutions(const dictionary::Command& command,
+                                                 std::span<const std::uint8_t> packet) const {
+    const auto arguments = decode(command, packet);
+    return arguments ? solutions_.judge(*arguments) : std::string{};
+}
+
 std::string CommandGateway::unsafe_on_timeline(const dictionary::Command& command, std::span<const std::uint8_t> packet,
                                                Ert leaves, std::uint64_t number) const {
     const auto change = timeline_change(command, packet);
@@ -294,8 +302,8 @@ std::string CommandGateway::unsafe_on_timeline(const dictionary::Command& comman
         if (const auto before = on_its_way ? timeline_change(each.lifecycle.command(), each.packet) : std::nullopt)
             judge.make(*before);
     }
-    const auto known = std::ranges::find(solution_, "entry_sclk", &NamedValue::name);
-    const auto entry = known == solution_.end() ? std::nullopt : std::optional{Sclk{known->value}};
+    const auto known = std::ranges::find(solutions_.latest(), "entry_sclk", &NamedValue::name);
+    const auto entry = known == solutions_.latest().end() ? std::nullopt : std::optional{Sclk{known->value}};
     const Scet there{leaves.microseconds + static_cast<std::int64_t>(light_time_s_ * 1.0e6)};
     const auto arrives = clock_ ? std::optional{clock_->sclk_of(there)} : std::nullopt;
     if (!change) {

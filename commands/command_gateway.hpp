@@ -9,6 +9,7 @@
 #include "commands/port.hpp"
 #include "commands/preconditions.hpp"
 #include "commands/request.hpp"
+#include "commands/solution_judge.hpp"
 #include "commands/timeline_judge.hpp"
 #include "commands/tracking_schedule.hpp"
 #include "common/time.hpp"
@@ -57,7 +58,7 @@ class CommandGateway {
                    std::optional<Scet> entry = {}, std::optional<ClockCorrelation> clock = {});
 
     /// Replaces ground's navigation solution.
-    void renew_solution(std::vector<NamedValue> solution) { solution_ = std::move(solution); }
+    void renew_solution(std::vector<NamedValue> solution) { solutions_.renew(std::move(solution)); }
 
     enum class Asker : std::uint8_t { person, script };
     /// Checks and queues a request. The first stage reported carries the arguments and the octets. A dry run makes
@@ -173,6 +174,8 @@ class CommandGateway {
     std::string leaving_text(const CommandQueue::Entry& entry) const;
     /// The preconditions that are known not to hold now, and what the command would do to the timeline; empty: none.
     std::string failing_now(const Underway& underway, Ert now) const;
+    /// Why a command's parameters are none that ground sends; empty: they are, or it has none.
+    std::string apart_from_solutions(const dictionary::Command& command, std::span<const std::uint8_t> packet) const;
     /// Why the command must not leave then, for what it does to the timeline; empty: it may, or does nothing there.
     /// @param number  of the command, where it has one
     std::string unsafe_on_timeline(const dictionary::Command& command, std::span<const std::uint8_t> packet, Ert leaves,
@@ -211,7 +214,7 @@ class CommandGateway {
     CommandQueue queue_;
     CommandLink link_;
     Uplink uplinks_;
-    std::vector<NamedValue> solution_;
+    SolutionJudge solutions_;
     std::vector<std::string> second_person_;
     TrackingSchedule stations_;
     PlannedDeadlines deadlines_;

@@ -63,7 +63,7 @@ struct World::State {
     flight::DeviceInputs in;
     FixedVector<flight::ImuSample, 4> imu_samples;
     FixedVector<flight::UplinkPacket, 8> received;
-    bool heard_ground = false;  ///< an uplinked unit has reached the receiver
+    bool separation_commanded = false;  ///< of the cruise stage
     std::uint32_t nvm_used_octets = 0, nvm_capacity_octets = 0;
 
     BankReversals reversals;
@@ -269,10 +269,11 @@ void World::State::watch() {
 
     if (outcome != Outcome::running) return;
     if (now.altitude_m < burns_up_m && vehicle.configuration().cruise_stage)
-        return heard_ground
+        return separation_commanded
                    ? end(Outcome::lost,
-                         "entered with the cruise stage attached: what was commanded did not separate it")
-                   : end(Outcome::not_commanded, "entered with the cruise stage attached: nothing was commanded");
+                         "entered with the cruise stage attached: it was commanded to separate, and did not")
+                   : end(Outcome::not_commanded,
+                         "entered with the cruise stage attached: its separation was not commanded");
     if (const char* body = separation().struck)
         return end(Outcome::lost,
                    std::string{"the vehicle was struck by its "} + body + " at E+" + seconds_text(now.e_s));
@@ -377,6 +378,8 @@ flight::DeviceInputs& World::sense() {
 }
 
 void World::advance(const flight::DeviceOutputs& out) {
+    state_->separation_commanded |= std::ranges::any_of(
+        out.pyros, [](const flight::PyroCommand& pyro) { return pyro.id == flight::PyroId::cruise_stage_separation; });
     state_->buses.take(out);
     state_->listen_to_imu(out.units[flight::Device::imu]);
     state_->fly_on();
@@ -392,7 +395,6 @@ bool World::receive(std::span<const std::uint8_t> cltu) {
     if (cltu.size() > packet.octets.size()) return false;
     std::copy(cltu.begin(), cltu.end(), packet.octets.begin());
     packet.size = static_cast<std::uint16_t>(cltu.size());
-    state_->heard_ground = true;
     return state_->received.try_push_back(packet);
 }
 

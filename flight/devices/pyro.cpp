@@ -51,7 +51,7 @@ void PyroManager::on(const PyroReply& reply, Outbox& out) {
     const auto number = static_cast<std::size_t>(reply.pyro);
     const auto place = static_cast<std::size_t>(reply.unit);
     if (number >= pyro_count || place >= both_controllers.size() || shots_[number].controllers[place].replies_due == 0)
-        return out.event(evr::REPLY_UNEXPECTED{.device_number = static_cast<std::uint8_t>(Device::pyro)});
+        return out.event(evr::REPLY_UNEXPECTED{.device = static_cast<DeviceName>(Device::pyro)});
     Shot& shot = shots_[number];
     Controller& controller = shot.controllers[place];
     --controller.replies_due;

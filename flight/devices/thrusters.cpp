@@ -7,7 +7,7 @@
 namespace aeolis::flight {
 namespace {
 
-constexpr auto thrusters_device = static_cast<std::uint8_t>(Device::thrusters);
+constexpr auto thrusters_device = static_cast<DeviceName>(Device::thrusters);
 constexpr double microseconds_per_second = 1.0e6;
 
 }  // namespace
@@ -22,14 +22,13 @@ void Thrusters::on(const EnableThrusters& command, Outbox&) {
 }
 
 void Thrusters::on(const ThrusterReply& reply, Outbox& out) {
-    if (replies_due_ == 0 || reply.unit != unit_)
-        return out.event(evr::REPLY_UNEXPECTED{.device_number = thrusters_device});
+    if (replies_due_ == 0 || reply.unit != unit_) return out.event(evr::REPLY_UNEXPECTED{.device = thrusters_device});
     enabled_ = reply.enabled;
     const bool as_commanded = !reply.refused && reply.enabled == awaited_;
     if (reply.refused)
-        out.event(evr::DEVICE_REFUSED{.device_number = thrusters_device});
+        out.event(evr::DEVICE_REFUSED{.device = thrusters_device});
     else if (!as_commanded && replies_due_ == 1)
-        out.event(evr::REPLY_CONTRADICTS{.device_number = thrusters_device});
+        out.event(evr::REPLY_CONTRADICTS{.device = thrusters_device});
     --replies_due_;
     // This reply answers an older command; the reply to the newer one is still due.
     if (!as_commanded && replies_due_ > 0) return;

@@ -249,18 +249,22 @@ bool EdlMain::too_late(Sclk now) const {
 
 void EdlMain::on(const ParametersUpdate& update, Outbox& out) {
     // Once GNC navigates by itself, a solution from Earth is older than its own.
-    FixedVector<gnc::Condition, SolutionConditions::capacity() + 2> conditions;
+    FixedVector<gnc::Condition, SolutionConditions::capacity() + gnc::Conditions::capacity() + 2> conditions;
     conditions.push_back(is(Quantity::gnc_enabled, configuration_.enabled, false));
     if (configuration_.enabled) return answer(out, update.tag, CommandRefusal::wrong_phase, conditions);
     const SolutionConditions of_solution = conditions_of(update.parameters, out.now());
     if (!all_hold(of_solution)) return answer(out, update.tag, CommandRefusal::bad_argument, of_solution);
     const Sclk entry = Sclk::from_ticks(std::llround(update.parameters.entry_sclk * 64.0));
-    const MaybeTime navigated = navigated_entry(update.parameters);
-    if (const auto unsafe = unsafe_entry(entry, navigated, out.now())) return refuse(*unsafe, update.tag, out);
-    if (navigated.defined())
-        conditions.push_back(at_most(Quantity::entry_apart_from_navigation_s, std::abs(entry - *navigated.get()),
+    const auto navigated = navigated_entry(update.parameters);
+    if (const auto unsafe = unsafe_entry(entry, navigated ? MaybeTime{navigated->at} : MaybeTime{}, out.now()))
+        return refuse(*unsafe, update.tag, out);
+    const gnc::Conditions of_target = navigated ? target_conditions(update.parameters, *navigated) : gnc::Conditions{};
+    if (!all_hold(of_target)) return answer(out, update.tag, CommandRefusal::bad_argument, of_target);
+    if (navigated)
+        conditions.push_back(at_most(Quantity::entry_apart_from_navigation_s, std::abs(entry - navigated->at),
                                      build_parameters.entry_moved_max_s));
     conditions.append(of_solution.span());
+    conditions.append(of_target.span());
     ++revision_;
     parameters_ = update.parameters;
     gnc_.set_solution(solution_of(*parameters_), out.now());

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "flight/edl/solution.hpp"
 
+#include "flight/gnc/entry/target_geometry.hpp"
 #include "flight/gnc/mars.hpp"
+#include "flight/gnc/powered_descent/vertical_profile.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -31,10 +33,18 @@ SolutionConditions conditions_of(const command::EDL_SET_PARAMETERS& p, Sclk now)
         gnc::at_most(Quantity::solution_speed_mps, speed_mps, build_parameters.solution_speed_max_mps));
     conditions.push_back(gnc::at_least(Quantity::epoch_before_entry_s, p.entry_sclk - p.epoch_sclk, 0.0));
     conditions.push_back(gnc::at_most(Quantity::time_to_entry_s, to_entry_s, clock_end_s - now.seconds));
+    // Backshell altitude and speed belong together: from there on, the powered approach needs its height.
+    constexpr Parameters as_built;
+    const double ends_m = p.backshell_altitude_m - gnc::powered_descent::altitude_used_until_constant_velocity_m(
+                                                       as_built, p.backshell_speed_mps);
+    conditions.push_back(
+        gnc::at_least(Quantity::approach_end_by_design_m, ends_m, build_parameters.approach_end_by_design_min_m));
+    conditions.push_back(
+        gnc::at_most(Quantity::approach_end_by_design_m, ends_m, build_parameters.approach_end_by_design_max_m));
     return conditions;
 }
 
-MaybeTime navigated_entry(const command::EDL_SET_PARAMETERS& sent) {
+std::optional<NavigatedEntry> navigated_entry(const command::EDL_SET_PARAMETERS& sent) {
     gnc::Vector3 p_MoB_M{sent.position_x_m, sent.position_y_m, sent.position_z_m};
     gnc::Vector3 v_MB_M{sent.velocity_x_mps, sent.velocity_y_mps, sent.velocity_z_mps};
     double left_s = sent.entry_sclk - sent.epoch_sclk;
@@ -50,7 +60,23 @@ MaybeTime navigated_entry(const command::EDL_SET_PARAMETERS& sent) {
     const double radius_m = p_MoB_M.norm();
     const double descent_rate_mps = -v_MB_M.dot(p_MoB_M) / radius_m;
     if (!(descent_rate_mps > 0.0)) return {};
-    return Sclk{sent.entry_sclk} + (radius_m - build_parameters.entry_radius_m) / descent_rate_mps;
+    return NavigatedEntry{Sclk{sent.entry_sclk} + (radius_m - build_parameters.entry_radius_m) / descent_rate_mps,
+                          p_MoB_M, v_MB_M};
+}
+
+gnc::Conditions target_conditions(const command::EDL_SET_PARAMETERS& p, const NavigatedEntry& entry) {
+    const gnc::Solution solution = solution_of(p);
+    const auto target = gnc::target_geometry(
+        entry.p_MoB_M_m, entry.v_MB_M_mps,
+        gnc::direction_of(solution.target_latitude_rad, solution.target_longitude_rad), solution.target_radius_m);
+    gnc::Conditions conditions;
+    conditions.push_back(
+        gnc::at_least(Quantity::target_downrange_m, target.downrange_m, build_parameters.target_downrange_min_m));
+    conditions.push_back(
+        gnc::at_most(Quantity::target_downrange_m, target.downrange_m, build_parameters.target_downrange_max_m));
+    conditions.push_back(
+        gnc::at_most(Quantity::crossrange_m, std::abs(target.crossrange_m), build_parameters.target_crossrange_max_m));
+    return conditions;
 }
 
 }  // namespace aeolis::flight

@@ -5,10 +5,11 @@
 #include "generated/dictionary_flight.hpp"
 
 #include <numbers>
+#include <optional>
 
 namespace aeolis::flight {
 
-using SolutionConditions = FixedVector<gnc::Condition, 8>;
+using SolutionConditions = FixedVector<gnc::Condition, 10>;
 
 /// Converts the arguments of EDL_SET_PARAMETERS to GNC's form: angles in radians.
 inline gnc::Solution solution_of(const command::EDL_SET_PARAMETERS& p) {
@@ -33,9 +34,16 @@ inline gnc::Solution solution_of(const command::EDL_SET_PARAMETERS& p) {
 /// Each argument is already within its own range. Checked here: combinations of arguments, and their relation to `now`.
 SolutionConditions conditions_of(const command::EDL_SET_PARAMETERS& p, Sclk now);
 
-/// The time at which the position and velocity reach entry interface, close to `entry_sclk` if that is sound. R51
-/// The state is propagated to `entry_sclk`; the remaining height counts at the descent rate there. Undefined where the
-/// vehicle does not descend then.
-MaybeTime navigated_entry(const command::EDL_SET_PARAMETERS& p);
+/// Where the position and velocity of the parameters lead. R51
+struct NavigatedEntry {
+    Sclk at;                             ///< entry interface, close to `entry_sclk` if that is sound
+    gnc::Vector3 p_MoB_M_m, v_MB_M_mps;  ///< at `entry_sclk`
+};
+/// The state is propagated to `entry_sclk`; the remaining height counts at the descent rate there. None where the vehicle
+/// does not descend then.
+std::optional<NavigatedEntry> navigated_entry(const command::EDL_SET_PARAMETERS& p);
+
+/// The conditions under which range control can reach the target from there.
+gnc::Conditions target_conditions(const command::EDL_SET_PARAMETERS& p, const NavigatedEntry& entry);
 
 }  // namespace aeolis::flight

@@ -9,8 +9,11 @@ namespace {
 
 constexpr std::uint32_t magic = 0xA1B2C3D4, magic_nanoseconds = 0xA1B23C4D, magic_pcapng = 0x0A0D0D0A;
 constexpr std::size_t file_header_octets = 24, record_header_octets = 16, ip_octets = 20, udp_octets = 8;
-constexpr std::uint32_t raw_ip = 101, ipv4 = 228, ethernet = 1, linux_cooked = 113;
-constexpr std::int64_t epoch_2000_s = 946728000;  // 2000-01-01T12:00:00 UTC in seconds since 1970
+constexpr std::uint32_t raw_ip = 101, raw_ip_of_bsd = 12, ipv4 = 228, ethernet = 1, linux_cooked = 113,
+                        linux_cooked_2 = 276;
+constexpr std::array link_types{raw_ip, raw_ip_of_bsd, ipv4, ethernet, linux_cooked, linux_cooked_2};
+constexpr std::size_t record_octets_max = std::size_t{1} << 24U;  // chosen: tcpdump's longest is 2^18
+constexpr std::int64_t epoch_2000_s = 946728000;                  // 2000-01-01T12:00:00 UTC in seconds since 1970
 constexpr std::int64_t microseconds_a_second = 1'000'000;
 
 void put(std::string& to, std::uint32_t value, std::size_t octets, bool big) {
@@ -50,8 +53,13 @@ void append_record(std::string& to, Ert ert, std::uint16_t port, std::span<const
 /// The IPv4 packet in a captured one; empty: it is none.
 std::span<const std::uint8_t> ip_packet(std::span<const std::uint8_t> packet, std::uint32_t link_type) {
     constexpr std::uint32_t type_ipv4 = 0x0800, type_vlan = 0x8100, type_service_vlan = 0x88A8;
-    constexpr std::size_t ethernet_type_at = 12, cooked_type_at = 14, tag_octets = 4;
-    if (link_type == raw_ip || link_type == ipv4) return packet;
+    constexpr std::size_t ethernet_type_at = 12, cooked_type_at = 14, tag_octets = 4, cooked_2_octets = 20;
+    if (link_type == raw_ip || link_type == raw_ip_of_bsd || link_type == ipv4) return packet;
+    if (link_type == linux_cooked_2)
+        return packet.size() >= cooked_2_octets && big_number(packet.first(2)) == type_ipv4
+                   ? packet.subspan(cooked_2_octets)
+                   : std::span<const std::uint8_t>{};
+    if (link_type != ethernet && link_type != linux_cooked) return {};
     std::size_t at = link_type == ethernet ? ethernet_type_at : cooked_type_at;
     const auto type = [&] { return packet.size() < at + 2 ? 0 : big_number(packet.subspan(at, 2)); };
     while (type() == type_vlan || type() == type_service_vlan) at += tag_octets;
@@ -95,56 +103,148 @@ void append(std::string& to, Ert ert, std::uint16_t port, std::span<const std::u
         append_record(to, ert, port, octets.subspan(at, std::min(datagram_octets_max, octets.size() - at)));
 }
 
-bool File::is(std::span<const std::uint8_t> octets) {
-    if (octets.size() < 4) return false;
-    const std::uint32_t first = big_number(octets.first(4));
+bool File::is(std::span<const std::uint8_t> beginning) {
+    if (beginning.size() < 4) return false;
+    const std::uint32_t first = big_number(beginning.first(4));
     const std::uint32_t turned = first >> 24U | (first >> 8U & 0xFF00U) | (first << 8U & 0xFF0000U) | first << 24U;
     return std::ranges::any_of(std::array{magic, magic_nanoseconds, magic_pcapng},
                                [&](std::uint32_t each) { return each == first || each == turned; });
 }
 
 Result<File> File::open(std::span<const std::uint8_t> octets) {
-    File file;
-    file.octets_ = octets;
-    if (!is(octets)) return Error{"no pcap file"};
-    const std::uint32_t first = big_number(octets.first(4));
-    if (first == magic_pcapng) return Error{"a pcapng file: convert it, editcap -F pcap IN OUT"};
-    if (octets.size() < file_header_octets) return Error{"the header of the pcap file is cut off"};
+    return open([octets](std::size_t at, std::size_t size) {
+        return at < octets.size() ? octets.subspan(at, std::min(size, octets.size() - at))
+                                  : std::span<const std::uint8_t>{};
+    });
+}
+
+Result<File> File::open(Source source) {
+    File file{std::move(source)};
+    const auto header = file.source_(0, file_header_octets);
+    if (!is(header)) return Error{"no pcap file"};
+    const std::uint32_t first = big_number(header.first(4));
+    file.next_generation_ = first == magic_pcapng;
+    if (file.next_generation_) return file;
+    if (header.size() < file_header_octets) return Error{"the header of the pcap file is cut off"};
     file.swapped_ = first != magic && first != magic_nanoseconds;  // its numbers have the least octet first
-    file.nanoseconds_ = file.number(0, 4) == magic_nanoseconds;
-    file.link_type_ = file.number(20, 4) & 0xFFFFU;
+    constexpr std::uint64_t a_thousand_million = 1'000'000'000, a_million = 1'000'000;
+    const auto link_type = static_cast<std::uint32_t>(file.number(header.subspan(20, 4)) & 0xFFFFU);
+    file.interfaces_.push_back(
+        {link_type, file.number(header.first(4)) == magic_nanoseconds ? a_thousand_million : a_million, 0});
     file.at_ = file_header_octets;
-    constexpr std::array link_types{raw_ip, ipv4, ethernet, linux_cooked};
-    if (std::ranges::find(link_types, file.link_type_) == link_types.end())
-        return Error{"link type " + std::to_string(file.link_type_) + ": 101, 228, 1 and 113 are read"};
+    if (std::ranges::find(link_types, link_type) == link_types.end())
+        return Error{"link type " + std::to_string(link_type) + ": 101, 12, 228, 1, 113 and 276 are read"};
     return file;
 }
 
-std::uint32_t File::number(std::size_t at, std::size_t octets) const {
-    std::uint32_t value = 0;
-    for (std::size_t i = 0; i < octets; ++i) value = value << 8U | octets_[at + (swapped_ ? octets - 1 - i : i)];
+std::uint64_t File::number(std::span<const std::uint8_t> octets) const {
+    std::uint64_t value = 0;
+    for (std::size_t i = 0; i < octets.size(); ++i) value = value << 8U | octets[swapped_ ? octets.size() - 1 - i : i];
     return value;
 }
 
-std::optional<Datagram> File::next() {
-    while (at_ + record_header_octets <= octets_.size()) {
-        const std::int64_t seconds = number(at_, 4), part = number(at_ + 4, 4);
-        const std::size_t size = number(at_ + 8, 4);
-        if (size > octets_.size() - at_ - record_header_octets) break;
-        const auto packet = octets_.subspan(at_ + record_header_octets, size);
-        at_ += record_header_octets + size;
-        auto datagram = datagram_in(ip_packet(packet, link_type_));
-        if (!datagram) {
+/// Units of time since 1970, without overflow.
+Ert File::ert_of(std::uint64_t units, const Interface& by) {
+    constexpr std::uint64_t seconds_max = std::uint64_t{1} << 40U;  // as good as never
+    const std::uint64_t seconds = std::min(units / by.units_a_second, seconds_max);
+    const auto part = static_cast<long double>(units % by.units_a_second) * microseconds_a_second /
+                      static_cast<long double>(by.units_a_second);
+    return Ert{(static_cast<std::int64_t>(seconds) + by.offset_s - epoch_2000_s) * microseconds_a_second +
+               static_cast<std::int64_t>(part)};
+}
+
+std::optional<File::Captured> File::next_of_pcap() {
+    const auto header = source_(at_, record_header_octets);
+    if (header.size() < record_header_octets) {
+        cut_ = !header.empty();
+        return std::nullopt;
+    }
+    const Interface& only = interfaces_.front();
+    const std::uint64_t seconds = number(header.first(4)), part = number(header.subspan(4, 4));
+    const auto size = static_cast<std::size_t>(number(header.subspan(8, 4)));
+    const auto packet = size <= record_octets_max ? source_(at_ + record_header_octets, size) : header.first(0);
+    cut_ = size > record_octets_max || packet.size() < size;
+    if (cut_) return std::nullopt;
+    at_ += record_header_octets + size;
+    return Captured{ert_of(seconds * only.units_a_second + part, only), only.link_type, packet};
+}
+
+void File::add_interface(std::span<const std::uint8_t> body) {
+    constexpr std::size_t options_at = 8, option_header_octets = 4;
+    constexpr std::uint64_t end_of_options = 0, resolution = 9, offset = 14;
+    Interface one{.link_type = static_cast<std::uint32_t>(body.size() < 2 ? 0 : number(body.first(2)))};
+    for (std::size_t at = options_at; at + option_header_octets <= body.size();) {
+        const std::uint64_t code = number(body.subspan(at, 2));
+        const auto size = static_cast<std::size_t>(number(body.subspan(at + 2, 2)));
+        at += option_header_octets;
+        if (code == end_of_options || size > body.size() - at) break;
+        if (code == resolution && size == 1) {
+            // Either a power of ten, or with the first bit set a power of two.
+            constexpr unsigned of_two = 0x80, ten_max = 19, two_max = 63;
+            const unsigned power = body[at] & ~of_two;
+            one.units_a_second = 1;
+            if ((body[at] & of_two) != 0)
+                one.units_a_second = std::uint64_t{1} << std::min(power, two_max);
+            else
+                for (unsigned i = 0; i < std::min(power, ten_max); ++i) one.units_a_second *= 10;
+        } else if (code == offset && size == 8) {
+            constexpr std::int64_t offset_max_s = std::int64_t{1} << 40U;
+            one.offset_s =
+                std::clamp(static_cast<std::int64_t>(number(body.subspan(at, size))), -offset_max_s, offset_max_s);
+        }
+        at += (size + 3) / 4 * 4;
+    }
+    interfaces_.push_back(one);
+}
+
+std::optional<File::Captured> File::next_of_pcapng() {
+    constexpr std::size_t block_header_octets = 8, block_end_octets = 4, order_octets = 4;
+    constexpr std::uint64_t interface_description = 1, obsolete_packet = 2, simple_packet = 3, enhanced_packet = 6;
+    constexpr std::uint32_t order = 0x1A2B3C4D;
+    for (;;) {
+        const auto begin = source_(at_, block_header_octets + order_octets);
+        cut_ = !begin.empty();
+        if (begin.size() < block_header_octets + order_octets) return std::nullopt;
+        // A section has an order of its own, and its type reads the same in both.
+        const bool section = big_number(begin.first(4)) == magic_pcapng;
+        if (section) {
+            swapped_ = big_number(begin.subspan(block_header_octets, order_octets)) != order;
+            if (number(begin.subspan(block_header_octets, order_octets)) != order) return std::nullopt;
+            interfaces_.clear();
+        }
+        const std::uint64_t type = number(begin.first(4)), whole = number(begin.subspan(4, 4));
+        if (whole % 4 != 0 || whole < block_header_octets + block_end_octets || whole > record_octets_max)
+            return std::nullopt;
+        const auto block = source_(at_, static_cast<std::size_t>(whole));
+        if (block.size() < whole || number(block.last(block_end_octets)) != whole) return std::nullopt;
+        at_ += block.size();
+        cut_ = false;
+        const auto body = block.subspan(block_header_octets, block.size() - block_header_octets - block_end_octets);
+        if (section) continue;
+        if (type == interface_description) add_interface(body);
+        if (type == simple_packet) ++others_;  // it has no time
+        if (type != enhanced_packet && type != obsolete_packet) continue;
+        constexpr std::size_t packet_at = 20;
+        const std::size_t size = body.size() < packet_at ? 0 : static_cast<std::size_t>(number(body.subspan(12, 4)));
+        const std::uint64_t which = body.size() < packet_at ? 0 : number(body.first(type == enhanced_packet ? 4 : 2));
+        if (body.size() < packet_at || size > body.size() - packet_at || which >= interfaces_.size()) {
             ++others_;
             continue;
         }
-        constexpr std::int64_t nanoseconds_a_microsecond = 1000;
-        datagram->ert = Ert{(seconds - epoch_2000_s) * microseconds_a_second +
-                            (nanoseconds_ ? part / nanoseconds_a_microsecond : part)};
-        return datagram;
+        const Interface& by = interfaces_[static_cast<std::size_t>(which)];
+        const std::uint64_t units = number(body.subspan(4, 4)) << 32U | number(body.subspan(8, 4));
+        return Captured{ert_of(units, by), by.link_type, body.subspan(packet_at, size)};
     }
-    cut_ = at_ < octets_.size();
-    at_ = octets_.size();
+}
+
+std::optional<Datagram> File::next() {
+    while (const auto captured = next_generation_ ? next_of_pcapng() : next_of_pcap()) {
+        if (auto datagram = datagram_in(ip_packet(captured->packet, captured->link_type))) {
+            datagram->ert = captured->ert;
+            return datagram;
+        }
+        ++others_;
+    }
     return std::nullopt;
 }
 

@@ -5,19 +5,21 @@
 #include "common/time.hpp"
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace aeolis::server {
 
-/// Files of captured packets (pcap, not pcapng), as tcpdump and tshark write and read them.
+/// Files of captured packets, as tcpdump, tshark and Wireshark write and read them.
 ///
-/// Written  link type 101 (raw IP): each piece of octets as a UDP datagram over IPv4, from 192.0.2.1 to 192.0.2.2, with
-///          the time of its reception to the microsecond, UTC. `tshark -d udp.port==4200,ccsds` reads space packets
-/// Read     link types 101 and 228 (IPv4), 1 (Ethernet, with VLAN tags), 113 (Linux cooked); either order of octets,
-///          microseconds or nanoseconds. The data of UDP over IPv4; everything else is counted
+/// Written  pcap, link type 101 (raw IP): each piece of octets as a UDP datagram over IPv4, from 192.0.2.1 to 192.0.2.2,
+///          with the time of its reception to the microsecond, UTC. `tshark -d udp.port==4200,ccsds` reads space packets
+/// Read     pcap and pcapng, either order of octets, any resolution of time; link types 101, 12 and 228 (IPv4), 1
+///          (Ethernet, with VLAN tags), 113 and 276 (Linux cooked). The data of UDP over IPv4; everything else is counted
 namespace pcap {
 
 inline constexpr std::uint16_t first_port = 4200;  ///< chosen; a further link has the next
@@ -33,26 +35,45 @@ struct Datagram {
     std::span<const std::uint8_t> octets;
 };
 
-/// Reads a whole file that is in memory.
+/// Octets of a file from a place on, as many as are asked for, or fewer where it ends; valid until the next call.
+using Source = std::function<std::span<const std::uint8_t>(std::size_t at, std::size_t octets)>;
+
 class File {
   public:
     /// Whether a file begins as one of these.
-    static bool is(std::span<const std::uint8_t> octets);
-    /// Fails for pcapng, for another link type, and for what is no capture. `octets` must outlive this.
-    static Result<File> open(std::span<const std::uint8_t> octets);
+    static bool is(std::span<const std::uint8_t> beginning);
+    /// Fails for what is no capture, and for a pcap file of another link type.
+    static Result<File> open(Source source);
+    static Result<File> open(std::span<const std::uint8_t> octets);  ///< which must outlive this
 
-    /// The next datagram; none at the end.
+    /// The next datagram, valid until the next call; none at the end.
     std::optional<Datagram> next();
-    std::uint64_t others() const { return others_; }  ///< packets that are no whole UDP over IPv4
-    bool cut() const { return cut_; }                 ///< the last record is not whole
+    std::uint64_t others() const { return others_; }  ///< packets that are no whole UDP over IPv4 with a time
+    bool cut() const { return cut_; }                 ///< the file ends within a record, or is damaged there
 
   private:
-    std::uint32_t number(std::size_t at, std::size_t octets) const;
+    struct Interface {
+        std::uint32_t link_type = 0;
+        std::uint64_t units_a_second = 1'000'000;
+        std::int64_t offset_s = 0;
+    };
+    struct Captured {
+        Ert ert;
+        std::uint32_t link_type = 0;
+        std::span<const std::uint8_t> packet;
+    };
+    explicit File(Source source) : source_(std::move(source)) {}
+    std::uint64_t number(std::span<const std::uint8_t> octets) const;
+    std::optional<Captured> next_of_pcap();
+    std::optional<Captured> next_of_pcapng();
+    void add_interface(std::span<const std::uint8_t> body);
+    static Ert ert_of(std::uint64_t units, const Interface& by);
 
-    std::span<const std::uint8_t> octets_;
+    Source source_;
     std::size_t at_ = 0;
-    bool swapped_ = false, nanoseconds_ = false, cut_ = false;
-    std::uint32_t link_type_ = 0;
+    bool next_generation_ = false;  ///< pcapng
+    bool swapped_ = false, cut_ = false;
+    std::vector<Interface> interfaces_;  ///< of pcap one
     std::uint64_t others_ = 0;
 };
 

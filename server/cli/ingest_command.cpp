@@ -10,6 +10,7 @@
 #include "server/pipeline/pipeline_thread.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -17,7 +18,6 @@
 #include <memory>
 #include <optional>
 #include <spdlog/spdlog.h>
-#include <sys/mman.h>
 #include <sys/stat.h>
 #include <thread>
 #include <unistd.h>
@@ -27,6 +27,7 @@ namespace aeolis::server {
 namespace {
 
 constexpr std::size_t plain_piece_octets = 65536;
+constexpr std::size_t window_octets = std::size_t{1} << 20U;         // of a file in memory
 constexpr std::size_t beginning_octets_max = std::size_t{1} << 20U;  // by which a layout is recognised
 constexpr std::int64_t microseconds_a_second = 1'000'000;
 constexpr double bits_an_octet = 8.0;
@@ -43,34 +44,55 @@ struct IngestOptions {
     double pace = 0.0;                      ///< seconds of reception a second; 0: at once
 };
 
-/// The octets of a file, read as they are needed.
-class MappedFile {
+/// A file that is read as its octets are needed. One that grows shorter meanwhile has an end there.
+class RecordedFile {
   public:
-    static Result<MappedFile> open(const std::filesystem::path& name) {
-        const Error refused{name.string() + " cannot be read"};
-        const int file = ::open(name.c_str(), O_RDONLY | O_CLOEXEC);
-        if (file < 0) return refused;
+    static Result<RecordedFile> open(const std::filesystem::path& name) {
+        RecordedFile opened;
+        opened.file_ = ::open(name.c_str(), O_RDONLY | O_CLOEXEC);
         struct stat about{};
-        MappedFile mapped;
-        const bool regular = ::fstat(file, &about) == 0 && S_ISREG(about.st_mode);
-        mapped.size_ = regular ? static_cast<std::size_t>(about.st_size) : 0;
-        void* octets = mapped.size_ > 0 ? ::mmap(nullptr, mapped.size_, PROT_READ, MAP_PRIVATE, file, 0) : nullptr;
-        ::close(file);
-        if (!regular || octets == MAP_FAILED) return refused;
-        mapped.octets_ = octets;
-        return mapped;
+        if (opened.file_ < 0 || ::fstat(opened.file_, &about) != 0 || !S_ISREG(about.st_mode))
+            return Error{name.string() + " cannot be read"};
+        opened.size_ = static_cast<std::size_t>(about.st_size);
+        return opened;
     }
-    MappedFile(MappedFile&& other) noexcept : octets_(std::exchange(other.octets_, nullptr)), size_(other.size_) {}
-    MappedFile& operator=(MappedFile&&) = delete;
-    ~MappedFile() {
-        if (octets_ != nullptr) ::munmap(octets_, size_);
+    RecordedFile(RecordedFile&& other) noexcept
+        : file_(std::exchange(other.file_, -1)), size_(other.size_), window_(std::move(other.window_)),
+          from_(other.from_) {}
+    RecordedFile& operator=(RecordedFile&&) = delete;
+    ~RecordedFile() {
+        if (file_ >= 0) ::close(file_);
     }
-    std::span<const std::uint8_t> octets() const { return {static_cast<const std::uint8_t*>(octets_), size_}; }
+
+    std::size_t size() const { return size_; }
+    /// As pcap::Source has it.
+    std::span<const std::uint8_t> read(std::size_t at, std::size_t octets) {
+        if (at < from_ || at + octets > from_ + window_.size()) fill(at, octets);
+        if (at >= from_ + window_.size()) return {};
+        const std::span<const std::uint8_t> held{window_};
+        return held.subspan(at - from_, std::min(octets, from_ + window_.size() - at));
+    }
 
   private:
-    MappedFile() = default;
-    void* octets_ = nullptr;
+    RecordedFile() = default;
+    void fill(std::size_t at, std::size_t octets) {
+        window_.resize(std::max(octets, window_octets));
+        from_ = at;
+        std::size_t filled = 0;
+        while (filled < window_.size()) {
+            const auto got =
+                ::pread(file_, window_.data() + filled, window_.size() - filled, static_cast<off_t>(at + filled));
+            if (got < 0 && errno == EINTR) continue;
+            if (got <= 0) break;
+            filled += static_cast<std::size_t>(got);
+        }
+        window_.resize(filled);
+    }
+
+    int file_ = -1;
     std::size_t size_ = 0;
+    std::vector<std::uint8_t> window_;  ///< octets of the file from from_ on
+    std::size_t from_ = 0;
 };
 
 struct Piece {
@@ -83,12 +105,14 @@ using TakePiece = std::function<bool(const Piece&)>;  ///< false: no more are wa
 /// What a recorded file holds, in order.
 class Recording {
   public:
-    static Result<Recording> open(std::span<const std::uint8_t> octets, const IngestOptions& options, Ert start) {
-        Recording recording{octets, options, start};
-        if (!pcap::File::is(octets)) return recording;
+    /// `file` must outlive this.
+    static Result<Recording> open(RecordedFile& file, const IngestOptions& options, Ert start) {
+        Recording recording{file, options, start};
+        if (!pcap::File::is(file.read(0, 4))) return recording;
         if (options.start || options.bits_per_second)
-            return Error{"a pcap file has times of its own: --start and --bits-per-second are of plain files"};
-        const auto capture = pcap::File::open(octets);
+            return Error{"a capture has times of its own: --start and --bits-per-second are of plain files"};
+        const auto capture =
+            pcap::File::open([&file](std::size_t at, std::size_t octets) { return file.read(at, octets); });
         if (!capture) return capture.error();
         recording.capture_ = *capture;
         return recording;
@@ -96,10 +120,7 @@ class Recording {
 
     /// Gives each piece to `take`. @return what of a capture was not used, in words; empty: nothing
     std::string each(const TakePiece& take) const {
-        if (!capture_) {
-            each_of_plain(take);
-            return {};
-        }
+        if (!capture_) return each_of_plain(take);
         auto capture = *capture_;
         std::uint64_t other_ports = 0;
         while (const auto datagram = capture.next()) {
@@ -116,10 +137,10 @@ class Recording {
     }
 
   private:
-    Recording(std::span<const std::uint8_t> octets, const IngestOptions& options, Ert start)
-        : octets_(octets), options_(&options), start_(start) {}
+    Recording(RecordedFile& file, const IngestOptions& options, Ert start)
+        : file_(&file), options_(&options), start_(start) {}
 
-    void each_of_plain(const TakePiece& take) const {
+    std::string each_of_plain(const TakePiece& take) const {
         // With a rate in pieces of a tenth of a second: the time of each is that of its last octet.
         constexpr double piece_s = 0.1;
         const double rate = options_->bits_per_second.value_or(0.0) / bits_an_octet;
@@ -127,15 +148,17 @@ class Recording {
             rate > 0.0
                 ? static_cast<std::size_t>(std::clamp(rate * piece_s, 1.0, static_cast<double>(plain_piece_octets)))
                 : plain_piece_octets;
-        for (std::size_t at = 0; at < octets_.size(); at += piece) {
-            const std::size_t size = std::min(piece, octets_.size() - at);
-            const double passed_s = rate > 0.0 ? static_cast<double>(at + size) / rate : 0.0;
+        for (std::size_t at = 0;;) {
+            const auto octets = file_->read(at, piece);
+            if (octets.empty()) return at < file_->size() ? "it grew shorter while it was read" : "";
+            at += octets.size();
+            const double passed_s = rate > 0.0 ? static_cast<double>(at) / rate : 0.0;
             const Ert ert{start_.microseconds + static_cast<std::int64_t>(passed_s * microseconds_a_second)};
-            if (!take({ert, octets_.subspan(at, size), false})) return;
+            if (!take({ert, octets, false})) return {};
         }
     }
 
-    std::span<const std::uint8_t> octets_;
+    RecordedFile* file_;
     const IngestOptions* options_;
     Ert start_;
     std::optional<pcap::File> capture_;
@@ -294,17 +317,18 @@ int ingest(const IngestOptions& options) {
         if (!told) return failed("--start " + *options.start + ": no UTC time, such as 2012-219T05:10:47.4", 2);
         start = *told;
     }
-    std::vector<MappedFile> files;
+    std::vector<RecordedFile> files;
+    files.reserve(options.files.size());  // recordings refer to them
     std::vector<Recording> recordings;
     std::size_t before = 0;  // octets of the files before
     for (const auto& name : options.files) {
-        auto file = MappedFile::open(name);
+        auto file = RecordedFile::open(name);
         if (!file) return failed(file.error().message, 2);
         files.push_back(std::move(*file));
         const Ert begun{start.microseconds + duration_us(before, options)};
-        auto recording = Recording::open(files.back().octets(), options, begun);
+        auto recording = Recording::open(files.back(), options, begun);
         if (!recording) return failed(name.string() + ": " + recording.error().message, 2);
-        before += files.back().octets().size();
+        before += files.back().size();
         recordings.push_back(*recording);
     }
     const auto& first = options.files.front();
@@ -349,13 +373,14 @@ int ingest(const IngestOptions& options) {
 void add_ingest_command(CLI::App& program, int& exit_code) {
     const auto options = std::make_shared<IngestOptions>();
     auto& command = *program.add_subcommand(
-        "ingest", "takes recorded files of a mission into a run of the archive, as a followed link brings it: plain "
-                  "octets, or pcap with the times of reception. Exit code 1 when anything was lost or not used");
+        "ingest",
+        "takes recorded files of a mission into a run of the archive, as a followed link brings it: plain "
+        "octets, or pcap and pcapng with the times of reception. Exit code 1 when anything was lost or not used");
     command.add_option("files", options->files, "recorded files, in the order of reception: one stream")->required();
     command.add_option("--archive", options->archive, "SQLite file that keeps everything")->required();
     add_mission_xtce(command, options->xtce, "the mission's XTCE file; may be given several times")->required();
     add_stream_format(command, options->format);
-    command.add_option("--udp-port", options->port, "of a pcap file: datagrams to this port only; all if left out");
+    command.add_option("--udp-port", options->port, "of a capture: datagrams to this port only; all if left out");
     command.add_option("--start", options->start,
                        "of a plain file: when its first octet was received, UTC; now if left out");
     command.add_option("--bits-per-second", options->bits_per_second,

@@ -381,9 +381,8 @@ TEST_CASE("the engine's rows are those of the spreadsheet, cell by cell", "[time
 
 TEST_CASE("what is announced of a device waits for its reply, and a decision on a pyro says that it was decided",
           "[timeline][R50]") {
-    const auto is_said_at_once = [](const TimepointSpec& spec) {  // by GNC, or by the clock, not of the device
-        return &spec == &timeline_specs[timepoint::detumble.value] ||
-               &spec == &timeline_specs[timepoint::entry_interface.value];
+    const auto is_said_at_once = [](const TimepointSpec& spec) {  // by the clock, not of the device
+        return &spec == &timeline_specs[timepoint::entry_interface.value];
     };
     for (const TimepointSpec& spec : timeline_specs) {
         if (!spec.action || !(spec.tone || spec.event)) continue;

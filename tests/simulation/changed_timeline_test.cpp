@@ -98,7 +98,8 @@ double to_tick(double seconds) {
     return std::round(seconds * 64.0) / 64.0;
 }
 
-/// Draws changes of every kind: of timepoints, anchors and parameters, from a tick to a thousand seconds.
+/// Draws changes of every kind: of timepoints, anchors and parameters, from a tick to a thousand seconds, or anywhere in
+/// the range of an argument.
 class Changes {
   public:
     explicit Changes(std::uint32_t seed) : random_(seed) {}
@@ -147,10 +148,29 @@ class Changes {
         const auto known = server::solution_arguments(trunk.landing.landing().solution());
         commands::Request request;
         request.command = "EDL_SET_PARAMETERS";
-        request.arguments = known;
-        for (auto& [name, value] : request.arguments)
-            if (name == "entry_sclk") value += difference_s();
+        request.arguments =
+            commands::fill_from_solution(*tests::shipped_dictionary().command(request.command), {}, known);
+        for (const auto& argument : tests::shipped_dictionary().command(request.command)->arguments)
+            if (std::ranges::find(request.arguments, argument.name, &commands::NamedValue::name) ==
+                request.arguments.end())
+                request.arguments.push_back({argument.name, argument.default_value.value()});
+        const auto some = 1 + random_() % 3;
+        for (std::uint32_t i = 0; i < some; ++i) {
+            auto& [name, value] = request.arguments[1 + random_() % (request.arguments.size() - 1)];
+            if (name == "entry_sclk" || name == "epoch_sclk")
+                value += difference_s();
+            else if (name.starts_with("position") || name.starts_with("velocity") || part() < 0.3)
+                value += std::pow(10.0, 7.0 * part() - 1.0) * (part() < 0.5 ? -1.0 : 1.0);
+            else
+                value = anywhere(name);
+        }
         return request;
+    }
+    /// In the valid range of an argument.
+    double anywhere(const std::string& name) {
+        const auto& arguments = tests::shipped_dictionary().command("EDL_SET_PARAMETERS")->arguments;
+        const auto& type = std::ranges::find(arguments, name, &dictionary::Argument::name)->type;
+        return *type.valid_min + (*type.valid_max - *type.valid_min) * part();
     }
 
     std::mt19937 random_;
@@ -160,14 +180,19 @@ std::string text_of(const commands::Request& request, double e_s) {
     return request.command + " " + commands::arguments_text(request.arguments) + " at E" + std::to_string(e_s);
 }
 
-/// Flies each of `count` changes that the board accepts, whatever ground says of it.
+/// Whether flight can judge a command without ground: a position and a target it has to take as they come.
+bool is_judged_by_flight_alone(const commands::Request& request) {
+    return request.command != "EDL_SET_PARAMETERS";
+}
+
+/// Flies each of `count` changes that the board accepts, whatever ground says of it; parameters only if ground does too.
 void try_changes(std::uint32_t seed, std::size_t count) {
     Changes changes{seed};
     std::vector<double> moments(count);
     for (double& moment : moments) moment = changes.moment_e_s();
     std::sort(moments.begin(), moments.end());
     Trunk trunk{commanded()};
-    std::size_t by_both = 0, by_ground_alone = 0;
+    std::size_t by_both = 0, by_ground_alone = 0, parameters_flown = 0;
     for (const double moment : moments) {
         trunk.fly_until(moment);
         if (!trunk.flying()) continue;
@@ -176,10 +201,16 @@ void try_changes(std::uint32_t seed, std::size_t count) {
         request.armed = true;
         request.dry_run = true;
         const bool ground_accepts = trunk.landing.submit(request).accepted;
+        const auto& command = *tests::shipped_dictionary().command(request.command);
+        if (!commands::encode(command, request.arguments, 7)) {
+            CHECK_FALSE(ground_accepts);  // an argument out of its range
+            continue;
+        }
         OnBoard board{trunk.landing.landing(), request};
         by_both += ground_accepts && board.executed;
+        parameters_flown += ground_accepts && board.executed && !is_judged_by_flight_alone(request);
         by_ground_alone += ground_accepts && !board.executed;
-        if (!board.executed) continue;
+        if (!board.executed || (!ground_accepts && !is_judged_by_flight_alone(request))) continue;
         board.land();
         CHECK(unsafe(board.landing) == "");
     }
@@ -188,6 +219,7 @@ void try_changes(std::uint32_t seed, std::size_t count) {
     INFO(by_both << " of " << count << " were accepted on ground and on board, " << by_ground_alone
                  << " more on ground alone");
     CHECK(by_both >= count / 4);
+    CHECK(parameters_flown > 0);
 }
 
 commands::Request entry_at(double sclk) {
@@ -207,6 +239,42 @@ TEST_CASE("no change that is accepted makes an unsafe landing of a safe one: 40 
 TEST_CASE("no change that is accepted makes an unsafe landing of a safe one: 2000 of any kind at any time",
           "[.long][timeline][R51]") {
     try_changes(2012, 2000);
+}
+
+TEST_CASE("a vehicle to which nobody sends a command, or only what ground refuses, was not commanded",
+          "[simulation][R32][R51]") {
+    for (const bool refused : {false, true}) {
+        Scenario scenario = tests::gale_scenario(60.0);
+        if (refused) scenario.commands.push_back({50.0, "EDL_DO_EDL", {}, false});  // without parameters
+        Trunk trunk{scenario};
+        trunk.fly_until(1.0e6);
+        CHECK(trunk.landing.script_refusals().size() == (refused ? 1 : 0));
+        CHECK(trunk.landing.landing().outcome() == Outcome::not_commanded);
+    }
+}
+
+TEST_CASE("a target out of reach, and a backshell altitude that leaves no room, are refused on board by themselves",
+          "[timeline][R23][R51]") {
+    Trunk trunk{commanded()};
+    trunk.fly_until(-1000.0);
+    const auto with = [&](std::string_view name, double value) {
+        commands::Request request;
+        request.command = "EDL_SET_PARAMETERS";
+        request.arguments =
+            commands::fill_from_solution(*tests::shipped_dictionary().command(request.command), {},
+                                         server::solution_arguments(trunk.landing.landing().solution()));
+        std::erase_if(request.arguments, [&](const auto& each) { return each.name == name; });
+        request.arguments.push_back({std::string{name}, value});
+        return OnBoard{trunk.landing.landing(), request}.executed;
+    };
+    CHECK(with("solution_id", 9.0));
+    CHECK(with("target_latitude_deg", -5.6));
+    CHECK(with("backshell_speed_mps", 90.0));
+    CHECK_FALSE(with("target_latitude_deg", 10.0));
+    CHECK_FALSE(with("target_latitude_deg", -9.0));
+    CHECK_FALSE(with("target_longitude_deg", 140.0));
+    CHECK_FALSE(with("target_longitude_deg", 100.0));
+    CHECK_FALSE(with("backshell_speed_mps", 100.0));
 }
 
 TEST_CASE("entry moved by 300 s is refused on ground, by a script as by a person, and past ground on board",

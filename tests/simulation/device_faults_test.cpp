@@ -179,7 +179,7 @@ TEST_CASE("both pyro controllers silent: separation is unverified, nothing says 
     const Landed lost =
         land({all_the_time(Device::pyro, Kind::silent), all_the_time(Device::pyro, Kind::silent, Unit::b)});
     CHECK(lost.outcome == Outcome::lost);
-    CHECK(lost.reason == "entered with the cruise stage attached: what was commanded did not separate it");
+    CHECK(lost.reason == "entered with the cruise stage attached: it was commanded to separate, and did not");
     CHECK(lost.verdict(flight::timepoint::cruise_stage_separation) == flight::TimepointVerdict::unverified);
     CHECK(lost.count(flight::evr::CRUISE_STAGE_SEPARATION::id) == 0);
 }

@@ -57,6 +57,7 @@ const std::vector<Row> rows{
     {point::cruise_stage_separation, Device::pyro, Outcome::lost, Outcome::lost},
     {point::thruster_warm_up, Device::power},
     {point::thrusters_enable, Device::thrusters, lands, lands, true},
+    {point::detumble, Device::thrusters},
     {point::cruise_balance_1, Device::pyro, Outcome::lost, Outcome::lost},
     {point::cruise_balance_2, Device::pyro, Outcome::lost, Outcome::lost},
     {point::balance_1, Device::pyro},

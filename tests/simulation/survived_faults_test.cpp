@@ -155,6 +155,34 @@ TEST_CASE("a heatshield whose speed never comes goes all the same, and the radar
     CHECK(judgement.verdict == Verdict::landed);
 }
 
+TEST_CASE("a radar that is silent for a while, or from the sky crane on, is survived; silent for good before that "
+          "it is not, and it is told",
+          "[simulation][faults][R27][release]") {
+    constexpr double for_good_s = 1000.0;
+    struct Tried {
+        double from_e_s, length_s;
+        bool lands;
+    };
+    for (const std::uint64_t seed : {1U, 2U}) {
+        Landing common{tests::gale_scenario(900.0), seed};
+        command(common);
+        for (const Tried& tried :
+             {Tried{260.0, for_good_s, false}, Tried{300.0, 40.0, true}, Tried{340.0, for_good_s, false},
+              Tried{350.0, 20.0, true}, Tried{410.0, for_good_s, true}}) {
+            INFO("seed " << seed << ", radar silent for " << tried.length_s << " s from E+" << tried.from_e_s);
+            while (common.truth().e_s < tried.from_e_s) common.step();
+            Landing landing{common};
+            for (const auto unit : {flight::Unit::a, flight::Unit::b})
+                landing.inject(
+                    DeviceFault{flight::Device::radar, unit, DeviceFault::Kind::silent, 0.0, tried.length_s});
+            const Judgement judgement = flown_to_its_end(landing);
+            INFO(landing.outcome_reason() << " " << text_of(judgement.exceeded));
+            CHECK((judgement.verdict == Verdict::landed) == tried.lands);
+            if (!tried.lands) CHECK(tests::count_recorded<flight::evr::RADAR_LOST>(landing.recording()) >= 1);
+        }
+    }
+}
+
 TEST_CASE("propellant that runs low is told once, on board", "[simulation][faults][R27]") {
     Scenario scenario = tests::gale_scenario(900.0);
     scenario.masses.propellant_kg -= 60.0;

@@ -189,7 +189,7 @@ export function outcomeWords(outcome: string, state: string): string {
     case 'lost':
       return 'lost';
     case 'not_commanded':
-      return 'no command came in time';
+      return 'its separation was not commanded';
     case 'timeout':
       return 'ended by its time limit';
     default:
