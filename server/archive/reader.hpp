@@ -289,7 +289,7 @@ class Reader {
     Result<v1::AsFlownReport> as_flown(RunId run);
 
     Result<std::vector<AuditEntry>> audit(std::uint64_t after, std::size_t limit, Order order = {});
-    /// The layouts of the owner, by name.
+    /// The layouts of the owner, the one saved first before the others.
     Result<std::vector<LayoutRecord>> layouts(const std::string& owner);
 
     struct State;  ///< reader_state.hpp: shared by the reader's parts

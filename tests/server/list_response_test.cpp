@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/api/list_response.hpp"
 
+#include "aeolis/v1/access.pb.h"
+#include "aeolis/v1/layout.pb.h"
 #include "aeolis/v1/run.pb.h"
+#include "server/archive/reader.hpp"
 #include "server/base/json.hpp"
 #include "tests/support/catch.hpp"
 
@@ -105,6 +108,40 @@ TEST_CASE("what a spreadsheet would compute stands in CSV as the words that it i
     CHECK(cell("-1.5e-3") == "-1.5e-3");
     CHECK(cell("-inf") == "-inf");
     CHECK(cell("'quoted' = words") == "'quoted' = words");
+}
+
+TEST_CASE("a list made whole is given in pages by place, in either order, each row once", "[http][R62]") {
+    for (const auto order : {archive::Order::oldest_first, archive::Order::newest_first})
+        for (const std::size_t limit : {1U, 2U, 5U, 7U, 100U}) {
+            CAPTURE(limit);
+            std::string seen;
+            std::uint64_t after = 0;
+            for (int pages = 0; pages < 20; ++pages) {
+                v1::UserList list;
+                for (const char name : std::string{"abcdefg"}) list.add_users()->set_user(std::string(1, name));
+                server::keep_page(list, "users", {after, limit, order});
+                for (const auto& user : list.users()) seen += user.user();
+                after = list.next_after();
+                if (after == 0) break;
+            }
+            CHECK(seen == (order == archive::Order::oldest_first ? "abcdefg" : "gfedcba"));
+        }
+    v1::UserList list;
+    list.add_users();
+    server::keep_page(list, "users", {5, 10, archive::Order::oldest_first});
+    CHECK((list.users().empty() && list.next_after() == 0));  // behind the end
+    server::keep_page(list, "users", {0, 10, archive::Order::newest_first});
+    CHECK((list.users().empty() && list.next_after() == 0));  // of no rows
+}
+
+TEST_CASE("a page of a list made whole ends once it is long", "[http][R62]") {
+    v1::LayoutList list;
+    for (int i = 0; i < 100; ++i) list.add_layouts()->set_view(std::string(20'000, 'x'));
+    list.set_layouts_max(32);
+    server::keep_page(list, "layouts", {0, 1'000, archive::Order::oldest_first});
+    CHECK(list.ByteSizeLong() < archive::page_octets_max + 30'000);
+    CHECK(list.next_after() == static_cast<std::uint64_t>(list.layouts_size()));
+    CHECK(list.layouts_max() == 32);
 }
 
 }  // namespace server_list_response_test
