@@ -209,7 +209,7 @@ void Api::audit(const ApiRequest& call) {
             shown.set_hash(entry.hash);
         }
         if (entries->size() == page.limit) list.set_next_after(entries->back().entry);
-        return wanted.response(list, {"entries"});
+        return wanted.response(std::move(list), {"entries"});
     });
 }
 

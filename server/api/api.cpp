@@ -195,7 +195,8 @@ std::span<const Api::Route> Api::routes() {
     return all;
 }
 
-Api::Api(Parts parts) : parts_(std::move(parts)), dictionary_json_(to_json(dictionary_reply(parts_.dictionary))) {}
+Api::Api(Parts parts)
+    : parts_(std::move(parts)), dictionary_json_(to_json_by_rows(dictionary_reply(parts_.dictionary), "channels")) {}
 
 Respond Api::counted(std::string route, const Respond& respond) {
     return [this, route = std::move(route), respond](HttpResponse response) {
@@ -378,7 +379,7 @@ void Api::list_runs(const ApiRequest& call) {
         if (!runs) return error_response(500, runs.error());
         for (auto& run : *runs->mutable_runs())
             if (run.run() == current.run()) run = current;
-        return wanted.response(*runs, {"runs"});
+        return wanted.response(std::move(*runs), {"runs"});
     });
 }
 

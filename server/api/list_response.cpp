@@ -146,7 +146,7 @@ Result<ListPage> ListPage::of(const QueryText& query, const Limits& limits) {
     return page;
 }
 
-HttpResponse list_response(std::string_view format, const Message& list, const Rows& rows,
+HttpResponse list_response(std::string_view format, Message&& list, const Rows& rows,
                            const std::optional<ClockCorrelation>& clock) {
     const auto& reflection = *list.GetReflection();
     const auto* field = list.GetDescriptor()->FindFieldByName(std::string{rows.field});
@@ -155,7 +155,7 @@ HttpResponse list_response(std::string_view format, const Message& list, const R
     if (next_after != nullptr)
         response.fields.emplace_back("Aeolis-Next-After", std::to_string(reflection.GetUInt64(list, next_after)));
     if (format == "json") {
-        response.body = to_json(list);
+        response.body = to_json_by_rows(std::move(list), rows.field);
     } else if (format == "jsonl") {
         response.content_type = "application/x-ndjson";
         for (const auto& row : reflection.GetRepeatedFieldRef<Message>(list, field))
@@ -214,15 +214,15 @@ Result<ListRequest> ListRequest::of(const HttpRequest& request, const ListPage::
     return ListRequest{*page, std::move(*format), request.path, request.query};
 }
 
-HttpResponse ListRequest::response(const Message& rows_of_page, const Rows& rows) const {
-    auto response = list_response(format, rows_of_page, rows);
+HttpResponse ListRequest::response(Message&& rows_of_page, const Rows& rows) const {
+    auto response = list_response(format, std::move(rows_of_page), rows);
     add_next_link(response, path, query);
     return response;
 }
 
 HttpResponse ListRequest::response_of_whole(Message&& list, const Rows& rows) const {
     keep_page(list, rows.field, page);
-    return response(list, rows);
+    return response(std::move(list), rows);
 }
 
 }  // namespace aeolis::server

@@ -48,7 +48,7 @@ inline constexpr std::array<std::string_view, 3> list_formats{"json", "csv", "js
 /// Builds the response in a format. The header Aeolis-Next-After also tells where the next page begins; 0: nowhere.
 /// @param format  one of list_formats
 /// @param clock   clock correlation of the run that the rows belong to
-HttpResponse list_response(std::string_view format, const google::protobuf::Message& list, const Rows& rows,
+HttpResponse list_response(std::string_view format, google::protobuf::Message&& list, const Rows& rows,
                            const std::optional<ClockCorrelation>& clock = {});
 
 /// Adds the address of the next page (Link, rel="next", RFC 8288) to the response of a list that has one.
@@ -68,7 +68,7 @@ struct ListRequest {
 
     static Result<ListRequest> of(const HttpRequest& request, const ListPage::Limits& limits);
     /// The response with the page, and with the address of the next.
-    HttpResponse response(const google::protobuf::Message& rows_of_page, const Rows& rows) const;
+    HttpResponse response(google::protobuf::Message&& rows_of_page, const Rows& rows) const;
     /// The same, of a list that was made whole, oldest first.
     HttpResponse response_of_whole(google::protobuf::Message&& list, const Rows& rows) const;
 };

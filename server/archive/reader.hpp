@@ -217,6 +217,7 @@ class Reader {
     struct ItemKinds {
         bool samples = true;
         bool packets = true;
+        std::size_t octets_max = SIZE_MAX;  ///< of packets and samples, encoded, after which a page ends
     };
     /// The items after `after`, in order, of all kinds, as they were published.
     Result<ItemPage> items(RunId run, Sequence after, std::size_t limit);

@@ -8,6 +8,9 @@
 #include "server/base/json.hpp"
 #include "tests/support/catch.hpp"
 
+#include <memory>
+#include <utility>
+
 namespace server_list_response_test {
 
 using namespace aeolis;
@@ -16,7 +19,9 @@ using server::list_response;
 namespace {
 
 server::HttpResponse as(const char* format, const google::protobuf::Message& list, const server::Rows& rows) {
-    return list_response(format, list, rows);
+    const std::unique_ptr<google::protobuf::Message> given{list.New()};
+    given->CopyFrom(list);
+    return list_response(format, std::move(*given), rows);
 }
 
 v1::EventList two_events() {
@@ -82,13 +87,13 @@ TEST_CASE("as CSV an SCLK has SCET beside it where the clock of the run is known
     auto list = two_events();
     list.mutable_events(1)->mutable_event()->set_sclk(1e15);  // no date has so many digits
     const ClockCorrelation clock{Sclk{397000845.0}, *scet_from_text("2012-219T05:17:57.000")};
-    const auto csv = list_response("csv", list, {"events", {"event"}}, clock).body;
+    const auto csv = list_response("csv", std::move(list), {"events", {"event"}}, clock).body;
     CHECK_THAT(csv, Catch::Contains(",event.sclk,event.scet,event.ert,") &&
                         Catch::Contains(",397000845.015625,2012-219T05:17:57.015,,recorded"));
     CHECK_THAT(csv, Catch::Contains(",1e+15,,,"));
     v1::TimepointList timepoints;
     timepoints.add_timepoints();
-    CHECK_THAT(list_response("csv", timepoints, {"timepoints"}, clock).body, Catch::Contains("_scet,"));
+    CHECK_THAT(list_response("csv", std::move(timepoints), {"timepoints"}, clock).body, Catch::Contains("_scet,"));
 }
 
 TEST_CASE("what a spreadsheet would compute stands in CSV as the words that it is; numbers stay numbers",
@@ -108,6 +113,20 @@ TEST_CASE("what a spreadsheet would compute stands in CSV as the words that it i
     CHECK(cell("-1.5e-3") == "-1.5e-3");
     CHECK(cell("-inf") == "-inf");
     CHECK(cell("'quoted' = words") == "'quoted' = words");
+}
+
+TEST_CASE("JSON that is made some rows at a time is the JSON of all of them", "[http][R62]") {
+    v1::DictionaryReply reply;  // with fields before and behind the rows
+    reply.set_mission(R"("channels":[ )");
+    reply.add_commands()->set_name("DO_EDL");
+    for (int rows = 0; rows < 12; ++rows) {
+        CAPTURE(rows);
+        CHECK(server::to_json_by_rows(v1::DictionaryReply{reply}, "channels") == server::to_json(reply));
+        auto& channel = *reply.add_channels();
+        channel.set_name("channel_" + std::to_string(rows));
+        channel.set_text(std::string(rows % 2 == 0 ? 20'000 : 1, '"'));
+        channel.add_labels()->set_label("on");
+    }
 }
 
 TEST_CASE("a list made whole is given in pages by place, in either order, each row once", "[http][R62]") {
