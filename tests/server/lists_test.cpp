@@ -8,6 +8,7 @@
 #include "tests/server/run_writer.hpp"
 #include "tests/server/running_server.hpp"
 #include "tests/server/web_client.hpp"
+#include "tests/support/catch.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
