@@ -12,7 +12,7 @@ namespace {
 
 using google::protobuf::Message;
 
-constexpr std::size_t octets_at_once = 32 << 10;  // chosen: of encoded rows; their types are looked up once for all
+constexpr std::size_t octets_at_once = 8 << 10;  // chosen: of encoded rows; their types are looked up once for all
 
 }  // namespace
 
