@@ -3,12 +3,10 @@
 
 #include <algorithm>
 #include <spdlog/spdlog.h>
-#include <sys/resource.h>
 
 namespace aeolis::server {
 namespace {
 
-constexpr int niceness = 10;  // chosen: where processors are short, the network and the writer come first
 constexpr std::array what_is_short{JobPriority::at_once, JobPriority::soon};
 constexpr std::array questions_first{JobPriority::in_turn, JobPriority::soon};
 
@@ -50,7 +48,6 @@ QueryThreads::QueryThreads(std::vector<archive::Reader> readers, const Open& ope
 
 void QueryThreads::serve(archive::Reader& reader, std::span<const JobPriority> kinds, const Open& open,
                          std::chrono::milliseconds question_max) {
-    ::setpriority(PRIO_PROCESS, 0, niceness);  // of this thread alone
     while (const auto asked = next(kinds)) {
         if (reader.outdated())
             if (auto fresh = open()) reader = std::move(*fresh);
