@@ -3,15 +3,20 @@
 //
 // Each second 2000 packets of 1.5 kB are decoded and stored, and sent to a thousand clients that follow 30 channels at
 // 20 Hz and every event; one client is stalled. First all follow the same channels, then each has some of its own. The
-// first, a middle and the last client are watched, and the stalled one when it reads again.
+// first, a middle and the last client are watched, and the stalled one when it reads again. Then the same once more, and
+// meanwhile programs ask for every list of the API at once: of the run itself, of one with 4096 commands, and of what
+// people made.
 
+#include "bench/list_readers.hpp"
 #include "bench/loopback_clients.hpp"
 #include "bench/must.hpp"
 #include "common/bytes.hpp"
-#include "server/api/query_threads.hpp"
+#include "server/api/api.hpp"
 #include "server/archive/reader.hpp"
+#include "server/net/console_backend.hpp"
 #include "server/net/web_server.hpp"
 #include "server/pipeline/pipeline_thread.hpp"
+#include "tests/server/run_writer.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 #include <algorithm>
@@ -24,11 +29,16 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <malloc.h>
+#include <optional>
 #include <spdlog/spdlog.h>
+#include <string>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <thread>
 #include <unistd.h>
+#include <utility>
+#include <vector>
 
 using namespace aeolis;
 using namespace aeolis::bench;
@@ -40,8 +50,12 @@ constexpr std::size_t clients = 1000, watched = 4, watched_channels = 30;  // on
 constexpr std::size_t packet_kinds = 32, packets_per_s = 2000, channels_a_packet = 368;  // 1.5 kB
 constexpr std::size_t events_per_s = 10, tones_per_s = 1, stages_per_s = 2;
 constexpr int stalled_receive_octets = 4096;  // otherwise the kernel would read for it
-constexpr double seconds = 10.0;
+constexpr double seconds = 10.0, seconds_with_lists_max = 60.0;
 constexpr double sample_rate_hz = 20.0;
+constexpr double lists_from_s = 2.0;  // after the load began
+constexpr std::size_t people = 12;    // who ask for lists, each by several programs
+constexpr std::uint64_t commands_of_old_run = 4096, rounds_a_batch = 512;
+constexpr std::size_t evidence_octets = 400;  // as long as evidence gets; each is two octets of JSON
 constexpr Apid event_apid{0x7F};
 
 double now_s() {
@@ -161,7 +175,9 @@ class Watcher {
             for (const char each : read(more)) octets = octets << 8U | static_cast<std::uint8_t>(each);
             const auto payload = read(octets);
             v1::ServerMessage message;
-            if (over_ || (head[0] & 0xF) != 2 || !message.ParseFromString(payload) || !message.has_batch()) continue;
+            if (over_ || (head[0] & 0xF) != 2 || !message.ParseFromString(payload)) continue;
+            if (message.has_refusal()) std::printf("  %s was told: %s\n", name, message.refusal().reason().c_str());
+            if (!message.has_batch()) continue;
             take(message.batch());
             say_that_it_lives();
         }
@@ -227,13 +243,96 @@ std::string subscription_of(std::size_t client, Channels channels) {
     return message.SerializeAsString();
 }
 
+/// Every list of the API at its longest page, as JSON, which takes the most memory.
+std::vector<std::string> list_targets() {
+    std::vector<std::string> lists{"runs", "users", "tokens", "audit", "layouts", "scenarios", "campaigns"};
+    for (const std::string run : {"runs/1/", "runs/2/"})
+        for (const auto* list : {"events", "tones", "explanations", "alarms", "notes", "commands", "packets",
+                                 "interventions", "timepoints"})
+            lists.push_back(run + list);
+    std::vector<std::string> targets;
+    for (const auto& list : lists) {
+        targets.push_back("/api/v1/" + list);
+        if (list.ends_with("timepoints")) continue;  // it has one page
+        const bool brief = list.ends_with("commands") || list.ends_with("packets") || list == "audit";
+        targets.back() += brief ? "?limit=1000" : "?limit=10000";
+    }
+    for (const auto* run : {"1", "2"}) targets.push_back(std::string{"/api/v1/runs/"} + run + "/items?limit=1000");
+    return targets;
+}
+
+/// The API over the threads of the load, and who asks: people with a token each.
+struct ListServer {
+    ListServer(const std::filesystem::path& folder, const dictionary::Dictionary& dictionary,
+               server::QueryThreads& queries, server::PipelineThread& pipeline, server::StreamHub& hub)
+        : console(folder / "web"),
+          desk(
+              scenarios, dictionary, pipeline, [](const auto& action) { action(); },
+              [](archive::RunId, const auto& done) { done(Error{"was not cut off"}); },
+              {[](archive::RunId, const auto&, bool, const auto& done) { done(std::string{}); },
+               [](archive::RunId, const auto& done) { done(server::TimelineCheck::Reanalysis{}); }},
+              {[](const auto&) {}, [](const auto&) {}}),
+          campaigns(folder, scenarios, dictionary), predictions(dictionary),
+          access(std::move(server::Access::open({.file = folder / "accounts.json"})).value()),
+          api({dictionary, scenarios, queries, desk, predictions, campaigns, hub, pipeline, console, *access, false,
+               [] { return std::size_t{0}; }, clock_watch}) {
+        for (std::size_t i = 0; i < people; ++i) {
+            v1::NewUser user;
+            user.set_user("person" + std::to_string(i));
+            user.set_role("administrator");
+            user.set_password("given by another");
+            must(access->add_user(user).ok(), "add_user");
+            v1::NewToken token;
+            token.set_name("of-" + user.user());
+            token.set_role(user.role());
+            token.set_owner(user.user());
+            auto made = access->add_token(token);
+            must(made.ok(), "add_token");
+            tokens.push_back(made->token());
+        }
+    }
+
+    server::ScenarioLibrary scenarios{AEOLIS_SOURCE_DIR "/simulation/scenarios"};
+    server::StaticFiles console;
+    server::RehearsalDesk desk;
+    server::campaign::CampaignDesk campaigns;
+    server::PredictionDesk predictions;
+    std::unique_ptr<server::Access> access;
+    server::ClockWatch clock_watch;
+    server::Api api;
+    std::vector<std::string> tokens;
+};
+
+/// Writes a run with many commands in a process of its own, so that its memory is not charged to the server.
+void write_old_run(const std::filesystem::path& file, const dictionary::Dictionary& dictionary) {
+    const pid_t writer = ::fork();
+    must(writer >= 0, "fork");
+    if (writer == 0) {
+        {
+            auto archive = std::move(archive::Archive::open(file)).value();
+            const auto run = archive.begin_run({}, dictionary);
+            must(run.ok(), "begin_run");
+            test::RunWriter rows{archive, *run, std::string(evidence_octets, '"')};
+            while (rows.rounds() < commands_of_old_run) rows.add(rounds_a_batch);
+            rows.finish();
+        }
+        ::_exit(0);
+    }
+    int status = 0;
+    must(::waitpid(writer, &status, 0) == writer && WIFEXITED(status) && WEXITSTATUS(status) == 0, "the old run");
+}
+
 /// Runs threads and connections as in `aeolis serve`, with packets made here in place of a landing's.
-void under_load(Channels channels) {
+void under_load(Channels channels, bool with_lists) {
     std::array<LoopbackClients, 2> others;  // clients that join between the first and the middle one, and after it
+    std::optional<ListReaders> readers;
+    if (with_lists) readers.emplace(list_targets());
     spdlog::set_level(spdlog::level::err);
+    ::mallopt(M_MMAP_THRESHOLD, server::ConsoleBackend::mapped_octets);  // as `aeolis serve`
     const test::TemporaryFolder folder;
     const auto file = folder / "load.db";
     const auto dictionary = load();
+    if (with_lists) write_old_run(file, dictionary);
     auto archive = std::move(archive::Archive::open(file)).value();
     auto queries = std::move(server::QueryThreads::open(file, dictionary)).value();
     std::unique_ptr<server::WebServer> web;
@@ -250,7 +349,11 @@ void under_load(Channels channels) {
         if (!taken) web->post([done] { done(Error{server::QueryThreads::busy}); });
     };
     server::StreamHub hub{dictionary.id, services};
+    std::optional<ListServer> lists;
     server::WebServer::Handlers handlers;
+    handlers.request = [&](server::HttpRequest request, const server::Respond& respond) {
+        lists->api.handle(std::move(request), respond);
+    };
     handlers.admit_stream = [](const server::Credentials&) { return server::HttpResponse{}; };
     handlers.open_stream = [&](const server::Credentials&, server::StreamFormat format, std::function<void()> wake) {
         return std::make_shared<server::StreamSession>(hub, format, std::move(wake), server::StreamSession::follower());
@@ -260,6 +363,7 @@ void under_load(Channels channels) {
         std::move(archive), dictionary, server::PipelineThread::Faults::give_up, [&](auto batch) {
             web->post([&hub, batch = std::move(batch)]() mutable { hub.published(std::move(batch)); });
         }};
+    if (with_lists) lists.emplace(folder.path(), dictionary, *queries, pipeline, hub);
     std::thread network{[&] { web->run(); }};
     const auto run = pipeline.begin({});
     must(run.ok(), "begin");
@@ -293,9 +397,16 @@ void under_load(Channels channels) {
         for (std::size_t i = 0; i < channels_a_packet; ++i)
             bits.put_float(static_cast<float>(std::sin(static_cast<double>(i))));
         const double begin = now_s();
-        while (now_s() - begin < seconds) {
+        bool lists_begun = false;
+        double lists_s = 0.0;
+        while (now_s() - begin < seconds || (readers && lists_s == 0.0 && now_s() - begin < seconds_with_lists_max)) {
             server::Delivery delivery;
             const double now = now_s();
+            if (readers && !lists_begun && now - begin > lists_from_s) {
+                readers->begin(web->port(), lists->tokens);
+                lists_begun = true;
+            }
+            if (lists_begun && lists_s == 0.0 && readers->over()) lists_s = now - begin - lists_from_s;
             for (; static_cast<double>(sent_packets) < (now - begin) * packets_per_s; ++sent_packets) {
                 const auto kind = static_cast<std::uint16_t>(sent_packets % packet_kinds);
                 octets[tm_data_offset_octets + 3] = static_cast<std::uint8_t>(sent_packets >> 5U);
@@ -325,7 +436,7 @@ void under_load(Channels channels) {
             resident = std::max(resident, resident_octets());
             std::this_thread::sleep_for(std::chrono::milliseconds{5});
         }
-        const double stopped = now_s();
+        const double stopped = now_s(), lasted_s = stopped - begin;
         stalled.read_on();
         must(pipeline.finish({"stopped", "", "", ""}).ok(), "finish");
         state.set_state("finished");
@@ -337,11 +448,17 @@ void under_load(Channels channels) {
         const double caught_up_s = now_s() - stopped;
         std::printf("%.0f packets/s of %zu octets, %zu channels each, for %.0f s; %zu clients on %zu channels %s at "
                     "%.0f Hz, one of them stalled\n",
-                    static_cast<double>(sent_packets) / seconds, octets.size(), channels_a_packet, seconds, clients,
+                    static_cast<double>(sent_packets) / lasted_s, octets.size(), channels_a_packet, lasted_s, clients,
                     watched_channels, channels == Channels::same ? "that are the same" : "of their own",
                     sample_rate_hz);
+        if (readers)
+            std::printf(
+                "  %zu programs of %zu people asked for %zu lists each, at once: %.0f MB in %.1f s, the longest wait "
+                "%.1f s\n",
+                ListReaders::readers, people, list_targets().size(), static_cast<double>(readers->octets()) * 1e-6,
+                lists_s, 1e-3 * readers->longest_ms());
         std::printf("  to the clients %.1f MB/s; delivery waited for the archive %.0f ms at most\n",
-                    static_cast<double>(others[0].octets() + others[1].octets()) / seconds * 1e-6, 1e3 * behind_s);
+                    static_cast<double>(others[0].octets() + others[1].octets()) / lasted_s * 1e-6, 1e3 * behind_s);
         for (Watcher* each : all) {
             const std::string who = std::string{", "} + each->name;
             const auto lost = [](std::uint64_t sent, std::uint64_t seen) {
@@ -353,11 +470,20 @@ void under_load(Channels channels) {
             goal("sequence numbers without an answer" + who, lost(last_seq, each->through), 0.0, "");
             goal("batches that do not join the one before" + who, each->broken ? 1.0 : 0.0, 0.0, "");
             if (each == &stalled) continue;  // its delay is its own choice
-            goal("event, from receipt to the client, p99" + who, quantile(each->event_ms, 0.99), 40.0, "ms");
-            goal("newest sample's age when a batch arrives, p99" + who, quantile(each->sample_ms, 0.99), 65.0, "ms");
+            const double event_ms = quantile(each->event_ms, 0.99), sample_ms = quantile(each->sample_ms, 0.99);
+            if (with_lists) {  // the goals are for the load alone
+                std::printf("  p99%s: event %.0f ms, newest sample %.0f ms\n", who.c_str(), event_ms, sample_ms);
+                continue;
+            }
+            goal("event, from receipt to the client, p99" + who, event_ms, 40.0, "ms");
+            goal("newest sample's age when a batch arrives, p99" + who, sample_ms, 65.0, "ms");
         }
         goal("samples' gaps that the stalled one is not told of", stalled.thinned > 0 ? 0.0 : 1.0, 0.0, "");
         std::printf("  the stalled one had caught up after %.2f s\n", caught_up_s);
+        if (readers) {
+            goal("lists that are missing", lists_s > 0.0 ? 0.0 : 1.0, 0.0, "");
+            goal("lists that were refused", static_cast<double>(readers->refused()), 0.0, "");
+        }
         goal("connections that ended", static_cast<double>(others[0].broken() + others[1].broken()), 0.0, "");
         goal("resident memory", static_cast<double>(resident) * 1e-6, 300.0, "MB");
     }
@@ -373,16 +499,19 @@ void under_load(Channels channels) {
     web->stop();
     network.join();
     queries.reset();
+    lists.reset();
 }
 
 }  // namespace
 
 int main() {
-    for (const auto channels : {Channels::same, Channels::own}) {  // each in its own process, with its own heap
+    for (const auto& [channels, with_lists] :
+         {std::pair{Channels::same, false}, {Channels::own, false}, {Channels::own, true}}) {
+        // each in its own process, with its own heap
         const pid_t child = ::fork();
         must(child >= 0, "fork");
         if (child == 0) {
-            under_load(channels);
+            under_load(channels, with_lists);
             std::fflush(stdout);
             ::_exit(met ? 0 : 1);
         }

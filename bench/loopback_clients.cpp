@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/loopback_clients.hpp"
 
+#include "bench/must.hpp"
+
 #include <algorithm>
 #include <arpa/inet.h>
 #include <cerrno>
@@ -24,12 +26,6 @@ namespace aeolis::bench {
 namespace {
 
 constexpr std::uint64_t alive_interval_ns = 5'000'000'000;
-
-void must(bool done, const char* what) {
-    if (done) return;
-    std::perror(what);
-    std::exit(1);
-}
 
 std::uint64_t now_ns() {
     timespec time{};

@@ -3,7 +3,6 @@
 #include "server/access/secrets.hpp"
 #include "server/api/api.hpp"
 #include "server/api/list_response.hpp"
-#include "server/api/query_text.hpp"
 #include "server/base/json.hpp"
 
 #include <fmt/format.h>
@@ -105,7 +104,10 @@ void Api::log_out(const ApiRequest& call) {
 }
 
 void Api::list_users(const ApiRequest& call) {
-    call.respond(json_response(parts_.access.users()));
+    answer_page(call, ListPage::usual(archive::Order::oldest_first),
+                [this](archive::Reader&, const ListRequest& wanted) {
+                    return wanted.response_of_whole(parts_.access.users(), {"users"});
+                });
 }
 
 void Api::add_user(const ApiRequest& call) {
@@ -164,7 +166,10 @@ void Api::remove_user(const ApiRequest& call) {
 }
 
 void Api::list_tokens(const ApiRequest& call) {
-    call.respond(json_response(parts_.access.tokens()));
+    answer_page(call, ListPage::usual(archive::Order::oldest_first),
+                [this](archive::Reader&, const ListRequest& wanted) {
+                    return wanted.response_of_whole(parts_.access.tokens(), {"tokens"});
+                });
 }
 
 void Api::add_token(const ApiRequest& call) {
@@ -186,14 +191,9 @@ void Api::remove_token(const ApiRequest& call) {
 }
 
 void Api::audit(const ApiRequest& call) {
-    const auto query = QueryText::parse(call.request.query, {"after", "limit", "order", "format"});
-    if (!query) return call.respond(error_response(400, query.error()));
-    auto format = query->one_of("format", list_formats);
-    if (!format) return call.respond(error_response(400, format.error()));
-    const auto page = ListPage::of(*query, {audit_page_max, audit_page_max, archive::Order::oldest_first, UINT32_MAX});
-    if (!page) return call.respond(error_response(400, page.error()));
-    answer_on_query_thread(call, [page = *page, format = std::move(*format), path = call.request.path,
-                                  asked = call.request.query](archive::Reader& reader) {
+    const ListPage::Limits limits{audit_page_max, audit_page_max, archive::Order::oldest_first, UINT32_MAX};
+    answer_page(call, limits, [](archive::Reader& reader, const ListRequest& wanted) {
+        const auto& page = wanted.page;
         const auto entries = reader.audit(page.after, page.limit, page.order);
         if (!entries) return error_response(500, entries.error());
         v1::AuditList list;
@@ -209,9 +209,7 @@ void Api::audit(const ApiRequest& call) {
             shown.set_hash(entry.hash);
         }
         if (entries->size() == page.limit) list.set_next_after(entries->back().entry);
-        auto response = list_response(format, list, {"entries"});
-        add_next_link(response, path, asked);
-        return response;
+        return wanted.response(std::move(list), {"entries"});
     });
 }
 

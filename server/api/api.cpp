@@ -4,7 +4,6 @@
 #include "server/access/network.hpp"
 #include "server/api/content_coding.hpp"
 #include "server/api/dictionary_reply.hpp"
-#include "server/api/list_response.hpp"
 #include "server/api/query_text.hpp"
 #include "server/api/run_questions.hpp"
 #include "server/base/json.hpp"
@@ -145,11 +144,11 @@ std::span<const Api::Route> Api::routes() {
         {"GET", "/api/v1/session", Right::open, &Api::session},
         {"POST", "/api/v1/session", Right::open, &Api::log_in},
         {"DELETE", "/api/v1/session", Right::open, &Api::log_out},
-        {"GET", "/api/v1/users", Right::administer, &Api::list_users},
+        {"GET", "/api/v1/users", Right::administer, &Api::list_users, Query::own},
         {"POST", "/api/v1/users", Right::administer, &Api::add_user, Query::none, "user", Audited::refusals},
         {"PATCH", "/api/v1/users/{user}", Right::open, &Api::change_user},  // one's own account needs no right
         {"DELETE", "/api/v1/users/{user}", Right::administer, &Api::remove_user, Query::none, "user"},
-        {"GET", "/api/v1/tokens", Right::administer, &Api::list_tokens},
+        {"GET", "/api/v1/tokens", Right::administer, &Api::list_tokens, Query::own},
         {"POST", "/api/v1/tokens", Right::administer, &Api::add_token, Query::none, "token"},
         {"DELETE", "/api/v1/tokens/{name}", Right::administer, &Api::remove_token, Query::none, "token"},
         {"GET", "/api/v1/audit", Right::administer, &Api::audit, Query::own},
@@ -166,10 +165,10 @@ std::span<const Api::Route> Api::routes() {
         {"GET", "/api/v1/runs/{run}/raw", Right::watch, &Api::export_raw, Query::own},
         {"GET", "/api/v1/runs/{run}/prediction", Right::watch, &Api::prediction, Query::own},
         {"GET", "/api/v1/runs/{run}/{question}", Right::watch, &Api::run_question, Query::own},
-        {"GET", "/api/v1/layouts", Right::watch, &Api::list_layouts},
+        {"GET", "/api/v1/layouts", Right::watch, &Api::list_layouts, Query::own},
         {"PUT", "/api/v1/layouts/{layout}", Right::watch, &Api::put_layout, Query::none, "layout"},
         {"DELETE", "/api/v1/layouts/{layout}", Right::watch, &Api::remove_layout, Query::none, "layout"},
-        {"GET", "/api/v1/scenarios", Right::watch, &Api::list_scenarios},
+        {"GET", "/api/v1/scenarios", Right::watch, &Api::list_scenarios, Query::own},
         {"GET", "/api/v1/dictionary", Right::watch, &Api::dictionary},
         {"GET", "/api/v1/openapi.yaml", Right::open, &Api::openapi},
         {"GET", "/api/v1/schema", Right::open, &Api::list_schema},
@@ -182,7 +181,7 @@ std::span<const Api::Route> Api::routes() {
          Audited::all, Body::whole},
         {"PATCH", "/api/v1/rehearsals/current", Right::rehearse, &Api::control_rehearsal, Query::none, "rehearsal",
          Audited::all, Body::whole},
-        {"GET", "/api/v1/campaigns", Right::watch, &Api::list_campaigns},
+        {"GET", "/api/v1/campaigns", Right::watch, &Api::list_campaigns, Query::own},
         {"POST", "/api/v1/campaigns", Right::rehearse, &Api::start_campaign, Query::none, "campaign", Audited::all,
          Body::whole},
         {"GET", "/api/v1/campaigns/{campaign}", Right::watch, &Api::campaign_report},
@@ -196,7 +195,8 @@ std::span<const Api::Route> Api::routes() {
     return all;
 }
 
-Api::Api(Parts parts) : parts_(std::move(parts)), dictionary_json_(to_json(dictionary_reply(parts_.dictionary))) {}
+Api::Api(Parts parts)
+    : parts_(std::move(parts)), dictionary_json_(to_json_by_rows(dictionary_reply(parts_.dictionary), "channels")) {}
 
 Respond Api::counted(std::string route, const Respond& respond) {
     return [this, route = std::move(route), respond](HttpResponse response) {
@@ -359,31 +359,35 @@ void Api::ask(const ApiRequest& call, QueryText query, RunQuestion question, Job
     if (!parts_.queries.ask(job, {client_of(call.who), call.request.gone}, priority)) call.respond(busy_response());
 }
 
-void Api::list_runs(const ApiRequest& call) {
-    const auto query = QueryText::parse(call.request.query, {"after", "limit", "order", "format"});
-    if (!query) return call.respond(error_response(400, query.error()));
-    auto format = query->one_of("format", list_formats);
-    if (!format) return call.respond(error_response(400, format.error()));
-    const auto page = ListPage::of(*query, {1'000, archive::rows_page_max, archive::Order::newest_first, UINT32_MAX});
-    if (!page) return call.respond(error_response(400, page.error()));
+void Api::answer_page(const ApiRequest& call, const ListPage::Limits& limits, AnswerPage answer, JobPriority priority) {
+    auto wanted = ListRequest::of(call.request, limits);
+    if (!wanted) return call.respond(error_response(400, wanted.error()));
     answer_on_query_thread(
         call,
-        [current = current_run(), format = std::move(*format), page = *page, path = call.request.path,
-         asked = call.request.query](archive::Reader& reader) {
-            auto runs = reader.runs({static_cast<std::uint32_t>(page.after), page.limit, page.order});
-            if (!runs) return error_response(500, runs.error());
-            for (auto& run : *runs->mutable_runs())
-                if (run.run() == current.run()) run = current;
-            auto response = list_response(format, *runs, {"runs"});
-            add_next_link(response, path, asked);
-            return response;
+        [answer = std::move(answer), wanted = std::move(*wanted)](archive::Reader& reader) {
+            return answer(reader, wanted);
         },
-        JobPriority::soon);
+        priority);
+}
+
+void Api::list_runs(const ApiRequest& call) {
+    auto limits = ListPage::usual(archive::Order::newest_first);
+    limits.after_max = UINT32_MAX;
+    answer_page(call, limits, [current = current_run()](archive::Reader& reader, const ListRequest& wanted) {
+        const auto& page = wanted.page;
+        auto runs = reader.runs({static_cast<std::uint32_t>(page.after), page.limit, page.order});
+        if (!runs) return error_response(500, runs.error());
+        for (auto& run : *runs->mutable_runs())
+            if (run.run() == current.run()) run = current;
+        return wanted.response(std::move(*runs), {"runs"});
+    });
 }
 
 void Api::list_scenarios(const ApiRequest& call) {
-    answer_on_query_thread(
-        call, [this](archive::Reader&) { return json_response(parts_.scenarios.list()); }, JobPriority::soon);
+    answer_page(call, ListPage::usual(archive::Order::oldest_first),
+                [this](archive::Reader&, const ListRequest& wanted) {
+                    return wanted.response_of_whole(parts_.scenarios.list(), {"scenarios"});
+                });
 }
 
 void Api::dictionary(const ApiRequest& call) {

@@ -5,6 +5,7 @@
 #include "server/access/access.hpp"
 #include "server/api/command_rates.hpp"
 #include "server/api/http_message.hpp"
+#include "server/api/list_response.hpp"
 #include "server/api/query_threads.hpp"
 #include "server/api/static_files.hpp"
 #include "server/api/stream_hub.hpp"
@@ -157,6 +158,10 @@ class Api {
     /// for every route.
     void name_latest(ApiRequest& call) const;
     void note(const Operator& who, std::string_view action, std::string detail, const std::string& outcome);
+    /// Answers with a page of a list that is not of a run, on a query thread.
+    using AnswerPage = std::function<HttpResponse(archive::Reader&, const ListRequest&)>;
+    void answer_page(const ApiRequest& call, const ListPage::Limits& limits, AnswerPage answer,
+                     JobPriority priority = JobPriority::soon);
     /// Answers on a query thread; 503 when too many jobs wait.
     void answer_on_query_thread(const ApiRequest& call, std::function<HttpResponse(archive::Reader&)> answer,
                                 JobPriority priority = JobPriority::in_turn);

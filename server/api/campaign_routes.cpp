@@ -31,7 +31,12 @@ void Api::ask_campaign(const ApiRequest& call, CampaignQuestion question) {
 }
 
 void Api::list_campaigns(const ApiRequest& call) {
-    answer_on_query_thread(call, [this](archive::Reader&) { return json_response(parts_.campaigns.list()); });
+    answer_page(
+        call, ListPage::usual(archive::Order::newest_first),
+        [this](archive::Reader&, const ListRequest& wanted) {
+            return wanted.response_of_whole(parts_.campaigns.list(), {"campaigns"});
+        },
+        JobPriority::in_turn);  // it opens a file per campaign
 }
 
 void Api::start_campaign(const ApiRequest& call) {

@@ -36,22 +36,20 @@ HttpResponse outcome_response(const Result<archive::LayoutOutcome>& outcome, con
 }  // namespace
 
 void Api::list_layouts(const ApiRequest& call) {
-    answer_on_query_thread(
-        call,
-        [owner = owner_of(call.who)](archive::Reader& reader) {
-            const auto layouts = reader.layouts(owner);
-            if (!layouts) return error_response(500, layouts.error());
-            v1::LayoutList list;
-            list.set_layouts_max(archive::layouts_max);
-            for (const auto& layout : *layouts) {
-                auto& shown = *list.add_layouts();
-                shown.set_name(layout.name);
-                shown.set_view(layout.view);
-                shown.set_saved(layout.saved);
-            }
-            return json_response(list);
-        },
-        JobPriority::soon);
+    answer_page(call, ListPage::usual(archive::Order::oldest_first),
+                [owner = owner_of(call.who)](archive::Reader& reader, const ListRequest& wanted) {
+                    const auto layouts = reader.layouts(owner);
+                    if (!layouts) return error_response(500, layouts.error());
+                    v1::LayoutList list;
+                    list.set_layouts_max(archive::layouts_max);
+                    for (const auto& layout : *layouts) {
+                        auto& shown = *list.add_layouts();
+                        shown.set_name(layout.name);
+                        shown.set_view(layout.view);
+                        shown.set_saved(layout.saved);
+                    }
+                    return wanted.response_of_whole(std::move(list), {"layouts"});
+                });
 }
 
 void Api::put_layout(const ApiRequest& call) {

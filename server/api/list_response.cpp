@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/api/list_response.hpp"
 
+#include "server/archive/reader.hpp"
 #include "server/base/csv_text.hpp"
 #include "server/base/json.hpp"
 #include "server/base/json_object.hpp"
@@ -12,6 +13,7 @@
 #include <google/protobuf/descriptor.h>
 #include <google/protobuf/reflection.h>
 #include <google/protobuf/text_format.h>
+#include <memory>
 
 namespace aeolis::server {
 namespace {
@@ -126,6 +128,10 @@ void append_line(std::string& csv, const std::vector<Column>& columns, TextOf te
 
 }  // namespace
 
+ListPage::Limits ListPage::usual(archive::Order order) {
+    return {1'000, archive::rows_page_max, order};
+}
+
 Result<ListPage> ListPage::of(const QueryText& query, const Limits& limits) {
     static constexpr std::array<std::string_view, 2> orders{"oldest", "newest"};
     const auto after = query.count("after", limits.after_max);
@@ -140,7 +146,7 @@ Result<ListPage> ListPage::of(const QueryText& query, const Limits& limits) {
     return page;
 }
 
-HttpResponse list_response(std::string_view format, const Message& list, const Rows& rows,
+HttpResponse list_response(std::string_view format, Message&& list, const Rows& rows,
                            const std::optional<ClockCorrelation>& clock) {
     const auto& reflection = *list.GetReflection();
     const auto* field = list.GetDescriptor()->FindFieldByName(std::string{rows.field});
@@ -149,7 +155,7 @@ HttpResponse list_response(std::string_view format, const Message& list, const R
     if (next_after != nullptr)
         response.fields.emplace_back("Aeolis-Next-After", std::to_string(reflection.GetUInt64(list, next_after)));
     if (format == "json") {
-        response.body = to_json(list);
+        response.body = to_json_by_rows(std::move(list), rows.field);
     } else if (format == "jsonl") {
         response.content_type = "application/x-ndjson";
         for (const auto& row : reflection.GetRepeatedFieldRef<Message>(list, field))
@@ -175,6 +181,48 @@ void add_next_link(HttpResponse& response, std::string_view path, std::string_vi
         if (!parameter.empty() && !parameter.starts_with("after=")) parameters += std::string{parameter} + '&';
     }
     response.fields.emplace_back("Link", fmt::format("<{}?{}after={}>; rel=\"next\"", path, parameters, next));
+}
+
+void keep_page(Message& list, std::string_view field_name, const ListPage& page) {
+    const auto& reflection = *list.GetReflection();
+    const auto* field = list.GetDescriptor()->FindFieldByName(std::string{field_name});
+    std::vector<std::unique_ptr<Message>> rows(static_cast<std::size_t>(reflection.FieldSize(list, field)));
+    for (auto row = rows.rbegin(); row != rows.rend(); ++row) row->reset(reflection.ReleaseLast(&list, field));
+
+    const bool newest_first = page.order == archive::Order::newest_first;
+    const std::uint64_t count = rows.size();
+    const std::uint64_t left = !newest_first     ? count - std::min(page.after, count)
+                               : page.after == 0 ? count
+                                                 : std::min(page.after - 1, count);
+    std::uint64_t kept = 0, place = 0;
+    for (std::size_t octets = 0; kept < left && kept < page.limit && octets < archive::page_octets_max; ++kept) {
+        place = newest_first ? left - kept : count - left + kept + 1;
+        auto& row = rows[place - 1];
+        octets += row->ByteSizeLong();
+        reflection.AddAllocatedMessage(&list, field, row.release());
+    }
+    if (kept < left) reflection.SetUInt64(&list, list.GetDescriptor()->FindFieldByName("next_after"), place);
+}
+
+Result<ListRequest> ListRequest::of(const HttpRequest& request, const ListPage::Limits& limits) {
+    const auto query = QueryText::parse(request.query, {"after", "limit", "order", "format"});
+    if (!query) return query.error();
+    auto format = query->one_of("format", list_formats);
+    if (!format) return format.error();
+    const auto page = ListPage::of(*query, limits);
+    if (!page) return page.error();
+    return ListRequest{*page, std::move(*format), request.path, request.query};
+}
+
+HttpResponse ListRequest::response(Message&& rows_of_page, const Rows& rows) const {
+    auto response = list_response(format, std::move(rows_of_page), rows);
+    add_next_link(response, path, query);
+    return response;
+}
+
+HttpResponse ListRequest::response_of_whole(Message&& list, const Rows& rows) const {
+    keep_page(list, rows.field, page);
+    return response(std::move(list), rows);
 }
 
 }  // namespace aeolis::server

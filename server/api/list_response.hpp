@@ -9,6 +9,7 @@
 #include <array>
 #include <google/protobuf/message.h>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -31,6 +32,8 @@ struct ListPage {
     std::size_t limit = 0;
     archive::Order order{};
 
+    /// Chosen: 1000 rows when none is asked for, and the most of any list.
+    static Limits usual(archive::Order order);
     static Result<ListPage> of(const QueryText& query, const Limits& limits);
 };
 /// The formats of a list. The first is the default.
@@ -45,10 +48,29 @@ inline constexpr std::array<std::string_view, 3> list_formats{"json", "csv", "js
 /// Builds the response in a format. The header Aeolis-Next-After also tells where the next page begins; 0: nowhere.
 /// @param format  one of list_formats
 /// @param clock   clock correlation of the run that the rows belong to
-HttpResponse list_response(std::string_view format, const google::protobuf::Message& list, const Rows& rows,
+HttpResponse list_response(std::string_view format, google::protobuf::Message&& list, const Rows& rows,
                            const std::optional<ClockCorrelation>& clock = {});
 
 /// Adds the address of the next page (Link, rel="next", RFC 8288) to the response of a list that has one.
 void add_next_link(HttpResponse& response, std::string_view path, std::string_view query);
+
+/// Keeps one page of a list that was made whole, and sets its next_after. A row's number is its place in the list as it
+/// stands now, from 1: rows removed between two requests move the later ones.
+/// @param list   oldest first
+/// @param field  the list's field with the rows
+void keep_page(google::protobuf::Message& list, std::string_view field, const ListPage& page);
+
+/// A request for a page of a list that is not of a run. Its parameters are after, limit, order and format.
+struct ListRequest {
+    ListPage page;
+    std::string format;       ///< one of list_formats
+    std::string path, query;  ///< as asked
+
+    static Result<ListRequest> of(const HttpRequest& request, const ListPage::Limits& limits);
+    /// The response with the page, and with the address of the next.
+    HttpResponse response(google::protobuf::Message&& rows_of_page, const Rows& rows) const;
+    /// The same, of a list that was made whole, oldest first.
+    HttpResponse response_of_whole(google::protobuf::Message&& list, const Rows& rows) const;
+};
 
 }  // namespace aeolis::server

@@ -63,7 +63,8 @@ HttpResponse answer_rows(const Asking& asking, Result<List> list, const Rows& ro
     if (!list) return error_response(400, list.error());
     write_time_texts(*list);
     const auto format = format_of(asking.query, list_formats);
-    return list_response(format, *list, rows, format == "csv" ? clock_of(asking.reader, asking.run) : std::nullopt);
+    return list_response(format, std::move(*list), rows,
+                         format == "csv" ? clock_of(asking.reader, asking.run) : std::nullopt);
 }
 
 Result<bool> flag_of(const QueryText& query, std::string_view name) {
@@ -73,7 +74,7 @@ Result<bool> flag_of(const QueryText& query, std::string_view name) {
     return Error{fmt::format("{}: '{}' is neither true nor false", name, text)};
 }
 
-constexpr std::size_t item_page_max = 1'000;  // chosen: with all channels about 3 MB as JSON
+constexpr std::size_t item_page_max = 1'000;  // chosen; with all channels a page ends sooner when it is long
 constexpr std::array<std::string_view, 2> item_formats{"json", "protobuf"};
 
 /// A page of the items as the stream gives them, at full rate.
@@ -89,17 +90,21 @@ HttpResponse items(const AnswerContext& context, archive::Reader& reader, archiv
     std::ranges::sort(selection.channels);
     const auto page = ListPage::of(query, {item_page_max, item_page_max});
     if (!page) return error_response(400, page.error());
-    const auto read = reader.items(run, page->after, page->limit);
+    archive::Reader::ItemKinds kinds;
+    if (selection.all_channels) kinds.octets_max = archive::page_octets_max;
+    auto read = reader.items(run, page->after, page->limit, kinds);
     if (!read) return error_response(400, read.error());
     std::vector<ItemWithFacts> given;
     for (const auto& item : read->items) given.push_back({.item = &item, .facts = {}});
     v1::Batch batch;
     select_items(selection, 0.0, given, batch);
+    read->items = {};  // before the text is made
     batch.set_run(run.value);
     batch.set_history(true);
     batch.set_after_seq(page->after);
     batch.set_complete_through(read->complete_through);
-    if (format_of(query, item_formats) == "json") return {200, "application/json", "no-store", to_json(batch)};
+    if (format_of(query, item_formats) == "json")
+        return {200, "application/json", "no-store", to_json_by_rows(std::move(batch), "items")};
     return {200, "application/x-protobuf", "no-store", batch.SerializeAsString()};
 }
 

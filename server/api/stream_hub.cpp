@@ -87,12 +87,12 @@ std::uint64_t packet_of(const v1::Samples& samples) {
 
 RatedItem rated(const ItemWithFacts& given, double interval_s) {
     const auto& [item, facts] = given;
-    if (!item->has_samples() || interval_s <= 0.0) return {item, false, false, facts.ascend};
+    if (!item->has_samples() || interval_s <= 0.0) return {item, false, false, facts.ascend, facts.packet};
     const double now_s = interval_s * facts.stretch, before_s = interval_s * facts.previous_stretch;
     const bool due = begins_interval(facts.time_s, facts.previous_s, now_s);
     const bool whole =
         facts.previous_s ? begins_interval(*facts.previous_s, facts.before_previous_s, before_s) : facts.first;
-    return {item, !due, !whole, facts.ascend};
+    return {item, !due, !whole, facts.ascend, facts.packet};
 }
 
 std::vector<RatedItem> at_rate(std::span<const ItemWithFacts> items, double interval_s, bool packets) {
@@ -106,10 +106,21 @@ std::vector<RatedItem> at_rate(std::span<const ItemWithFacts> items, double inte
     return given;
 }
 
+/// The items with the first of each of these packets as thinned, and those packets removed; none: it holds none of them.
+std::optional<std::vector<RatedItem>> with_left_out(std::span<const RatedItem> items, LeftOutBefore& packets) {
+    std::optional<std::vector<RatedItem>> changed;
+    for (std::size_t i = 0; i < items.size() && !packets.empty(); ++i) {
+        if (items[i].packet == 0 || std::erase(packets, items[i].packet) == 0) continue;
+        if (!changed) changed.emplace(items.begin(), items.end());
+        (*changed)[i].thinned = true;
+    }
+    return changed;
+}
+
 /// Adds what goes out to the batch, and what does not to its left_out.
 void add_items(const StreamSelection& selection, std::span<const RatedItem> items, v1::Batch& batch) {
     std::uint64_t left_out_count = 0;
-    for (const auto& [item, left_out, thinned, ascend] : items) {
+    for (const auto& [item, left_out, thinned, ascend, packet] : items) {
         if (left_out) {
             left_out_count += selection.all_channels || has_any(item->samples(), selection.channels, ascend) ? 1 : 0;
             continue;
@@ -154,6 +165,7 @@ SampleFacts SampleSpacing::next(const v1::Item& item, float stretch) {
     facts.first = from_start_;
     facts.ascend = std::ranges::is_sorted(samples.ids());
     const std::uint64_t packet = packet_of(samples);
+    facts.packet = packet;
     const auto last = std::ranges::find(last_, packet, &Last::packet);
     if (last == last_.end()) {
         last_.push_back({packet, facts.time_s, std::nullopt, stretch});
@@ -164,6 +176,14 @@ SampleFacts SampleSpacing::next(const v1::Item& item, float stretch) {
     facts.previous_stretch = last->stretch;
     *last = {packet, facts.time_s, facts.previous_s, stretch};
     return facts;
+}
+
+void SampleSpacing::add_left_out(double interval_s, LeftOutBefore& packets) const {
+    for (const auto& last : last_) {
+        std::erase(packets, last.packet);
+        if (interval_s > 0.0 && !begins_interval(last.time_s, last.previous_s, interval_s * last.stretch))
+            packets.push_back(last.packet);
+    }
 }
 
 StreamHub::StreamHub(std::uint16_t dictionary_id, Services services)
@@ -279,7 +299,13 @@ const StreamHub::Range& StreamHub::range_after(archive::Sequence after, double i
 }
 
 StreamHub::EncodedRange StreamHub::encoded_range(const StreamSelection& selection, archive::Sequence after,
-                                                 archive::Sequence sent_through, std::uint64_t left_out) {
+                                                 archive::Sequence sent_through, std::uint64_t left_out,
+                                                 LeftOutBefore& left_out_before) {
+    if (!left_out_before.empty()) {
+        const auto& range = range_after(after, selection.interval_s(), selection.packets);
+        if (const auto items = with_left_out(range.items, left_out_before))
+            return encode_range(selection, range, *items, sent_through, left_out);
+    }
     for (const auto& cached : cache_ | std::views::reverse) {  // the newest is requested most
         if (cached.after == after && cached.sent_through == sent_through && cached.left_out == left_out &&
             cached.last_seq == last_seq_ && cached.clocks_version == clocks_version_ && cached.selection == selection) {
@@ -288,23 +314,29 @@ StreamHub::EncodedRange StreamHub::encoded_range(const StreamSelection& selectio
         }
     }
     const auto& range = range_after(after, selection.interval_s(), selection.packets);
+    auto encoded = encode_range(selection, range, range.items, sent_through, left_out);
+    cache_.push_back({selection, after, sent_through, last_seq_, left_out, clocks_version_, encoded});
+    if (cache_.size() > shared_encodings) cache_.pop_front();
+    return encoded;
+}
+
+StreamHub::EncodedRange StreamHub::encode_range(const StreamSelection& selection, const Range& range,
+                                                std::span<const RatedItem> items, archive::Sequence sent_through,
+                                                std::uint64_t left_out) {
+    ++figures.encodings;
     EncodedRange encoded;
     encoded.through = range.through;
     v1::ServerMessage message;
     auto& batch = *message.mutable_batch();
     batch.set_left_out(left_out);
-    add_items(selection, range.items, batch);
+    add_items(selection, items, batch);
     encoded.left_out = batch.left_out();
-    if (batch.items_size() > 0) {
-        batch.set_run(state_.run());
-        batch.set_after_seq(sent_through);
-        batch.set_complete_through(encoded.through);
-        *batch.mutable_clocks() = clocks_;
-        encoded.message = encode(message, selection.format);
-    }
-    ++figures.encodings;
-    cache_.push_back({selection, after, sent_through, last_seq_, left_out, clocks_version_, encoded});
-    if (cache_.size() > shared_encodings) cache_.pop_front();
+    if (batch.items_size() == 0) return encoded;
+    batch.set_run(state_.run());
+    batch.set_after_seq(sent_through);
+    batch.set_complete_through(encoded.through);
+    *batch.mutable_clocks() = clocks_;
+    encoded.message = encode(message, selection.format);
     return encoded;
 }
 

@@ -46,6 +46,7 @@ struct SampleFacts {
     float stretch = 1.0F, previous_stretch = 1.0F;            ///< of the interval; see Held
     bool first = true;                                        ///< without a previous one: whether none exists
     bool ascend = false;                                      ///< their channel ids ascend: allows binary search
+    std::uint64_t packet = 0;                                 ///< tells packets apart; 0: no samples
 };
 /// A published item with the facts about its samples.
 struct ItemWithFacts {
@@ -58,7 +59,12 @@ struct RatedItem {
     const v1::Item* item = nullptr;
     bool left_out = false;  ///< only counted
     bool thinned = false, ascend = false;
+    std::uint64_t packet = 0;  ///< as in SampleFacts
 };
+
+/// Packets whose newest sample a session left out by an interval of its own, which the hub's facts do not know: the
+/// next sample of each goes out as thinned.
+using LeftOutBefore = std::vector<std::uint64_t>;
 
 /// Adds the selected items to a Batch. Commands, events, alarms, tones, firings, explanations, links: all.
 /// Samples: the subscribed channels; with `interval_s` > 0 one item a packet in each interval of vehicle time, the
@@ -80,6 +86,8 @@ class SampleSpacing {
     explicit SampleSpacing(bool from_start = true, RateBy by = RateBy::vehicle) : from_start_(from_start), by_(by) {}
     /// @param stretch  factor by which intervals are longer now, >= 1
     SampleFacts next(const v1::Item& item, float stretch = 1.0F);
+    /// Updates the packets whose newest sample is left out at a rate.
+    void add_left_out(double interval_s, LeftOutBefore& packets) const;
 
   private:
     struct Last {
@@ -152,9 +160,10 @@ class StreamHub {
         std::uint64_t left_out = 0;  ///< after sent_through up to `through`
     };
     /// The items after `after`, at most message_items_max, encoded for `selection`. Requires holds(after).
-    /// @param left_out  samples left out after `sent_through` up to `after`
+    /// @param left_out         samples left out after `sent_through` up to `after`
+    /// @param left_out_before  of the items up to `after`; those told in this range are removed
     EncodedRange encoded_range(const StreamSelection& selection, archive::Sequence after,
-                               archive::Sequence sent_through, std::uint64_t left_out);
+                               archive::Sequence sent_through, std::uint64_t left_out, LeftOutBefore& left_out_before);
     Encoded encoded_state(StreamFormat format);
 
     struct Figures {
@@ -184,6 +193,8 @@ class StreamHub {
     };
     void wake_all();
     const Range& range_after(archive::Sequence after, double interval_s, bool packets);
+    EncodedRange encode_range(const StreamSelection& selection, const Range& range, std::span<const RatedItem> items,
+                              archive::Sequence sent_through, std::uint64_t left_out);
     void forget_items();
 
     std::uint16_t dictionary_id_;

@@ -202,6 +202,7 @@ void StreamSession::follow(std::uint64_t run, archive::Sequence after) {
     const auto last = replay_ || run != hub_.current_run() ? older_run_.last_seq() : hub_.last_seq();
     cursor_ = sent_through_ = std::min(after, last);
     left_out_ = 0;
+    left_out_before_.clear();
     page_.reset();
     page_spacing_ = SampleSpacing{cursor_ == 0, hub_.services().rate_by};
     reading_ = exhausted_ = was_live_ = stall_told_ = false;
@@ -327,7 +328,8 @@ Encoded StreamSession::next_items() {
             ask_archive();
             return nullptr;
         }
-        const auto encoded = hub_.encoded_range(selection_, cursor_, sent_through_, left_out_);
+        page_spacing_.add_left_out(selection_.interval_s(), left_out_before_);
+        const auto encoded = hub_.encoded_range(selection_, cursor_, sent_through_, left_out_, left_out_before_);
         cursor_ = encoded.through;
         left_out_ = encoded.left_out;
         page_spacing_ = SampleSpacing{

@@ -70,7 +70,7 @@ Result<LayoutOutcome> change_layout(sqlite::Database& database, const LayoutChan
 }
 
 Result<std::vector<LayoutRecord>> layouts_of(sqlite::Database& database, const std::string& owner) {
-    auto rows = database.prepare("SELECT name, view, saved FROM layouts WHERE owner = ?1 ORDER BY name");
+    auto rows = database.prepare("SELECT name, view, saved FROM layouts WHERE owner = ?1 ORDER BY saved, name");
     if (!rows) return rows.error();
     rows->bind(1, std::string_view(owner));
     std::vector<LayoutRecord> layouts;

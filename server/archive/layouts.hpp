@@ -45,7 +45,7 @@ enum class LayoutOutcome : std::uint8_t {
 Result<void> prepare_layouts(sqlite::Database& database);
 /// Call within a transaction.
 Result<LayoutOutcome> change_layout(sqlite::Database& database, const LayoutChange& change);
-/// The layouts of the owner, by name.
+/// The layouts of the owner, the one saved first before the others.
 Result<std::vector<LayoutRecord>> layouts_of(sqlite::Database& database, const std::string& owner);
 
 }  // namespace aeolis::archive

@@ -217,6 +217,7 @@ class Reader {
     struct ItemKinds {
         bool samples = true;
         bool packets = true;
+        std::size_t octets_max = SIZE_MAX;  ///< of packets and samples, encoded, after which a page ends
     };
     /// The items after `after`, in order, of all kinds, as they were published.
     Result<ItemPage> items(RunId run, Sequence after, std::size_t limit);
@@ -289,7 +290,7 @@ class Reader {
     Result<v1::AsFlownReport> as_flown(RunId run);
 
     Result<std::vector<AuditEntry>> audit(std::uint64_t after, std::size_t limit, Order order = {});
-    /// The layouts of the owner, by name.
+    /// The layouts of the owner, the one saved first before the others.
     Result<std::vector<LayoutRecord>> layouts(const std::string& owner);
 
     struct State;  ///< reader_state.hpp: shared by the reader's parts

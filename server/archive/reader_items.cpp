@@ -93,15 +93,19 @@ Result<void> collect_packets(Reader::State& reader, const RunInfo& info, Page& p
         .bind(3, static_cast<std::int64_t>(page.limit + 1));  // the first row may have no item left
     const auto* words = reader.words_of(info);
     std::vector<double> values;
-    std::size_t count = 0;
+    std::size_t count = 0, octets = 0;
     Sequence last = page.after;
-    for (;; ++count) {
+    const auto add = [&](v1::Item item) {
+        if (kinds.octets_max != SIZE_MAX) octets += item.ByteSizeLong();
+        page.items.push_back(std::move(item));
+    };
+    for (; octets < kinds.octets_max; ++count) {
         auto found = (*rows)->step();
         if (!found) return found.error();
         if (!*found) break;
         const auto record = read_row<PacketRecord>(**rows);
         last = record.sampled ? record.seq + 1 : record.seq;
-        if (kinds.packets && record.seq > page.after) page.items.push_back(to_item(record, words));
+        if (kinds.packets && record.seq > page.after) add(to_item(record, words));
         if (!kinds.samples || !record.sampled) continue;
         // With another dictionary the values are unknown; the item still keeps its number.
         SampleRecord sample{{record.seq + 1, record.ert}, record.packet.value_or(0), record.sclk, record.source, {}};
@@ -110,12 +114,12 @@ Result<void> collect_packets(Reader::State& reader, const RunInfo& info, Page& p
             reader.columns.append_values(reader.decoded, values);
             sample.texts = reader.columns.texts(reader.decoded);
             sample.sclk_by_reception = !reader.decoded.timed;
-            page.items.push_back(to_item(sample, reader.columns.channels(reader.decoded.packet), values));
+            add(to_item(sample, reader.columns.channels(reader.decoded.packet), values));
         } else {
-            page.items.push_back(to_item(sample, {}, {}));
+            add(to_item(sample, {}, {}));
         }
     }
-    if (count == page.limit + 1) page.through = std::min(page.through, last);
+    if (count == page.limit + 1 || octets >= kinds.octets_max) page.through = std::min(page.through, last);
     return {};
 }
 

@@ -246,7 +246,8 @@ v1::CampaignList CampaignDesk::list() {
     v1::CampaignList list;
     list.set_cases_max(cases_max);
     list.set_jobs_max(jobs_max());
-    for (const auto& file : files_in(folder_)) *list.add_campaigns() = state_of(file);
+    const auto files = files_in(folder_);
+    for (auto file = files.rbegin(); file != files.rend(); ++file) *list.add_campaigns() = state_of(*file);
     return list;
 }
 

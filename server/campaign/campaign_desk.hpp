@@ -41,6 +41,7 @@ class CampaignDesk {
     /// cases stay; the next start continues from them. An Error: it does not fly.
     Result<v1::CampaignState> cancel(const std::string& campaign);
 
+    /// All campaigns with results in the folder, the oldest first.
     v1::CampaignList list();
     /// The file of a campaign; none when there is no such campaign.
     std::optional<std::filesystem::path> file_of(const std::string& campaign) const;

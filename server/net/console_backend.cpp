@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <google/protobuf/stubs/logging.h>
+#include <malloc.h>
 #include <spdlog/spdlog.h>
 
 namespace aeolis::server {
@@ -48,6 +49,7 @@ Result<std::unique_ptr<ConsoleBackend>> ConsoleBackend::open(Settings settings,
                                                              const dictionary::Dictionary& dictionary) {
     // An invalid message is refused to its client; Protobuf would also print a line for each.
     google::protobuf::SetLogHandler(nullptr);
+    ::mallopt(M_MMAP_THRESHOLD, mapped_octets);
     std::unique_ptr<ConsoleBackend> backend{new ConsoleBackend{std::move(settings), dictionary}};
     const auto& chosen = backend->settings_;
     auto* const self = backend.get();

@@ -31,6 +31,9 @@ class ConsoleBackend {
         ReadClocks clocks = read_clocks;
         std::uint64_t raw_octets_kept = archive::raw_octets_kept;  ///< of each link of a run, as they came
     };
+    /// Chosen: a block of memory of so many octets is mapped by itself and goes back to the system once it is free, so
+    /// that each thread's longest answer does not stay with the process.
+    static constexpr int mapped_octets = 256 << 10;
     /// Opens all parts. Fails with one line that names the archive or the address. The dictionary must outlive this.
     static Result<std::unique_ptr<ConsoleBackend>> open(Settings settings, const dictionary::Dictionary& dictionary);
     ~ConsoleBackend();  ///< stops a run in progress; its end is stored

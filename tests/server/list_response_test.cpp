@@ -1,9 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/api/list_response.hpp"
 
+#include "aeolis/v1/access.pb.h"
+#include "aeolis/v1/layout.pb.h"
 #include "aeolis/v1/run.pb.h"
+#include "server/archive/reader.hpp"
 #include "server/base/json.hpp"
 #include "tests/support/catch.hpp"
+
+#include <memory>
+#include <utility>
 
 namespace server_list_response_test {
 
@@ -13,7 +19,9 @@ using server::list_response;
 namespace {
 
 server::HttpResponse as(const char* format, const google::protobuf::Message& list, const server::Rows& rows) {
-    return list_response(format, list, rows);
+    const std::unique_ptr<google::protobuf::Message> given{list.New()};
+    given->CopyFrom(list);
+    return list_response(format, std::move(*given), rows);
 }
 
 v1::EventList two_events() {
@@ -79,13 +87,13 @@ TEST_CASE("as CSV an SCLK has SCET beside it where the clock of the run is known
     auto list = two_events();
     list.mutable_events(1)->mutable_event()->set_sclk(1e15);  // no date has so many digits
     const ClockCorrelation clock{Sclk{397000845.0}, *scet_from_text("2012-219T05:17:57.000")};
-    const auto csv = list_response("csv", list, {"events", {"event"}}, clock).body;
+    const auto csv = list_response("csv", std::move(list), {"events", {"event"}}, clock).body;
     CHECK_THAT(csv, Catch::Contains(",event.sclk,event.scet,event.ert,") &&
                         Catch::Contains(",397000845.015625,2012-219T05:17:57.015,,recorded"));
     CHECK_THAT(csv, Catch::Contains(",1e+15,,,"));
     v1::TimepointList timepoints;
     timepoints.add_timepoints();
-    CHECK_THAT(list_response("csv", timepoints, {"timepoints"}, clock).body, Catch::Contains("_scet,"));
+    CHECK_THAT(list_response("csv", std::move(timepoints), {"timepoints"}, clock).body, Catch::Contains("_scet,"));
 }
 
 TEST_CASE("what a spreadsheet would compute stands in CSV as the words that it is; numbers stay numbers",
@@ -105,6 +113,54 @@ TEST_CASE("what a spreadsheet would compute stands in CSV as the words that it i
     CHECK(cell("-1.5e-3") == "-1.5e-3");
     CHECK(cell("-inf") == "-inf");
     CHECK(cell("'quoted' = words") == "'quoted' = words");
+}
+
+TEST_CASE("JSON that is made some rows at a time is the JSON of all of them", "[http][R62]") {
+    v1::DictionaryReply reply;  // with fields before and behind the rows
+    reply.set_mission(R"("channels":[ )");
+    reply.add_commands()->set_name("DO_EDL");
+    for (int rows = 0; rows < 12; ++rows) {
+        CAPTURE(rows);
+        CHECK(server::to_json_by_rows(v1::DictionaryReply{reply}, "channels") == server::to_json(reply));
+        auto& channel = *reply.add_channels();
+        channel.set_name("channel_" + std::to_string(rows));
+        channel.set_text(std::string(rows % 2 == 0 ? 20'000 : 1, '"'));
+        channel.add_labels()->set_label("on");
+    }
+}
+
+TEST_CASE("a list made whole is given in pages by place, in either order, each row once", "[http][R62]") {
+    for (const auto order : {archive::Order::oldest_first, archive::Order::newest_first})
+        for (const std::size_t limit : {1U, 2U, 5U, 7U, 100U}) {
+            CAPTURE(limit);
+            std::string seen;
+            std::uint64_t after = 0;
+            for (int pages = 0; pages < 20; ++pages) {
+                v1::UserList list;
+                for (const char name : std::string{"abcdefg"}) list.add_users()->set_user(std::string(1, name));
+                server::keep_page(list, "users", {after, limit, order});
+                for (const auto& user : list.users()) seen += user.user();
+                after = list.next_after();
+                if (after == 0) break;
+            }
+            CHECK(seen == (order == archive::Order::oldest_first ? "abcdefg" : "gfedcba"));
+        }
+    v1::UserList list;
+    list.add_users();
+    server::keep_page(list, "users", {5, 10, archive::Order::oldest_first});
+    CHECK((list.users().empty() && list.next_after() == 0));  // behind the end
+    server::keep_page(list, "users", {0, 10, archive::Order::newest_first});
+    CHECK((list.users().empty() && list.next_after() == 0));  // of no rows
+}
+
+TEST_CASE("a page of a list made whole ends once it is long", "[http][R62]") {
+    v1::LayoutList list;
+    for (int i = 0; i < 100; ++i) list.add_layouts()->set_view(std::string(20'000, 'x'));
+    list.set_layouts_max(32);
+    server::keep_page(list, "layouts", {0, 1'000, archive::Order::oldest_first});
+    CHECK(list.ByteSizeLong() < archive::page_octets_max + 30'000);
+    CHECK(list.next_after() == static_cast<std::uint64_t>(list.layouts_size()));
+    CHECK(list.layouts_max() == 32);
 }
 
 }  // namespace server_list_response_test

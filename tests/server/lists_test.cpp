@@ -2,11 +2,13 @@
 // The lists of the API over a socket, of a run with thousands of commands, and what memory they take.
 
 #include "aeolis/v1/access.pb.h"
+#include "aeolis/v1/layout.pb.h"
 #include "aeolis/v1/run.pb.h"
 #include "server/base/json.hpp"
 #include "tests/server/run_writer.hpp"
 #include "tests/server/running_server.hpp"
 #include "tests/server/web_client.hpp"
+#include "tests/support/catch.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -76,6 +78,22 @@ std::size_t largest_since_last_kb() {
     return largest;
 }
 
+/// Logs the administrator in, with a password of their own. @return the headers of its requests
+Headers own_password(const RunningServer& server) {
+    const auto log_in = [&](const std::string& password) {
+        const auto reply = web_request(server.port(), "POST", "/api/v1/session",
+                                       fmt::format(R"({{"user":"administrator","password":"{}"}})", password));
+        REQUIRE(reply.status == 201);
+        return Headers{{"Cookie", reply.set_cookie.substr(0, reply.set_cookie.find(';'))}};
+    };
+    const auto given = server.first_password();
+    const auto headers = log_in(given);
+    REQUIRE(web_request(server.port(), "PATCH", "/api/v1/users/administrator",
+                        fmt::format(R"({{"password":"a password of my own","current_password":"{}"}})", given), headers)
+                .status == 200);
+    return headers;
+}
+
 const std::vector<std::string> lists{"events", "tones",    "explanations", "alarms",
                                      "notes",  "commands", "packets",      "interventions"};
 
@@ -98,6 +116,64 @@ TEST_CASE("every list of a run goes on by Link and Aeolis-Next-After, in each fo
           "/api/v1/runs/latest/events?text=as%20planned&limit=2&after=16");
     CHECK(lines_of_all_pages(server->port(), "/api/v1/runs?format=jsonl&limit=1") == 1);
     CHECK(lines_of_all_pages(server->port(), "/api/v1/runs?format=jsonl&order=oldest") == 1);
+}
+
+TEST_CASE("lists of what people made go on by Link and Aeolis-Next-After too", "[http][R62]") {
+    RunningServer server;
+    const std::vector<std::string> names{"Approach", "Entry", "Landing"};
+    for (const auto& name : names)
+        REQUIRE(web_request(server.port(), "PUT", "/api/v1/layouts/" + name, "{}").status == 200);
+    std::string forth, back;
+    for (auto [order, all] : {std::pair{"oldest", &forth}, std::pair{"newest", &back}}) {
+        std::string target = fmt::format("/api/v1/layouts?limit=1&order={}", order);
+        for (int pages = 0; !target.empty() && pages < 5; ++pages) {
+            const auto reply = web_request(server.port(), "GET", target);
+            v1::LayoutList list;
+            REQUIRE(server::from_json(reply.body, list));
+            REQUIRE(list.layouts_size() == 1);
+            *all += list.layouts(0).name()[0];
+            target = next_of(reply);
+        }
+    }
+    CHECK(forth == "AEL");
+    CHECK(back == "LEA");
+    const auto scenarios = [&](const std::string& query) {
+        return lines_of_all_pages(server.port(), "/api/v1/scenarios?format=jsonl" + query);
+    };
+    CHECK(scenarios("") > 2);
+    CHECK(scenarios("&limit=2&order=newest") == scenarios(""));
+    CHECK(lines_of_all_pages(server.port(), "/api/v1/campaigns?format=csv") == 1);  // the header
+    for (const auto* list : {"scenarios", "layouts", "campaigns"})
+        for (const auto* query : {"order=up", "limit=0", "after=-1", "format=xml", "colour=red"}) {
+            INFO(list << ' ' << query);
+            CHECK(web_request(server.port(), "GET", fmt::format("/api/v1/{}?{}", list, query)).status == 400);
+        }
+}
+
+TEST_CASE("users and tokens come in pages", "[http][access][R62]") {
+    RunningServer server{RunningServer::WithAccounts{}};
+    const auto administrator = own_password(server);
+    for (const auto* user : {"ann", "bob", "eve"})
+        REQUIRE(web_request(server.port(), "POST", "/api/v1/users",
+                            fmt::format(R"({{"user":"{}","role":"observer","password":"given by another"}})", user),
+                            administrator)
+                    .status == 201);
+    for (const auto* name : {"one", "two"})
+        REQUIRE(web_request(server.port(), "POST", "/api/v1/tokens",
+                            fmt::format(R"({{"name":"{}","role":"observer"}})", name), administrator)
+                    .status == 201);
+    const auto get = [&](const char* target) { return web_request(server.port(), "GET", target, {}, administrator); };
+    const auto first = get("/api/v1/users?limit=2");
+    v1::UserList users;
+    REQUIRE(server::from_json(first.body, users));
+    CHECK((users.users_size() == 2 && users.users(1).user() == "ann" && users.next_after() == 2));
+    CHECK(next_of(first) == "/api/v1/users?limit=2&after=2");
+    REQUIRE(server::from_json(get("/api/v1/users?limit=2&after=2").body, users));
+    CHECK((users.users_size() == 2 && users.users(1).user() == "eve" && users.next_after() == 0));
+    v1::TokenList tokens;
+    REQUIRE(server::from_json(get("/api/v1/tokens?order=newest").body, tokens));
+    CHECK((tokens.tokens_size() == 2 && tokens.tokens(0).name() == "two"));
+    CHECK_THAT(get("/api/v1/tokens?format=csv").body, Catch::StartsWith("name,role,"));
 }
 
 TEST_CASE("the newest rows come first where that is asked", "[http][R62]") {

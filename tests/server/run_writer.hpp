@@ -3,14 +3,15 @@
 
 #include "server/archive/archive.hpp"
 #include "server/archive/kept_request.hpp"
-#include "tests/support/catch.hpp"
 
 #include <cstdint>
+#include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace aeolis::test {
 
-/// Writes rows of every list of a run straight into an archive, without a flight.
+/// Writes rows of every list of a run straight into an archive, without a flight. Throws what the archive refuses.
 class RunWriter {
   public:
     static constexpr std::uint64_t items_a_round = 14;
@@ -25,18 +26,19 @@ class RunWriter {
         batch.octets.assign(64, 0xA5);
         for (std::uint64_t i = 0; i < rounds; ++i) add_round(batch);
         batch.last_seq = seq_;
-        const auto done = archive_.append(run_, batch);
-        INFO((done ? "" : done.error().message));
-        REQUIRE(done);
+        append(batch);
     }
     void finish() {
         archive::Batch batch;
         batch.end = archive::RunEnd{"stopped", "", "", "2026-11-22T12:00:00Z"};
-        REQUIRE(archive_.append(run_, batch));
+        append(batch);
     }
     std::uint64_t rounds() const { return rounds_; }
 
   private:
+    void append(const archive::Batch& batch) {
+        if (const auto done = archive_.append(run_, batch); !done) throw std::runtime_error(done.error().message);
+    }
     archive::ItemRecord next() { return {++seq_, Ert{static_cast<std::int64_t>(seq_) * 1'000}}; }
     template <typename Record>
     Record& item(std::vector<Record>& records) {

@@ -367,6 +367,33 @@ TEST_CASE("wherever clients are cut off, each gets every sample or the number of
     }
 }
 
+TEST_CASE("behind a catch-up thinned further than the rate asked for, the first live sample of each packet says so",
+          "[stream][R42]") {
+    for (const double rate_hz : {20.0, 3.0, 0.5}) {
+        CAPTURE(rate_hz);
+        std::mt19937 random{7};
+        Venue venue;
+        double sclk = 1000.0;
+        Follower one{venue, rate_hz, true}, other{venue, rate_hz, false};
+        const auto publish = [&] { venue.publish(some_items(random, venue.durable.size(), sclk)); };
+        publish();
+        for (auto* each : {&one, &other}) each->read();  // both are live
+        for (int round = 0; round < 3; ++round) {
+            const auto behind = venue.durable.size() + StreamHub::items_max + 1'000;
+            while (venue.durable.size() < behind) publish();
+            const auto pages_before = venue.pages_read;
+            for (int i = 0; i < 40; ++i) {
+                venue.answer();
+                if (i % 3 == 0) publish();  // the end of the pages falls anywhere
+                for (auto* each : {&one, &other}) each->read();
+            }
+            CHECK(venue.pages_read > pages_before);
+            CHECK(one.through == venue.durable.size());
+        }
+        CHECK(one.left_out > 0);
+    }
+}
+
 TEST_CASE("a slow client reads the archive and loses nothing", "[stream][R42]") {
     Venue venue;
     Client client{venue.hub};

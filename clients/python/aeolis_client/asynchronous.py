@@ -182,7 +182,7 @@ class AsyncClient:
     # Rehearsals and commands.
 
     async def scenarios(self) -> list[Any]:
-        return list((await self._ask("ScenarioList", "GET", "/scenarios")).scenarios)
+        return [each async for each in self._pages("ScenarioList", "/scenarios", {})]
 
     async def start(self, scenario: str, *, seed: int = 1, pace: float = 1.0) -> Any:
         """Starts a rehearsal; returns its RunState once it is in the archive. @param pace 0: as fast as it goes"""

@@ -153,7 +153,7 @@ test('with accounts: a log-in in place, an end of the session in the middle that
   const name = /ARMED: (\w+)/.exec(await text('command-armed'))[1];
   await page.keyboard.type(name.slice(0, 4));
   assert.equal((await administer('PATCH', '/users/ann', { role: 'observer' })).status, 200);
-  await shows('dry-run', /✖ It would be refused: ann is observer/);
+  await shows('command-armed', /✖ It would be refused: ann is observer/);
   await page.keyboard.type(name.slice(4));
   await page.keyboard.press('Enter');
   await shows('command-message', /nothing was sent: ann is observer: this needs the right to command/);

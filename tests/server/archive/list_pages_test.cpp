@@ -2,6 +2,7 @@
 #include "server/archive/reader.hpp"
 #include "tests/server/run_writer.hpp"
 #include "tests/server/small_mission.hpp"
+#include "tests/support/catch.hpp"
 
 #include <algorithm>
 #include <functional>

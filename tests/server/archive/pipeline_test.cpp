@@ -212,14 +212,20 @@ TEST_CASE("reading after any number, in pages of any size, gives every item once
     REQUIRE(ground.pipeline.commit().ok());
     const auto all = ground.items();
     auto reader = ground.reader();
-    for (const std::size_t limit : {std::size_t{1}, std::size_t{2}, std::size_t{3}, std::size_t{7}}) {
+    for (const auto& [limit, octets_max] : {std::pair<std::size_t, std::size_t>{1, SIZE_MAX},
+                                            {2, SIZE_MAX},
+                                            {3, SIZE_MAX},
+                                            {7, SIZE_MAX},
+                                            {1'000, 1},
+                                            {1'000, 200}}) {
         for (Sequence first = 0; first <= all.back().seq(); ++first) {
             std::vector<v1::Item> read;
             Sequence after = first;
             for (bool more = true; more;) {
-                auto page = reader.items(ground.run(), after, limit);
+                auto page = reader.items(ground.run(), after, limit, {.octets_max = octets_max});
                 REQUIRE(page.ok());
                 REQUIRE(page->items.size() <= limit);
+                if (octets_max == 1) REQUIRE(std::ranges::count_if(page->items, &v1::Item::has_unit) <= 1);
                 REQUIRE((page->complete_through > after || !page->more));
                 read.insert(read.end(), page->items.begin(), page->items.end());
                 after = page->complete_through;

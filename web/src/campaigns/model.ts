@@ -3,6 +3,7 @@
 // rehearsals; nothing here is telemetry of the vehicle.
 import { signal } from '@preact/signals';
 import { call, wordsFor } from '../run/api';
+import { readAll } from '../run/pages';
 
 export interface CampaignState {
   campaign: string;
@@ -92,6 +93,8 @@ export function choose(campaign: string | undefined): void {
 
 let under: Promise<void> | undefined;
 
+type Campaigns = { campaigns: CampaignState[]; cases_max: number; jobs_max: number };
+
 /** Asks for the list and for news of the selected campaign; one request at a time. */
 export function look(): Promise<void> {
   under ??= lookNow().finally(() => (under = undefined));
@@ -100,8 +103,8 @@ export function look(): Promise<void> {
 
 async function lookNow(): Promise<void> {
   try {
-    const list = await call<{ campaigns?: CampaignState[]; cases_max: number; jobs_max: number }>('GET', '/campaigns');
-    campaigns.value = list.campaigns ?? [];
+    const list = await readAll<Campaigns, 'campaigns'>('/campaigns', 'campaigns');
+    campaigns.value = list.campaigns;
     limits.value = { cases_max: list.cases_max, jobs_max: list.jobs_max };
     if (!campaigns.value.some((each) => each.campaign === chosen.value)) choose(undefined);
     choose(chosen.value ?? (flyingNow() ?? campaigns.value.find((each) => each.state !== 'unreadable'))?.campaign);

@@ -4,6 +4,7 @@ import { signal } from '@preact/signals';
 import { showView, viewNow } from '../places/model';
 import { call, wordsFor } from '../run/api';
 import { pictureOf, queryOf } from '../run/address';
+import { readAll } from '../run/pages';
 import { notify } from '../run/shown';
 
 export interface Layout {
@@ -19,8 +20,9 @@ export const busy = signal(false);
 
 export async function loadLayouts(): Promise<void> {
   try {
-    const list = await call<{ layouts?: Layout[]; layouts_max: number }>('GET', '/layouts');
-    [layouts.value, most.value, problem.value] = [list.layouts ?? [], list.layouts_max, ''];
+    const list = await readAll<{ layouts: Layout[]; layouts_max: number }, 'layouts'>('/layouts', 'layouts');
+    list.layouts.sort((a, b) => (a.name < b.name ? -1 : 1));
+    [layouts.value, most.value, problem.value] = [list.layouts, list.layouts_max, ''];
   } catch (error) {
     problem.value = `the layouts are not known: ${wordsFor(error)}`;
   }

@@ -235,6 +235,12 @@ export async function refreshRuns(): Promise<void> {
   }
 }
 
+async function askScenarios(after = 0n): Promise<void> {
+  const list = await ask<ScenarioList>('scenarios', `/scenarios${after ? `?after=${after}` : ''}`);
+  scenarios.value = [...scenarios.value, ...list.scenarios];
+  if (list.nextAfter) await askScenarios(list.nextAfter);
+}
+
 async function everySeconds(seconds: number, what: () => Promise<void>): Promise<never> {
   for (;;) {
     await new Promise((resolve) => setTimeout(resolve, seconds * 1000));
@@ -323,10 +329,7 @@ export async function begin(): Promise<void> {
     if (now !== before) post({ type: 'plot', ...channelsOf(words), live: asHeard.peek() });
     before = now;
   });
-  ask<ScenarioList>('scenarios', '/scenarios').then(
-    (list) => (scenarios.value = list.scenarios),
-    () => undefined,
-  );
+  void askScenarios().catch(() => undefined);
   let wasIn = true;
   effect(() => {
     const isIn = access.value.state !== 'out';

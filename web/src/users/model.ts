@@ -3,6 +3,7 @@
 import { signal } from '@preact/signals';
 import { call, wordsFor } from '../run/api';
 import type { Dictionary } from '../run/dictionary';
+import { readAll } from '../run/pages';
 import { dictionary } from '../run/shown';
 
 export const ROLES = ['observer', 'controller', 'director', 'administrator'] as const;
@@ -51,12 +52,12 @@ const auditUpTo = async (before: number): Promise<AuditEntry[]> =>
 export async function refreshUsers(): Promise<void> {
   try {
     const [all, programs, log] = await Promise.all([
-      call<{ users?: User[] }>('GET', '/users'),
-      call<{ tokens?: Token[] }>('GET', '/tokens'),
+      readAll<{ users: User[] }, 'users'>('/users', 'users'),
+      readAll<{ tokens: Token[] }, 'tokens'>('/tokens', 'tokens'),
       auditUpTo(Number(auditBefore.value)),
     ]);
-    users.value = all.users ?? [];
-    tokens.value = programs.tokens ?? [];
+    users.value = all.users;
+    tokens.value = programs.tokens;
     audit.value = log;
   } catch (error) {
     message.value = { good: false, text: wordsFor(error) };
