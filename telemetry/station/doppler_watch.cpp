@@ -13,11 +13,12 @@ constexpr double line_before_s = 1.5, line_before_most_s = 4.0;  // chosen: long
 constexpr double past_most_s = 6.0;                              // chosen: two seconds of departures, and a gap
 constexpr double line_s = 1.0;                                   // eight estimates without a gap take less
 constexpr double estimate_s = 0.125;
-constexpr double shared = 5.0;  // estimates that share a window, and so their noise: 0.6 s of eighths
+constexpr double curvature_hz = 30.0;  // chosen: of a departure while older ones do not show the curvature
+constexpr double shared = 5.0;         // estimates that share a window, and so their noise: 0.6 s of eighths
 constexpr double rounding_s = 0.01;
 
 /// How far each feature makes the carrier depart, and how far from its predict it may come. Chosen over 500 dispersed
-/// landings at 23 dB-Hz: 1.2 Hz at most before drag is felt, which makes 106 Hz at its greatest; a parachute makes 700 Hz
+/// landings at 22 dB-Hz: 1.2 Hz at most before drag is felt, which makes 106 Hz at its greatest; a parachute makes 700 Hz
 /// at least, where 19 Hz are the most in the 100 s before; a heatshield 14 to 32 Hz.
 struct Limits {
     double least_hz, most_hz, within_s;
@@ -48,13 +49,13 @@ std::optional<DopplerDeparture::Departure> DopplerDeparture::add(double time_s, 
     return beyond;
 }
 
-/// The departure less the mean of older ones.
+/// The departure less the mean of older ones, or by itself where too few are known.
 std::optional<DopplerDeparture::Departure> DopplerDeparture::beyond_past(double time_s,
                                                                          const Departure& departure) const {
     const auto recent = std::ranges::find_if(
         past_, [&](const Past& past) { return past.time_s > time_s - line_before_s + rounding_s; });
     const auto count = static_cast<std::size_t>(recent - past_.begin());
-    if (count < past_departures) return {};
+    if (count < past_departures) return Departure{departure.hz, std::hypot(departure.sigma_hz, curvature_hz)};
     double mean_hz = 0.0, spread = 0.0;
     const auto older = std::span{past_}.subspan(count - past_departures, past_departures);
     for (const Past& past : older) mean_hz += past.hz / past_departures;
@@ -126,7 +127,9 @@ std::optional<double> DopplerWatch::first_of_three(Watched& watched, std::size_t
         return {};
     }
     if (watched.in_row == 0) watched.first_s = time_s;
-    const bool came_now = watched.below_s && watched.first_s - *watched.below_s <= line_before_most_s;
+    // The parachute opens in a second: that a line lies before it is enough.
+    const bool came_now =
+        feature == parachute || (watched.below_s && watched.first_s - *watched.below_s <= line_before_most_s);
     if (!came_now || ++watched.in_row < needed_in_row) return {};
     return watched.first_s;
 }

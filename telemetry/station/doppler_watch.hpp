@@ -23,7 +23,7 @@ class DopplerDeparture {
     struct Departure {
         double hz = 0.0, sigma_hz = 0.0;
     };
-    /// Adds an estimate; times ascend. None: too little lies before it.
+    /// Adds an estimate; times ascend. None: no line lies before it.
     std::optional<Departure> add(double time_s, double frequency_hz, double sigma_hz);
 
   private:
