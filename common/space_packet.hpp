@@ -41,6 +41,11 @@ inline constexpr std::size_t space_packet_octets_max = primary_header_octets + 6
 inline constexpr std::uint16_t idle_apid = 0x7FF;
 inline constexpr Apid file_delivery_apid{0x7FD};  ///< packets whose data are a CFDP PDU; 2045, the APID reserved for
                                                   ///< CFDP
+/// Packets that ground makes itself, of what its station measures; no vehicle sends them. Chosen: beside CFDP's.
+constexpr bool is_made_on_ground(Apid apid) {
+    return apid.value >= 0x7E0 && apid.value <= 0x7EF;
+}
+inline constexpr Apid station_carrier_apid{0x7E0}, station_event_apid{0x7E1};
 
 /// What begins a run of octets: a space packet, or an encapsulation packet beside it in the same frames, of one octet
 /// and more. [ccsds-133.0-b-2] [ccsds-133.1-b-3]

@@ -107,6 +107,7 @@ struct Landing::State {
     std::vector<LinkTruth> at_station;   ///< each link's latest state that has reached Earth
     std::vector<LinkTruth> told_ground;  ///< and as last reported to ground
     std::optional<XBandFrontEnd> antenna;
+    std::optional<CarrierModel> carrier;
 
     std::array<TruthState, remembered_ticks> remembered{};
     std::int64_t ticks_without_computer = 0;
@@ -345,7 +346,7 @@ void Landing::State::receive_tone(std::optional<ToneId> sent, std::int64_t cycle
         earth.gain.reset();  // left out: the carrier of telemetry, which the tones' receiver is not set to
     }
     const auto ended = x_band.cycle(sent, {truth.sclk, truth.e_s, doppler_hz, earth.up, earth.gain});
-    if (tones_from_samples()) {
+    if (tones_from_samples() || carrier) {
         XBandField field;
         field.ert = {cycle_start_us + light_time_us};
         field.e_s = truth.sclk - scenario.entry_sclk;
@@ -531,6 +532,8 @@ const CycleReport& Landing::step() {
         f.up = f.up && !out;
         s.report.x_band.push_back(f);
         if (s.antenna) earth.x_band.push_back(s.antenna->sample(f));
+        if (s.carrier)
+            if (const auto told = s.carrier->hear(f)) earth.carrier.push_back(*told);
     });
     s.tell_station(out, now_us);
     return s.report;
@@ -542,6 +545,10 @@ const CycleReport& Landing::report() const {
 
 void Landing::listen_by(XBandFrontEnd antenna) {
     state_->antenna.emplace(std::move(antenna));
+}
+
+void Landing::listen_by(CarrierModel receiver) {
+    state_->carrier.emplace(std::move(receiver));
 }
 
 bool Landing::dispersed() const {

@@ -4,6 +4,7 @@
 #include "common/ids.hpp"
 #include "common/time.hpp"
 #include "flight/computer.hpp"
+#include "simulation/links/carrier_model.hpp"
 #include "simulation/links/x_band_front_end.hpp"
 #include "simulation/scenario.hpp"
 #include "telemetry/port.hpp"
@@ -97,7 +98,7 @@ struct CycleReport {
     std::span<const std::uint8_t> recorded;  ///< whole packets appended to NVM in this cycle
     std::span<const std::uint8_t> radiated;  ///< PLTUs given to the radio
     telemetry::Downlink earth;               ///< reaches Earth by the end of this cycle: all that ground is given
-    std::vector<XBandField> x_band;          ///< arrives instead of decisions when tones are samples
+    std::vector<XBandField> x_band;          ///< arrives when tones are samples, or the carrier is listened to
     std::vector<SentSymbol> symbols;         ///< whose end arrives in this cycle
     std::vector<LinkTruth> links;
     std::vector<TruthEvent> events;
@@ -151,6 +152,8 @@ class Landing {
 
     /// Makes X-band reach Earth as samples of this antenna from here on.
     void listen_by(XBandFrontEnd antenna);
+    /// Makes the estimates of this receiver's model reach Earth from here on, where tones are statistical.
+    void listen_by(CarrierModel receiver);
 
     /// Whether the dispersions have been drawn: at the start, or at the tick that the scenario sets.
     bool dispersed() const;

@@ -37,6 +37,7 @@ enum class Stream : std::uint64_t {
     slow_drag,
     uplink,
     relay,
+    carrier,
 };
 
 /// Random numbers of one stream of one case of one seed: SplitMix64, and Box–Muller for the normal distribution.

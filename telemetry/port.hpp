@@ -28,6 +28,8 @@ struct Link {
 };
 inline const Link uhf_live_link{"uhf_live", false}, relay_link{"relay", true}, x_band_link{"x_band", false},
     x_band_telemetry_link{"x_band_telemetry", false}, downlink_link{"downlink", false};
+/// Not a link: what the station itself measures, as packets that ground makes.
+inline const Link station_link{"station", false};
 
 /// Whether a link brings telemetry the moment that it reaches Earth.
 inline bool is_live_telemetry(std::string_view link) {
@@ -61,6 +63,22 @@ struct ReceivedTone {
     CarrierLock lock = CarrierLock::searching;
 };
 
+/// A receiver's estimate of the X-band carrier over an eighth of a second, real or modelled.
+///
+/// There is one for each eighth in which a carrier is followed, and one when it is lost; none while it is searched for.
+struct ReceivedCarrier {
+    struct Estimate {
+        double residual_hz = 0.0, sigma_hz = 0.0;  ///< Doppler less the predict; its standard deviation
+        double rate_hzps = 0.0;                    ///< of the residual
+        double c_n0_dbhz = 0.0;                    ///< total power to noise density
+    };
+    Ert ert;                  ///< when the receiver had it
+    Ert middle;               ///< of the eighth of a second
+    double predict_hz = 0.0;  ///< Doppler predicted for it, one way at 8.4 GHz
+    CarrierLock lock = CarrierLock::searching;
+    std::optional<Estimate> estimate;  ///< none: the carrier was not heard then
+};
+
 /// A link's state as its receiver finds it; reported when it changes.
 struct LinkState {
     Link link;
@@ -77,13 +95,15 @@ struct Downlink {
     bool station_out = false;  ///< the station receives nothing, and knows it
     std::vector<ReceivedOctets> octets;
     std::vector<XBandSamples> x_band;
-    std::vector<ReceivedTone> tones;  ///< of a modelled receiver: replace samples
+    std::vector<ReceivedTone> tones;       ///< of a modelled receiver: replace samples
+    std::vector<ReceivedCarrier> carrier;  ///< of a modelled receiver, too
     std::vector<LinkState> links;
 
     void clear() {
         octets.clear();
         x_band.clear();
         tones.clear();
+        carrier.clear();
         links.clear();
     }
 };

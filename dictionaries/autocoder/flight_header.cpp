@@ -56,9 +56,11 @@ class HeaderWriter {
         out_ << "// `octets` is the whole packet with headers and CRC; encode() writes the data between them.\n"
                 "namespace packet {\n\n";
         for (const Packet& packet : dictionary_.packets)
-            if (!packet.event) write_packet(packet, nullptr);
+            if (!packet.event && !is_made_on_ground(packet.apid)) write_packet(packet, nullptr);
         out_ << "}  // namespace packet\n\nnamespace evr {\n\n";
-        for (const Event& event : dictionary_.events) write_packet(dictionary_.packets[event.packet], &event);
+        for (const Event& event : dictionary_.events)
+            if (const Packet& packet = dictionary_.packets[event.packet]; !is_made_on_ground(packet.apid))
+                write_packet(packet, &event);
         out_ << "}  // namespace evr\n\nnamespace command {\n\n";
         for (const Command& command : dictionary_.commands) write_command(command);
         out_ << "}  // namespace command\n\n";
@@ -69,7 +71,9 @@ class HeaderWriter {
 
   private:
     void write_enumerations() {
-        for (const Type* type : enumerations_of(dictionary_.packets, dictionary_.commands)) {
+        auto packets = dictionary_.packets;
+        std::erase_if(packets, [](const Packet& packet) { return is_made_on_ground(packet.apid); });
+        for (const Type* type : enumerations_of(packets, dictionary_.commands)) {
             const bool is_signed = type->encoding == Encoding::twos_complement;
             Type integer = *type;
             integer.kind = ValueKind::integer;

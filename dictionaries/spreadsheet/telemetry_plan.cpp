@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dictionaries/spreadsheet/telemetry_plan.hpp"
 
+#include "common/space_packet.hpp"
 #include "dictionaries/spreadsheet/table.hpp"
 
 #include <algorithm>
@@ -15,11 +16,12 @@ namespace {
 constexpr std::string_view every_plan = "all";
 constexpr std::string_view event_reports = "events";
 
-/// Names that the sheet's rows may use, with APIDs: each packet by name, the event reports as one.
+/// Names that the sheet's rows may use, with APIDs: each packet of the vehicle by name, the event reports as one.
 std::map<std::string, Apid> planned_packets(const std::vector<Packet>& packets) {
     std::map<std::string, Apid> planned;
     for (const Packet& packet : packets)
-        planned.emplace(packet.event ? std::string{event_reports} : packet.name, packet.apid);
+        if (!is_made_on_ground(packet.apid))
+            planned.emplace(packet.event ? std::string{event_reports} : packet.name, packet.apid);
     return planned;
 }
 

@@ -56,8 +56,8 @@ struct SeriesQuery {
 
 /// Verdicts of comparing a packet with the other path. Nothing counts as missing in the recording until all of it is
 /// down: "pending".
-inline constexpr std::array<const char*, 6> verdicts{"identical",       "differs",     "missing_in_recording",
-                                                     "never_seen_live", "not_decoded", "pending"};
+inline constexpr std::array<const char*, 7> verdicts{
+    "identical", "differs", "missing_in_recording", "never_seen_live", "not_decoded", "pending", "made_on_ground"};
 
 struct PacketQuery {
     std::optional<std::string> name;  ///< of the packet: "GncNavigation"

@@ -4,6 +4,7 @@
 #include "server/archive/reader.hpp"
 #include "server/archive/reader_state.hpp"
 #include "server/archive/schema.hpp"
+#include "telemetry/port.hpp"
 #include "telemetry/text.hpp"
 
 #include <algorithm>
@@ -18,6 +19,7 @@ const char* name_of(PathComparison found, Source source, bool recording_complete
     case PathComparison::identical: return "identical";
     case PathComparison::differs: return "differs";
     case PathComparison::not_decoded: return "not_decoded";
+    case PathComparison::of_ground: return "made_on_ground";
     case PathComparison::absent: break;
     }
     if (source == Source::recorded) return "never_seen_live";
@@ -131,6 +133,8 @@ Result<bool> Reader::State::recording_complete(RunId run) {
 Result<Reader::State::Verdict> Reader::State::verdict_on(RunId run, const PacketRecord& record,
                                                          bool recording_complete) {
     if (!record.packet) return Verdict{name_of(PathComparison::not_decoded, record.source, recording_complete)};
+    if (record.link == telemetry::station_link.name)
+        return Verdict{name_of(PathComparison::of_ground, record.source, recording_complete)};
     auto rows = query(other_sql);
     if (!rows) return rows.error();
     (*rows)->bind(1, item_key(run, record.seq));
@@ -160,6 +164,7 @@ Result<v1::ProofReport> Reader::proof(RunId run) {
         const auto& row = **rows;
         const auto source = static_cast<Source>(row.integer(3));
         const auto comparison = static_cast<PathComparison>(row.integer(5));
+        if (comparison == PathComparison::of_ground) continue;
         const auto packets = static_cast<std::uint64_t>(row.integer(6));
         const auto packet = static_cast<std::size_t>(row.integer(1));
         const bool named = words != nullptr && !row.is_null(1) && packet < words->packets.size();

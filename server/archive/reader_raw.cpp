@@ -16,6 +16,7 @@ constexpr char packets_sql[] =
     "SELECT l.word, u.ert_us, u.key & 0xFFFFFFFFFF, u.octets FROM units u"
     " JOIN words l ON l.kind = 'link' AND l.number = u.link"
     " WHERE u.key > (?1 << 40) + ?3 AND u.key < (?1 + 1) << 40 AND (?4 = '' OR l.word = ?4) AND ?2 IS NOT NULL"
+    " AND l.word <> 'station'"  // made on ground: no link brought it
     " AND u.ert_us BETWEEN ?5 AND ?6 ORDER BY u.key LIMIT ?7";
 
 }  // namespace

@@ -74,7 +74,11 @@ void PacketIntake::take(const telemetry::ReceivedPacket& packet, Numbering& numb
         ++of_others_;
         record.standing = Standing::unregistered;
     }
-    if (auto refusal = decode(packet.octets)) {
+    const bool of_station = other_ == nullptr && packet.link == telemetry::station_link;
+    auto refusal = decode(packet.octets);
+    if (!refusal && other_ == nullptr && is_made_on_ground(record.apid) != of_station)
+        refusal = of_station ? "not_of_the_station" : "made_on_ground";
+    if (refusal) {
         ++not_decoded_;
         record.refusal = std::move(*refusal);
         if (other_ != nullptr)
@@ -96,7 +100,8 @@ void PacketIntake::take(const telemetry::ReceivedPacket& packet, Numbering& numb
                       " is not decoded to its end: " + decoded_.problem);
         }
     }
-    if (other_ == nullptr)
+    if (of_station) record.standing = Standing::unregistered;
+    if (other_ == nullptr && !of_station)
         record.standing =
             register_.add(packet.octets, recorded ? telemetry::Path::recorded : telemetry::Path::realtime);
     const bool fresh = record.standing == Standing::first || record.standing == Standing::unregistered;
@@ -107,7 +112,7 @@ void PacketIntake::take(const telemetry::ReceivedPacket& packet, Numbering& numb
     if (record.sampled) sample(record, numbering, batch);
     if (other_ != nullptr) return;
     interpret(record, numbering, batch);
-    if (observer) observer(decoded_, packet.octets, record.source, record.ert);
+    if (observer && !of_station) observer(decoded_, packet.octets, record.source, record.ert);
 }
 
 void PacketIntake::tell_once(const std::string& words) {

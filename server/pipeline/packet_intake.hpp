@@ -55,7 +55,7 @@ class Numbering {
 /// Rules    a packet seen before on the other path is stored (it is the proof) and marked, but its samples are not
 ///          added again. A packet seen before on the same path yields nothing new. Alarms are judged in real time only:
 ///          the recording tells the past. Another mission's packets count as real time and are never compared: nothing
-///          in them identifies a packet of ours
+///          in them identifies a packet of ours. The station's own packets are not compared either
 /// Memory   the register of packets (telemetry/unit_identity.hpp) and the open segments
 class PacketIntake {
   public:

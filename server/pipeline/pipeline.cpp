@@ -8,6 +8,7 @@
 #include "server/pipeline/packet_intake.hpp"
 #include "server/pipeline/situation_feed.hpp"
 #include "telemetry/staleness.hpp"
+#include "telemetry/station/station_packets.hpp"
 
 #include <algorithm>
 #include <map>
@@ -41,8 +42,15 @@ struct Pipeline::State {
             std::uint64_t received = 0, stored = 0;  ///< octets; the first `stored` are durable
         };
         std::map<std::string, RawLink> raw;
+        std::uint16_t station_carriers = 0, station_events = 0;  ///< packets so far
 
         bool repeats() const { return compare != nullptr; }
+        /// When something left the vehicle, by light time.
+        Sclk sent(Ert ert) const {
+            const double after_s =
+                static_cast<double>(ert.microseconds - start.correlation.scet.microseconds) * 1e-6 - start.light_time_s;
+            return start.correlation.sclk + after_s / start.correlation.rate;
+        }
         archive::RecordingTotals totals() const {
             auto totals = intake.totals();
             totals.progress = progress;
@@ -58,6 +66,8 @@ struct Pipeline::State {
     void heard();
     void add(std::span<const telemetry::StalenessChange> changes, Ert ert);
     void take(const telemetry::ReceivedTone& tone);
+    void take(const telemetry::ReceivedCarrier& carrier);
+    void take(const telemetry::SeenByDoppler& seen);
     void take(const telemetry::LinkState& link);
     void add(std::optional<archive::SituationRecord> situation);
     void compare_with_archive();
@@ -187,7 +197,8 @@ Result<void> Pipeline::State::room() {
 }
 
 Result<void> Pipeline::accept(const telemetry::Received& received) {
-    if (received.packets.empty() && received.tones.empty() && received.links.empty() && received.octets.empty())
+    if (received.packets.empty() && received.tones.empty() && received.carrier.empty() && received.seen.empty() &&
+        received.links.empty() && received.octets.empty())
         return {};
     // All or nothing: otherwise a retry would store items twice.
     if (auto room = state_->room(); !room) return room;
@@ -195,6 +206,8 @@ Result<void> Pipeline::accept(const telemetry::Received& received) {
     for (const auto& link : received.links) state_->take(link);
     for (const auto& packet : received.packets) state_->take(packet);
     for (const auto& tone : received.tones) state_->take(tone);
+    for (const auto& carrier : received.carrier) state_->take(carrier);
+    for (const auto& seen : received.seen) state_->take(seen);
     return {};
 }
 
@@ -213,6 +226,18 @@ Result<void> Pipeline::accept(const telemetry::ReceivedPacket& packet) {
 Result<void> Pipeline::accept(const telemetry::ReceivedTone& tone) {
     if (auto room = state_->room(); !room) return room;
     state_->take(tone);
+    return {};
+}
+
+Result<void> Pipeline::accept(const telemetry::ReceivedCarrier& carrier) {
+    if (auto room = state_->room(); !room) return room;
+    state_->take(carrier);
+    return {};
+}
+
+Result<void> Pipeline::accept(const telemetry::SeenByDoppler& seen) {
+    if (auto room = state_->room(); !room) return room;
+    state_->take(seen);
     return {};
 }
 
@@ -301,7 +326,7 @@ void Pipeline::State::take(const telemetry::ReceivedPacket& packet) {
         note.written = server::wall_clock_text();
         run->pending.notes.push_back(std::move(note));
     }
-    if (!packet.link.recorded) heard();
+    if (!packet.link.recorded && packet.link != telemetry::station_link) heard();
     run->situation.follow(run->pending);
 }
 
@@ -361,13 +386,27 @@ void Pipeline::State::take(const telemetry::ReceivedTone& tone) {
     record.doppler_hz = tone.doppler_hz;
     record.lock = tone.lock;
     record.model = run->start.tone_model;
-    // Ground knows the symbol's start on board only by light time.
-    const double sent_s =
-        static_cast<double>(tone.start.microseconds - run->start.correlation.scet.microseconds) * 1e-6 -
-        run->start.light_time_s;
-    record.sclk = run->start.correlation.sclk + sent_s / run->start.correlation.rate;
+    record.sclk = run->sent(tone.start);
     run->pending.tones.push_back(std::move(record));
     run->situation.follow(run->pending);
+}
+
+void Pipeline::State::take(const telemetry::ReceivedCarrier& carrier) {
+    if (other != nullptr || std::ranges::find(dictionary.packets, station_carrier_apid, &dictionary::Packet::apid) ==
+                                dictionary.packets.end())
+        return;
+    take(telemetry::ReceivedPacket{
+        telemetry::station_link, carrier.ert,
+        telemetry::station_carrier_packet(carrier, run->sent(carrier.middle), run->station_carriers++, dictionary.id)});
+}
+
+void Pipeline::State::take(const telemetry::SeenByDoppler& seen) {
+    const auto* event = other != nullptr ? nullptr : dictionary.event(telemetry::seen_by_doppler_name);
+    if (event == nullptr) return;
+    take(telemetry::ReceivedPacket{telemetry::station_link, seen.ert,
+                                   telemetry::seen_by_doppler_packet(seen, event->id, run->sent(seen.at),
+                                                                     run->start.entry, run->station_events++,
+                                                                     dictionary.id)});
 }
 
 void Pipeline::State::add(std::optional<archive::SituationRecord> situation) {

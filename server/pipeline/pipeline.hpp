@@ -95,6 +95,9 @@ class Pipeline {
     Result<void> accept(const telemetry::ReceivedOctets& octets);
     Result<void> accept(const telemetry::ReceivedPacket& packet);
     Result<void> accept(const telemetry::ReceivedTone& tone);
+    /// Keeps it as a packet of the station, if the dictionary has that (telemetry/station/station_packets.hpp).
+    Result<void> accept(const telemetry::ReceivedCarrier& carrier);
+    Result<void> accept(const telemetry::SeenByDoppler& seen);
     Result<void> accept(const telemetry::LinkState& link);
     /// Takes a stage and assigns its `seq`.
     Result<void> accept(archive::StageRecord stage);

@@ -49,6 +49,8 @@ void Delivery::add(const telemetry::Received& received) {
     entries.insert(entries.end(), received.octets.begin(), received.octets.end());
     entries.insert(entries.end(), received.packets.begin(), received.packets.end());
     entries.insert(entries.end(), received.tones.begin(), received.tones.end());
+    entries.insert(entries.end(), received.carrier.begin(), received.carrier.end());
+    entries.insert(entries.end(), received.seen.begin(), received.seen.end());
     entries.insert(entries.end(), received.links.begin(), received.links.end());
 }
 

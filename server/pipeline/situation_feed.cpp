@@ -36,7 +36,8 @@ void SituationFeed::follow(const archive::Batch& batch) {
         desk_.link({{link.link, false}, link.ert, link.up, link.reason, link.lost, link.until}, origin_of(link));
     });
     each_new(batch.packets, followed_, [&](const archive::PacketRecord& packet) {
-        if (packet.packet && packet.source == archive::Source::realtime) desk_.heard(packet.sclk);
+        if (packet.packet && packet.source == archive::Source::realtime && packet.link != telemetry::station_link.name)
+            desk_.heard(packet.sclk);
     });
     each_new(batch.events, followed_, [&](const archive::EventRecord& event) {
         desk_.event({event.name, event.text, event.level, event.sclk}, origin_of(event, event.source));

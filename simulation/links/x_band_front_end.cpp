@@ -16,11 +16,13 @@ XBandFrontEnd::XBandFrontEnd(const MfskWaveform& waveform, double total_c_n0_dbh
       sampler_(waveform, telemetry::x_band_rate_hz, seed, case_number) {}
 
 telemetry::XBandSamples XBandFrontEnd::sample(const XBandField& field) {
+    // The Doppler goes from that of the last cycle's start to that of this one's; the predict removed is of the same times.
     const double from_hz = last_doppler_hz_.value_or(field.doppler_hz);
     XBandSampler::Stretch stretch;
     stretch.samples = cycle_samples;
-    stretch.residual_from_hz = from_hz - predict_hz_.at(field.e_s);
-    stretch.residual_to_hz = field.doppler_hz - predict_hz_.at(field.e_s + seconds_per_tick);
+    stretch.residual_to_hz = field.doppler_hz - predict_hz_.at(field.e_s);
+    stretch.residual_from_hz =
+        last_doppler_hz_ ? from_hz - predict_hz_.at(field.e_s - seconds_per_tick) : stretch.residual_to_hz;
     stretch.doppler_hz = 0.5 * (from_hz + field.doppler_hz);
     if (field.up) stretch.total_c_n0_dbhz = total_c_n0_dbhz_ + field.gain_db;
     sampler_.begin(stretch);

@@ -19,8 +19,9 @@ struct HopEvidence {
     ToneSums sums{};               ///< scaled: noise has E|G|² = energy, a tone adds |G| = energy
     ToneSums in_phase{};           ///< the same of the component in phase with the carrier, where a tone adds nothing
     ToneTilt tilt = level_tilt();  ///< of the noise
-    double total_n0_hz = 0.0;
-    double doppler_hz = 0.0;                                                   ///< predicted plus tracked
+    double total_n0_hz = 0.0;      ///< running mean
+    double fit_n0_hz = 0.0;        ///< the same of this hop's window alone
+    double doppler_hz = 0.0;       ///< predicted plus tracked
     double frequency_hz = 0.0, frequency_deviation_hz = 0.0, rate_hzps = 0.0;  ///< tracked
     double lead_s = 0.0;                                                       ///< of the subcarriers' time, by Doppler
     bool gap = false;                                                          ///< too few samples to tell

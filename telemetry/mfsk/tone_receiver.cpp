@@ -245,6 +245,7 @@ HopEvidence ToneReceiver::evidence_of(Track& track, const CarrierHop& hop) {
                                   : track.carrier_n0_hz + level_gain * (carrier_n0_hz - track.carrier_n0_hz);
         evidence.found = true;
         evidence.total_n0_hz = track.carrier_n0_hz / waveform_.carrier_fraction();
+        evidence.fit_n0_hz = carrier_n0_hz / waveform_.carrier_fraction();
         evidence.energy = evidence.total_n0_hz * waveform_.tone_fraction() * layout_.hop_s() * hop.seen;
         const auto energy = static_cast<float>(evidence.energy);
         for (std::size_t tone = 0; tone < evidence.sums.size(); ++tone) {
@@ -428,8 +429,18 @@ void ToneReceiver::pass(HopEvidence hop) {
     status_.doppler_hz = hop.doppler_hz;
     (hop.found ? status_.carrier_s : status_.without_s) += hop_s;
     if (hop.gap) status_.gap_s += hop_s;
-    reports_.push_back({input_.start_s + begin_s + 0.5 * hop_s, hop.lock, hop.frequency_hz, hop.frequency_deviation_hz,
-                        hop.rate_hzps, hop.found ? status_.total_c_n0_dbhz : std::numeric_limits<double>::quiet_NaN()});
+    CarrierReport report{input_.start_s + begin_s + 0.5 * hop_s,
+                         hop.lock,
+                         hop.frequency_hz,
+                         hop.frequency_deviation_hz,
+                         hop.rate_hzps,
+                         std::numeric_limits<double>::quiet_NaN(),
+                         std::numeric_limits<double>::quiet_NaN()};
+    if (hop.found) {
+        report.total_c_n0_dbhz = status_.total_c_n0_dbhz;
+        report.fit_c_n0_dbhz = 10.0 * std::log10(std::max(hop.fit_n0_hz, 1e-9));
+    }
+    reports_.push_back(report);
     recent_.push_back(hop);
     if (std::ssize(recent_) > recent_hops) recent_.pop_front();
     ++fed_;

@@ -13,6 +13,7 @@ const Received& GroundStation::receive(const Downlink& downlink) {
     received_.clear();
     received_.links = downlink.links;
     received_.tones = downlink.tones;
+    received_.carrier = downlink.carrier;
     received_.octets = downlink.octets;
     for (const LinkState& state : downlink.links) note(state);
     for (const ReceivedOctets& piece : downlink.octets) receive(piece);
@@ -21,6 +22,9 @@ const Received& GroundStation::receive(const Downlink& downlink) {
             search_to_the_end(link, now_);
     recording_.pass(now_, relay_up_);
     if (tones_) tones_->receive(downlink, received_);
+    if (doppler_)
+        for (const ReceivedCarrier& carrier : received_.carrier)
+            if (const auto seen = doppler_->hear(carrier)) received_.seen.push_back(*seen);
     return received_;
 }
 

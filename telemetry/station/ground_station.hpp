@@ -3,6 +3,7 @@
 
 #include "telemetry/link_counters.hpp"
 #include "telemetry/proximity_packets.hpp"
+#include "telemetry/station/doppler_watch.hpp"
 #include "telemetry/station/received.hpp"
 #include "telemetry/station/recording_receiver.hpp"
 #include "telemetry/station/silence_classifier.hpp"
@@ -31,6 +32,8 @@ class GroundStation {
 
     /// Sets the receiver of X-band samples.
     void listen_by(ToneStation tones) { tones_.emplace(std::move(tones)); }
+    /// Sets what recognises features of the flight by the carrier's Doppler.
+    void watch_by(DopplerWatch doppler) { doppler_.emplace(std::move(doppler)); }
     /// Sets the predictions that explain silences.
     void explain_by(SilenceClassifier silences) { silences_.emplace(std::move(silences)); }
 
@@ -73,6 +76,7 @@ class GroundStation {
     bool relay_up_ = false;
     std::uint64_t unreadable_file_octets_ = 0;
     std::optional<ToneStation> tones_;
+    std::optional<DopplerWatch> doppler_;
     std::optional<SilenceClassifier> silences_;
     Ert now_;
     bool out_ = false;

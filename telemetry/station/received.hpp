@@ -20,10 +20,21 @@ struct EarthTime {
     Ert now;
 };
 
+/// A step or a slope of the carrier's Doppler that shows a feature of the flight.
+struct SeenByDoppler {
+    enum class Feature : std::uint8_t { entry, parachute, heatshield };
+    Feature feature = Feature::entry;
+    Ert ert;                                   ///< when it was recognised
+    Ert at;                                    ///< when it reached Earth
+    double evidence_hz = 0.0, sigma_hz = 0.0;  ///< departure from the line before, and its standard deviation
+};
+
 /// A station's output for one Downlink.
 struct Received {
     std::vector<ReceivedPacket> packets;
     std::vector<ReceivedTone> tones;
+    std::vector<ReceivedCarrier> carrier;
+    std::vector<SeenByDoppler> seen;
     std::vector<LinkState> links;
     std::vector<ReceivedOctets> octets;  ///< of which all that is above was made, good and bad
 
@@ -31,6 +42,8 @@ struct Received {
         octets.clear();
         packets.clear();
         tones.clear();
+        carrier.clear();
+        seen.clear();
         links.clear();
     }
 };

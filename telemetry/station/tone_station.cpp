@@ -9,6 +9,9 @@ namespace aeolis::telemetry {
 namespace {
 
 constexpr std::size_t push_samples = 16384;
+/// How far a fit's C/N0 may lie below its running mean. Chosen: where the carrier went, fits to what is left of it and to
+/// noise lie further below and are many deviations off; of good fits at 22 dB-Hz less than one in a hundred does.
+constexpr double faded_db = 2.0;
 
 std::int64_t microseconds(double seconds) {
     return static_cast<std::int64_t>(std::llround(seconds * 1.0e6));
@@ -28,17 +31,21 @@ void ToneStation::receive(const Downlink& downlink, Received& out) {
     }
     if (!receiver_ || ended_) return;
     ended_ = downlink.x_band.empty();  // no more samples
-    if (ended_ || samples_.size() >= push_samples) push(out);
+    if (ended_ || samples_.size() >= push_samples) push(downlink.now, out);
     const auto& status = receiver_->status();
     const bool carrier = !ended_ && !downlink.station_out && status.lock != CarrierLock::searching;
     if (carrier || up_ || ended_ || status.without_s >= first_search_s) tell_link(carrier, downlink.now, out);
 }
 
-void ToneStation::push(Received& out) {
+void ToneStation::push(Ert now, Received& out) {
     receiver_->push(samples_);
     samples_.clear();
-    receiver_->take_carrier();  // goes nowhere yet
     if (ended_) receiver_->finish();
+    for (const CarrierReport& report : receiver_->take_carrier()) {
+        const bool follows = report.lock != CarrierLock::searching;
+        if (follows || follows_) out.carrier.push_back(told(report, now));
+        follows_ = follows;
+    }
     for (const ToneReception& reception : receiver_->take()) out.tones.push_back(told(reception));
 }
 
@@ -48,9 +55,23 @@ void ToneStation::tell_link(bool up, Ert now, Received& out) {
     out.links.push_back({x_band_link, now, up, up ? "nominal" : ""});
 }
 
+Ert ToneStation::ert_of(double from_entry_s) const {
+    return {entry_.microseconds + microseconds(from_entry_s)};
+}
+
+ReceivedCarrier ToneStation::told(const CarrierReport& report, Ert now) const {
+    ReceivedCarrier carrier{now, ert_of(report.time_s), predict_hz_.at(report.time_s), report.lock, {}};
+    if (report.fit_c_n0_dbhz > report.total_c_n0_dbhz - faded_db && report.frequency_deviation_hz > 0.0)
+        carrier.estimate = {report.frequency_hz, report.frequency_deviation_hz, report.rate_hzps,
+                            report.total_c_n0_dbhz};
+    else if (report.lock != CarrierLock::searching)
+        carrier.lock = CarrierLock::coasting;
+    return carrier;
+}
+
 ReceivedTone ToneStation::told(const ToneReception& reception) const {
     ReceivedTone tone;
-    tone.start = {entry_.microseconds + microseconds(reception.start_s)};
+    tone.start = ert_of(reception.start_s);
     tone.end = {tone.start.microseconds + microseconds(waveform_.symbol_s)};
     if (reception.tone) tone.tone = ToneId{*reception.tone};
     tone.likelihood = reception.evidence.best[0].likelihood;

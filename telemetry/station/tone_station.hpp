@@ -15,7 +15,7 @@ namespace aeolis::telemetry {
 
 /// The receiving half of a deep-space station: tones and the state of X-band from samples.
 ///
-/// In       X-band samples in order, without a gap           Out   decisions, and whether there is a carrier
+/// In       X-band samples in order, without a gap           Out   decisions, the carrier, and whether there is one
 /// Rate     16384 samples a second; 2 ms of processor time a second of signal
 /// Rule     X-band is up while a carrier is tracked. Before the first one it is down once the receiver has searched for
 ///          `first_search_s` without success; an unnoticed carrier leaves no report
@@ -36,9 +36,11 @@ class ToneStation {
     const ReceiverStatus& status() const { return receiver_->status(); }
 
   private:
-    void push(Received& out);
+    void push(Ert now, Received& out);
     void tell_link(bool up, Ert now, Received& out);
     ReceivedTone told(const ToneReception& reception) const;
+    ReceivedCarrier told(const CarrierReport& report, Ert now) const;
+    Ert ert_of(double from_entry_s) const;
 
     MfskWaveform waveform_;
     TimeTable predict_hz_;
@@ -46,6 +48,7 @@ class ToneStation {
     std::optional<ToneReceiver> receiver_;  ///< from the first sample on
     std::vector<std::complex<float>> samples_;
     bool ended_ = false;
+    bool follows_ = false;    ///< a carrier, as told
     std::optional<bool> up_;  ///< as reported; none: not yet
 };
 

@@ -27,7 +27,7 @@ const SHOWN = {
   notes: /nothing is written down yet/,
   packets: /EdlStatus\s+\d/,
   verdicts: /✓ All .* bit for bit/,
-  links: /UHF[^]*%/,
+  links: /UHF[^]*%[^]*X-band carrier[^]*lost since E\+\d:\d\d[^]*parachute seen by Doppler/,
   flown: /(\d+) of \1 timepoints fired[^]*descent_imu_power/,
   recorded: /A range of this run/,
   rehearsal: /Review of run 1/,

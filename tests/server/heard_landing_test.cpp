@@ -85,6 +85,48 @@ void check_silences(const char* name, std::uint64_t seed) {
     }
 }
 
+/// When each feature is told that the Doppler of a landing shows, and when it was there, in seconds from entry.
+struct Features {
+    std::map<telemetry::SeenByDoppler::Feature, std::pair<double, double>> told_seen_s;
+    std::map<std::string, double> true_s;
+    std::size_t told = 0;
+};
+Features features_of(const simulation::Scenario& scenario, std::uint64_t seed) {
+    Rehearsal rehearsal{scenario, seed, 0, tests::shipped_dictionary()};
+    const auto& landing = rehearsal.landing();
+    const double to_entry_s =
+        static_cast<double>(landing.correlation().scet_of(scenario.entry_sclk).microseconds) * 1e-6 +
+        landing.light_time_s();
+    const auto e_s = [&](Ert ert) { return static_cast<double>(ert.microseconds) * 1e-6 - to_entry_s; };
+    Features found;
+    while (!rehearsal.finished()) {
+        for (const auto& seen : rehearsal.step().seen) {
+            found.told_seen_s[seen.feature] = {e_s(seen.ert), e_s(seen.at)};
+            ++found.told;
+            CHECK(seen.evidence_hz > 4.0 * seen.sigma_hz);
+        }
+        for (const auto& event : landing.report().events) found.true_s[event.name] = event.e_s;
+    }
+    return found;
+}
+
+void check_features(const Features& found, double within_s = 3.5) {
+    using enum telemetry::SeenByDoppler::Feature;
+    REQUIRE(found.told_seen_s.contains(entry));
+    REQUIRE(found.told_seen_s.contains(parachute));
+    REQUIRE(found.told_seen_s.contains(heatshield));
+    CHECK(found.told == 3);
+    CHECK(found.told_seen_s.at(entry).second == Approx(40.0).margin(6.0));
+    for (const auto& [feature, event] :
+         {std::pair{parachute, "parachute_deploy"}, {heatshield, "heatshield_separation"}}) {
+        const double true_s = found.true_s.at(event);
+        const auto [told_s, seen_s] = found.told_seen_s.at(feature);
+        CAPTURE(event, true_s, seen_s, told_s);
+        CHECK(seen_s > true_s);
+        CHECK(told_s < true_s + within_s);
+    }
+}
+
 }  // namespace
 
 TEST_CASE("over landings that differ ground names each silence as the simulation has it, without being told",
@@ -211,6 +253,20 @@ TEST_CASE(
     while (!drawn.finished()) drawn.step();
     CHECK(drawn.run_start(0.0).tone_model == "statistical");
     CHECK(drawn.digest() == rehearsal.digest());  // what is recorded on board does not depend on who listens
+}
+
+TEST_CASE("a landing's drag, parachute and heatshield are seen by Doppler within seconds, each once",
+          "[station][tones][R54]") {
+    check_features(features_of(test::shipped_scenario("nominal_auto"), 1));
+}
+
+TEST_CASE("features are seen by Doppler over landings that differ, and by the receiver of samples",
+          "[.long][station][tones][R54]") {
+    for (const std::uint64_t seed : {7U, 8U, 9U})
+        check_features(features_of(test::shipped_scenario("nominal_auto"), seed));
+    auto scenario = test::shipped_scenario("nominal_auto");
+    scenario.radio.tones_from_samples = true;
+    check_features(features_of(scenario, 1), 10.0);  // after the hand-over its windows are 5 s
 }
 
 }  // namespace server_heard_landing_test

@@ -67,6 +67,33 @@ TEST_CASE("a tone on a carrier that drifts is decoded from its samples and dated
     CHECK(tone.doppler_hz == Approx(30.0 * 20.0).margin(10.0));  // in the middle of the symbol
 }
 
+TEST_CASE("the carrier is told eight times a second from its samples, with its deviation, and once when it is lost",
+          "[tones][station][R54]") {
+    Sky sky{25.0};
+    sky.fly(40.0, true);
+    sky.fly(60.0, false);
+    const auto& told = sky.received.carrier;
+    REQUIRE(told.size() > 8 * 36);
+    for (std::size_t i = 0; i < told.size(); ++i) {
+        const double now_s = static_cast<double>(told[i].middle.microseconds) * 1e-6 - 1.0;
+        const double late_s = static_cast<double>(told[i].ert.microseconds - told[i].middle.microseconds) * 1e-6;
+        CHECK(late_s > 0.0);
+        CHECK(late_s < (told[i].estimate ? 2.5 : 7.5));  // longer windows are tried before it is given up
+        if (told[i].estimate && now_s < 39.7) {
+            const double sent_hz = 30.0 * (now_s - seconds_per_tick);  // the antenna's Doppler is a cycle old
+            CHECK(told[i].estimate->residual_hz == Approx(sent_hz).margin(5.0 * told[i].estimate->sigma_hz));
+            CHECK(told[i].estimate->sigma_hz < 0.5);
+            CHECK(told[i].estimate->rate_hzps == Approx(30.0).margin(6.0));
+            CHECK(told[i].estimate->c_n0_dbhz == Approx(25.0).margin(2.0));  // 1.4 dB more without a tone
+        }
+        if (now_s > 3.0 && now_s < 39.5) CHECK(told[i].estimate);
+        if (now_s > 40.0) CHECK_FALSE(told[i].estimate);
+        CHECK(told[i].estimate.has_value() ==
+              (told[i].lock == CarrierLock::locked || told[i].lock == CarrierLock::fluctuating));
+        CHECK((told[i].lock == CarrierLock::searching) == (i + 1 == told.size()));
+    }
+}
+
 TEST_CASE("a symbol that nobody can hear leaves nothing, and no tone is made of noise", "[tones][station][R53]") {
     for (const bool too_weak : {false, true}) {
         Sky sky{too_weak ? 5.0 : 25.0};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The default layout: with vehicle/layout.ts, which is loaded with its panel, all that knows names of a mission. Each pick lists names in order of preference. If the
+// The default layout: with vehicle/layout.ts and carrier/layout.ts, which are loaded with their panels, all that knows names of a mission. Each pick lists names in order of preference. If the
 // dictionary has none of them, the panel does without or takes the first channels.
 
 export const LAYOUT = {
@@ -10,6 +10,8 @@ export const LAYOUT = {
   nextMinimum: ['next_minimum_sclk'],
   currentTimepoint: ['timepoint_index'],
   timepointState: ['timepoint_state'],
+  /** The event that ground makes when Doppler shows a feature of the flight. */
+  seenByDoppler: 'SEEN_BY_DOPPLER',
 
   /** Plots from top to bottom. `per` converts the dictionary's unit to the displayed one. */
   plots: [

@@ -2,9 +2,12 @@
 #include "server/archive/reader.hpp"
 #include "server/archive/sqlite.hpp"
 #include "server/pipeline/pipeline.hpp"
+#include "telemetry/station/station_packets.hpp"
 #include "tests/server/small_mission.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/shipped_dictionary.hpp"
 
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <sys/resource.h>
@@ -23,13 +26,13 @@ namespace {
 
 struct Ground {
     TemporaryFolder folder;
-    dictionary::Dictionary dictionary = small_dictionary();
+    dictionary::Dictionary dictionary;
     std::filesystem::path file = folder / "a.db";
     Archive archive = std::move(Archive::open(file)).value();
     Pipeline pipeline{archive, dictionary};
     std::vector<std::shared_ptr<const pipeline::PublishedBatch>> published;
 
-    Ground() {
+    explicit Ground(dictionary::Dictionary of = small_dictionary()) : dictionary(std::move(of)) {
         pipeline.on_publish([this](auto batch) { published.push_back(std::move(batch)); });
         archive::RunStart start;
         start.scenario = "test";
@@ -290,6 +293,95 @@ TEST_CASE("what cannot be decoded is stored and says why", "[pipeline]") {
     REQUIRE(ground.items().size() == 1);
     CHECK(ground.items().front().unit().name() == "not decoded: bad_crc");
     CHECK(ground.reader().packets(ground.run(), {})->packets(0).hex().size() == 2 * broken.size());
+}
+
+TEST_CASE(
+    "the carrier and what its Doppler shows are kept as packets, samples and events that ground made, and none of "
+    "it was heard",
+    "[pipeline][archive][R53][R54]") {
+    Ground ground{tests::shipped_dictionary()};
+    telemetry::ReceivedCarrier carrier;
+    carrier.ert = Ert{20'500'000};
+    carrier.middle = Ert{20'000'000};
+    carrier.predict_hz = -450'000.25;
+    carrier.lock = CarrierLock::locked;
+    carrier.estimate = {-12.5, 0.0625, -0.5, 22.25};
+    telemetry::Received received;
+    received.carrier.push_back(carrier);
+    carrier.middle = Ert{20'125'000};
+    carrier.lock = CarrierLock::coasting;
+    carrier.estimate.reset();
+    received.carrier.push_back(carrier);
+    received.seen.push_back(
+        {telemetry::SeenByDoppler::Feature::parachute, Ert{20'750'000}, Ert{20'000'000}, 1166.5, 0.5});
+    REQUIRE(ground.pipeline.accept(received).ok());
+    REQUIRE(ground.pipeline.accept(telemetry::EarthTime{Ert{21'000'000}}).ok());
+    CHECK(ground.pipeline.totals().realtime == 0);
+    CHECK(ground.pipeline.totals().realtime_not_recorded == 0);
+    CHECK(ground.pipeline.totals().not_decoded == 0);
+    REQUIRE(ground.pipeline.commit().ok());
+
+    auto reader = ground.reader();
+    const auto series = reader.series(ground.run(), {{"STA-0001", "STA-0002", "STA-0003", "STA-0006"}, {}, {}});
+    REQUIRE(series.ok());
+    const auto value = [&](int channel, int sample) { return series->channels(channel).value(sample); };
+    for (const auto& each : series->channels()) {
+        REQUIRE(each.value_size() == 2);
+        CHECK(each.sclk(0) == 110.0);  // 20 s on Earth are 10 s after SCLK 100, by 10 s of light time
+        CHECK(each.sclk(1) == 110.125);
+    }
+    CHECK((value(0, 0) == 0.0 && value(0, 1) == 2.0));
+    CHECK((value(1, 0) == -450'000.25 && value(1, 1) == -450'000.25));
+    CHECK(value(2, 0) == -12.5);
+    CHECK(value(3, 0) == 22.25);
+    CHECK((std::isnan(value(2, 1)) && std::isnan(value(3, 1))));
+
+    const auto events = reader.events(ground.run(), {});
+    REQUIRE(events->events_size() == 1);
+    CHECK(events->events(0).event().name() == "SEEN_BY_DOPPLER");
+    CHECK(events->events(0).event().sclk() == 110.0);
+    CHECK_THAT(events->events(0).event().text(), Catch::StartsWith("parachute seen by Doppler"));
+    CHECK_THAT(events->events(0).event().text(), Catch::Contains("1166.5"));
+
+    const auto packets = reader.packets(ground.run(), {});
+    REQUIRE(packets->packets_size() == 3);
+    for (const auto& packet : packets->packets()) {
+        CHECK(packet.unit().link() == "station");
+        CHECK(packet.verdict() == "made_on_ground");
+    }
+    archive::PacketQuery of_ground;
+    of_ground.verdict = "made_on_ground";
+    CHECK(reader.packets(ground.run(), of_ground)->packets_size() == 3);
+    of_ground.verdict = "pending";
+    CHECK(reader.packets(ground.run(), of_ground)->packets_size() == 0);
+    const auto proof = reader.proof(ground.run());
+    CHECK(proof->streams_size() == 0);
+    CHECK(proof->links_size() == 0);
+    archive::RawQuery brought;
+    brought.packets = true;
+    CHECK(reader.raw(ground.run(), brought, {})->pieces.empty());
+    for (const auto& item : ground.items()) CHECK_FALSE(item.has_staleness());
+}
+
+TEST_CASE("a packet that only ground makes is not taken from a link", "[pipeline][R53]") {
+    Ground ground{tests::shipped_dictionary()};
+    telemetry::ReceivedCarrier carrier;
+    carrier.estimate.emplace();
+    const auto forged = telemetry::station_carrier_packet(carrier, Sclk{110.0}, 0, ground.dictionary.id);
+    REQUIRE(ground.pipeline.accept(live(forged)).ok());
+    REQUIRE(ground.pipeline.commit().ok());
+    REQUIRE(ground.items().size() == 1);
+    CHECK(ground.items().front().unit().name() == "not decoded: made_on_ground");
+    CHECK(ground.pipeline.totals().not_decoded == 1);
+}
+
+TEST_CASE("of a mission whose dictionary has no station nothing of it is kept", "[pipeline]") {
+    Ground ground;
+    telemetry::Received received;
+    received.carrier.emplace_back();
+    received.seen.emplace_back();
+    REQUIRE(ground.pipeline.accept(received).ok());
+    CHECK(ground.pipeline.pending_items() == 0);
 }
 
 TEST_CASE("alarms are raised and cleared by real-time samples only", "[pipeline]") {

@@ -56,6 +56,7 @@ export const VERDICTS = {
   not_decoded: { status: 'caution', words: 'not decoded', means: 'arrived, and no packet of the dictionary fits it' },
   never_seen_live: { status: 'unknown', words: 'never seen live', means: 'known from the recording only' },
   pending: { status: 'missing', words: 'pending', means: 'the recording is not complete yet' },
+  made_on_ground: { status: 'quiet', words: 'made on ground', means: 'no vehicle sent it' },
   identical: { status: 'holds', words: 'identical', means: 'live and recording have the same octets' },
 } as const satisfies Record<string, { status: Status; words: string; means: string }>;
 export type Verdict = keyof typeof VERDICTS;

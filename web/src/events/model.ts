@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Events and their explanations, newest first.
 import { SOURCES, STATUS } from '../design/status';
+import { LAYOUT } from '../layout';
 import type { RunStore } from '../run/store';
 
 interface EventLine {
@@ -127,7 +128,11 @@ export function eventLines(
   return { lines: found.slice(0, most), found: found.length, warnings };
 }
 
-export function sourceWords(line: { live: boolean; recorded: boolean }): { shape: string; words: string } {
+export function sourceWords(line: { name: string; live: boolean; recorded: boolean }): {
+  shape: string;
+  words: string;
+} {
+  if (line.name === LAYOUT.seenByDoppler) return { shape: '≈', words: 'made on ground' };
   const { uhf, recording } = SOURCES;
   if (line.live && line.recorded)
     return { shape: uhf.shape + recording.shape, words: 'seen live and found in the recording' };

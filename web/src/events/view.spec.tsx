@@ -41,8 +41,9 @@ describe('events', () => {
         [true, false],
         [false, true],
         [true, true],
-      ].map(([live = false, recorded = false]) => sourceWords({ live, recorded }).shape),
+      ].map(([live = false, recorded = false]) => sourceWords({ name: 'A', live, recorded }).shape),
     ).toEqual(['◆', '▣', '◆▣']);
+    expect(sourceWords({ name: 'SEEN_BY_DOPPLER', live: true, recorded: false }).words).toBe('made on ground');
   });
   it('beyond what is shown are counted', () => {
     const store = aStore(['A', 'B', 'C'].map((name, i) => event({ name, sclk: 900 + i })));

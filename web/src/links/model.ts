@@ -41,6 +41,7 @@ export function linkViews(store: RunStore, proof: ProofReport | undefined, cutof
     ...(proof?.links.map((each) => each.name) ?? []),
   ]);
   const now = Math.min(store.seenSclk, cutoff) - store.entrySclk;
+  names.delete('station'); // no link: what ground measures itself
   return [...names].sort(byImportance).map((link) => {
     const silent = lost && cutoff === Infinity && store.going;
     const known = (store.links.get(link) ?? []).findLast((change) => !(store.sclkSeenAt(change.ert_s) > cutoff));

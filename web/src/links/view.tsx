@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The links side by side: which are up, which are silent and why, and the traffic and losses of each.
+import { Carrier } from '../carrier/view';
 import { LINK_STATUS, STATUS } from '../design/status';
 import type { LinkCounters } from '../gen/aeolis/v1/run_pb';
 import { proofOfRun } from '../proof/report';
@@ -220,6 +221,7 @@ export function Links() {
             </tbody>
           </table>
         )}
+        <Carrier />
         <Sequences views={views} />
         <Silences views={views} />
       </div>

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "common/time_table.hpp"
+#include "telemetry/port.hpp"
+#include "telemetry/station/received.hpp"
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+namespace aeolis::telemetry {
+
+/// By how much more a carrier leaves the line of its frequency than it did before.
+///
+/// The line is that of the eight estimates that end 1.5 s before the newest, or up to 4 s where the carrier was not
+/// found meanwhile. Steady curvature makes each departure alike: the mean of 16 older ones is taken off, and their
+/// spread is part of the deviation. So a carrier that swings proves nothing.
+/// A value.
+class DopplerDeparture {
+  public:
+    struct Departure {
+        double hz = 0.0, sigma_hz = 0.0;
+    };
+    /// Adds an estimate; times ascend. None: no line lies before it.
+    std::optional<Departure> add(double time_s, double frequency_hz, double sigma_hz);
+
+  private:
+    struct Estimate {
+        double time_s, frequency_hz, sigma_hz;
+    };
+    struct Past {
+        double time_s, hz;
+    };
+    static constexpr std::size_t line_estimates = 8, past_departures = 16;
+    std::optional<Departure> from_line(const Estimate& newest) const;
+    std::optional<Departure> beyond_past(double time_s, const Departure& departure) const;
+
+    std::vector<Estimate> estimates_;  ///< of the last seconds
+    std::vector<Past> past_;           ///< departures of the last seconds
+};
+
+/// Recognises features of the flight by the Doppler of the X-band carrier: drag, the parachute and the heatshield.
+///
+/// In       the carrier, eight estimates a second            Out   features, each once
+/// Rule     a feature is seen when the carrier departs by as much as that feature makes it, three estimates in a row,
+///          4 deviations at least, within some seconds of when the predict departs so. Until then it had not: a carrier
+///          that is found only after a feature does not show it. The heatshield's small step counts only after the
+///          parachute was seen
+/// Left out reversals of the bank, which have no shape of their own; what the predict does not show; what comes after
+///          Earth's set
+/// Limits   chosen over 500 dispersed landings: docs/tones.md
+/// A value.
+class DopplerWatch {
+  public:
+    /// `predict_hz`: Doppler predicted, by seconds from `entry`. `entry`: arrival of a signal sent at the predicted
+    /// entry.
+    DopplerWatch(const TimeTable& predict_hz, Ert entry);
+
+    std::optional<SeenByDoppler> hear(const ReceivedCarrier& carrier);
+    /// When the predict shows a feature, in seconds from the predicted entry; none: it does not.
+    std::optional<double> expected_s(SeenByDoppler::Feature feature) const;
+
+  private:
+    static constexpr std::size_t features = 3;
+    struct Watched {
+        std::optional<double> expected_s, seen_s;
+        std::optional<double> below_s;  ///< when the departure last proved too little
+        double first_s = 0.0;           ///< of the estimates in a row
+        int in_row = 0;
+    };
+    std::optional<double> first_of_three(Watched& watched, std::size_t feature, double time_s,
+                                         const DopplerDeparture::Departure& departure) const;
+    bool may_come(std::size_t feature, double time_s) const;
+
+    Ert entry_;
+    std::array<Watched, features> watched_{};
+    DopplerDeparture departure_;
+};
+
+}  // namespace aeolis::telemetry
