@@ -47,7 +47,7 @@ class CommandGateway {
   public:
     static constexpr std::size_t commands_max = 4096;  ///< under way at a time. Our assumption: a landing needs two
     /// Commands at the uplink, and CLTUs radiated in a cycle: the vehicle's receiver holds eight, and hands two a cycle
-    /// to the flight software (simulation/world).
+    /// to the flight software.
     static constexpr std::size_t at_uplink_max = 8, radiated_a_cycle_max = 2;
 
     /// `second_person`: names of commands that need the approval of a controller other than the one who asked.

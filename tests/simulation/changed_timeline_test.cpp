@@ -277,6 +277,18 @@ TEST_CASE("a target out of reach, and a backshell altitude that leaves no room, 
     CHECK_FALSE(with("backshell_speed_mps", 100.0));
 }
 
+TEST_CASE("a parachute at 433 m/s, as a sister mission had it, is within what is taken, and lands within the limits",
+          "[simulation][R23][release]") {
+    Scenario scenario = tests::gale_scenario(start_before_entry_s);
+    scenario.commands.push_back({1190.0, "EDL_SET_PARAMETERS", {{"parachute_speed_mps", 433.0}}, true});
+    scenario.commands.push_back({1170.0, "EDL_DO_EDL", {}, false});
+    Trunk trunk{scenario};
+    trunk.fly_until(1.0e6);
+    CHECK(trunk.landing.script_refusals().empty());
+    CHECK(unsafe(trunk.landing.landing()) == "");
+    REQUIRE(trunk.landing.landing().parachute());
+}
+
 TEST_CASE("entry moved by 300 s is refused on ground, by a script as by a person, and past ground on board",
           "[timeline][R51]") {
     Scenario scenario = commanded();
