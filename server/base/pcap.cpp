@@ -7,6 +7,7 @@
 namespace aeolis::server::pcap {
 namespace {
 
+constexpr std::uint32_t order = 0x1A2B3C4D;  // of octets, in a section of pcapng
 constexpr std::uint32_t magic = 0xA1B2C3D4, magic_nanoseconds = 0xA1B23C4D, magic_pcapng = 0x0A0D0D0A;
 constexpr std::size_t file_header_octets = 24, record_header_octets = 16, ip_octets = 20, udp_octets = 8;
 constexpr std::uint32_t raw_ip = 101, raw_ip_of_bsd = 12, ipv4 = 228, ethernet = 1, linux_cooked = 113,
@@ -25,6 +26,10 @@ std::uint32_t big_number(std::span<const std::uint8_t> octets) {
     std::uint32_t value = 0;
     for (const std::uint8_t octet : octets) value = value << 8U | octet;
     return value;
+}
+
+std::uint32_t turned(std::uint32_t value) {
+    return value >> 24U | (value >> 8U & 0xFF00U) | (value << 8U & 0xFF0000U) | value << 24U;
 }
 
 void append_record(std::string& to, Ert ert, std::uint16_t port, std::span<const std::uint8_t> octets) {
@@ -106,9 +111,8 @@ void append(std::string& to, Ert ert, std::uint16_t port, std::span<const std::u
 bool File::is(std::span<const std::uint8_t> beginning) {
     if (beginning.size() < 4) return false;
     const std::uint32_t first = big_number(beginning.first(4));
-    const std::uint32_t turned = first >> 24U | (first >> 8U & 0xFF00U) | (first << 8U & 0xFF0000U) | first << 24U;
     return std::ranges::any_of(std::array{magic, magic_nanoseconds, magic_pcapng},
-                               [&](std::uint32_t each) { return each == first || each == turned; });
+                               [&](std::uint32_t each) { return each == first || each == turned(first); });
 }
 
 Result<File> File::open(std::span<const std::uint8_t> octets) {
@@ -124,7 +128,15 @@ Result<File> File::open(Source source) {
     if (!is(header)) return Error{"no pcap file"};
     const std::uint32_t first = big_number(header.first(4));
     file.next_generation_ = first == magic_pcapng;
-    if (file.next_generation_) return file;
+    if (file.next_generation_) {
+        constexpr std::size_t order_at = 8;
+        const bool sound =
+            header.size() >= order_at + 4 && std::ranges::any_of(std::array{order, turned(order)}, [&](auto each) {
+                return each == big_number(header.subspan(order_at, 4));
+            });
+        if (!sound) return Error{"the first block of the pcapng file is cut off or damaged"};
+        return file;
+    }
     if (header.size() < file_header_octets) return Error{"the header of the pcap file is cut off"};
     file.swapped_ = first != magic && first != magic_nanoseconds;  // its numbers have the least octet first
     constexpr std::uint64_t a_thousand_million = 1'000'000'000, a_million = 1'000'000;
@@ -200,7 +212,6 @@ void File::add_interface(std::span<const std::uint8_t> body) {
 std::optional<File::Captured> File::next_of_pcapng() {
     constexpr std::size_t block_header_octets = 8, block_end_octets = 4, order_octets = 4;
     constexpr std::uint64_t interface_description = 1, obsolete_packet = 2, simple_packet = 3, enhanced_packet = 6;
-    constexpr std::uint32_t order = 0x1A2B3C4D;
     for (;;) {
         const auto begin = source_(at_, block_header_octets + order_octets);
         cut_ = !begin.empty();
