@@ -366,7 +366,7 @@ TEST_CASE(
 TEST_CASE("a packet that only ground makes is not taken from a link", "[pipeline][R53]") {
     Ground ground{tests::shipped_dictionary()};
     telemetry::ReceivedCarrier carrier;
-    carrier.estimate.emplace();
+    carrier.estimate = telemetry::ReceivedCarrier::Estimate{};
     const auto forged = telemetry::station_carrier_packet(carrier, Sclk{110.0}, 0, ground.dictionary.id);
     REQUIRE(ground.pipeline.accept(live(forged)).ok());
     REQUIRE(ground.pipeline.commit().ok());
