@@ -9,7 +9,7 @@
 
 namespace aeolis::flight {
 
-using SolutionConditions = FixedVector<gnc::Condition, 10>;
+using SolutionConditions = FixedVector<gnc::Condition, 16>;
 
 /// Converts the arguments of EDL_SET_PARAMETERS to GNC's form: angles in radians.
 inline gnc::Solution solution_of(const command::EDL_SET_PARAMETERS& p) {
