@@ -52,7 +52,7 @@ class CommandGateway {
 
     /// `second_person`: names of commands that need the approval of a controller other than the one who asked.
     /// `stations`: nothing leaves while none of them sees the vehicle. `entry`: predicted when the run begins; without
-    /// it no deadlines are reported. `clock`: the vehicle's; without it nobody knows when by it a command arrives.
+    /// it no deadlines are reported. `clock`: the vehicle's; without it, arrival in SCLK is unknown.
     CommandGateway(const dictionary::Dictionary& dictionary, double light_time_s, std::vector<NamedValue> solution,
                    std::vector<std::string> second_person = {}, TrackingSchedule stations = {},
                    std::optional<Scet> entry = {}, std::optional<ClockCorrelation> clock = {});

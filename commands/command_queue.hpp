@@ -14,7 +14,7 @@ namespace aeolis::commands {
 /// Authorised commands that wait for their time, a controller or a second person's approval.
 ///
 /// Order    one asker's due commands: the higher priority first, equals by number, as they were requested. Among the
-///          next commands of all askers: those that pass ahead, then the asker whose turn was longest ago, then the
+///          next commands of all askers: first those that pass ahead, then the sender served least recently, then the
 ///          higher priority. Commands that are `in_order` leave by number alone, because each was judged by the
 ///          effects of those before it
 /// Memory   one entry a command; the owner bounds their number

@@ -75,7 +75,7 @@ struct StageReport : StageChange {
     std::string arguments{};
     std::vector<std::uint8_t> octets{};
     bool held = false, needs_approval = false;  ///< of a pending `released`: what it waits for
-    std::string asked_by{};                     ///< of a command that needs approval: who may not give it
+    std::string asked_by{};                     ///< the sender, who may not approve it
     std::string client_id{};
 };
 

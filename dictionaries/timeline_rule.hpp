@@ -97,7 +97,7 @@ constexpr MaybeTime anchor_time(MaybeTime parent, MaybeOffset offset_s) {
     return parent + offset_s;
 }
 
-/// The latest acceptance of "do edl" with which nothing is overdue that may not be late. R23
+/// Latest time at which "do edl" can be accepted without making a timepoint overdue (but those that may be late). R23
 /// It is the desired time of the first timepoint that has an anchor and may not be late, less the durations of those
 /// before it. Undefined while that anchor is undefined, or when there is no such timepoint.
 /// @param offsets_of  Offsets of a row         @param reply_timeout_of  of a row, if any

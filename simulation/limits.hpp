@@ -15,7 +15,7 @@ enum class Verdict : std::uint8_t { flying, landed, landed_outside_limits, lost 
 /// "flying", "landed", …
 const char* name_of(Verdict verdict);
 
-/// What a landing is judged by; what it has not come to is none, and exceeds nothing.
+/// Figures by which a landing is judged. A figure not reached yet is none and violates no limit.
 struct LandingFigures {
     Outcome outcome = Outcome::running;
     double propellant_left_kg = 0.0;

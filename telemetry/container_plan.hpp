@@ -13,11 +13,11 @@
 
 namespace aeolis::telemetry {
 
-/// The containers of a model whose layout is fixed, or depends on counts alone, compiled once: their packets are decoded
-/// without looking at the XTCE again, to the same values as by ContainerDecoder.
+/// A decoder compiled once from the containers of fixed or count-dependent layout. Gives the same values as
+/// ContainerDecoder.
 ///
-/// In       the octets of a packet, any octets     Out   true, and the decoded fields; or false: the packet is none of
-///          those, or not whole, and ContainerDecoder has to say what it is
+/// In       the octets of a packet, any octets     Out   true, and the decoded fields; or false: the packet is none
+///          of those, or incomplete; use ContainerDecoder
 /// Compiled numbers, labels and flags, in aggregates too; repetitions as often as a number before them says;
 ///          restrictions that compare whole numbers. Not compiled: text, octets, arrays, conditions on entries, times but
 ///          coarse and fine counts, calibrations by context
@@ -49,7 +49,7 @@ class ContainerPlan {
         double slope = 1.0, intercept = 0.0;
     };
     static constexpr std::uint32_t once = 0xFFFFFFFF;
-    /// Numbers of one kind that stand one after another, and so do their fields.
+    /// A run of adjacent numbers of one coding, with adjacent fields.
     struct Step {
         std::uint32_t position_bits =
             0;                    ///< where the layout before it is fixed; else from the end of the step before it

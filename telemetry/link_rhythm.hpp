@@ -21,7 +21,7 @@ class LinkRhythm {
     static constexpr std::int64_t silent_intervals = 3;         ///< chosen, as for packets that are promised
     static constexpr std::int64_t silent_least_us = 3'000'000;  ///< chosen, likewise
     static constexpr unsigned silences_until_slower = 3;        ///< chosen
-    static constexpr double fades = 0.98;                       ///< chosen: an interval counts half after 34 more
+    static constexpr double fades = 0.98;                       ///< chosen: an interval's weight halves after 34 more
 
     void heard(Ert at) {
         if (last_ && at.microseconds > last_->microseconds) {

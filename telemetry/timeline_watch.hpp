@@ -27,13 +27,13 @@ class TimelineWatch {
         std::uint64_t seq = 0;
     };
     void fired(TimepointId timepoint, double triggered_e_s, double fired_e_s, bool recorded, std::uint64_t seq);
-    /// Returns the timepoint that the tone tells; none when it tells none, or one that is known.
+    /// Returns the timepoint that the tone reports; none if it reports none or a known one.
     std::optional<TimepointId> tone(ToneId tone, double e_s, std::uint64_t seq);
 
     const std::optional<Known>& known(std::size_t timepoint) const { return known_[timepoint]; }
     /// The last one known, in the timeline's order; none before the first.
     std::optional<std::size_t> last() const;
-    /// The next one that is announced by a tone of this priority at least, behind all known ones.
+    /// The first unknown timepoint after the last known one whose tone has at least this priority.
     std::optional<std::size_t> next(int priority = 0) const;
     /// When it fires, in seconds from entry, as predicted; none: not predicted.
     MaybeOffset predicted_e_s(std::size_t timepoint) const { return predicted_e_s_[timepoint]; }

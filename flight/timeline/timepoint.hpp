@@ -51,7 +51,7 @@ struct ToneSpec {
     double expires_s = 0.0;
     std::optional<ToneId> supersedes;
     std::optional<ToneId> second_chance;     ///< of a prime tone: the Second Chance tone with the same meaning. R35
-    std::optional<EdlPhase> heartbeat_of{};  ///< of a prime tone: the phase in which it is sent for want of a request
+    std::optional<EdlPhase> heartbeat_of{};  ///< of a prime tone: the phase in which it is sent unless one is requested
 };
 
 extern const std::array<TimepointSpec, timepoint_count> timeline_specs;

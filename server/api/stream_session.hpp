@@ -58,7 +58,7 @@ class StreamSession : public std::enable_shared_from_this<StreamSession> {
     std::optional<ReplaySchedule::Clock::time_point> due() const { return due_; }
     /// Whether the client has not yet received everything for it. Items not yet due do not count.
     bool behind() const;
-    /// Whether the client is given a run that is over, or a run again.
+    /// Whether the client is served a finished run or a replay.
     bool replays() const { return subscribed_ && run_ != 0 && !follows_current(); }
     /// Why the connection should close; empty: it should not.
     std::string closing() const;

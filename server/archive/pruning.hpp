@@ -39,7 +39,7 @@ class Pruning {
     Result<bool> return_pages();
 
     sqlite::Database* database_;
-    std::optional<std::vector<RunId>> runs_;  ///< that may have rows left; none: not looked yet
+    std::optional<std::vector<RunId>> runs_;  ///< runs that may have rows left; none: not read yet
 };
 
 }  // namespace aeolis::archive

@@ -16,7 +16,7 @@ namespace aeolis::server {
 struct ClockReading {
     std::int64_t system_us = 0;  ///< since 1970, UTC as the machine is set
     std::int64_t monotonic_us = 0;
-    std::int64_t taken_us = 0;  ///< how long reading both took: they may be apart by as much
+    std::int64_t taken_us = 0;  ///< time to read both, and so their greatest skew
 };
 using ReadClocks = std::function<ClockReading()>;
 ClockReading read_clocks();

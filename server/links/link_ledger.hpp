@@ -13,7 +13,7 @@
 
 namespace aeolis::server {
 
-/// What a followed link has brought since its run began, over all its connections, and what of it was bad.
+/// Totals of a followed link over all connections of a run, good and bad.
 ///
 /// In       each piece of octets, the sources that read them
 /// Out      totals for archive, metrics and console, none of which ever falls; a line of what went wrong since the last
@@ -27,12 +27,12 @@ class LinkLedger {
     /// Octets of a stream whose layout was not found.
     void unread(std::size_t octets) { ended_.skipped_octets += octets; }
     void bad_datagram() { ++bad_datagrams_; }
-    /// Adds what a source has counted, which is not used any more.
+    /// Adds the counters of a source that has ended.
     void end(const telemetry::PacketSource& source);
 
     /// The totals with those of `source`, if there is one. Of sequences only those that changed since the last call.
     archive::LinkTotals totals(const telemetry::PacketSource* source, Ert now);
-    /// Whether these totals differ from those that this was last asked of.
+    /// Whether the totals changed since the last call.
     bool changed(const archive::LinkTotals& totals);
     /// What went wrong since the last such line, such as "2 frames with a wrong CRC, 1 bad datagram"; empty: nothing.
     std::string faults_since(const archive::LinkTotals& totals);

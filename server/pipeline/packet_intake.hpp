@@ -69,7 +69,7 @@ class PacketIntake {
     archive::RecordingTotals totals() const;
     /// The newest value of each channel in real time.
     const std::vector<std::optional<LatestValue>>& latest() const { return latest_; }
-    /// What the last packet showed of its clock, or that it was not decoded, for people; empty: nothing new.
+    /// Message about the last packet's clock or decoding; empty: none.
     const std::string& remark() const { return remark_; }
     /// The label of the vehicle's phase as last reported in real time; empty: not reported. Reported by the phase
     /// channel or by the event of its change, whichever is newer on board: the channel is sent every two seconds and

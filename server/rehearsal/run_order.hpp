@@ -39,9 +39,9 @@ struct SendCommands {
     bool only_check = false;  ///< true: a dry run
     Replies replies;
     std::string browser{};  ///< without accounts: from which they are sent
-    bool director = false;  ///< who sends may send hazardous commands
+    bool director = false;  ///< the sender may send hazardous commands
 
-    /// For whom it counts where places are shared.
+    /// The sender against whose share it counts.
     std::string asker() const {
         return requests.empty() ? browser : commands::asker_of(browser, requests.front().controller());
     }

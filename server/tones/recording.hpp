@@ -24,7 +24,7 @@ struct SampleRecording {
     std::vector<std::string> told;        ///< what is not as it should be, a line each
 };
 
-/// Looks at a file: SigMF (by either of its two files), WAV (RIFF and RF64), else raw samples, of which it says nothing.
+/// Looks at a file: SigMF (by either of its two files), WAV (RIFF and RF64), otherwise raw samples, without metadata.
 ///
 /// Fails in one line for what has no complex samples: mono audio, real samples, other kinds of files that are known by
 /// their first octets, metadata that cannot be read. Sources: [sigmf], [wave], [rf64].

@@ -27,7 +27,7 @@ class SampleReader {
     std::uint64_t samples() const { return samples_; }
     /// The octets after the last whole sample: the file is truncated or of another format.
     std::uint64_t left_over_octets() const { return left_over_octets_; }
-    /// Passes over samples that a sparse file does not store, all of them zero: how many.
+    /// Skips a hole of a sparse file (zeros); returns the number of samples skipped.
     std::uint64_t skip_hole();
 
   private:

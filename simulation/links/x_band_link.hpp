@@ -15,8 +15,8 @@ namespace aeolis::simulation {
 /// modulation index splits the power (mfsk.csv, docs/tones.md): at 32° the carrier has −1.4 dB of the total, the tone,
 /// both first sidebands together, −6.4 dB. The scenario's C/N0 is that in an antenna's best direction, and a symbol has
 /// the mean of its gain. The carrier is locked while Earth is up and the carrier reaches 15.8 dB-Hz, which a search
-/// over 4 s needs (CarrierSearch). Earth sets behind the terrain, or when the scenario says so. Erased: a decision with
-/// a likelihood below 0.9 (chosen), a symbol that broke off or lost its lock. A symbol without lock throughout goes
+/// over 4 s needs (CarrierSearch). Earth sets behind the terrain, or when the scenario says so. Erasures: decisions
+/// with likelihood below 0.9 (chosen), and symbols that ended early or lost lock. A symbol without lock throughout goes
 /// unnoticed and is not reported. Tones sent after Earth set do not count as sent. When tones come from samples,
 /// symbols are only reported, not decided.
 class XBandLink {

@@ -36,7 +36,7 @@ struct Received {
     std::vector<ReceivedCarrier> carrier;
     std::vector<SeenByDoppler> seen;
     std::vector<LinkState> links;
-    std::vector<ReceivedOctets> octets;  ///< of which all that is above was made, good and bad
+    std::vector<ReceivedOctets> octets;  ///< the raw octets behind the packets, including bad ones
 
     void clear() {
         octets.clear();

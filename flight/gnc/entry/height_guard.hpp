@@ -3,15 +3,15 @@
 
 #include "generated/parameters.hpp"
 
-// Height before range: how far from lift up range control may bank without coming to the parachute's speed too low.
+// Limits bank in range control so that the vehicle is high enough when it reaches the parachute's speed.
 //
 //   from now on with lift up:   v̇ = −D − g sin γ    γ̇ = (L − (g − v²/r) cos γ)/v    ḣ = v sin γ
 //   D = D₀ (v/v₀)² exp((h₀−h)/H), L/D as sensed: no table of the air is asked
 //   cos(bank) ≥ 1 − 2 (h at the parachute's speed − guard)/band,  −1 … 1
 //
-// In       what is navigated and sensed now           Out   altitude [m]; the largest bank [rad]
+// In       navigated and sensed state           Out   altitude [m]; the largest bank [rad]
 // Rate     4 Hz in range control: up to 150 steps         Memory   none
-// Source   ours; in OD137 the altitude foreseen stays above guard and band, and nothing is limited
+// Source   our assumption; in OD137 the predicted altitude stays above guard and band, so bank is not limited
 namespace aeolis::flight::gnc {
 
 struct PullUp {
@@ -22,7 +22,8 @@ struct PullUp {
     double lift_to_drag = 0.0;
 };
 
-/// Where the vehicle comes to `speed_mps` when its lift is up from now on; where it then is if it does not within the foresight.
+/// Altitude at which the vehicle reaches `speed_mps` with lift up from now on; if not within the prediction, the
+/// altitude at its end.
 double altitude_when_slow_m(const Parameters& parameters, const PullUp& now, double speed_mps);
 
 /// The largest bank for an altitude foreseen. 0 … π

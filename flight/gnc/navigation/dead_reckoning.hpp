@@ -8,8 +8,8 @@
 
 #include <cstdint>
 
-// What the vehicle is taken to feel while the IMU is silent: the last force and rates, carried on by what is known of
-// that which holds it.
+// Estimates specific force and rates while the IMU is silent, by extrapolating the last ones with a model of what
+// carries the vehicle.
 //
 //   held by       force                                        turning
 //   nothing       none                                         I ω̇ = T − ω × Iω
@@ -48,10 +48,10 @@ struct Surroundings {
 
 class DeadReckoning {
   public:
-    /// What is felt over the next `dt_s`. The first of a silence takes hold of `last`, which the IMU felt.
+    /// Force and rates over the next `dt_s`. A silence's first call starts from `last`, the IMU's last measurement.
     Felt feel(const Parameters& parameters, const Surroundings& now, const NavigatedState& state, const Felt& last,
               double dt_s);
-    /// The IMU speaks again.
+    /// Ends the silence.
     void end() { silent_s_ = 0.0; }
 
     double silent_s() const { return silent_s_; }
@@ -73,15 +73,15 @@ class DeadReckoning {
     double speed_mps_ = 0.0, altitude_m_ = 0.0, thrust_N_ = 0.0;
 };
 
-/// How wrong navigation takes itself to be for a silence of the IMU: nought before the first. It widens while the IMU
+/// Navigation's error bound due to IMU silences; zero before the first. It widens while the IMU
 /// is silent and, by an attitude that is not known, after that; the radar narrows it.
 class Belief {
   public:
-    /// `force_mps2` is felt, or thought to be, for `dt_s`.
+    /// Applies a measured or estimated `force_mps2` for `dt_s`.
     void pass(const Parameters& parameters, bool silent, HeldBy held_by, double force_mps2, double dt_s);
-    /// The radar was heard, and this part of what it differed by was taken.
+    /// Applies a radar correction, of which this fraction was accepted.
     void hear_radar(double gain);
-    /// The attitude was corrected by what the radar said.
+    /// Applies an attitude correction from the radar.
     void narrow_attitude(const Parameters& parameters);
 
     double attitude_rad() const { return attitude_rad_; }
