@@ -56,7 +56,7 @@ const std::vector<Row> rows{
     {point::pressurant_valve_2, Device::pyro},
     {point::cruise_stage_separation, Device::pyro, Outcome::lost, Outcome::lost},
     {point::thruster_warm_up, Device::power},
-    {point::thrusters_enable, Device::thrusters, lands, lands, true},
+    {point::thrusters_enable, Device::thrusters},
     {point::detumble, Device::thrusters},
     {point::cruise_balance_1, Device::pyro, Outcome::lost, Outcome::lost},
     {point::cruise_balance_2, Device::pyro, Outcome::lost, Outcome::lost},
