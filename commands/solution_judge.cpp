@@ -49,6 +49,30 @@ std::optional<double> targets_apart_m(std::span<const NamedValue> one, std::span
     return 2.0 * std::asin(std::min(1.0, 0.5 * chord)) * *radius_m;
 }
 
+/// Why the arguments are not near a solution of their epoch; empty: they are.
+std::string apart_from(std::span<const NamedValue> solution, std::span<const NamedValue> arguments) {
+    const auto position_m = apart(arguments, solution, {"position_x_m", "position_y_m", "position_z_m"});
+    if (position_m && *position_m > position_max_m)
+        return fmt::format(
+            "the position is {:.1f} km from ground's own solution of that epoch, at most {:g} km are sent",
+            *position_m * 1e-3, position_max_m * 1e-3);
+    const auto velocity_mps = apart(arguments, solution, {"velocity_x_mps", "velocity_y_mps", "velocity_z_mps"});
+    if (velocity_mps && *velocity_mps > velocity_max_mps)
+        return fmt::format(
+            "the velocity differs by {:.2f} m/s from ground's own solution of that epoch, at most {:g} m/s are sent",
+            *velocity_mps, velocity_max_mps);
+    const auto target_m = targets_apart_m(arguments, solution);
+    if (target_m && *target_m > target_moved_max_m)
+        return fmt::format("the target is {:.1f} km from that of ground's solution, at most {:g} km are sent",
+                           *target_m * 1e-3, target_moved_max_m * 1e-3);
+    const auto radius_m = value_of(arguments, "target_radius_m"),
+               known_radius_m = value_of(solution, "target_radius_m");
+    if (radius_m && known_radius_m && std::abs(*radius_m - *known_radius_m) > radius_apart_max_m)
+        return fmt::format("target_radius_m is {:.1f} km from that of ground's solution, at most {:g} km are sent",
+                           std::abs(*radius_m - *known_radius_m) * 1e-3, radius_apart_max_m * 1e-3);
+    return {};
+}
+
 }  // namespace
 
 SolutionJudge::SolutionJudge(std::vector<NamedValue> solution) : solutions_{std::move(solution)} {}
@@ -60,32 +84,14 @@ void SolutionJudge::renew(std::vector<NamedValue> solution) {
 std::string SolutionJudge::judge(std::span<const NamedValue> arguments) const {
     const auto epoch = value_of(arguments, "epoch_sclk");
     if (!epoch || latest().empty()) return {};
-    const auto known = std::ranges::find_if(solutions_, [&](const auto& solution) {
+    std::string why = fmt::format("epoch_sclk {} is of no navigation solution that ground has", *epoch);
+    for (const auto& solution : solutions_) {
         const auto other = value_of(solution, "epoch_sclk");
-        return other && std::abs(*other - *epoch) <= same_epoch_s;
-    });
-    if (known == solutions_.end())
-        return fmt::format("epoch_sclk {} is of no navigation solution that ground has", *epoch);
-    const auto position_m = apart(arguments, *known, {"position_x_m", "position_y_m", "position_z_m"});
-    if (position_m && *position_m > position_max_m)
-        return fmt::format(
-            "the position is {:.1f} km from ground's own solution of that epoch, at most {:g} km are sent",
-            *position_m * 1e-3, position_max_m * 1e-3);
-    const auto velocity_mps = apart(arguments, *known, {"velocity_x_mps", "velocity_y_mps", "velocity_z_mps"});
-    if (velocity_mps && *velocity_mps > velocity_max_mps)
-        return fmt::format(
-            "the velocity differs by {:.2f} m/s from ground's own solution of that epoch, at most {:g} m/s "
-            "are sent",
-            *velocity_mps, velocity_max_mps);
-    const auto target_m = targets_apart_m(arguments, *known);
-    if (target_m && *target_m > target_moved_max_m)
-        return fmt::format("the target is {:.1f} km from that of ground's solution, at most {:g} km are sent",
-                           *target_m * 1e-3, target_moved_max_m * 1e-3);
-    const auto radius_m = value_of(arguments, "target_radius_m"), known_radius_m = value_of(*known, "target_radius_m");
-    if (radius_m && known_radius_m && std::abs(*radius_m - *known_radius_m) > radius_apart_max_m)
-        return fmt::format("target_radius_m is {:.1f} km from that of ground's solution, at most {:g} km are sent",
-                           std::abs(*radius_m - *known_radius_m) * 1e-3, radius_apart_max_m * 1e-3);
-    return {};
+        if (!other || std::abs(*other - *epoch) > same_epoch_s) continue;
+        why = apart_from(solution, arguments);
+        if (why.empty()) break;
+    }
+    return why;
 }
 
 }  // namespace aeolis::commands

@@ -11,8 +11,8 @@ namespace aeolis::commands {
 
 /// Judges on ground whether parameters are those of ground's own navigation. R51
 ///
-/// Flight cannot know that a position is wrong: it has no other. So what is sent is near one of the solutions that ground
-/// has had: position and velocity at the same epoch, and the target.
+/// Flight cannot know that a position is wrong: it has no other. So what is sent is near one of the solutions that
+/// ground has had: position and velocity at the same epoch, and the target.
 ///
 /// In      the arguments of a command; ground's solutions, by argument name
 /// Out     why they are not ground's, as a sentence; empty where they are, or where ground has no solution

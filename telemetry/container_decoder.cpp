@@ -150,8 +150,8 @@ class Reading {
         return nullptr;
     }
 
-    /// A whole number of at least `least` and at most 2^40; none when it is unknown, less, or not a number. A calibrated
-    /// count is whole within the digits of its coefficients.
+    /// A whole number from `least` to 2^40; none when it is unknown, less, or not a number. A calibrated count is whole
+    /// within the digits of its coefficients.
     std::optional<std::int64_t> evaluate_from(std::int64_t least, const Amount& amount) const {
         double value = amount.intercept;
         if (!amount.cases.empty()) {

@@ -39,8 +39,8 @@ struct NavigatedEntry {
     Sclk at;                             ///< entry interface, close to `entry_sclk` if that is sound
     gnc::Vector3 p_MoB_M_m, v_MB_M_mps;  ///< at `entry_sclk`
 };
-/// The state is propagated to `entry_sclk`; the remaining height counts at the descent rate there. None where the vehicle
-/// does not descend then.
+/// The state is propagated to `entry_sclk`; the remaining height counts at the descent rate there. None where the
+/// vehicle does not descend then.
 std::optional<NavigatedEntry> navigated_entry(const command::EDL_SET_PARAMETERS& p);
 
 /// The conditions under which range control can reach the target from there.

@@ -106,7 +106,7 @@ std::vector<RatedItem> at_rate(std::span<const ItemWithFacts> items, double inte
     return given;
 }
 
-/// The items with the first of each of these packets as thinned, and those packets removed; none: it holds none of them.
+/// The items with the first of each of these packets as thinned, and those packets removed; none: it has none of them.
 std::optional<std::vector<RatedItem>> with_left_out(std::span<const RatedItem> items, LeftOutBefore& packets) {
     std::optional<std::vector<RatedItem>> changed;
     for (std::size_t i = 0; i < items.size() && !packets.empty(); ++i) {

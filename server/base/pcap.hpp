@@ -16,10 +16,11 @@ namespace aeolis::server {
 
 /// Files of captured packets, as tcpdump, tshark and Wireshark write and read them.
 ///
-/// Written  pcap, link type 101 (raw IP): each piece of octets as a UDP datagram over IPv4, from 192.0.2.1 to 192.0.2.2,
-///          with the time of its reception to the microsecond, UTC. `tshark -d udp.port==4200,ccsds` reads space packets
+/// Written  pcap, link type 101 (raw IP): each piece of octets as a UDP datagram over IPv4, from 192.0.2.1 to
+///          192.0.2.2, with the UTC time of its reception to the microsecond. `tshark -d udp.port==4200,ccsds` reads
+///          space packets
 /// Read     pcap and pcapng, either order of octets, any resolution of time; link types 101, 12 and 228 (IPv4), 1
-///          (Ethernet, with VLAN tags), 113 and 276 (Linux cooked). The data of UDP over IPv4; everything else is counted
+///          (Ethernet, with VLAN tags), 113 and 276 (Linux cooked). The data of UDP over IPv4; all else is counted
 namespace pcap {
 
 inline constexpr std::uint16_t first_port = 4200;  ///< chosen; a further link has the next

@@ -65,6 +65,12 @@ struct Pipeline::State {
     /// Notes that the newest packet of the batch was received.
     void heard();
     void add(std::span<const telemetry::StalenessChange> changes, Ert ert);
+    template <typename Received>
+    Result<void> accept(const Received& received) {
+        if (auto room = this->room(); !room) return room;
+        take(received);
+        return {};
+    }
     void take(const telemetry::ReceivedTone& tone);
     void take(const telemetry::ReceivedCarrier& carrier);
     void take(const telemetry::SeenByDoppler& seen);
@@ -212,39 +218,27 @@ Result<void> Pipeline::accept(const telemetry::Received& received) {
 }
 
 Result<void> Pipeline::accept(const telemetry::ReceivedOctets& octets) {
-    if (auto room = state_->room(); !room) return room;
-    state_->take(octets);
-    return {};
+    return state_->accept(octets);
 }
 
 Result<void> Pipeline::accept(const telemetry::ReceivedPacket& packet) {
-    if (auto room = state_->room(); !room) return room;
-    state_->take(packet);
-    return {};
+    return state_->accept(packet);
 }
 
 Result<void> Pipeline::accept(const telemetry::ReceivedTone& tone) {
-    if (auto room = state_->room(); !room) return room;
-    state_->take(tone);
-    return {};
+    return state_->accept(tone);
 }
 
 Result<void> Pipeline::accept(const telemetry::ReceivedCarrier& carrier) {
-    if (auto room = state_->room(); !room) return room;
-    state_->take(carrier);
-    return {};
+    return state_->accept(carrier);
 }
 
 Result<void> Pipeline::accept(const telemetry::SeenByDoppler& seen) {
-    if (auto room = state_->room(); !room) return room;
-    state_->take(seen);
-    return {};
+    return state_->accept(seen);
 }
 
 Result<void> Pipeline::accept(const telemetry::LinkState& link) {
-    if (auto room = state_->room(); !room) return room;
-    state_->take(link);
-    return {};
+    return state_->accept(link);
 }
 
 Result<void> Pipeline::accept(const telemetry::EarthTime& time) {

@@ -12,7 +12,7 @@
 
 namespace aeolis::simulation {
 
-/// What a receiver tells of the X-band carrier, in statistical form: no samples, but a phase with its noise each 1/64 s.
+/// What a receiver tells of the X-band carrier, in statistical form: no samples, but a phase with noise each 1/64 s.
 ///
 /// Eight times a second a parabola is fitted to the phases of 39, 25 or 7 cycles (0.61, 0.39, 0.11 s: the windows of
 /// telemetry/mfsk/carrier_tracker), the longest over which the carrier keeps coherent. Its slope is the frequency. So

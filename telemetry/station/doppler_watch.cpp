@@ -18,8 +18,8 @@ constexpr double shared = 5.0;         // estimates that share a window, and so 
 constexpr double rounding_s = 0.01;
 
 /// How far each feature makes the carrier depart, and how far from its predict it may come. Chosen over 500 dispersed
-/// landings at 22 dB-Hz: 1.2 Hz at most before drag is felt, which makes 106 Hz at its greatest; a parachute makes 700 Hz
-/// at least, where 19 Hz are the most in the 100 s before; a heatshield 14 to 32 Hz.
+/// landings at 22 dB-Hz: 1.2 Hz at most before drag is felt, which makes 106 Hz at its greatest; a parachute makes
+/// 700 Hz at least, where 19 Hz are the most in the 100 s before; a heatshield 14 to 32 Hz.
 struct Limits {
     double least_hz, most_hz, within_s;
 };

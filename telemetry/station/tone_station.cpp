@@ -9,8 +9,8 @@ namespace aeolis::telemetry {
 namespace {
 
 constexpr std::size_t push_samples = 16384;
-/// How far a fit's C/N0 may lie below its running mean. Chosen: where the carrier went, fits to what is left of it and to
-/// noise lie further below and are many deviations off; of good fits at 22 dB-Hz less than one in a hundred does.
+/// How far a fit's C/N0 may lie below its running mean. Chosen: where the carrier went, fits to its rest and to noise
+/// lie further below and are many deviations off; of good fits at 22 dB-Hz less than one in a hundred does.
 constexpr double faded_db = 2.0;
 
 std::int64_t microseconds(double seconds) {

@@ -67,6 +67,11 @@ TEST_CASE("a command with an older solution of ground's may still leave; without
     CHECK(judge.judge(solution).empty());
     CHECK(judge.judge(newer).empty());
     CHECK_THAT(judge.judge(with("position_x_m", 50'000.0)), Catch::Contains("50.0 km"));
+    // Determined anew at the same epoch: both are ground's, what lies between them is not.
+    judge.renew(with("position_x_m", 50'000.0));
+    CHECK(judge.judge(solution).empty());
+    CHECK(judge.judge(with("position_x_m", 50'000.0)).empty());
+    CHECK_THAT(judge.judge(with("position_x_m", 20'000.0)), Catch::Contains("30.0 km"));
     CHECK(judge.judge(std::vector<NamedValue>{{"opcode", 1.0}}).empty());  // no parameters of navigation
 }
 

@@ -1,14 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whole landings as ground hears them: tones by its own receiver, silences by its own reasons.
+#include "server/rehearsal/predicted_doppler.hpp"
 #include "server/rehearsal/rehearsal.hpp"
-
+#include "simulation/links/carrier_model.hpp"
+#include "simulation/mars/earth.hpp"
+#include "telemetry/station/doppler_watch.hpp"
 #include "tests/server/running_server.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/shipped_dictionary.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -141,6 +148,70 @@ TEST_CASE("over more landings, with a reset and with other seeds, ground names e
     check_silences("second_chance", 2);
     for (const std::uint64_t seed : {7U, 8U, 9U}) check_silences("nominal_auto", seed);
     for (const std::uint64_t seed : {1U, 2U}) check_silences("relay_passes", seed);
+}
+
+// GNC alone, the statistical carrier at 22 dB-Hz throughout, neither outages nor hand-over. The figures are those of
+// docs/tones.md.
+TEST_CASE("over 500 dispersed landings each feature of the flight is seen by Doppler, in time and never too early",
+          "[.long][station][R53]") {
+    using Feature = telemetry::SeenByDoppler::Feature;
+    constexpr double c_n0_dbhz = 22.0, earth_sets_s = 296.0, light_mps = 299'792'458.0;
+    constexpr std::uint64_t seed = 7;
+    constexpr std::array names{"entry", "parachute_deploy", "heatshield_separation"};
+    const auto& mfsk = tests::shipped_dictionary().mfsk;
+    auto scenario = test::shipped_scenario("nominal_auto");
+    const auto predict_hz = predicted_doppler_hz(scenario, mfsk);
+    scenario.disperse_before_entry_s.reset();
+    scenario.test_venue = simulation::TestVenue::gnc_alone;
+    scenario.radio = {};
+    scenario.start_before_entry_s = 700.0;
+    std::array<std::vector<double>, 3> late_s;
+    std::array<int, 3> missed{};
+    for (std::uint64_t landing_number = 0; landing_number < 500; ++landing_number) {
+        CAPTURE(landing_number);
+        simulation::Landing landing{scenario, seed, landing_number};
+        simulation::CarrierModel receiver{c_n0_dbhz, predict_hz, seed, landing_number};
+        telemetry::DopplerWatch watch{predict_hz, Ert{}};
+        std::array<std::optional<double>, 3> seen_s, there_s{0.0};
+        while (landing.outcome() == simulation::Outcome::running && landing.truth().e_s < earth_sets_s + 2.0) {
+            const auto truth = landing.truth();
+            simulation::XBandField field;
+            field.ert = {std::llround(truth.e_s * 1.0e6)};
+            field.e_s = truth.e_s;
+            field.doppler_hz = -simulation::earth_range_rate_mps(simulation::vector3(truth.p_MoB_M_m),
+                                                                 simulation::vector3(truth.v_MB_M_mps), truth.e_s) /
+                               light_mps * mfsk.carrier_hz;
+            field.up = true;
+            if (const auto carrier = truth.e_s > -40.0 ? receiver.hear(field) : std::nullopt)
+                if (const auto seen = watch.hear(*carrier)) {
+                    const auto which = static_cast<std::size_t>(seen->feature);
+                    CHECK_FALSE(seen_s[which]);
+                    seen_s[which] = static_cast<double>(seen->ert.microseconds) * 1.0e-6;
+                }
+            for (const auto& event : landing.step().events)
+                for (std::size_t i = 1; i < names.size(); ++i)
+                    if (event.name == names[i]) there_s[i] = event.e_s;
+        }
+        for (std::size_t i = 0; i < names.size(); ++i) {
+            CAPTURE(names[i]);
+            if (!there_s[i] || *there_s[i] > earth_sets_s) continue;
+            if (!seen_s[i]) {
+                ++missed[i];
+                continue;
+            }
+            CHECK(*seen_s[i] > *there_s[i]);
+            late_s[i].push_back(*seen_s[i] - *there_s[i]);
+        }
+    }
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        std::ranges::sort(late_s[i]);
+        const auto in_time = std::ranges::count_if(late_s[i], [](double each) { return each <= 3.0; });
+        std::printf("%s: %zu told, %d missed; %.1f to %.1f s after it was there, %td within 3 s\n", names[i],
+                    late_s[i].size(), missed[i], late_s[i].front(), late_s[i].back(), in_time);
+        CHECK(missed[i] <= 5);
+        const bool by_drag = static_cast<Feature>(i) == Feature::entry;  // which grows for half a minute
+        if (!by_drag) CHECK(in_time * 100 >= static_cast<std::ptrdiff_t>(late_s[i].size()) * 99);
+    }
 }
 
 TEST_CASE("a transmitter that fails where nothing is predicted is an unexplained silence", "[station][silence]") {

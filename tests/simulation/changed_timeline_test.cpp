@@ -98,8 +98,8 @@ double to_tick(double seconds) {
     return std::round(seconds * 64.0) / 64.0;
 }
 
-/// Draws changes of every kind: of timepoints, anchors and parameters, from a tick to a thousand seconds, or anywhere in
-/// the range of an argument.
+/// Draws changes of every kind: of timepoints, anchors and parameters, from a tick to a thousand seconds, or anywhere
+/// in the range of an argument.
 class Changes {
   public:
     explicit Changes(std::uint32_t seed) : random_(seed) {}
@@ -185,7 +185,7 @@ bool is_judged_by_flight_alone(const commands::Request& request) {
     return request.command != "EDL_SET_PARAMETERS";
 }
 
-/// Flies each of `count` changes that the board accepts, whatever ground says of it; parameters only if ground does too.
+/// Flies each of `count` changes that the board accepts, whatever ground says; parameters only if ground does too.
 void try_changes(std::uint32_t seed, std::size_t count) {
     Changes changes{seed};
     std::vector<double> moments(count);

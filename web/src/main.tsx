@@ -30,9 +30,11 @@ keepAddress();
 listenForMenus();
 listenForCalls();
 
-/** What is opened in a hurry, perhaps when there is no connection any more, is loaded before that. */
+/**
+ * What is opened in a hurry, perhaps when there is no connection any more, is loaded before that; else when it is opened.
+ */
 const loadSoon = () =>
-  Promise.all([import('./alarms/view'), import('./menu/view'), import('./commands/details')]).catch(() => undefined); // then when it is opened
+  Promise.all([import('./alarms/view'), import('./menu/view'), import('./commands/details')]).catch(() => undefined);
 
 /** Resolves once the content is known or a log-in is needed. */
 const known = new Promise<void>(

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The part of the default layout (../layout.ts) that only the carrier needs; loaded with it. Like there, each pick lists
-// names in order of preference.
+// The part of the default layout (../layout.ts) that only the carrier needs; loaded with it. Each pick lists names in
+// order of preference.
 
 export const CARRIER = {
   lock: ['carrier_lock'],

@@ -21,7 +21,7 @@ export const isKnown = (words: Dictionary | undefined): boolean => words?.pick(C
 
 const signed = (value: number, digits: number) => `${value < 0 ? '−' : '+'}${Math.abs(value).toFixed(digits)}`;
 
-/** What the receiver says of the carrier at `cutoff`, in a sentence that claims nothing of the present once it is old. */
+/** What the receiver says of the carrier at `cutoff`: a sentence that claims nothing of the present once it is old. */
 export function carrierWords(run: RunStore, words: Dictionary, cutoff: number): string {
   const [lock, residual, sigma, rate, level] = [
     CARRIER.lock,

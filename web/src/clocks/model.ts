@@ -189,7 +189,7 @@ export function outcomeWords(outcome: string, state: string): string {
     case 'lost':
       return 'lost';
     case 'not_commanded':
-      return 'its separation was not commanded';
+      return 'the cruise stage was not commanded to separate';
     case 'timeout':
       return 'ended by its time limit';
     default:
