@@ -4,6 +4,7 @@
 #include "server/rehearsal/prediction_desk.hpp"
 #include "tests/server/running_server.hpp"
 #include "tests/server/web_client.hpp"
+#include "tests/support/slept_time.hpp"
 
 #include <chrono>
 #include <fmt/format.h>
@@ -153,12 +154,12 @@ TEST_CASE("the desk keeps a few nominal flights, and of those flown forgets the 
 }
 
 TEST_CASE("a desk that ends does not fly to the end", "[prediction]") {
-    const auto begun = std::chrono::steady_clock::now();
+    const tests::SleptTime time;
     {
         PredictionDesk desk{tests::shipped_dictionary()};
         CHECK_FALSE(desk.prediction(shipped_scenario("nominal_auto")).flight);
     }
-    CHECK(std::chrono::steady_clock::now() - begun < std::chrono::seconds{1});
+    CHECK(time.passed() < std::chrono::seconds{1});
 }
 
 }  // namespace server_prediction_test

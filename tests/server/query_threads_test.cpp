@@ -4,6 +4,7 @@
 #include "server/pipeline/pipeline.hpp"
 #include "tests/server/small_mission.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/slept_time.hpp"
 
 #include <future>
 
@@ -141,9 +142,9 @@ TEST_CASE("questions that wait or go on when the server ends are stopped, and wh
     for (int i = 0; i < 20; ++i)
         REQUIRE(threads.ask([&](archive::Reader& reader) { noted += reader.runs() ? 1 : 0; }, {},
                             server::JobPriority::at_once));
-    const auto begun = std::chrono::steady_clock::now();
+    const tests::SleptTime time;
     recorded.threads.reset();
-    CHECK(std::chrono::steady_clock::now() - begun < std::chrono::seconds{5});
+    CHECK(time.passed() < std::chrono::seconds{5});
     CHECK(noted == 20);
 }
 

@@ -28,9 +28,9 @@ struct Posted {
         actions.push_back(std::move(action));
         changed.notify_one();
     }
-    /// Does what is posted until `done`; false: it is not within ten seconds.
+    /// Does what is posted until `done`; false: it is not within a minute.
     bool until(const std::function<bool()>& done) {
-        const auto end = std::chrono::steady_clock::now() + std::chrono::seconds{10};
+        const auto end = std::chrono::steady_clock::now() + std::chrono::seconds{60};
         while (!done()) {
             std::unique_lock lock{mutex};
             if (!changed.wait_until(lock, end, [&] { return !actions.empty(); })) return false;
