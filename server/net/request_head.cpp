@@ -21,7 +21,8 @@ RequestTarget parts_of(const boost::urls::url_view& target, std::string host) {
 
 std::string refusal_of_framing(const RequestHead& head) {
     for (const auto field : {http::field::host, http::field::content_length, http::field::transfer_encoding})
-        if (head.count(field) > 1) return fmt::format("{}: once, not {} times", to_string(field), head.count(field));
+        if (head.count(field) > 1)
+            return fmt::format("{}: once, not {} times", std::string{to_string(field)}, head.count(field));
     if (head.count(http::field::host) == 0 && head.version() != http_1_0) return "Host: is missing";
     const auto encoding = head.find(http::field::transfer_encoding);
     if (encoding == head.end()) return {};

@@ -55,7 +55,8 @@ RehearsalDesk::~RehearsalDesk() = default;
 Result<void> RehearsalDesk::refusal_while_going_on() const {
     if (!closed_.empty()) return Error{closed_};
     if (!going_on()) return {};
-    return Error{fmt::format("run {} goes on: stop it first, or wait until it has ended", state_.run())};
+    const auto what = state_.run() == 0 ? "a rehearsal begins" : fmt::format("run {} goes on", state_.run());
+    return Error{what + ": stop it first, or wait until it has ended"};
 }
 
 void RehearsalDesk::start(const v1::StartRehearsal& request, Began began) {

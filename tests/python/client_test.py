@@ -10,6 +10,7 @@ import subprocess
 import sys
 import tempfile
 import threading
+import time
 import unittest
 import urllib.request
 from pathlib import Path
@@ -270,8 +271,11 @@ class InProgress(unittest.TestCase):
 
 class Documents(unittest.TestCase):
     def test_each_example_of_the_page_for_programs_runs_as_it_stands(self) -> None:
-        server = Server()
+        server = Server("--scenario", str(ROOT / "simulation/scenarios/nominal.textproto"))  # as ./run starts it
         self.addCleanup(server.end)
+        with Client(server.address) as aeolis:
+            while not aeolis.runs():
+                time.sleep(0.1)
         page = (ROOT / "docs/programs.md").read_text()
         examples = re.findall(r"^```python\n(.*?)^```$", page, re.DOTALL | re.MULTILINE)
         self.assertGreaterEqual(len(examples), 2)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Starts a rehearsal as fast as it goes, and says how it ended."""
+"""Starts a rehearsal as fast as it goes, on a server where none goes on, and says how it ended."""
 import sys
 
 from aeolis_client import Client

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """A landing from start to report: flies it, plots altitude by speed, and writes what was predicted and what was flown.
 
-Needs python3-pandas and python3-matplotlib. Writes landing.png and landing.txt.
+Needs python3-pandas and python3-matplotlib, and a server on which no rehearsal goes on.
+Writes landing.png and landing.txt.
 """
 import sys
 

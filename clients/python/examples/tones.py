@@ -6,4 +6,5 @@ from aeolis_client import Client
 
 with Client(*sys.argv[1:2]) as aeolis:
     for item in aeolis.tones():
-        print(item.tone.ert_start, item.tone.tone, item.tone.name)
+        heard = f"{item.tone.tone} {item.tone.name}" if item.tone.HasField("tone") else "not decided"
+        print(item.tone.ert_start, heard)
