@@ -12,8 +12,14 @@ namespace {
 using google::protobuf::FieldDescriptor;
 using google::protobuf::Message;
 
-std::string text_of(std::int64_t ert_us) {
-    return day_of_year_text(Ert{ert_us});
+std::string text_of(std::int64_t time_us) {
+    return day_of_year_text(Ert{time_us});
+}
+
+void write_clocks(v1::Clocks& clocks) {
+    clocks.set_scet(clocks.has_scet_us() ? text_of(clocks.scet_us()) : "");
+    clocks.set_ert(clocks.has_ert_us() ? text_of(clocks.ert_us()) : "");
+    clocks.set_latest_useful(clocks.has_latest_useful_us() ? text_of(clocks.latest_useful_us()) : "");
 }
 
 void write_item(v1::Item& item) {
@@ -58,6 +64,8 @@ void write_item(v1::Item& item) {
 
 void write_time_texts(Message& answer) {
     if (auto* item = dynamic_cast<v1::Item*>(&answer)) return write_item(*item);
+    if (auto* clocks = dynamic_cast<v1::Clocks*>(&answer)) return write_clocks(*clocks);
+    if (auto* clock = dynamic_cast<v1::ClockReply*>(&answer)) return clock->set_scet(text_of(clock->scet_us()));
     if (auto* packet = dynamic_cast<v1::PacketRow*>(&answer))
         packet->mutable_unit()->set_ert(text_of(packet->ert_us()));
     const auto& reflection = *answer.GetReflection();

@@ -238,7 +238,7 @@ v1::ClockReply to_reply(const ClockCorrelation& clock) {
     v1::ClockReply reply;
     reply.set_version(clock.version);
     reply.set_sclk(clock.sclk.seconds);
-    reply.set_scet(day_of_year_text(clock.scet));
+    reply.set_scet_us(clock.scet.microseconds);
     reply.set_rate(clock.rate);
     reply.set_leap_seconds(clock.leap_seconds);
     return reply;
@@ -246,8 +246,7 @@ v1::ClockReply to_reply(const ClockCorrelation& clock) {
 
 ClockCorrelation correlation_of(const v1::RunState& run) {
     const auto& clock = run.clock();
-    return {Sclk{clock.sclk()}, scet_from_text(clock.scet()).value_or(Scet{}), clock.rate(), clock.leap_seconds(),
-            clock.version()};
+    return {Sclk{clock.sclk()}, Scet{clock.scet_us()}, clock.rate(), clock.leap_seconds(), clock.version()};
 }
 
 Ert ert_of(const v1::RunState& run, Sclk at) {

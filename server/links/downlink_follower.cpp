@@ -218,7 +218,7 @@ void DownlinkFollower::pass() {
     if (now.microseconds - passed_.microseconds < pass_interval_us) return;
     passed_ = now;
     v1::Clocks clocks;
-    clocks.set_ert(day_of_year_text(now));
+    clocks.set_ert_us(now.microseconds);
     on_clock_(std::move(clocks));
     Delivery delivery;
     delivery.entries.emplace_back(telemetry::EarthTime{now});

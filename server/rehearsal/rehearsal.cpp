@@ -171,13 +171,13 @@ archive::RunStart Rehearsal::run_start(double pace) const {
 v1::Clocks Rehearsal::clocks() const {
     v1::Clocks clocks;
     clocks.set_sclk(landing().sclk().seconds);
-    clocks.set_scet(day_of_year_text(landing().scet()));
+    clocks.set_scet_us(landing().scet().microseconds);
     clocks.set_e_s(landing().sclk() - scenario_.entry_sclk);
-    clocks.set_ert(day_of_year_text(landing().ert_now()));
+    clocks.set_ert_us(landing().ert_now().microseconds);
     clocks.set_light_time_s(landing().light_time_s());
     clocks.set_seen_sclk(landing().sclk().seconds - landing().light_time_s());
     if (const auto deadline = flight_.gateway().deadlines().next(landing().ert_now())) {
-        clocks.set_latest_useful(day_of_year_text(deadline->latest));
+        clocks.set_latest_useful_us(deadline->latest.microseconds);
         clocks.set_useful_before(deadline->timepoint);
     }
     return clocks;

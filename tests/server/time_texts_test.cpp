@@ -35,6 +35,19 @@ TEST_CASE("in an answer of HTTP each time of an item has its text, however deep 
     CHECK(row.unit().ert() == "2000-001T12:00:02.000");
 }
 
+TEST_CASE("the clocks of a run have texts in an answer of HTTP, empty where a time is not known", "[http][api]") {
+    v1::RunList runs;
+    auto& run = *runs.add_runs();
+    run.mutable_clock()->set_scet_us(1'000'000);
+    run.mutable_clocks()->set_ert_us(2'000'000);
+    server::write_time_texts(runs);
+    CHECK(run.clock().scet() == "2000-001T12:00:01.000");
+    CHECK(run.clocks().ert() == "2000-001T12:00:02.000");
+    CHECK(run.clocks().scet().empty());
+    CHECK(run.clocks().has_latest_useful());
+    CHECK(run.clocks().latest_useful().empty());
+}
+
 TEST_CASE("of what was done about an alarm only a shelving has an end", "[http][api]") {
     v1::Item shelved, acknowledged;
     shelved.mutable_alarm_action()->set_until_us(60'000'000);

@@ -129,7 +129,7 @@ TEST_CASE("a run keeps its clock, and its drift counts where ground dates what i
     CHECK(state->clock().rate() == 1.25);
     CHECK(state->clock().leap_seconds() == 35);
     CHECK(state->clock().sclk() == 100.0);
-    CHECK(state->clock().scet() == "2000-001T12:00:00.000");
+    CHECK(state->clock().scet_us() == 0);
 }
 
 TEST_CASE("the clocks of runs and what commands waited for are told in plain SQL", "[pipeline][archive]") {

@@ -50,7 +50,7 @@ describe('what the page must know first', () => {
       create(RunListSchema, {
         runs: [
           { run: 1n, state: 'finished', seed: 18446744073709551615n, lastSeq: 5n, title: '12' },
-          { run: 12n, state: 'running', clocks: { seenSclk: 2, ert: '2012' }, solution: [{ name: 'run', value: 7 }] },
+          { run: 12n, state: 'running', clocks: { seenSclk: 2, ertUs: 5n }, solution: [{ name: 'run', value: 7 }] },
         ],
       }),
       asServed,

@@ -35,8 +35,10 @@ export const askDictionary = async (): Promise<DictionaryReply> =>
 
 export const isGoing = (run: RunState) => ['waiting', 'running', 'paused'].includes(run.state);
 
+const WHOLE_OF_RUNS = ['run', 'seed', 'last_seq', 'scet_us', 'ert_us', 'latest_useful_us'];
+
 /** Asks for the runs, newest first. */
 export async function askRuns(): Promise<RunState[]> {
-  const { runs } = typed(await call('GET', '/runs'), new Set(['run', 'seed', 'last_seq'])) as RunList;
+  const { runs } = typed(await call('GET', '/runs'), new Set(WHOLE_OF_RUNS)) as RunList;
   return runs.sort((a, b) => Number(b.run - a.run));
 }

@@ -8,7 +8,7 @@ import type { BatchOfFacts, Column, Fact, Newest } from '../stream/messages';
 import type { NamedAlarm, NamedEvent, NamedSituation, NamedStage, NamedTone } from '../stream/names';
 import { LIMIT_NOT_DRAWN, Series } from './series';
 import { isGoing } from './start';
-import { secondsOfDayOfYear, secondsOfErt } from './time';
+import { secondsOfErt } from './time';
 
 const EVENT_LIMIT = 20000;
 const UNIT_LIMIT = 400;
@@ -183,7 +183,8 @@ export class RunStore {
   /** The time on Earth now, as far as this run knows it, seconds since 1970. */
   get ertNow_s(): number {
     const newest = this.newestErt_s;
-    return this.clocks?.ert && this.going ? later(secondsOfDayOfYear(this.clocks.ert), newest) : newest;
+    const { ertUs } = this.clocks ?? {};
+    return ertUs !== undefined && this.going ? later(secondsOfErt(ertUs), newest) : newest;
   }
   get seenE(): number {
     return this.seenSclk - this.entrySclk;
@@ -206,7 +207,8 @@ export class RunStore {
    * its beginning by light time, or else the first live event, which was under way slightly longer.
    */
   private get instant(): { sclk: number; ert_s: number } {
-    if (this.clocks?.ert) return { sclk: this.seenSclk, ert_s: secondsOfDayOfYear(this.clocks.ert) };
+    const { ertUs } = this.clocks ?? {};
+    if (ertUs !== undefined) return { sclk: this.seenSclk, ert_s: secondsOfErt(ertUs) };
     const tone = this.tones[0]?.fact;
     if (tone) return { sclk: tone.sclk, ert_s: secondsOfErt(tone.ertStartUs) };
     const event = this.events.find((row) => row.live);

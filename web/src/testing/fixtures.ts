@@ -46,8 +46,8 @@ export function aRun(fields: MessageInitShape<typeof RunStateSchema> = {}) {
       sclk: 900,
       seenSclk: 900,
       eS: -100,
-      ert: '2012-219T05:00:00.0',
-      scet: '2012-219T05:00:00.0',
+      ertUs: ertUs('2012-219T05:00:00.0'),
+      scetUs: ertUs('2012-219T05:00:00.0'),
     }),
     ...fields,
   });
