@@ -3,10 +3,16 @@
 
 #include "server/archive/item_tables.hpp"
 
+#include <array>
 #include <map>
 #include <utility>
 
 namespace aeolis::archive {
+
+const char* name_of(Outcome outcome) {
+    constexpr std::array names{"running", "touchdown", "impact", "lost", "not_commanded", "timeout", "stopped"};
+    return names[static_cast<std::size_t>(outcome)];
+}
 
 void Extremes::add(const Extremes& later) {
     if (later.defined == 0) return;

@@ -269,8 +269,13 @@ struct RunStart {
     std::vector<std::pair<std::string, double>> solution;  ///< ground's navigation solution
 };
 
+/// How a run ended; `running`: it has not, or was cut off.
+enum class Outcome : std::uint8_t { running, touchdown, impact, lost, not_commanded, timeout, stopped };
+/// Its name in the API and in the archive.
+const char* name_of(Outcome outcome);
+
 struct RunEnd {
-    std::string outcome;  ///< touchdown, impact, lost, not_commanded, timeout, stopped
+    Outcome outcome = Outcome::running;
     std::string reason;
     std::string digest;
     std::string ended;  ///< wall clock, ISO 8601

@@ -52,7 +52,7 @@ DownlinkFollower::~DownlinkFollower() {
 }
 
 void DownlinkFollower::follow() {
-    on_state_(state("running"));
+    on_state_(state(v1::RunState::running));
     while (!stop_) {
         if (settings_.address.udp)
             waits("listening");
@@ -62,10 +62,10 @@ void DownlinkFollower::follow() {
         end_of_stream();
     }
     tell_totals(clock_.now(), true);
-    const auto finished = pipeline_.finish({"stopped", "stopped", "", wall_clock_text()});
+    const auto finished = pipeline_.finish({archive::Outcome::stopped, "stopped", "", wall_clock_text()});
     if (!finished) spdlog::error("run {}: its end could not be stored: {}", run_.value, finished.error().message);
     spdlog::info("run {} ends: {} packets", run_.value, packets_);
-    on_state_(state("finished"));
+    on_state_(state(v1::RunState::finished));
 }
 
 /// Connects, with retries. False when stopped.
@@ -259,17 +259,17 @@ void DownlinkFollower::say(telemetry::LinkState state) {
     Delivery delivery;
     delivery.entries.emplace_back(std::move(state));
     if (!pipeline_.deliver(std::move(delivery))) stop_ = true;
-    on_state_(this->state("running"));
+    on_state_(this->state(v1::RunState::running));
 }
 
-v1::RunState DownlinkFollower::state(const std::string& word) const {
+v1::RunState DownlinkFollower::state(v1::RunState::State phase) const {
     v1::RunState state;
     state.set_run(run_.value);
     state.set_scenario(start_.scenario);
     state.set_title(start_.title);
     state.set_venue(start_.venue);
-    state.set_state(word);
-    state.set_outcome(word == "finished" ? "stopped" : "running");
+    state.set_state(phase);
+    state.set_outcome(phase == v1::RunState::finished ? v1::Landing::stopped : v1::Landing::running);
     state.set_pace(start_.pace);
     state.set_started(start_.started);
     return state;

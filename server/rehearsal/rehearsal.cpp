@@ -120,8 +120,17 @@ void Rehearsal::note_product(std::span<const std::uint8_t> packet) {
         static_cast<void>(products_.add(*part));  // most parts arrive twice, in real time and recorded
 }
 
-std::string Rehearsal::outcome() const {
-    return broken_.empty() ? name_of(landing().outcome()) : "lost";
+archive::Outcome Rehearsal::outcome() const {
+    if (!broken_.empty()) return archive::Outcome::lost;
+    switch (landing().outcome()) {
+    case simulation::Outcome::running: return archive::Outcome::running;
+    case simulation::Outcome::touchdown: return archive::Outcome::touchdown;
+    case simulation::Outcome::impact: return archive::Outcome::impact;
+    case simulation::Outcome::lost: return archive::Outcome::lost;
+    case simulation::Outcome::not_commanded: return archive::Outcome::not_commanded;
+    case simulation::Outcome::timeout: return archive::Outcome::timeout;
+    }
+    return archive::Outcome::running;
 }
 
 std::string Rehearsal::outcome_reason() const {

@@ -56,7 +56,7 @@ class Rehearsal {
     const std::vector<std::string>& script_refusals() const { return flight_.script_refusals(); }
 
     bool finished() const { return !broken_.empty() || landing().finished(); }
-    std::string outcome() const;         ///< running, touchdown, impact, lost, not_commanded, timeout
+    archive::Outcome outcome() const;
     std::string outcome_reason() const;  ///< with the limits that a landing did not keep
     /// By the scenario's limits.
     simulation::Judgement judgement() const;

@@ -298,7 +298,7 @@ TEST_CASE(
     while (!rehearsal.finished())
         for (const auto& link : rehearsal.step().links)
             if (!link.up) outages.insert(link.link.name + ": " + link.reason);
-    CHECK(rehearsal.outcome() == "touchdown");
+    CHECK(rehearsal.outcome() == archive::Outcome::touchdown);
     CHECK(rehearsal.recording_progress() == 1.0);
     const auto silent = [&](const std::string& beginning) {
         return std::ranges::any_of(outages, [&](const auto& words) { return words.starts_with(beginning); });

@@ -223,7 +223,7 @@ TEST_CASE("states, notes and words survive a restart and a rebuild, and verify f
     REQUIRE(ground.pipeline->accept(live(mortar_packet(0, 1003.0, 405.0F), 3'000'000)).ok());
     ground.add(note("the chute looks good"));
     ground.add(action("speed_mps", telemetry::AlarmAct::acknowledge, 3));
-    REQUIRE(ground.pipeline->finish({"touchdown", "", "", ""}).ok());
+    REQUIRE(ground.pipeline->finish({archive::Outcome::touchdown, "", "", ""}).ok());
     const auto before = ground.stored();
     const auto state = ground.states(3);
     ground.open();
@@ -252,7 +252,7 @@ TEST_CASE("a note is added to a run that is over, after its last item, and those
     Ground ground;
     ground.begin();
     ground.fly(0, 2, 100.0F);
-    REQUIRE(ground.pipeline->finish({"touchdown", "", "", ""}).ok());
+    REQUIRE(ground.pipeline->finish({archive::Outcome::touchdown, "", "", ""}).ok());
     const auto last = *ground.reader().last_seq(first_run);
     CHECK(ground.add(note("a good landing")) == last + 1);
     CHECK(ground.published.back().note().text() == "a good landing");

@@ -195,7 +195,7 @@ TEST_CASE("runs are numbered in one file and keep their units apart", "[archive]
     const auto first = archive->begin_run({}, dictionary);
     REQUIRE(archive->append(*first, packets(1, 3)).ok());
     Batch end;
-    end.end = RunEnd{"touchdown", "", "abc", "2026-01-01T00:00:00Z"};
+    end.end = RunEnd{archive::Outcome::touchdown, "", "abc", "2026-01-01T00:00:00Z"};
     REQUIRE(archive->append(*first, end).ok());
     const auto second = archive->begin_run({}, dictionary);
     CHECK(second->value == first->value + 1);
@@ -214,7 +214,7 @@ TEST_CASE("the archive keeps with each run the version of the timeline that it f
     const auto first = archive->begin_run({}, dictionary);
     REQUIRE(first.ok());
     Batch end;
-    end.end = RunEnd{"touchdown", "", "abc", "2026-01-01T00:00:00Z"};
+    end.end = RunEnd{archive::Outcome::touchdown, "", "abc", "2026-01-01T00:00:00Z"};
     REQUIRE(archive->append(*first, end).ok());
     ++dictionary.id;
     dictionary.timeline_version = 4;

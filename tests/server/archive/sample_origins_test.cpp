@@ -112,7 +112,7 @@ TEST_CASE("when the recording is down every sample has its path and its verdict,
     }
     landing.pipeline.relay_progress(1.0);
     const bool finished = GENERATE(false, true);  // samples from raw packets, or from segments
-    if (finished) REQUIRE(landing.pipeline.finish({"touchdown", "", "", ""}).ok());
+    if (finished) REQUIRE(landing.pipeline.finish({archive::Outcome::touchdown, "", "", ""}).ok());
     auto reader = std::move(Reader::open(landing.folder / "a.db", landing.dictionary)).value();
     if (!finished) REQUIRE(landing.pipeline.commit().ok());
     const auto list = reader.series(RunId{1}, {{"altitude_m"}, {}, {}, {}, true});

@@ -198,5 +198,5 @@ export function outcomeWords(outcome: string, state: string): string {
 }
 
 function inProgress(state: string): string {
-  return state === 'paused' ? 'paused' : state === 'waiting' ? 'waiting to begin' : 'going on';
+  return state === 'paused' ? 'paused' : 'going on';
 }

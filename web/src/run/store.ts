@@ -2,10 +2,9 @@
 // All data that the page holds of one run, filled by the stream and read by every panel. Each run has its own store, so
 // that no data of one run appear in another.
 import type { Clocks, Explanation, LinkChange, TimepointFiring, Unit } from '../gen/aeolis/v1/items_pb';
-import type { RunState } from '../gen/aeolis/v1/run_pb';
 import { SOURCE_RECORDED } from '../stream/columns';
 import type { BatchOfFacts, Column, Fact, Newest } from '../stream/messages';
-import type { NamedAlarm, NamedEvent, NamedSituation, NamedStage, NamedTone } from '../stream/names';
+import type { NamedAlarm, NamedEvent, NamedRun, NamedSituation, NamedStage, NamedTone } from '../stream/names';
 import { LIMIT_NOT_DRAWN, Series } from './series';
 import { isGoing } from './start';
 import { secondsOfErt } from './time';
@@ -153,7 +152,7 @@ export class RunStore {
   version = 0;
 
   constructor(
-    public run: RunState,
+    public run: NamedRun,
     private readonly isDrawn: (channel: number) => boolean = () => true,
   ) {
     this.clocks = run.clocks;
@@ -275,7 +274,7 @@ export class RunStore {
     return new HeardSeries(this.live, heard);
   }
 
-  update(run: RunState): void {
+  update(run: NamedRun): void {
     this.run = run;
     if (run.clocks) this.clocks = run.clocks;
     ++this.version;

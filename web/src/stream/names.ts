@@ -10,6 +10,8 @@ import {
   SituationEntry_Rank,
 } from '../gen/aeolis/v1/items_pb';
 import type { Alarm, CommandStage, Event, Item, SituationEntry, Tone } from '../gen/aeolis/v1/items_pb';
+import { Landing_Outcome, RunState_State } from '../gen/aeolis/v1/run_pb';
+import type { RunState } from '../gen/aeolis/v1/run_pb';
 
 type Named<Message, Names> = Omit<Message, keyof Names> & Names;
 export type NamedEvent = Named<Event, { level: keyof typeof Event_Level }>;
@@ -19,6 +21,7 @@ export type NamedStage = Named<
   CommandStage,
   { stage: keyof typeof CommandStage_Stage; status: keyof typeof CommandStage_Status }
 >;
+export type NamedRun = Named<RunState, { state: keyof typeof RunState_State; outcome: keyof typeof Landing_Outcome }>;
 
 export type NamedEntry = Named<SituationEntry, { rank: keyof typeof SituationEntry_Rank }>;
 export interface NamedSituation {
@@ -28,6 +31,12 @@ export interface NamedSituation {
 /** The number of a value that this console does not know. */
 const nameOf = <Names extends object>(names: Names, value: number) =>
   ((names as Record<number, string>)[value] ?? String(value)) as keyof Names;
+
+export const namedRun = (run: RunState): NamedRun => ({
+  ...run,
+  state: nameOf(RunState_State, run.state),
+  outcome: nameOf(Landing_Outcome, run.outcome),
+});
 
 /** The content of an item, with names for enumerations. */
 export function named(item: Item['item']) {
