@@ -65,6 +65,11 @@ struct EnumWords<telemetry::SituationRank> {
     static const char* of(telemetry::SituationRank rank) { return telemetry::name_of(rank); }
 };
 template <>
+struct EnumWords<FiringVerdict> {
+    static constexpr std::size_t count = 6;
+    static const char* of(FiringVerdict verdict) { return name_of(verdict); }
+};
+template <>
 struct EnumWords<Outcome> {
     static constexpr std::size_t count = 7;
     static const char* of(Outcome outcome) { return name_of(outcome); }

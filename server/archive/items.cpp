@@ -129,7 +129,7 @@ v1::Item to_item(const FiringRecord& record) {
     firing.set_name(record.name);
     firing.set_triggered_sclk(record.triggered.seconds);
     firing.set_fired_sclk(record.fired.seconds);
-    firing.set_verdict(record.verdict);
+    firing.set_verdict(wire<v1::TimepointFiring::Verdict>(record.verdict));
     firing.set_source(source_of(record.source));
     firing.set_duplicate(record.duplicate);
     return item;

@@ -16,6 +16,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -123,10 +124,17 @@ struct StageRecord : ItemRecord {
     std::string client_id;                      ///< the client's own; empty: none
 };
 
+/// How a timepoint ended, as flight reports it; `unknown`: by a word that is none of these.
+enum class FiringVerdict : std::uint8_t { unknown, completed, verified, unverified, no_operation, refused };
+/// Its name in the dictionary, the API and the archive.
+const char* name_of(FiringVerdict verdict);
+FiringVerdict firing_verdict(std::string_view word);
+
 struct FiringRecord : ItemRecord {
     Sequence packet_seq = 0;
     TimepointId timepoint;
-    std::string name, verdict;
+    std::string name;
+    FiringVerdict verdict{};
     Sclk triggered, fired;
     Source source{};
     bool duplicate = false;

@@ -1,10 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // All data that the page holds of one run, filled by the stream and read by every panel. Each run has its own store, so
 // that no data of one run appear in another.
-import type { Clocks, Explanation, LinkChange, TimepointFiring, Unit } from '../gen/aeolis/v1/items_pb';
+import type { Clocks, Explanation, LinkChange, Unit } from '../gen/aeolis/v1/items_pb';
 import { SOURCE_RECORDED } from '../stream/columns';
 import type { BatchOfFacts, Column, Fact, Newest } from '../stream/messages';
-import type { NamedAlarm, NamedEvent, NamedRun, NamedSituation, NamedStage, NamedTone } from '../stream/names';
+import type {
+  NamedAlarm,
+  NamedEvent,
+  NamedFiring,
+  NamedRun,
+  NamedSituation,
+  NamedStage,
+  NamedTone,
+} from '../stream/names';
 import { LIMIT_NOT_DRAWN, Series } from './series';
 import { isGoing } from './start';
 import { secondsOfErt } from './time';
@@ -40,8 +48,8 @@ interface EventRow extends Known<NamedEvent>, Twin {}
 interface ExplanationRow extends Known<Explanation>, Twin {}
 interface FiringPair {
   name: string;
-  live?: TimepointFiring;
-  recorded?: TimepointFiring;
+  live?: NamedFiring;
+  recorded?: NamedFiring;
   heard_s?: number; // as in Twin
 }
 export type StageWord = NamedStage & { ert_s: number };
@@ -485,7 +493,7 @@ export class RunStore {
     rows.splice(index, 0, { seq: item.seq, ert_s: item.ert_s, fact: item.fact, live: !recorded, recorded, heard_s });
   }
 
-  private addFiring(firing: TimepointFiring): void {
+  private addFiring(firing: NamedFiring): void {
     const pair = this.firings.get(firing.timepoint) ?? { name: firing.name };
     if (firing.source === SOURCE_RECORDED) pair.recorded = firing;
     else if (!pair.live) [pair.live, pair.heard_s] = [firing, this.newestErt_s];

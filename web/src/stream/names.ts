@@ -8,8 +8,17 @@ import {
   CommandStage_Status,
   Event_Level,
   SituationEntry_Rank,
+  TimepointFiring_Verdict,
 } from '../gen/aeolis/v1/items_pb';
-import type { Alarm, CommandStage, Event, Item, SituationEntry, Tone } from '../gen/aeolis/v1/items_pb';
+import type {
+  Alarm,
+  CommandStage,
+  Event,
+  Item,
+  SituationEntry,
+  TimepointFiring,
+  Tone,
+} from '../gen/aeolis/v1/items_pb';
 import { Landing_Outcome, RunState_State } from '../gen/aeolis/v1/run_pb';
 import type { RunState } from '../gen/aeolis/v1/run_pb';
 
@@ -21,6 +30,8 @@ export type NamedStage = Named<
   CommandStage,
   { stage: keyof typeof CommandStage_Stage; status: keyof typeof CommandStage_Status }
 >;
+export type NamedFiring = Named<TimepointFiring, { verdict: keyof typeof TimepointFiring_Verdict }>;
+
 export type NamedRun = Named<RunState, { state: keyof typeof RunState_State; outcome: keyof typeof Landing_Outcome }>;
 
 export type NamedEntry = Named<SituationEntry, { rank: keyof typeof SituationEntry_Rank }>;
@@ -53,6 +64,8 @@ export function named(item: Item['item']) {
         stage: nameOf(CommandStage_Stage, item.value.stage),
         status: nameOf(CommandStage_Status, item.value.status),
       };
+    case 'timepoint':
+      return { ...item.value, verdict: nameOf(TimepointFiring_Verdict, item.value.verdict) };
     case 'situation':
       return {
         entries: item.value.entries.map((entry) => ({ ...entry, rank: nameOf(SituationEntry_Rank, entry.rank) })),

@@ -20,6 +20,7 @@ import {
   SituationEntry_Rank,
   SituationSchema,
   TimepointFiringSchema,
+  TimepointFiring_Verdict,
   ToneSchema,
   UnitSchema,
 } from '../gen/aeolis/v1/items_pb';
@@ -194,12 +195,15 @@ export const tone = ({
     },
     ert,
   );
-export const firing = (fields: MessageInitShape<typeof TimepointFiringSchema>) =>
+export const firing = ({
+  verdict = 'completed',
+  ...fields
+}: Fields<typeof TimepointFiringSchema, { verdict?: keyof typeof TimepointFiring_Verdict }>) =>
   item({
     case: 'timepoint',
     value: create(TimepointFiringSchema, {
       source: 1,
-      verdict: 'completed',
+      verdict: TimepointFiring_Verdict[verdict],
       triggeredSclk: fields.firedSclk ?? 0,
       ...fields,
     }),
