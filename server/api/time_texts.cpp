@@ -64,6 +64,8 @@ void write_item(v1::Item& item) {
 
 void write_time_texts(Message& answer) {
     if (auto* item = dynamic_cast<v1::Item*>(&answer)) return write_item(*item);
+    if (auto* alarm = dynamic_cast<v1::AlarmState*>(&answer))
+        return alarm->set_shelved_until(alarm->has_shelved_until_us() ? text_of(alarm->shelved_until_us()) : "");
     if (auto* clocks = dynamic_cast<v1::Clocks*>(&answer)) return write_clocks(*clocks);
     if (auto* clock = dynamic_cast<v1::ClockReply*>(&answer)) return clock->set_scet(text_of(clock->scet_us()));
     if (auto* packet = dynamic_cast<v1::PacketRow*>(&answer))

@@ -88,7 +88,8 @@ struct Ground {
         const auto list = reader().alarm_states(first_run, Ert{at_s * 1'000'000});
         REQUIRE(list.ok());
         for (const auto& alarm : list->alarms())
-            text += alarm.name() + " " + alarm.state() + " " + alarm.severity() + " by " + alarm.by() + "; ";
+            text += alarm.name() + " " + v1::StandingAlarm::State_Name(alarm.state()) + " " +
+                    v1::Alarm::Severity_Name(alarm.severity()) + " by " + alarm.by() + "; ";
         return text;
     }
     void search_holds() const {
@@ -162,7 +163,7 @@ TEST_CASE("a link whose silence nothing explains is an alarm under its own name,
     CHECK(ground.states(20) == "x_band unacknowledged distress by ; ");
     const auto list = ground.reader().alarm_states(first_run, {});
     REQUIRE(list.ok());
-    CHECK(list->alarms(0).kind() == "link");
+    CHECK(list->alarms(0).kind() == v1::StandingAlarm::link);
     CHECK(list->alarms(0).reason() == "unexplained: nothing is predicted to silence it now");
     CHECK(ground.reader().links().value() == std::vector<std::string>{"uhf_live", "relay", "x_band"});
     ground.add(action("x_band", telemetry::AlarmAct::acknowledge, 21));

@@ -42,6 +42,13 @@ TEST_CASE("an enumeration has the same words, in the same order, in the archive 
     CHECK(kept<CarrierLock>() == sent(v1::Carrier::Lock_descriptor()));
 }
 
+TEST_CASE("the standing of an alarm has the same words on the ground and in the API", "[archive][alarms]") {
+    std::vector<std::string> words;
+    for (int i = 0; i <= static_cast<int>(telemetry::AlarmStanding::shelved); ++i)
+        words.emplace_back(name_of(static_cast<telemetry::AlarmStanding>(i)));
+    CHECK(words == sent(v1::StandingAlarm::State_descriptor()));
+}
+
 TEST_CASE("a verdict on a firing that no schema names is unknown, never another", "[archive]") {
     CHECK(archive::firing_verdict("no_operation") == archive::FiringVerdict::no_operation);
     CHECK(archive::firing_verdict("timed_out") == archive::FiringVerdict::unknown);
