@@ -7,7 +7,7 @@
 
 namespace aeolis::server {
 
-commands::Request request_of(const v1::CommandRequest& message, const std::string& browser, bool director) {
+Result<commands::Request> request_of(const v1::CommandRequest& message, const std::string& browser, bool director) {
     commands::Request request;
     request.request = message.request();
     request.client_id = message.client_id();
@@ -18,7 +18,10 @@ commands::Request request_of(const v1::CommandRequest& message, const std::strin
     request.confirmation = message.confirmation();
     request.service = message.service();
     request.dry_run = message.dry_run();
-    request.release_at = message.release_at();
+    if (const auto& at = message.release_at(); !at.empty()) {
+        request.release_at = ert_from_text(at);
+        if (!request.release_at) return Error{fmt::format("release_at: '{}' is no time as 2012-219T05:10:47.400", at)};
+    }
     request.hold = message.hold();
     request.priority = message.priority();
     request.action = message.action();

@@ -93,6 +93,8 @@ class Rehearsal {
     bool takes_commands() const {
         return scenario_.test_venue != simulation::TestVenue::gnc_alone;
     }  ///< whether it has a flight computer
+    Result<commands::Request> readable(const v1::CommandRequest& request, const std::string& browser,
+                                       bool director) const;
     void take(const telemetry::Received& received);
     void score(const simulation::CycleReport& truth, const telemetry::Received& received);
     /// Adds the cycle's recording, without measured times, which always vary; without a recording, the path flown.
