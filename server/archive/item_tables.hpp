@@ -70,6 +70,11 @@ struct EnumWords<FiringVerdict> {
     static const char* of(FiringVerdict verdict) { return name_of(verdict); }
 };
 template <>
+struct EnumWords<telemetry::SilenceClass> {
+    static constexpr std::size_t count = telemetry::silence_classes;
+    static const char* of(telemetry::SilenceClass silence) { return telemetry::name_of(silence); }
+};
+template <>
 struct EnumWords<Outcome> {
     static constexpr std::size_t count = 7;
     static const char* of(Outcome outcome) { return name_of(outcome); }
@@ -230,7 +235,8 @@ struct ItemTable<LinkRecord> {
     static void columns(auto& record, auto&& visit) {
         visit("link", LinkName{record.link});
         visit("up", record.up);
-        visit("reason", record.reason);
+        visit("silence", record.silence);
+        visit("words", record.words);
         visit("lost", record.lost);
         visit("until_us", record.until);
     }

@@ -160,7 +160,8 @@ v1::Item to_item(const LinkRecord& record) {
     auto& link = *item.mutable_link();
     link.set_link(record.link);
     link.set_up(record.up);
-    link.set_reason(record.reason);
+    link.set_reason(record.reason());
+    if (record.silence) link.set_silence(wire<v1::LinkChange::Silence>(*record.silence));
     link.set_lost(record.lost);
     if (record.until) link.set_until_us(record.until->microseconds);
     return item;

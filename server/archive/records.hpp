@@ -10,6 +10,7 @@
 #include "telemetry/explanation.hpp"
 #include "telemetry/link_counters.hpp"
 #include "telemetry/packet_extractor.hpp"
+#include "telemetry/silence_class.hpp"
 #include "telemetry/situation.hpp"
 #include "telemetry/unit_identity.hpp"
 
@@ -151,9 +152,12 @@ struct ExplanationRecord : ItemRecord {
 struct LinkRecord : ItemRecord {
     std::string link;
     bool up = false;
-    std::string reason;
+    std::string words;
     bool lost = false;         ///< down although it should be up
     std::optional<Ert> until;  ///< when it is predicted to be heard again
+    std::optional<telemetry::SilenceClass> silence{};
+
+    std::string reason() const { return telemetry::reason_text(silence, words); }
 };
 
 struct AlarmRecord : ItemRecord {

@@ -247,15 +247,16 @@ void DownlinkFollower::waits(const std::string& how) {
 }
 
 void DownlinkFollower::lost(telemetry::SilenceClass silence, const std::string& why) {
-    say({telemetry::downlink_link, clock_.now(), false, telemetry::words_of(silence, why), true});
+    say({telemetry::downlink_link, clock_.now(), false, why, true, {}, silence});
 }
 
 void DownlinkFollower::say(telemetry::LinkState state) {
-    if (state.reason == said_) return;
-    said_ = state.reason;
+    const auto reason = state.reason();
+    if (reason == said_) return;
+    said_ = reason;
     up_ = state.up;
     spdlog::log(state.lost ? spdlog::level::warn : spdlog::level::info, "downlink {}: {}", settings_.address.text(),
-                state.reason);
+                reason);
     Delivery delivery;
     delivery.entries.emplace_back(std::move(state));
     if (!pipeline_.deliver(std::move(delivery))) stop_ = true;

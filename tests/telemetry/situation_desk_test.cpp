@@ -3,6 +3,7 @@
 
 #include "tests/support/catch.hpp"
 #include "tests/support/shipped_dictionary.hpp"
+#include "tests/support/silent_link.hpp"
 
 #include <algorithm>
 #include <string>
@@ -41,8 +42,9 @@ struct Ground {
     void up(const Link& link, double e_s) { desk.link({link, at(e_s), true, "nominal"}, from(e_s)); }
     void down(const Link& link, double e_s, const std::string& reason, bool lost = false,
               std::optional<double> until_e_s = {}) {
-        desk.link({link, at(e_s), false, reason, lost, until_e_s ? std::optional(at(*until_e_s)) : std::nullopt},
-                  from(e_s));
+        desk.link(
+            tests::silent_link(link, at(e_s), reason, lost, until_e_s ? std::optional(at(*until_e_s)) : std::nullopt),
+            from(e_s));
     }
     void event(const std::string& name, double e_s, const std::string& text = "said so", bool recorded = false) {
         const auto* known = tests::shipped_dictionary().event(name);

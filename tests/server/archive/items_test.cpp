@@ -37,6 +37,7 @@ TEST_CASE("an enumeration has the same words, in the same order, in the archive 
     CHECK(kept<commands::Status>() == sent(v1::CommandStage::Status_descriptor()));
     CHECK(kept<dictionary::Severity>() == sent(v1::Alarm::Severity_descriptor()));
     CHECK(kept<telemetry::AlarmAct>() == sent(v1::AlarmAction::Action_descriptor()));
+    CHECK(kept<telemetry::SilenceClass>() == sent(v1::LinkChange::Silence_descriptor()));
     CHECK(kept<archive::FiringVerdict>() == sent(v1::TimepointFiring::Verdict_descriptor()));
     CHECK(kept<archive::Outcome>() == sent(v1::Landing::Outcome_descriptor()));
     CHECK(kept<CarrierLock>() == sent(v1::Carrier::Lock_descriptor()));
