@@ -127,6 +127,17 @@ const char* name_of(SituationRank rank) {
     return names[static_cast<std::size_t>(rank)];
 }
 
+std::vector<std::string_view> SituationDesk::mission_names() {
+    std::vector<std::string_view> names{begin_event,         begin_tone,      begin_command,  touchdown_event,
+                                        touchdown_timepoint, take_over_event, take_over_tone, resume_event,
+                                        designate_event,     role_channel,    stand_by_event, fatal_tone};
+    names.insert(names.end(), told_otherwise.begin(), told_otherwise.end());
+    names.insert(names.end(), change_events.begin(), change_events.end());
+    names.insert(names.end(), bad_tones.begin(), bad_tones.end());
+    for (const auto& [news, by] : followers) names.insert(names.end(), {news, by});
+    return names;
+}
+
 SituationDesk::SituationDesk(const dictionary::Dictionary& dictionary, const Clocks& clocks)
     : dictionary_(&dictionary), clocks_(clocks), timeline_(dictionary) {
     if (!clocks_.entry) return;

@@ -6,7 +6,9 @@
 #include "tests/support/silent_link.hpp"
 
 #include <algorithm>
+#include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace telemetry_situation_desk_test {
@@ -73,6 +75,20 @@ struct Ground {
 };
 
 }  // namespace
+
+TEST_CASE("every name of the mission in the situation's rules is a word of the shipped dictionary", "[situation]") {
+    const auto& dictionary = tests::shipped_dictionary();
+    std::set<std::string_view> words;
+    for (const auto& event : dictionary.events) words.insert(event.name);
+    for (const auto& command : dictionary.commands) words.insert(command.name);
+    for (const auto& tone : dictionary.tones) words.insert(tone.name);
+    for (const auto& row : dictionary.timeline) words.insert(row.name);
+    for (const auto& channel : dictionary.channels) words.insert(channel.name);
+    for (const auto name : SituationDesk::mission_names()) {
+        CAPTURE(name);
+        CHECK(words.contains(name));
+    }
+}
 
 TEST_CASE("a silence as predicted says when the link is back, and when it is overdue", "[situation]") {
     Ground ground;
