@@ -60,10 +60,20 @@ void write_item(v1::Item& item) {
     }
 }
 
+void write_reply(v1::CommandReply& reply) {
+    reply.set_arrives(reply.has_arrives_us() ? text_of(reply.arrives_us()) : "");
+    reply.set_effect_seen(reply.has_effect_seen_us() ? text_of(reply.effect_seen_us()) : "");
+    reply.set_station_until(reply.has_station_until_us() ? text_of(reply.station_until_us()) : "");
+    reply.set_leaves(reply.has_leaves_us() ? text_of(reply.leaves_us()) : "");
+    reply.set_latest_useful(reply.has_latest_useful_us() ? text_of(reply.latest_useful_us()) : "");
+    if (reply.has_fate_us()) reply.mutable_fate()->set_at(text_of(reply.fate_us()));
+}
+
 }  // namespace
 
 void write_time_texts(Message& answer) {
     if (auto* item = dynamic_cast<v1::Item*>(&answer)) return write_item(*item);
+    if (auto* reply = dynamic_cast<v1::CommandReply*>(&answer)) return write_reply(*reply);
     if (auto* alarm = dynamic_cast<v1::AlarmState*>(&answer))
         return alarm->set_shelved_until(alarm->has_shelved_until_us() ? text_of(alarm->shelved_until_us()) : "");
     if (auto* clocks = dynamic_cast<v1::Clocks*>(&answer)) return write_clocks(*clocks);

@@ -48,6 +48,18 @@ TEST_CASE("the clocks of a run have texts in an answer of HTTP, empty where a ti
     CHECK(run.clocks().latest_useful().empty());
 }
 
+TEST_CASE("the reply to a command has texts in an answer of HTTP, empty where a time is not known", "[http][api]") {
+    v1::SequenceReply replies;
+    auto& reply = *replies.add_commands();
+    reply.set_arrives_us(1'000'000);
+    reply.set_fate_us(2'000'000);
+    server::write_time_texts(replies);
+    CHECK(reply.arrives() == "2000-001T12:00:01.000");
+    CHECK(reply.fate().at() == "2000-001T12:00:02.000");
+    CHECK(reply.has_leaves());
+    CHECK(reply.leaves().empty());
+}
+
 TEST_CASE("of what was done about an alarm only a shelving has an end", "[http][api]") {
     v1::Item shelved, acknowledged;
     shelved.mutable_alarm_action()->set_until_us(60'000'000);
