@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/api/time_texts.hpp"
 
+#include "aeolis/v1/lists.pb.h"
 #include "aeolis/v1/run.pb.h"
 #include "tests/support/catch.hpp"
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/archive/items.hpp"
 
+#include "aeolis/v1/alarms.pb.h"
 #include "server/archive/item_tables.hpp"
 #include "tests/support/catch.hpp"
 
