@@ -438,8 +438,8 @@ void under_load(Channels channels, bool with_lists) {
         }
         const double stopped = now_s(), lasted_s = stopped - begin;
         stalled.read_on();
-        must(pipeline.finish({"stopped", "", "", ""}).ok(), "finish");
-        state.set_state("finished");
+        must(pipeline.finish({archive::Outcome::stopped, "", "", ""}).ok(), "finish");
+        state.set_state(v1::RunState::finished);
         web->post([&hub, state] { hub.run_state(state); });  // as a run reports its end
         const std::uint64_t last_seq = 2 * (sent_packets + sent_events) + sent_tones + sent_stages;
         const auto has_all = [&](const Watcher* each) { return each->through == last_seq; };

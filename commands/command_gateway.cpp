@@ -90,17 +90,12 @@ Result<CommandGateway::Prepared> CommandGateway::prepare(const Request& request,
     if (!packet) return packet.error();
     const auto wanted = service_named(request.service);
     if (!wanted) return wanted.error();
-    std::optional<Ert> release_at;
-    if (!request.release_at.empty()) {
-        release_at = ert_from_text(request.release_at);
-        if (!release_at)
-            return Error{fmt::format("release_at: '{}' is no time as {}", request.release_at, day_of_year_text(now))};
-        if (*release_at < now)
-            return Error{fmt::format("release_at: {} is past, it is {}", request.release_at, day_of_year_text(now))};
-    }
+    if (request.release_at && *request.release_at < now)
+        return Error{fmt::format("release_at: {} is past, it is {}", day_of_year_text(*request.release_at),
+                                 day_of_year_text(now))};
     const auto held = decode(*command, *packet);  // as encoded, with defaults
-    return Prepared{command, *packet,   arguments_text(held ? *held : arguments), preconditions(*command, now),
-                    *wanted, release_at};
+    return Prepared{command, *packet,           arguments_text(held ? *held : arguments), preconditions(*command, now),
+                    *wanted, request.release_at};
 }
 
 std::vector<PreconditionState> CommandGateway::preconditions(const dictionary::Command& command, Ert now) const {
@@ -227,7 +222,7 @@ std::vector<Reply> CommandGateway::look(std::span<const Request> file, Ert now) 
             reply.reason = room.error().message;
             continue;
         }
-        const bool leaves = !request.hold && request.release_at.empty() && !reply.needs_approval;
+        const bool leaves = !request.hold && !request.release_at && !reply.needs_approval;
         if (leaves)
             if (const auto change = timeline_change(*dictionary_.command(request.command), reply.octets))
                 judge_.make(*change);

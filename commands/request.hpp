@@ -21,15 +21,15 @@ struct Request {
     std::string client_id{};    ///< the client's own id, for the command's history
     std::string command{};
     std::vector<NamedValue> arguments{};
-    bool from_solution = false;  ///< fills arguments that are not given from ground's navigation solution
-    bool armed = false;          ///< a hazardous command was armed,
-    std::string confirmation{};  ///< and its name typed
-    std::string service{};       ///< "AD", "BD"; empty: the default
-    bool dry_run = false;        ///< makes every check and sends nothing
-    std::string release_at{};    ///< ERT, day-of-year form; empty: at once
-    bool hold = false;           ///< it waits until a controller releases it
-    std::uint32_t priority = 0;  ///< of due commands the largest leaves first
-    std::string action{};        ///< on the waiting command `number`
+    bool from_solution = false;       ///< fills arguments that are not given from ground's navigation solution
+    bool armed = false;               ///< a hazardous command was armed,
+    std::string confirmation{};       ///< and its name typed
+    std::string service{};            ///< "AD", "BD"; empty: the default
+    bool dry_run = false;             ///< makes every check and sends nothing
+    std::optional<Ert> release_at{};  ///< none: at once
+    bool hold = false;                ///< it waits until a controller releases it
+    std::uint32_t priority = 0;       ///< of due commands the largest leaves first
+    std::string action{};             ///< on the waiting command `number`
     std::uint64_t number = 0;
     std::string controller{};  ///< who asks
     std::string browser{};     ///< from where, when there are no accounts

@@ -38,11 +38,16 @@ std::optional<AlarmAct> alarm_act(std::string_view word) {
     return {};
 }
 
-const char* AlarmState::name(Ert now) const {
-    if (is_shelved(*this, now)) return "shelved";
-    if (normal()) return "normal";
-    if (severity != Severity::none) return acknowledged ? "acknowledged" : "unacknowledged";
-    return latches ? "latched" : "returned";
+const char* name_of(AlarmStanding standing) {
+    constexpr std::array names{"normal", "unacknowledged", "acknowledged", "returned", "latched", "shelved"};
+    return names[static_cast<std::size_t>(standing)];
+}
+
+AlarmStanding AlarmState::standing(Ert now) const {
+    if (is_shelved(*this, now)) return AlarmStanding::shelved;
+    if (normal()) return AlarmStanding::normal;
+    if (severity != Severity::none) return acknowledged ? AlarmStanding::acknowledged : AlarmStanding::unacknowledged;
+    return latches ? AlarmStanding::latched : AlarmStanding::returned;
 }
 
 void AlarmDesk::change(std::string_view name, Severity severity, bool latches) {

@@ -23,6 +23,17 @@ enum class AlarmAct {
 const char* name_of(AlarmAct act);
 std::optional<AlarmAct> alarm_act(std::string_view word);
 
+/// How an alarm stands. [isa-18.2]
+enum class AlarmStanding : std::uint8_t {
+    normal,
+    unacknowledged,
+    acknowledged,
+    returned,  ///< within limits again, unacknowledged
+    latched,   ///< within limits again, held until reset
+    shelved,   ///< overrides the others
+};
+const char* name_of(AlarmStanding standing);
+
 /// An alarm and the actions on it. [isa-18.2]
 struct AlarmState {
     dictionary::Severity severity{};  ///< at present; none: within limits
@@ -31,11 +42,7 @@ struct AlarmState {
     bool acknowledged = false;
     std::optional<Ert> shelved_until;
 
-    /// The state in words: normal, unacknowledged, acknowledged, returned, latched or shelved.
-    ///
-    /// Returned: within limits again, unacknowledged. Latched: within limits again, held until reset. Shelved overrides
-    /// the others.
-    const char* name(Ert now) const;
+    AlarmStanding standing(Ert now) const;
     bool normal() const { return worst == dictionary::Severity::none; }
 };
 

@@ -55,13 +55,6 @@ const char* name_of(Severity severity) {
     return "";
 }
 
-std::optional<Severity> severity_of(std::string_view word) {
-    for (const Severity severity :
-         {Severity::none, Severity::watch, Severity::warning, Severity::distress, Severity::critical, Severity::severe})
-        if (word == name_of(severity)) return severity;
-    return {};
-}
-
 std::string context_text(const dictionary::Dictionary& dictionary,
                          const std::vector<dictionary::Precondition>& context) {
     std::string text;

@@ -7,7 +7,6 @@
 #include <array>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace aeolis::telemetry {
@@ -21,8 +20,6 @@ struct AlarmChange {
     std::string limit;  ///< the limit violated: "> 14.5 g", "= failed", "> 1.5 m/s in sky_crane"; empty when cleared
 };
 const char* name_of(dictionary::Severity severity);
-/// None for a word that names no severity.
-std::optional<dictionary::Severity> severity_of(std::string_view word);
 /// "sky_crane" for a condition on one state of one channel; else the conditions in words.
 std::string context_text(const dictionary::Dictionary& dictionary,
                          const std::vector<dictionary::Precondition>& context);

@@ -4,6 +4,7 @@
 #include "common/ids.hpp"
 #include "common/time.hpp"
 #include "common/tone_evidence.hpp"
+#include "telemetry/silence_class.hpp"
 
 #include <complex>
 #include <cstdint>
@@ -84,9 +85,12 @@ struct LinkState {
     Link link;
     Ert ert;
     bool up = false;
-    std::string reason{};        ///< "nominal", "by mro", "connected"; for a link that is down, set by ground alone
+    std::string words{};         ///< "nominal", "by mro", "connected"; for a link that is down, set by ground alone
     bool lost = false;           ///< down, though it should be up; also set by ground
     std::optional<Ert> until{};  ///< when the link is predicted to be heard again, set by ground; none: not predicted
+    std::optional<SilenceClass> silence{};  ///< what ground attributes the silence to; `words` say more
+
+    std::string reason() const { return reason_text(silence, words); }
 };
 
 /// Everything that has reached a station since the last call.

@@ -127,6 +127,17 @@ const char* name_of(SituationRank rank) {
     return names[static_cast<std::size_t>(rank)];
 }
 
+std::vector<std::string_view> SituationDesk::mission_names() {
+    std::vector<std::string_view> names{begin_event,         begin_tone,      begin_command,  touchdown_event,
+                                        touchdown_timepoint, take_over_event, take_over_tone, resume_event,
+                                        designate_event,     role_channel,    stand_by_event, fatal_tone};
+    names.insert(names.end(), told_otherwise.begin(), told_otherwise.end());
+    names.insert(names.end(), change_events.begin(), change_events.end());
+    names.insert(names.end(), bad_tones.begin(), bad_tones.end());
+    for (const auto& [news, by] : followers) names.insert(names.end(), {news, by});
+    return names;
+}
+
 SituationDesk::SituationDesk(const dictionary::Dictionary& dictionary, const Clocks& clocks)
     : dictionary_(&dictionary), clocks_(clocks), timeline_(dictionary) {
     if (!clocks_.entry) return;
@@ -307,7 +318,7 @@ void SituationDesk::link(const LinkState& state, const Origin& origin) {
         row.seq = origin.seq;
         return;
     }
-    const auto silence = silence_class(state.reason);
+    const auto silence = state.silence;
     if (row.up || row.seq == 0) {
         row = LinkRow{};
         row.since = state.ert;
@@ -323,8 +334,7 @@ void SituationDesk::link(const LinkState& state, const Origin& origin) {
     row.station = state.lost && !unexplained;
     row.lost = state.lost;
     row.silence = silence;
-    const auto colon = state.reason.find(": ");
-    row.words = colon == std::string::npos ? std::string{} : state.reason.substr(colon + 2);
+    row.words = silence ? state.words : std::string{};
     row.until = state.until;
     row.seq = origin.seq;
     if (silence == SilenceClass::no_orbiter && state.until) pass_ = {*state.until, row.words};
@@ -449,7 +459,7 @@ void SituationDesk::add_lost(Entries& all, const std::string& name, const LinkRo
                                      begun_ ? "" : "; “Do EDL” is not confirmed");
     } else if (link.outlasted && link.outlasted_until) {
         entry.sentence = fmt::format("{} silent since {}, longer than predicted ({} until {})", title, when(link.since),
-                                     name_of(*link.outlasted), when(*link.outlasted_until));
+                                     title_of(*link.outlasted), when(*link.outlasted_until));
         entry.awaited = title + " back";
         entry.at = link.outlasted_until;
         entry.overdue = true;
@@ -457,7 +467,7 @@ void SituationDesk::add_lost(Entries& all, const std::string& name, const LinkRo
         entry.sentence = fmt::format("{} lost since {}: nothing predicted it", title, when(link.since));
     } else {
         entry.sentence = fmt::format("{} lost since {}, before what was predicted ({})", title, when(link.since),
-                                     name_of(*link.silence));
+                                     title_of(*link.silence));
     }
     all.push_back(std::move(entry));
 }
@@ -476,9 +486,9 @@ void SituationDesk::add_silent(Entries& all, const std::string& name, const Link
     SituationEntry entry{SituationRank::silence, name, {}, "predicted before the landing", link.seq, link.since, {}};
     constexpr std::string_view window = "predicted from ";
     const bool in_window = link.words.starts_with(window);  // its cause is not known, only that it was predicted
-    entry.sentence = in_window ? fmt::format("{} silent within the predicted {}, {}", title, name_of(*link.silence),
+    entry.sentence = in_window ? fmt::format("{} silent within the predicted {}, {}", title, title_of(*link.silence),
                                              link.words.substr(window.find(' ') + 1))
-                               : fmt::format("{} silent: {}{}{}", title, name_of(*link.silence),
+                               : fmt::format("{} silent: {}{}{}", title, title_of(*link.silence),
                                              link.words.empty() ? "" : ", ", link.words);
     if (uhf && tones_come()) entry.sentence += "; X-band is received";
     const bool other_tells =

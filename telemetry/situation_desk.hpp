@@ -44,6 +44,9 @@ class SituationDesk {
         double light_time_s = 0.0;
     };
     /// The dictionary must outlive this and its copies.
+    /// The names of events, tones, commands, timepoints and channels that the rules know.
+    static std::vector<std::string_view> mission_names();
+
     SituationDesk(const dictionary::Dictionary& dictionary, const Clocks& clocks);
 
     /// Where a fact comes from.

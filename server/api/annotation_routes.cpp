@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/api/api.hpp"
 #include "server/api/query_text.hpp"
-#include "server/api/time_texts.hpp"
 #include "server/archive/items.hpp"
 #include "server/base/json.hpp"
 #include "server/pipeline/annotations.hpp"
@@ -14,9 +13,7 @@ namespace {
 std::function<void(Result<archive::Annotation>)> added(const Respond& respond) {
     return [respond](const Result<archive::Annotation>& annotation) {
         if (!annotation) return respond(error_response(503, annotation.error()));
-        auto item = archive::to_item(*annotation);
-        write_time_texts(item);
-        respond(json_response(item, 201));
+        respond(json_response(archive::to_item(*annotation), 201));
     };
 }
 

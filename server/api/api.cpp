@@ -6,6 +6,7 @@
 #include "server/api/dictionary_reply.hpp"
 #include "server/api/query_text.hpp"
 #include "server/api/run_questions.hpp"
+#include "server/api/time_texts.hpp"
 #include "server/base/json.hpp"
 #include "server/base/wall_clock.hpp"
 
@@ -72,9 +73,12 @@ std::optional<archive::RunId> run_id(std::string_view text) {
 }
 
 HttpResponse json_response(const google::protobuf::Message& message, unsigned status) {
+    const std::unique_ptr<google::protobuf::Message> told{message.New()};
+    told->CopyFrom(message);
+    write_time_texts(*told);
     HttpResponse response;
     response.status = status;
-    response.body = to_json(message);
+    response.body = to_json(*told);
     return response;
 }
 
@@ -330,8 +334,9 @@ void Api::run_question(const ApiRequest& call) {
 }
 
 std::function<std::optional<Ert>(archive::RunId)> Api::clock() const {
-    return [current = parts_.hub.current_run(), now = ert_from_text(parts_.hub.latest_clocks().ert())](
-               archive::RunId run) { return run.value == current ? now : std::nullopt; };
+    return [current = parts_.hub.current_run(), now = parts_.hub.ert_now()](archive::RunId run) {
+        return run.value == current ? now : std::nullopt;
+    };
 }
 
 void Api::ask(const ApiRequest& call, QueryText query, RunQuestion question, JobPriority priority) {
@@ -379,6 +384,7 @@ void Api::list_runs(const ApiRequest& call) {
         if (!runs) return error_response(500, runs.error());
         for (auto& run : *runs->mutable_runs())
             if (run.run() == current.run()) run = current;
+        write_time_texts(*runs);
         return wanted.response(std::move(*runs), {"runs"});
     });
 }

@@ -358,7 +358,7 @@ HttpResponse interventions(const AnswerContext& context, archive::Reader& reader
     if (!context.instructor) {
         const auto state = reader.run(run);
         if (!state) return error_response(400, state.error());
-        if (state->state() == "running")
+        if (state->state() == v1::RunState::running)
             return error_response(
                 403, "what an instructor does is told when the run is over; before, it needs the right to rehearse");
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "aeolis/v1/lists.pb.h"
 #include "aeolis/v1/run.pb.h"
 #include "server/archive/reader.hpp"
 

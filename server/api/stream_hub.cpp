@@ -240,6 +240,10 @@ void StreamHub::archive_fault(std::string fault) {
     wake_all();
 }
 
+std::optional<Ert> StreamHub::ert_now() const {
+    return clocks_.has_ert_us() ? std::optional{Ert{clocks_.ert_us()}} : std::nullopt;
+}
+
 void StreamHub::clocks(v1::Clocks clocks) {
     clocks_ = std::move(clocks);
     ++clocks_version_;

@@ -150,6 +150,7 @@ class StreamHub {
     /// The state_version() of previous_run_state().
     std::uint64_t previous_run_state_version() const { return previous_run_state_version_; }
     const v1::Clocks& latest_clocks() const { return clocks_; }
+    std::optional<Ert> ert_now() const;  ///< by the latest clocks; none: not known
     std::uint64_t clocks_version() const { return clocks_version_; }
     archive::Sequence last_seq() const { return last_seq_; }  ///< last item published of the current run
     bool holds(archive::Sequence after) const;                ///< whether every item after `after` is still in memory

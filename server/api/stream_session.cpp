@@ -12,7 +12,7 @@ namespace aeolis::server {
 namespace {
 
 bool is_over(const v1::RunState& run) {
-    return run.state() == "finished" || run.state() == "interrupted";
+    return run.state() == v1::RunState::finished || run.state() == v1::RunState::interrupted;
 }
 
 }  // namespace

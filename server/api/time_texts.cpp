@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/api/time_texts.hpp"
 
+#include "aeolis/v1/alarms.pb.h"
 #include "aeolis/v1/run.pb.h"
 #include "common/time.hpp"
 
@@ -12,8 +13,14 @@ namespace {
 using google::protobuf::FieldDescriptor;
 using google::protobuf::Message;
 
-std::string text_of(std::int64_t ert_us) {
-    return day_of_year_text(Ert{ert_us});
+std::string text_of(std::int64_t time_us) {
+    return day_of_year_text(Ert{time_us});
+}
+
+void write_clocks(v1::Clocks& clocks) {
+    clocks.set_scet(clocks.has_scet_us() ? text_of(clocks.scet_us()) : "");
+    clocks.set_ert(clocks.has_ert_us() ? text_of(clocks.ert_us()) : "");
+    clocks.set_latest_useful(clocks.has_latest_useful_us() ? text_of(clocks.latest_useful_us()) : "");
 }
 
 void write_item(v1::Item& item) {
@@ -54,10 +61,24 @@ void write_item(v1::Item& item) {
     }
 }
 
+void write_reply(v1::CommandReply& reply) {
+    reply.set_arrives(reply.has_arrives_us() ? text_of(reply.arrives_us()) : "");
+    reply.set_effect_seen(reply.has_effect_seen_us() ? text_of(reply.effect_seen_us()) : "");
+    reply.set_station_until(reply.has_station_until_us() ? text_of(reply.station_until_us()) : "");
+    reply.set_leaves(reply.has_leaves_us() ? text_of(reply.leaves_us()) : "");
+    reply.set_latest_useful(reply.has_latest_useful_us() ? text_of(reply.latest_useful_us()) : "");
+    if (reply.has_fate_us()) reply.mutable_fate()->set_at(text_of(reply.fate_us()));
+}
+
 }  // namespace
 
 void write_time_texts(Message& answer) {
     if (auto* item = dynamic_cast<v1::Item*>(&answer)) return write_item(*item);
+    if (auto* reply = dynamic_cast<v1::CommandReply*>(&answer)) return write_reply(*reply);
+    if (auto* alarm = dynamic_cast<v1::AlarmState*>(&answer))
+        return alarm->set_shelved_until(alarm->has_shelved_until_us() ? text_of(alarm->shelved_until_us()) : "");
+    if (auto* clocks = dynamic_cast<v1::Clocks*>(&answer)) return write_clocks(*clocks);
+    if (auto* clock = dynamic_cast<v1::ClockReply*>(&answer)) return clock->set_scet(text_of(clock->scet_us()));
     if (auto* packet = dynamic_cast<v1::PacketRow*>(&answer))
         packet->mutable_unit()->set_ert(text_of(packet->ert_us()));
     const auto& reflection = *answer.GetReflection();

@@ -5,7 +5,7 @@
 
 namespace aeolis::server {
 
-/// Writes the text of every item's times into an HTTP answer: day-of-year, to the millisecond.
+/// Writes the texts of all times in an HTTP answer: day-of-year, to the millisecond.
 void write_time_texts(google::protobuf::Message& answer);
 
 }  // namespace aeolis::server

@@ -383,7 +383,7 @@ Result<void> Archive::State::end_run(RunId run, const RunEnd& end, Sequence last
                                 " ended = ?5, last_seq = ?6 WHERE run = ?1");
     if (!row) return row.error();
     row->bind(1, std::int64_t{run.value})
-        .bind(2, std::string_view(end.outcome))
+        .bind(2, std::string_view(name_of(end.outcome)))
         .bind(3, std::string_view(end.reason))
         .bind(4, std::string_view(end.digest))
         .bind(5, std::string_view(end.ended))

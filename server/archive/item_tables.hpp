@@ -65,6 +65,21 @@ struct EnumWords<telemetry::SituationRank> {
     static const char* of(telemetry::SituationRank rank) { return telemetry::name_of(rank); }
 };
 template <>
+struct EnumWords<FiringVerdict> {
+    static constexpr std::size_t count = 6;
+    static const char* of(FiringVerdict verdict) { return name_of(verdict); }
+};
+template <>
+struct EnumWords<telemetry::SilenceClass> {
+    static constexpr std::size_t count = telemetry::silence_classes;
+    static const char* of(telemetry::SilenceClass silence) { return telemetry::name_of(silence); }
+};
+template <>
+struct EnumWords<Outcome> {
+    static constexpr std::size_t count = 7;
+    static const char* of(Outcome outcome) { return name_of(outcome); }
+};
+template <>
 struct EnumWords<CarrierLock> {
     static constexpr std::size_t count = 4;
     static const char* of(CarrierLock lock) { return to_text(lock); }
@@ -220,7 +235,8 @@ struct ItemTable<LinkRecord> {
     static void columns(auto& record, auto&& visit) {
         visit("link", LinkName{record.link});
         visit("up", record.up);
-        visit("reason", record.reason);
+        visit("silence", record.silence);
+        visit("words", record.words);
         visit("lost", record.lost);
         visit("until_us", record.until);
     }

@@ -129,7 +129,7 @@ v1::Item to_item(const FiringRecord& record) {
     firing.set_name(record.name);
     firing.set_triggered_sclk(record.triggered.seconds);
     firing.set_fired_sclk(record.fired.seconds);
-    firing.set_verdict(record.verdict);
+    firing.set_verdict(wire<v1::TimepointFiring::Verdict>(record.verdict));
     firing.set_source(source_of(record.source));
     firing.set_duplicate(record.duplicate);
     return item;
@@ -160,7 +160,8 @@ v1::Item to_item(const LinkRecord& record) {
     auto& link = *item.mutable_link();
     link.set_link(record.link);
     link.set_up(record.up);
-    link.set_reason(record.reason);
+    link.set_reason(record.reason());
+    if (record.silence) link.set_silence(wire<v1::LinkChange::Silence>(*record.silence));
     link.set_lost(record.lost);
     if (record.until) link.set_until_us(record.until->microseconds);
     return item;
@@ -238,7 +239,7 @@ v1::ClockReply to_reply(const ClockCorrelation& clock) {
     v1::ClockReply reply;
     reply.set_version(clock.version);
     reply.set_sclk(clock.sclk.seconds);
-    reply.set_scet(day_of_year_text(clock.scet));
+    reply.set_scet_us(clock.scet.microseconds);
     reply.set_rate(clock.rate);
     reply.set_leap_seconds(clock.leap_seconds);
     return reply;
@@ -246,8 +247,7 @@ v1::ClockReply to_reply(const ClockCorrelation& clock) {
 
 ClockCorrelation correlation_of(const v1::RunState& run) {
     const auto& clock = run.clock();
-    return {Sclk{clock.sclk()}, scet_from_text(clock.scet()).value_or(Scet{}), clock.rate(), clock.leap_seconds(),
-            clock.version()};
+    return {Sclk{clock.sclk()}, Scet{clock.scet_us()}, clock.rate(), clock.leap_seconds(), clock.version()};
 }
 
 Ert ert_of(const v1::RunState& run, Sclk at) {

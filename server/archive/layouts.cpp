@@ -36,12 +36,6 @@ Result<void> check_layout_view(const std::string& view) {
     return {};
 }
 
-Result<void> prepare_layouts(sqlite::Database& database) {
-    return database.execute(
-        "CREATE TABLE IF NOT EXISTS layouts (owner TEXT NOT NULL, name TEXT NOT NULL, view TEXT NOT NULL,"
-        " saved TEXT NOT NULL, PRIMARY KEY (owner, name)) STRICT, WITHOUT ROWID");
-}
-
 Result<LayoutOutcome> change_layout(sqlite::Database& database, const LayoutChange& change) {
     if (!change.view) {
         auto removed = database.prepare("DELETE FROM layouts WHERE owner = ?1 AND name = ?2 RETURNING name");

@@ -41,8 +41,6 @@ enum class LayoutOutcome : std::uint8_t {
     full,    ///< the owner has layouts_max others
 };
 
-/// Creates the table in an archive that an earlier Aeolis made without it.
-Result<void> prepare_layouts(sqlite::Database& database);
 /// Call within a transaction.
 Result<LayoutOutcome> change_layout(sqlite::Database& database, const LayoutChange& change);
 /// The layouts of the owner, the one saved first before the others.

@@ -166,12 +166,9 @@ Result<bool> Pruning::remove_raw(RunId run) {
 }
 
 Result<bool> Pruning::return_pages() {
-    constexpr std::int64_t incremental = 2;  // PRAGMA auto_vacuum, of archives made since; others are vacuumed whole
-    const auto mode = database_->integer_of("PRAGMA auto_vacuum");
-    if (!mode) return mode.error();
     const auto free = database_->integer_of("PRAGMA freelist_count");
     if (!free) return free.error();
-    if (*mode != incremental || *free == 0) return false;
+    if (*free == 0) return false;
     const auto sql = "PRAGMA incremental_vacuum(" + std::to_string(pages_a_step) + ")";
     if (auto done = database_->execute(sql.c_str()); !done) return done.error();
     return true;

@@ -263,8 +263,9 @@ Result<v1::RunState> Reader::State::run_state(const sqlite::Statement& row) {
     state.set_title(std::string(row.text(2)));
     state.set_venue(std::string(row.text(3)));
     state.set_seed(static_cast<std::uint64_t>(row.integer(4)));
-    state.set_state(std::string(row.text(5)));
-    state.set_outcome(std::string(row.text(6)));
+    auto phase = v1::RunState::none;
+    if (v1::RunState::State_Parse(std::string(row.text(5)), &phase)) state.set_state(phase);
+    state.set_outcome(static_cast<v1::Landing::Outcome>(ColumnType<Outcome>::read(row, 6)));
     state.set_pace(row.real(7));
     state.set_started(std::string(row.text(8)));
     state.set_entry_sclk(row.real(10));

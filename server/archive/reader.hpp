@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "aeolis/v1/alarms.pb.h"
 #include "aeolis/v1/items.pb.h"
+#include "aeolis/v1/lists.pb.h"
 #include "aeolis/v1/run.pb.h"
 #include "common/result.hpp"
 #include "dictionaries/dictionary.hpp"

@@ -39,16 +39,16 @@ void apply(const v1::Item& item, const dictionary::Dictionary& dictionary, telem
 void describe(const v1::Item& item, v1::AlarmState& state) {
     state.set_seq(item.seq());
     if (item.has_alarm()) {
-        state.set_kind("limit");
+        state.set_kind(v1::StandingAlarm::limit);
         if (!item.alarm().limit().empty()) state.set_limit(item.alarm().limit());
         state.set_value(item.alarm().value());
         state.set_sclk(item.alarm().sclk());
     } else if (item.has_staleness()) {
-        state.set_kind("staleness");
+        state.set_kind(v1::StandingAlarm::staleness);
         state.set_value(item.staleness().silent_s());
         state.set_reason(item.staleness().reason());
     } else if (item.has_link()) {
-        state.set_kind("link");
+        state.set_kind(v1::StandingAlarm::link);
         state.set_reason(item.link().reason());
     } else {
         state.set_by(item.alarm_action().by());
@@ -90,23 +90,24 @@ Result<v1::AlarmList> Reader::alarm_states(RunId run, std::optional<Ert> now) {
     for (const auto& item : changes) describe(item, described[name_of_alarm(item, state_->dictionary)]);
     std::vector<v1::AlarmState> states;
     for (const auto& [name, state] : desk->all()) {
-        if (std::string_view(state.name(at)) == "normal") continue;
+        const auto standing = state.standing(at);
+        if (standing == telemetry::AlarmStanding::normal) continue;
         auto& written = states.emplace_back(std::move(described[name]));
         written.set_name(name);
-        if (written.kind().empty())
-            written.set_kind(state_->dictionary.channel(name) != nullptr  ? "limit"
-                             : state_->dictionary.packet(name) != nullptr ? "staleness"
-                                                                          : "link");
-        written.set_state(state.name(at));
-        written.set_severity(telemetry::name_of(state.severity));
-        written.set_worst(telemetry::name_of(state.worst));
+        if (!written.has_kind())
+            written.set_kind(state_->dictionary.channel(name) != nullptr  ? v1::StandingAlarm::limit
+                             : state_->dictionary.packet(name) != nullptr ? v1::StandingAlarm::staleness
+                                                                          : v1::StandingAlarm::link);
+        written.set_state(static_cast<v1::StandingAlarm::State>(standing));
+        written.set_severity(static_cast<v1::Alarm::Severity>(state.severity));
+        written.set_worst(static_cast<v1::Alarm::Severity>(state.worst));
         written.set_acknowledged(state.acknowledged);
         written.set_latches(state.latches);
         if (state.shelved_until && at < *state.shelved_until)
-            written.set_shelved_until(day_of_year_text(*state.shelved_until));
+            written.set_shelved_until_us(state.shelved_until->microseconds);
     }
     std::ranges::stable_sort(states, std::ranges::greater{},
-                             [](const v1::AlarmState& state) { return telemetry::severity_of(state.severity()); });
+                             [](const v1::AlarmState& state) { return state.severity(); });
     v1::AlarmList list;
     for (auto& state : states) *list.add_alarms() = std::move(state);
     return list;

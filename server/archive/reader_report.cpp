@@ -227,7 +227,8 @@ Result<std::vector<v1::Silence>> Reader::State::silences(RunId run) {
         silent[change.link] = all.size();
         auto& silence = all.emplace_back();
         silence.set_link(change.link);
-        silence.set_reason(change.reason);
+        silence.set_reason(change.reason());
+        if (change.silence) silence.set_of(static_cast<v1::LinkChange::Silence>(*change.silence));
         silence.set_from_e_s(e_s);
     }
 }

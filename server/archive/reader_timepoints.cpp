@@ -99,7 +99,7 @@ Result<void> read_firings(Reader::State& reader, RunId run, const Cut& cut, v1::
             written.set_realtime_sclk(firing.fired.seconds);
         else
             written.set_recorded_sclk(firing.fired.seconds);
-        written.set_verdict(firing.verdict);
+        written.set_verdict(name_of(firing.verdict));
         if (auto& known = firings[firing.timepoint.value]; !known || (is_live && std::string_view(known->by) != "uhf"))
             known = KnownFiring{is_live ? "uhf" : "recording", firing.triggered, firing.fired};
         return {};

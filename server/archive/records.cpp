@@ -3,9 +3,30 @@
 
 #include "server/archive/item_tables.hpp"
 
+#include <algorithm>
+#include <array>
 #include <utility>
 
 namespace aeolis::archive {
+
+namespace {
+constexpr std::array verdict_names{"unknown", "completed", "verified", "unverified", "no_operation", "refused"};
+}  // namespace
+
+const char* name_of(FiringVerdict verdict) {
+    return verdict_names[static_cast<std::size_t>(verdict)];
+}
+
+FiringVerdict firing_verdict(std::string_view word) {
+    const auto found = std::ranges::find(verdict_names, word);
+    return found == verdict_names.end() ? FiringVerdict::unknown
+                                        : static_cast<FiringVerdict>(found - verdict_names.begin());
+}
+
+const char* name_of(Outcome outcome) {
+    constexpr std::array names{"running", "touchdown", "impact", "lost", "not_commanded", "timeout", "stopped"};
+    return names[static_cast<std::size_t>(outcome)];
+}
 
 void Extremes::add(const Extremes& later) {
     if (later.defined == 0) return;

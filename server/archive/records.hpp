@@ -8,6 +8,7 @@
 #include "dictionaries/dictionary.hpp"
 #include "telemetry/alarm_desk.hpp"
 #include "telemetry/explanation.hpp"
+#include "telemetry/silence_class.hpp"
 #include "telemetry/situation.hpp"
 #include "telemetry/station/link_ledger.hpp"
 #include "telemetry/unit_identity.hpp"
@@ -15,6 +16,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -122,10 +124,17 @@ struct StageRecord : ItemRecord {
     std::string client_id;                      ///< the client's own; empty: none
 };
 
+/// How a timepoint ended, as flight reports it; `unknown`: by a word that is none of these.
+enum class FiringVerdict : std::uint8_t { unknown, completed, verified, unverified, no_operation, refused };
+/// Its name in the dictionary, the API and the archive.
+const char* name_of(FiringVerdict verdict);
+FiringVerdict firing_verdict(std::string_view word);
+
 struct FiringRecord : ItemRecord {
     Sequence packet_seq = 0;
     TimepointId timepoint;
-    std::string name, verdict;
+    std::string name;
+    FiringVerdict verdict{};
     Sclk triggered, fired;
     Source source{};
     bool duplicate = false;
@@ -142,9 +151,12 @@ struct ExplanationRecord : ItemRecord {
 struct LinkRecord : ItemRecord {
     std::string link;
     bool up = false;
-    std::string reason;
+    std::string words;
     bool lost = false;         ///< down although it should be up
     std::optional<Ert> until;  ///< when it is predicted to be heard again
+    std::optional<telemetry::SilenceClass> silence{};
+
+    std::string reason() const { return telemetry::reason_text(silence, words); }
 };
 
 struct AlarmRecord : ItemRecord {
@@ -257,8 +269,13 @@ struct RunStart {
     std::vector<std::pair<std::string, double>> solution;  ///< ground's navigation solution
 };
 
+/// How a run ended; `running`: it has not, or was cut off.
+enum class Outcome : std::uint8_t { running, touchdown, impact, lost, not_commanded, timeout, stopped };
+/// Its name in the API and in the archive.
+const char* name_of(Outcome outcome);
+
 struct RunEnd {
-    std::string outcome;  ///< touchdown, impact, lost, not_commanded, timeout, stopped
+    Outcome outcome = Outcome::running;
     std::string reason;
     std::string digest;
     std::string ended;  ///< wall clock, ISO 8601

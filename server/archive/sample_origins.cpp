@@ -98,9 +98,9 @@ struct Outage {
 };
 /// Whether the plan has the other link bring live telemetry meanwhile: X-band in cruise, UHF from then on.
 bool hands_over(const v1::Silence& silence) {
-    const auto why = telemetry::silence_class(silence.reason());
-    return why == telemetry::SilenceClass::not_begun ||
-           (silence.link() == telemetry::x_band_telemetry_link.name && why == telemetry::SilenceClass::switched_off);
+    if (!silence.has_of()) return false;
+    return silence.of() == v1::LinkChange::not_begun ||
+           (silence.link() == telemetry::x_band_telemetry_link.name && silence.of() == v1::LinkChange::switched_off);
 }
 Result<std::vector<Outage>> live_outages(Reader::State& reader, const RunInfo& run) {
     const auto silences = reader.silences(run.run);

@@ -3,7 +3,6 @@
 
 #include "server/archive/archive.hpp"
 #include "server/archive/item_rows.hpp"
-#include "server/archive/layouts.hpp"
 
 #include <string_view>
 
@@ -11,7 +10,7 @@ namespace aeolis::archive {
 
 namespace {
 
-// All tables except those of items (item_tables.hpp) and of layouts (layouts.hpp), explained in docs/archive.md. *_sclk: seconds of the spacecraft
+// All tables except those of items (item_tables.hpp), explained in docs/archive.md. *_sclk: seconds of the spacecraft
 // clock; *_us: microseconds since 2000-01-01T12:00:00 UTC. key = run << 40 | seq.
 const char* const tables_sql = R"sql(
 CREATE TABLE dictionaries (
@@ -87,6 +86,10 @@ CREATE TABLE raw_octets (
 CREATE TABLE audit (
     entry INTEGER PRIMARY KEY, at TEXT NOT NULL, who TEXT NOT NULL, peer TEXT NOT NULL, action TEXT NOT NULL,
     detail TEXT NOT NULL, outcome TEXT NOT NULL, hash TEXT NOT NULL) STRICT;
+
+CREATE TABLE layouts (
+    owner TEXT NOT NULL, name TEXT NOT NULL, view TEXT NOT NULL, saved TEXT NOT NULL,
+    PRIMARY KEY (owner, name)) STRICT, WITHOUT ROWID;
 
 CREATE TABLE words (kind TEXT NOT NULL, number INTEGER NOT NULL, word TEXT NOT NULL, PRIMARY KEY (kind, number))
     STRICT, WITHOUT ROWID;
@@ -299,7 +302,7 @@ const char* last_key_sql() {
 Result<void> prepare_for_writing(sqlite::Database& database) {
     auto empty = is_empty(database);
     if (!empty) return empty.error();
-    if (!*empty) return prepare_layouts(database);
+    if (!*empty) return {};
     if (auto done = database.execute(page_size_sql); !done) return done;
     // One transaction, before WAL is switched on: after a crash the file is empty or a whole archive.
     auto transaction = sqlite::Transaction::begin_write(database);
@@ -309,7 +312,6 @@ Result<void> prepare_for_writing(sqlite::Database& database) {
     for (const std::string& sql :
          {marks, item_tables_sql(), std::string(tables_sql), std::string(views_sql), search_sql()})
         if (auto done = database.execute(sql.c_str()); !done) return done;
-    if (auto done = prepare_layouts(database); !done) return done;
     return transaction->commit();
 }
 

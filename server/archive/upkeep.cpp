@@ -91,8 +91,7 @@ Result<void> prune(Maintenance& archive, const std::vector<RunId>& runs, AuditRe
 }
 
 Result<void> vacuum(Maintenance& archive) {
-    // From now on pruning returns space by itself, as in a new archive.
-    if (auto done = archive.database().execute("PRAGMA auto_vacuum = INCREMENTAL; VACUUM"); !done) return done;
+    if (auto done = archive.database().execute("VACUUM"); !done) return done;
     return archive.database().execute("PRAGMA wal_checkpoint(TRUNCATE)");
 }
 

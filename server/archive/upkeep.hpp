@@ -41,8 +41,7 @@ struct RunLine {
 Result<std::vector<RunLine>> run_lines(sqlite::Database& database);
 
 /// Deletes the runs and notes them in `pruned_runs`; all or none of them is deleted, though a crash may leave rows that
-/// the next writer removes. Their numbers are not used again. An archive of an older version keeps its size until it is
-/// vacuumed.
+/// the next writer removes. Their numbers are not used again.
 /// @param by  time, user and address for the audit entry; the action is filled in here
 Result<void> prune(Maintenance& archive, const std::vector<RunId>& runs, AuditRecord by);
 

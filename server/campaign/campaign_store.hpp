@@ -13,7 +13,7 @@
 
 namespace aeolis::server::campaign {
 
-inline constexpr std::int64_t campaign_schema_version = 5;
+inline constexpr std::int64_t campaign_schema_version = 1;
 inline constexpr std::int64_t campaign_application_id = 0x4165436d;  ///< "AeCm" in the file's header
 
 /// The properties common to all cases of a file. Cases of two identities never share a file.

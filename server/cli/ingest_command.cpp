@@ -351,8 +351,8 @@ int ingest(const IngestOptions& options) {
     for (std::size_t i = 0; i < recordings.size() && !broken; ++i)
         if (auto added = ingest.add(recordings[i], options.files[i].string()); !added) broken = added.error();
     const auto right = ingest.finish();
-    const auto finished =
-        pipeline.finish({"stopped", broken ? broken->message : "the recording ended", "", wall_clock_text()});
+    const auto finished = pipeline.finish(
+        {archive::Outcome::stopped, broken ? broken->message : "the recording ended", "", wall_clock_text()});
     if (broken) return failed(broken->message);
     if (!right) return failed(right.error().message);
     if (!finished) return failed(finished.error().message);

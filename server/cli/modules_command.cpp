@@ -31,9 +31,9 @@ int modules(const ModulesOptions& options) {
     if (flow->cycles() == 0)
         return failed(
             fmt::format("{}: no computer runs in the test venue {}", options.scenario, name_of(scenario.test_venue)));
-    if (rehearsal.outcome() != "touchdown")
+    if (rehearsal.outcome() != archive::Outcome::touchdown)
         return failed(fmt::format("{}: the landing that is counted ended as {} {}", options.scenario,
-                                  rehearsal.outcome(), rehearsal.outcome_reason()));
+                                  name_of(rehearsal.outcome()), rehearsal.outcome_reason()));
     fmt::print("{}", flow->document(fmt::format("`{}`, seed {}", scenario.name, options.seed)));
     return 0;
 }

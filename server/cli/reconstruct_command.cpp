@@ -110,7 +110,8 @@ int reconstruct(const ReconstructOptions& options) {
     if (!read) return said(read.error());
     const auto path = reconstruction::reconstruct(*recorded);
     if (!path) return said(path.error());
-    fmt::print("Run {}: {}, seed {}, {}\n", state->run(), state->scenario(), state->seed(), state->outcome());
+    fmt::print("Run {}: {}, seed {}, {}\n", state->run(), state->scenario(), state->seed(),
+               v1::Landing::Outcome_Name(state->outcome()));
     print_recorded(*recorded);
     print_path(*path, *recorded);
     const Vector3& bias = path->accelerometer_bias_mps2;

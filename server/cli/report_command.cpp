@@ -154,7 +154,8 @@ int report(const ReportOptions& options) {
         return 0;
     }
     const auto& run = report->run();
-    fmt::print("Run {}: {}, seed {}, {}; {}\n", run.run(), run.scenario(), run.seed(), run.outcome(), run.started());
+    fmt::print("Run {}: {}, seed {}, {}; {}\n", run.run(), run.scenario(), run.seed(),
+               v1::Landing::Outcome_Name(run.outcome()), run.started());
     print_timepoints(*report);
     print_events(*report);
     print_links(*report);

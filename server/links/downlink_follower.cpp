@@ -53,7 +53,7 @@ DownlinkFollower::~DownlinkFollower() {
 }
 
 void DownlinkFollower::follow() {
-    on_state_(state("running"));
+    on_state_(state(v1::RunState::running));
     while (!stop_) {
         if (settings_.address.udp)
             waits("listening");
@@ -63,10 +63,10 @@ void DownlinkFollower::follow() {
         end_of_stream();
     }
     tell_totals(clock_.now(), true);
-    const auto finished = pipeline_.finish({"stopped", "stopped", "", wall_clock_text()});
+    const auto finished = pipeline_.finish({archive::Outcome::stopped, "stopped", "", wall_clock_text()});
     if (!finished) spdlog::error("run {}: its end could not be stored: {}", run_.value, finished.error().message);
     spdlog::info("run {} ends: {} packets", run_.value, packets_);
-    on_state_(state("finished"));
+    on_state_(state(v1::RunState::finished));
 }
 
 /// Connects, with retries. False when stopped.
@@ -160,7 +160,7 @@ void DownlinkFollower::pass() {
     if (now.microseconds - passed_.microseconds < pass_interval_us) return;
     passed_ = now;
     v1::Clocks clocks;
-    clocks.set_ert(day_of_year_text(now));
+    clocks.set_ert_us(now.microseconds);
     on_clock_(std::move(clocks));
     Delivery delivery;
     delivery.entries.emplace_back(telemetry::EarthTime{now});
@@ -189,29 +189,30 @@ void DownlinkFollower::waits(const std::string& how) {
 }
 
 void DownlinkFollower::lost(telemetry::SilenceClass silence, const std::string& why) {
-    say({telemetry::downlink_link, clock_.now(), false, telemetry::words_of(silence, why), true});
+    say({telemetry::downlink_link, clock_.now(), false, why, true, {}, silence});
 }
 
 void DownlinkFollower::say(telemetry::LinkState state) {
-    if (state.reason == said_) return;
-    said_ = state.reason;
+    const auto reason = state.reason();
+    if (reason == said_) return;
+    said_ = reason;
     up_ = state.up;
     spdlog::log(state.lost ? spdlog::level::warn : spdlog::level::info, "downlink {}: {}", settings_.address.text(),
-                state.reason);
+                reason);
     Delivery delivery;
     delivery.entries.emplace_back(std::move(state));
     if (!pipeline_.deliver(std::move(delivery))) stop_ = true;
-    on_state_(this->state("running"));
+    on_state_(this->state(v1::RunState::running));
 }
 
-v1::RunState DownlinkFollower::state(const std::string& word) const {
+v1::RunState DownlinkFollower::state(v1::RunState::State phase) const {
     v1::RunState state;
     state.set_run(run_.value);
     state.set_scenario(start_.scenario);
     state.set_title(start_.title);
     state.set_venue(start_.venue);
-    state.set_state(word);
-    state.set_outcome(word == "finished" ? "stopped" : "running");
+    state.set_state(phase);
+    state.set_outcome(phase == v1::RunState::finished ? v1::Landing::stopped : v1::Landing::running);
     state.set_pace(start_.pace);
     state.set_started(start_.started);
     return state;

@@ -74,7 +74,7 @@ class DownlinkFollower {
     void say(telemetry::LinkState state);
     void waits(const std::string& how);
     void lost(telemetry::SilenceClass silence, const std::string& why);
-    v1::RunState state(const std::string& word) const;
+    v1::RunState state(v1::RunState::State phase) const;
 
     Settings settings_;
     PipelineThread& pipeline_;

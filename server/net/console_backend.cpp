@@ -348,7 +348,7 @@ void ConsoleBackend::watch_clock() {
         run = downlink_->run();
         note.ert = downlink_->now();
     } else {
-        const auto now = ert_from_text(hub_->latest_clocks().ert());
+        const auto now = hub_->ert_now();
         run = archive::RunId{static_cast<std::uint32_t>(desk_->current().run())};
         if (!desk_->going_on() || run.value != hub_->current_run() || !now) return;
         note.ert = *now;

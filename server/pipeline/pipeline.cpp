@@ -341,8 +341,13 @@ void Pipeline::State::add(std::span<const telemetry::StalenessChange> changes, E
 }
 
 void Pipeline::State::take(const telemetry::LinkState& link) {
-    run->pending.links.push_back(
-        {{run->numbering.next(run->pending), link.ert}, link.link.name, link.up, link.reason, link.lost, link.until});
+    run->pending.links.push_back({{run->numbering.next(run->pending), link.ert},
+                                  link.link.name,
+                                  link.up,
+                                  link.words,
+                                  link.lost,
+                                  link.until,
+                                  link.silence});
     run->situation.follow(run->pending);
     if (link.link.recorded) return;
     std::vector<telemetry::StalenessChange> changes;
@@ -351,7 +356,7 @@ void Pipeline::State::take(const telemetry::LinkState& link) {
                         link.up     ? LinkIs::up
                         : link.lost ? LinkIs::lost
                                     : LinkIs::down,
-                        link.reason, link.ert, changes);
+                        link.reason(), link.ert, changes);
     add(changes, link.ert);
 }
 

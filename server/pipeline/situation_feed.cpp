@@ -33,7 +33,8 @@ SituationFeed::SituationFeed(const dictionary::Dictionary& dictionary, const arc
 void SituationFeed::follow(const archive::Batch& batch) {
     if (batch.last_seq <= followed_) return;
     each_new(batch.links, followed_, [&](const archive::LinkRecord& link) {
-        desk_.link({{link.link, false}, link.ert, link.up, link.reason, link.lost, link.until}, origin_of(link));
+        desk_.link({{link.link, false}, link.ert, link.up, link.words, link.lost, link.until, link.silence},
+                   origin_of(link));
     });
     each_new(batch.packets, followed_, [&](const archive::PacketRecord& packet) {
         if (packet.packet && packet.source == archive::Source::realtime && packet.link != telemetry::station_link.name)

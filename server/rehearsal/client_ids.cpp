@@ -56,9 +56,9 @@ void ClientIds::accepted(const v1::CommandRequest& request, std::uint64_t number
 void ClientIds::note(const archive::StageRecord& stage) {
     const auto id = ids_.find(stage.command);
     if (id == ids_.end()) return;
-    auto& fate = sent_.at(id->second).fate;
-    fate = std::move(*archive::to_item(stage).mutable_command_stage());
-    fate.set_at(day_of_year_text(stage.ert));
+    auto& sent = sent_.at(id->second);
+    sent.fate = std::move(*archive::to_item(stage).mutable_command_stage());
+    sent.fate_at = stage.ert;
 }
 
 const ClientIds::Sent* ClientIds::find(const v1::CommandRequest& request) const {
@@ -83,6 +83,7 @@ std::optional<v1::CommandReply> ClientIds::reply_to(const v1::CommandRequest& re
     reply.set_command(sent->number);
     reply.set_repeated(true);
     *reply.mutable_fate() = sent->fate;
+    reply.set_fate_us(sent->fate_at.microseconds);
     return reply;
 }
 

@@ -37,6 +37,7 @@ class ClientIds {
         std::uint64_t number = 0;
         std::string content;    ///< a digest
         v1::CommandStage fate;  ///< the last stage
+        Ert fate_at{};
     };
     const Sent* find(const v1::CommandRequest& request) const;
 

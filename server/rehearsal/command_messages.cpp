@@ -7,7 +7,7 @@
 
 namespace aeolis::server {
 
-commands::Request request_of(const v1::CommandRequest& message, const std::string& browser, bool director) {
+Result<commands::Request> request_of(const v1::CommandRequest& message, const std::string& browser, bool director) {
     commands::Request request;
     request.request = message.request();
     request.client_id = message.client_id();
@@ -18,7 +18,10 @@ commands::Request request_of(const v1::CommandRequest& message, const std::strin
     request.confirmation = message.confirmation();
     request.service = message.service();
     request.dry_run = message.dry_run();
-    request.release_at = message.release_at();
+    if (const auto& at = message.release_at(); !at.empty()) {
+        request.release_at = ert_from_text(at);
+        if (!request.release_at) return Error{fmt::format("release_at: '{}' is no time as 2012-219T05:10:47.400", at)};
+    }
     request.hold = message.hold();
     request.priority = message.priority();
     request.action = message.action();
@@ -58,13 +61,13 @@ v1::CommandReply message_of(const commands::Reply& reply) {
     }
     message.set_service(reply.service);
     message.set_needs_approval(reply.needs_approval);
-    if (reply.leaves) message.set_leaves(day_of_year_text(*reply.leaves));
-    if (reply.arrives) message.set_arrives(day_of_year_text(*reply.arrives));
-    if (reply.effect_seen) message.set_effect_seen(day_of_year_text(*reply.effect_seen));
+    if (reply.leaves) message.set_leaves_us(reply.leaves->microseconds);
+    if (reply.arrives) message.set_arrives_us(reply.arrives->microseconds);
+    if (reply.effect_seen) message.set_effect_seen_us(reply.effect_seen->microseconds);
     message.set_station(reply.station);
-    if (reply.station_until) message.set_station_until(day_of_year_text(*reply.station_until));
+    if (reply.station_until) message.set_station_until_us(reply.station_until->microseconds);
     if (reply.deadline) {
-        message.set_latest_useful(day_of_year_text(reply.deadline->latest));
+        message.set_latest_useful_us(reply.deadline->latest.microseconds);
         message.set_useful_before(reply.deadline->timepoint);
     }
     for (const auto& timepoint : reply.too_late_for) message.add_too_late_for(timepoint);

@@ -4,6 +4,7 @@
 #include "aeolis/v1/kept.pb.h"
 #include "aeolis/v1/run.pb.h"
 #include "commands/request.hpp"
+#include "common/result.hpp"
 #include "server/archive/records.hpp"
 
 #include <string>
@@ -11,9 +12,11 @@
 // Converts the command path's inputs and outputs to and from stream messages and archive rows.
 namespace aeolis::server {
 
+/// The Error names a field that cannot be read.
 /// `browser`: without accounts, the one that sends it, for the second person.
 /// `director`: whether its sender may send hazardous commands.
-commands::Request request_of(const v1::CommandRequest& message, const std::string& browser = {}, bool director = false);
+Result<commands::Request> request_of(const v1::CommandRequest& message, const std::string& browser = {},
+                                     bool director = false);
 v1::CommandReply message_of(const commands::Reply& reply);
 commands::TimelineVerdict verdict_of(const v1::TimelineVerdict& message);
 v1::TimelineVerdict message_of(const commands::TimelineVerdict& verdict);

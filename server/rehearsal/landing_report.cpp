@@ -71,7 +71,7 @@ std::string landing_json(const Rehearsal& rehearsal, double wall_s) {
     report.text("scenario", rehearsal.scenario().name)
         .text("test_venue", name_of(rehearsal.scenario().test_venue))
         .count("seed", rehearsal.seed())
-        .text("outcome", rehearsal.outcome())
+        .text("outcome", name_of(rehearsal.outcome()))
         .text("verdict", name_of(judgement.verdict))
         .raw("limits_exceeded", json_array(judgement.exceeded, exceeded_json))
         .text("digest", rehearsal.digest())
@@ -105,7 +105,7 @@ std::string landing_json(const Rehearsal& rehearsal, double wall_s) {
 std::string landing_table(const Rehearsal& rehearsal, double wall_s) {
     const auto& landing = rehearsal.landing();
     std::string text = fmt::format("{} (seed {}, {}): {}, {}", rehearsal.scenario().name, rehearsal.seed(),
-                                   name_of(rehearsal.scenario().test_venue), rehearsal.outcome(),
+                                   name_of(rehearsal.scenario().test_venue), name_of(rehearsal.outcome()),
                                    name_of(rehearsal.judgement().verdict));
     if (const auto reason = rehearsal.outcome_reason(); !reason.empty()) text += " - " + reason;
     text += fmt::format("\n\n{:<28}{:>10}{:>14}{:>12}\n", "event", "E+s", "altitude m", "speed m/s");

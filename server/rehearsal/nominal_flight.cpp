@@ -126,10 +126,10 @@ void add_passes(const telemetry::PredictedSilences& silences, double from_s,
         windows.push_back({true, pass.stored ? "uhf_" + pass.orbiter : live, pass.orbiter, pass.rise_s, pass.set_s});
         if (pass.stored) continue;
         if (pass.rise_s > heard_until_s)
-            windows.push_back({false, live, telemetry::name_of(SilenceClass::no_orbiter), heard_until_s, pass.rise_s});
+            windows.push_back({false, live, telemetry::title_of(SilenceClass::no_orbiter), heard_until_s, pass.rise_s});
         heard_until_s = std::max(heard_until_s, pass.set_s);
     }
-    windows.push_back({false, live, telemetry::name_of(SilenceClass::no_orbiter), heard_until_s, {}});
+    windows.push_back({false, live, telemetry::title_of(SilenceClass::no_orbiter), heard_until_s, {}});
 }
 
 }  // namespace
@@ -139,7 +139,7 @@ std::vector<NominalFlight::Window> windows_of(const telemetry::PredictedSilences
     std::vector<NominalFlight::Window> windows;
     const std::string live{telemetry::uhf_live_link.name}, x_band{telemetry::x_band_link.name};
     const auto add = [&](const std::string& link, SilenceClass why, double begin_s, std::optional<double> end_s) {
-        windows.push_back({false, link, telemetry::name_of(why), begin_s, end_s});
+        windows.push_back({false, link, telemetry::title_of(why), begin_s, end_s});
     };
     if (silences.uhf_start_s) add(live, SilenceClass::not_begun, from_s, silences.uhf_start_s);
     if (silences.x_band_tones_s) {

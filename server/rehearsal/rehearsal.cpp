@@ -17,6 +17,13 @@ namespace {
 
 constexpr const char* product_packet_name = "DataProduct";
 
+v1::CommandReply refusal(const v1::CommandRequest& request, const std::string& reason) {
+    v1::CommandReply reply;
+    reply.set_request(request.request());
+    reply.set_reason(reason);
+    return reply;
+}
+
 }  // namespace
 
 Rehearsal::Rehearsal(const simulation::Scenario& scenario, std::uint64_t seed, std::uint64_t case_number,
@@ -57,22 +64,29 @@ Result<void> Rehearsal::inject(const v1::FaultInjection& injection) {
 
 std::vector<v1::CommandReply> Rehearsal::look(std::span<const v1::CommandRequest> file, const std::string& browser) {
     std::vector<v1::CommandReply> replies;
-    if (!takes_commands()) {
-        for (const auto& request : file) replies.push_back(submit(request));
-        return replies;
-    }
     std::vector<commands::Request> requests;
-    for (const auto& request : file) requests.push_back(request_of(request, browser));
-    for (const auto& reply : flight_.look(requests)) replies.push_back(message_of(reply));
+    std::vector<std::size_t> places;  // of their replies
+    for (const auto& request : file) {
+        auto wanted = readable(request, browser, false);
+        replies.push_back(wanted ? v1::CommandReply{} : refusal(request, wanted.error().message));
+        if (!wanted) continue;
+        places.push_back(replies.size() - 1);
+        requests.push_back(std::move(*wanted));
+    }
+    std::size_t next = 0;
+    for (const auto& reply : flight_.look(requests)) replies[places[next++]] = message_of(reply);
     return replies;
 }
 
 v1::CommandReply Rehearsal::submit(const v1::CommandRequest& request, const std::string& browser, bool director) {
-    if (takes_commands()) return message_of(flight_.submit(request_of(request, browser, director)));
-    v1::CommandReply refusal;
-    refusal.set_request(request.request());
-    refusal.set_reason(fmt::format("the test venue {} has no computer", name_of(scenario_.test_venue)));
-    return refusal;
+    const auto wanted = readable(request, browser, director);
+    return wanted ? message_of(flight_.submit(*wanted)) : refusal(request, wanted.error().message);
+}
+
+Result<commands::Request> Rehearsal::readable(const v1::CommandRequest& request, const std::string& browser,
+                                              bool director) const {
+    if (takes_commands()) return request_of(request, browser, director);
+    return Error{fmt::format("the test venue {} has no computer", name_of(scenario_.test_venue))};
 }
 
 std::vector<archive::StageRecord> Rehearsal::take_stages() {
@@ -121,8 +135,17 @@ void Rehearsal::note_product(telemetry::ReceivedPacket& packet) {
         static_cast<void>(products_.add(*part));  // most parts arrive twice, in real time and recorded
 }
 
-std::string Rehearsal::outcome() const {
-    return broken_.empty() ? name_of(landing().outcome()) : "lost";
+archive::Outcome Rehearsal::outcome() const {
+    if (!broken_.empty()) return archive::Outcome::lost;
+    switch (landing().outcome()) {
+    case simulation::Outcome::running: return archive::Outcome::running;
+    case simulation::Outcome::touchdown: return archive::Outcome::touchdown;
+    case simulation::Outcome::impact: return archive::Outcome::impact;
+    case simulation::Outcome::lost: return archive::Outcome::lost;
+    case simulation::Outcome::not_commanded: return archive::Outcome::not_commanded;
+    case simulation::Outcome::timeout: return archive::Outcome::timeout;
+    }
+    return archive::Outcome::running;
 }
 
 std::string Rehearsal::outcome_reason() const {
@@ -172,13 +195,13 @@ archive::RunStart Rehearsal::run_start(double pace) const {
 v1::Clocks Rehearsal::clocks() const {
     v1::Clocks clocks;
     clocks.set_sclk(landing().sclk().seconds);
-    clocks.set_scet(day_of_year_text(landing().scet()));
+    clocks.set_scet_us(landing().scet().microseconds);
     clocks.set_e_s(landing().sclk() - scenario_.entry_sclk);
-    clocks.set_ert(day_of_year_text(landing().ert_now()));
+    clocks.set_ert_us(landing().ert_now().microseconds);
     clocks.set_light_time_s(landing().light_time_s());
     clocks.set_seen_sclk(landing().sclk().seconds - landing().light_time_s());
     if (const auto deadline = flight_.gateway().deadlines().next(landing().ert_now())) {
-        clocks.set_latest_useful(day_of_year_text(deadline->latest));
+        clocks.set_latest_useful_us(deadline->latest.microseconds);
         clocks.set_useful_before(deadline->timepoint);
     }
     return clocks;

@@ -56,7 +56,7 @@ class Rehearsal {
     const std::vector<std::string>& script_refusals() const { return flight_.script_refusals(); }
 
     bool finished() const { return !broken_.empty() || landing().finished(); }
-    std::string outcome() const;         ///< running, touchdown, impact, lost, not_commanded, timeout
+    archive::Outcome outcome() const;
     std::string outcome_reason() const;  ///< with the limits that a landing did not keep
     /// By the scenario's limits.
     simulation::Judgement judgement() const;
@@ -93,6 +93,8 @@ class Rehearsal {
     bool takes_commands() const {
         return scenario_.test_venue != simulation::TestVenue::gnc_alone;
     }  ///< whether it has a flight computer
+    Result<commands::Request> readable(const v1::CommandRequest& request, const std::string& browser,
+                                       bool director) const;
     void take(telemetry::Received& received);
     void score(const simulation::CycleReport& truth, const telemetry::Received& received);
     /// Adds the cycle's recording, without measured times, which always vary; without a recording, the path flown.

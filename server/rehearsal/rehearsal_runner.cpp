@@ -288,7 +288,7 @@ void RehearsalRunner::finish(Rehearsal& rehearsal) {
     if (!finished) spdlog::error("run {}: its end could not be stored: {}", run_id_.value, finished.error().message);
     for (const auto& refusal : rehearsal.script_refusals())
         spdlog::warn("run {}: scripted command refused: {}", run_id_.value, refusal);
-    spdlog::info("run {} ends: {} {}", run_id_.value, outcome(rehearsal), reason);
+    spdlog::info("run {} ends: {} {}", run_id_.value, name_of(outcome(rehearsal)), reason);
     tell(rehearsal, Clock::now(), true);
 }
 
@@ -462,14 +462,9 @@ void RehearsalRunner::tell(const Rehearsal& rehearsal, Clock::time_point now, bo
     if (changed) callbacks_.on_state(state(rehearsal));
 }
 
-std::string RehearsalRunner::outcome(const Rehearsal& rehearsal) const {
+archive::Outcome RehearsalRunner::outcome(const Rehearsal& rehearsal) const {
     const auto outcome = rehearsal.outcome();
-    return finished_ && outcome == "running" ? "stopped" : outcome;
-}
-
-std::string RehearsalRunner::state_word() const {
-    if (finished_) return "finished";
-    return paused_ ? "paused" : "running";
+    return finished_ && outcome == archive::Outcome::running ? archive::Outcome::stopped : outcome;
 }
 
 v1::RunState RehearsalRunner::state(const Rehearsal& rehearsal) const {
@@ -480,8 +475,8 @@ v1::RunState RehearsalRunner::state(const Rehearsal& rehearsal) const {
     state.set_title(start_.title);
     state.set_venue(start_.venue);
     state.set_seed(seed_);
-    state.set_state(state_word());
-    state.set_outcome(outcome(rehearsal));
+    state.set_state(finished_ ? v1::RunState::finished : paused_ ? v1::RunState::paused : v1::RunState::running);
+    state.set_outcome(static_cast<v1::Landing::Outcome>(outcome(rehearsal)));
     state.set_pace(pace_);
     state.set_attained_pace(attained_pace_);
     state.set_started(start_.started);

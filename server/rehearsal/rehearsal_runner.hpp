@@ -129,8 +129,7 @@ class RehearsalRunner {
     bool deliver(const Rehearsal& rehearsal, Clock::time_point now);
     void tell(const Rehearsal& rehearsal, Clock::time_point now, bool changed);
     v1::RunState state(const Rehearsal& rehearsal) const;
-    std::string state_word() const;
-    std::string outcome(const Rehearsal& rehearsal) const;  ///< "stopped" when it was stopped early
+    archive::Outcome outcome(const Rehearsal& rehearsal) const;  ///< `stopped` when it was stopped early
 
     simulation::Scenario scenario_;
     std::uint64_t seed_;

@@ -4,7 +4,6 @@
 #include "common/entry_time.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <fmt/format.h>
 #include <utility>
@@ -12,40 +11,11 @@
 namespace aeolis::telemetry {
 namespace {
 
-constexpr std::array<std::string_view, 13> class_names{
-    "light time",         "not begun",       "switched off", "plasma blackout",  "antenna hand-over",
-    "no orbiter in view", "orbiter records", "Earth set",    "carrier too weak", "delivered",
-    "recording complete", "ground fault",    "unexplained"};
-static_assert(class_names.size() == static_cast<std::size_t>(SilenceClass::unexplained) + 1);
-
 bool holds(const PredictedSilences::Window& window, double e_s) {
     return e_s >= window.from_s - SilenceClassifier::margin_s && e_s <= window.to_s + SilenceClassifier::margin_s;
 }
 
 }  // namespace
-
-const char* name_of(SilenceClass silence) {
-    return class_names[static_cast<std::size_t>(silence)].data();
-}
-
-std::optional<SilenceClass> silence_class(std::string_view words) {
-    const auto found = std::ranges::find(class_names, words.substr(0, words.find(':')));
-    if (found == class_names.end()) return {};
-    return static_cast<SilenceClass>(found - class_names.begin());
-}
-
-bool is_over(SilenceClass silence) {
-    return silence == SilenceClass::switched_off || silence == SilenceClass::delivered ||
-           silence == SilenceClass::recording_complete;
-}
-
-bool is_lost(SilenceClass silence) {
-    return silence == SilenceClass::ground_fault || silence == SilenceClass::unexplained;
-}
-
-std::string words_of(SilenceClass silence, const std::string& sentence) {
-    return sentence.empty() ? name_of(silence) : fmt::format("{}: {}", name_of(silence), sentence);
-}
 
 SilenceClassifier::SilenceClassifier(PredictedSilences predicted, Ert start_ert, Ert entry_ert)
     : predicted_(std::move(predicted)), start_ert_(start_ert), entry_ert_(entry_ert) {}
@@ -106,7 +76,7 @@ LinkState SilenceClassifier::told(Silence& silence, const Explanation& why, Ert 
             sentence += fmt::format("; its last octet left at {}", from_entry_text(e_s(last->second)));
     }
     const auto until = why.until_e_s ? std::optional(ert_of(*why.until_e_s)) : std::nullopt;
-    return {silence.link, ert, false, words_of(why.silence, sentence), is_lost(why.silence) || why.fault, until};
+    return {silence.link, ert, false, sentence, is_lost(why.silence) || why.fault, until, why.silence};
 }
 
 SilenceClassifier::Explanation SilenceClassifier::explain(const Silence& silence, double e_s,

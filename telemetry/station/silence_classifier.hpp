@@ -2,6 +2,7 @@
 #pragma once
 
 #include "telemetry/port.hpp"
+#include "telemetry/silence_class.hpp"
 #include "telemetry/station/predicted_silences.hpp"
 
 #include <optional>
@@ -10,33 +11,6 @@
 #include <vector>
 
 namespace aeolis::telemetry {
-
-/// The cause that a link's silence is attributed to.
-enum class SilenceClass : std::uint8_t {
-    light_time,    ///< nothing can have arrived yet
-    not_begun,     ///< the plan has yet to switch the transmitter to it
-    switched_off,  ///< the plan has switched the transmitter off
-    blackout,
-    hand_over,        ///< between antennas of the vehicle
-    no_orbiter,       ///< no bent pipe is in view
-    orbiter_records,  ///< an orbiter in view delivers later
-    earth_set,
-    weak_carrier,
-    delivered,  ///< an orbiter has delivered everything it recorded
-    recording_complete,
-    ground_fault,  ///< the station, or the line to it
-    unexplained,   ///< not predicted: a controller should look
-};
-/// "plasma blackout", "Earth set", …
-const char* name_of(SilenceClass silence);
-/// Whether nothing more is awaited of a link with this silence.
-bool is_over(SilenceClass silence);
-/// Whether a link with this silence should be up.
-bool is_lost(SilenceClass silence);
-/// "plasma blackout: predicted from E+0:45 to E+1:38", as reported for a link. Without a sentence: the name alone.
-std::string words_of(SilenceClass silence, const std::string& sentence);
-/// The class that words_of() wrote; none for another text.
-std::optional<SilenceClass> silence_class(std::string_view words);
 
 /// Explains why a link is silent from ground's knowledge: predictions, light time, the link, its last octet.
 ///

@@ -36,7 +36,7 @@ class RecordedRun {
             stage.name = "NO_OP";
             stage.stage = commands::Stage::queued;
             must(pipeline.accept(stage));
-            must(over ? pipeline.finish({"touchdown", "", "d", ""}) : pipeline.commit());
+            must(over ? pipeline.finish({archive::Outcome::touchdown, "", "d", ""}) : pipeline.commit());
             pipeline.abandon();
         }
     }

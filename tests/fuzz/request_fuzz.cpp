@@ -57,7 +57,6 @@ void start(std::string_view json) {
     if (const auto script = check_script(*scenario, mission()); !script) return must(!script.error().message.empty());
     Rehearsal rehearsal{*scenario, request.seed(), 0, mission()};
     for (int i = 0; i < cycles_flown; ++i) (void)rehearsal.step();
-    must(!rehearsal.outcome().empty());
     (void)to_json(rehearsal.clocks());
 }
 

@@ -173,7 +173,7 @@ TEST_CASE("case K of a campaign is the landing that rehearse --case K flies, bit
 
     Rehearsal rehearsal{scenario, 3, 7, dictionary};
     while (rehearsal.landing().outcome() == simulation::Outcome::running) rehearsal.step();
-    CHECK(flown.outcome == rehearsal.outcome());
+    CHECK(flown.outcome == name_of(rehearsal.outcome()));
     CHECK(flown.reason == rehearsal.outcome_reason());
     CHECK(flown.end_cycle == rehearsal.cycles());
     const auto touchdown = rehearsal.landing().touchdown();

@@ -48,7 +48,7 @@ TEST_CASE("a request that repeats one gets its number and how far it has come", 
     CHECK(reply->request() == 99);
     CHECK(reply->fate().stage() == v1::CommandStage::radiated);
     CHECK(reply->fate().status() == v1::CommandStage::ok);
-    CHECK_FALSE(reply->fate().at().empty());
+    CHECK(reply->has_fate_us());
 }
 
 TEST_CASE("an id of another command, or of another person's, is refused by name", "[commands][R62][R63]") {

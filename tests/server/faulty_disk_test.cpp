@@ -100,7 +100,7 @@ void store(const Flown& flown, const std::filesystem::path& file, Published& pub
         if (++count % 16 == 0 && other)
             (void)other->execute(count % 64 == 0 ? "PRAGMA wal_checkpoint(TRUNCATE)" : "PRAGMA wal_checkpoint").ok();
     }
-    published.finished = pipeline.finish({"stopped", "", "d", ""}).ok();
+    published.finished = pipeline.finish({archive::Outcome::stopped, "", "d", ""}).ok();
 }
 
 /// Everything that was acknowledged is in the archive, which is whole and can be written on.
@@ -115,7 +115,7 @@ void check_kept(const std::filesystem::path& file, const Published& published, c
             const auto state = reader->run(*published.run);
             REQUIRE(state.ok());
             if (published.finished)
-                REQUIRE(state->state() == "finished");
+                REQUIRE(state->state() == v1::RunState::finished);
             else
                 REQUIRE(state->last_seq() >= published.items.size());
             Sequence after = 0;
@@ -248,7 +248,7 @@ class Life {
                 return read_back(*reader, run);
             });
         }
-        retry_on_mended_disk([&] { return pipeline.finish({"touchdown", "", "d", ""}); });
+        retry_on_mended_disk([&] { return pipeline.finish({archive::Outcome::touchdown, "", "d", ""}); });
         retry_on_mended_disk([&] { return read_back(*reader, run); });
         reader.reset();
         archive.reset();  // folds the WAL into the file; what fails of that is made up for at the next start

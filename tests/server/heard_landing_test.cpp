@@ -60,7 +60,7 @@ struct Told {
 std::vector<Told> changes(const std::vector<telemetry::LinkState>& links) {
     std::vector<Told> all;
     for (const auto& link : links)
-        all.push_back({link.link.name, link.ert.microseconds, link.up, link.up ? link.reason : class_of(link.reason)});
+        all.push_back({link.link.name, link.ert.microseconds, link.up, link.up ? link.words : class_of(link.reason())});
     return all;
 }
 
@@ -226,7 +226,7 @@ TEST_CASE("a transmitter that fails where nothing is predicted is an unexplained
     std::vector<std::string> told;
     while (!rehearsal.finished() && rehearsal.clocks().e_s() < -150.0)
         for (const auto& link : rehearsal.step().links)
-            if (!link.up) told.push_back(link.link.name + (link.lost ? " lost: " : ": ") + link.reason);
+            if (!link.up) told.push_back(link.link.name + (link.lost ? " lost: " : ": ") + link.reason());
     REQUIRE(told.size() == 4);  // before: UHF and tones not begun, X-band's telemetry switched off
     CHECK_THAT(told[3],
                Catch::Contains(
@@ -251,7 +251,7 @@ TEST_CASE("a station's outage takes what came live meanwhile and nothing else: l
         const auto& report = cut.step();
         live += live_of(report);
         for (const auto& link : report.links)
-            if (link.lost) lost[link.link.name] += link.reason + "; ";
+            if (link.lost) lost[link.link.name] += link.reason() + "; ";
     }
     const std::string fault = "ground fault: nothing comes from the station; ";
     CHECK(lost == std::map<std::string, std::string>{{"uhf_live", fault}, {"x_band", fault}});
@@ -276,7 +276,7 @@ TEST_CASE("a cold start at 5 dB-Hz leaves nothing of X-band but its silence, by 
             const auto& received = rehearsal.step();
             CHECK(received.tones.empty());
             for (const auto& link : received.links)
-                if (link.link == telemetry::x_band_link) told += (link.up ? "up " : "down ") + link.reason + "\n";
+                if (link.link == telemetry::x_band_link) told += (link.up ? "up " : "down ") + link.reason() + "\n";
         }
         CHECK(told == "down not begun: X-band sends telemetry until E−12:30\n"
                       "down carrier too weak: the link's budget has it below what a lock needs\n");
@@ -297,8 +297,8 @@ TEST_CASE(
     std::set<std::string> outages;
     while (!rehearsal.finished())
         for (const auto& link : rehearsal.step().links)
-            if (!link.up) outages.insert(link.link.name + ": " + link.reason);
-    CHECK(rehearsal.outcome() == "touchdown");
+            if (!link.up) outages.insert(link.link.name + ": " + link.reason());
+    CHECK(rehearsal.outcome() == archive::Outcome::touchdown);
     CHECK(rehearsal.recording_progress() == 1.0);
     const auto silent = [&](const std::string& beginning) {
         return std::ranges::any_of(outages, [&](const auto& words) { return words.starts_with(beginning); });

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "aeolis/v1/items.pb.h"
+#include "aeolis/v1/lists.pb.h"
 #include "aeolis/v1/run.pb.h"
 #include "server/access/this_user.hpp"
 #include "server/archive/items.hpp"

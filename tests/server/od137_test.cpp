@@ -37,7 +37,7 @@ struct Flown {
             if (first_drag.sensed_mps2 == 0.0 && now.sensed_mps2 >= 1.96) first_drag = now;
             if (now.sclk.ticks() % 4 == 0) truth.push_back(now);
         }
-        REQUIRE(rehearsal.outcome() == "touchdown");
+        REQUIRE(rehearsal.outcome() == archive::Outcome::touchdown);
         for (const auto& event : rehearsal.events()) events.emplace(event.name, event);
         peak_mps2 = rehearsal.landing().peak_deceleration_mps2();
         touchdown = *rehearsal.landing().touchdown();

@@ -361,7 +361,7 @@ TEST_CASE("a run that does not come out the same is not continued, and what it h
     }
     CHECK_THAT(failure, Catch::Contains("run 1 cannot be continued: run 1: flown again, item"));
     auto reader = archive::Reader::open(file, dictionary);
-    CHECK(reader->run(archive::RunId{1})->state() == "interrupted");
+    CHECK(reader->run(archive::RunId{1})->state() == v1::RunState::interrupted);
     CHECK(reader->last_seq(archive::RunId{1}).value() == cut.last_seq);
 }
 

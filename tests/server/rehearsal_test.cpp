@@ -63,7 +63,7 @@ TEST_CASE("the scenarios in which a computer fails end on the ground", "[.long][
         INFO(name);
         Rehearsal rehearsal{test::shipped_scenario(name), 1, 0, tests::shipped_dictionary()};
         while (!rehearsal.finished()) rehearsal.step();
-        CHECK(rehearsal.outcome() == "touchdown");
+        CHECK(rehearsal.outcome() == archive::Outcome::touchdown);
         CHECK(rehearsal.proof().holds());
         CHECK(rehearsal.landing().counters().resets == 1);
     }
@@ -83,7 +83,7 @@ TEST_CASE("over three orbiters a unit keeps one identity, and the recording come
             if (packet.link.recorded) continue;
             again += units.add(packet.octets, telemetry::Path::realtime) == telemetry::Standing::again;
         }
-    CHECK(rehearsal.outcome() == "touchdown");
+    CHECK(rehearsal.outcome() == archive::Outcome::touchdown);
     CHECK(seen["uhf_live"] > 5000);
     CHECK(seen["uhf_mro"] > 1000);
     CHECK(seen["uhf_mex"] > 1000);
@@ -131,7 +131,7 @@ TEST_CASE("when no pass is left to bring the recording down, nothing is said to 
     scenario.radio.relay_passes[0].set_after_entry_s = 300.0;
     Rehearsal rehearsal{scenario, 1, 0, tests::shipped_dictionary()};
     while (!rehearsal.finished()) rehearsal.step();
-    CHECK(rehearsal.outcome() == "touchdown");
+    CHECK(rehearsal.outcome() == archive::Outcome::touchdown);
     CHECK(rehearsal.recording_progress() == 0.0);
     const auto proof = rehearsal.proof();
     CHECK_FALSE(proof.holds());

@@ -30,7 +30,7 @@ class RunWriter {
     }
     void finish() {
         archive::Batch batch;
-        batch.end = archive::RunEnd{"stopped", "", "", "2026-11-22T12:00:00Z"};
+        batch.end = archive::RunEnd{archive::Outcome::stopped, "", "", "2026-11-22T12:00:00Z"};
         append(batch);
     }
     std::uint64_t rounds() const { return rounds_; }

@@ -46,7 +46,7 @@ struct Told {
     std::map<std::string, std::vector<Ert>> live;                ///< packets in real time, by X-band or UHF itself
     std::map<std::string, double, std::less<>> events, firings;  ///< truth, by name: SCLK of the first
     archive::RunStart start;
-    std::string outcome;
+    archive::Outcome outcome{};
     Ert seen(double sclk_s) const {
         return {start.correlation.scet_of(Sclk{sclk_s}).microseconds +
                 static_cast<std::int64_t>(start.light_time_s * 1e6)};
@@ -243,7 +243,7 @@ const SituationEntry* at_e_s(const Told& told, double e_s, const std::string& su
 TEST_CASE("nothing that the situation says over a landing is false, and a landing without a fault has no news of one",
           "[situation][server]") {
     const auto told = check_landing("nominal_auto", 1);
-    REQUIRE(told.outcome == "touchdown");
+    REQUIRE(told.outcome == archive::Outcome::touchdown);
     for (const double e_s : {-1100.0, -810.0, -760.0, -740.0})
         for (const char* link : {"uhf_live", "x_band", "x_band_telemetry"}) CHECK(at_e_s(told, e_s, link) == nullptr);
     const auto* blackout = at_e_s(told, 75.0, "uhf_live");

@@ -95,7 +95,7 @@ struct Venue {
     Venue() {
         v1::RunState state;
         state.set_run(1);
-        state.set_state("running");
+        state.set_state(v1::RunState::running);
         hub.run_state(state);
     }
     void publish(std::vector<v1::Item> items) {
@@ -531,7 +531,7 @@ TEST_CASE("a client that wants nothing of what came last is told with the run's 
     CHECK(client.complete_through == 2);  // a message for each group of these would cost more than it says
     v1::RunState over;
     over.set_run(1);
-    over.set_state("finished");
+    over.set_state(v1::RunState::finished);
     venue.hub.run_state(over);  // of a mission that is followed no clocks come
     client.read_all();
     CHECK(client.complete_through == 4);
@@ -604,7 +604,7 @@ namespace {
 /// The run that goes on ends, and another begins, before anyone reads.
 void next_run(Venue& venue) {
     auto over = venue.hub.state();
-    over.set_state("finished");
+    over.set_state(v1::RunState::finished);
     venue.hub.run_state(over);
     v1::RunState next;
     next.set_run(2);
@@ -642,7 +642,7 @@ TEST_CASE("how a run ended is told also when the next one begins in the same tur
     REQUIRE(client.messages.size() >= 2);
     const auto& before = client.messages[client.messages.size() - 2].run_state();
     CHECK(before.run() == 1);
-    CHECK(before.state() == "finished");
+    CHECK(before.state() == v1::RunState::finished);
     CHECK(before.last_seq() == 3);
     CHECK(client.messages.back().welcome().run_state().run() == 2);
     CHECK(venue.pages_read == 0);
@@ -923,19 +923,19 @@ TEST_CASE("the newest run is sent again at a pace when it is over, to its end, a
     venue.publish({event_item(1, 0.0), event_item(2, 1.0), event_item(3, 2.0)});
     v1::RunState state;
     state.set_run(1);
-    state.set_state("finished");
+    state.set_state(v1::RunState::finished);
     venue.hub.run_state(state);
     Client client{venue.hub};
     client.replay(1.0, 0, 0);
     pass(venue, 1s, {&client});
     CHECK(client.saw_exactly(1, 2));
     state.set_run(2);
-    state.set_state("running");
+    state.set_state(v1::RunState::running);
     venue.hub.run_state(state);
     pass(venue, 1s, {&client});
     CHECK(client.saw_exactly(1, 3));
     REQUIRE(client.messages.front().has_welcome());
-    CHECK(client.messages.front().welcome().run_state().state() == "finished");
+    CHECK(client.messages.front().welcome().run_state().state() == v1::RunState::finished);
     CHECK(client.messages.front().welcome().last_seq() == 3);
     CHECK(batches(client) == client.messages.size() - 1);  // nothing of the other run
 }

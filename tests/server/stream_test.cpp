@@ -227,17 +227,17 @@ TEST_CASE("a rehearsal is started, paused, paced and stopped over the stream", "
     client.complete_through = 0;
     message.mutable_control()->set_pause(true);
     client.send(message);
-    read_until([](const auto& said) { return said.run_state().state() == "paused"; });
+    read_until([](const auto& said) { return said.run_state().state() == v1::RunState::paused; });
     message.mutable_control()->set_pause(false);
     client.send(message);
-    read_until([](const auto& said) { return said.run_state().state() == "running"; });
+    read_until([](const auto& said) { return said.run_state().state() == v1::RunState::running; });
     message.mutable_control()->set_pace(200.0);
     client.send(message);
     read_until([](const auto& said) { return said.run_state().pace() == 200.0; });
     message.mutable_control()->set_stop(true);
     client.send(message);
-    read_until([](const auto& said) { return said.run_state().state() == "finished"; });
-    CHECK(client.last.run_state().outcome() == "stopped");
+    read_until([](const auto& said) { return said.run_state().state() == v1::RunState::finished; });
+    CHECK(client.last.run_state().outcome() == v1::Landing::stopped);
     CHECK(client.last.run_state().digest().size() == 64);
 }
 
@@ -290,7 +290,7 @@ TEST_CASE("a run that is over comes again over the socket at a pace, and not whi
     v1::ClientMessage stop;
     stop.mutable_control()->set_stop(true);
     client.send(stop);
-    while (client.last.run_state().state() != "finished") REQUIRE(client.read());
+    while (client.last.run_state().state() != v1::RunState::finished) REQUIRE(client.read());
     const auto last_seq = client.last.run_state().last_seq();
     REQUIRE(last_seq > 0);
 
@@ -305,7 +305,7 @@ TEST_CASE("a run that is over comes again over the socket at a pace, and not whi
         client.send(replay);
         do REQUIRE(client.read());
         while (!client.last.has_welcome());
-        CHECK(client.last.welcome().run_state().state() == "finished");
+        CHECK(client.last.welcome().run_state().state() == v1::RunState::finished);
         CHECK(client.last.welcome().last_seq() == last_seq);
         client.complete_through = after;
         client.seen.clear();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/api/time_texts.hpp"
 
+#include "aeolis/v1/lists.pb.h"
 #include "aeolis/v1/run.pb.h"
 #include "tests/support/catch.hpp"
 
@@ -33,6 +34,31 @@ TEST_CASE("in an answer of HTTP each time of an item has its text, however deep 
     row.set_ert_us(2'000'000);
     server::write_time_texts(packets);
     CHECK(row.unit().ert() == "2000-001T12:00:02.000");
+}
+
+TEST_CASE("the clocks of a run have texts in an answer of HTTP, empty where a time is not known", "[http][api]") {
+    v1::RunList runs;
+    auto& run = *runs.add_runs();
+    run.mutable_clock()->set_scet_us(1'000'000);
+    run.mutable_clocks()->set_ert_us(2'000'000);
+    server::write_time_texts(runs);
+    CHECK(run.clock().scet() == "2000-001T12:00:01.000");
+    CHECK(run.clocks().ert() == "2000-001T12:00:02.000");
+    CHECK(run.clocks().scet().empty());
+    CHECK(run.clocks().has_latest_useful());
+    CHECK(run.clocks().latest_useful().empty());
+}
+
+TEST_CASE("the reply to a command has texts in an answer of HTTP, empty where a time is not known", "[http][api]") {
+    v1::SequenceReply replies;
+    auto& reply = *replies.add_commands();
+    reply.set_arrives_us(1'000'000);
+    reply.set_fate_us(2'000'000);
+    server::write_time_texts(replies);
+    CHECK(reply.arrives() == "2000-001T12:00:01.000");
+    CHECK(reply.fate().at() == "2000-001T12:00:02.000");
+    CHECK(reply.has_leaves());
+    CHECK(reply.leaves().empty());
 }
 
 TEST_CASE("of what was done about an alarm only a shelving has an end", "[http][api]") {

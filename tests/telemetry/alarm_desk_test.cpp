@@ -33,7 +33,7 @@ struct Desk {
     }
     std::string now(Ert at = at_s(1.0)) const {
         const auto found = desk.all().find("speed");
-        return found == desk.all().end() ? "never" : found->second.name(at);
+        return found == desk.all().end() ? "never" : name_of(found->second.standing(at));
     }
 };
 

@@ -3,9 +3,12 @@
 
 #include "tests/support/catch.hpp"
 #include "tests/support/shipped_dictionary.hpp"
+#include "tests/support/silent_link.hpp"
 
 #include <algorithm>
+#include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace telemetry_situation_desk_test {
@@ -41,8 +44,9 @@ struct Ground {
     void up(const Link& link, double e_s) { desk.link({link, at(e_s), true, "nominal"}, from(e_s)); }
     void down(const Link& link, double e_s, const std::string& reason, bool lost = false,
               std::optional<double> until_e_s = {}) {
-        desk.link({link, at(e_s), false, reason, lost, until_e_s ? std::optional(at(*until_e_s)) : std::nullopt},
-                  from(e_s));
+        desk.link(
+            tests::silent_link(link, at(e_s), reason, lost, until_e_s ? std::optional(at(*until_e_s)) : std::nullopt),
+            from(e_s));
     }
     void event(const std::string& name, double e_s, const std::string& text = "said so", bool recorded = false) {
         const auto* known = tests::shipped_dictionary().event(name);
@@ -71,6 +75,20 @@ struct Ground {
 };
 
 }  // namespace
+
+TEST_CASE("every name of the mission in the situation's rules is a word of the shipped dictionary", "[situation]") {
+    const auto& dictionary = tests::shipped_dictionary();
+    std::set<std::string_view> words;
+    for (const auto& event : dictionary.events) words.insert(event.name);
+    for (const auto& command : dictionary.commands) words.insert(command.name);
+    for (const auto& tone : dictionary.tones) words.insert(tone.name);
+    for (const auto& row : dictionary.timeline) words.insert(row.name);
+    for (const auto& channel : dictionary.channels) words.insert(channel.name);
+    for (const auto name : SituationDesk::mission_names()) {
+        CAPTURE(name);
+        CHECK(words.contains(name));
+    }
+}
 
 TEST_CASE("a silence as predicted says when the link is back, and when it is overdue", "[situation]") {
     Ground ground;

@@ -8,5 +8,6 @@ from .asynchronous import AsyncClient
 from .blocking import Client
 from .errors import AeolisError, CommandFailed, CommandRefused
 from .frames import frame_of
+from .schema import word
 
-__all__ = ["AeolisError", "AsyncClient", "Client", "CommandFailed", "CommandRefused", "frame_of"]
+__all__ = ["AeolisError", "AsyncClient", "Client", "CommandFailed", "CommandRefused", "frame_of", "word"]

@@ -17,7 +17,7 @@ from google.protobuf import json_format
 
 from .errors import AeolisError, CommandFailed, CommandRefused
 from .frames import frame_of
-from .schema import Schema
+from .schema import Schema, word
 
 Instant = Union[float, str]
 """SCLK in seconds, or a text: SCET ("2012-219T05:10:47"), "ert:" and a UTC time, or from entry ("E+4:58")."""
@@ -382,7 +382,7 @@ class AsyncClient:
 
 
 def _is_over(state: Any) -> bool:
-    return state.state in ("finished", "interrupted")
+    return word(state, "state") in ("finished", "interrupted")
 
 
 def _given(query: dict[str, Any]) -> dict[str, Any]:

@@ -30,6 +30,13 @@ class Schema:
         return self._classes[name]
 
 
+def word(message: Any, field: str) -> str:
+    """The name of an enumeration's value, as in JSON: word(run, "outcome") is "touchdown"."""
+    number = getattr(message, field)
+    value = message.DESCRIPTOR.fields_by_name[field].enum_type.values_by_number.get(number)
+    return value.name if value else str(number)
+
+
 def _class_of(descriptor: Any) -> Any:
     if hasattr(message_factory, "GetMessageClass"):
         return message_factory.GetMessageClass(descriptor)

@@ -10,12 +10,12 @@ import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
-from aeolis_client import Client
+from aeolis_client import Client, word
 
 with Client(*sys.argv[1:2]) as aeolis:
     # %% Fly
     run = aeolis.wait_for_end(aeolis.start("nominal_auto", seed=7, pace=0).run)
-    print(f"run {run.run}: {run.outcome}")
+    print(f"run {run.run}: {word(run, 'outcome')}")
 
     # %% Plot
     entry = aeolis.frame(["altitude_m", "speed_mps"], run=run.run, start="E+0:00", source="recorded").dropna()

@@ -2,8 +2,8 @@
 """Lists the runs of a server, newest first."""
 import sys
 
-from aeolis_client import Client
+from aeolis_client import Client, word
 
 with Client(*sys.argv[1:2]) as aeolis:
     for run in aeolis.runs():
-        print(run.run, run.scenario, run.state, run.outcome)
+        print(run.run, run.scenario, word(run, "state"), word(run, "outcome"))

@@ -88,7 +88,8 @@ struct Ground {
         const auto list = reader().alarm_states(first_run, Ert{at_s * 1'000'000});
         REQUIRE(list.ok());
         for (const auto& alarm : list->alarms())
-            text += alarm.name() + " " + alarm.state() + " " + alarm.severity() + " by " + alarm.by() + "; ";
+            text += alarm.name() + " " + v1::StandingAlarm::State_Name(alarm.state()) + " " +
+                    v1::Alarm::Severity_Name(alarm.severity()) + " by " + alarm.by() + "; ";
         return text;
     }
     void search_holds() const {
@@ -162,7 +163,7 @@ TEST_CASE("a link whose silence nothing explains is an alarm under its own name,
     CHECK(ground.states(20) == "x_band unacknowledged distress by ; ");
     const auto list = ground.reader().alarm_states(first_run, {});
     REQUIRE(list.ok());
-    CHECK(list->alarms(0).kind() == "link");
+    CHECK(list->alarms(0).kind() == v1::StandingAlarm::link);
     CHECK(list->alarms(0).reason() == "unexplained: nothing is predicted to silence it now");
     CHECK(ground.reader().links().value() == std::vector<std::string>{"uhf_live", "relay", "x_band"});
     ground.add(action("x_band", telemetry::AlarmAct::acknowledge, 21));
@@ -223,7 +224,7 @@ TEST_CASE("states, notes and words survive a restart and a rebuild, and verify f
     REQUIRE(ground.pipeline->accept(live(mortar_packet(0, 1003.0, 405.0F), 3'000'000)).ok());
     ground.add(note("the chute looks good"));
     ground.add(action("speed_mps", telemetry::AlarmAct::acknowledge, 3));
-    REQUIRE(ground.pipeline->finish({"touchdown", "", "", ""}).ok());
+    REQUIRE(ground.pipeline->finish({archive::Outcome::touchdown, "", "", ""}).ok());
     const auto before = ground.stored();
     const auto state = ground.states(3);
     ground.open();
@@ -252,7 +253,7 @@ TEST_CASE("a note is added to a run that is over, after its last item, and those
     Ground ground;
     ground.begin();
     ground.fly(0, 2, 100.0F);
-    REQUIRE(ground.pipeline->finish({"touchdown", "", "", ""}).ok());
+    REQUIRE(ground.pipeline->finish({archive::Outcome::touchdown, "", "", ""}).ok());
     const auto last = *ground.reader().last_seq(first_run);
     CHECK(ground.add(note("a good landing")) == last + 1);
     CHECK(ground.published.back().note().text() == "a good landing");

@@ -82,16 +82,16 @@ TEST_CASE("what is not an archive is refused by name and left as it was", "[arch
         CHECK(opened.error().message == file.string() + " is not an Aeolis archive");
         CHECK(ask(file, "SELECT count(*) FROM sqlite_schema") == 1);
     }
-    SECTION("another schema") {
+    SECTION("another schema, as that of a build before the first release") {
         const auto file = folder / "other_schema.db";
         {
             REQUIRE(Archive::open(file).ok());
         }
         {
             auto other = sqlite::Database::open(file.string(), sqlite::Mode::read_write_create);
-            REQUIRE(other->execute("PRAGMA user_version = 8").ok());
+            REQUIRE(other->execute("PRAGMA user_version = 4").ok());
         }
-        const std::string line = file.string() + " has archive schema 8, this program has 4: open it with the Aeolis "
+        const std::string line = file.string() + " has archive schema 4, this program has 1: open it with the Aeolis "
                                                  "that wrote it, or name another file";
         const auto opened = Archive::open(file);
         REQUIRE_FALSE(opened.ok());
@@ -99,7 +99,7 @@ TEST_CASE("what is not an archive is refused by name and left as it was", "[arch
         const auto read = Reader::open(file, test::small_dictionary());
         REQUIRE_FALSE(read.ok());
         CHECK(read.error().message == line);
-        CHECK(ask(file, "PRAGMA user_version") == 8);
+        CHECK(ask(file, "PRAGMA user_version") == 4);
     }
     SECTION("a mark without tables") {
         const auto file = folder / "marked.db";
@@ -195,7 +195,7 @@ TEST_CASE("runs are numbered in one file and keep their units apart", "[archive]
     const auto first = archive->begin_run({}, dictionary);
     REQUIRE(archive->append(*first, packets(1, 3)).ok());
     Batch end;
-    end.end = RunEnd{"touchdown", "", "abc", "2026-01-01T00:00:00Z"};
+    end.end = RunEnd{archive::Outcome::touchdown, "", "abc", "2026-01-01T00:00:00Z"};
     REQUIRE(archive->append(*first, end).ok());
     const auto second = archive->begin_run({}, dictionary);
     CHECK(second->value == first->value + 1);
@@ -214,7 +214,7 @@ TEST_CASE("the archive keeps with each run the version of the timeline that it f
     const auto first = archive->begin_run({}, dictionary);
     REQUIRE(first.ok());
     Batch end;
-    end.end = RunEnd{"touchdown", "", "abc", "2026-01-01T00:00:00Z"};
+    end.end = RunEnd{archive::Outcome::touchdown, "", "abc", "2026-01-01T00:00:00Z"};
     REQUIRE(archive->append(*first, end).ok());
     ++dictionary.id;
     dictionary.timeline_version = 4;

@@ -47,7 +47,7 @@ struct Recorded {
             }
             pipeline.relay_progress(0.5);
             if (finished)
-                REQUIRE(pipeline.finish({"touchdown", "", "", ""}).ok());
+                REQUIRE(pipeline.finish({archive::Outcome::touchdown, "", "", ""}).ok());
             else
                 REQUIRE(pipeline.commit().ok());
             pipeline.abandon();

@@ -61,7 +61,7 @@ struct Flown {
                     .ok());
         REQUIRE(pipeline.accept(telemetry::EarthTime{Ert{60'000'000}}).ok());
         pipeline.link_totals({LinkTotals{"uhf_live", {}, 700.0}});
-        REQUIRE(pipeline.finish({"touchdown", "as planned", "abcd", "2026-11-22T12:10:00Z"}).ok());
+        REQUIRE(pipeline.finish({archive::Outcome::touchdown, "as planned", "abcd", "2026-11-22T12:10:00Z"}).ok());
         REQUIRE(pipeline.annotate(RunId{1}, note("written the day after")).ok());
         REQUIRE(pipeline.begin({}).ok());
         REQUIRE(pipeline.accept(live(navigation_packet(1, 1000.0, 9000.0F, 5000.0F))).ok());
@@ -172,7 +172,7 @@ TEST_CASE("a run without items that gets a note after its end has a fingerprint 
         auto archive = std::move(Archive::open(file)).value();
         pipeline::Pipeline pipeline(archive, dictionary);
         REQUIRE(pipeline.begin({}).ok());
-        REQUIRE(pipeline.finish({"stopped", "", "", "2026-11-22T12:10:00Z"}).ok());
+        REQUIRE(pipeline.finish({archive::Outcome::stopped, "", "", "2026-11-22T12:10:00Z"}).ok());
         REQUIRE(pipeline.annotate(RunId{1}, note("nothing came")).ok());
     }
     CHECK(pipeline::verify(file, {}, dictionary, nullptr, folder / "")->faults == std::vector<std::string>{});

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/archive/items.hpp"
 
+#include "aeolis/v1/alarms.pb.h"
 #include "server/archive/item_tables.hpp"
 #include "tests/support/catch.hpp"
 
@@ -37,7 +38,23 @@ TEST_CASE("an enumeration has the same words, in the same order, in the archive 
     CHECK(kept<commands::Status>() == sent(v1::CommandStage::Status_descriptor()));
     CHECK(kept<dictionary::Severity>() == sent(v1::Alarm::Severity_descriptor()));
     CHECK(kept<telemetry::AlarmAct>() == sent(v1::AlarmAction::Action_descriptor()));
+    CHECK(kept<telemetry::SilenceClass>() == sent(v1::LinkChange::Silence_descriptor()));
+    CHECK(kept<archive::FiringVerdict>() == sent(v1::TimepointFiring::Verdict_descriptor()));
+    CHECK(kept<archive::Outcome>() == sent(v1::Landing::Outcome_descriptor()));
     CHECK(kept<CarrierLock>() == sent(v1::Carrier::Lock_descriptor()));
+}
+
+TEST_CASE("the standing of an alarm has the same words on the ground and in the API", "[archive][alarms]") {
+    std::vector<std::string> words;
+    for (int i = 0; i <= static_cast<int>(telemetry::AlarmStanding::shelved); ++i)
+        words.emplace_back(name_of(static_cast<telemetry::AlarmStanding>(i)));
+    CHECK(words == sent(v1::StandingAlarm::State_descriptor()));
+}
+
+TEST_CASE("a verdict on a firing that no schema names is unknown, never another", "[archive]") {
+    CHECK(archive::firing_verdict("no_operation") == archive::FiringVerdict::no_operation);
+    CHECK(archive::firing_verdict("timed_out") == archive::FiringVerdict::unknown);
+    CHECK(archive::firing_verdict("") == archive::FiringVerdict::unknown);
 }
 
 }  // namespace server_archive_items_test

@@ -70,7 +70,7 @@ TEST_CASE("what links brought is kept as it came, by link, with its times, and d
         two = two + b;
         if (i % 7 == 0) REQUIRE(ground.pipeline.commit().ok());
     }
-    REQUIRE(ground.pipeline.finish({"stopped", "", "", ""}).ok());
+    REQUIRE(ground.pipeline.finish({archive::Outcome::stopped, "", "", ""}).ok());
     CHECK(ground.octets({.link = "uhf_live"}) == one);
     CHECK(ground.octets({.link = "downlink"}) == two);
     CHECK(ground.pieces({.link = "downlink"}).size() == 500);
@@ -170,7 +170,7 @@ TEST_CASE("a run that is removed leaves none of its octets", "[archive][R55]") {
     for (int run = 0; run < 2; ++run) {
         REQUIRE(ground.pipeline.begin({}).ok());
         for (std::int64_t i = 0; i < 100; ++i) ground.take("downlink", i, Octets(100, 7), true);
-        REQUIRE(ground.pipeline.finish({"stopped", "", "", ""}).ok());
+        REQUIRE(ground.pipeline.finish({archive::Outcome::stopped, "", "", ""}).ok());
     }
     REQUIRE(ground.archive->prune(RunId{1}, {}).ok());
     int steps = 0;

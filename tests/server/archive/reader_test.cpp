@@ -51,7 +51,7 @@ struct Recorded {
         REQUIRE(pipeline.accept(recorded(fired_packet(0, 1002.0, 1))).ok());
         REQUIRE(pipeline.accept(live(mortar_packet(0, 1003.0, 405.0F))).ok());
         if (finished)
-            REQUIRE(pipeline.finish({"touchdown", "", "", ""}).ok());
+            REQUIRE(pipeline.finish({archive::Outcome::touchdown, "", "", ""}).ok());
         else
             REQUIRE(pipeline.commit().ok());
         return std::move(Reader::open(file, dictionary)).value();
@@ -195,7 +195,7 @@ TEST_CASE("a series of one source has nothing of the other, exact or thinned", "
         REQUIRE(pipeline.accept(i % live_each == 0 ? live(packet) : recorded(packet)).ok());
     }
     if (GENERATE(false, true))
-        REQUIRE(pipeline.finish({"touchdown", "", "", ""}).ok());
+        REQUIRE(pipeline.finish({archive::Outcome::touchdown, "", "", ""}).ok());
     else
         REQUIRE(pipeline.commit().ok());
     Reader reader = std::move(Reader::open(folder / "a.db", dictionary)).value();

@@ -5,6 +5,7 @@
 #include "server/pipeline/pipeline.hpp"
 #include "tests/server/small_mission.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/silent_link.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -46,7 +47,10 @@ struct Landing {
     }
     void take(telemetry::ReceivedPacket received) { REQUIRE(pipeline.accept(received).ok()); }
     void link(bool up, std::int64_t e_s, const char* reason) {
-        REQUIRE(pipeline.accept(telemetry::LinkState{telemetry::uhf_live_link, heard(e_s), up, reason}).ok());
+        REQUIRE(pipeline
+                    .accept(up ? telemetry::LinkState{telemetry::uhf_live_link, heard(e_s), true, reason}
+                               : tests::silent_link(telemetry::uhf_live_link, heard(e_s), reason))
+                    .ok());
     }
     v1::ChannelSeries series(archive::SclkRange range = {}, std::optional<archive::Source> source = {},
                              std::optional<std::size_t> points = {}) {
@@ -90,7 +94,7 @@ TEST_CASE("a gap is named by the link that the plan had bring telemetry then, no
           "[reader][archive][R43]") {
     Landing landing;
     const auto tell = [&](const telemetry::Link& link, std::int64_t e_s, const char* reason) {
-        REQUIRE(landing.pipeline.accept(telemetry::LinkState{link, Landing::heard(e_s), false, reason}).ok());
+        REQUIRE(landing.pipeline.accept(tests::silent_link(link, Landing::heard(e_s), reason)).ok());
     };
     tell(telemetry::x_band_telemetry_link, 0, "switched off: X-band sends tones from E−12:30");
     CHECK_THAT(text_of(landing.series()),
@@ -112,7 +116,7 @@ TEST_CASE("when the recording is down every sample has its path and its verdict,
     }
     landing.pipeline.relay_progress(1.0);
     const bool finished = GENERATE(false, true);  // samples from raw packets, or from segments
-    if (finished) REQUIRE(landing.pipeline.finish({"touchdown", "", "", ""}).ok());
+    if (finished) REQUIRE(landing.pipeline.finish({archive::Outcome::touchdown, "", "", ""}).ok());
     auto reader = std::move(Reader::open(landing.folder / "a.db", landing.dictionary)).value();
     if (!finished) REQUIRE(landing.pipeline.commit().ok());
     const auto list = reader.series(RunId{1}, {{"altitude_m"}, {}, {}, {}, true});

@@ -47,7 +47,7 @@ struct Long {
             if (!std::isnan(value)) all.emplace_back(sclk_s, value);
         }
         builder.seal(batch);
-        batch.end = RunEnd{"touchdown", "", "", ""};
+        batch.end = RunEnd{archive::Outcome::touchdown, "", "", ""};
         REQUIRE(archive->append(*run, batch).ok());
         std::ranges::sort(all);
     }

@@ -35,7 +35,7 @@ void record(const std::filesystem::path& file, const dictionary::Dictionary& dic
                         .accept(live(navigation_packet(static_cast<std::uint16_t>(i), static_cast<double>(i) / 64.0,
                                                        static_cast<float>(i), 3.0F)))
                         .ok());
-        REQUIRE(pipeline.finish({"touchdown", "", "", ""}).ok());
+        REQUIRE(pipeline.finish({archive::Outcome::touchdown, "", "", ""}).ok());
     }
 }
 

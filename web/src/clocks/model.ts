@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import { linkLook } from '../design/status';
 import type { LinkLook } from '../design/status';
-import { dayOfYear, duration, fromEntry, secondsOfDayOfYear } from '../run/time';
+import { dayOfYear, duration, fromEntry, secondsOfErt } from '../run/time';
 import { linkTitle } from '../links/model';
 import { shortReason } from '../timeline/model';
 import { MODES, isReal, modeOf } from '../mode/model';
@@ -31,7 +31,7 @@ export function clocksOf(store: RunStore, past: number | undefined): { entry: st
       value: lightTime > 0 ? duration(lightTime) : isReal(store.run) ? '—' : 'not rehearsed',
     },
   ];
-  if (lightTime > 0 && past === undefined && clocks?.ert) {
+  if (lightTime > 0 && past === undefined && clocks?.ertUs !== undefined) {
     others.push({ id: 'mars-now', label: 'the vehicle is at', value: fromEntry(clocks.eS) });
   }
   return { entry: fromEntry(store.entryKnown ? e_s : NaN), others };
@@ -48,8 +48,8 @@ interface LatestSend {
 /** The ground's value; undefined if the run has no clocks. */
 export function latestSend(store: RunStore): LatestSend | undefined {
   const { clocks } = store;
-  if (!clocks?.ert || !store.entryKnown) return undefined;
-  const latest_s = secondsOfDayOfYear(clocks.latestUseful);
+  if (clocks?.ertUs === undefined || !store.entryKnown) return undefined;
+  const latest_s = secondsOfErt(clocks.latestUsefulUs);
   return {
     next:
       clocks.usefulBefore === ''
@@ -57,7 +57,7 @@ export function latestSend(store: RunStore): LatestSend | undefined {
         : {
             name: clocks.usefulBefore,
             at: fromEntry(latest_s - store.ertOf(store.entrySclk)),
-            left_s: latest_s - secondsOfDayOfYear(clocks.ert),
+            left_s: latest_s - secondsOfErt(clocks.ertUs),
           },
   };
 }
@@ -198,5 +198,5 @@ export function outcomeWords(outcome: string, state: string): string {
 }
 
 function inProgress(state: string): string {
-  return state === 'paused' ? 'paused' : state === 'waiting' ? 'waiting to begin' : 'going on';
+  return state === 'paused' ? 'paused' : 'going on';
 }

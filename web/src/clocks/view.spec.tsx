@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import { describe, expect, it } from 'vitest';
-import { aRun, aStore, event, link, tone } from '../testing/fixtures';
+import { aRun, aStore, ertUs, event, link, tone } from '../testing/fixtures';
 import { readReleaseAt } from '../commands/model';
 import { badgeOf, clocksOf, headerLinks, latestSend, linksOf, streamLine } from './model';
 
@@ -25,7 +25,7 @@ describe('the header', () => {
         ...run.clocks,
         lightTimeS: 10,
         eS: -90,
-        latestUseful: '2012-219T05:02:44.000',
+        latestUsefulUs: ertUs('2012-219T05:02:44.000'),
         usefulBefore: 'coolant_vent',
       };
     const store = aStore([], run);
@@ -44,7 +44,10 @@ describe('the header', () => {
   it('has a dash for every clock that nobody knows, of another mission that is followed', () => {
     const run = aRun({ venue: 'downlink', entrySclk: 0 });
     const of = (clocks: Partial<NonNullable<typeof run.clocks>>) => {
-      const store = aStore([], { ...run, clocks: run.clocks && { ...run.clocks, ert: '', scet: '', ...clocks } });
+      const store = aStore([], {
+        ...run,
+        clocks: run.clocks && { ...run.clocks, ertUs: undefined, scetUs: undefined, ...clocks },
+      });
       const { entry, others } = clocksOf(store, undefined);
       return [entry, ...others.map((clock) => clock.value), latestSend(store)];
     };

@@ -6,7 +6,7 @@ import type { StageLook } from '../design/status';
 import type { Dictionary } from '../run/dictionary';
 import { numberText } from '../run/dictionary';
 import type { CommandRow, RunStore } from '../run/store';
-import { dayOfYear, readFromEntry, secondsOfDayOfYear } from '../run/time';
+import { dayOfYear, readFromEntry, secondsOfDayOfYear, secondsOfErt } from '../run/time';
 import type { CommandIntent } from '../stream/messages';
 
 /** "type": choosing; "review": all is shown, nothing is sent; "armed": a hazardous command waits for its name. */
@@ -225,17 +225,21 @@ interface Arrival {
   tooLateFor: string[];
 }
 
+/** A time of a reply as its text; empty if it is not known. */
+export const textOf = (time_us: bigint | undefined): string =>
+  time_us === undefined ? '' : dayOfYear(secondsOfErt(time_us), 3);
+
 /** The ground's times of a command, by the clock from entry. */
 export function arrivalOf(
-  reply: Pick<CommandReply, 'arrives' | 'leaves' | 'latestUseful' | 'usefulBefore' | 'tooLateFor'>,
+  reply: Pick<CommandReply, 'arrivesUs' | 'leavesUs' | 'latestUsefulUs' | 'usefulBefore' | 'tooLateFor'>,
   store: RunStore,
 ): Arrival {
   const name = reply.usefulBefore;
-  const slack_s = secondsOfDayOfYear(reply.latestUseful) - secondsOfDayOfYear(reply.leaves);
+  const slack_s = secondsOfErt(reply.latestUsefulUs) - secondsOfErt(reply.leavesUs);
   const misses = name !== '' && slack_s <= 0 && !reply.tooLateFor.includes(name);
   return {
-    arrives_e_s: secondsOfDayOfYear(reply.arrives) + store.run.lightTimeS - store.ertOf(store.entrySclk),
-    before: name === '' ? undefined : { name, leave_ert: reply.latestUseful, slack_s },
+    arrives_e_s: secondsOfErt(reply.arrivesUs) + store.run.lightTimeS - store.ertOf(store.entrySclk),
+    before: name === '' ? undefined : { name, leave_ert: textOf(reply.latestUsefulUs), slack_s },
     tooLateFor: misses ? [...reply.tooLateFor, name] : reply.tooLateFor,
   };
 }

@@ -20,7 +20,7 @@ import {
   typed,
   uplink,
 } from './line';
-import { arrivalOf, conditionWords, isHazardous, rangeText, unitText } from './model';
+import { arrivalOf, conditionWords, isHazardous, rangeText, textOf, unitText } from './model';
 import type { UplinkText } from './model';
 import { argumentsInWords, rowName, rowsNow } from './names';
 
@@ -172,7 +172,7 @@ function Checks({ reply }: { reply: CommandReply }) {
 function Told({ reply }: { reply: CommandReply }) {
   const run = runNow();
   if (!run) return null;
-  const arrival = reply.arrives ? arrivalOf(reply, run) : undefined;
+  const arrival = reply.arrivesUs !== undefined ? arrivalOf(reply, run) : undefined;
   const octets = reply.octets.length / 2;
   return (
     <>
@@ -200,7 +200,7 @@ function Told({ reply }: { reply: CommandReply }) {
               'held until you release it'
             ) : uplink.value.releaseAt ? (
               <>
-                <output>{reply.leaves}</output> ERT
+                <output>{textOf(reply.leavesUs)}</output> ERT
               </>
             ) : (
               'at once'
@@ -211,20 +211,20 @@ function Told({ reply }: { reply: CommandReply }) {
               <>
                 ,{' '}
                 <span data-testid="station">
-                  from {reply.station}, whose pass ends <output>{reply.stationUntil}</output> ERT
+                  from {reply.station}, whose pass ends <output>{textOf(reply.stationUntilUs)}</output> ERT
                 </span>
               </>
             )}
           </dd>
           <dt>at Mars</dt>
           <dd data-testid="arrives">
-            <output>{reply.arrives}</output> SCET, <output>{fromEntry(arrival.arrives_e_s)}</output>
+            <output>{textOf(reply.arrivesUs)}</output> SCET, <output>{fromEntry(arrival.arrives_e_s)}</output>
             {uplink.value.hold && ' or later'}
           </dd>
           <dt>effect seen</dt>
           <dd data-testid="effect-seen">
-            from <output>{reply.effectSeen}</output> ERT, <output>{duration(2 * run.run.lightTimeS)}</output> after it
-            leaves
+            from <output>{textOf(reply.effectSeenUs)}</output> ERT, <output>{duration(2 * run.run.lightTimeS)}</output>{' '}
+            after it leaves
           </dd>
           {reply.timeline && (
             <>
@@ -255,7 +255,8 @@ function Verdict({ command }: { command: DictionaryCommand }) {
   const run = runNow();
   const reply = previewNow.value;
   const problem = problemNow.value;
-  const tooLateFor = run && reply?.arrives && problem === undefined ? arrivalOf(reply, run).tooLateFor : [];
+  const tooLateFor =
+    run && reply?.arrivesUs !== undefined && problem === undefined ? arrivalOf(reply, run).tooLateFor : [];
   return (
     <>
       {problem !== undefined ? (

@@ -9,7 +9,7 @@ import { dismissNotice, lookAtPast, notices } from '../run/shown';
 import { CommandStage_Stage, CommandStage_Status } from '../gen/aeolis/v1/items_pb';
 import { CommandReplySchema, DictionaryArgumentSchema } from '../gen/aeolis/v1/run_pb';
 import type { ToWorker } from '../stream/messages';
-import { aDictionary, aRun, aStore, samples, stage } from '../testing/fixtures';
+import { aDictionary, aRun, aStore, ertUs, samples, stage } from '../testing/fixtures';
 import { aServer } from '../testing/server';
 import {
   act as actOn,
@@ -157,9 +157,9 @@ describe('what is asked of the uplink', () => {
     // Now is 05:00:00: SCLK 100 is received, sent at SCET 04:59:00. A command that leaves now arrives at SCLK 220,
     // which is E-780.
     const told = {
-      leaves: '2012-219T05:00:00.000',
-      arrives: '2012-219T05:01:00.000',
-      latestUseful: '2012-219T05:13:00.000',
+      leavesUs: ertUs('2012-219T05:00:00.000'),
+      arrivesUs: ertUs('2012-219T05:01:00.000'),
+      latestUsefulUs: ertUs('2012-219T05:13:00.000'),
       usefulBefore: 'entry_interface',
       tooLateFor: ['coolant_vent'],
     };
@@ -170,11 +170,11 @@ describe('what is asked of the uplink', () => {
     });
     // A change of an offset that arrives after the timepoint that it moves.
     const late = arrivalOf(
-      { ...told, latestUseful: '2012-219T04:50:00.000', usefulBefore: 'uhf_start' },
+      { ...told, latestUsefulUs: ertUs('2012-219T04:50:00.000'), usefulBefore: 'uhf_start' },
       aStore([], run),
     );
     expect([late.before?.slack_s, late.tooLateFor]).toEqual([-600, ['coolant_vent', 'uhf_start']]);
-    expect(arrivalOf({ ...told, latestUseful: '', usefulBefore: '' }, aStore([], run)).before).toBeUndefined();
+    expect(arrivalOf({ ...told, latestUsefulUs: undefined, usefulBefore: '' }, aStore([], run)).before).toBeUndefined();
   });
   it('shows the ground’s word on a precondition with its value apart', () => {
     expect(conditionWords('parameters_received == 1: is 0')).toEqual({

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // @vitest-environment happy-dom
 import { describe, expect, it } from 'vitest';
-import type { RunState } from '../gen/aeolis/v1/run_pb';
 import { aDictionary, aPlan, aRun, aStore, firing, samples, stage } from '../testing/fixtures';
-import type { NamedStage } from '../stream/names';
+import type { NamedRun, NamedStage } from '../stream/names';
 import { GUIDE_STEPS, guideShown, guideStep, toggleGuide } from './model';
 
 const done = (count: number) =>
@@ -11,7 +10,7 @@ const done = (count: number) =>
     .slice(0, count)
     .map((name, i) => stage({ command: BigInt(i + 1), name, stage: 'executed', status: 'ok' }));
 const keys = (step: ReturnType<typeof guideStep>) => step?.press.map((press) => press.key ?? press.type);
-const at = (eS: number, fields: Partial<RunState> = {}) => {
+const at = (eS: number, fields: Partial<NamedRun> = {}) => {
   const run = aRun({ ...fields, $typeName: undefined } as never);
   if (run.clocks) run.clocks = { ...run.clocks, eS, sclk: 1000 + eS, seenSclk: 1000 + eS };
   return run;

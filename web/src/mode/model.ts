@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The mode of the page and its words. It combines how the run is viewed (live, replay, fixed range, after its end) with
 // where it happens, so that a rehearsal is never taken for a real landing.
-import type { RunState } from '../gen/aeolis/v1/run_pb';
+import type { NamedRun } from '../stream/names';
 import { fromEntry } from '../run/time';
 
 export type Mode = 'none' | 'live' | 'rehearsal' | 'ended' | 'range' | 'replay';
@@ -33,16 +33,16 @@ export const MODES: Record<Mode, ModeWords> = {
 };
 
 /** Only a run that follows a real downlink is real; every other venue is a rehearsal. */
-export function isReal(run: RunState): boolean {
+export function isReal(run: NamedRun): boolean {
   return run.venue === 'downlink';
 }
 
 /** Whether the server can continue a cut-off run. A real landing goes on without it. */
-export function canContinue(run: RunState): boolean {
+export function canContinue(run: NamedRun): boolean {
   return run.state === 'interrupted' && !isReal(run);
 }
 
-export function modeOf(store: { run: RunState; going: boolean } | undefined, past: boolean, replayed: boolean): Mode {
+export function modeOf(store: { run: NamedRun; going: boolean } | undefined, past: boolean, replayed: boolean): Mode {
   if (!store) return 'none';
   if (replayed) return 'replay';
   if (past) return 'range';
@@ -51,7 +51,7 @@ export function modeOf(store: { run: RunState; going: boolean } | undefined, pas
 }
 
 /** The mark in each panel. For the past of a rehearsal it has both words, so that neither can be missed. */
-export function panelMark(mode: Mode, run: RunState | undefined): string {
+export function panelMark(mode: Mode, run: NamedRun | undefined): string {
   const { mark } = MODES[mode];
   if (!run || mode === 'rehearsal' || mode === 'live' || mode === 'none') return mark;
   return isReal(run) ? `${mark}, real venue` : `${mark}, rehearsal`;
@@ -60,7 +60,7 @@ export function panelMark(mode: Mode, run: RunState | undefined): string {
 /** The notice after a break: its beginning, the items filled in, and whether the run went on meanwhile. */
 export function resumedWords(
   break_: { after: number; through: number; attempts: number },
-  run: RunState,
+  run: NamedRun,
   lost_e_s: number,
 ): string {
   const count = break_.through - break_.after;

@@ -3,7 +3,7 @@
 import type { Unit } from '../gen/aeolis/v1/items_pb';
 import type { PacketField, PacketRow } from '../gen/aeolis/v1/run_pb';
 import type { Known, RunStore, UnitTotals } from '../run/store';
-import { secondsOfDayOfYear, secondsOfErt } from '../run/time';
+import { secondsOfErt } from '../run/time';
 import { SOURCE_RECORDED } from '../stream/columns';
 
 interface Totals {
@@ -32,7 +32,7 @@ const WINDOW_S = 10; // chosen: of stream time
  * are no rates.
  */
 function recentOf(store: RunStore): { units: Unit[]; span_s: number } | undefined {
-  const now = secondsOfDayOfYear(store.clocks?.ert ?? '');
+  const now = secondsOfErt(store.clocks?.ertUs);
   const oldest = store.units[0];
   if (!store.going || !oldest || !Number.isFinite(now)) return undefined;
   const from = Math.max(now - WINDOW_S, oldest.ert_s);

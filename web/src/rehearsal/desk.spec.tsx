@@ -129,7 +129,7 @@ describe('the instructor’s desk', () => {
     await open();
     await refreshInterventions();
     expect([shown('instructor'), server.asked.length]).toEqual([null, 0]);
-    for (const state of ['finished', 'interrupted']) {
+    for (const state of ['finished', 'interrupted'] as const) {
       // a cut-off run is over as well
       interventions.value = undefined;
       const over = aStore([], aRun({ state }));

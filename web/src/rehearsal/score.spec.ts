@@ -6,7 +6,8 @@ import { NoteSchema } from '../gen/aeolis/v1/items_pb';
 import { AsFlownReportSchema } from '../gen/aeolis/v1/run_pb';
 import { secondsOfDayOfYear } from '../run/time';
 import type { NamedStage } from '../stream/names';
-import { ENTRY_SCLK, aRun, ertUs, item, stage } from '../testing/fixtures';
+import { ENTRY_SCLK, aRun, ertUs, item, stage, wireRun } from '../testing/fixtures';
+import type { NamedRun } from '../stream/names';
 import { commandOutcomes, miss_m, promptness, raisedAlarms, score, scoreText } from './score';
 import type { AlarmChange, Recorded } from './score';
 
@@ -36,10 +37,10 @@ const radar = (e_s: number) => ({
     },
   },
 });
-const nothing = (outcome = 'touchdown'): Recorded => ({
+const nothing = (outcome: NamedRun['outcome'] = 'touchdown'): Recorded => ({
   outcome,
   landed: undefined,
-  report: create(AsFlownReportSchema, { run: aRun({ state: 'finished', outcome }) }),
+  report: create(AsFlownReportSchema, { run: wireRun(aRun({ state: 'finished', outcome })) }),
   alarms: [],
   interventions: [],
   e_sOf,
@@ -124,7 +125,7 @@ describe('the score', () => {
   it('takes as a reaction to a fault the first thing that people did from then on: never what they did before', () => {
     const note = item({ case: 'note', value: create(NoteSchema, { text: 'radar?', by: 'Bob' }) }, ert(100));
     const report = create(AsFlownReportSchema, {
-      run: aRun({ outcome: 'touchdown' }),
+      run: wireRun(aRun({ outcome: 'touchdown' })),
       notes: [note],
       commands: [
         {
@@ -176,7 +177,10 @@ describe('the score', () => {
         ],
       },
     ];
-    const of = { ...nothing(), report: create(AsFlownReportSchema, { run: aRun({ outcome: 'touchdown' }), commands }) };
+    const of = {
+      ...nothing(),
+      report: create(AsFlownReportSchema, { run: wireRun(aRun({ outcome: 'touchdown' })), commands }),
+    };
     expect(commandOutcomes(of).map(({ sender }) => sender)).toEqual([undefined, 'Ann', undefined, 'someone', 'Bob']);
     const { facts, terms } = score(of);
     expect(terms.find((term) => term.name === 'commands')).toMatchObject({
@@ -190,7 +194,7 @@ describe('the score', () => {
     const scripted = {
       ...of,
       report: create(AsFlownReportSchema, {
-        run: aRun({ outcome: 'touchdown' }),
+        run: wireRun(aRun({ outcome: 'touchdown' })),
         commands: [commands[0], commands[2]] as typeof commands,
       }),
     };

@@ -51,6 +51,7 @@ export interface Score {
 
 // All chosen: the worth of each term, and the bounds of promptness.
 const WORTH = { landing: 40, timepoints: 20, faults: 20, alarms: 10, commands: 10 };
+const TOUCHDOWN = 1; // Landing.Outcome.touchdown, so that the page need not load the schema
 const QUICK_S = 30; // full worth up to here
 const LATE_S = 300; // no worth from here on
 
@@ -300,7 +301,7 @@ export function score(of: Recorded): Score {
     ...commandFacts(commands, of.isHazardous),
   ];
   const terms: Term[] = [
-    { name: 'landing', most: WORTH.landing, share: report.run?.outcome === 'touchdown' ? 1 : 0, why: of.outcome },
+    { name: 'landing', most: WORTH.landing, share: report.run?.outcome === TOUCHDOWN ? 1 : 0, why: of.outcome },
     ...(all > 0
       ? [
           {

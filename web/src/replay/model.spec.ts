@@ -3,11 +3,11 @@
 import { afterEach, describe, expect, it } from 'vitest';
 import { useForTest } from '../run/session';
 import { cutoff, modeNow, pastRange, replay, takesCommands } from '../run/shown';
-import { aDictionary, aRun, aStore } from '../testing/fixtures';
+import { aDictionary, aRun, aStore, ertUs } from '../testing/fixtures';
 import { advanced, changeReplayPace, playOrHold, startReplay, step, toggleReplay } from './model';
 
-const run = () =>
-  aRun({ clocks: { sclk: 1300, seenSclk: 1300, eS: 300, ert: '2012-219T05:00:00.0', scet: '2012-219T05:00:00.0' } });
+const FIVE = ertUs('2012-219T05:00:00.0');
+const run = () => aRun({ clocks: { sclk: 1300, seenSclk: 1300, eS: 300, ertUs: FIVE, scetUs: FIVE } });
 
 afterEach(() => {
   replay.value = undefined;

@@ -2,7 +2,7 @@
 import { create, toBinary } from '@bufbuild/protobuf';
 import { describe, expect, it, vi } from 'vitest';
 import { ChannelSeriesListSchema } from '../gen/aeolis/v1/run_pb';
-import type { RunState } from '../gen/aeolis/v1/run_pb';
+import type { NamedRun } from '../stream/names';
 import { aServer } from '../testing/server';
 import { askFirst, firstAnswers, firstLook } from './first_look';
 
@@ -11,7 +11,7 @@ const octets = toBinary(
   ChannelSeriesListSchema,
   create(ChannelSeriesListSchema, { channels: [{ id: 3, sclk: [1, 2], value: [5, NaN], source: [1, 2] }] }),
 );
-const runs = (...of: [number, string][]) => of.map(([run, state]) => ({ run: BigInt(run), state }) as RunState);
+const runs = (...of: [number, string][]) => of.map(([run, state]) => ({ run: BigInt(run), state }) as NamedRun);
 const asking = (run: number, names: string) => `GET /runs/${run}/channels?names=${names}&points=1000&format=protobuf`;
 
 describe('the first look', () => {

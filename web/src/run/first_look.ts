@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A coarse first look at the plotted channels, requested before anything else is known, while the rest of the script,
 // the worker and its schema still load. The seamless history replaces it. A failure costs only the head start.
-import type { RunState } from '../gen/aeolis/v1/run_pb';
+import type { NamedRun } from '../stream/names';
 import { LAYOUT } from '../layout';
 import { columnsOf, readSeriesList } from '../stream/series_answer';
 import type { Column } from '../stream/messages';
@@ -20,7 +20,7 @@ export interface FirstLook {
  * named in the address, or the layout's plots.
  */
 export async function firstLook(
-  runs: readonly RunState[],
+  runs: readonly NamedRun[],
   wanted: number,
   named: readonly string[],
 ): Promise<FirstLook | undefined> {
@@ -41,7 +41,7 @@ export async function firstLook(
 }
 
 interface FirstAnswers {
-  runs: Promise<RunState[]>;
+  runs: Promise<NamedRun[]>;
   look: Promise<FirstLook | undefined>;
 }
 let asked: FirstAnswers | undefined;

@@ -5,7 +5,7 @@ import { afterEach, beforeEach, describe, expect, it, vi } from 'vitest';
 import { refreshAlarms } from '../alarms/model';
 import { choose, forward, line, message, step, tryOut, type } from '../commands/line';
 import { CommandReplySchema } from '../gen/aeolis/v1/run_pb';
-import type { RunState } from '../gen/aeolis/v1/run_pb';
+import type { NamedRun } from '../stream/names';
 import type { CommandIntent, ToWorker } from '../stream/messages';
 import { aDictionary, aRun, aStore, samples } from '../testing/fixtures';
 import { ask, change, control, read, sendCommand } from './connection';
@@ -136,7 +136,7 @@ describe('a run', () => {
     const [shown, told] = [store.value, vi.mocked(location.reload)];
     onMessage({ type: 'run', run: aRun({ ...one, pace: 7 }), fresh: false });
     expect([told.mock.calls.length, store.value?.run.pace]).toEqual([0, 7]);
-    const others: Partial<RunState>[] = [{ started: '2026-01-02T10:00:00Z' }, { seed: 2n }];
+    const others: Partial<NamedRun>[] = [{ started: '2026-01-02T10:00:00Z' }, { seed: 2n }];
     for (const [i, other] of others.entries()) {
       state('live');
       onMessage({
@@ -255,7 +255,7 @@ describe('a run', () => {
       ['finished', 'running', 'finished'],
       ['interrupted', 'running', 'running'],
       ['interrupted', 'interrupted', 'interrupted'],
-    ]) {
+    ] as const) {
       useForTest(aStore([], aRun({ ...one, state: held })), aDictionary);
       runs.value = [];
       vi.stubGlobal(

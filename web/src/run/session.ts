@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page's way from run to run: which run is followed, which data are requested when, and how the page begins.
 import { batch, effect } from '@preact/signals';
-import type { RunState, ScenarioList, TimepointList } from '../gen/aeolis/v1/run_pb';
+import type { ScenarioList, TimepointList } from '../gen/aeolis/v1/run_pb';
+import type { NamedRun } from '../stream/names';
 import type { FromWorker, ToWorker } from '../stream/messages';
 import { resumedWords } from '../mode/model';
 import { access, admitted, learnAccess } from '../access/model';
@@ -47,7 +48,7 @@ export function backToLive(): void {
  */
 let begun: bigint | undefined;
 
-function staysInThePast(of: RunStore, run: RunState): void {
+function staysInThePast(of: RunStore, run: NamedRun): void {
   if (begun === run.run) return;
   begun = run.run;
   notify(`Run ${begun}, ${run.scenario}, has begun; Esc leaves the past of run ${of.id} for it.`);
@@ -165,7 +166,7 @@ function takeOtherArchive(): void {
   location.reload();
 }
 
-function takeRun(run: RunState | undefined): void {
+function takeRun(run: NamedRun | undefined): void {
   if (!run || run.run === 0n) return;
   const known = store.value;
   if (known?.id === Number(run.run)) {
@@ -216,7 +217,7 @@ export async function refreshRuns(): Promise<void> {
   const [before, shown, doubted] = [runs.value, store.value, inDoubt.peek()];
   try {
     const all = await askRuns();
-    const isOther = (run: RunState) => all.some((each) => each.run === run.run && !isSameRun(each, run));
+    const isOther = (run: NamedRun) => all.some((each) => each.run === run.run && !isSameRun(each, run));
     if (before.some(isOther) || (shown && shown === store.value && !all.some((each) => each.run === shown.run.run)))
       return takeOtherArchive();
     if (doubted && shown) inDoubt.value = false; // the run shown is among them

@@ -2,7 +2,8 @@
 // The state of the display, as signals that the panels read: the run, the past view, the mode, and the notices.
 import { computed, effect, signal, untracked } from '@preact/signals';
 import type { Signal } from '@preact/signals';
-import type { RunState, TimepointRow } from '../gen/aeolis/v1/run_pb';
+import type { TimepointRow } from '../gen/aeolis/v1/run_pb';
+import type { NamedRun } from '../stream/names';
 import { LAYOUT } from '../layout';
 import { modeOf } from '../mode/model';
 import type { Mode } from '../mode/model';
@@ -24,7 +25,7 @@ export function signalOfRun<T>(first: T): Signal<T> {
 }
 export const dictionary = signal<Dictionary | undefined>(undefined);
 export const timepoints = signal<TimepointRow[]>([]);
-export const runs = signal<RunState[]>([]);
+export const runs = signal<NamedRun[]>([]);
 export const scenarios = signal<{ name: string; title: string }[]>([]);
 /** The requested run; 0: the current one. */
 export const watched = signal(0);

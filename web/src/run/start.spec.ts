@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 import { create, fromJson, toJson } from '@bufbuild/protobuf';
 import { describe, expect, it } from 'vitest';
-import { DictionaryReplySchema, RunListSchema } from '../gen/aeolis/v1/run_pb';
+import { DictionaryReplySchema, RunListSchema, RunState_State } from '../gen/aeolis/v1/run_pb';
 import { aServer } from '../testing/server';
+import { namedRun } from '../stream/names';
 import { askDictionary, askRuns } from './start';
 
 const server = aServer();
@@ -49,8 +50,13 @@ describe('what the page must know first', () => {
       RunListSchema,
       create(RunListSchema, {
         runs: [
-          { run: 1n, state: 'finished', seed: 18446744073709551615n, lastSeq: 5n, title: '12' },
-          { run: 12n, state: 'running', clocks: { seenSclk: 2, ert: '2012' }, solution: [{ name: 'run', value: 7 }] },
+          { run: 1n, state: RunState_State.finished, seed: 18446744073709551615n, lastSeq: 5n, title: '12' },
+          {
+            run: 12n,
+            state: RunState_State.running,
+            clocks: { seenSclk: 2, ertUs: 5n },
+            solution: [{ name: 'run', value: 7 }],
+          },
         ],
       }),
       asServed,
@@ -58,6 +64,6 @@ describe('what the page must know first', () => {
     server.routes['GET /dictionary'] = { json: words };
     server.routes['GET /runs'] = { json: list };
     expect(plain(await askDictionary())).toEqual(plain(fromJson(DictionaryReplySchema, words)));
-    expect(plain(await askRuns())).toEqual(plain([...fromJson(RunListSchema, list).runs].reverse()));
+    expect(plain(await askRuns())).toEqual(plain(fromJson(RunListSchema, list).runs.map(namedRun).reverse()));
   });
 });

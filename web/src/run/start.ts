@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The data that the page needs before it shows anything: dictionary and runs. The document requests them (index.html
 // preloads both). They are parsed here, because the worker and its schema are still loading.
-import type { DictionaryReply, RunList, RunState } from '../gen/aeolis/v1/run_pb';
+import type { DictionaryReply } from '../gen/aeolis/v1/run_pb';
+import type { NamedRun } from '../stream/names';
 import { call } from './api';
 
 /**
@@ -33,10 +34,12 @@ function typedName(name: string): string {
 export const askDictionary = async (): Promise<DictionaryReply> =>
   typed(await call('GET', '/dictionary'), new Set(['value'])) as DictionaryReply;
 
-export const isGoing = (run: RunState) => ['waiting', 'running', 'paused'].includes(run.state);
+export const isGoing = (run: NamedRun) => run.state === 'running' || run.state === 'paused';
+
+const WHOLE_OF_RUNS = ['run', 'seed', 'last_seq', 'scet_us', 'ert_us', 'latest_useful_us'];
 
 /** Asks for the runs, newest first. */
-export async function askRuns(): Promise<RunState[]> {
-  const { runs } = typed(await call('GET', '/runs'), new Set(['run', 'seed', 'last_seq'])) as RunList;
+export async function askRuns(): Promise<NamedRun[]> {
+  const { runs } = typed(await call('GET', '/runs'), new Set(WHOLE_OF_RUNS)) as { runs: NamedRun[] };
   return runs.sort((a, b) => Number(b.run - a.run));
 }

@@ -1,14 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 // All data that the page holds of one run, filled by the stream and read by every panel. Each run has its own store, so
 // that no data of one run appear in another.
-import type { Clocks, Explanation, LinkChange, TimepointFiring, Unit } from '../gen/aeolis/v1/items_pb';
-import type { RunState } from '../gen/aeolis/v1/run_pb';
+import type { Clocks, Explanation, LinkChange, Unit } from '../gen/aeolis/v1/items_pb';
 import { SOURCE_RECORDED } from '../stream/columns';
 import type { BatchOfFacts, Column, Fact, Newest } from '../stream/messages';
-import type { NamedAlarm, NamedEvent, NamedSituation, NamedStage, NamedTone } from '../stream/names';
+import type {
+  NamedAlarm,
+  NamedEvent,
+  NamedFiring,
+  NamedRun,
+  NamedSituation,
+  NamedStage,
+  NamedTone,
+} from '../stream/names';
 import { LIMIT_NOT_DRAWN, Series } from './series';
 import { isGoing } from './start';
-import { secondsOfDayOfYear, secondsOfErt } from './time';
+import { secondsOfErt } from './time';
 
 const EVENT_LIMIT = 20000;
 const UNIT_LIMIT = 400;
@@ -41,8 +48,8 @@ interface EventRow extends Known<NamedEvent>, Twin {}
 interface ExplanationRow extends Known<Explanation>, Twin {}
 interface FiringPair {
   name: string;
-  live?: TimepointFiring;
-  recorded?: TimepointFiring;
+  live?: NamedFiring;
+  recorded?: NamedFiring;
   heard_s?: number; // as in Twin
 }
 export type StageWord = NamedStage & { ert_s: number };
@@ -153,7 +160,7 @@ export class RunStore {
   version = 0;
 
   constructor(
-    public run: RunState,
+    public run: NamedRun,
     private readonly isDrawn: (channel: number) => boolean = () => true,
   ) {
     this.clocks = run.clocks;
@@ -183,7 +190,8 @@ export class RunStore {
   /** The time on Earth now, as far as this run knows it, seconds since 1970. */
   get ertNow_s(): number {
     const newest = this.newestErt_s;
-    return this.clocks?.ert && this.going ? later(secondsOfDayOfYear(this.clocks.ert), newest) : newest;
+    const { ertUs } = this.clocks ?? {};
+    return ertUs !== undefined && this.going ? later(secondsOfErt(ertUs), newest) : newest;
   }
   get seenE(): number {
     return this.seenSclk - this.entrySclk;
@@ -206,7 +214,8 @@ export class RunStore {
    * its beginning by light time, or else the first live event, which was under way slightly longer.
    */
   private get instant(): { sclk: number; ert_s: number } {
-    if (this.clocks?.ert) return { sclk: this.seenSclk, ert_s: secondsOfDayOfYear(this.clocks.ert) };
+    const { ertUs } = this.clocks ?? {};
+    if (ertUs !== undefined) return { sclk: this.seenSclk, ert_s: secondsOfErt(ertUs) };
     const tone = this.tones[0]?.fact;
     if (tone) return { sclk: tone.sclk, ert_s: secondsOfErt(tone.ertStartUs) };
     const event = this.events.find((row) => row.live);
@@ -273,7 +282,7 @@ export class RunStore {
     return new HeardSeries(this.live, heard);
   }
 
-  update(run: RunState): void {
+  update(run: NamedRun): void {
     this.run = run;
     if (run.clocks) this.clocks = run.clocks;
     ++this.version;
@@ -484,7 +493,7 @@ export class RunStore {
     rows.splice(index, 0, { seq: item.seq, ert_s: item.ert_s, fact: item.fact, live: !recorded, recorded, heard_s });
   }
 
-  private addFiring(firing: TimepointFiring): void {
+  private addFiring(firing: NamedFiring): void {
     const pair = this.firings.get(firing.timepoint) ?? { name: firing.name };
     if (firing.source === SOURCE_RECORDED) pair.recorded = firing;
     else if (!pair.live) [pair.live, pair.heard_s] = [firing, this.newestErt_s];

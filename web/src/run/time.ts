@@ -6,9 +6,9 @@ const EPOCH_S = Date.UTC(2000, 0, 1, 12) / 1000; // epoch of the stream's times
 
 /**
  * Converts a time of the stream to seconds since 1970: microseconds since 2000-01-01T12:00:00 UTC, in JSON a text of
- * digits.
+ * digits; NaN for none.
  */
-export const secondsOfErt = (ert_us: bigint | string): number => EPOCH_S + Number(ert_us) / 1e6;
+export const secondsOfErt = (ert_us: bigint | string | undefined): number => EPOCH_S + Number(ert_us) / 1e6;
 
 /** Converts "2012-219T05:10:47.400" (year, day of year; UTC) to seconds since 1970; NaN for other texts. */
 export function secondsOfDayOfYear(text: string): number {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Messages between the page and its worker, as plain data. Sequence and run numbers are JavaScript numbers, exact up to
 // 2^53.
-import type { Clocks, Explanation, LinkChange, TimepointFiring, Unit } from '../gen/aeolis/v1/items_pb';
-import type { CommandReply, RunState } from '../gen/aeolis/v1/run_pb';
-import type { NamedAlarm, NamedEvent, NamedSituation, NamedStage, NamedTone } from './names';
+import type { Clocks, Explanation, LinkChange, Unit } from '../gen/aeolis/v1/items_pb';
+import type { CommandReply } from '../gen/aeolis/v1/run_pb';
+import type { NamedAlarm, NamedEvent, NamedFiring, NamedRun, NamedSituation, NamedStage, NamedTone } from './names';
 
 /** Samples of one channel as two columns. A value that is undefined on board is NaN. */
 export interface Column {
@@ -32,7 +32,7 @@ export type Fact = { seq: number; ert_s: number } & (
   | { kind: 'event'; fact: NamedEvent }
   | { kind: 'tone'; fact: NamedTone }
   | { kind: 'commandStage'; fact: NamedStage }
-  | { kind: 'timepoint'; fact: TimepointFiring }
+  | { kind: 'timepoint'; fact: NamedFiring }
   | { kind: 'explanation'; fact: Explanation }
   | { kind: 'link'; fact: LinkChange }
   | { kind: 'alarm'; fact: NamedAlarm }
@@ -54,7 +54,7 @@ export type StreamState = 'connecting' | 'catching_up' | 'live' | 'lost';
 
 export type FromWorker =
   | { type: 'stream'; state: StreamState; attempt: number; gaps: number; serverVersion: string }
-  | { type: 'run'; run: RunState | undefined; fresh: boolean }
+  | { type: 'run'; run: NamedRun | undefined; fresh: boolean }
   | { type: 'other_archive' } // which has another run of the shown run's number
   | { type: 'resumed'; run: number; after: number; through: number; attempts: number }
   | { type: 'batch'; batch: BatchOfFacts }

@@ -8,8 +8,19 @@ import {
   CommandStage_Status,
   Event_Level,
   SituationEntry_Rank,
+  TimepointFiring_Verdict,
 } from '../gen/aeolis/v1/items_pb';
-import type { Alarm, CommandStage, Event, Item, SituationEntry, Tone } from '../gen/aeolis/v1/items_pb';
+import type {
+  Alarm,
+  CommandStage,
+  Event,
+  Item,
+  SituationEntry,
+  TimepointFiring,
+  Tone,
+} from '../gen/aeolis/v1/items_pb';
+import { Landing_Outcome, RunState_State } from '../gen/aeolis/v1/run_pb';
+import type { RunState } from '../gen/aeolis/v1/run_pb';
 
 type Named<Message, Names> = Omit<Message, keyof Names> & Names;
 export type NamedEvent = Named<Event, { level: keyof typeof Event_Level }>;
@@ -19,6 +30,9 @@ export type NamedStage = Named<
   CommandStage,
   { stage: keyof typeof CommandStage_Stage; status: keyof typeof CommandStage_Status }
 >;
+export type NamedFiring = Named<TimepointFiring, { verdict: keyof typeof TimepointFiring_Verdict }>;
+
+export type NamedRun = Named<RunState, { state: keyof typeof RunState_State; outcome: keyof typeof Landing_Outcome }>;
 
 export type NamedEntry = Named<SituationEntry, { rank: keyof typeof SituationEntry_Rank }>;
 export interface NamedSituation {
@@ -28,6 +42,12 @@ export interface NamedSituation {
 /** The number of a value that this console does not know. */
 const nameOf = <Names extends object>(names: Names, value: number) =>
   ((names as Record<number, string>)[value] ?? String(value)) as keyof Names;
+
+export const namedRun = (run: RunState): NamedRun => ({
+  ...run,
+  state: nameOf(RunState_State, run.state),
+  outcome: nameOf(Landing_Outcome, run.outcome),
+});
 
 /** The content of an item, with names for enumerations. */
 export function named(item: Item['item']) {
@@ -44,6 +64,8 @@ export function named(item: Item['item']) {
         stage: nameOf(CommandStage_Stage, item.value.stage),
         status: nameOf(CommandStage_Status, item.value.status),
       };
+    case 'timepoint':
+      return { ...item.value, verdict: nameOf(TimepointFiring_Verdict, item.value.verdict) };
     case 'situation':
       return {
         entries: item.value.entries.map((entry) => ({ ...entry, rank: nameOf(SituationEntry_Rank, entry.rank) })),

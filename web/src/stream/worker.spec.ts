@@ -2,7 +2,7 @@
 import { create, toBinary } from '@bufbuild/protobuf';
 import type { MessageInitShape } from '@bufbuild/protobuf';
 import { afterEach, beforeEach, expect, it, vi } from 'vitest';
-import { RunStateSchema } from '../gen/aeolis/v1/run_pb';
+import { RunStateSchema, RunState_State } from '../gen/aeolis/v1/run_pb';
 import { ServerMessageSchema } from '../gen/aeolis/v1/stream_pb';
 import type { FromWorker, ToWorker } from './messages';
 
@@ -25,14 +25,15 @@ class FakeSocket {
     this.readyState = 1;
     this.onopen();
   }
-  welcome(state: string) {
+  welcome(state: keyof typeof RunState_State) {
     this.says({ case: 'welcome', value: { runState: aRun(state) } });
   }
   says(message: MessageInitShape<typeof ServerMessageSchema>['message']) {
     this.onmessage({ data: toBinary(ServerMessageSchema, create(ServerMessageSchema, { message })).slice().buffer });
   }
 }
-const aRun = (state: string, venue = 'rehearsal') => create(RunStateSchema, { run: 1n, state, venue });
+const aRun = (state: keyof typeof RunState_State, venue = 'rehearsal') =>
+  create(RunStateSchema, { run: 1n, state: RunState_State[state], venue });
 const states = () => said.flatMap((message) => (message.type === 'stream' ? [message.state] : []));
 const passes = (seconds: number) => vi.advanceTimersByTimeAsync(seconds * 1000);
 let healthz: () => Promise<unknown>;

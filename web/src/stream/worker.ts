@@ -21,11 +21,12 @@ import {
 } from '../gen/aeolis/v1/run_pb';
 import { ClientMessageSchema, ServerMessageSchema } from '../gen/aeolis/v1/stream_pb';
 import type { Batch, RehearsalControlSchema, ServerMessage } from '../gen/aeolis/v1/stream_pb';
-import type { RunState } from '../gen/aeolis/v1/run_pb';
 import { Pace } from '../run/pace';
 import { isSameRun } from '../run/same';
 import { ColumnCollector } from './columns';
 import type { Column, ControlAction, FromWorker, Question, StreamState, ToWorker } from './messages';
+import { namedRun } from './names';
+import type { NamedRun } from './names';
 import { SequenceCheck, backoffSeconds } from './sequence';
 import { columnsOf, readSeriesList } from './series_answer';
 
@@ -53,7 +54,7 @@ let attempt = 0;
 let retry: ReturnType<typeof setTimeout> | undefined;
 let wantedRun = 0;
 let currentRun = 0;
-let known: RunState | undefined; // the newest reported state of the current run
+let known: NamedRun | undefined; // the newest reported state of the current run
 let serverVersion = '';
 let check = new SequenceCheck();
 let plotted: string[] = [];
@@ -207,22 +208,23 @@ function receive(bytes: Uint8Array): void {
       const welcome = message.value;
       welcomed = true;
       serverVersion = welcome.serverVersion;
-      const run = Number(welcome.runState?.run ?? 0);
+      const its = welcome.runState && namedRun(welcome.runState);
+      const run = Number(its?.run ?? 0);
       if (run === 0 && currentRun !== 0) {
         exact = true;
         subscribe();
         break;
       }
       if (run === 0) say('live');
-      if (run === currentRun && known && welcome.runState && !isSameRun(known, welcome.runState)) {
+      if (run === currentRun && known && its && !isSameRun(known, its)) {
         leave();
         return;
       }
       const fresh = run !== currentRun || step === 'facts';
       if (run !== currentRun) restart(run);
-      known = welcome.runState;
+      known = its;
       stopAt = Number(welcome.lastSeq);
-      post({ type: 'run', run: welcome.runState, fresh });
+      post({ type: 'run', run: its, fresh });
       if (run !== 0 && step === 'facts' && stopAt === 0) goOnWithSamples();
       if (run !== 0 && step === 'samples') {
         if (check.completeThrough >= stopAt) say('live'); // nothing was missed
@@ -240,10 +242,12 @@ function receive(bytes: Uint8Array): void {
       welcomed = true; // if it refused a subscription, the one before continues
       post({ type: 'refusal', reason: message.value.reason });
       break;
-    case 'runState':
-      if (known?.run === message.value.run) known = message.value;
-      post({ type: 'run', run: message.value, fresh: false });
+    case 'runState': {
+      const run = namedRun(message.value);
+      if (known?.run === run.run) known = run;
+      post({ type: 'run', run, fresh: false });
       break;
+    }
   }
 }
 

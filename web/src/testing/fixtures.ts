@@ -20,25 +20,36 @@ import {
   SituationEntry_Rank,
   SituationSchema,
   TimepointFiringSchema,
+  TimepointFiring_Verdict,
   ToneSchema,
   UnitSchema,
 } from '../gen/aeolis/v1/items_pb';
 import type { Item } from '../gen/aeolis/v1/items_pb';
-import { DictionaryReplySchema, RunStateSchema, TimepointRowSchema } from '../gen/aeolis/v1/run_pb';
+import {
+  DictionaryReplySchema,
+  Landing_Outcome,
+  RunStateSchema,
+  RunState_State,
+  TimepointRowSchema,
+} from '../gen/aeolis/v1/run_pb';
 import { BatchSchema } from '../gen/aeolis/v1/stream_pb';
 import { Dictionary } from '../run/dictionary';
 import { RunStore } from '../run/store';
 import { secondsOfDayOfYear, secondsOfErt } from '../run/time';
 import { ColumnCollector } from '../stream/columns';
+import type { NamedRun } from '../stream/names';
 
 export const ENTRY_SCLK = 1000;
 
-export function aRun(fields: MessageInitShape<typeof RunStateSchema> = {}) {
-  return create(RunStateSchema, {
+export function aRun({
+  state = 'running',
+  outcome = 'running',
+  ...fields
+}: Fields<typeof RunStateSchema, Partial<Pick<NamedRun, 'state' | 'outcome'>>> = {}): NamedRun {
+  const run = create(RunStateSchema, {
     run: 1n,
     scenario: 'nominal',
     venue: 'rehearsal',
-    state: 'running',
     pace: 1,
     entrySclk: ENTRY_SCLK,
     startSclk: 0,
@@ -46,12 +57,17 @@ export function aRun(fields: MessageInitShape<typeof RunStateSchema> = {}) {
       sclk: 900,
       seenSclk: 900,
       eS: -100,
-      ert: '2012-219T05:00:00.0',
-      scet: '2012-219T05:00:00.0',
+      ertUs: ertUs('2012-219T05:00:00.0'),
+      scetUs: ertUs('2012-219T05:00:00.0'),
     }),
     ...fields,
   });
+  return { ...run, state, outcome };
 }
+
+/** The run as in an answer of the server. */
+export const wireRun = (run: NamedRun) =>
+  create(RunStateSchema, { ...run, state: RunState_State[run.state], outcome: Landing_Outcome[run.outcome] });
 
 export const aDictionary = new Dictionary(
   create(DictionaryReplySchema, {
@@ -179,12 +195,15 @@ export const tone = ({
     },
     ert,
   );
-export const firing = (fields: MessageInitShape<typeof TimepointFiringSchema>) =>
+export const firing = ({
+  verdict = 'completed',
+  ...fields
+}: Fields<typeof TimepointFiringSchema, { verdict?: keyof typeof TimepointFiring_Verdict }>) =>
   item({
     case: 'timepoint',
     value: create(TimepointFiringSchema, {
       source: 1,
-      verdict: 'completed',
+      verdict: TimepointFiring_Verdict[verdict],
       triggeredSclk: fields.firedSclk ?? 0,
       ...fields,
     }),

@@ -4,6 +4,7 @@
 import type { Explanation } from '../gen/aeolis/v1/items_pb';
 import type { TimepointRow } from '../gen/aeolis/v1/run_pb';
 import type { RunStore } from '../run/store';
+import type { NamedFiring } from '../stream/names';
 
 /** Times in SCLK. */
 export interface Heard {
@@ -12,7 +13,7 @@ export interface Heard {
   triggered_sclk: number;
   fired_sclk: number;
   /** Flight's verdict; '' for a tone, which reports only the triggering. */
-  verdict: string;
+  verdict: NamedFiring['verdict'] | '';
 }
 
 export const BELIEVED = 0.5; // chosen: a tone likelier than all others together

@@ -5,7 +5,7 @@ import { afterEach, describe, expect, it } from 'vitest';
 import { TimepointListSchema } from '../gen/aeolis/v1/run_pb';
 import { pastRange, store, withRecording } from '../run/shown';
 import { ColumnCollector } from '../stream/columns';
-import { aBatch, aRun, aStore, event, firing, stage, tone } from '../testing/fixtures';
+import { aBatch, aRun, aStore, ertUs, event, firing, stage, tone } from '../testing/fixtures';
 import { TimelinePace, timelineAnswer, timelineQuestion } from './asked';
 import type { TimelineQuestion } from './asked';
 import { moved, predicted, predictedAsOf, predictionsOf } from './now';
@@ -16,8 +16,8 @@ const at = (e_s: number) =>
       sclk: 1000 + e_s,
       seenSclk: 1000 + e_s,
       eS: e_s,
-      ert: '2012-219T05:00:00.0',
-      scet: '2012-219T05:00:00.0',
+      ertUs: ertUs('2012-219T05:00:00.0'),
+      scetUs: ertUs('2012-219T05:00:00.0'),
     },
   });
 const LIST = create(TimepointListSchema, {

@@ -72,7 +72,8 @@ describe('the timeline', () => {
   it('says what state a timepoint is in, each verdict with its own word', () => {
     const states = (...items: Parameters<typeof aStore>[0] & object) =>
       [0, 1, 2].map((id) => pointDetail(aStore(items), aDictionary, aPlan, id, Infinity)?.state);
-    const vent = (verdict: string) => firing({ timepoint: 0, name: 'coolant_vent', firedSclk: 500, verdict });
+    const vent = (verdict: NonNullable<Parameters<typeof firing>[0]['verdict']>) =>
+      firing({ timepoint: 0, name: 'coolant_vent', firedSclk: 500, verdict });
     expect(states(vent('unverified'))).toEqual(['unverified', 'next', 'undefined']);
     expect([states(vent('refused'))[0], states(vent('verified'))[0], states(vent('no_operation'))[0]]).toEqual([
       'refused',
