@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "aeolis/v1/score.pb.h"
+#include "server/archive/reader.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace aeolis::server {
+
+/// What the score of a finished rehearsal rests on: what was received, and what people did. Nothing of the simulation's
+/// own truth.
+struct ScoreFacts {
+    struct Landed {
+        double e_s = 0.0;
+        std::string words;             ///< flight's own
+        std::optional<double> miss_m;  ///< from the target, by navigation on board; none: not known
+    };
+    v1::AsFlownReport report;  ///< with all commands and notes
+    std::optional<Landed> landed;
+    std::vector<v1::Item> alarms;  ///< changes of alarms and actions on them, in their order
+    std::vector<v1::Intervention> interventions;
+};
+
+/// Worth of a reaction after so many seconds of the run, 0 … 1; none: nobody reacted.
+double promptness(std::optional<double> after_s);
+
+/// The facts in words and the points of each term, by the rule that the answer states.
+v1::Score score_of(const ScoreFacts& facts, const dictionary::Dictionary& dictionary);
+
+inline constexpr std::size_t scored_alarms_max = 200'000;  ///< chosen, some 40 MB: no landing comes near it
+
+/// The score of a run. Fails for a run that is no finished rehearsal, and where it would be made of a part.
+Result<v1::Score> rehearsal_score(archive::Reader& reader, archive::RunId run,
+                                  const dictionary::Dictionary& dictionary);
+
+}  // namespace aeolis::server
