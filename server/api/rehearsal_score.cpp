@@ -366,25 +366,6 @@ class Judge {
     v1::Score score_;
 };
 
-/// The report with all commands and notes, of which it has the first page of each.
-Result<v1::AsFlownReport> whole_report(archive::Reader& reader, archive::RunId run) {
-    auto report = reader.as_flown(run);
-    if (!report) return report;
-    for (auto after = report->commands_next_after(); after != 0;) {
-        auto page = reader.commands(run, {{}, {}, after});
-        if (!page) return page.error();
-        report->mutable_commands()->MergeFrom(page->commands());
-        after = page->next_after();
-    }
-    for (auto after = report->notes_next_after(); after != 0;) {
-        auto page = reader.notes(run, {{}, after});
-        if (!page) return page.error();
-        report->mutable_notes()->MergeFrom(page->notes());
-        after = page->next_after();
-    }
-    return report;
-}
-
 Result<void> add_alarm_items(archive::Reader& reader, archive::RunId run, ScoreFacts& facts) {
     for (archive::Sequence after = 0;;) {
         auto page = reader.alarms(run, after, archive::rows_page_max);
@@ -435,16 +416,33 @@ v1::Score score_of(const ScoreFacts& facts, const dictionary::Dictionary& dictio
     return Judge{facts, dictionary}.score();
 }
 
-Result<v1::Score> rehearsal_score(archive::Reader& reader, archive::RunId run,
+Result<v1::AsFlownReport> whole_report(archive::Reader& reader, archive::RunId run) {
+    auto report = reader.as_flown(run);
+    if (!report) return report;
+    while (report->commands_next_after() != 0) {
+        auto page = reader.commands(run, {{}, {}, report->commands_next_after()});
+        if (!page) return page.error();
+        report->mutable_commands()->MergeFrom(page->commands());
+        report->set_commands_next_after(page->next_after());
+    }
+    while (report->notes_next_after() != 0) {
+        auto page = reader.notes(run, {{}, report->notes_next_after()});
+        if (!page) return page.error();
+        report->mutable_notes()->MergeFrom(page->notes());
+        report->set_notes_next_after(page->next_after());
+    }
+    return report;
+}
+
+bool has_score(const v1::RunState& run) {
+    return run.state() == "finished" && run.venue() != "downlink";
+}
+
+Result<v1::Score> rehearsal_score(archive::Reader& reader, v1::AsFlownReport report,
                                   const dictionary::Dictionary& dictionary) {
-    const auto state = reader.run(run);
-    if (!state) return state.error();
-    if (state->state() != "finished" || state->venue() == "downlink")
-        return Error{fmt::format("run {} has no score: it is no rehearsal that has finished", run.value)};
+    const archive::RunId run{static_cast<std::uint32_t>(report.run().run())};
     ScoreFacts facts;
-    auto report = whole_report(reader, run);
-    if (!report) return report.error();
-    facts.report = std::move(*report);
+    facts.report = std::move(report);
     if (auto done = add_alarm_items(reader, run, facts); !done) return done.error();
     if (auto done = add_interventions(reader, run, facts); !done) return done.error();
     if (auto done = add_landed(reader, run, dictionary, facts); !done) return done.error();

@@ -32,8 +32,13 @@ v1::Score score_of(const ScoreFacts& facts, const dictionary::Dictionary& dictio
 
 inline constexpr std::size_t scored_alarms_max = 200'000;  ///< chosen, some 40 MB: no landing comes near it
 
-/// The score of a run. Fails for a run that is no finished rehearsal, and where it would be made of a part.
-Result<v1::Score> rehearsal_score(archive::Reader& reader, archive::RunId run,
+/// The as-flown report with all commands and notes, of which Reader::as_flown() has the first page of each.
+Result<v1::AsFlownReport> whole_report(archive::Reader& reader, archive::RunId run);
+
+/// Whether a run has a score: it is a rehearsal that has finished.
+bool has_score(const v1::RunState& run);
+/// The score of the run of a whole report, which has one. Fails where it would be made of a part.
+Result<v1::Score> rehearsal_score(archive::Reader& reader, v1::AsFlownReport report,
                                   const dictionary::Dictionary& dictionary);
 
 }  // namespace aeolis::server

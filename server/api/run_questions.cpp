@@ -466,7 +466,13 @@ HttpResponse touchdown_report(const AnswerContext& context, archive::Reader& rea
 }
 
 HttpResponse score(const AnswerContext& context, archive::Reader& reader, archive::RunId run, const QueryText&) {
-    return answer(rehearsal_score(reader, run, context.dictionary));
+    const auto state = reader.run(run);
+    if (!state) return error_response(400, state.error());
+    if (!has_score(*state))  // before the report is made, which takes long
+        return error_response(400, fmt::format("run {} has no score: it is no rehearsal that has finished", run.value));
+    auto report = whole_report(reader, run);
+    if (!report) return error_response(400, report.error());
+    return answer(rehearsal_score(reader, std::move(*report), context.dictionary));
 }
 
 HttpResponse recording(const AnswerContext&, archive::Reader& reader, archive::RunId run, const QueryText&) {

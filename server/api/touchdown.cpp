@@ -19,17 +19,6 @@ namespace {
 using Step = v1::TouchdownStep;
 using Report = v1::TouchdownReport;
 
-// The names by which a touchdown is told. A dictionary without them has no touchdown.
-constexpr std::string_view touchdown_timepoint = "touchdown", touchdown_flag = "touchdown_declared",
-                           touchdown_live = "edl_phase";
-constexpr std::array<std::string_view, 3> position_channels{"nav_position_x_m", "nav_position_y_m", "nav_position_z_m"};
-struct FigureChannel {
-    std::string_view name, channel;
-};
-constexpr std::array figure_channels{FigureChannel{"down", "descent_rate_mps"},
-                                     FigureChannel{"across", "horizontal_speed_mps"},
-                                     FigureChannel{"propellant left", "propellant_kg"}};
-
 void add_step(Report& report, std::string_view name, Step::State state, std::string words,
               std::optional<Sclk> since = {}) {
     auto& step = *report.add_steps();
@@ -177,11 +166,11 @@ class FactsReader {
         const Sclk touchdown{report.sclk()};
         std::map<std::string, archive::ChannelValue> then;
         std::vector<std::string_view> names{position_channels.begin(), position_channels.end()};
-        for (const auto& each : figure_channels) names.push_back(each.channel);
+        for (const auto& each : touchdown_channels) names.push_back(each.channel);
         const auto done = each(names, {touchdown.seconds - touchdown_close_s, touchdown.seconds},
                                [&](const auto& name, const auto& sample) { then[name] = sample; });
         if (!done) return done;
-        for (const auto& [name, channel] : figure_channels) {
+        for (const auto& [name, channel] : touchdown_channels) {
             auto& figure = *report.add_figures();
             figure.set_name(std::string{name});
             figure.set_channel(std::string{channel});
@@ -220,8 +209,8 @@ class FactsReader {
                 std::ranges::find_if(state.solution(), [&](const auto& each) { return each.name() == name; });
             return found == state.solution().end() ? std::optional<double>{} : std::optional{found->value()};
         };
-        const auto latitude = target("target_latitude_deg"), longitude = target("target_longitude_deg"),
-                   radius = target("target_radius_m");
+        const auto latitude = target(target_arguments[0]), longitude = target(target_arguments[1]),
+                   radius = target(target_arguments[2]);
         if (!latitude || !longitude || !radius) return report.set_place_unknown("no target in the ground's solution");
         std::array<double, 3> position{};
         for (std::size_t i = 0; i < position.size(); ++i) {

@@ -16,7 +16,21 @@
 // not published: chosen here.
 namespace aeolis::server {
 
-inline constexpr std::string_view touchdown_event = "TOUCHDOWN";
+// The names of the mission by which a touchdown is told. A dictionary without them has no touchdown.
+inline constexpr std::string_view touchdown_timepoint = "touchdown", touchdown_event = "TOUCHDOWN",
+                                  touchdown_flag = "touchdown_declared", touchdown_live = "edl_phase";
+inline constexpr std::array<std::string_view, 3> position_channels{"nav_position_x_m", "nav_position_y_m",
+                                                                   "nav_position_z_m"};
+/// Of the ground's solution: latitude, longitude, radius.
+inline constexpr std::array<std::string_view, 3> target_arguments{"target_latitude_deg", "target_longitude_deg",
+                                                                  "target_radius_m"};
+struct TouchdownChannel {
+    std::string_view figure, channel;
+};
+inline constexpr std::array touchdown_channels{TouchdownChannel{"down", "descent_rate_mps"},
+                                               TouchdownChannel{"across", "horizontal_speed_mps"},
+                                               TouchdownChannel{"propellant left", "propellant_kg"}};
+
 inline constexpr double touchdown_uhf_s = 10.0;   ///< chosen: half of what is planned
 inline constexpr double touchdown_gap_s = 3.0;    ///< chosen: the channel that is looked at comes each second
 inline constexpr double touchdown_close_s = 2.0;  ///< chosen: an older sample is not the value at the touchdown

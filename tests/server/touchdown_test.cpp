@@ -4,6 +4,9 @@
 #include "server/pipeline/pipeline.hpp"
 #include "tests/server/small_mission.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/shipped_dictionary.hpp"
+
+#include <algorithm>
 
 namespace server_touchdown_test {
 
@@ -125,6 +128,23 @@ TEST_CASE("a place over ground is east and north of the target, and in the ellip
     ellipse.set_azimuth_deg(0.0);
     CHECK(inside(0.0, 9'999.0));
     CHECK_FALSE(inside(9'999.0, 0.0));
+}
+
+TEST_CASE("the names by which a touchdown is told are words of the shipped dictionary", "[touchdown]") {
+    const auto& shipped = tests::shipped_dictionary();
+    std::vector<std::string_view> channels{server::touchdown_flag, server::touchdown_live};
+    channels.insert(channels.end(), server::position_channels.begin(), server::position_channels.end());
+    for (const auto& each : server::touchdown_channels) channels.push_back(each.channel);
+    for (const auto name : channels) {
+        INFO(name);
+        CHECK(shipped.channel(name) != nullptr);
+    }
+    const auto has = [](const auto& all, std::string_view name) {
+        return std::ranges::any_of(all, [&](const auto& each) { return each.name == name; });
+    };
+    CHECK(has(shipped.events, server::touchdown_event));
+    CHECK(has(shipped.timeline, server::touchdown_timepoint));
+    for (const auto name : server::target_arguments) CHECK(has(shipped.command("EDL_SET_PARAMETERS")->arguments, name));
 }
 
 TEST_CASE("the touchdown of a past is what was received by then, and its figures are those just before it",
