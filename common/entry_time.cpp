@@ -9,18 +9,46 @@
 
 namespace aeolis {
 
-std::string from_entry_text(double e_s) {
-    constexpr double half_a_tick_s = seconds_per_tick / 2.0;  // an instant just before a second is that second
-    const auto whole = static_cast<std::int64_t>(std::floor(e_s + half_a_tick_s));
-    const std::int64_t all = whole < 0 ? -whole : whole;
+namespace {
+
+/// "E+4:58" of whole seconds from entry.
+std::string clock_text(bool before, std::int64_t all) {
     const int hours = static_cast<int>(all / 3600), minutes = static_cast<int>(all / 60 % 60),
               seconds = static_cast<int>(all % 60);
     char buffer[40];
     if (hours > 0)
-        std::snprintf(buffer, sizeof buffer, "E%s%d:%02d:%02d", whole < 0 ? "−" : "+", hours, minutes, seconds);
+        std::snprintf(buffer, sizeof buffer, "E%s%d:%02d:%02d", before ? "−" : "+", hours, minutes, seconds);
     else
-        std::snprintf(buffer, sizeof buffer, "E%s%d:%02d", whole < 0 ? "−" : "+", minutes, seconds);
+        std::snprintf(buffer, sizeof buffer, "E%s%d:%02d", before ? "−" : "+", minutes, seconds);
     return buffer;
+}
+
+}  // namespace
+
+std::string from_entry_text(double e_s) {
+    constexpr double half_a_tick_s = seconds_per_tick / 2.0;  // an instant just before a second is that second
+    const auto whole = static_cast<std::int64_t>(std::floor(e_s + half_a_tick_s));
+    return clock_text(whole < 0, whole < 0 ? -whole : whole);
+}
+
+std::string from_entry_tenths_text(double e_s) {
+    const auto tenths = static_cast<std::int64_t>(std::floor(e_s * 10.0 + 0.5));
+    const std::int64_t all = tenths < 0 ? -tenths : tenths;
+    return clock_text(tenths < 0, all / 10) + "." + std::to_string(all % 10);
+}
+
+std::string span_text(double span_s) {
+    const double all_s = std::abs(span_s);
+    const auto whole = static_cast<std::int64_t>(all_s);
+    char buffer[40];
+    if (all_s < 60.0)
+        std::snprintf(buffer, sizeof buffer, "%.1f s", all_s);
+    else if (whole < 3600)
+        std::snprintf(buffer, sizeof buffer, "%d m %02d s", static_cast<int>(whole / 60), static_cast<int>(whole % 60));
+    else
+        std::snprintf(buffer, sizeof buffer, "%d h %02d m", static_cast<int>(whole / 3600),
+                      static_cast<int>(whole / 60 % 60));
+    return (span_s < 0.0 ? "−" : "") + std::string{buffer};
 }
 
 }  // namespace aeolis

@@ -67,22 +67,23 @@ std::string context_text(const dictionary::Dictionary& dictionary,
     return text;
 }
 
+const dictionary::ContextAlarms* context_in_force(const dictionary::Alarms& alarms,
+                                                  const std::vector<std::optional<double>>& latest) {
+    const auto holds = [&](const dictionary::Precondition& condition) {
+        const auto& value = latest[condition.channel.value];
+        return value && condition.holds(*value);
+    };
+    const auto found = std::ranges::find_if(alarms.contexts,
+                                            [&](const auto& each) { return std::ranges::all_of(each.context, holds); });
+    return found == alarms.contexts.end() ? nullptr : &*found;
+}
+
 bool latches(const dictionary::Alarms& alarms) {
     return alarms.latches || std::ranges::any_of(alarms.contexts, [](const auto& each) { return each.alarms.latches; });
 }
 
 AlarmMonitor::AlarmMonitor(const dictionary::Dictionary& dictionary)
     : dictionary_(dictionary), states_(dictionary.channels.size()), latest_(dictionary.channels.size()) {}
-
-const dictionary::ContextAlarms* AlarmMonitor::context_of(const dictionary::Alarms& alarms) const {
-    const auto holds = [this](const dictionary::Precondition& condition) {
-        const auto& latest = latest_[condition.channel.value];
-        return latest && condition.holds(*latest);
-    };
-    const auto found = std::ranges::find_if(alarms.contexts,
-                                            [&](const auto& each) { return std::ranges::all_of(each.context, holds); });
-    return found == alarms.contexts.end() ? nullptr : &*found;
-}
 
 void AlarmMonitor::sample(ChannelId channel, double value, Sclk sclk, std::vector<AlarmChange>& out) {
     AEOLIS_CHECK(channel.value < states_.size());
@@ -91,7 +92,7 @@ void AlarmMonitor::sample(ChannelId channel, double value, Sclk sclk, std::vecto
     if (type.alarms.ranges.empty() && type.alarms.values.empty() && type.alarms.contexts.empty()) return;
 
     State& state = states_[channel.value];
-    const auto* const context = context_of(type.alarms);
+    const auto* const context = context_in_force(type.alarms, latest_);
     if (context != std::exchange(state.context, context))
         for (Level& level : state.levels) level.violations = level.conformances = 0;
     const dictionary::Alarms& alarms = context != nullptr ? context->alarms : type.alarms;

@@ -23,6 +23,9 @@ const char* name_of(dictionary::Severity severity);
 /// "sky_crane" for a condition on one state of one channel; else the conditions in words.
 std::string context_text(const dictionary::Dictionary& dictionary,
                          const std::vector<dictionary::Precondition>& context);
+/// The first context that holds by the latest values, by channel; null: none, so that the limits without a context hold.
+const dictionary::ContextAlarms* context_in_force(const dictionary::Alarms& alarms,
+                                                  const std::vector<std::optional<double>>& latest);
 /// Whether an alarm of the channel, in any context, latches until it is reset.
 bool latches(const dictionary::Alarms& alarms);
 
@@ -56,7 +59,6 @@ class AlarmMonitor {
         const dictionary::ContextAlarms* context = nullptr;  ///< none: the default limits
         dictionary::Severity now = dictionary::Severity::none;
     };
-    const dictionary::ContextAlarms* context_of(const dictionary::Alarms& alarms) const;
     const dictionary::Dictionary& dictionary_;
     std::vector<State> states_;
     std::vector<std::optional<double>> latest_;  ///< by channel

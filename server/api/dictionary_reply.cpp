@@ -40,18 +40,6 @@ const char* name_of(dictionary::ToneSet set) {
     return "spare";
 }
 
-void add_limits(const dictionary::Alarms& alarms, const std::string& context, v1::DictionaryChannel& added) {
-    for (const auto& range : alarms.ranges) {
-        auto& limit = *added.add_limits();
-        limit.set_severity(telemetry::name_of(range.severity));
-        if (range.below) limit.set_below(*range.below);
-        if (range.above) limit.set_above(*range.above);
-        limit.set_at_below(range.at_below);
-        limit.set_at_above(range.at_above);
-        limit.set_context(context);
-    }
-}
-
 void add_channel(const dictionary::Dictionary& dictionary, const dictionary::Channel& channel,
                  const dictionary::Packet* packet, v1::DictionaryReply& reply) {
     auto& added = *reply.add_channels();
@@ -62,9 +50,9 @@ void add_channel(const dictionary::Dictionary& dictionary, const dictionary::Cha
     added.set_text(channel.text);
     added.set_needs_text(needs_text(channel.type));
     add_labels(channel.type, *added.mutable_labels());
-    add_limits(channel.type.alarms, "", added);
+    add_limits(channel.type.alarms, "", *added.mutable_limits());
     for (const auto& [context, alarms] : channel.type.alarms.contexts)
-        add_limits(alarms, telemetry::context_text(dictionary, context), added);
+        add_limits(alarms, telemetry::context_text(dictionary, context), *added.mutable_limits());
     if (packet == nullptr) return;
     added.set_packet(packet->name);
     added.set_expected_rate_hz(packet->expected_rate_hz.value_or(0.0));
@@ -102,6 +90,19 @@ void add_command(const dictionary::Dictionary& dictionary, const dictionary::Com
 }
 
 }  // namespace
+
+void add_limits(const dictionary::Alarms& alarms, const std::string& context,
+                google::protobuf::RepeatedPtrField<v1::AlarmLimit>& limits) {
+    for (const auto& range : alarms.ranges) {
+        auto& limit = *limits.Add();
+        limit.set_severity(telemetry::name_of(range.severity));
+        if (range.below) limit.set_below(*range.below);
+        if (range.above) limit.set_above(*range.above);
+        limit.set_at_below(range.at_below);
+        limit.set_at_above(range.at_above);
+        limit.set_context(context);
+    }
+}
 
 v1::DictionaryReply dictionary_reply(const dictionary::Dictionary& dictionary) {
     v1::DictionaryReply reply;

@@ -3,12 +3,15 @@
 
 #include "commands/preconditions.hpp"
 #include "commands/timeline_change.hpp"
+#include "server/api/limits_in_force.hpp"
 #include "server/api/list_response.hpp"
 #include "server/api/query_text.hpp"
+#include "server/api/rehearsal_score.hpp"
 #include "server/api/series_text.hpp"
 #include "server/api/state_at.hpp"
 #include "server/api/stream_hub.hpp"
 #include "server/api/time_texts.hpp"
+#include "server/api/touchdown.hpp"
 #include "server/archive/items.hpp"
 #include "server/base/csv_text.hpp"
 #include "server/base/json.hpp"
@@ -396,18 +399,25 @@ Result<std::optional<dictionary::OffsetChange>> change_of(const dictionary::Dict
     return commands::offset_change(dictionary, *name, arguments);
 }
 
+/// Whether what only the recording brought counts.
+Result<bool> recorded_of(const QueryText& query) {
+    static constexpr std::array<std::string_view, 2> words{"true", "false"};
+    const auto word = query.one_of("recorded", words);
+    if (!word) return word.error();
+    return *word == "true";
+}
+
 HttpResponse timepoints(const AnswerContext& context, archive::Reader& reader, archive::RunId run,
                         const QueryText& query) {
     const auto at = instant_of(query, "at", reader, run);
     if (!at) return error_response(400, at.error());
-    static constexpr std::array<std::string_view, 2> recorded_words{"true", "false"};
-    const auto recorded = query.one_of("recorded", recorded_words);
+    const auto recorded = recorded_of(query);
     if (!recorded) return error_response(400, recorded.error());
     const auto change = change_of(context.dictionary, query);
     if (!change) return error_response(400, change.error());
     return answer_rows(
         {reader, run, query},
-        reader.timepoints(run, {.at = *at, .now = context.now, .recorded = *recorded == "true", .change = *change}),
+        reader.timepoints(run, {.at = *at, .now = context.now, .recorded = *recorded, .change = *change}),
         {"timepoints"});
 }
 
@@ -438,6 +448,31 @@ HttpResponse preconditions(const AnswerContext& context, archive::Reader& reader
         told.set_state(commands::name_of(condition.state));
     }
     return answer(Result<v1::PreconditionList>{std::move(list)});
+}
+
+HttpResponse limits(const AnswerContext& context, archive::Reader& reader, archive::RunId run, const QueryText& query) {
+    const auto recorded = recorded_of(query);
+    if (!recorded) return error_response(400, recorded.error());
+    return answer(limits_in_force(reader, run, context.dictionary, *recorded));
+}
+
+HttpResponse touchdown_report(const AnswerContext& context, archive::Reader& reader, archive::RunId run,
+                              const QueryText& query) {
+    const auto at = instant_of(query, "at", reader, run);
+    if (!at) return error_response(400, at.error());
+    const auto recorded = recorded_of(query);
+    if (!recorded) return error_response(400, recorded.error());
+    return answer(touchdown(reader, run, context.dictionary, *at, context.now, *recorded));
+}
+
+HttpResponse score(const AnswerContext& context, archive::Reader& reader, archive::RunId run, const QueryText&) {
+    const auto state = reader.run(run);
+    if (!state) return error_response(400, state.error());
+    if (!has_score(*state))  // before the report is made, which takes long
+        return error_response(400, fmt::format("run {} has no score: it is no rehearsal that has finished", run.value));
+    auto report = whole_report(reader, run);
+    if (!report) return error_response(400, report.error());
+    return answer(rehearsal_score(reader, std::move(*report), context.dictionary));
 }
 
 HttpResponse recording(const AnswerContext&, archive::Reader& reader, archive::RunId run, const QueryText&) {
@@ -519,9 +554,12 @@ const std::array questions{
              {"decision", "text", "from", "to", "after", "limit", "order", "duplicates", "format"},
              list_formats,
              explanations},
+    RunRoute{"limits", {"recorded"}, {}, limits},
+    RunRoute{"touchdown", {"at", "recorded"}, {}, touchdown_report},
     RunRoute{"recording", {}, {}, recording},
     RunRoute{"proof", {"format"}, report_formats, proof},
     RunRoute{"report", {"format"}, report_formats, report},
+    RunRoute{"score", {}, {}, score},
     RunRoute{"state", {"at"}, {}, state},
 };
 

@@ -246,6 +246,18 @@ void write(const dictionary::TimelinePrediction& prediction, const dictionary::D
         list.set_begin_by_e_s(*prediction.latest_begin_e_s - margin->default_value);
 }
 
+/// Writes the times without those that moved to now because they are overdue.
+void write_expected(const dictionary::Dictionary& dictionary, dictionary::TimelineKnowledge known,
+                    v1::TimepointList& list) {
+    known.now_e_s.reset();
+    const auto expected = predict(dictionary, known);
+    for (std::size_t i = 0; i < expected.timepoints.size(); ++i) {
+        auto& row = *list.mutable_timepoints(static_cast<int>(i));
+        const auto& e_s = expected.timepoints[i].e_s;
+        if (e_s && row.has_predicted_e_s()) row.set_expected_e_s(*e_s);
+    }
+}
+
 /// Writes the timepoints whose times differ with the change.
 void write_moved(const dictionary::TimelinePrediction& with_change, const KnownFirings& firings,
                  v1::TimepointList& list) {
@@ -324,6 +336,7 @@ Result<v1::TimepointList> Reader::timepoints(RunId run, const TimepointQuery& qu
         known.now_e_s = sclk_at_ert(*state, *query.now).seconds - entry_s;
     if (known.now_e_s) list.set_known_at_e_s(*known.now_e_s);
     write(predict(dictionary, known), dictionary, list);
+    write_expected(dictionary, known, list);
     if (query.change) {
         known.changes.push_back(*query.change);
         list.set_command_moves(true);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "server/api/rehearsal_score.hpp"
 #include "server/api/run_questions.hpp"
 #include "server/api/time_texts.hpp"
 #include "server/archive/reader.hpp"
@@ -111,24 +112,13 @@ int print_explanations(archive::Reader& reader, archive::RunId run) {
     return 0;
 }
 
-/// Adds the commands and notes that the report has no room for.
-Result<void> complete(archive::Reader& reader, archive::RunId run, v1::AsFlownReport& report) {
-    while (report.commands_next_after() != 0) {
-        archive::CommandQuery query;
-        query.after = report.commands_next_after();
-        auto page = reader.commands(run, query);
-        if (!page) return page.error();
-        report.mutable_commands()->MergeFrom(page->commands());
-        report.set_commands_next_after(page->next_after());
-    }
-    while (report.notes_next_after() != 0) {
-        archive::NoteQuery query;
-        query.after = report.notes_next_after();
-        auto page = reader.notes(run, query);
-        if (!page) return page.error();
-        report.mutable_notes()->MergeFrom(page->notes());
-        report.set_notes_next_after(page->next_after());
-    }
+Result<void> print_score(archive::Reader& reader, const v1::AsFlownReport& report,
+                         const dictionary::Dictionary& dictionary) {
+    const auto score = rehearsal_score(reader, report, dictionary);
+    if (!score) return score.error();
+    fmt::print("\nScore {:.0f} of 100\n", score->sum());
+    for (const auto& term : score->terms())
+        fmt::print("  {:<10} {:>4.1f} of {:>2.0f}  {}\n", term.name(), term.points(), term.worth(), term.why());
     return {};
 }
 
@@ -141,9 +131,8 @@ int report(const ReportOptions& options) {
     if (!reader) return failed(reader.error().message);
     const archive::RunId number{options.of.run.value_or(0)};
     if (options.explanations) return print_explanations(*reader, number);
-    auto report = reader->as_flown(number);
+    auto report = whole_report(*reader, number);
     if (!report) return failed(fmt::format("{}: {}", options.of.archive.string(), report.error().message));
-    if (auto done = complete(*reader, number, *report); !done) return failed(done.error().message);
     write_time_texts(*report);
     if (options.json) {
         fmt::print("{}\n", to_json(*report));
@@ -168,7 +157,9 @@ int report(const ReportOptions& options) {
                        last.evidence());
         }
     print_notes(*report);
-    return 0;
+    if (!has_score(run)) return 0;
+    const auto scored = print_score(*reader, *report, recorded->dictionary);
+    return scored ? 0 : failed(scored.error().message);
 }
 
 }  // namespace
@@ -177,7 +168,7 @@ void add_report_command(CLI::App& program, int& exit_code) {
     const auto options = std::make_shared<ReportOptions>();
     auto& command = *program.add_subcommand(
         "report", "prints a run as it was flown: each timepoint and event by plan, tone, live telemetry and "
-                  "recording, the silences, and the proof");
+                  "recording, the silences, the proof, and the score of a rehearsal");
     add_archive_file(command, options->of.archive);
     command.add_option("--dictionary", options->of.shared.dictionary, "directory of the mission's dictionary")
         ->capture_default_str();

@@ -21,4 +21,20 @@ TEST_CASE("a time from entry has minutes and seconds, hours only from the first 
     CHECK(from_entry_text(-21600.0) == "E−6:00:00");
 }
 
+TEST_CASE("a time from entry with tenths is rounded to them", "[time]") {
+    CHECK(from_entry_tenths_text(0.0) == "E+0:00.0");
+    CHECK(from_entry_tenths_text(430.04) == "E+7:10.0");
+    CHECK(from_entry_tenths_text(59.96) == "E+1:00.0");
+    CHECK(from_entry_tenths_text(-0.3) == "E−0:00.3");
+    CHECK(from_entry_tenths_text(3723.25) == "E+1:02:03.3");
+}
+
+TEST_CASE("a span of time has tenths up to a minute, seconds up to an hour, then minutes", "[time]") {
+    CHECK(span_text(9.0) == "9.0 s");
+    CHECK(span_text(90.0) == "1 m 30 s");
+    CHECK(span_text(3599.9) == "59 m 59 s");
+    CHECK(span_text(7500.0) == "2 h 05 m");
+    CHECK(span_text(-5.0) == "−5.0 s");
+}
+
 }  // namespace common_entry_time_test

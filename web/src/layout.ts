@@ -128,10 +128,8 @@ export const LAYOUT = {
     },
   ],
 
-  /** Sources for the landing in the review: flight's event, and the position by navigation on board. */
+  /** The landing's target, by arguments of the ground's solution. */
   landing: {
-    event: 'TOUCHDOWN',
-    position: ['nav_position_x_m', 'nav_position_y_m', 'nav_position_z_m'],
     target: { latitude_deg: 'target_latitude_deg', longitude_deg: 'target_longitude_deg', radius_m: 'target_radius_m' },
   },
   /** The timepoint at which the descent picture ends. */

@@ -334,6 +334,33 @@ TEST_CASE("a timepoint is predicted from what was known, or says why it is not",
     CHECK_FALSE(list->command_moves());
 }
 
+TEST_CASE("a timepoint whose anchor is overdue is predicted for now, and expected when the design has it",
+          "[reader][timeline]") {
+    auto dictionary = small_dictionary();
+    dictionary.anchors.push_back({AnchorId{2}, "parachute", AnchorId{0}, {}, ""});
+    dictionary.predicted_anchor_e_s = {{}, 0.0, 256.0};
+    auto& deploy = dictionary.timeline[2];
+    deploy.anchor = AnchorId{2};
+    deploy.desired_offset_s = 0.0;
+    deploy.minimum_offset_s = 0.0;
+    const TemporaryFolder folder;
+    auto archive = archive::Archive::open(folder / "a.db");
+    REQUIRE(archive.ok());
+    archive::RunStart start;
+    start.entry = Sclk{1000.0};
+    pipeline::Pipeline pipeline{*archive, dictionary};
+    REQUIRE(pipeline.begin(start).ok());
+    auto reader = Reader::open(folder / "a.db", dictionary);
+    REQUIRE(reader.ok());
+    const auto deployed = [&](double e_s) {
+        const auto list = reader->timepoints(RunId{1}, {.at = Sclk{1000.0 + e_s}});
+        REQUIRE(list.ok());
+        return std::pair{list->timepoints(2).predicted_e_s(), list->timepoints(2).expected_e_s()};
+    };
+    CHECK(deployed(200.0) == std::pair{256.0, 256.0});
+    CHECK(deployed(300.0) == std::pair{300.0, 256.0});
+}
+
 TEST_CASE("a timeline of the past knows nothing that came later, or that only the recording told",
           "[reader][timeline]") {
     Recorded run(true);

@@ -6,7 +6,7 @@ import type { Status } from '../design/status';
 import { LAYOUT } from '../layout';
 import type { Dictionary } from '../run/dictionary';
 import { valueText } from '../run/dictionary';
-import { allLimitsText, isWorst, limitsIn, limitsText } from '../run/limits';
+import { allLimitsText, isWorst, limitsAt, limitsText } from '../run/limits';
 import type { RunStore, Sample } from '../run/store';
 import { duration } from '../run/time';
 import { whoseAt } from '../run/whose';
@@ -56,20 +56,16 @@ export function channelsShown(
   return { channels: matching.slice(0, ROWS_SHOWN), total: matching.length };
 }
 
-/**
- * The row of one channel. `context`: the state of EDL at `cutoff`. `lost`: there is no connection, so the clocks and
- * ages stand still.
- */
+/** The row of one channel. `lost`: there is no connection, so the clocks and ages stand still. */
 export function channelRow(
   store: RunStore | undefined,
   channel: DictionaryChannel,
-  context: string | undefined,
   cutoff: number,
   lost = false,
 ): ChannelRow {
   const sample = store?.latest(channel.id, cutoff);
   const age = sample && store ? ageOf(store, sample, cutoff) : undefined;
-  const limits = limitsIn(channel, context);
+  const limits = limitsAt(channel, cutoff)?.limits;
   return {
     id: channel.id,
     name: channel.name,
@@ -81,7 +77,7 @@ export function channelRow(
     age: age === undefined ? '' : age < 0.05 ? 'now' : duration(age),
     timed: sample?.byReception ? 'its packets hold no time: samples stand at their reception' : '',
     look: lookOf(store, channel, sample?.value, age, cutoff, lost),
-    limits: limitsText(limits),
+    limits: limits ? limitsText(limits) : 'not known yet',
     allLimits: allLimitsText(channel),
     recorded: sample?.recorded ?? false,
   };

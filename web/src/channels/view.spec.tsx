@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 import { describe, expect, it } from 'vitest';
-import { aDictionary, aRun, aStore, alarm, samples } from '../testing/fixtures';
-import { contextAt } from '../run/limits';
+import { limitsAnswer } from '../run/limits';
+import { store } from '../run/shown';
+import { aDictionary, aRun, aStore, alarm, samples, speedLimits } from '../testing/fixtures';
 import { channelRow, channelsShown, staleWords } from './model';
 
 function row(store: ReturnType<typeof aStore>, name: string, cutoff = Infinity, lost = false) {
   const channel = aDictionary.pick([name]);
-  return channel && channelRow(store, channel, contextAt(store, aDictionary, cutoff), cutoff, lost);
+  return channel && channelRow(store, channel, cutoff, lost);
 }
 
 describe('channels', () => {
@@ -68,12 +69,21 @@ describe('channels', () => {
       'good',
     ]);
   });
-  it('say in a past view the limits of its state of EDL', () => {
-    const store = aStore([samples(800, { 1: 4, 4: 100 }), samples(850, { 1: 9, 4: 100 })]);
-    expect([800, 850].map((cutoff) => row(store, 'speed_mps', cutoff)?.limits)).toEqual([
+  it('say in a past view the limits that the server says held then, and nothing of its own before that', () => {
+    const run = aStore();
+    store.value = run;
+    expect([row(run, 'altitude_m')?.limits, row(run, 'speed_mps')?.limits]).toEqual([
+      'warning > 200000',
+      'not known yet',
+    ]);
+    limitsAnswer.value = { live: false, answer: speedLimits };
+    expect([799, 800, 850, Infinity].map((cutoff) => row(run, 'speed_mps', cutoff)?.limits)).toEqual([
+      'watch > 6000',
       'watch > 90; distress > 120',
       'watch > 6000',
+      'watch > 6000',
     ]);
+    store.value = undefined;
   });
   it('are found by any of their words', () => {
     expect(channelsShown(aDictionary, 'gnc speed')).toMatchObject({ total: 1, channels: [{ name: 'speed_mps' }] });

@@ -3,9 +3,8 @@ import { computed, signal } from '@preact/signals';
 import { useLayoutEffect, useRef } from 'preact/hooks';
 import { SOURCES, STATUS } from '../design/status';
 import type { DictionaryChannel } from '../gen/aeolis/v1/run_pb';
-import { contextAt } from '../run/limits';
 import { isLost } from '../run/connection';
-import { cutoff, dictionary, runNow, shownRun } from '../run/shown';
+import { cutoff, dictionary, shownRun } from '../run/shown';
 import { watchSight, whenDue } from './due';
 import { channelRow, channelsShown } from './model';
 import './style.css';
@@ -14,11 +13,10 @@ const filter = signal('');
 const shown = computed(() =>
   dictionary.value ? channelsShown(dictionary.value, filter.value) : { channels: [], total: 0 },
 );
-const context = computed(() => contextAt(runNow(), dictionary.value, cutoff.value));
 
 function Row({ channel, place }: { channel: DictionaryChannel; place: number }) {
   whenDue(place);
-  const row = channelRow(shownRun(), channel, context.peek(), cutoff.value, isLost.value);
+  const row = channelRow(shownRun(), channel, cutoff.value, isLost.value);
   return (
     <tr class={`look-${row.look}`} data-testid={`channel-${row.name}`} data-menu={`channel ${row.name}`}>
       <td title={STATUS[row.look].word}>

@@ -12,8 +12,7 @@ import { Series } from '../run/series';
 import { useForTest } from '../run/session';
 import { timepoints } from '../run/shown';
 import { aDictionary, aStore, firing, samples } from '../testing/fixtures';
-import { SPREAD } from './corridor';
-import { LEAST_M, corridorOf, fraction, halfWidth, isClear, pathOf, placeIn, wayOf } from './model';
+import { LEAST_M, fraction, isClear, pathOf, wayOf } from './model';
 import { Descent } from './view';
 
 /** [e_s, altitude, speed] of a made-up descent: fast and high, a brake, a parachute, a landing. */
@@ -32,8 +31,6 @@ function seriesOf(of: 1 | 2): Series {
   );
   return series;
 }
-const PATH = pathOf(seriesOf(1), seriesOf(2), 1000, 430);
-const CORRIDOR = corridorOf(PATH);
 
 describe('the descent picture', () => {
   it('gives the last ten metres as much room as the last hundred kilometres have for each factor of ten', () => {
@@ -41,26 +38,10 @@ describe('the descent picture', () => {
     expect(height(100) - height(10)).toBeCloseTo(height(100000) - height(10000));
     expect([height(0), height(200000)]).toEqual([0, 1]);
   });
-  it('has the corridor along the predicted path down to the touchdown, with few points, as wide as it was measured', () => {
-    expect([PATH[0]?.e_s, PATH.at(-1)?.e_s]).toEqual([-15, 430]);
-    expect([CORRIDOR[0]?.e_s, CORRIDOR.at(-1)?.e_s]).toEqual([-15, 430]);
-    expect(CORRIDOR.length).toBeLessThan(60);
-    for (const point of PATH) expect(placeIn(CORRIDOR, point.altitude_m, point.speed_mps)).not.toBe('above');
-    expect(CORRIDOR[0]?.half_decades).toBe(SPREAD[0]?.half_decades);
-    expect(corridorOf(pathOf(undefined, undefined, 1000, 430))).toEqual([]);
-  });
-  it('calls the prediction itself inside, twice its width to a side above or below', () => {
-    for (const point of CORRIDOR.slice(1)) expect(placeIn(CORRIDOR, point.altitude_m, point.speed_mps)).toBe('inside');
-    const under = CORRIDOR.find((point) => point.altitude_m < 6000);
-    if (!under) throw new Error('no point under the parachute');
-    const off = 10 ** (2 * halfWidth(under));
-    expect(placeIn(CORRIDOR, under.altitude_m, under.speed_mps / off)).toBe('above');
-    expect(placeIn(CORRIDOR, under.altitude_m, under.speed_mps * off)).toBe('below');
-  });
-  it('says nothing where nothing was predicted', () => {
-    expect(placeIn(CORRIDOR, 190000, 5800)).toBeUndefined();
-    expect(placeIn(CORRIDOR, 1, 0.1)).toBeUndefined();
-    expect(placeIn([], 1000, 80)).toBeUndefined();
+  it('has the predicted path from just before entry down to the touchdown, and none without a prediction', () => {
+    const path = pathOf(seriesOf(1), seriesOf(2), 1000, 430);
+    expect([path[0]?.e_s, path.at(-1)?.e_s]).toEqual([-15, 430]);
+    expect(pathOf(undefined, undefined, 1000, 430)).toEqual([]);
   });
   it('lets no way run through words that have another place: however small the words, and dense its points', () => {
     const way = wayOf(Array.from({ length: 4001 }, (_, i) => [i / 10, i / 20] as const)); // from (0, 0) to (400, 200)
@@ -72,7 +53,7 @@ describe('the descent picture', () => {
   });
 });
 
-it('figures that nothing has come for are dim, with their age, and where they were is no verdict; at touchdown they are of then', () => {
+it('figures that nothing has come for are dim, with their age; at touchdown they are of then', () => {
   const root = document.createElement('div');
   const shown = (sclk: number, more: Parameters<typeof aStore>[0] = []) => {
     act(() => {
@@ -84,11 +65,11 @@ it('figures that nothing has come for are dim, with their age, and where they we
       timepoints.value = [create(TimepointRowSchema, { id: 9, name: LAYOUT.landed })];
       render(<Descent />, root);
     });
-    return ['descent-now.stale', 'descent-now [data-testid=descent-stale] dd', 'panel-extra'].map(
+    return ['descent-now.stale', 'descent-now [data-testid=descent-stale] dd'].map(
       (each) => root.querySelector(`.${each}`)?.textContent,
     );
   };
-  expect(shown(899)).toEqual([undefined, undefined, expect.stringMatching(/predicted corridor/)]);
-  expect(shown(859)).toEqual([expect.stringContaining('60.0 km'), '◌ 41 s old', '']);
+  expect(shown(899)).toEqual([undefined, undefined]);
+  expect(shown(859)).toEqual([expect.stringContaining('60.0 km'), '◌ 41 s old']);
   expect(shown(850, [firing({ timepoint: 9, name: LAYOUT.landed, firedSclk: 850 })])[1]).toBeUndefined();
 });

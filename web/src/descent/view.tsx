@@ -6,7 +6,6 @@ import type { Surface } from '../draw/canvas';
 import { LAYOUT } from '../layout';
 import { openedLater } from '../design/opened_later';
 import { Panel } from '../design/panel';
-import { STATUS } from '../design/status';
 import { TYPE } from '../design/type';
 import { staleWords } from '../channels/model';
 import { isLost } from '../run/connection';
@@ -19,8 +18,8 @@ import { predicted } from '../timeline/now';
 import { phaseSteps } from '../phases/model';
 import { GAP_S } from '../plots/model';
 import { isPredicted, predictedAt, predictedEvent, predictedSeries, predictedVersion } from '../prediction/model';
-import { LEAST_M, LEAST_MPS, corridorOf, fraction, halfWidth, isClear, pairs, pathOf, placeIn, wayOf } from './model';
-import type { Box, CorridorPoint, PathPoint } from './model';
+import { LEAST_M, LEAST_MPS, fraction, isClear, pairs, pathOf, wayOf } from './model';
+import type { Box, PathPoint } from './model';
 import './style.css';
 
 const LEFT = 66;
@@ -33,9 +32,9 @@ const FASTEST_MPS = 8000;
 /** The picture ends at touchdown; the later flight of the descent stage is not part of the landing. */
 const lastInstant = (run: RunStore | undefined, end: number) => Math.min(end, landedSclk(run));
 
-/** The predicted path and corridor of the run shown; empty until the prediction is there, and where there is none. */
-let kept: { key: string; path: PathPoint[]; corridor: CorridorPoint[] } = { key: '', path: [], corridor: [] };
-function predictedNow(): typeof kept {
+/** The predicted path of the run shown; empty until the prediction is there, and where there is none. */
+let kept: { key: string; path: PathPoint[] } = { key: '', path: [] };
+function predictedNow(): PathPoint[] {
   const run = shownRun();
   const [altitude, speed] = [LAYOUT.altitude, LAYOUT.speed].map((names) =>
     predictedSeries(dictionary.value?.pick(names)),
@@ -43,9 +42,9 @@ function predictedNow(): typeof kept {
   const key = `${run?.id} ${predictedVersion.value} ${isPredicted()}`;
   if (key !== kept.key) {
     const path = run ? pathOf(altitude, speed, run.entrySclk, predictedEvent(LAYOUT.landed) ?? Infinity) : [];
-    kept = { key, path, corridor: corridorOf(path) };
+    kept = { key, path };
   }
-  return kept;
+  return kept.path;
 }
 
 /** Where the vehicle is expected to be at the instant shown. */
@@ -104,46 +103,26 @@ function drawAxes({ context: c, width, height, colours }: Surface, { x, y }: Sca
   c.fillText('← slower', LEFT, bottom + 31);
 }
 
-/** Draws the corridor first and widest, so that the expected place of the dot is obvious. */
-function drawCorridor({ context: c, width, height, colours }: Surface, { x, y, decade_px }: Scales): void {
-  const { corridor, path } = predictedNow();
-  const middle = corridor.map((point) => [x(point.speed_mps), y(point.altitude_m)] as const);
-  const last = middle[middle.length - 1];
+const PREDICTED_PX = 7; // chosen: seen from across the room, and no width of anything predicted
+
+/** Draws the predicted path first, under everything else. */
+function drawPredicted({ context: c, width, height, colours }: Surface, { x, y }: Scales): void {
+  const path = predictedNow();
+  const last = path.at(-1);
   if (!last) return;
-  const sides: [number, number][][] = [[], []];
-  middle.forEach(([px, py], i) => {
-    const [ax, ay] = middle[Math.max(0, i - 1)] ?? [px, py];
-    const [bx, by] = middle[Math.min(middle.length - 1, i + 1)] ?? [px, py];
-    // The normal to the path in decades: equal widths in decades are not equal in pixels.
-    const [dx, dy] = [(bx - ax) / decade_px[0], (by - ay) / decade_px[1]];
-    const half = halfWidth(corridor[i] as (typeof corridor)[number]) / (Math.hypot(dx, dy) || 1);
-    sides[0]?.push([px - dy * half * decade_px[0], py + dx * half * decade_px[1]]);
-    sides[1]?.unshift([px + dy * half * decade_px[0], py - dx * half * decade_px[1]]);
-  });
+  c.save();
   c.beginPath();
-  for (const [i, [px, py]] of sides.flat().entries()) {
-    if (i === 0) c.moveTo(px, py);
-    else c.lineTo(px, py);
-  }
-  c.closePath();
-  c.fillStyle = colours.ghost;
+  c.rect(LEFT, 0, width - LEFT - RIGHT, height - BOTTOM);
+  c.clip();
+  c.beginPath();
+  for (const point of path) c.lineTo(x(point.speed_mps), y(point.altitude_m));
   c.strokeStyle = colours.ghost;
   c.lineJoin = 'round';
-  c.lineWidth = 6;
-  c.save();
-  const around = new Path2D();
-  around.rect(LEFT, 0, width - LEFT - RIGHT, height - BOTTOM);
-  c.clip(around);
-  c.fill();
+  c.lineWidth = PREDICTED_PX;
   c.stroke();
-  c.restore();
-  c.save();
-  c.clip(around);
   c.strokeStyle = colours.dim;
   c.lineWidth = 1;
   c.setLineDash(PREDICTED_DASH);
-  c.beginPath();
-  for (const point of path) c.lineTo(x(point.speed_mps), y(point.altitude_m));
   c.stroke();
   c.restore();
   // The expected end.
@@ -151,7 +130,7 @@ function drawCorridor({ context: c, width, height, colours }: Surface, { x, y, d
   c.strokeStyle = colours.dim;
   for (const radius of [9, 16]) {
     c.beginPath();
-    c.arc(last[0], last[1], radius, 0, 7);
+    c.arc(x(last.speed_mps), y(last.altitude_m), radius, 0, 7);
     c.stroke();
   }
   c.lineWidth = 1;
@@ -182,14 +161,14 @@ function figures({ context: c, width, height, colours }: Surface): Box[] {
 }
 
 /**
- * Names each phase beside the corridor where there is room: below it, else to its left, never under the figures.
+ * Names each phase beside the predicted path where there is room: below it, else to its left, never under the figures.
  * Returns the boxes of all words.
  */
 function drawPhases(surface: Surface, { x, y }: Scales): Box[] {
   const { context: c, width, height, colours } = surface;
   const taken = figures(surface);
   const words = dictionary.value;
-  const { path } = predictedNow();
+  const path = predictedNow();
   if (!words || path.length === 0) return taken;
   const steps = phaseSteps(shownRun(), words, timepoints.value, cutoff.value, predicted.value);
   c.textBaseline = 'middle';
@@ -245,7 +224,7 @@ function draw(surface: Surface): void {
   }
   const scales = scalesOf(width, height);
   const { x, y } = scales;
-  drawCorridor(surface, scales);
+  drawPredicted(surface, scales);
   drawAxes(surface, scales);
   const taken = drawPhases(surface, scales);
   if (!run) return;
@@ -431,12 +410,6 @@ function moments(
   }
 }
 
-const PLACES = {
-  inside: { status: STATUS.holds, words: 'inside the predicted corridor' },
-  above: { status: STATUS.caution, words: 'above the predicted corridor: higher or slower' },
-  below: { status: STATUS.caution, words: 'below the predicted corridor: lower or faster' },
-} as const;
-
 const Result = openedLater(async () => (await import('../touchdown/view')).Touchdown);
 
 /** The descent, and from touchdown on its result in the same place. */
@@ -467,8 +440,6 @@ function Picture({ choose }: { choose: ComponentChildren }) {
   const inKm = (h ?? 0) >= 10000;
   const whose = whoseWords(run);
   const stale = staleNow(run);
-  const place =
-    stale !== undefined || h === undefined || v === undefined ? undefined : placeIn(predictedNow().corridor, h, v);
   return (
     <Panel
       name="descent"
@@ -481,17 +452,12 @@ function Picture({ choose }: { choose: ComponentChildren }) {
         <>
           {whose !== undefined && <span>at touchdown</span>}
           {choose}
-          {place && (
-            <span class={`status-${PLACES[place].status.token}`} data-testid="descent-place">
-              {PLACES[place].status.shape} {PLACES[place].words}
-            </span>
-          )}
         </>
       }
     >
       <div class="descent-box">
         <Canvas
-          label="Altitude against speed, with the predicted corridor"
+          label="Altitude against speed, with the predicted path"
           draw={draw}
           testId="descent-canvas"
           keyOf={() =>

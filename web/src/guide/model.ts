@@ -195,7 +195,7 @@ export function guideStep(
         ]
       : pace > FAST
         ? [{ key: '−', words: 'to 10× or less, to see it happen' }]
-        : [{ words: 'Watch the dot: it should stay inside the grey corridor.' }];
+        : [{ words: 'Watch the dot come down along the grey line, the predicted path.' }];
   return {
     number: now <= 0 ? 3 : Math.min(GUIDE_STEPS - 1, now + 2),
     title: now <= 0 ? 'Entry is near' : (phases[now]?.title ?? ''),

@@ -114,7 +114,7 @@ describe('the menu of a value', () => {
   it('shows limits and evidence as they are at the instant that is shown', () => {
     const run = aStore([alarm({ channel: 3, severity: 'warning', sclk: 850, limit: '> 200000 m' })], undefined);
     const altitude = aDictionary.pick(['altitude_m'])!;
-    expect(limitLines(run, aDictionary, altitude)).toEqual([
+    expect(limitLines(run, altitude)).toEqual([
       ['now', 'warning > 200000'],
       ['always', 'warning > 200000'],
     ]);

@@ -235,7 +235,7 @@ function Limits({ menu }: { menu: Opened }) {
   const channel = words?.pick([menu.name]);
   return (
     <Box menu={menu} title={`Alarm limits of ${menu.name}${channel?.unit ? `, in ${channel.unit}` : ''}`}>
-      {words && channel && <Facts lines={limitLines(shownRun(), words, channel)} />}
+      {words && channel && <Facts lines={limitLines(shownRun(), channel)} />}
     </Box>
   );
 }

@@ -8,8 +8,7 @@ import { placeWords } from '../packets/model';
 import { ask } from '../run/connection';
 import { cursor } from '../run/cursor';
 import { valueText } from '../run/dictionary';
-import type { Dictionary } from '../run/dictionary';
-import { allLimitsText, contextAt, limitsIn, limitsText } from '../run/limits';
+import { allLimitsText, limitsAt, limitsText } from '../run/limits';
 import { cutoff } from '../run/shown';
 import type { RunStore, Sample } from '../run/store';
 import { dayOfYear, fromEntry, secondsOfErt } from '../run/time';
@@ -72,11 +71,13 @@ export function packetLines(row: PacketRow, channel: string): Lines {
   ];
 }
 
-export function limitLines(run: RunStore | undefined, words: Dictionary, channel: DictionaryChannel): Lines {
-  const context = run && contextAt(run, words, lookedAt(run));
-  const now = limitsIn(channel, context);
+export function limitLines(run: RunStore | undefined, channel: DictionaryChannel): Lines {
+  const now = limitsAt(channel, run ? lookedAt(run) : Infinity);
   return [
-    [`now${context ? `, in ${context.replaceAll('_', ' ')}` : ''}`, now.length > 0 ? limitsText(now) : 'none'],
+    [
+      `now${now?.context ? `, in ${now.context.replaceAll('_', ' ')}` : ''}`,
+      now ? limitsText(now.limits) || 'none' : 'not known yet',
+    ],
     ...allLimitsText(channel)
       .split('\n')
       .map((line): [string, string] => {

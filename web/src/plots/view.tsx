@@ -189,9 +189,9 @@ const namesTaken = new WeakMap<uPlot, NamesTaken>();
  * that it has its name where room is short.
  */
 function alarmBands(plot: uPlot, channel: DictionaryChannel, per: number): void {
-  const [run, words] = [shownRun(), dictionary.value];
+  const run = shownRun();
   const { min: from, max: to } = plot.scales.x ?? {};
-  if (!run || !words || from === undefined || to === undefined) return;
+  if (!run || from === undefined || to === undefined) return;
   const { left, top, width, height } = plot.bbox;
   const [right, bottom] = [left + width, top + height];
   const colours = palette();
@@ -201,8 +201,6 @@ function alarmBands(plot: uPlot, channel: DictionaryChannel, per: number): void 
   const drawn: NamesTaken = []; // the limits' lines
   ctx.save();
   for (const stretch of limitsOver(
-    run,
-    words,
     channel,
     run.entrySclk + from,
     Math.min(run.seenSclk, cutoff.value, run.entrySclk + to),
@@ -226,7 +224,7 @@ function alarmBands(plot: uPlot, channel: DictionaryChannel, per: number): void 
         ctx.fillRect(x1, Math.min(edge, side), x2 - x1, Math.abs(side - edge));
         ctx.globalAlpha = 0.8;
         ctx.fillRect(x1, Math.round(edge), x2 - x1, ratio);
-        const name = `${limit.severity} ${above ? '>' : '<'} ${+(bound / per).toPrecision(4)}${stretch.context && limit.context ? `, ${inWords(stretch.context)}` : ''}`;
+        const name = `${limit.severity} ${above ? '>' : '<'} ${+(bound / per).toPrecision(4)}${stretch.context ? `, ${inWords(stretch.context)}` : ''}`;
         drawn.push([x1, x2, edge]);
         const [over, under] = [edge - 3 * ratio, edge + 11 * ratio];
         named.unshift({ words: name, x: x1, room: x2 - x1, y: above ? [over, under] : [under, over], colour });
@@ -316,7 +314,13 @@ function Plot(properties: Properties) {
       const silences = changes.reduce((all, each) => all + each.length, 0);
       // a present silence grows with the clock, without new samples
       const silent = changes.every((each) => each.at(-1)?.fact.up !== true) ? run?.seenSclk.toFixed(0) : '';
-      const key = `${run?.id} ${silences} ${silent} ${recorded?.version} ${live?.version} ${span.from.toFixed(1)} ${span.to.toFixed(1)} ${cutoff.value} ${width} ${height} ${newShape} ${overVersions(run, over)} ${line ? `${predictedVersion.value} ${line.now_e_s.toFixed(1)}` : ''} ${isPredicted()} ${isDifference} ${predicted.value.length}`;
+      const key = `${run?.id} ${silences} ${silent} ${recorded?.version} ${live?.version} ${span.from.toFixed(1)} ${span.to.toFixed(1)} ${cutoff.value} ${width} ${height} ${newShape} ${overVersions(run, over)} ${line ? `${predictedVersion.value} ${line.now_e_s.toFixed(1)}` : ''} ${isPredicted()} ${isDifference} ${predicted.value.length} ${limitsOver(
+        channel,
+        -Infinity,
+        Infinity,
+      )
+        .map(({ from_sclk }) => from_sclk)
+        .join()}`;
       if (key === shown && traces[0] === recorded && traces[1] === live)
         return cursor.peek() === placed ? undefined : placeCursor;
       shown = key;

@@ -157,42 +157,15 @@ describe('the review', () => {
     act(() => render(<Review />, page));
     return toggled(true);
   };
-  it('is of a run that is over, and waits until the page has all of it', async () => {
+  it('is of a run that is over', async () => {
     expect(await shownFor(aStore())).toBe('none');
-    const over = aStore([], aRun({ state: 'finished', outcome: 'touchdown', lastSeq: 1_000_000n }));
-    expect([await shownFor(over), server.asked.length]).toEqual(['the run is still coming from the archive…', 0]);
-    over.completeThrough = 1_000_000;
-    server.routes['GET /runs/1/alarms'] = { status: 503, json: { error: 'too much waits' } };
-    server.routes['GET /runs/1/interventions'] = { json: {} };
-    expect([await shownFor(over), server.asked.map((each) => each.path)]).toEqual([
-      '✖ too much waits',
-      expect.arrayContaining(['/runs/1/alarms', '/runs/1/interventions']),
-    ]);
+    expect(server.asked).toEqual([]);
   });
-  it('asks for changes of alarms until there are no more, however many pages that takes; of a list that does not go on no score is made, and it says so', async () => {
+  it('has no score until the server gives one, says why, and asks again when it is opened again', async () => {
+    server.routes['GET /runs/1/score'] = { status: 503, json: { error: 'too much waits' } };
     server.routes['GET /runs/1/interventions'] = { json: {} };
-    const pages = 30;
-    const acts = (page: number) => [
-      { ert_us: '397847447000000', alarm_action: { alarm: `battery ${page}`, action: 'shelve', by: 'Ann' } },
-    ];
-    for (let page = 0; page < pages; ++page)
-      server.routes[`GET /runs/1/alarms${page > 0 ? `?after=${page}` : ''}`] = {
-        json: { changes: acts(page), ...(page < pages - 1 && { next_after: String(page + 1) }) },
-      };
-    await shownFor(aStore([], aRun({ state: 'finished', outcome: 'touchdown' })));
-    const asked = () => server.asked.filter((each) => each.path.startsWith('/runs/1/alarms')).map((each) => each.path);
-    expect([asked().length, asked().at(-1)]).toEqual([pages, '/runs/1/alarms?after=29']);
-    server.routes['GET /runs/1/alarms?after=1'] = { json: { changes: acts(1), next_after: '1' } };
-    await toggled(false);
-    expect(await toggled(true)).toBe(
-      '✖ the server’s list of alarms does not go on after 1: no review is made of a part',
-    );
-  });
-  it('has no score without what was broken, says why, and asks again when it is opened again', async () => {
-    server.routes['GET /runs/1/alarms'] = { json: {} };
-    server.routes['GET /runs/1/interventions'] = { status: 503, json: { error: 'too much waits' } };
     expect(await shownFor(aStore([], aRun({ state: 'finished', outcome: 'touchdown' })))).toBe('✖ too much waits');
-    const asked = () => server.asked.filter((each) => each.path === '/runs/1/interventions').length;
+    const asked = () => server.asked.filter((each) => each.path === '/runs/1/score').length;
     expect(asked()).toBe(1);
     await toggled(false);
     await toggled(true);

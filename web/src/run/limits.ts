@@ -1,85 +1,87 @@
 // SPDX-License-Identifier: Apache-2.0
-// Limits by the ground's rule: those of the context in force, else those without a context. A context is a state of
-// EDL.
-import { LAYOUT } from '../layout';
+// The alarm limits in force, as the server tells them. Those of a channel whose limits have no contexts always hold.
 import type { AlarmLimit, DictionaryChannel } from '../gen/aeolis/v1/run_pb';
-import type { Dictionary } from './dictionary';
-import type { RunStore } from './store';
+import { Refused } from './api';
+import { read } from './connection';
+import { asHeard, signalOfRun, store } from './shown';
 
 const WORST: ReadonlySet<string> = new Set(['distress', 'critical', 'severe']);
 
 /** Whether a severity has the colour of alarms; lower ones have that of caution. */
 export const isWorst = (severity: string): boolean => WORST.has(severity);
 
-/** The name of the state of EDL at `sclk`; undefined while unknown. */
-export function contextAt(run: RunStore | undefined, words: Dictionary | undefined, sclk: number): string | undefined {
-  const phase = words?.pick(LAYOUT.phase);
-  const value = phase && run?.latest(phase.id, sclk)?.value;
-  return value === undefined ? undefined : words?.label(phase as DictionaryChannel, value);
+type Limit = Pick<AlarmLimit, 'severity' | 'below' | 'above'>;
+/** In the API's words: no beginning is the beginning of the run, and no end means that they still hold. */
+export interface LimitStretch {
+  from_sclk?: number;
+  to_sclk?: number;
+  context: string;
+  limits: readonly Limit[];
+}
+export interface LimitsAnswer {
+  channels: readonly { id: number; stretches: readonly LimitStretch[] }[];
+  decided_by: readonly number[];
+}
+/** `live`: by live samples alone. */
+export const limitsAnswer = signalOfRun<{ live: boolean; answer: LimitsAnswer } | undefined>(undefined);
+
+let underWay = false;
+let answered = '';
+
+/** Asks for the limits of the run shown if they may have changed: after a new value of a channel that decides. */
+export async function refreshLimits(): Promise<void> {
+  const run = store.value;
+  if (!run || underWay) return;
+  const live = asHeard.peek();
+  const values = limitsAnswer.peek()?.answer.decided_by.map((id) => run.latest(id)?.value) ?? [undefined];
+  const question = [run.id, live, Math.floor(run.run.relayProgress * 20), ...values].join();
+  if (question === answered) return;
+  underWay = true;
+  try {
+    const answer = await read<LimitsAnswer>(`/runs/${run.id}/limits${live ? '?recorded=false' : ''}`);
+    answered = question;
+    if (store.value === run) limitsAnswer.value = { live, answer };
+  } catch (error) {
+    if (error instanceof Refused && error.status === 400) answered = question; // a run of another dictionary
+  } finally {
+    underWay = false; // after another failure the next round asks again
+  }
 }
 
-export function limitsIn(channel: DictionaryChannel, context: string | undefined): AlarmLimit[] {
-  const own = channel.limits.filter((limit) => limit.context !== '' && limit.context === context);
-  return own.length > 0 ? own : channel.limits.filter((limit) => limit.context === '');
+/** By time; undefined while not known. */
+function stretchesOf({ id, limits }: DictionaryChannel): readonly LimitStretch[] | undefined {
+  const known = limitsAnswer.value;
+  if (limits.every(({ context }) => context === '')) return [{ context: '', limits }];
+  return known?.live === asHeard.value ? known.answer.channels.find((each) => each.id === id)?.stretches : undefined;
 }
 
-export interface Stretch {
-  from_sclk: number;
-  to_sclk: number;
-  context: string | undefined;
-  limits: AlarmLimit[];
-}
+/** The limits at an instant, Infinity for now; undefined while not known. */
+export const limitsAt = (channel: DictionaryChannel, sclk: number): LimitStretch | undefined =>
+  stretchesOf(channel)?.findLast(({ from_sclk = -Infinity }) => from_sclk <= sclk);
 
-/** The limits in force over [from, to], as stretches. */
+/** The limits over [from, to], as stretches that end there. */
 export function limitsOver(
-  run: RunStore,
-  words: Dictionary,
   channel: DictionaryChannel,
-  from_sclk: number,
-  to_sclk: number,
-): Stretch[] {
-  if (channel.limits.length === 0 || !(from_sclk < to_sclk)) return [];
-  const all: Stretch[] = [];
-  for (const at of channel.limits.some((limit) => limit.context !== '')
-    ? changesOfContext(run, words, from_sclk, to_sclk)
-    : [from_sclk]) {
-    const context = contextAt(run, words, at);
-    const limits = limitsIn(channel, context);
-    const last = all.at(-1);
-    if (last && last.limits[0] === limits[0]) continue; // another state with the same limits
-    if (last) last.to_sclk = at;
-    all.push({ from_sclk: at, to_sclk, context, limits });
-  }
-  return all.filter((stretch) => stretch.limits.length > 0);
-}
-
-/** `from`, and each later SCLK at which the state of EDL changed. */
-function changesOfContext(run: RunStore, words: Dictionary, from_sclk: number, to_sclk: number): number[] {
-  const phase = words.pick(LAYOUT.phase);
-  const changes = new Set([from_sclk]);
-  for (const series of phase ? [run.live.get(phase.id), run.recorded.get(phase.id)] : []) {
-    if (!series) continue;
-    for (
-      let i = Math.max(1, series.firstAfter(from_sclk));
-      i < series.length && (series.sclk[i] as number) < to_sclk;
-      ++i
-    ) {
-      if (series.value[i] !== series.value[i - 1]) changes.add(series.sclk[i] as number);
-    }
-  }
-  return [...changes].sort((one, other) => one - other);
+  from: number,
+  to: number,
+): (LimitStretch & Required<Pick<LimitStretch, 'from_sclk' | 'to_sclk'>>)[] {
+  return (stretchesOf(channel) ?? [])
+    .map((each) => ({
+      ...each,
+      from_sclk: Math.max(from, each.from_sclk ?? -Infinity),
+      to_sclk: Math.min(to, each.to_sclk ?? Infinity),
+    }))
+    .filter(({ from_sclk, to_sclk, limits }) => from_sclk < to_sclk && limits.length > 0);
 }
 
 /** "watch > 7; critical < −3 or > 2", in the order of the dictionary. */
-export function limitsText(limits: readonly AlarmLimit[]): string {
+export function limitsText(limits: readonly Limit[]): string {
   return limits.map((limit) => `${limit.severity} ${boundsText(limit)}`).join('; ');
 }
 
-function boundsText(limit: AlarmLimit): string {
-  const parts: string[] = [];
-  if (limit.below !== undefined) parts.push(`< ${limit.below}`);
-  if (limit.above !== undefined) parts.push(`> ${limit.above}`);
-  return parts.join(' or ');
+function boundsText({ below, above }: Limit): string {
+  const parts = [below === undefined ? '' : `< ${below}`, above === undefined ? '' : `> ${above}`];
+  return parts.filter(Boolean).join(' or ');
 }
 
 /** All limits of a channel, each context with its name. */

@@ -13,6 +13,7 @@ import { Dictionary } from './dictionary';
 import { opened } from './address';
 import { firstAnswers } from './first_look';
 import type { FirstLook } from './first_look';
+import { refreshLimits } from './limits';
 import { isSameRun } from './same';
 import {
   asHeard,
@@ -355,6 +356,7 @@ export async function begin(): Promise<void> {
   void everySeconds(1, async () => {
     if (stream.value.state === 'live') await refreshPrediction();
   });
+  void everySeconds(1, refreshLimits);
   void everySeconds(3, refreshRuns);
   void everySeconds(1, refreshAgainst);
   void everySeconds(TIMELINE_LOOK_S, async () => {

@@ -18,6 +18,6 @@ it('after touchdown height and speed are the descent stage’s, and the table of
     undefined,
     undefined,
   ]);
-  const whose = (cutoff: number) => channelRow(store, aDictionary.pick(['altitude_m'])!, undefined, cutoff).whose;
+  const whose = (cutoff: number) => channelRow(store, aDictionary.pick(['altitude_m'])!, cutoff).whose;
   expect([whose(Infinity), whose(870)]).toEqual(['descent stage', undefined]);
 });

@@ -78,8 +78,7 @@ export type Question =
   | 'recording'
   | 'proof'
   | 'report'
-  | 'commands'
-  | 'notes';
+  | 'commands';
 
 /** A command for the uplink, or an action on a waiting one, as in CommandRequest. Missing fields are not sent. */
 export interface CommandIntent {

@@ -12,7 +12,6 @@ import { PredictionSchema } from '../gen/aeolis/v1/prediction_pb';
 import {
   AsFlownReportSchema,
   CommandListSchema,
-  NoteListSchema,
   PacketListSchema,
   ProofReportSchema,
   RecordingSummarySchema,
@@ -358,7 +357,6 @@ const ANSWERS: Record<Exclude<Question, 'series'>, DescMessage> = {
   proof: ProofReportSchema,
   report: AsFlownReportSchema,
   commands: CommandListSchema,
-  notes: NoteListSchema,
 };
 
 /** The successful response, before its body is read. Throws the server's words with its status. */

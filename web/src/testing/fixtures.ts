@@ -34,6 +34,7 @@ import {
 } from '../gen/aeolis/v1/run_pb';
 import { BatchSchema } from '../gen/aeolis/v1/stream_pb';
 import { Dictionary } from '../run/dictionary';
+import type { LimitsAnswer } from '../run/limits';
 import { RunStore } from '../run/store';
 import { secondsOfDayOfYear, secondsOfErt } from '../run/time';
 import { ColumnCollector } from '../stream/columns';
@@ -137,6 +138,29 @@ export const aDictionary = new Dictionary(
     tones: [{ id: 7, name: 'entry', meaning: 'Entry interface' }],
   }),
 );
+
+/** The server's answer of the speed's limits: range control from SCLK 800 to 850. */
+export const speedLimits: LimitsAnswer = {
+  decided_by: [1],
+  channels: [
+    {
+      id: 4,
+      stretches: [
+        { to_sclk: 800, context: '', limits: [{ severity: 'watch', above: 6000 }] },
+        {
+          from_sclk: 800,
+          to_sclk: 850,
+          context: 'range_control',
+          limits: [
+            { severity: 'watch', above: 90 },
+            { severity: 'distress', above: 120 },
+          ],
+        },
+        { from_sclk: 850, context: '', limits: [{ severity: 'watch', above: 6000 }] },
+      ],
+    },
+  ],
+};
 
 export const aPlan = [
   create(TimepointRowSchema, {

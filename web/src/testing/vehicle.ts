@@ -5,7 +5,7 @@ import { DictionaryReplySchema, TimepointRowSchema } from '../gen/aeolis/v1/run_
 import type { Item } from '../gen/aeolis/v1/items_pb';
 import { LAYOUT } from '../layout';
 import { Dictionary } from '../run/dictionary';
-import { TOUCHDOWN, VEHICLE } from '../vehicle/layout';
+import { VEHICLE } from '../vehicle/layout';
 import type { Happening, Telling } from '../vehicle/layout';
 import type { Look } from '../vehicle/model';
 import { ENTRY_SCLK, aRun, aStore, samples } from './fixtures';
@@ -13,9 +13,6 @@ import { ENTRY_SCLK, aRun, aStore, samples } from './fixtures';
 const pyroLabels = ['not_commanded', 'commanded', 'fired', 'refused', 'unanswered'];
 const tellings: Telling[] = Object.values(VEHICLE.happenings);
 const pyros = tellings.flatMap((each) => each.pyros ?? []);
-
-/** Names that only a test has: the rover's own IMU, of which flight sends nothing. */
-export const ROVER = { roverRates_dps: ['rover_x', 'rover_y'], roverAcceleration_g: ['rover_g'] } as const;
 
 const names = [
   ...LAYOUT.phase,
@@ -36,9 +33,6 @@ const names = [
   ].flat(),
   ...tellings.flatMap((each) => each.flag ?? []),
   ...pyros,
-  TOUCHDOWN.flag,
-  ...ROVER.roverRates_dps,
-  ...ROVER.roverAcceleration_g,
 ];
 
 export const vehicleDictionary = new Dictionary(
@@ -53,7 +47,7 @@ export const vehicleDictionary = new Dictionary(
   }),
 );
 
-export const vehiclePlan = [...tellings.flatMap((each) => each.timepoint ?? []), TOUCHDOWN.timepoint as string].map(
+export const vehiclePlan = [...tellings.flatMap((each) => each.timepoint ?? []), LAYOUT.landed as string].map(
   (name, id) => create(TimepointRowSchema, { id, name, tone: name }),
 );
 

@@ -23,8 +23,8 @@ const at = (e_s: number) =>
 const LIST = create(TimepointListSchema, {
   knownAtES: -100,
   timepoints: [
-    { id: 0, name: 'vent', predictedES: -826, heardBy: 'uhf' },
-    { id: 1, name: 'mortar', predictedES: 250, movedES: 260 },
+    { id: 0, name: 'vent', predictedES: -826, expectedES: -826, heardBy: 'uhf' },
+    { id: 1, name: 'mortar', predictedES: 250, expectedES: 250, movedES: 260 },
     { id: 2, name: 'unknown', notPredicted: 'its anchor is not known' },
   ],
 });
@@ -45,21 +45,14 @@ describe('the prediction of the run that is shown', () => {
       { id: 1, name: 'mortar', e_s: 250, fired: false },
     ]);
   });
-  it('keeps for what is overdue, and for what follows it, the time at which it was expected: no later one is known', () => {
+  it('keeps for what is overdue the time at which the server expected it, not the one to which it has moved', () => {
     const list = create(TimepointListSchema, {
-      anchors: [
-        { id: 0, name: 'entry', basis: 'plan', eS: 0 },
-        { id: 1, name: 'parachute', basis: 'overdue', eS: 3600, predictedES: 256 },
-        { id: 2, name: 'touchdown', basis: 'design', eS: 3775.5, predictedES: 431.5 },
-      ],
       timepoints: [
-        { id: 0, name: 'sufr', anchor: 'sufr_start', predictedES: 239, heardBy: 'tone' },
-        { id: 1, name: 'mortar', anchor: 'parachute', predictedES: 3600 },
-        { id: 2, name: 'planned', anchor: 'entry', predictedES: 4000, plannedES: 4000 },
-        { id: 3, name: 'touchdown', anchor: 'touchdown', predictedES: 3775.5 },
+        { id: 0, name: 'sufr', predictedES: 239, expectedES: 239, heardBy: 'tone' },
+        { id: 1, name: 'mortar', predictedES: 3600, expectedES: 256 },
       ],
     });
-    expect(predictionsOf(list).map(({ e_s }) => e_s)).toEqual([239, 256, 4000, 431.5]);
+    expect(predictionsOf(list).map(({ e_s }) => e_s)).toEqual([239, 256]);
   });
   it('is of one run only', () => {
     store.value = aStore([], at(-100));

@@ -13,20 +13,11 @@ export const predicted = computed<Prediction[]>(() => {
   return list ? predictionsOf(list) : [];
 });
 
-/**
- * The predicted times. The server moves an overdue time to now and what follows it as well; here each keeps the time at
- * which it was expected, since no later one is known.
- */
-export function predictionsOf(list: Pick<TimepointList, 'timepoints' | 'anchors'>): Prediction[] {
-  const late = list.anchors.find((anchor) => anchor.basis === 'overdue');
-  const moved_s = late?.eS !== undefined && late.predictedES !== undefined ? late.eS - late.predictedES : 0;
-  const from = late ? list.timepoints.findIndex((row) => row.anchor === late.name && row.heardBy === '') : -1;
-  return list.timepoints.flatMap(({ id, name, predictedES, plannedES, heardBy }, i) => {
-    if (predictedES === undefined) return [];
-    const isMoved = from >= 0 && i >= from && heardBy === '' && plannedES === undefined;
-    return [{ id, name, e_s: predictedES - (isMoved ? moved_s : 0), fired: heardBy !== '' }];
-  });
-}
+/** The times at which the server expects them: what is overdue keeps its own, since no later one is known. */
+export const predictionsOf = ({ timepoints }: Pick<TimepointList, 'timepoints'>): Prediction[] =>
+  timepoints.flatMap(({ id, name, expectedES, heardBy }) =>
+    expectedES === undefined ? [] : [{ id, name, e_s: expectedES, fired: heardBy !== '' }],
+  );
 
 const BEHIND_S = 5; // chosen: a smaller delay is not worth a word
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The touchdown as a result: reported or confirmed, its figures, its place, and what still comes.
+import { useEffect } from 'preact/hooks';
 import { STATUS } from '../design/status';
 import { prediction } from '../prediction/model';
 import { toggleReplay } from '../replay/model';
@@ -8,10 +9,9 @@ import { cutoff, dictionary, pastRange, runNow, timepoints } from '../run/shown'
 import { focusPanel } from '../shortcuts/model';
 import type { Tab } from '../places/model';
 import { fromEntry } from '../run/time';
-import { ellipseWords, isInside, Path } from '../vehicle/path';
-import { missOf, restOf, resultsOf, touchdownOf } from './model';
-import type { Step } from './model';
-import { useTouchdownHistory } from './history';
+import { ellipseWords, Path } from '../vehicle/path';
+import { refreshTouchdown, restOf, resultsOf, touchdownKnown } from './model';
+import type { TouchdownStep } from './model';
 import './style.css';
 
 const LOOKS = {
@@ -20,8 +20,9 @@ const LOOKS = {
   unknown: STATUS.unknown,
   never: { ...STATUS.never, word: 'never told' },
   contradicted: { ...STATUS.failed, word: 'contradicted' },
-} as const satisfies Record<Step['state'], object>;
+} as const satisfies Record<TouchdownStep['state'], object>;
 
+const LOOK_MS = 500; // chosen: how often it is looked whether to ask anew
 const AROUND_ELLIPSE = 0.55; // chosen: of its longer axis, from the target to the edge of the map
 
 const VERDICTS = {
@@ -50,13 +51,18 @@ export function Touchdown() {
   const run = runNow();
   const words = dictionary.value;
   const look = run && words && { run, words, plan: timepoints.value, cutoff: cutoff.value, lost: isLost.value };
-  const of = look && touchdownOf(look);
-  useTouchdownHistory(of?.sclk);
-  if (!look || !of) return <p class="none">No touchdown has been told.</p>;
+  const of = touchdownKnown.value;
+  useEffect(() => {
+    void refreshTouchdown();
+    const timer = setInterval(() => void refreshTouchdown(), LOOK_MS);
+    return () => clearInterval(timer);
+  }, [run?.id, cutoff.value]);
+  if (!look || !of) return <p class="none">Asking the server for the touchdown…</p>;
+  if (of.verdict === 'untold') return <p class="none">No touchdown has been told.</p>;
   const verdict = VERDICTS[of.verdict];
   const done = of.steps.filter(({ state }) => state === 'done').length;
   const never = of.steps.filter(({ state }) => state === 'never').length;
-  const miss = missOf(look, of.sclk);
+  const miss = of.place;
   const ellipse = prediction.value?.ellipse;
   return (
     <div class="touchdown-box">
@@ -71,12 +77,12 @@ export function Touchdown() {
         <h3 class={`status-${verdict.token}`}>
           {verdict.shape} {verdict.words}{' '}
           <span class="touchdown-when">
-            {fromEntry(of.sclk - look.run.entrySclk, { tenths: true })}, {done} of {of.steps.length} signals
+            {fromEntry((of.sclk ?? NaN) - look.run.entrySclk, { tenths: true })}, {done} of {of.steps.length} signals
             {never > 0 && `, ${never} never told`}
           </span>
         </h3>
         <dl class="touchdown-figures" data-testid="touchdown-figures">
-          {resultsOf(look, of.sclk).map(({ name, value, unit, note }) => (
+          {resultsOf(look, of).map(({ name, value, unit, note }) => (
             <div key={name} title={note}>
               <dt>{name}</dt>
               <dd>
@@ -112,9 +118,9 @@ export function Touchdown() {
           ) : (
             <p>The place is not known.</p>
           )}
-          {ellipse && miss && (
+          {ellipse && miss?.inside_ellipse !== undefined && (
             <small data-testid="in-ellipse">
-              {isInside(miss, ellipse) ? 'inside' : '▲ outside'} {ellipseWords(ellipse)}
+              {miss.inside_ellipse ? 'inside' : '▲ outside'} {ellipseWords(ellipse)}
             </small>
           )}
         </div>

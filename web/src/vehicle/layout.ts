@@ -62,30 +62,5 @@ export const VEHICLE = {
 
 export type Happening = keyof typeof VEHICLE.happenings;
 
-/**
- * How a touchdown is confirmed: three signals, as flown landings used them [steltzner-2012]. The bounds are not
- * published: chosen here.
- */
-export const TOUCHDOWN = {
-  timepoint: 'touchdown',
-  flag: 'touchdown_declared',
-  event: 'TOUCHDOWN',
-  /**
-   * The rover's own IMU: its rates and its acceleration. None is named, because flight sends no such channel: after
-   * the bridle is cut, the IMU of its packets is that of the descent stage, which flies away.
-   */
-  roverRates_dps: [] as readonly string[],
-  roverAcceleration_g: [] as readonly string[],
-  gravity_g: 0.378, // 3.71 m/s² at Gale [facts]; chosen: of the magnitude, since the slope is not known
-  /** Chosen: well above the noise of a gyro at rest, well below a wheel that sinks or slides. */
-  stillRate_dps: 0.5,
-  stillAcceleration_g: 0.02,
-  still_s: 5,
-  /** The link of a live confirmation, and how long it must bring data without a break. Chosen: half of what is planned. */
-  link: 'uhf_live',
-  uhf_s: 10,
-  /** Chosen: a channel quieter than this has a gap. Configuration is told each second. */
-  gap_s: 3,
-  /** What still comes, as one link brings it. */
-  recordingLink: 'relay',
-} as const;
+/** What still comes after a touchdown, as one link brings it. */
+export const RECORDING_LINK = 'relay';

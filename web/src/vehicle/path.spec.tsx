@@ -5,18 +5,9 @@ import { render } from 'preact';
 import { act } from 'preact/test-utils';
 import { expect, it } from 'vitest';
 import { TargetEllipseSchema } from '../gen/aeolis/v1/prediction_pb';
-import { Path, ellipseWords, isInside } from './path';
+import { Path, ellipseWords } from './path';
 
 const ellipse = create(TargetEllipseSchema, { majorM: 20000, minorM: 7000, azimuthDeg: 90 });
-const northEast = create(TargetEllipseSchema, { majorM: 20000, minorM: 7000, azimuthDeg: 45 });
-
-it('a place is inside the ellipse by its own axes, clockwise from north', () => {
-  expect(isInside({ east_m: 9900, north_m: 0 }, ellipse)).toBe(true);
-  expect(isInside({ east_m: 0, north_m: 9900 }, ellipse)).toBe(false);
-  expect(isInside({ east_m: 0, north_m: -3400 }, ellipse)).toBe(true);
-  expect(isInside({ east_m: 6000, north_m: 6000 }, northEast)).toBe(true);
-  expect(isInside({ east_m: 6000, north_m: -6000 }, northEast)).toBe(false);
-});
 
 it('the ellipse is drawn to the scale of the map, and said in words', () => {
   const root = document.createElement('div');

@@ -35,13 +35,6 @@ export function scaleBar_m(reach_m: number): number {
 export const reachOf = (now: Place | undefined): number =>
   Math.max(50, now ? Math.hypot(now.east_m, now.north_m) * 1.25 : 1000);
 
-/** Whether a place lies in the ellipse about the target. */
-export function isInside({ east_m, north_m }: Place, { majorM, minorM, azimuthDeg }: TargetEllipse): boolean {
-  const [sin, cos] = [Math.sin((azimuthDeg * Math.PI) / 180), Math.cos((azimuthDeg * Math.PI) / 180)];
-  const [along, across] = [east_m * sin + north_m * cos, east_m * cos - north_m * sin];
-  return Math.hypot((2 * along) / majorM, (2 * across) / minorM) <= 1;
-}
-
 export const lengthWords = (m: number): string => (m >= 1000 ? `${m / 1000} km` : `${m} m`);
 
 export const ellipseWords = ({ majorM, minorM }: TargetEllipse): string =>

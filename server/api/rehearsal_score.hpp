@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "aeolis/v1/score.pb.h"
+#include "server/archive/reader.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace aeolis::server {
+
+/// What the score of a finished rehearsal rests on: what was received, and what people did. Nothing of the simulation's
+/// own truth.
+struct ScoreFacts {
+    struct Landed {
+        double e_s = 0.0;
+        std::string words;             ///< flight's own
+        std::optional<double> miss_m;  ///< from the target, by navigation on board; none: not known
+    };
+    v1::AsFlownReport report;  ///< with all commands and notes
+    std::optional<Landed> landed;
+    std::vector<v1::Item> alarms;  ///< changes of alarms and actions on them, in their order
+    std::vector<v1::Intervention> interventions;
+};
+
+/// Worth of a reaction after so many seconds of the run, 0 … 1; none: nobody reacted.
+double promptness(std::optional<double> after_s);
+
+/// The facts in words and the points of each term, by the rule that the answer states.
+v1::Score score_of(const ScoreFacts& facts, const dictionary::Dictionary& dictionary);
+
+inline constexpr std::size_t scored_alarms_max = 200'000;  ///< chosen, some 40 MB: no landing comes near it
+
+/// The as-flown report with all commands and notes, of which Reader::as_flown() has the first page of each.
+Result<v1::AsFlownReport> whole_report(archive::Reader& reader, archive::RunId run);
+
+/// Whether a run has a score: it is a rehearsal that has finished.
+bool has_score(const v1::RunState& run);
+/// The score of the run of a whole report, which has one. Fails where it would be made of a part.
+Result<v1::Score> rehearsal_score(archive::Reader& reader, v1::AsFlownReport report,
+                                  const dictionary::Dictionary& dictionary);
+
+}  // namespace aeolis::server

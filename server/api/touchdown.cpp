@@ -1,0 +1,305 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/api/touchdown.hpp"
+
+#include "common/entry_time.hpp"
+#include "server/archive/items.hpp"
+#include "server/rehearsal/nominal_flight.hpp"
+#include "server/scenario/scenario_text.hpp"
+#include "telemetry/port.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <map>
+#include <numbers>
+
+namespace aeolis::server {
+namespace {
+
+using Step = v1::TouchdownStep;
+using Report = v1::TouchdownReport;
+
+void add_step(Report& report, std::string_view name, Step::State state, std::string words,
+              std::optional<Sclk> since = {}) {
+    auto& step = *report.add_steps();
+    step.set_name(std::string{name});
+    step.set_state(state);
+    step.set_words(std::move(words));
+    if (since) step.set_sclk(since->seconds);
+}
+
+void add_told_step(const TouchdownFacts& facts, std::vector<TouchdownFacts::Told> told, Report& report) {
+    constexpr std::string_view name = "touchdown told by the vehicle";
+    std::ranges::stable_sort(told, {}, &TouchdownFacts::Told::sclk);
+    const auto& first = told.front();
+    const auto when = [&](Sclk sclk) { return from_entry_tenths_text(sclk - facts.entry); };
+    if (facts.flag && facts.flag->value == 0.0 && facts.flag->sclk - first.sclk > touchdown_gap_s)
+        return add_step(report, name, Step::contradicted,
+                        fmt::format("{} at {}, but {} is 0 at {}", first.words, when(first.sclk), facts.flag_name,
+                                    when(facts.flag->sclk)),
+                        first.sclk);
+    std::string words;
+    for (const auto& each : told) words += (words.empty() ? "" : ", ") + each.words;
+    add_step(report, name, Step::done, fmt::format("{}: {}", when(first.sclk), words), first.sclk);
+}
+
+void add_still_step(Report& report) {
+    add_step(report, "rover's own IMU is still: this vehicle never tells", Step::never,
+             "flight sends no channel of it; after touchdown the IMU told of is the descent stage's: so this touchdown "
+             "stays reported");
+}
+
+void add_uhf_step(const TouchdownFacts& facts, Sclk since, Report& report) {
+    const auto name = fmt::format("UHF came for {:.0f} s without a break after it", touchdown_uhf_s);
+    const auto when = [&](Sclk sclk) { return from_entry_tenths_text(sclk - facts.entry); };
+    const auto silent_between = [&](Sclk from, Sclk to) {
+        return std::ranges::any_of(facts.silences,
+                                   [&](const auto& each) { return each.from < to && (!each.to || *each.to > from); });
+    };
+    std::optional<Sclk> from, before;
+    for (const Sclk sclk : facts.live) {
+        if (sclk <= since) continue;
+        if (!before || sclk - *before > touchdown_gap_s || silent_between(*before, sclk)) from = sclk;
+        before = sclk;
+        if (sclk - *from >= touchdown_uhf_s)
+            return add_step(report, name, Step::done,
+                            fmt::format("{}: {} came over {} without a break since {}", when(sclk), facts.live_name,
+                                        telemetry::uhf_live_link.name, when(*from)),
+                            sclk);
+    }
+    const auto silent = std::ranges::find_if(facts.silences, [&](const auto& each) {
+        return each.from <= facts.now && (!each.to || *each.to >= facts.now);
+    });
+    const bool is_silent = silent != facts.silences.end();
+    const auto since_words = [&](std::string_view otherwise, Sclk at) {
+        return is_silent ? fmt::format("{}: {}", when(silent->from), silent->words)
+                         : fmt::format("{}{}", otherwise, when(at));
+    };
+    if (!before)
+        return add_step(report, name, Step::unknown, "not known: no UHF since " + since_words("touchdown at ", since));
+    if (is_silent || facts.now - *before > touchdown_gap_s)
+        return add_step(report, name, Step::unknown,
+                        fmt::format("not known: no UHF since {}; {} had come without a break", since_words("", *before),
+                                    span_text(*before - *from)));
+    add_step(report, name, Step::waiting,
+             fmt::format("{} of {:.0f} s since {}", span_text(*before - *from), touchdown_uhf_s, when(*from)));
+}
+
+Report::Verdict verdict_of(const Report& report) {
+    if (report.steps(0).state() == Step::contradicted) return Report::contradicted;
+    const bool all = std::ranges::all_of(report.steps(), [](const Step& step) { return step.state() == Step::done; });
+    return all ? Report::confirmed : Report::reported;
+}
+
+/// Reads the facts of one run up to one instant.
+class FactsReader {
+  public:
+    FactsReader(archive::Reader& reader, archive::RunId run, const dictionary::Dictionary& dictionary,
+                std::optional<Sclk> at, bool recorded)
+        : reader_(reader), run_(run), dictionary_(dictionary), at_(at), recorded_(recorded) {}
+
+    Result<void> add_timepoint(std::optional<Ert> now, TouchdownFacts& facts) {
+        const auto list = reader_.timepoints(run_, {.at = at_, .now = now, .recorded = recorded_});
+        if (!list) return list.error();
+        for (const auto& row : list->timepoints()) {
+            if (row.name() != touchdown_timepoint || row.heard_by().empty()) continue;
+            const bool live = row.heard_by() == "uhf", tone = row.heard_by() == "tone";
+            const double sclk_s = tone ? row.triggered_sclk() : live ? row.realtime_sclk() : row.recorded_sclk();
+            facts.told.push_back({Sclk{sclk_s}, fmt::format("timepoint {} by {}", row.name(),
+                                                            tone   ? "tone"
+                                                            : live ? "UHF"
+                                                                   : "the recording")});
+        }
+        return {};
+    }
+
+    Result<void> add_event(TouchdownFacts& facts) {
+        const auto list = reader_.events(run_, {range(), {}, std::string{touchdown_event}});
+        if (!list) return list.error();
+        for (const auto& item : list->events()) {
+            const auto& event = item.event();
+            const bool live = event.source() == v1::SOURCE_REALTIME;
+            if (event.name() != touchdown_event || (!live && !recorded_)) continue;
+            facts.told.push_back(
+                {Sclk{event.sclk()}, fmt::format("event {} by {}", event.name(), live ? "UHF" : "the recording")});
+            break;
+        }
+        return {};
+    }
+
+    Result<void> add_samples(TouchdownFacts& facts) {
+        facts.flag_name = touchdown_flag;
+        facts.live_name = touchdown_live;
+        std::optional<Sclk> raised;
+        const auto done = each({touchdown_flag, touchdown_live}, range(), [&](const auto& name, const auto& sample) {
+            if (name == touchdown_live) {
+                if (sample.source == archive::Source::realtime) facts.live.push_back(sample.sclk);
+                return;
+            }
+            if (sample.value == 0.0) raised.reset();
+            if (sample.value != 0.0 && !raised) raised = sample.sclk;
+            facts.flag = TouchdownFacts::Flag{sample.sclk, sample.value};
+        });
+        if (raised) facts.told.push_back({*raised, fmt::format("{} is {:.0f}", touchdown_flag, facts.flag->value)});
+        return done;
+    }
+
+    Result<void> add_silences(const v1::RunState& state, TouchdownFacts& facts) {
+        for (archive::Sequence after = 0;;) {
+            auto page = reader_.items(run_, after, archive::items_page_max, {.samples = false, .packets = false});
+            if (!page) return page.error();
+            for (const auto& item : page->items) {
+                if (!item.has_link() || item.link().link() != telemetry::uhf_live_link.name) continue;
+                const Sclk sclk = archive::sclk_at_ert(state, Ert{item.ert_us()});
+                if (at_ && sclk > *at_) continue;
+                if (!facts.silences.empty() && !facts.silences.back().to) facts.silences.back().to = sclk;
+                const auto& reason = item.link().reason();
+                if (!item.link().up()) facts.silences.push_back({sclk, {}, reason.empty() ? "silent" : reason});
+            }
+            if (!page->more) return {};
+            after = page->complete_through;
+        }
+    }
+
+    /// Figures and place from the samples just before the touchdown.
+    Result<void> add_figures(const v1::RunState& state, Report& report) {
+        const Sclk touchdown{report.sclk()};
+        std::map<std::string, archive::ChannelValue> then;
+        std::vector<std::string_view> names{position_channels.begin(), position_channels.end()};
+        for (const auto& each : touchdown_channels) names.push_back(each.channel);
+        const auto done = each(names, {touchdown.seconds - touchdown_close_s, touchdown.seconds},
+                               [&](const auto& name, const auto& sample) { then[name] = sample; });
+        if (!done) return done;
+        for (const auto& [name, channel] : touchdown_channels) {
+            auto& figure = *report.add_figures();
+            figure.set_name(std::string{name});
+            figure.set_channel(std::string{channel});
+            const auto* known = dictionary_.channel(channel);
+            if (known != nullptr) figure.set_unit(known->type.unit);
+            const auto found = then.find(std::string{channel});
+            if (found == then.end()) continue;
+            figure.set_value(found->second.value);
+            figure.set_before_s(touchdown - found->second.sclk);
+        }
+        add_place(state, then, report);
+        return {};
+    }
+
+  private:
+    archive::SclkRange range() const { return {{}, at_ ? std::optional{at_->seconds} : std::nullopt}; }
+
+    /// Passes the defined samples that count, by time, to `take` with the channel's name.
+    Result<void> each(const std::vector<std::string_view>& wanted, const archive::SclkRange& range, auto take) {
+        std::vector<std::string> names;
+        for (const auto name : wanted)
+            if (dictionary_.channel(name) != nullptr) names.emplace_back(name);
+        if (names.empty()) return {};  // none would be all
+        return reader_.each_sample(run_, names, range, [&](auto samples) -> Result<void> {
+            for (const auto& sample : samples)
+                if (!std::isnan(sample.value) && (recorded_ || sample.source == archive::Source::realtime))
+                    take(dictionary_.channels[sample.channel.value].name, sample);
+            return {};
+        });
+    }
+
+    void add_place(const v1::RunState& state, const std::map<std::string, archive::ChannelValue>& then,
+                   Report& report) {
+        const auto target = [&](std::string_view name) {
+            const auto found =
+                std::ranges::find_if(state.solution(), [&](const auto& each) { return each.name() == name; });
+            return found == state.solution().end() ? std::optional<double>{} : std::optional{found->value()};
+        };
+        const auto latitude = target(target_arguments[0]), longitude = target(target_arguments[1]),
+                   radius = target(target_arguments[2]);
+        if (!latitude || !longitude || !radius) return report.set_place_unknown("no target in the ground's solution");
+        std::array<double, 3> position{};
+        for (std::size_t i = 0; i < position.size(); ++i) {
+            const auto found = then.find(std::string{position_channels[i]});
+            if (found == then.end())
+                return report.set_place_unknown(
+                    fmt::format("navigation did not come within {:.0f} s", touchdown_close_s));
+            position[i] = found->second.value;
+        }
+        *report.mutable_place() = place_over_ground(position, *latitude, *longitude, *radius);
+        const auto text = reader_.scenario_text(run_);
+        if (!text) return;  // of another mission, or of an older dictionary
+        const auto scenario = scenario_from_text(*text, fmt::format("the scenario of run {}", run_.value));
+        const auto aimed = scenario ? ellipse_of(expected_scenario(*scenario)) : std::nullopt;
+        if (!aimed) return;
+        v1::TargetEllipse ellipse;
+        ellipse.set_major_m(aimed->major_m);
+        ellipse.set_minor_m(aimed->minor_m);
+        ellipse.set_azimuth_deg(aimed->azimuth_deg);
+        report.mutable_place()->set_inside_ellipse(is_inside(report.place(), ellipse));
+    }
+
+    archive::Reader& reader_;
+    archive::RunId run_;
+    const dictionary::Dictionary& dictionary_;
+    std::optional<Sclk> at_;
+    bool recorded_;
+};
+
+constexpr double radians(double degrees) {
+    return degrees * std::numbers::pi / 180.0;
+}
+
+}  // namespace
+
+v1::TouchdownReport judge_touchdown(const TouchdownFacts& facts) {
+    Report report;
+    if (facts.told.empty()) return report;
+    add_told_step(facts, facts.told, report);
+    const Sclk since{report.steps(0).sclk()};
+    report.set_sclk(since.seconds);
+    add_still_step(report);
+    add_uhf_step(facts, since, report);
+    report.set_verdict(verdict_of(report));
+    return report;
+}
+
+v1::TouchdownPlace place_over_ground(const std::array<double, 3>& p_MoB_M, double latitude_deg, double longitude_deg,
+                                     double radius_m) {
+    const double sin_lat = std::sin(radians(latitude_deg)), cos_lat = std::cos(radians(latitude_deg)),
+                 sin_lon = std::sin(radians(longitude_deg)), cos_lon = std::cos(radians(longitude_deg));
+    const auto& [x, y, z] = p_MoB_M;
+    const double east_m = -sin_lon * x + cos_lon * y,
+                 north_m = -sin_lat * cos_lon * x - sin_lat * sin_lon * y + cos_lat * z,
+                 up_m = cos_lat * cos_lon * x + cos_lat * sin_lon * y + sin_lat * z;
+    const double across_m = std::hypot(east_m, north_m);
+    const double arc = across_m == 0.0 ? 0.0 : std::atan2(across_m, up_m) * radius_m / across_m;
+    v1::TouchdownPlace place;
+    place.set_east_m(east_m * arc);
+    place.set_north_m(north_m * arc);
+    return place;
+}
+
+bool is_inside(const v1::TouchdownPlace& place, const v1::TargetEllipse& ellipse) {
+    const double sin = std::sin(radians(ellipse.azimuth_deg())), cos = std::cos(radians(ellipse.azimuth_deg()));
+    const double along_m = place.east_m() * sin + place.north_m() * cos,
+                 across_m = place.east_m() * cos - place.north_m() * sin;
+    return std::hypot(2.0 * along_m / ellipse.major_m(), 2.0 * across_m / ellipse.minor_m()) <= 1.0;
+}
+
+Result<v1::TouchdownReport> touchdown(archive::Reader& reader, archive::RunId run,
+                                      const dictionary::Dictionary& dictionary, std::optional<Sclk> at,
+                                      std::optional<Ert> now, bool recorded) {
+    const auto state = reader.run(run);
+    if (!state) return state.error();
+    TouchdownFacts facts;
+    FactsReader of{reader, run, dictionary, at, recorded};
+    if (auto done = of.add_timepoint(now, facts); !done) return done.error();
+    if (auto done = of.add_event(facts); !done) return done.error();
+    if (auto done = of.add_samples(facts); !done) return done.error();
+    if (facts.told.empty()) return v1::TouchdownReport{};
+    if (auto done = of.add_silences(*state, facts); !done) return done.error();
+    facts.entry = Sclk{state->entry_sclk()};
+    const auto newest = now ? Result<Ert>{*now} : reader.newest_ert(run);
+    if (!newest) return newest.error();
+    facts.now = at ? *at : archive::sclk_at_ert(*state, *newest);
+    auto report = judge_touchdown(facts);
+    if (auto done = of.add_figures(*state, report); !done) return done.error();
+    return report;
+}
+
+}  // namespace aeolis::server

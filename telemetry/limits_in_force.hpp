@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "common/time.hpp"
+#include "dictionaries/dictionary.hpp"
+
+#include <optional>
+#include <vector>
+
+namespace aeolis::telemetry {
+
+/// The limits that a channel had from an instant on.
+struct LimitStretch {
+    std::optional<Sclk> from;                            ///< none: from the beginning
+    const dictionary::ContextAlarms* context = nullptr;  ///< null: the limits without a context
+};
+
+/// Tells which alarm limits of each channel held when, by the rule of AlarmMonitor.
+///
+/// In       samples of the channels in decided_by(), by time
+/// Out      the stretches of each channel whose limits have contexts; neighbours differ
+/// Memory   a stretch a change; the dictionary must outlive this
+class LimitsInForce {
+  public:
+    explicit LimitsInForce(const dictionary::Dictionary& dictionary);
+
+    /// The channels that the contexts compare, by number.
+    const std::vector<ChannelId>& decided_by() const { return decided_by_; }
+
+    /// A sample; NaN, which is undefined on board, decides nothing.
+    void sample(ChannelId channel, double value, Sclk sclk);
+
+    struct OfChannel {
+        ChannelId channel;
+        std::vector<LimitStretch> stretches;  ///< one at least
+    };
+    const std::vector<OfChannel>& channels() const { return channels_; }
+
+  private:
+    const dictionary::Dictionary& dictionary_;
+    std::vector<ChannelId> decided_by_;
+    std::vector<OfChannel> channels_;
+    std::vector<std::optional<double>> latest_;  ///< by channel
+};
+
+}  // namespace aeolis::telemetry

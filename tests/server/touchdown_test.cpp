@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/api/touchdown.hpp"
+
+#include "server/pipeline/pipeline.hpp"
+#include "tests/server/small_mission.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/shipped_dictionary.hpp"
+
+#include <algorithm>
+
+namespace server_touchdown_test {
+
+using namespace aeolis;
+using namespace aeolis::test;
+using server::TouchdownFacts;
+using Step = v1::TouchdownStep;
+using Report = v1::TouchdownReport;
+
+namespace {
+
+constexpr double down_s = 1430.0, entry_s = 1000.0;
+
+/// Told by the timepoint, with UHF each second from the touchdown to `to_s`.
+TouchdownFacts heard_until(double to_s) {
+    TouchdownFacts facts;
+    facts.entry = Sclk{entry_s};
+    facts.now = Sclk{to_s};
+    facts.told = {{Sclk{down_s}, "timepoint touchdown by UHF"}};
+    facts.flag_name = "touchdown_declared";
+    facts.live_name = "edl_phase";
+    for (double sclk_s = down_s - 5.0; sclk_s <= to_s; sclk_s += 1.0) facts.live.push_back(Sclk{sclk_s});
+    return facts;
+}
+
+}  // namespace
+
+TEST_CASE("nothing is said of a touchdown that nothing has told of", "[touchdown]") {
+    auto facts = heard_until(down_s + 20.0);
+    facts.told.clear();
+    facts.flag = TouchdownFacts::Flag{Sclk{down_s}, 0.0};
+    const auto report = server::judge_touchdown(facts);
+    CHECK(report.verdict() == Report::untold);
+    CHECK(report.steps().empty());
+    CHECK_FALSE(report.has_sclk());
+}
+
+TEST_CASE("a touchdown stays reported while the rover's own IMU is not told, however long UHF comes", "[touchdown]") {
+    const auto report = server::judge_touchdown(heard_until(down_s + 60.0));
+    CHECK(report.verdict() == Report::reported);
+    REQUIRE(report.steps_size() == 3);
+    CHECK(report.steps(0).state() == Step::done);
+    CHECK(report.steps(1).state() == Step::never);
+    CHECK(report.steps(2).state() == Step::done);
+}
+
+TEST_CASE("all that tells of a touchdown is said, and it was when the first of it says", "[touchdown]") {
+    auto facts = heard_until(down_s + 1.0);
+    facts.told.push_back({Sclk{down_s - 0.5}, "event TOUCHDOWN by the recording"});
+    const auto report = server::judge_touchdown(facts);
+    CHECK(report.sclk() == down_s - 0.5);
+    CHECK(report.steps(0).words() == "E+7:09.5: event TOUCHDOWN by the recording, timepoint touchdown by UHF");
+}
+
+TEST_CASE("a newer flag that says no contradicts a touchdown; one as old as the touchdown does not", "[touchdown]") {
+    auto facts = heard_until(down_s + 20.0);
+    facts.flag = TouchdownFacts::Flag{Sclk{down_s + server::touchdown_gap_s}, 0.0};
+    CHECK(server::judge_touchdown(facts).verdict() == Report::reported);
+    facts.flag->sclk = Sclk{down_s + server::touchdown_gap_s + 0.5};
+    const auto report = server::judge_touchdown(facts);
+    CHECK(report.verdict() == Report::contradicted);
+    CHECK(report.steps(0).words() == "timepoint touchdown by UHF at E+7:10.0, but touchdown_declared is 0 at E+7:13.5");
+}
+
+TEST_CASE("UHF must come without a break: a gap or a silence begins the count anew", "[touchdown]") {
+    const auto uhf = [](const TouchdownFacts& facts) { return server::judge_touchdown(facts).steps(2); };
+    // The first sample after the touchdown is a second after it.
+    CHECK(uhf(heard_until(down_s + 10.0)).state() == Step::waiting);
+    CHECK(uhf(heard_until(down_s + 10.0)).words() == "9.0 s of 10 s since E+7:11.0");
+    const auto done = uhf(heard_until(down_s + 11.0));
+    CHECK(done.state() == Step::done);
+    CHECK(done.sclk() == down_s + 11.0);
+
+    auto gap = heard_until(down_s + 11.0);
+    std::erase_if(gap.live, [](Sclk sclk) { return sclk.seconds > down_s + 4.0 && sclk.seconds < down_s + 8.0; });
+    CHECK(uhf(gap).words() == "3.0 s of 10 s since E+7:18.0");
+    auto silent = heard_until(down_s + 11.0);
+    silent.silences = {{Sclk{down_s + 4.2}, Sclk{down_s + 4.8}, "plasma blackout"}};
+    CHECK(uhf(silent).words() == "6.0 s of 10 s since E+7:15.0");
+}
+
+TEST_CASE("without UHF its step is not known, with the reason of the silence where there is one", "[touchdown]") {
+    auto facts = heard_until(down_s - 1.0);
+    facts.now = Sclk{down_s + 20.0};
+    CHECK(server::judge_touchdown(facts).steps(2).words() == "not known: no UHF since touchdown at E+7:10.0");
+    facts.silences = {{Sclk{down_s - 1.0}, {}, "fault: the station is out"}};
+    CHECK(server::judge_touchdown(facts).steps(2).words() ==
+          "not known: no UHF since E+7:09.0: fault: the station is out");
+    auto lost = heard_until(down_s + 5.0);
+    lost.now = Sclk{down_s + 20.0};
+    const auto step = server::judge_touchdown(lost).steps(2);
+    CHECK(step.state() == Step::unknown);
+    CHECK(step.words() == "not known: no UHF since E+7:15.0; 4.0 s had come without a break");
+}
+
+TEST_CASE("a place over ground is east and north of the target, and in the ellipse or not by its axes", "[touchdown]") {
+    constexpr double radius_m = 3'390'000.0;
+    const auto at = [&](double x, double y, double z) {
+        return server::place_over_ground({x, y, z}, 0.0, 90.0, radius_m);
+    };
+    CHECK(at(0.0, radius_m, 0.0).east_m() == Approx(0.0).margin(1e-6));
+    CHECK(at(-1000.0, radius_m, 0.0).east_m() == Approx(1000.0).margin(0.1));  // east of 90° is towards 180°
+    CHECK(at(0.0, radius_m, 2000.0).north_m() == Approx(2000.0).margin(0.5));
+    CHECK(at(0.0, 2.0 * radius_m, 4000.0).north_m() == Approx(2000.0).margin(0.5));  // height does not count
+    v1::TargetEllipse ellipse;
+    ellipse.set_major_m(20'000.0);
+    ellipse.set_minor_m(7'000.0);
+    ellipse.set_azimuth_deg(90.0);
+    const auto inside = [&](double east_m, double north_m) {
+        v1::TouchdownPlace place;
+        place.set_east_m(east_m);
+        place.set_north_m(north_m);
+        return server::is_inside(place, ellipse);
+    };
+    CHECK(inside(9'999.0, 0.0));
+    CHECK_FALSE(inside(10'001.0, 0.0));
+    CHECK(inside(0.0, -3'499.0));
+    CHECK_FALSE(inside(0.0, 3'501.0));
+    ellipse.set_azimuth_deg(0.0);
+    CHECK(inside(0.0, 9'999.0));
+    CHECK_FALSE(inside(9'999.0, 0.0));
+}
+
+TEST_CASE("the names by which a touchdown is told are words of the shipped dictionary", "[touchdown]") {
+    const auto& shipped = tests::shipped_dictionary();
+    std::vector<std::string_view> channels{server::touchdown_flag, server::touchdown_live};
+    channels.insert(channels.end(), server::position_channels.begin(), server::position_channels.end());
+    for (const auto& each : server::touchdown_channels) channels.push_back(each.channel);
+    for (const auto name : channels) {
+        INFO(name);
+        CHECK(shipped.channel(name) != nullptr);
+    }
+    const auto has = [](const auto& all, std::string_view name) {
+        return std::ranges::any_of(all, [&](const auto& each) { return each.name == name; });
+    };
+    CHECK(has(shipped.events, server::touchdown_event));
+    CHECK(has(shipped.timeline, server::touchdown_timepoint));
+    for (const auto name : server::target_arguments) CHECK(has(shipped.command("EDL_SET_PARAMETERS")->arguments, name));
+}
+
+TEST_CASE("the touchdown of a past is what was received by then, and its figures are those just before it",
+          "[touchdown][archive]") {
+    const TemporaryFolder folder;
+    auto dictionary = small_dictionary();
+    dictionary.timeline[2].name = "touchdown";
+    dictionary.channels[speed.value].name = "descent_rate_mps";
+    for (auto& field : dictionary.packets[0].fields)
+        if (field.channel == speed) field.name = "descent_rate_mps";
+    auto archive = archive::Archive::open(folder / "a.db");
+    REQUIRE(archive);
+    pipeline::Pipeline pipeline{*archive, dictionary};
+    archive::RunStart start;
+    start.entry = Sclk{entry_s};
+    REQUIRE(pipeline.begin(start));
+    const auto accept = [&](auto&& what) { REQUIRE(pipeline.accept(std::forward<decltype(what)>(what)).ok()); };
+    accept(live(navigation_packet(0, down_s - 1.0, 10.0F, 0.75F)));
+    accept(live(navigation_packet(1, down_s + 1.0, 10.0F, 0.5F)));
+    accept(live(fired_packet(0, down_s, 2)));
+    accept(live(status_packet(0, down_s + 0.5, 9)));
+    REQUIRE(pipeline.commit().ok());
+    auto reader = archive::Reader::open(folder / "a.db", dictionary);
+    REQUIRE(reader);
+    const auto at = [&](std::optional<Sclk> sclk) {
+        auto report = server::touchdown(*reader, archive::RunId{1}, dictionary, sclk, {}, true);
+        REQUIRE(report);
+        return std::move(*report);
+    };
+    CHECK(at(Sclk{down_s - 0.5}).verdict() == Report::untold);
+    const auto report = at({});
+    CHECK(report.verdict() == Report::reported);
+    CHECK(report.sclk() == down_s);
+    CHECK(report.steps(0).words() == "E+7:10.0: timepoint touchdown by UHF");
+    REQUIRE(report.figures_size() == 3);
+    CHECK(report.figures(0).name() == "down");
+    CHECK(report.figures(0).value() == 0.75);
+    CHECK(report.figures(0).before_s() == 1.0);
+    CHECK_FALSE(report.figures(1).has_value());
+    CHECK_FALSE(report.has_place());
+    CHECK(report.place_unknown() == "no target in the ground's solution");
+}
+
+}  // namespace server_touchdown_test
