@@ -113,7 +113,7 @@ TEST_CASE("X-band is up while the receiver follows a carrier", "[tones][station]
     sky.fly(60.0, false);
     REQUIRE(sky.received.links.size() == 2);
     CHECK_FALSE(sky.received.links[1].up);
-    CHECK(sky.received.links[1].reason.empty());
+    CHECK(sky.received.links[1].words.empty());
     sky.fly(80.0, true);
     CHECK(sky.received.links.back().up);
 }

@@ -116,7 +116,7 @@ TEST_CASE("whatever of a run is edited, taken out or added by hand, verify names
          {"DELETE FROM tone_likelihoods WHERE position = 4", "run 1: tone_likelihoods: not what"},
          {"UPDATE command_stages SET evidence = 'nothing'", "run 1: command_stages: not what"},
          {"DELETE FROM command_stages", "run 1: command_stages: not what"},
-         {"UPDATE link_changes SET reason = 'blackout'", "run 1: link_changes: not what"},
+         {"UPDATE link_changes SET words = 'blackout'", "run 1: link_changes: not what"},
          {"UPDATE situation_entries SET sentence = 'all is well'", "run 1: situation_entries: not what"},
          {"UPDATE requests SET cycle = 4", "run 1: requests: not what"},
          {"DELETE FROM requests", "run 1: requests: not what"},

@@ -90,17 +90,4 @@ TEST_CASE("the name and the view of a layout are bounded and of plain letters", 
     for (const char* view : {"a b", "a\nb", "\xc3\xa4"}) CHECK_FALSE(check_layout_view(view).ok());
 }
 
-TEST_CASE("an archive that was made without layouts gets them when it is next written", "[archive][layouts]") {
-    const test::TemporaryFolder folder;
-    {
-        REQUIRE(Archive::open(folder / "a.db").ok());
-        auto database = sqlite::Database::open((folder / "a.db").string(), sqlite::Mode::read_write_create);
-        REQUIRE(database);
-        REQUIRE(database->execute("DROP TABLE layouts").ok());
-    }
-    auto archive = Archive::open(folder / "a.db");
-    REQUIRE(archive);
-    CHECK(save(*archive, "", "entry", "data=links") == LayoutOutcome::done);
-}
-
 }  // namespace archive_layouts_test

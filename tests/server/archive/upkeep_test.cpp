@@ -256,7 +256,7 @@ TEST_CASE("numbers that no item has, or two have, are named", "[archive][verify]
     CHECK(sequence_faults(database, RunId{1}, "main.", 10)->empty());
     REQUIRE(database
                 .execute("DELETE FROM units WHERE key = (1 << 40) + 11; INSERT INTO link_changes VALUES ((1 << 40) + "
-                         "21, 0, 1, 1, '', 0, NULL);"
+                         "21, 0, 1, 1, NULL, '', 0, NULL);"
                          "UPDATE units SET sampled = 0 WHERE key = (1 << 40) + 31")
                 .ok());
     CHECK(*sequence_faults(database, RunId{1}, "main.", 10) ==
