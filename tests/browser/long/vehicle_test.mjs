@@ -95,7 +95,7 @@ test('at four moments of a landing the picture and its text show what was told, 
   assert.deepEqual(await findings(page, 'light'), []);
   await flyTo(server, 452);
   await shows('touchdown', /Touchdown reported[^]*E\+7:18[^]*2 of 3 signals/);
-  await shows('touchdown-steps', /rover’s own IMU is still: this vehicle never tells/);
+  await shows('touchdown-steps', /rover's own IMU is still: this vehicle never tells/);
   await shows('touchdown-figures', /0\.\d\d m\/s[^]*from the target[^]*\d+ m[^]*kg/);
   await page.screenshot({ path: path.join(pictures, 'touchdown_light.png') });
   await page.goto(server.address);
