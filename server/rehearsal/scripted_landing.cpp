@@ -160,10 +160,10 @@ const telemetry::DecodedPacket& ScriptedLanding::decoded(telemetry::ReceivedPack
 
 void ScriptedLanding::receive(telemetry::ReceivedPacket& packet) {
     const bool live = telemetry::is_live_telemetry(packet.link.name);
-    if (!live && !gateway_.awaits_answers() && !progress_.may_close(packet.octets)) return;
+    if (!live && !gateway_.awaits_answers()) return;
     const auto& [content, refusal, event, text] = decoded(packet);
     if (!refusal.empty()) return;
-    progress_.note(content, live);
+    if (live) progress_.note(content);
     gateway_.receive({content, packet.octets, live, packet.ert, event, text}, stages_);
 }
 
