@@ -51,6 +51,7 @@ void Delivery::add(const telemetry::Received& received) {
     entries.insert(entries.end(), received.tones.begin(), received.tones.end());
     entries.insert(entries.end(), received.carrier.begin(), received.carrier.end());
     entries.insert(entries.end(), received.seen.begin(), received.seen.end());
+    entries.insert(entries.end(), received.spectra.begin(), received.spectra.end());
     entries.insert(entries.end(), received.links.begin(), received.links.end());
 }
 
