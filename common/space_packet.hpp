@@ -45,7 +45,7 @@ inline constexpr Apid file_delivery_apid{0x7FD};  ///< packets whose data are a 
 constexpr bool is_made_on_ground(Apid apid) {
     return apid.value >= 0x7E0 && apid.value <= 0x7EF;
 }
-inline constexpr Apid station_carrier_apid{0x7E0}, station_event_apid{0x7E1};
+inline constexpr Apid station_carrier_apid{0x7E0}, station_event_apid{0x7E1}, station_spectrum_apid{0x7E2};
 
 /// What begins a run of octets: a space packet, or an encapsulation packet beside it in the same frames, of one octet
 /// and more. [ccsds-133.0-b-2] [ccsds-133.1-b-3]

@@ -95,7 +95,6 @@ struct Landing::State {
     std::int64_t light_time_us;
     ErrorBursts uplink_errors;
     InFlight<std::vector<std::uint8_t>> uplinks;
-    InFlight<telemetry::ReceivedTone> tones;
     InFlight<SentSymbol> symbols;
     InFlight<XBandField> fields;
     InFlight<LinkTruth> links;
@@ -107,7 +106,7 @@ struct Landing::State {
     std::vector<LinkTruth> at_station;   ///< each link's latest state that has reached Earth
     std::vector<LinkTruth> told_ground;  ///< and as last reported to ground
     std::optional<XBandFrontEnd> antenna;
-    std::optional<CarrierModel> carrier;
+    std::optional<XBandReceiverModel> receiver;
 
     std::array<TruthState, remembered_ticks> remembered{};
     std::int64_t ticks_without_computer = 0;
@@ -121,8 +120,7 @@ struct Landing::State {
           std::vector<EventReportName> names, const std::optional<ClockCorrelation>& known_clock)
         : scenario(s), clock(known_clock.value_or(clock_of_scenario(s))), reports(std::move(names)),
           world(s, seed_in, case_number_in), computers(load, world.sclk()), uhf(s.radio),
-          x_band_telemetry(s.radio.uhf_rate_bps),
-          x_band(s.radio, Random{seed_in, links_case(s, case_number_in), Stream::x_band}),
+          x_band_telemetry(s.radio.uhf_rate_bps), x_band(s.radio),
           passes(passes_of(s, seed_in, links_case(s, case_number_in))), relay_radio(s.radio.light_time_s),
           light_time_us(microseconds(s.radio.light_time_s)),
           uplink_errors(s.radio.uplink_loss_fraction, uplink_burst_octets,
@@ -181,7 +179,6 @@ struct Landing::State {
     void tell(const LinkTruth& state, Ert ert);
     /// Reports the links as ground sees them during an outage of the station or its line, and after that.
     void tell_station(bool out, std::int64_t now_us);
-    bool tones_from_samples() const { return scenario.radio.tones_from_samples.value_or(false); }
     bool relaying() const;
     bool passes_over() const;
     bool recording_down() const { return !relaying() || relay_radio.done(recording()) || passes_over(); }
@@ -345,8 +342,8 @@ void Landing::State::receive_tone(std::optional<ToneId> sent, std::int64_t cycle
         sent.reset();
         earth.gain.reset();  // left out: the carrier of telemetry, which the tones' receiver is not set to
     }
-    const auto ended = x_band.cycle(sent, {truth.sclk, truth.e_s, doppler_hz, earth.up, earth.gain});
-    if (tones_from_samples() || carrier) {
+    const auto ended = x_band.cycle(sent, {truth.sclk, truth.e_s, earth.up, earth.gain});
+    if (antenna || receiver) {
         XBandField field;
         field.ert = {cycle_start_us + light_time_us};
         field.e_s = truth.sclk - scenario.entry_sclk;
@@ -360,17 +357,12 @@ void Landing::State::receive_tone(std::optional<ToneId> sent, std::int64_t cycle
         fields.send(field.ert.microseconds, field);
     }
     if (ended) {
-        SentSymbol symbol{ended->tone, ended->at, {}, {}};
+        SentSymbol symbol{ended->tone, ended->started, {}, {}};
         symbol.start = {correlation().scet_of(symbol.at).microseconds + light_time_us};
         symbol.end = {std::min(symbol.start.microseconds + microseconds(symbol_s), cycle_start_us + light_time_us)};
         symbols.send(symbol.end.microseconds, symbol);
-        if (auto heard = ended->heard) {
-            heard->start = symbol.start;
-            heard->end = symbol.end;
-            tones.send(symbol.end.microseconds, *heard);
-        }
     }
-    tell(x_band_told, x_band.up(), x_band.reason(), cycle_start_us);
+    tell(x_band_told, x_band.earth_up(), x_band.reason(), cycle_start_us);
 }
 
 bool Landing::State::station_out() const {
@@ -383,8 +375,7 @@ bool Landing::State::station_out() const {
 
 void Landing::State::tell(const LinkTruth& state, Ert ert) {
     report.links.push_back({state.link, ert, state.up, state.reason});
-    // With samples, the receiver on the ground finds the carrier or does not.
-    if (state.link == telemetry::x_band_link && tones_from_samples()) return;
+    if (state.link == telemetry::x_band_link) return;  // the receiver finds the carrier or does not
     const auto same = std::ranges::find(told_ground, state.link, &LinkTruth::link);
     if (same != told_ground.end() && same->up == state.up && (!state.up || same->reason == state.reason)) return;
     (same != told_ground.end() ? *same : told_ground.emplace_back(state)) = state;
@@ -521,21 +512,17 @@ const CycleReport& Landing::step() {
     const bool out = s.station_out();
     telemetry::Downlink& earth = s.report.earth;
     earth.now = Ert{now_us};
+    s.tell_station(out, now_us);
     s.octets.arrive(now_us, [&](std::int64_t, telemetry::ReceivedOctets&& o) {
         if (!out) earth.octets.push_back(std::move(o));
-    });
-    s.tones.arrive(now_us, [&](std::int64_t, const telemetry::ReceivedTone& t) {
-        if (!out) earth.tones.push_back(t);
     });
     s.symbols.arrive(now_us, [&](std::int64_t, const SentSymbol& symbol) { s.report.symbols.push_back(symbol); });
     s.fields.arrive(now_us, [&](std::int64_t, XBandField f) {
         f.up = f.up && !out;
         s.report.x_band.push_back(f);
         if (s.antenna) earth.x_band.push_back(s.antenna->sample(f));
-        if (s.carrier)
-            if (const auto told = s.carrier->hear(f)) earth.carrier.push_back(*told);
+        if (s.receiver) s.receiver->hear(f, earth);
     });
-    s.tell_station(out, now_us);
     return s.report;
 }
 
@@ -547,8 +534,8 @@ void Landing::listen_by(XBandFrontEnd antenna) {
     state_->antenna.emplace(std::move(antenna));
 }
 
-void Landing::listen_by(CarrierModel receiver) {
-    state_->carrier.emplace(std::move(receiver));
+void Landing::listen_by(XBandReceiverModel receiver) {
+    state_->receiver.emplace(std::move(receiver));
 }
 
 bool Landing::dispersed() const {

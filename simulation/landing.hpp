@@ -4,8 +4,8 @@
 #include "common/ids.hpp"
 #include "common/time.hpp"
 #include "flight/computer.hpp"
-#include "simulation/links/carrier_model.hpp"
 #include "simulation/links/x_band_front_end.hpp"
+#include "simulation/links/x_band_receiver_model.hpp"
 #include "simulation/scenario.hpp"
 #include "telemetry/port.hpp"
 
@@ -153,7 +153,7 @@ class Landing {
     /// Makes X-band reach Earth as samples of this antenna from here on.
     void listen_by(XBandFrontEnd antenna);
     /// Makes the estimates of this receiver's model reach Earth from here on, where tones are statistical.
-    void listen_by(CarrierModel receiver);
+    void listen_by(XBandReceiverModel receiver);
 
     /// Whether the dispersions have been drawn: at the start, or at the tick that the scenario sets.
     bool dispersed() const;

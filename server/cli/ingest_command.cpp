@@ -4,6 +4,7 @@
 #include "server/base/pcap.hpp"
 #include "server/base/wall_clock.hpp"
 #include "server/cli/commands.hpp"
+#include "server/cli/ingest_tones.hpp"
 #include "server/cli/options.hpp"
 #include "server/cli/xtce_file.hpp"
 #include "server/pipeline/pipeline_thread.hpp"
@@ -41,6 +42,7 @@ struct IngestOptions {
     std::optional<std::string> start;       ///< UTC at which the first octet was received
     std::optional<double> bits_per_second;  ///< at which the octets came
     double pace = 0.0;                      ///< seconds of reception a second; 0: at once
+    IngestTonesOptions tones;               ///< of a file of samples
 };
 
 /// A file that is read as its octets are needed. One that grows shorter meanwhile has an end there.
@@ -298,7 +300,21 @@ class Ingest {
     bool began_ = false;
 };
 
+/// A recording of X-band's samples, which is a run by itself.
+int ingest_samples(const IngestOptions& options) {
+    if (options.files.size() > 1) return failed("samples: one recording is a run, given by one file", 2);
+    if (!options.xtce.empty()) return failed("--xtce: samples hold tones of our own mission, no packets", 2);
+    IngestTonesOptions tones = options.tones;
+    tones.samples = options.files.front();
+    tones.archive = options.archive;
+    tones.start = options.start;
+    tones.pace = options.pace;
+    return ingest_tones(tones);
+}
+
 int ingest(const IngestOptions& options) {
+    if (holds_samples(options.files.front())) return ingest_samples(options);
+    if (options.xtce.empty()) return failed("--xtce is required: the mission's XTCE file", 2);
     if (!telemetry::downlink_format(options.format.name))
         return failed(packet_source(options.format, {}, true).error().message, 2);
     if (const auto checked = check_rate(options); !checked) return failed(checked.error().message, 2);
@@ -367,19 +383,32 @@ void add_ingest_command(CLI::App& program, int& exit_code) {
     auto& command = *program.add_subcommand(
         "ingest",
         "takes recorded files of a mission into a run of the archive, as a followed link brings it: plain "
-        "octets, or pcap and pcapng with the times of reception. Exit code 1 when anything was lost or not used");
+        "octets, or pcap and pcapng with the times of reception; or SigMF and WAV with samples of our own mission's "
+        "tones. Exit code 1 when anything was lost or not used");
     command.add_option("files", options->files, "recorded files, in the order of reception: one stream")->required();
     command.add_option("--archive", options->archive, "SQLite file that keeps everything")->required();
-    add_mission_xtce(command, options->xtce, "the mission's XTCE file; may be given several times")->required();
+    add_mission_xtce(command, options->xtce, "the mission's XTCE file; may be given several times; not for samples");
     add_stream_format(command, options->format);
     command.add_option("--udp-port", options->port, "of a capture: datagrams to this port only; all if left out");
-    command.add_option("--start", options->start,
-                       "of a plain file: when its first octet was received, UTC; now if left out");
+    command.add_option(
+        "--start", options->start,
+        "of a plain file: when its first octet was received, UTC; now if left out. Of samples: the first one, as the "
+        "file says if left out");
     command.add_option("--bits-per-second", options->bits_per_second,
                        "of a plain file: the rate at which it was received; all at once if left out");
     command.add_option("--pace", options->pace, "seconds of reception a second; 0: as fast as it goes")
         ->check(CLI::Range(0.0, 1.0e6))
         ->capture_default_str();
+    auto& tones = options->tones;
+    command
+        .add_option("--dictionary", tones.dictionary, "of samples: directory of the dictionary that names the tones")
+        ->capture_default_str();
+    command.add_option("--predict", tones.predict, "of samples: CSV of the Doppler that was removed before sampling");
+    command.add_option("--expected", tones.expected, "of samples: CSV of a Doppler that is still in them");
+    command.add_option("--at", tones.at_s, "of samples: the first one's time on the scale of those files, in seconds")
+        ->capture_default_str();
+    command.add_option("--exclude", tones.excluded_hz, "of samples: lines to leave out, in Hz; 0 is a DC block")
+        ->delimiter(',');
     command.callback([options, &exit_code] { exit_code = ingest(*options); });
 }
 

@@ -42,7 +42,7 @@ struct Pipeline::State {
             std::uint64_t received = 0, stored = 0;  ///< octets; the first `stored` are durable
         };
         std::map<std::string, RawLink> raw;
-        std::uint16_t station_carriers = 0, station_events = 0;  ///< packets so far
+        std::uint16_t station_carriers = 0, station_events = 0, station_spectra = 0;  ///< packets so far
 
         bool repeats() const { return compare != nullptr; }
         /// When something left the vehicle, by light time.
@@ -74,6 +74,8 @@ struct Pipeline::State {
     void take(const telemetry::ReceivedTone& tone);
     void take(const telemetry::ReceivedCarrier& carrier);
     void take(const telemetry::SeenByDoppler& seen);
+    void take(const telemetry::ReceivedSpectrum& spectrum);
+    bool has_packet(Apid apid) const;
     void take(const telemetry::LinkState& link);
     void add(std::optional<archive::SituationRecord> situation);
     void compare_with_archive();
@@ -200,7 +202,7 @@ Result<void> Pipeline::State::room() {
 
 Result<void> Pipeline::accept(const telemetry::Received& received) {
     if (received.packets.empty() && received.tones.empty() && received.carrier.empty() && received.seen.empty() &&
-        received.links.empty() && received.octets.empty())
+        received.spectra.empty() && received.links.empty() && received.octets.empty())
         return {};
     // All or nothing: otherwise a retry would store items twice.
     if (auto room = state_->room(); !room) return room;
@@ -210,6 +212,7 @@ Result<void> Pipeline::accept(const telemetry::Received& received) {
     for (const auto& tone : received.tones) state_->take(tone);
     for (const auto& carrier : received.carrier) state_->take(carrier);
     for (const auto& seen : received.seen) state_->take(seen);
+    for (const auto& spectrum : received.spectra) state_->take(spectrum);
     return {};
 }
 
@@ -231,6 +234,10 @@ Result<void> Pipeline::accept(const telemetry::ReceivedCarrier& carrier) {
 
 Result<void> Pipeline::accept(const telemetry::SeenByDoppler& seen) {
     return state_->accept(seen);
+}
+
+Result<void> Pipeline::accept(const telemetry::ReceivedSpectrum& spectrum) {
+    return state_->accept(spectrum);
 }
 
 Result<void> Pipeline::accept(const telemetry::LinkState& link) {
@@ -386,10 +393,21 @@ void Pipeline::State::take(const telemetry::ReceivedTone& tone) {
     run->situation.follow(run->pending);
 }
 
+/// Whether the run's dictionary has the packet, which the station makes.
+bool Pipeline::State::has_packet(Apid apid) const {
+    return other == nullptr &&
+           std::ranges::find(dictionary.packets, apid, &dictionary::Packet::apid) != dictionary.packets.end();
+}
+
+void Pipeline::State::take(const telemetry::ReceivedSpectrum& spectrum) {
+    if (!has_packet(station_spectrum_apid)) return;
+    take(telemetry::ReceivedPacket{telemetry::station_link, spectrum.ert,
+                                   telemetry::station_spectrum_packet(spectrum, run->sent(spectrum.middle),
+                                                                      run->station_spectra++, dictionary.id)});
+}
+
 void Pipeline::State::take(const telemetry::ReceivedCarrier& carrier) {
-    if (other != nullptr || std::ranges::find(dictionary.packets, station_carrier_apid, &dictionary::Packet::apid) ==
-                                dictionary.packets.end())
-        return;
+    if (!has_packet(station_carrier_apid)) return;
     take(telemetry::ReceivedPacket{
         telemetry::station_link, carrier.ert,
         telemetry::station_carrier_packet(carrier, run->sent(carrier.middle), run->station_carriers++, dictionary.id)});

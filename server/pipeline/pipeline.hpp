@@ -93,6 +93,7 @@ class Pipeline {
     /// Keeps it as a packet of the station, if the dictionary has that (telemetry/station/station_packets.hpp).
     Result<void> accept(const telemetry::ReceivedCarrier& carrier);
     Result<void> accept(const telemetry::SeenByDoppler& seen);
+    Result<void> accept(const telemetry::ReceivedSpectrum& spectrum);
     Result<void> accept(const telemetry::LinkState& link);
     /// Takes a stage and assigns its `seq`.
     Result<void> accept(archive::StageRecord stage);

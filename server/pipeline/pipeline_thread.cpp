@@ -54,6 +54,7 @@ void Delivery::add(telemetry::Received&& received) {
     move_in(received.tones);
     move_in(received.carrier);
     move_in(received.seen);
+    move_in(received.spectra);
     move_in(received.links);
 }
 

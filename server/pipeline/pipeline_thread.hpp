@@ -21,9 +21,10 @@ namespace aeolis::server {
 
 /// Entries that a run hands to the archive together, in the order in which they reached Earth.
 struct Delivery {
-    using Entry = std::variant<telemetry::ReceivedOctets, telemetry::ReceivedPacket, telemetry::ReceivedTone,
-                               telemetry::ReceivedCarrier, telemetry::SeenByDoppler, telemetry::LinkState,
-                               telemetry::EarthTime, archive::StageRecord, archive::RequestRecord>;
+    using Entry =
+        std::variant<telemetry::ReceivedOctets, telemetry::ReceivedPacket, telemetry::ReceivedTone,
+                     telemetry::ReceivedCarrier, telemetry::SeenByDoppler, telemetry::ReceivedSpectrum,
+                     telemetry::LinkState, telemetry::EarthTime, archive::StageRecord, archive::RequestRecord>;
     std::vector<Entry> entries;
     double relay_progress = 0.0;
     std::vector<archive::LinkTotals> links;           ///< empty: unchanged

@@ -4,7 +4,7 @@
 #include "dictionaries/timeline_plan.hpp"
 #include "simulation/entry_flight.hpp"
 #include "simulation/entry_reference.hpp"
-#include "simulation/links/x_band_link.hpp"
+#include "simulation/links/carrier_model.hpp"
 #include "simulation/mars/earth.hpp"
 
 #include <algorithm>
@@ -90,7 +90,7 @@ telemetry::PredictedSilences predict_silences(const simulation::Scenario& scenar
     silences.uhf_stop_s = timepoint_s("stop_uhf");
     silences.x_band_tones_s = timepoint_s("start_x_band_tones");
     silences.earth_set_s = earth_set_s(scenario, entry, backshell_s);
-    silences.carrier_weak = !simulation::XBandLink::can_lock(scenario.radio.x_band_c_n0_dbhz);
+    silences.carrier_weak = !simulation::CarrierModel::can_acquire(scenario.radio.x_band_c_n0_dbhz);
     for (const simulation::RelayPass& pass : scenario.radio.relay_passes)
         silences.passes.push_back({pass.orbiter, pass.rise_after_entry_s, pass.set_after_entry_s,
                                    pass.set_after_entry_s + pass.delivery_after_set_s, pass.stored});

@@ -29,7 +29,7 @@ struct DopplerRows {
 
 }  // namespace
 
-TimeTable predicted_doppler_hz(const simulation::Scenario& scenario, const MfskWaveform& waveform) {
+PredictedFlight predicted_flight(const simulation::Scenario& scenario, const MfskWaveform& waveform) {
     simulation::Scenario expected = simulation::undispersed(scenario);
     expected.disperse_before_entry_s.reset();
     expected.test_venue = simulation::TestVenue::gnc_alone;
@@ -38,6 +38,7 @@ TimeTable predicted_doppler_hz(const simulation::Scenario& scenario, const MfskW
     expected.start_before_entry_s = std::min(scenario.start_before_entry_s, flown_from_before_entry_s);
 
     DopplerRows rows{waveform.carrier_hz};
+    std::vector<double> reversals_s;
     const simulation::InitialState start =
         simulation::state_before_entry(expected, scenario.start_before_entry_s, 0, 0);
     simulation::PointMass at = start.truth;
@@ -51,11 +52,16 @@ TimeTable predicted_doppler_hz(const simulation::Scenario& scenario, const MfskW
         const simulation::TruthState truth = landing.truth();
         if (truth.sclk.ticks() % flight_row_ticks == 0)
             rows.add(truth.e_s, simulation::vector3(truth.p_MoB_M_m), simulation::vector3(truth.v_MB_M_mps));
-        landing.step();
+        for (const auto& event : landing.step().events)
+            if (event.name.starts_with("bank_reversal")) reversals_s.push_back(event.e_s);
     }
     auto table = TimeTable::make(std::move(rows.time_s), std::move(rows.doppler_hz));
     AEOLIS_CHECK(table.ok());
-    return *table;
+    return {std::move(*table), std::move(reversals_s)};
+}
+
+TimeTable predicted_doppler_hz(const simulation::Scenario& scenario, const MfskWaveform& waveform) {
+    return predicted_flight(scenario, waveform).doppler_hz;
 }
 
 }  // namespace aeolis::server

@@ -120,8 +120,9 @@ void ScriptedLanding::equip_station(const simulation::Scenario& scenario, std::u
     const Ert entry{landing_.correlation().scet_of(scenario.entry_sclk).microseconds +
                     static_cast<std::int64_t>(landing_.light_time_s() * 1e6)};
     station_.explain_by({predict_silences(scenario, dictionary), landing_.ert_now(), entry});
-    const auto predict_hz = predicted_doppler_hz(scenario, dictionary.mfsk);
-    station_.watch_by({predict_hz, entry});
+    const auto predicted = predicted_flight(scenario, dictionary.mfsk);
+    const TimeTable& predict_hz = predicted.doppler_hz;
+    station_.watch_by({predict_hz, entry, predicted.reversals_s});
     if (!scenario.radio.tones_from_samples.value_or(false)) {
         landing_.listen_by({scenario.radio.x_band_c_n0_dbhz, predict_hz, seed, case_number});
         return;

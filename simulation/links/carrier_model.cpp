@@ -11,13 +11,13 @@
 namespace aeolis::simulation {
 namespace {
 
-constexpr std::array<int, 3> windows{39, 25, 7};     // cycles; the first is the usual one
-constexpr int estimate_cycles = 8;                   // an eighth of a second
-constexpr double least_coherence = 0.7;              // chosen: a rate that is right keeps more of its power
-constexpr double least_energy = 8.0;                 // 9 dB; chosen, as the tracker's least
-constexpr double quick_dbhz = 20.5;                  // of the carrier: found in 1 s
-constexpr int quick_cycles = 64, slow_cycles = 256;  // 1 s, 4 s
-constexpr int missed_most = 12;                      // 1.5 s
+constexpr std::array<int, 3> windows{39, 25, 7};       // cycles; the first is the usual one
+constexpr int estimate_cycles = 8;                     // an eighth of a second
+constexpr double least_coherence = 0.7;                // chosen: a rate that is right keeps more of its power
+constexpr double least_energy = 8.0;                   // 9 dB; chosen, as the tracker's least
+constexpr double quick_dbhz = 20.5, slow_dbhz = 15.8;  // of the carrier: found in 1 s, in 4 s (docs/tones.md)
+constexpr int quick_cycles = 64, slow_cycles = 256;    // 1 s, 4 s
+constexpr int missed_most = 12;                        // 1.5 s
 constexpr double turn_rad = 2.0 * std::numbers::pi;
 
 }  // namespace
@@ -25,6 +25,10 @@ constexpr double turn_rad = 2.0 * std::numbers::pi;
 CarrierModel::CarrierModel(double total_c_n0_dbhz, TimeTable predict_hz, std::uint64_t seed, std::uint64_t case_number)
     : total_c_n0_dbhz_(total_c_n0_dbhz), predict_hz_(std::move(predict_hz)),
       random_(seed, case_number, Stream::carrier) {}
+
+bool CarrierModel::can_acquire(double total_c_n0_dbhz) {
+    return total_c_n0_dbhz + XBandLink::carrier_power_db() >= slow_dbhz;
+}
 
 /// Fits a parabola to the phases of the `length` cycles in the middle of the memory.
 CarrierModel::Fit CarrierModel::fit(int length) const {
@@ -86,7 +90,7 @@ std::optional<telemetry::ReceivedCarrier::Estimate> CarrierModel::estimate(bool&
 std::optional<telemetry::ReceivedCarrier> CarrierModel::hear(const XBandField& field) {
     const double carrier_dbhz =
         total_c_n0_dbhz_ + field.gain_db + (field.tone ? XBandLink::carrier_power_db() : 0.0);  // alone it has all
-    const bool audible = field.up && XBandLink::can_lock(total_c_n0_dbhz_ + field.gain_db);
+    const bool audible = field.up && can_acquire(total_c_n0_dbhz_ + field.gain_db);
     present_ = audible ? present_ + 1 : 0;
 
     Cycle& newest = cycles_[static_cast<std::size_t>(next_)];

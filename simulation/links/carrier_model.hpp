@@ -27,6 +27,9 @@ class CarrierModel {
     CarrierModel(double total_c_n0_dbhz, TimeTable predict_hz, std::uint64_t seed, std::uint64_t case_number);
 
     std::optional<telemetry::ReceivedCarrier> hear(const XBandField& field);
+    bool follows() const { return follows_; }  ///< a carrier, found or not found for a moment
+    /// Whether a search finds the carrier at this total power to noise density, in 4 s.
+    static bool can_acquire(double total_c_n0_dbhz);
 
   private:
     static constexpr int longest = 39;  ///< cycles

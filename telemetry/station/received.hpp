@@ -2,6 +2,7 @@
 #pragma once
 
 #include "telemetry/decoded_packet.hpp"
+#include "telemetry/mfsk/thinned_spectrum.hpp"
 #include "telemetry/port.hpp"
 
 #include <cstdint>
@@ -26,11 +27,26 @@ struct EarthTime {
 
 /// A step or a slope of the carrier's Doppler that shows a feature of the flight.
 struct SeenByDoppler {
-    enum class Feature : std::uint8_t { entry, parachute, heatshield };
+    enum class Feature : std::uint8_t {
+        entry,
+        parachute,
+        heatshield,
+        first_reversal,  ///< of the bank
+        second_reversal,
+        third_reversal,
+        fourth_reversal,
+    };
     Feature feature = Feature::entry;
     Ert ert;                                   ///< when it was recognised
     Ert at;                                    ///< when it reached Earth
-    double evidence_hz = 0.0, sigma_hz = 0.0;  ///< departure from the line before, and its standard deviation
+    double evidence_hz = 0.0, sigma_hz = 0.0;  ///< departure from its course before, and its standard deviation
+};
+
+/// The spectrum of X-band's samples over a second, less the predict; frequency 0 is the predicted carrier.
+struct ReceivedSpectrum {
+    Ert ert;     ///< when the receiver had it
+    Ert middle;  ///< of the second
+    ThinnedRow row;
 };
 
 /// A station's output for one Downlink.
@@ -39,6 +55,7 @@ struct Received {
     std::vector<ReceivedTone> tones;
     std::vector<ReceivedCarrier> carrier;
     std::vector<SeenByDoppler> seen;
+    std::vector<ReceivedSpectrum> spectra;  ///< from samples only
     std::vector<LinkState> links;
     std::vector<ReceivedOctets> octets;  ///< the raw octets behind the packets, including bad ones
 
@@ -48,6 +65,7 @@ struct Received {
         tones.clear();
         carrier.clear();
         seen.clear();
+        spectra.clear();
         links.clear();
     }
 };

@@ -7,7 +7,7 @@
 namespace aeolis::telemetry {
 namespace {
 
-constexpr std::size_t carrier_data_octets = 26, seen_data_octets = 27;
+constexpr std::size_t carrier_data_octets = 26, seen_data_octets = 27, spectrum_data_octets = 8 + thinned_bins;
 
 }  // namespace
 
@@ -24,6 +24,17 @@ std::vector<std::uint8_t> station_carrier_packet(const ReceivedCarrier& carrier,
     out.put_float(static_cast<float>(estimate.rate_hzps));
     out.put_float(static_cast<float>(estimate.c_n0_dbhz));
     seal_tm_packet(packet, station_carrier_apid, count, sent, dictionary_id);
+    return packet;
+}
+
+std::vector<std::uint8_t> station_spectrum_packet(const ReceivedSpectrum& spectrum, Sclk sent, std::uint16_t count,
+                                                  std::uint16_t dictionary_id) {
+    std::vector<std::uint8_t> packet(tm_overhead_octets + spectrum_data_octets);
+    BitWriter out{std::span{packet}.subspan(tm_data_offset_octets, spectrum_data_octets)};
+    out.put_float(static_cast<float>(spectrum.row.first_hz));
+    out.put_float(static_cast<float>(spectrum.row.bin_hz));
+    for (const std::uint8_t level : spectrum.row.levels) out.put(level, 8);
+    seal_tm_packet(packet, station_spectrum_apid, count, sent, dictionary_id);
     return packet;
 }
 

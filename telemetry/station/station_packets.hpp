@@ -19,6 +19,13 @@ namespace aeolis::telemetry {
 std::vector<std::uint8_t> station_carrier_packet(const ReceivedCarrier& carrier, Sclk sent, std::uint16_t count,
                                                  std::uint16_t dictionary_id);
 
+/// The packet "StationSpectrum".
+///
+/// @param sent   when the middle of its second left the vehicle
+/// @param count  of this packet in its run
+std::vector<std::uint8_t> station_spectrum_packet(const ReceivedSpectrum& spectrum, Sclk sent, std::uint16_t count,
+                                                  std::uint16_t dictionary_id);
+
 inline constexpr std::string_view seen_by_doppler_name = "SEEN_BY_DOPPLER";
 
 /// The event report "SEEN_BY_DOPPLER".

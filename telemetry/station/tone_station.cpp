@@ -8,7 +8,7 @@
 namespace aeolis::telemetry {
 namespace {
 
-constexpr std::size_t push_samples = 16384;
+constexpr double push_s = 0.25;  // chosen: what is seen by Doppler is told that much later at most
 /// How far a fit's C/N0 may lie below its running mean. Chosen: where the carrier went, fits to its rest and to noise
 /// lie further below and are many deviations off; of good fits at 22 dB-Hz less than one in a hundred does.
 constexpr double faded_db = 2.0;
@@ -23,15 +23,17 @@ void ToneStation::receive(const Downlink& downlink, Received& out) {
     for (const XBandSamples& piece : downlink.x_band) {
         if (!receiver_) {
             const double start_s = static_cast<double>(piece.ert.microseconds - entry_.microseconds) * 1.0e-6;
-            auto made = ToneReceiver::make(waveform_, x_band_rate_hz, {predict_hz_, start_s, {}, {}, {}});
+            auto made = ToneReceiver::make(waveform_, recorded_.rate_hz,
+                                           {predict_hz_, start_s, recorded_.expected_hz, recorded_.excluded_hz, {}});
             AEOLIS_CHECK(made.ok());
             receiver_.emplace(std::move(*made));
+            if (recorded_.expected_hz.empty()) spectrum_.emplace(recorded_.rate_hz, start_s);
         }
         samples_.insert(samples_.end(), piece.samples.begin(), piece.samples.end());
     }
     if (!receiver_ || ended_) return;
     ended_ = downlink.x_band.empty();  // no more samples
-    if (ended_ || samples_.size() >= push_samples) push(downlink.now, out);
+    if (ended_ || static_cast<double>(samples_.size()) >= recorded_.rate_hz * push_s) push(downlink.now, out);
     const auto& status = receiver_->status();
     const bool carrier = !ended_ && !downlink.station_out && status.lock != CarrierLock::searching;
     if (carrier || up_ || ended_ || status.without_s >= first_search_s) tell_link(carrier, downlink.now, out);
@@ -39,7 +41,10 @@ void ToneStation::receive(const Downlink& downlink, Received& out) {
 
 void ToneStation::push(Ert now, Received& out) {
     receiver_->push(samples_);
+    if (spectrum_) spectrum_->push(samples_);
     samples_.clear();
+    if (spectrum_)
+        for (ThinnedRow& row : spectrum_->take()) out.spectra.push_back({now, ert_of(row.time_s), std::move(row)});
     if (ended_) receiver_->finish();
     for (const CarrierReport& report : receiver_->take_carrier()) {
         const bool follows = report.lock != CarrierLock::searching;
@@ -60,7 +65,8 @@ Ert ToneStation::ert_of(double from_entry_s) const {
 }
 
 ReceivedCarrier ToneStation::told(const CarrierReport& report, Ert now) const {
-    ReceivedCarrier carrier{now, ert_of(report.time_s), predict_hz_.at(report.time_s), report.lock, {}};
+    const double predict_hz = predict_hz_.at(report.time_s) + recorded_.expected_hz.at(report.time_s);
+    ReceivedCarrier carrier{now, ert_of(report.time_s), predict_hz, report.lock, {}};
     if (report.fit_c_n0_dbhz > report.total_c_n0_dbhz - faded_db && report.frequency_deviation_hz > 0.0)
         carrier.estimate = {report.frequency_hz, report.frequency_deviation_hz, report.rate_hzps,
                             report.total_c_n0_dbhz};

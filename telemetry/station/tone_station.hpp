@@ -3,6 +3,7 @@
 
 #include "common/mfsk_waveform.hpp"
 #include "common/time_table.hpp"
+#include "telemetry/mfsk/thinned_spectrum.hpp"
 #include "telemetry/mfsk/tone_receiver.hpp"
 #include "telemetry/port.hpp"
 #include "telemetry/station/received.hpp"
@@ -15,8 +16,8 @@ namespace aeolis::telemetry {
 
 /// The receiving half of a deep-space station: tones and the state of X-band from samples.
 ///
-/// In       X-band samples in order, without a gap           Out   decisions, the carrier, and whether there is one
-/// Rate     16384 samples a second; 2 ms of processor time a second of signal
+/// In       X-band samples in order, without a gap           Out   decisions, the carrier, whether there is one, spectra
+/// Rate     16384 samples a second, or that of a recording; 2 ms of processor time a second of signal
 /// Rule     X-band is up while a carrier is tracked. Before the first one it is down once the receiver has searched for
 ///          `first_search_s` without success; an unnoticed carrier leaves no report
 /// Memory   the receiver's, and a second of samples
@@ -25,15 +26,25 @@ class ToneStation {
   public:
     static constexpr double first_search_s = 10.0;  ///< chosen: twice the longest search
 
+    /// What is told of samples that were recorded elsewhere.
+    struct Samples {
+        double rate_hz = x_band_rate_hz;  ///< as ToneReceiver takes it
+        TimeTable expected_hz{};          ///< Doppler still in them, beyond the predict; then there are no spectra
+        std::vector<double> excluded_hz{};
+    };
+
     /// `predict_hz`: the predict removed, by seconds from `entry`. `entry`: arrival of a signal sent at the predicted
     /// entry.
     ToneStation(const MfskWaveform& waveform, TimeTable predict_hz, Ert entry)
-        : waveform_(waveform), predict_hz_(std::move(predict_hz)), entry_(entry) {}
+        : ToneStation(waveform, std::move(predict_hz), entry, Samples{}) {}
+    ToneStation(const MfskWaveform& waveform, TimeTable predict_hz, Ert entry, Samples recorded)
+        : waveform_(waveform), predict_hz_(std::move(predict_hz)), entry_(entry), recorded_(std::move(recorded)) {}
 
     /// Appends decisions to `out`, up to 20 s after a symbol's end.
     void receive(const Downlink& downlink, Received& out);
 
     const ReceiverStatus& status() const { return receiver_->status(); }
+    bool has_begun() const { return receiver_.has_value(); }
 
   private:
     void push(Ert now, Received& out);
@@ -45,7 +56,9 @@ class ToneStation {
     MfskWaveform waveform_;
     TimeTable predict_hz_;
     Ert entry_;
+    Samples recorded_;
     std::optional<ToneReceiver> receiver_;  ///< from the first sample on
+    std::optional<ThinnedSpectrum> spectrum_;
     std::vector<std::complex<float>> samples_;
     bool ended_ = false;
     bool follows_ = false;    ///< a carrier, as told

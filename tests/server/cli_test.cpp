@@ -1028,6 +1028,45 @@ TEST_CASE("a fixed oscillator's Doppler is removed from SigMF samples, and optio
     CHECK_THAT(run(program(), "tones decode --samples" + path("raw.cf32")).text, Catch::Contains("give --format"));
 }
 
+TEST_CASE("a pass recorded elsewhere becomes a run with its tones, carrier, spectra and link, from SigMF as from WAV",
+          "[cli][ingest][tones][R55]") {
+    if (program() == nullptr) return;
+    const aeolis::test::TemporaryFolder folder;
+    std::ofstream{folder / "tones.csv"} << "start_s,tone\n3,17\n13,200\n23,99\n";
+    const auto path = [&](const char* name) { return " '" + (folder / name).string() + "'"; };
+    const auto made =
+        run(program(), "tones simulate --tones" + path("tones.csv") +
+                           " --c-n0 24 --length 40 --format ci16 --rate 8192 --out" + path("s.sigmf-meta"));
+    INFO(made.text);
+    REQUIRE(made.code == 0);
+    const std::string archive = "--archive" + path("passes.db");
+    const auto taken = run(program(), "ingest " + archive + " --start 2012-219T05:10:00" + path("s.sigmf-data"));
+    INFO(taken.text);
+    CHECK(taken.code == 0);
+    CHECK_THAT(taken.text,
+               Catch::Contains("run 1\n") && Catch::Contains("3 tones, 0 erasures") && Catch::Contains(" 40 spectra"));
+    const auto carrier = run(program(), "export " + archive + " --run 1 --channel STA-0006");
+    CHECK(carrier.code == 0);
+    CHECK(std::ranges::count(carrier.text, '\n') > 250);
+    const auto packets = run(program(), "export " + archive + " --run 1 --packets --link station --format bin");
+    CHECK(packets.code == 0);
+    CHECK(packets.text.size() > 40 * 512);
+    CHECK_THAT(run(program(), "ingest " + archive + " --xtce x.xml" + path("s.sigmf-data")).text,
+               Catch::Contains("no packets"));
+    CHECK(run(program(), "ingest " + archive + path("s.sigmf-data") + path("s.sigmf-data")).code == 2);
+    CHECK(run(program(), "ingest " + archive + " --start yesterday" + path("s.sigmf-data")).code == 2);
+    CHECK(run(program(), "ingest " + archive + path("tones.csv")).code ==
+          2);  // no samples: what mission it is is missing
+
+    const auto silent = run(program(), "tones simulate --tones" + path("tones.csv") +
+                                           " --c-n0 0 --length 30 --format ci16 --out" + path("n.sigmf-meta"));
+    REQUIRE(silent.code == 0);
+    const auto nothing = run(program(), "ingest " + archive + path("n.sigmf-meta"));
+    CHECK(nothing.code == 1);
+    CHECK_THAT(nothing.text,
+               Catch::Contains("0 tones, 0 erasures, 0 estimates") && Catch::Contains("no carrier was heard"));
+}
+
 TEST_CASE("the program writes the command file that changes parameters, with the CRC that flight wants",
           "[cli][parameters][R25][R48]") {
     if (program() == nullptr) return;

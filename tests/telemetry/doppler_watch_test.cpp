@@ -4,8 +4,10 @@
 #include "tests/support/catch.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <random>
 #include <utility>
 #include <vector>
@@ -76,6 +78,46 @@ bool has(const std::vector<SeenByDoppler>& all, Feature feature) {
     return std::ranges::count(all, feature, &SeenByDoppler::feature) > 0;
 }
 
+/// The part of a made-up entry with reversals, at which the lift turns from one side to the other.
+struct Braking {
+    std::vector<double> reversals_s;
+    double denser = 1.0;  ///< air than predicted
+
+    TimeTable doppler_hz() const {
+        std::vector<double> time_s, hz;
+        double now_hz = -450'000.0;
+        constexpr double step_s = 0.0625, turn_s = 9.0;
+        for (double t = 45.0; t < 170.0; t += step_s) {
+            double logarithm = std::log(denser);
+            for (std::size_t i = 0; i < reversals_s.size(); ++i) {
+                const double since = std::clamp((t - reversals_s[i]) / turn_s, -0.5, 0.5);
+                logarithm += (i % 2 == 0 ? 0.15 : -0.2) * (0.5 + 0.5 * std::sin(3.14159265 * since));
+            }
+            now_hz += step_s * 2500.0 * std::exp(logarithm - 0.0008 * (t - 82.0) * (t - 82.0));
+            time_s.push_back(t);
+            hz.push_back(now_hz);
+        }
+        return *TimeTable::make(std::move(time_s), std::move(hz));
+    }
+};
+
+std::vector<SeenByDoppler> watch_braking(DopplerWatch watch, const TimeTable& predict_hz, const TimeTable& flown_hz,
+                                         double found_from_s = 50.0) {
+    std::minstd_rand random{1};
+    std::vector<SeenByDoppler> all;
+    for (double t = found_from_s; t < 160.0; t += 0.125) {
+        ReceivedCarrier carrier;
+        carrier.middle = {entry.microseconds + std::llround(t * 1.0e6)};
+        carrier.ert = {carrier.middle.microseconds + std::llround(late_s * 1.0e6)};
+        carrier.predict_hz = predict_hz.at(t);
+        const double even = static_cast<double>(random()) / std::minstd_rand::max() - 0.5;
+        carrier.estimate = {flown_hz.at(t) - carrier.predict_hz + even * sigma_hz * std::sqrt(12.0), sigma_hz, 0.0,
+                            22.0};
+        if (const auto seen = watch.hear(carrier)) all.push_back(*seen);
+    }
+    return all;
+}
+
 }  // namespace
 
 TEST_CASE("drag, parachute and heatshield are seen by Doppler once each, the two steps within three seconds, where the "
@@ -142,6 +184,46 @@ TEST_CASE("a carrier that swings, and estimates that are wrong, show no feature"
         }
     const auto wrong = watch(Flight{}.predict(), {1e9, 1e9, 1e9}, [](double) { return true; }, 700.0);
     CHECK(wrong.empty());
+}
+
+TEST_CASE("reversals are seen by Doppler where the flight has them, when expected or not, and none where it has none",
+          "[station][tones][R54]") {
+    const std::vector<double> predicted_s{78.0, 99.0, 127.0};
+    const Braking expected{predicted_s};
+    const auto predict_hz = expected.doppler_hz();
+    const DopplerWatch watch{predict_hz, entry, predicted_s};
+    const std::array<Feature, 3> features{Feature::first_reversal, Feature::second_reversal, Feature::third_reversal};
+    for (std::size_t i = 0; i < features.size(); ++i) {
+        REQUIRE(watch.expected_s(features[i]));
+        CHECK(*watch.expected_s(features[i]) == Approx(predicted_s[i]).margin(1.0));
+    }
+    CHECK_FALSE(watch.expected_s(Feature::fourth_reversal));
+
+    const std::vector<std::vector<double>> flown{{78.0, 99.0, 127.0}, {77.0, 97.0, 120.0}, {79.5, 101.0, 134.0},
+                                                 {78.0, 99.0, 1e9},   {78.0, 1e9, 127.0},  {1e9, 1e9, 1e9}};
+    for (const auto& turns_s : flown) {
+        CAPTURE(turns_s);
+        std::map<Feature, SeenByDoppler> seen;
+        const auto told = watch_braking(watch, predict_hz, Braking{turns_s, 1.03}.doppler_hz());
+        for (const auto& each : told) CHECK(seen.emplace(each.feature, each).second);
+        for (std::size_t i = 0; i < features.size(); ++i) {
+            CAPTURE(i);
+            REQUIRE(seen.contains(features[i]) == (turns_s[i] < 1e6));
+            if (turns_s[i] > 1e6) continue;
+            const auto& each = seen.at(features[i]);
+            CHECK(e_s(each.ert) > turns_s[i] - 4.0);  // lift turns for nine seconds
+            CHECK(e_s(each.ert) < turns_s[i] + 3.0);
+            CHECK(each.ert.microseconds - each.at.microseconds >= std::llround((late_s + 0.25) * 1.0e6));
+            CHECK(std::abs(each.evidence_hz) > 4.0 * each.sigma_hz);
+            CHECK((each.evidence_hz > 0.0) == (i != 1));  // towards Earth, or away
+        }
+    }
+    // Reversals that nobody predicts are not looked for.
+    CHECK(watch_braking(DopplerWatch{predict_hz, entry}, predict_hz, predict_hz).empty());
+    // A carrier that is found only after it.
+    const auto late = watch_braking(watch, predict_hz, predict_hz, 80.0);
+    CHECK_FALSE(has(late, Feature::first_reversal));
+    CHECK(has(late, Feature::second_reversal));
 }
 
 TEST_CASE("a copied watch continues alike", "[station][tones]") {

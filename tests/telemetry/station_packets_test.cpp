@@ -54,6 +54,28 @@ TEST_CASE("the carrier's estimates are channels of the dictionary, and undefined
         CHECK_FALSE(value(lost, name));
 }
 
+TEST_CASE("a spectrum is a packet of the dictionary, and 1000 s of them are no more than 1 MB", "[station][R54]") {
+    const auto& dictionary = tests::shipped_dictionary();
+    ReceivedSpectrum spectrum;
+    spectrum.row.first_hz = -8192.0;
+    spectrum.row.bin_hz = 32.0;
+    spectrum.row.levels.assign(thinned_bins, 60);
+    spectrum.row.levels[256] = 110;
+    const auto packet = station_spectrum_packet(spectrum, Sclk{1000.5}, 7, dictionary.id);
+    CHECK(packet.size() * 1000 < 600'000);
+    const Decommutator decommutator{dictionary};
+    Decoded decoded;
+    REQUIRE_FALSE(decommutator.decode(packet, decoded));
+    const auto& container = dictionary.packets[decoded.packet];
+    CHECK(container.name == "StationSpectrum");
+    CHECK(decoded.value[0] == -8192.0);
+    CHECK(decoded.value[1] == 32.0);
+    REQUIRE(container.content);
+    CHECK(container.content->octets == thinned_bins);
+    CHECK(packet[container.content->offset_octets + 255] == 60);
+    CHECK(packet[container.content->offset_octets + 256] == 110);
+}
+
 TEST_CASE("the labels of the receiver's lock are those of the dictionary", "[station][R54]") {
     const auto* channel = tests::shipped_dictionary().channel("carrier_lock");
     REQUIRE(channel != nullptr);

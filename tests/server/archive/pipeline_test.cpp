@@ -296,6 +296,36 @@ TEST_CASE("what cannot be decoded is stored and says why", "[pipeline]") {
     CHECK(ground.reader().packets(ground.run(), {})->packets(0).hex().size() == 2 * broken.size());
 }
 
+TEST_CASE("spectra are kept as packets that ground made, whole, and none of it was heard",
+          "[pipeline][archive][R53][R54]") {
+    Ground ground{tests::shipped_dictionary()};
+    telemetry::Received received;
+    for (int second = 0; second < 3; ++second) {
+        auto& spectrum = received.spectra.emplace_back();
+        spectrum.middle = Ert{20'000'000 + second * 1'000'000};
+        spectrum.ert = Ert{20'500'000 + second * 1'000'000};
+        spectrum.row.first_hz = -8192.0;
+        spectrum.row.bin_hz = 32.0;
+        spectrum.row.levels.assign(telemetry::thinned_bins, static_cast<std::uint8_t>(60 + second));
+    }
+    REQUIRE(ground.pipeline.accept(received).ok());
+    CHECK(ground.pipeline.totals().realtime == 0);
+    CHECK(ground.pipeline.totals().not_decoded == 0);
+    REQUIRE(ground.pipeline.commit().ok());
+    archive::PacketQuery query;
+    query.name = "StationSpectrum";
+    const auto list = ground.reader().packets(ground.run(), query);
+    REQUIRE(list.ok());
+    REQUIRE(list->packets_size() == 3);
+    for (int second = 0; second < 3; ++second) {
+        const auto& packet = list->packets(second);
+        CHECK(packet.verdict() == "made_on_ground");
+        CHECK(packet.problem().empty());
+        CHECK(packet.unit().sclk() == 110.0 + second);
+        CHECK_THAT(packet.hex(), Catch::Contains(second == 0 ? "3c3c3c3c" : second == 1 ? "3d3d3d3d" : "3e3e3e3e"));
+    }
+}
+
 TEST_CASE(
     "the carrier and what its Doppler shows are kept as packets, samples and events that ground made, and none of "
     "it was heard",

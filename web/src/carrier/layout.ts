@@ -10,3 +10,11 @@ export const CARRIER = {
   level: ['carrier_cn0_dbhz'],
   lost: 'searching', // the value of the lock
 } as const;
+
+/** The packet of a spectrum, and its numbers. */
+export const SPECTRUM = {
+  packet: 'StationSpectrum',
+  first: 'spectrum_first_hz',
+  step: 'spectrum_step_hz',
+  frequencies: 512,
+} as const;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The X-band carrier as ground's receiver has it: channels that the station makes, and the features of the flight that
 // its Doppler shows.
-import { LAYOUT } from '../layout';
 import { inWords } from '../run/dictionary';
 import type { Dictionary } from '../run/dictionary';
 import type { Series } from '../run/series';
@@ -44,18 +43,6 @@ export function carrierWords(run: RunStore, words: Dictionary, cutoff: number): 
     level && `C/N0 ${level.value.toFixed(1)} dB-Hz`,
   ];
   return [said, ...parts.filter((part) => part)].join(' · ');
-}
-
-/** The features that the Doppler has shown by `cutoff`, oldest first. `known`: when ground recognised it. */
-export function featuresSeen(run: RunStore, cutoff: number): { e_s: number; text: string }[] {
-  return run.events
-    .filter(
-      ({ fact, ert_s }) =>
-        fact.name === LAYOUT.seenByDoppler &&
-        fact.sclk <= cutoff &&
-        (cutoff === Infinity || run.knownBy(ert_s, cutoff)),
-    )
-    .map(({ fact }) => ({ e_s: fact.sclk - run.entrySclk, text: fact.text }));
 }
 
 /** The residuals of a stretch as lines: each goes through estimates without a gap. The page holds them thinned. */

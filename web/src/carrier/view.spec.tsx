@@ -8,7 +8,8 @@ import { Dictionary } from '../run/dictionary';
 import { dictionary, store } from '../run/shown';
 import { choice } from '../run/window';
 import { aRun, aStore, event, samples } from '../testing/fixtures';
-import { carrierWords, featuresSeen, isKnown, residualLines } from './model';
+import { featuresSeen } from '../timeline/model';
+import { carrierWords, isKnown, residualLines } from './model';
 import { draw } from './view';
 
 const words = new Dictionary(
@@ -66,7 +67,9 @@ describe('the carrier', () => {
       event({ sclk: 850, ...seen, ert: '2012-219T04:59:12.0' }),
       event({ sclk: 851, name: 'PARACHUTE_DEPLOY', ert: '2012-219T04:59:12.0' }),
     ]);
-    expect(featuresSeen(store, Infinity)).toEqual([{ e_s: -150, text: 'parachute seen by Doppler' }]);
+    expect(featuresSeen(store, Infinity)).toEqual([
+      { e_s: -150, told_e_s: expect.closeTo(-148), text: 'parachute seen by Doppler' },
+    ]);
     expect(featuresSeen(store, 851)).toEqual([]); // recognised two seconds after it was seen
     expect(featuresSeen(store, 853)).toHaveLength(1);
   });

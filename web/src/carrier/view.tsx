@@ -11,10 +11,12 @@ import { cursor } from '../run/cursor';
 import { cutoff, dictionary, shownRun, store, tick } from '../run/shown';
 import { fromEntry } from '../run/time';
 import { plotSpan, zoomedTo } from '../run/window';
+import { featuresSeen } from '../timeline/model';
 import { columnsOf } from '../stream/series_answer';
 import type { SeriesAnswer } from '../stream/series_answer';
 import { CARRIER } from './layout';
-import { carrierWords, featuresSeen, isKnown, residualLines } from './model';
+import { carrierWords, isKnown, residualLines } from './model';
+import { Waterfall } from './waterfall_view';
 import './style.css';
 
 const NAMES = [CARRIER.lock, CARRIER.residual, CARRIER.sigma, CARRIER.rate, CARRIER.level].flat();
@@ -119,6 +121,7 @@ export function Carrier() {
           </li>
         ))}
       </ul>
+      <Waterfall />
     </section>
   );
 }

@@ -47,6 +47,8 @@ export interface Lanes {
   recorded: Mark[];
   /** Timepoints known by a tone only, for the lane of tones. */
   heardByTone: Mark[];
+  /** Features of the flight that the carrier's Doppler shows, and when ground had recognised each. */
+  doppler: { e_s: number; told_e_s: number; text: string }[];
   liveOutages: Outage[];
   toneOutages: Outage[];
   relay: number;
@@ -65,6 +67,7 @@ export function lanesOf(store: RunStore, plan: readonly TimepointRow[], cutoff: 
     live: [],
     recorded: [],
     heardByTone: [],
+    doppler: featuresSeen(store, cutoff),
     toneOutages: [],
     liveOutages: [],
     relay: store.run.relayProgress,
@@ -100,6 +103,22 @@ export function lanesOf(store: RunStore, plan: readonly TimepointRow[], cutoff: 
   lanes.liveOutages = liveOutages(store, now, cutoff);
   lanes.toneOutages = outages(store, 'x_band', now, cutoff);
   return lanes;
+}
+
+/** The features that the Doppler has shown by `cutoff`, oldest first. */
+export function featuresSeen(store: RunStore, cutoff: number): Lanes['doppler'] {
+  return store.events
+    .filter(
+      ({ fact, ert_s }) =>
+        fact.name === LAYOUT.seenByDoppler &&
+        fact.sclk <= cutoff &&
+        (cutoff === Infinity || store.knownBy(ert_s, cutoff)),
+    )
+    .map(({ fact, ert_s }) => ({
+      e_s: fact.sclk - store.entrySclk,
+      told_e_s: store.sclkSeenAt(ert_s) - store.entrySclk,
+      text: fact.text,
+    }));
 }
 
 function markOf(id: number, name: string, e_s: number, verdict: string): Mark {

@@ -25,6 +25,15 @@ describe('the timeline', () => {
     ]);
     expect(lanesOf(store, aPlan, Infinity).tones.map((mark) => mark.e_s)).toEqual([-300, -270]);
   });
+  it('has what the Doppler shows on a lane of its own, with the time at which ground had recognised it', () => {
+    const text = 'heatshield seen by Doppler';
+    const store = aStore([
+      event({ sclk: 850, name: 'SEEN_BY_DOPPLER', text, ert: '2012-219T04:59:12.0' }),
+      event({ sclk: 851, name: 'HEATSHIELD_SEPARATION', ert: '2012-219T04:59:12.0' }),
+    ]);
+    expect(lanesOf(store, aPlan, Infinity).doppler).toEqual([{ e_s: -150, told_e_s: expect.closeTo(-148), text }]);
+    expect(lanesOf(store, aPlan, 851).doppler).toEqual([]);
+  });
   it('names a silence by its reason, and ends it', () => {
     const store = aStore([
       link({ link: 'uhf_live', up: false, reason: 'plasma', ert: '2012-219T04:59:00.0' }),

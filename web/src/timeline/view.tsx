@@ -39,7 +39,8 @@ const GUTTER = 118;
 const TOP = 26;
 const CLOSE_UP_S = 180; // chosen: in a shorter stretch every timepoint has room for its name
 const LABELS = 42; // at least two rows of names
-const LANES = ['plan', 'predicted', 'by tone', 'by telemetry, live', 'by recording'] as const;
+const LANES = ['plan', 'predicted', 'by tone', 'by Doppler', 'by telemetry, live', 'by recording'] as const;
+const [TONE, DOPPLER, LIVE, RECORDING] = [2, 3, 4, 5];
 const selected = signal<number | undefined>(undefined);
 const anchorsShown = signal(false);
 
@@ -145,25 +146,26 @@ function drawTimeline({ context: c, width: width_px, height: height_px, colours 
           : 'the recording comes down after landing';
     const wide = c.measureText(words).width;
     c.fillStyle = colours.panel; // not struck through by the lane
-    c.fillRect((GUTTER + width - wide) / 2 - 6, y(4) - 8, wide + 12, 16);
+    c.fillRect((GUTTER + width - wide) / 2 - 6, y(RECORDING) - 8, wide + 12, 16);
     c.fillStyle = colours.dim;
-    c.fillText(words, (GUTTER + width) / 2, y(4) - 0.5);
+    c.fillText(words, (GUTTER + width) / 2, y(RECORDING) - 0.5);
   }
   marks(lanes.plan, x, y(0), (px, py) => ring(c, px, py, 3.2, colours.dim), true);
   drawPredicted(c, x, y(1), Math.min(run.seenE, pastRange.value?.to ?? Infinity), colours);
-  marks(lanes.tones, x, y(2), (px, py) => box(c, px, py, 3.8, colours.tone), false);
-  marks(lanes.heardByTone, x, y(2), (px, py) => box(c, px, py, 3.8, colours.tone), true);
+  marks(lanes.tones, x, y(TONE), (px, py) => box(c, px, py, 3.8, colours.tone), false);
+  marks(lanes.heardByTone, x, y(TONE), (px, py) => box(c, px, py, 3.8, colours.tone), true);
+  drawDoppler(c, lanes.doppler, x, y(DOPPLER), colours);
   marks(
     lanes.live,
     x,
-    y(3),
+    y(LIVE),
     (px, py, bad) => (bad ? triangle(c, px, py, colours.caution) : diamond(c, px, py, 5, colours.uhf)),
     true,
   );
   marks(
     lanes.recorded,
     x,
-    y(4),
+    y(RECORDING),
     (px, py, bad) => (bad ? triangle(c, px, py, colours.caution) : framed(c, px, py, 4, colours.recording)),
     true,
   );
@@ -207,8 +209,9 @@ function drawWindows(
     if (words !== undefined) c.fillText(words, begin + 5, at_y);
   };
   for (const [lane, link] of [
-    [2, 'x_band'],
-    [3, 'uhf_live'],
+    [TONE, 'x_band'],
+    [DOPPLER, 'x_band'],
+    [LIVE, 'uhf_live'],
   ] as const) {
     const all = windowsOf('silence', link);
     for (const [i, silence] of all.entries()) {
@@ -225,14 +228,14 @@ function drawWindows(
     }
   }
   for (const pass of passes()) {
-    const lane = pass.link === 'uhf_live' ? 3 : 4;
+    const lane = pass.link === 'uhf_live' ? LIVE : RECORDING;
     const [from, to] = [Math.max(GUTTER, x(pass.fromES)), Math.min(edge, x(pass.toES ?? Infinity))];
     if (to - from < 2) continue;
     c.globalAlpha = 0.4;
     c.fillRect(from, y(lane) + 9, to - from, 1);
     c.globalAlpha = 1;
     const times = `${fromEntry(pass.fromES)} to ${pass.toES === undefined ? '' : fromEntry(pass.toES)}`;
-    if (lane === 4 && pass.fromES > now_e_s)
+    if (lane === RECORDING && pass.fromES > now_e_s)
       write([`${pass.words} in view, records, ${times}`, `${pass.words} records`], from, to, y(lane) + 0.5);
     else if (pass.fromES > now_e_s)
       write([`${pass.words} in view ${times}`, `${pass.words} in view`], from, to, y(lane) + 0.5);
@@ -250,8 +253,9 @@ function drawOutages(
   colours: Surface['colours'],
 ): void {
   for (const [lane, all, link] of [
-    [2, lanes.toneOutages, 'x_band'],
-    [3, lanes.liveOutages, 'uhf_live'],
+    [TONE, lanes.toneOutages, 'x_band'],
+    [DOPPLER, lanes.toneOutages, 'x_band'],
+    [LIVE, lanes.liveOutages, 'uhf_live'],
   ] as const) {
     for (const outage of all) {
       const left = Math.max(GUTTER, x(outage.from));
@@ -313,6 +317,27 @@ function drawPredicted(
     line(c, from, y, to, y);
     ring(c, to, y, 5, colours.caution);
     c.setLineDash([]);
+  }
+}
+
+/** Features that the carrier's Doppler shows: each where the vehicle was, and until when ground had recognised it. */
+function drawDoppler(
+  c: CanvasRenderingContext2D,
+  all: Lanes['doppler'],
+  x: (e: number) => number,
+  y: number,
+  colours: Surface['colours'],
+): void {
+  c.font = `${TYPE.mark}px ${colours.sans}`;
+  c.textAlign = 'left';
+  for (const [i, { e_s, told_e_s }] of all.entries()) {
+    const px = x(e_s);
+    if (px < GUTTER - 6) continue;
+    c.strokeStyle = colours.tone;
+    line(c, px, y, x(told_e_s), y);
+    triangle(c, px, y, colours.tone);
+    const delay = `+${(told_e_s - e_s).toFixed(1)} s`;
+    if (px + 12 + c.measureText(delay).width < x(all[i + 1]?.e_s ?? Infinity)) c.fillText(delay, px + 8, y + 0.5);
   }
 }
 
@@ -699,7 +724,7 @@ export function Timeline() {
       }
     >
       <Canvas
-        label="Timepoints by plan, prediction, tone, live telemetry and recording, over time from entry"
+        label="Timepoints by plan, prediction, tone, Doppler, live telemetry and recording, over time from entry"
         testId="timeline-canvas"
         keyOf={() => {
           const span = shown(shownRun());
