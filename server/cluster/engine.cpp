@@ -6,9 +6,9 @@
 #include <utility>
 
 namespace aeolis::server::cluster {
-namespace {
+// Handles of the library, each destroyed by its own function. Named, because members of this file's classes have them.
+namespace handles {
 
-// Handles of the library, each destroyed by its own function.
 template <typename Handle, auto destroy>
 struct Destroyer {
     void operator()(Handle* handle) const { destroy(handle); }
@@ -24,6 +24,11 @@ using Message = Owned<natsMsg, natsMsg_Destroy>;
 using StreamInfo = Owned<jsStreamInfo, jsStreamInfo_Destroy>;
 using ConsumerInfo = Owned<jsConsumerInfo, jsConsumerInfo_Destroy>;
 using MetaData = Owned<jsMsgMetaData, jsMsgMetaData_Destroy>;
+
+}  // namespace handles
+namespace {
+
+using namespace handles;
 
 constexpr std::int64_t second_ns = 1'000'000'000;
 constexpr std::int64_t forgotten_after_s = 30 * 24 * 3600;  // chosen: what nobody took for a month, nobody will
