@@ -14,7 +14,7 @@ debian_release() (
     if [ "$ID" = debian ]; then echo "$VERSION_ID"; fi
 )
 
-# packages_for RELEASE KIND...: prints the packages of these kinds (run, test, check, node) on that release.
+# packages_for RELEASE KIND...: prints the packages of these kinds (run, test, check, node, unpacked) on that release.
 packages_for() {
     local release=$1
     shift
@@ -57,6 +57,21 @@ need_packages() {
         tail -n 20 build/apt.log >&2
         stop "apt-get could not install: ${missing[*]} (whole output in build/apt.log; where it says 'remove is disabled', a package of yours conflicts)"
     }
+}
+
+# need_unpacked PACKAGE: has Debian's package of a program in build/PACKAGE without installing it, so that no service begins.
+need_unpacked() {
+    local folder=$root/build/$1 as_root=()
+    [ -e "$folder/unpacked" ] && return
+    rm -rf "$folder" && mkdir -p "$folder"
+    say "unpacking $1 into build/$1"
+    fetch() { (cd "$folder" && apt-get -qq download "$1" && dpkg-deb -x "$1"_*.deb .) >>"$root/build/apt.log" 2>&1; }
+    if ! fetch "$1"; then
+        if [ "$(id -u)" -ne 0 ]; then as_root=(sudo -n); fi
+        "${as_root[@]}" apt-get -qq update >>"$root/build/apt.log" 2>&1
+        fetch "$1" || stop "apt-get could not download $1 (output in build/apt.log)"
+    fi
+    touch "$folder/unpacked"
 }
 
 node_is_new_enough() {

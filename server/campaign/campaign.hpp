@@ -8,8 +8,22 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <string>
+#include <vector>
 
 namespace aeolis::server::campaign {
+
+/// A worker elsewhere, by what it answered in this call.
+struct WorkerShare {
+    std::string name;
+    std::uint64_t flown = 0;
+};
+
+/// A case that is not tried again in this call.
+struct SetAside {
+    std::uint64_t number = 0;
+    std::string reason;
+};
 
 /// Progress of a campaign.
 struct Progress {
@@ -17,6 +31,11 @@ struct Progress {
     std::uint64_t of = 0;
     std::uint64_t flown = 0;  ///< in this call
     double wall_s = 0.0;      ///< of this call
+    // Of workers elsewhere, empty without.
+    std::vector<WorkerShare> workers{};
+    std::vector<SetAside> set_aside{};
+    std::uint64_t refused_answers = 0;  ///< of another campaign, of cases not asked for, or not understood
+    std::string waiting_for{};          ///< what keeps the campaign from going on, in words; empty: nothing
     double rate_per_s() const { return wall_s > 0.0 ? static_cast<double>(flown) / wall_s : 0.0; }
 };
 

@@ -32,11 +32,17 @@ Result<void> check(const simulation::Scenario& scenario) {
     return Error{"test_venue: performance times one landing; a campaign flies many at once"};
 }
 
-Result<CampaignStore> open_store(const Order& order, const dictionary::Dictionary& dictionary) {
+Result<Identity> identity_of(const Order& order, const dictionary::Dictionary& dictionary) {
     auto program = program_digest();
     if (!program) return program.error();
-    auto store = CampaignStore::open(order.file, {order.scenario.name, scenario_to_text(order.scenario), order.seed,
-                                                  fmt::format("{}", dictionary.id), std::move(*program)});
+    return Identity{order.scenario.name, scenario_to_text(order.scenario), order.seed, fmt::format("{}", dictionary.id),
+                    std::move(*program)};
+}
+
+Result<CampaignStore> open_store(const Order& order, const dictionary::Dictionary& dictionary) {
+    const auto identity = identity_of(order, dictionary);
+    if (!identity) return identity.error();
+    auto store = CampaignStore::open(order.file, *identity);
     if (!store) return store;
     if (const auto wanted = store->want(order.cases); !wanted) return wanted.error();
     return store;

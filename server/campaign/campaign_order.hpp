@@ -26,6 +26,9 @@ std::filesystem::path results_file(const std::filesystem::path& folder, const st
 /// Whether cases of this scenario can be flown in parallel. The Error says why not.
 Result<void> check(const simulation::Scenario& scenario);
 
+/// What the order's cases have in common, flown by the running program.
+Result<Identity> identity_of(const Order& order, const dictionary::Dictionary& dictionary);
+
 /// Creates or reopens the order's file for the running program. The Error names what else the file belongs to.
 Result<CampaignStore> open_store(const Order& order, const dictionary::Dictionary& dictionary);
 

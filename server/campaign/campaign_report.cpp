@@ -110,6 +110,12 @@ std::string campaign_json(const Summary& summary, const Call& call) {
                                                          .text("timepoint", summary.least_margin->timepoint)
                                                          .count("case", summary.least_margin->number)
                                                          .str();
+    const auto worker_json = [](const WorkerShare& worker) {
+        return JsonObject{}.text("name", worker.name).count("flown", worker.flown).str();
+    };
+    const auto set_aside_json = [](const SetAside& one) {
+        return JsonObject{}.count("case", one.number).text("reason", one.reason).str();
+    };
     return JsonObject{}
         .text("scenario", summary.scenario)
         .count("seed", summary.seed)
@@ -143,6 +149,9 @@ std::string campaign_json(const Summary& summary, const Call& call) {
         .raw("outside", json_array(summary.outside, failure_json))
         .count("jobs", call.jobs)
         .count("flown", call.progress.flown)
+        .raw("workers", json_array(call.progress.workers, worker_json))
+        .raw("set_aside", json_array(call.progress.set_aside, set_aside_json))
+        .count("refused_answers", call.progress.refused_answers)
         .number("wall_s", call.progress.wall_s)
         .number("cases_per_second", call.progress.rate_per_s())
         .str();
@@ -184,8 +193,19 @@ std::string campaign_table(const Summary& summary, const Call& call) {
     text += failure_rows(summary, call, summary.failures, summary.failed);
     if (summary.outside_limits > 0) text += fmt::format("\n{} landed outside limits\n", summary.outside_limits);
     text += failure_rows(summary, call, summary.outside, summary.outside_limits);
-    text += fmt::format("{} cases flown now in {:.1f} s, {} jobs, {:.2f} cases/s; results in {}\n", call.progress.flown,
-                        call.progress.wall_s, call.jobs, call.progress.rate_per_s(), call.results);
+    const auto& progress = call.progress;
+    const auto by =
+        call.queue.empty() ? fmt::format("{} jobs", call.jobs) : fmt::format("{} workers", progress.workers.size());
+    text += fmt::format("{} cases flown now in {:.1f} s, {}, {:.2f} cases/s; results in {}\n", progress.flown,
+                        progress.wall_s, by, progress.rate_per_s(), call.results);
+    for (const auto& [name, flown] : progress.workers)
+        text += fmt::format("    {:<30}{:>10} cases{:>10.2f} cases/s\n", name, flown,
+                            progress.wall_s > 0.0 ? static_cast<double>(flown) / progress.wall_s : 0.0);
+    for (const auto& [number, reason] : progress.set_aside)
+        text += fmt::format("case {} is set aside: {}\n    {}\n", number, reason, again(summary, call, number));
+    if (progress.refused_answers > 0)
+        text += fmt::format("{} answers in the queue were not of this campaign's cases, and were refused\n",
+                            progress.refused_answers);
     return text;
 }
 
@@ -197,6 +217,8 @@ std::string progress_line(const Progress& progress) {
     if (filled < width) bar += '>';
     bar.resize(width, ' ');
     std::string text = fmt::format("[{}] {}/{}", bar, progress.done, progress.of);
+    if (!progress.workers.empty()) text += fmt::format("  {} workers", progress.workers.size());
+    if (!progress.waiting_for.empty()) return text + "  " + progress.waiting_for;
     const double rate_per_s = progress.rate_per_s();
     if (rate_per_s <= 0.0) return text;
     const auto left_s = std::llround(static_cast<double>(progress.of - progress.done) / rate_per_s);

@@ -14,6 +14,7 @@ struct Call {
     unsigned jobs = 1;
     std::string scenario{};  ///< as given: a file, or the name of a shipped scenario
     std::string results{};   ///< the results file
+    std::string queue{};     ///< the engine whose workers flew the cases; empty: flown here
 };
 
 /// A campaign as `aeolis campaign` prints it: one JSON object on one line, or a table for people.

@@ -16,7 +16,8 @@ const char* const pragmas = "PRAGMA journal_mode = WAL;"
 
 const char* const schema =
     "CREATE TABLE campaign (schema_version INTEGER NOT NULL, scenario TEXT NOT NULL, scenario_text TEXT NOT NULL,"
-    " seed INTEGER NOT NULL, dictionary TEXT NOT NULL, program TEXT NOT NULL, cases INTEGER NOT NULL) STRICT;"
+    " seed INTEGER NOT NULL, dictionary TEXT NOT NULL, program TEXT NOT NULL, cases INTEGER NOT NULL,"
+    " queue TEXT NOT NULL) STRICT;"
     "CREATE TABLE cases (number INTEGER PRIMARY KEY, outcome TEXT NOT NULL, reason TEXT NOT NULL,"
     " end_cycle INTEGER NOT NULL, vertical_mps REAL, horizontal_mps REAL, miss_m REAL, latitude_deg REAL,"
     " longitude_deg REAL, east_m REAL, north_m REAL, peak_deceleration_mps2 REAL, parachute_mach REAL,"
@@ -75,7 +76,7 @@ Result<void> CampaignStore::make(const Identity& identity) {
     if (const auto made = database_.execute(schema); !made) return made.error();
     const auto mark = fmt::format("PRAGMA application_id = {}", campaign_application_id);
     if (const auto marked = database_.execute(mark.c_str()); !marked) return marked.error();
-    auto insert = database_.prepare("INSERT INTO campaign VALUES (?, ?, ?, ?, ?, ?, 0)");
+    auto insert = database_.prepare("INSERT INTO campaign VALUES (?, ?, ?, ?, ?, ?, 0, lower(hex(randomblob(8))))");
     if (!insert) return insert.error();
     insert->bind(1, campaign_schema_version)
         .bind(2, std::string_view{identity.scenario})
@@ -131,6 +132,13 @@ Result<void> CampaignStore::prepare() {
     add_event_ = std::move(*add_event);
     add_margin_ = std::move(*add_margin);
     return {};
+}
+
+Result<std::string> CampaignStore::queue() {
+    auto select = database_.prepare("SELECT queue FROM campaign");
+    if (!select) return select.error();
+    if (const auto row = select->step(); !row) return row.error();
+    return std::string{select->text(0)};
 }
 
 Result<void> CampaignStore::want(std::uint64_t cases) {

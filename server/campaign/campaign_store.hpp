@@ -27,7 +27,7 @@ struct Identity {
 
 /// The results of a campaign in an SQLite file. Rows are only ever added, and each case once.
 ///
-///  campaign   one row: schema version, scenario, seed, dictionary, program, cases requested by the last call
+///  campaign   one row: schema version, scenario, seed, dictionary, program, cases requested by the last call, queue
 ///  cases      number, outcome, reason, end_cycle, touchdown, parachute, …; NULL where there was none
 ///  arrivals   place (from 1, in the order in which cases were stored), case_number
 ///  events     case_number, place (in the order of time), name, e_s, altitude_m, speed_mps
@@ -38,6 +38,8 @@ class CampaignStore {
     /// Opens or creates the file. The Error names the field in which the file belongs to another campaign.
     static Result<CampaignStore> open(const std::filesystem::path& file, const Identity& identity);
 
+    /// The name of its queue where workers fly the cases: drawn when the file was made.
+    Result<std::string> queue();
     /// Writes the number of cases requested into the file.
     Result<void> want(std::uint64_t cases);
     Result<bool> has(std::uint64_t case_number);

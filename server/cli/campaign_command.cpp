@@ -6,9 +6,11 @@
 #include "server/cli/long_work.hpp"
 #include "server/cli/options.hpp"
 #include "server/cli/shipped_paths.hpp"
+#include "server/cluster/case_collector.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <functional>
 #include <memory>
 #include <thread>
 
@@ -25,11 +27,22 @@ struct CampaignOptions {
     unsigned jobs = 0;                             ///< 0: one per processor
     std::optional<std::filesystem::path> results;  ///< none: run-data/campaign-SCENARIO-SEED.db
     std::optional<std::filesystem::path> plots;    ///< a directory
+    cluster::EngineAddress nats;                   ///< whose workers fly the cases; no URL: flown here
     bool json = false;
 };
 
 unsigned jobs_of(const CampaignOptions& options) {
     return options.jobs > 0 ? options.jobs : std::max(1U, std::thread::hardware_concurrency());
+}
+
+Result<campaign::Progress> flown_elsewhere(const CampaignOptions& options, const campaign::Order& order,
+                                           const dictionary::Dictionary& dictionary, campaign::CampaignStore& store,
+                                           const std::function<void(const campaign::Progress&)>& tell) {
+    const auto identity = campaign::identity_of(order, dictionary);
+    if (!identity) return identity.error();
+    auto engine = cluster::Engine::connect(options.nats, "aeolis campaign " + order.scenario.name);
+    if (!engine) return engine.error();
+    return cluster::collect(store, *identity, order.cases, *engine, stop_asked(), tell);
 }
 
 Result<campaign::Call> flown(const CampaignOptions& options, const campaign::Order& order,
@@ -38,11 +51,11 @@ Result<campaign::Call> flown(const CampaignOptions& options, const campaign::Ord
     if (!store) return store.error();
     stop_at_interrupt();
     ProgressLine line;
-    const auto progress = campaign::fly(*store, order, dictionary, stop_asked(), [&](const campaign::Progress& so_far) {
-        line.draw(campaign::progress_line(so_far));
-    });
+    const auto draw = [&](const campaign::Progress& so_far) { line.draw(campaign::progress_line(so_far)); };
+    const auto progress = options.nats.url.empty() ? campaign::fly(*store, order, dictionary, stop_asked(), draw)
+                                                   : flown_elsewhere(options, order, dictionary, *store, draw);
     if (!progress) return progress.error();
-    return campaign::Call{*progress, order.jobs, options.scenario, order.file.string()};
+    return campaign::Call{*progress, order.jobs, options.scenario, order.file.string(), cluster::shown(options.nats)};
 }
 
 /// Returns 0 when all cases are flown and each ended in touchdown.
@@ -92,9 +105,11 @@ void add_campaign_command(CLI::App& program, int& exit_code) {
         ->check(whole_number())
         ->check(CLI::Range(std::uint64_t{1}, campaign_cases_max));
     command.add_option("--seed", options->seed, "seed of the errors")->check(whole_number())->capture_default_str();
-    command.add_option("--jobs", options->jobs, "cases at a time; one a processor if left out")
-        ->check(whole_number())
-        ->check(CLI::Range(1U, campaign_jobs_max));
+    auto& jobs = *command.add_option("--jobs", options->jobs, "cases at a time; one a processor if left out")
+                      ->check(whole_number())
+                      ->check(CLI::Range(1U, campaign_jobs_max));
+    add_engine(command, options->nats, "have the workers of this NATS engine fly the cases (aeolis worker)")
+        ->excludes(&jobs);
     command.add_option("--results", options->results,
                        "SQLite file of the cases; run-data/campaign-SCENARIO-SEED.db if left out");
     command.add_option("--plots", options->plots, "write pictures (SVG) into this directory");

@@ -26,6 +26,7 @@ void add_send_command(CLI::App& program, int& exit_code);
 void add_serve_command(CLI::App& program, int& exit_code);
 void add_timeline_command(CLI::App& program, int& exit_code);
 void add_tones_command(CLI::App& program, int& exit_code);
+void add_worker_command(CLI::App& program, int& exit_code);
 
 /// Adds `samples`, a subcommand of `archive` that shares its options with `export`.
 void add_archive_samples(CLI::App& archive, int& exit_code);

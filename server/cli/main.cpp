@@ -51,6 +51,7 @@ int main(int argc, char** argv) {
     add_rehearse_command(program, exit_code);
     add_entry_command(program, exit_code);
     add_campaign_command(program, exit_code);
+    add_worker_command(program, exit_code);
     add_modules_command(program, exit_code);
     add_decode_command(program, exit_code);
     add_dictionary_command(program, exit_code);

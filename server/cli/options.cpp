@@ -100,6 +100,20 @@ CLI::Option* add_mission_xtce(CLI::App& command, MissionXtce& xtce, const std::s
     return files;
 }
 
+CLI::Option* add_engine(CLI::App& command, cluster::EngineAddress& address, const std::string& description) {
+    auto& url = *command.add_option("--nats", address.url, description)->envname("AEOLIS_NATS");
+    const auto file = [&](const char* option, std::filesystem::path& path, const char* words) {
+        return command.add_option(option, path, words)->check(CLI::ExistingFile)->needs(&url);
+    };
+    file("--nats-credentials", address.credentials, "a .creds file, for an engine that knows users by JWT");
+    auto& nkey = *command.add_option("--nats-nkey", address.nkey, "a public nkey, with --nats-nkey-seed")->needs(&url);
+    nkey.needs(file("--nats-nkey-seed", address.nkey_seed, "the file of its seed")->needs(&nkey));
+    file("--nats-ca", address.ca, "certificates that sign the engine's; the system's if left out");
+    auto& key = *file("--nats-key", address.key, "the key of --nats-certificate");
+    key.needs(file("--nats-certificate", address.certificate, "this client's certificate")->needs(&key));
+    return &url;
+}
+
 void add_archive_file(CLI::App& command, std::filesystem::path& archive) {
     command.add_option("--archive", archive, "the SQLite file that serve or rehearse wrote")->capture_default_str();
 }

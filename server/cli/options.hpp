@@ -3,6 +3,7 @@
 
 #include "server/cli/shipped_paths.hpp"
 #include "server/cli/xtce_file.hpp"
+#include "server/cluster/engine.hpp"
 #include "server/links/frame_format.hpp"
 
 #include <CLI/CLI.hpp>
@@ -25,6 +26,9 @@ CLI::Validator whole_number();
 std::vector<CLI::Option*> add_stream_format(CLI::App& command, PacketStreamFormat& format);
 /// Adds --xtce, which may be given several times, and what is said beside it: --root, --leading-size, --time. @return --xtce
 CLI::Option* add_mission_xtce(CLI::App& command, MissionXtce& xtce, const std::string& description);
+
+/// Adds --nats and what is said beside it. @return --nats
+CLI::Option* add_engine(CLI::App& command, cluster::EngineAddress& address, const std::string& description);
 
 inline constexpr const char* default_archive = "run-data/aeolis.db";
 

@@ -101,6 +101,7 @@ const std::vector<Home>& homes() {
         {"aeolis/v1/", with_effects, "Protobuf is at home in server/"},
         {"sqlite3", {"server/archive/", "tests/", "bench/"}, "SQLite is at home in server/archive/"},
         {"zstd", {"server/archive/", "tests/", "bench/"}, "zstd is at home in server/archive/"},
+        {"nats/", {"server/cluster/engine.cpp"}, "NATS is at home in server/cluster/engine.cpp"},
         {"muParser", {"server/archive/expression.cpp"}, "muParser is at home in server/archive/expression.cpp"},
         {"sodium", {"server/access/secrets.cpp"}, "libsodium is at home in server/access/secrets.cpp"},
         {"boost/", with_effects, "Boost is at home in server/"},
@@ -133,9 +134,9 @@ const std::vector<Home>& homes() {
 
 /// Those that may know the simulator, of what stands above it.
 const std::vector<std::string>& simulator_folders() {
-    static const std::vector<std::string> names{"server/rehearsal/", "server/campaign/", "server/shadow/",
-                                                "server/venue/",     "server/scenario/", "server/tones/",
-                                                "server/cli/",       "tests/",           "bench/"};
+    static const std::vector<std::string> names{
+        "server/rehearsal/", "server/campaign/", "server/shadow/", "server/cluster/", "server/venue/",
+        "server/scenario/",  "server/tones/",    "server/cli/",    "tests/",          "bench/"};
     return names;
 }
 
@@ -153,10 +154,11 @@ const std::vector<std::pair<std::string, std::vector<std::string>>>& layers() {
         {"venue", {"base"}},
         {"rehearsal", {"pipeline", "scenario", "venue"}},
         {"campaign", {"rehearsal"}},
+        {"cluster", {"campaign"}},
         {"tones", {"rehearsal"}},
         {"api", {"campaign", "access"}},
         {"net", {"api", "links"}},
-        {"cli", {"net", "tones", "reconstruction"}},
+        {"cli", {"net", "cluster", "tones", "reconstruction"}},
     };
     return order;
 }

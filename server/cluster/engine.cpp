@@ -1,0 +1,345 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/cluster/engine.hpp"
+
+#include <fmt/format.h>
+#include <nats/nats.h>
+#include <utility>
+
+namespace aeolis::server::cluster {
+// Handles of the library, each destroyed by its own function. Named, because members of this file's classes have them.
+namespace handles {
+
+template <typename Handle, auto destroy>
+struct Destroyer {
+    void operator()(Handle* handle) const { destroy(handle); }
+};
+template <typename Handle, auto destroy>
+using Owned = std::unique_ptr<Handle, Destroyer<Handle, destroy>>;
+
+using Options = Owned<natsOptions, natsOptions_Destroy>;
+using Connection = Owned<natsConnection, natsConnection_Destroy>;
+using Streams = Owned<jsCtx, jsCtx_Destroy>;
+using Subscription = Owned<natsSubscription, natsSubscription_Destroy>;
+using Message = Owned<natsMsg, natsMsg_Destroy>;
+using StreamInfo = Owned<jsStreamInfo, jsStreamInfo_Destroy>;
+using ConsumerInfo = Owned<jsConsumerInfo, jsConsumerInfo_Destroy>;
+using MetaData = Owned<jsMsgMetaData, jsMsgMetaData_Destroy>;
+
+}  // namespace handles
+namespace {
+
+using namespace handles;
+
+constexpr std::int64_t second_ns = 1'000'000'000;
+constexpr std::int64_t forgotten_after_s = 30 * 24 * 3600;  // chosen: what nobody took for a month, nobody will
+constexpr std::int64_t reconnect_wait_ms = 250;
+constexpr std::int64_t pending_max = 2048;  // published and not yet confirmed: as in the figure of the limits
+
+/// Text before '@' of each URL is a secret.
+std::string without_secrets(const std::string& urls) {
+    std::string shown;
+    for (std::size_t begin = 0; begin <= urls.size();) {
+        const auto end = std::min(urls.find(',', begin), urls.size());
+        const auto url = urls.substr(begin, end - begin);
+        const auto scheme = url.find("://");
+        const auto host = scheme == std::string::npos ? 0 : scheme + 3;
+        const auto at = url.rfind('@');
+        shown += (shown.empty() ? "" : ",") + url.substr(0, host) +
+                 url.substr(at == std::string::npos || at < host ? host : at + 1);
+        begin = end + 1;
+    }
+    return shown;
+}
+
+const char* text_of(natsStatus status, jsErrCode code) {
+    if (status == NATS_TIMEOUT) return "no answer";
+    if (status == NATS_NO_RESPONDERS) return "it has no JetStream (start it with -js)";
+    if (code == JSNotEnabledErr) return "JetStream is not enabled there (start it with -js)";
+    if (code == JSNotEnabledForAccountErr) return "JetStream is not enabled for this account";
+    const char* detail = nats_GetLastError(nullptr);
+    return detail != nullptr && *detail != '\0' ? detail : natsStatus_GetText(status);
+}
+
+}  // namespace
+
+std::string shown(const EngineAddress& address) {
+    return without_secrets(address.url);
+}
+
+struct Given::State {
+    Message message;
+    std::uint64_t times = 1;
+    std::string engine;
+};
+
+Given::Given(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Given::Given(Given&&) noexcept = default;
+Given& Given::operator=(Given&&) noexcept = default;
+Given::~Given() = default;
+
+std::string_view Given::octets() const {
+    return {natsMsg_GetData(state_->message.get()),
+            static_cast<std::size_t>(natsMsg_GetDataLength(state_->message.get()))};
+}
+std::uint64_t Given::times() const {
+    return state_->times;
+}
+Result<void> Given::take() {
+    jsOptions options;
+    jsOptions_Init(&options);
+    options.Wait = Engine::patience.count();
+    jsErrCode code{};
+    const auto status = natsMsg_AckSync(state_->message.get(), &options, &code);
+    if (status == NATS_OK) return {};
+    return Error{fmt::format("{}: a message could not be marked as taken: {}", state_->engine, text_of(status, code))};
+}
+void Given::keep_waiting() {
+    natsMsg_InProgress(state_->message.get(), nullptr);
+}
+void Given::give_back() {
+    natsMsg_Nak(state_->message.get(), nullptr);
+}
+
+struct Consumer::State {
+    Subscription subscription;
+    std::string engine, name;
+};
+
+Consumer::Consumer(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Consumer::Consumer(Consumer&&) noexcept = default;
+Consumer& Consumer::operator=(Consumer&&) noexcept = default;
+Consumer::~Consumer() = default;
+
+Result<std::vector<Given>> Consumer::next(std::size_t count, std::chrono::milliseconds wait) {
+    natsMsgList list{};
+    jsErrCode code{};
+    const auto status =
+        natsSubscription_Fetch(&list, state_->subscription.get(), static_cast<int>(count), wait.count(), &code);
+    if (status != NATS_OK && status != NATS_TIMEOUT)
+        return Error{fmt::format("{}: {}: {}", state_->engine, state_->name, text_of(status, code))};
+    std::vector<Given> given;
+    for (int i = 0; i < list.Count; ++i) {
+        auto state = std::make_unique<Given::State>();
+        state->message.reset(std::exchange(list.Msgs[i], nullptr));
+        state->engine = state_->engine;
+        jsMsgMetaData* data = nullptr;
+        if (natsMsg_GetMetaData(&data, state->message.get()) == NATS_OK) state->times = MetaData {
+                data
+            } -> NumDelivered;
+        given.push_back(Given{std::move(state)});
+    }
+    natsMsgList_Destroy(&list);
+    return given;
+}
+
+struct Engine::State {
+    std::string shown;
+    Connection connection;
+    Streams streams;
+
+    Error refused(const std::string& what, natsStatus status, jsErrCode code = {}) const {
+        return Error{fmt::format("{}: {}: {}", shown, what, text_of(status, code))};
+    }
+};
+
+Engine::Engine(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Engine::Engine(Engine&&) noexcept = default;
+Engine& Engine::operator=(Engine&&) noexcept = default;
+Engine::~Engine() = default;
+
+Result<Engine> Engine::connect(const EngineAddress& address, const std::string& name) {
+    auto state = std::make_unique<State>();
+    state->shown = shown(address);
+    natsOptions* made = nullptr;
+    auto status = natsOptions_Create(&made);
+    const Options options{made};
+    const auto then = [&status](natsStatus next) { status = status == NATS_OK ? next : status; };
+    then(natsOptions_SetURL(made, address.url.c_str()));
+    then(natsOptions_SetName(made, name.c_str()));
+    then(natsOptions_SetTimeout(made, patience.count()));
+    then(natsOptions_SetMaxReconnect(made, -1));
+    then(natsOptions_SetReconnectWait(made, reconnect_wait_ms));
+    if (status != NATS_OK) return Error{fmt::format("--nats {}: not the address of an engine", state->shown)};
+    const auto file = [&](const std::filesystem::path& path, const char* option, auto&& set) -> Result<void> {
+        if (path.empty() || set(path.c_str()) == NATS_OK) return {};
+        return Error{fmt::format("{} {}: {}", option, path.string(), text_of(NATS_ERR, {}))};
+    };
+    if (const auto read =
+            file(address.credentials, "--nats-credentials",
+                 [&](const char* path) { return natsOptions_SetUserCredentialsFromFiles(made, path, nullptr); });
+        !read)
+        return read.error();
+    if (const auto read =
+            file(address.nkey_seed, "--nats-nkey-seed",
+                 [&](const char* path) { return natsOptions_SetNKeyFromSeed(made, address.nkey.c_str(), path); });
+        !read)
+        return read.error();
+    if (const auto read = file(address.ca, "--nats-ca",
+                               [&](const char* path) { return natsOptions_LoadCATrustedCertificates(made, path); });
+        !read)
+        return read.error();
+    if (const auto read =
+            file(address.certificate, "--nats-certificate",
+                 [&](const char* path) { return natsOptions_LoadCertificatesChain(made, path, address.key.c_str()); });
+        !read)
+        return read.error();
+    natsConnection* connection = nullptr;
+    status = natsConnection_Connect(&connection, made);
+    if (status != NATS_OK) return Error{fmt::format("{}: {}", state->shown, text_of(status, {}))};
+    state->connection.reset(connection);
+    jsOptions defaults;
+    jsOptions_Init(&defaults);
+    defaults.Wait = patience.count();
+    defaults.PublishAsync.MaxPending = pending_max;
+    jsCtx* streams = nullptr;
+    status = natsConnection_JetStream(&streams, connection, &defaults);
+    if (status != NATS_OK) return state->refused("JetStream", status);
+    state->streams.reset(streams);
+    return Engine{std::move(state)};
+}
+
+bool Engine::connected() const {
+    return natsConnection_Status(state_->connection.get()) == NATS_CONN_STATUS_CONNECTED;
+}
+
+Result<void> Engine::make_stream(const std::string& stream, const std::string& subjects, Keep keep) {
+    jsStreamConfig config;
+    jsStreamConfig_Init(&config);
+    config.Name = stream.c_str();
+    const char* list[]{subjects.c_str()};
+    config.Subjects = list;
+    config.SubjectsLen = 1;
+    config.Retention = keep == Keep::until_taken ? js_WorkQueuePolicy : js_LimitsPolicy;
+    config.Storage = js_FileStorage;
+    config.MaxAge = forgotten_after_s * second_ns;
+    if (keep == Keep::newest) config.MaxMsgsPerSubject = 1;
+    jsErrCode code{};
+    jsStreamInfo* info = nullptr;
+    // An engine's administrator may have made it with more replicas or bounds; then it is used as it is.
+    if (js_GetStreamInfo(&info, state_->streams.get(), stream.c_str(), nullptr, &code) == NATS_OK) {
+        const StreamInfo there{info};
+        if (there->Config->Retention == config.Retention) return {};
+        return Error{fmt::format("{}: there is a stream {} of another form: remove it", state_->shown, stream)};
+    }
+    const auto status = js_AddStream(&info, state_->streams.get(), &config, nullptr, &code);
+    const StreamInfo made{info};
+    if (status != NATS_OK) return state_->refused("stream " + stream, status, code);
+    return {};
+}
+
+Result<void> Engine::publish(const std::string& subject, std::string_view octets) {
+    jsErrCode code{};
+    const auto status = js_Publish(nullptr, state_->streams.get(), subject.c_str(), octets.data(),
+                                   static_cast<int>(octets.size()), nullptr, &code);
+    if (status != NATS_OK) return state_->refused("publishing to " + subject, status, code);
+    return {};
+}
+
+Result<void> Engine::publish(const std::string& subject, const std::vector<std::string>& messages) {
+    for (const auto& message : messages) {
+        const auto status = js_PublishAsync(state_->streams.get(), subject.c_str(), message.data(),
+                                            static_cast<int>(message.size()), nullptr);
+        if (status != NATS_OK) return state_->refused("publishing to " + subject, status);
+    }
+    jsPubOptions options;
+    jsPubOptions_Init(&options);
+    options.MaxWait = patience.count();
+    const auto status = js_PublishAsyncComplete(state_->streams.get(), &options);
+    // What was not confirmed must not be sent again behind the caller's back.
+    natsMsgList left{};
+    if (js_PublishAsyncGetPendingList(&left, state_->streams.get()) == NATS_OK) natsMsgList_Destroy(&left);
+    if (status != NATS_OK) return state_->refused("publishing to " + subject, status);
+    return {};
+}
+
+Result<std::vector<std::string>> Engine::subjects(const std::string& stream, const std::string& filter) {
+    jsOptions options;
+    jsOptions_Init(&options);
+    options.Wait = patience.count();
+    options.Stream.Info.SubjectsFilter = filter.c_str();
+    jsErrCode code{};
+    jsStreamInfo* info = nullptr;
+    const auto status = js_GetStreamInfo(&info, state_->streams.get(), stream.c_str(), &options, &code);
+    const StreamInfo there{info};
+    std::vector<std::string> found;
+    if (status == NATS_NOT_FOUND) return found;
+    if (status != NATS_OK) return state_->refused("stream " + stream, status, code);
+    if (const auto* list = there->State.Subjects; list != nullptr)
+        for (int i = 0; i < list->Count; ++i) found.emplace_back(list->List[i].Subject);
+    return found;
+}
+
+Result<std::optional<std::string>> Engine::newest(const std::string& stream, const std::string& subject) {
+    natsMsg* message = nullptr;
+    jsErrCode code{};
+    const auto status = js_GetLastMsg(&message, state_->streams.get(), stream.c_str(), subject.c_str(), nullptr, &code);
+    const Message owned{message};
+    if (status == NATS_NOT_FOUND) return std::optional<std::string>{};
+    if (status != NATS_OK) return state_->refused(subject, status, code);
+    return std::optional{
+        std::string{natsMsg_GetData(message), static_cast<std::size_t>(natsMsg_GetDataLength(message))}};
+}
+
+Result<void> Engine::clear(const std::string& stream, const std::string& subject) {
+    jsOptions options;
+    jsOptions_Init(&options);
+    options.Wait = patience.count();
+    options.Stream.Purge.Subject = subject.c_str();
+    jsErrCode code{};
+    const auto status = js_PurgeStream(state_->streams.get(), stream.c_str(), &options, &code);
+    if (status != NATS_OK) return state_->refused("clearing " + subject, status, code);
+    return {};
+}
+
+Result<void> Engine::make_consumer(const std::string& stream, const std::string& name, const std::string& subject,
+                                   std::chrono::seconds again_after) {
+    jsConsumerConfig config;
+    jsConsumerConfig_Init(&config);
+    config.Durable = name.c_str();
+    config.FilterSubject = subject.c_str();
+    config.AckPolicy = js_AckExplicit;
+    config.AckWait = again_after.count() * second_ns;
+    config.MaxDeliver = -1;
+    jsErrCode code{};
+    jsConsumerInfo* info = nullptr;
+    const auto status = js_AddConsumer(&info, state_->streams.get(), stream.c_str(), &config, nullptr, &code);
+    const ConsumerInfo made{info};
+    if (status != NATS_OK) return state_->refused("consumer " + name, status, code);
+    return {};
+}
+
+Result<void> Engine::remove_consumer(const std::string& stream, const std::string& name) {
+    jsErrCode code{};
+    const auto status = js_DeleteConsumer(state_->streams.get(), stream.c_str(), name.c_str(), nullptr, &code);
+    if (status != NATS_OK && status != NATS_NOT_FOUND) return state_->refused("consumer " + name, status, code);
+    return {};
+}
+
+Result<Consumer> Engine::consumer(const std::string& stream, const std::string& name, const std::string& subject) {
+    jsSubOptions options;
+    jsSubOptions_Init(&options);
+    options.Stream = stream.c_str();
+    options.Consumer = name.c_str();
+    jsErrCode code{};
+    natsSubscription* subscription = nullptr;
+    const auto status =
+        js_PullSubscribe(&subscription, state_->streams.get(), subject.c_str(), name.c_str(), nullptr, &options, &code);
+    if (status != NATS_OK) return state_->refused("consumer " + name, status, code);
+    auto state = std::make_unique<Consumer::State>();
+    state->subscription.reset(subscription);
+    state->engine = state_->shown;
+    state->name = name;
+    return Consumer{std::move(state)};
+}
+
+Result<std::uint64_t> Engine::untaken(const std::string& stream, const std::string& consumer) {
+    jsErrCode code{};
+    jsConsumerInfo* info = nullptr;
+    const auto status =
+        js_GetConsumerInfo(&info, state_->streams.get(), stream.c_str(), consumer.c_str(), nullptr, &code);
+    const ConsumerInfo there{info};
+    if (status != NATS_OK) return state_->refused("consumer " + consumer, status, code);
+    return there->NumPending + static_cast<std::uint64_t>(there->NumAckPending);
+}
+
+}  // namespace aeolis::server::cluster

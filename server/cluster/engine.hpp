@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "common/result.hpp"
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+// NATS JetStream as the rest of server/cluster uses it: streams, messages, consumers. engine.cpp alone names its library.
+namespace aeolis::server::cluster {
+
+/// Where an engine is, and who asks. A URL may hold user:password@ or token@; a file of credentials keeps them out of
+/// the list of processes.
+struct EngineAddress {
+    std::string url;                    ///< nats://HOST:PORT or tls://HOST:PORT, or several with commas between them
+    std::filesystem::path credentials;  ///< a .creds file of a user's JWT and seed; empty: none
+    std::string nkey;                   ///< a public nkey, with the file of its seed; empty: none
+    std::filesystem::path nkey_seed;
+    std::filesystem::path ca;           ///< certificates that sign the engine's; empty: the system's
+    std::filesystem::path certificate;  ///< of this client, with `key`; empty: none
+    std::filesystem::path key;
+};
+
+/// The address without its secrets, as logs and messages may show it.
+std::string shown(const EngineAddress& address);
+
+/// What becomes of a stream's messages.
+enum class Keep : std::uint8_t {
+    newest,      ///< the newest of each subject
+    until_taken  ///< each until its one consumer has taken it
+};
+
+/// A message that a consumer was given. Unless it is taken, it is given again: after the consumer's time, or at once
+/// when its holder says so.
+class Given {
+  public:
+    Given(Given&&) noexcept;
+    Given& operator=(Given&&) noexcept;
+    ~Given();
+
+    std::string_view octets() const;
+    std::uint64_t times() const;  ///< how often it was given, this time included
+    /// It is done, once the engine has confirmed that. The Error: it may be given again.
+    Result<void> take();
+    void keep_waiting();  ///< starts the consumer's time anew
+    void give_back();     ///< somebody else may have it at once
+
+  private:
+    friend class Consumer;
+    struct State;
+    explicit Given(std::unique_ptr<State> state);
+    std::unique_ptr<State> state_;
+};
+
+/// A place in a stream that the engine remembers. One thread owns it.
+class Consumer {
+  public:
+    Consumer(Consumer&&) noexcept;
+    Consumer& operator=(Consumer&&) noexcept;
+    ~Consumer();
+
+    /// At most `count` messages, after `wait` at the latest; none: there was none. The Error: the engine is away, or
+    /// the consumer is gone.
+    Result<std::vector<Given>> next(std::size_t count, std::chrono::milliseconds wait);
+
+  private:
+    friend class Engine;
+    struct State;
+    explicit Consumer(std::unique_ptr<State> state);
+    std::unique_ptr<State> state_;
+};
+
+/// A connection to an engine with JetStream.
+///
+/// Faults   each Error names the engine and what it refused. A lost connection is opened again without end; meanwhile
+///          calls fail after `patience`
+/// Threads  any; a Consumer is its owner's
+class Engine {
+  public:
+    static constexpr std::chrono::milliseconds patience{3000};
+
+    /// @param name  of this client, as the engine's list of connections shows it
+    static Result<Engine> connect(const EngineAddress& address, const std::string& name);
+    Engine(Engine&&) noexcept;
+    Engine& operator=(Engine&&) noexcept;
+    ~Engine();
+
+    bool connected() const;
+
+    /// Makes the stream of these subjects unless there is one of this name, which must then be of the same form.
+    Result<void> make_stream(const std::string& stream, const std::string& subjects, Keep keep);
+    /// Stored when it returns.
+    Result<void> publish(const std::string& subject, std::string_view octets);
+    /// Several at once, all stored when it returns. After an Error any of them may be.
+    Result<void> publish(const std::string& subject, const std::vector<std::string>& messages);
+    /// The subjects of a stream that have messages, among those that `filter` matches; none where there is no stream.
+    Result<std::vector<std::string>> subjects(const std::string& stream, const std::string& filter);
+    /// The newest message of a subject; none: it has none.
+    Result<std::optional<std::string>> newest(const std::string& stream, const std::string& subject);
+    /// Removes a subject's messages.
+    Result<void> clear(const std::string& stream, const std::string& subject);
+
+    /// Makes the consumer of a subject unless there is one of this name. It gives a message again after `again_after`.
+    Result<void> make_consumer(const std::string& stream, const std::string& name, const std::string& subject,
+                               std::chrono::seconds again_after);
+    Result<void> remove_consumer(const std::string& stream, const std::string& name);
+    Result<Consumer> consumer(const std::string& stream, const std::string& name, const std::string& subject);
+    /// Messages that its consumer has not taken: waiting, or given and not yet taken.
+    Result<std::uint64_t> untaken(const std::string& stream, const std::string& consumer);
+
+  private:
+    struct State;
+    explicit Engine(std::unique_ptr<State> state);
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace aeolis::server::cluster

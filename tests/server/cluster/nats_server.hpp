@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tests/support/temporary_folder.hpp"
+
+#include <cstdint>
+#include <string>
+#include <sys/types.h>
+
+namespace aeolis::tests {
+
+/// A nats-server with JetStream on a port of its own, with its streams in a folder that goes with it. It can be killed
+/// and started again with what it had. AEOLIS_NATS_SERVER names the program (./test unpacks Debian's).
+class NatsServer {
+  public:
+    /// Whether there is such a program. If not, says on the output that a test was skipped.
+    static bool present();
+
+    NatsServer();
+    NatsServer(const NatsServer&) = delete;
+    NatsServer& operator=(const NatsServer&) = delete;
+    ~NatsServer();
+
+    std::string url() const;
+    void kill();  ///< as by kill -9
+    void start();
+    /// Removes what its streams hold; only while it is killed.
+    void forget();
+
+  private:
+    test::TemporaryFolder folder_;
+    std::uint16_t port_ = 0;
+    pid_t process_ = -1;
+};
+
+}  // namespace aeolis::tests
