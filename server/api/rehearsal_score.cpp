@@ -136,11 +136,13 @@ std::string fault_words(const v1::FaultInjection& injected) {
     return "the prime computer starts anew";
 }
 
-std::string outcome_words(const std::string& outcome) {
-    if (outcome == "impact") return "hit the ground too fast";
-    if (outcome == "not_commanded") return "the cruise stage was not commanded to separate";
-    if (outcome == "timeout") return "ended by its time limit";
-    return in_words(outcome);
+std::string outcome_words(v1::Landing::Outcome outcome) {
+    switch (outcome) {
+    case v1::Landing::impact: return "hit the ground too fast";
+    case v1::Landing::not_commanded: return "the cruise stage was not commanded to separate";
+    case v1::Landing::timeout: return "ended by its time limit";
+    default: return in_words(v1::Landing::Outcome_Name(outcome));
+    }
 }
 
 class Judge {
@@ -238,7 +240,7 @@ class Judge {
     }
 
     void add_landing() {
-        const auto& outcome = facts_.report.run().outcome();
+        const auto outcome = facts_.report.run().outcome();
         const auto words = outcome_words(outcome);
         const auto& landed = facts_.landed;
         add_fact(score_, "landing", words, landed ? std::optional{landed->e_s} : std::nullopt);
@@ -247,7 +249,7 @@ class Judge {
             add_fact(
                 score_, "landing",
                 fmt::format("{:.1f} km from the target, by the vehicle's own navigation", *landed->miss_m / 1000.0));
-        add_term(score_, "landing", landing_worth, outcome == "touchdown" ? 1.0 : 0.0, words);
+        add_term(score_, "landing", landing_worth, outcome == v1::Landing::touchdown ? 1.0 : 0.0, words);
     }
 
     void add_timepoints() {
@@ -435,7 +437,7 @@ Result<v1::AsFlownReport> whole_report(archive::Reader& reader, archive::RunId r
 }
 
 bool has_score(const v1::RunState& run) {
-    return run.state() == "finished" && run.venue() != "downlink";
+    return run.state() == v1::RunState::finished && run.venue() != "downlink";
 }
 
 Result<v1::Score> rehearsal_score(archive::Reader& reader, v1::AsFlownReport report,

@@ -16,7 +16,7 @@ namespace {
 constexpr double entry_s = 1000.0;
 
 /// A rehearsal that ended so. SCET and SCLK meet at entry; light takes 100 s.
-ScoreFacts ended(const char* outcome = "touchdown") {
+ScoreFacts ended(v1::Landing::Outcome outcome = v1::Landing::touchdown) {
     ScoreFacts facts;
     auto& run = *facts.report.mutable_run();
     run.set_outcome(outcome);
@@ -89,7 +89,7 @@ TEST_CASE("the score leaves out what there was nothing of, and is a share of wha
     REQUIRE(bare.terms_size() == 1);
     CHECK(bare.terms(0).name() == "landing");
     CHECK(bare.sum() == 100.0);
-    CHECK(score(ended("lost")).sum() == 0.0);
+    CHECK(score(ended(v1::Landing::lost)).sum() == 0.0);
     auto facts = ended();
     facts.alarms = {limit(10.0, v1::Alarm::watch)};  // never acknowledged
     CHECK(score(facts).sum() == 80.0);
