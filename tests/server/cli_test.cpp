@@ -471,7 +471,7 @@ TEST_CASE(
     const auto parsed = aeolis::server::from_json(json.text, report);
     INFO((parsed ? std::string{} : parsed.error().message));
     REQUIRE(parsed);
-    CHECK(report.run().outcome() == v1::Landing::touchdown);
+    CHECK(report.run().outcome() == aeolis::v1::Landing::touchdown);
     CHECK(report.proof().recording_complete());
     CHECK(report.silences_size() > 0);
     int by_tone = 0, live = 0, predicted = 0;
