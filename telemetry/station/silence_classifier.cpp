@@ -18,6 +18,8 @@ constexpr std::array<std::string_view, 13> class_names{
     "recording complete", "ground fault",    "unexplained"};
 static_assert(class_names.size() == static_cast<std::size_t>(SilenceClass::unexplained) + 1);
 
+constexpr double search_s = 10.0;  // chosen: twice the receiver's longest search
+
 bool holds(const PredictedSilences::Window& window, double e_s) {
     return e_s >= window.from_s - SilenceClassifier::margin_s && e_s <= window.to_s + SilenceClassifier::margin_s;
 }
@@ -84,6 +86,7 @@ std::vector<LinkState> SilenceClassifier::tell(const std::vector<LinkState>& cha
             all.push_back(told(silence, why, change.ert, station));
     }
     for (Silence& silence : silent_) {
+        if (!station.fault.empty()) silence.fault_e_s = e_s(now);
         const Explanation why = explain(silence, e_s(now), station);
         const bool begins =
             silence.told == SilenceClass::light_time &&
@@ -116,6 +119,8 @@ SilenceClassifier::Explanation SilenceClassifier::explain(const Silence& silence
     const bool predicted =
         why.silence != SilenceClass::unexplained && !(why.silence == SilenceClass::delivered && silence.cut);
     if (!predicted && !station.fault.empty()) return {SilenceClass::ground_fault, station.fault};
+    if (!predicted && silence.link == x_band_link && silence.fault_e_s && e_s < *silence.fault_e_s + search_s)
+        return {SilenceClass::ground_fault, "the receiver searches for the carrier again"};
     why.fault = !station.fault.empty() && !is_over(why.silence);
     return why;
 }
