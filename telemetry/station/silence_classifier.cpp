@@ -11,6 +11,8 @@
 namespace aeolis::telemetry {
 namespace {
 
+constexpr double search_s = 10.0;  // chosen: twice the receiver's longest search
+
 bool holds(const PredictedSilences::Window& window, double e_s) {
     return e_s >= window.from_s - SilenceClassifier::margin_s && e_s <= window.to_s + SilenceClassifier::margin_s;
 }
@@ -54,6 +56,7 @@ std::vector<LinkState> SilenceClassifier::tell(const std::vector<LinkState>& cha
             all.push_back(told(silence, why, change.ert, station));
     }
     for (Silence& silence : silent_) {
+        if (!station.fault.empty()) silence.fault_e_s = e_s(now);
         const Explanation why = explain(silence, e_s(now), station);
         const bool begins =
             silence.told == SilenceClass::light_time &&
@@ -86,6 +89,8 @@ SilenceClassifier::Explanation SilenceClassifier::explain(const Silence& silence
     const bool predicted =
         why.silence != SilenceClass::unexplained && !(why.silence == SilenceClass::delivered && silence.cut);
     if (!predicted && !station.fault.empty()) return {SilenceClass::ground_fault, station.fault};
+    if (!predicted && silence.link == x_band_link && silence.fault_e_s && e_s < *silence.fault_e_s + search_s)
+        return {SilenceClass::ground_fault, "the receiver searches for the carrier again"};
     why.fault = !station.fault.empty() && !is_over(why.silence);
     return why;
 }

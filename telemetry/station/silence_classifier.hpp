@@ -50,7 +50,8 @@ class SilenceClassifier {
         Link link;
         bool cut = false;  ///< began while the station had a fault
         SilenceClass told{};
-        bool told_fault = false;  ///< beside a prediction
+        bool told_fault = false;            ///< beside a prediction
+        std::optional<double> fault_e_s{};  ///< when the station last had a fault meanwhile
     };
     struct Explanation {
         SilenceClass silence = SilenceClass::unexplained;
