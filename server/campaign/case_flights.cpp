@@ -41,7 +41,7 @@ CaseFlights::CaseFlights(const simulation::Scenario& scenario, std::uint64_t see
 }
 
 void CaseFlights::Flight::step() {
-    const auto& received = landing.step();
+    auto& received = landing.step();
     ++cycles;
     if (!landing.script_sent()) {
         landing.hear(received);

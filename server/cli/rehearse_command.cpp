@@ -92,7 +92,7 @@ Result<void> fly_archived(Rehearsal& rehearsal, TruthFile& truth, PipelineThread
         return pipeline.deliver(std::exchange(delivery, {}));
     };
     while (!rehearsal.finished()) {
-        delivery.add(rehearsal.step());
+        delivery.add(std::move(rehearsal.step()));
         delivery.pass(rehearsal.cycles(), rehearsal.landing().ert_now());
         truth.add(rehearsal.landing());
         for (auto& stage : rehearsal.take_stages()) delivery.entries.emplace_back(std::move(stage));

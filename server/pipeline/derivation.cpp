@@ -130,7 +130,7 @@ Result<std::optional<std::size_t>> derive(sqlite::Database& database, const RunT
         intake.take(telemetry::ReceivedPacket{{stored.link, stored.source == archive::Source::recorded},
                                               stored.ert,
                                               {octets.begin(), octets.end()}},
-                    numbering, batch, {});
+                    numbering, batch);
         ++count;
         if (batch.packets.size() < batch_packets) continue;
         if (stopped()) return std::optional<std::size_t>{};

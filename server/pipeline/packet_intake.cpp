@@ -19,9 +19,8 @@ using telemetry::Standing;
 PacketIntake::PacketIntake(const dictionary::Dictionary& dictionary, const archive::PacketColumns& columns,
                            const telemetry::OtherMission* other)
     : dictionary_(dictionary), columns_(columns), firing_(find_firing_fields(dictionary)), other_(other),
-      alarms_(dictionary), segments_(columns), latest_(dictionary.channels.size()),
+      decoder_(dictionary, other), alarms_(dictionary), segments_(columns), latest_(dictionary.channels.size()),
       clocks_(other == nullptr ? 0 : dictionary.packets.size()) {
-    if (other_ == nullptr) decommutator_.emplace(dictionary);
     const auto* phase = dictionary.channel("edl_phase");  // null: not in this mission
     const auto tells_phase = [&](const dictionary::Field& field) {
         return phase != nullptr &&
@@ -35,10 +34,10 @@ PacketIntake::PacketIntake(const dictionary::Dictionary& dictionary, const archi
     }
 }
 
-void PacketIntake::note_phase(const PacketRecord& record) {
+void PacketIntake::note_phase(const PacketRecord& record, const telemetry::Decoded& content) {
     const auto field = phase_field_[*record.packet];
-    if (!field || record.source != Source::realtime || record.sclk < phase_sclk_ || !decoded_.value[*field]) return;
-    phase_ = telemetry::value_text(dictionary_.packets[*record.packet].fields[*field].type, decoded_.value[*field]);
+    if (!field || record.source != Source::realtime || record.sclk < phase_sclk_ || !content.value[*field]) return;
+    phase_ = telemetry::value_text(dictionary_.packets[*record.packet].fields[*field].type, content.value[*field]);
     phase_sclk_ = record.sclk;
 }
 
@@ -54,8 +53,7 @@ std::optional<PacketIntake::FiringFields> PacketIntake::find_firing_fields(const
                         *verdict};
 }
 
-void PacketIntake::take(const telemetry::ReceivedPacket& packet, Numbering& numbering, Batch& batch,
-                        const Observer& observer) {
+void PacketIntake::take(const telemetry::ReceivedPacket& packet, Numbering& numbering, Batch& batch) {
     const bool recorded = packet.link.recorded;
     remark_.clear();
     PacketRecord record;
@@ -75,29 +73,30 @@ void PacketIntake::take(const telemetry::ReceivedPacket& packet, Numbering& numb
         record.standing = Standing::unregistered;
     }
     const bool of_station = other_ == nullptr && packet.link == telemetry::station_link;
-    auto refusal = decode(packet.octets);
-    if (!refusal && other_ == nullptr && is_made_on_ground(record.apid) != of_station)
-        refusal = of_station ? "not_of_the_station" : "made_on_ground";
-    if (refusal) {
+    const auto& decoded = this->decoded(packet);
+    const auto& content = decoded.content;
+    record.refusal = decoded.refusal;
+    if (record.refusal.empty() && other_ == nullptr && is_made_on_ground(record.apid) != of_station)
+        record.refusal = of_station ? "not_of_the_station" : "made_on_ground";
+    if (!record.refusal.empty()) {
         ++not_decoded_;
-        record.refusal = std::move(*refusal);
         if (other_ != nullptr)
             tell_once("a packet of APID " + std::to_string(record.apid.value) + " is not decoded: " + record.refusal);
         batch.packets.push_back(std::move(record));
         return;
     }
-    record.packet = static_cast<std::uint16_t>(decoded_.packet);
-    record.sclk = decoded_.header.time;
+    record.packet = static_cast<std::uint16_t>(content.packet);
+    record.sclk = content.header.time;
     if (other_ != nullptr) {
-        const auto own = decoded_.timed ? std::optional{decoded_.header.time} : std::nullopt;
-        auto place = clocks_.place(decoded_.packet, dictionary_.packets[decoded_.packet].name, own, packet.ert);
+        const auto own = content.timed ? std::optional{content.header.time} : std::nullopt;
+        auto place = clocks_.place(content.packet, dictionary_.packets[content.packet].name, own, packet.ert);
         record.sclk = place.sclk;
         remark_ = std::move(place.remark).value_or("");
-        if (!decoded_.problem.empty()) {
+        if (!content.problem.empty()) {
             ++not_decoded_;
-            record.refusal = decoded_.problem;
-            tell_once("a packet " + dictionary_.packets[decoded_.packet].name +
-                      " is not decoded to its end: " + decoded_.problem);
+            record.refusal = content.problem;
+            tell_once("a packet " + dictionary_.packets[content.packet].name +
+                      " is not decoded to its end: " + content.problem);
         }
     }
     if (of_station) record.standing = Standing::unregistered;
@@ -105,14 +104,12 @@ void PacketIntake::take(const telemetry::ReceivedPacket& packet, Numbering& numb
         record.standing =
             register_.add(packet.octets, recorded ? telemetry::Path::recorded : telemetry::Path::realtime);
     const bool fresh = record.standing == Standing::first || record.standing == Standing::unregistered;
-    record.sampled = fresh && !columns_.channels(decoded_.packet).empty();
+    record.sampled = fresh && !columns_.channels(content.packet).empty();
     batch.packets.push_back(record);
     if (record.standing == Standing::again) return;
-    note_phase(record);
-    if (record.sampled) sample(record, numbering, batch);
-    if (other_ != nullptr) return;
-    interpret(record, numbering, batch);
-    if (observer && !of_station) observer(decoded_, packet.octets, record.source, record.ert);
+    note_phase(record, content);
+    if (record.sampled) sample(record, content, numbering, batch);
+    if (other_ == nullptr) interpret(record, decoded, numbering, batch);
 }
 
 void PacketIntake::tell_once(const std::string& words) {
@@ -120,23 +117,24 @@ void PacketIntake::tell_once(const std::string& words) {
     remark_ += (remark_.empty() ? "" : "; ") + words;
 }
 
-std::optional<std::string> PacketIntake::decode(std::span<const std::uint8_t> packet) {
-    if (other_ != nullptr) return other_->decode(packet, decoded_);
-    const auto refusal = decommutator_->decode(packet, decoded_);
-    return refusal ? std::optional<std::string>{telemetry::name_of(*refusal)} : std::nullopt;
+const telemetry::DecodedPacket& PacketIntake::decoded(const telemetry::ReceivedPacket& packet) {
+    if (packet.decoded) return *packet.decoded;
+    decoder_.decode(packet.octets, decoded_);
+    return decoded_;
 }
 
-void PacketIntake::sample(const PacketRecord& record, Numbering& numbering, Batch& batch) {
+void PacketIntake::sample(const PacketRecord& record, const telemetry::Decoded& content, Numbering& numbering,
+                          Batch& batch) {
     const std::size_t first = batch.values.size();
-    columns_.append_values(decoded_, batch.values);
+    columns_.append_values(content, batch.values);
     const auto values = std::span<const double>(batch.values).subspan(first);
     batch.samples.push_back({{numbering.next(batch), record.ert},
                              *record.packet,
                              record.sclk,
                              record.source,
                              {first, batch.values.size() - first},
-                             columns_.texts(decoded_),
-                             !decoded_.timed});
+                             columns_.texts(content),
+                             !content.timed});
     segments_.add(*record.packet, record.source, record.seq, record.sclk, values, batch);
     if (record.source == Source::realtime) judge(record, values, numbering, batch);
 }
@@ -162,33 +160,35 @@ void PacketIntake::judge(const PacketRecord& record, std::span<const double> val
                                 change.limit});
 }
 
-void PacketIntake::interpret(const PacketRecord& record, Numbering& numbering, Batch& batch) const {
-    if (const auto* event = telemetry::event_of(dictionary_, decoded_)) {
+void PacketIntake::interpret(const PacketRecord& record, const telemetry::DecodedPacket& decoded, Numbering& numbering,
+                             Batch& batch) const {
+    const auto& content = decoded.content;
+    if (const auto* event = decoded.event) {
         batch.events.push_back({{numbering.next(batch), record.ert},
                                 record.seq,
                                 event->id,
                                 event->name,
                                 event->level,
-                                telemetry::event_text(dictionary_, *event, decoded_),
+                                decoded.text,
                                 record.sclk,
                                 record.source,
                                 record.duplicate()});
     }
-    if (firing_ && firing_->packet == decoded_.packet) {
-        const auto value = [this](std::size_t field) { return decoded_.value[field].value_or(0.0); };
-        const auto& fields = dictionary_.packets[decoded_.packet].fields;
+    if (firing_ && firing_->packet == content.packet) {
+        const auto value = [&](std::size_t field) { return content.value[field].value_or(0.0); };
+        const auto& fields = dictionary_.packets[content.packet].fields;
         const auto index = static_cast<std::size_t>(value(firing_->timepoint));
         batch.firings.push_back({{numbering.next(batch), record.ert},
                                  record.seq,
                                  TimepointId{static_cast<std::uint16_t>(index)},
                                  index < dictionary_.timeline.size() ? dictionary_.timeline[index].name : std::string(),
-                                 telemetry::value_text(fields[firing_->verdict].type, decoded_.value[firing_->verdict]),
+                                 telemetry::value_text(fields[firing_->verdict].type, content.value[firing_->verdict]),
                                  Sclk{value(firing_->triggered)},
                                  Sclk{value(firing_->fired)},
                                  record.source,
                                  record.duplicate()});
     }
-    if (auto explanation = telemetry::explain(dictionary_, decoded_))
+    if (auto explanation = telemetry::explain(dictionary_, content))
         batch.explanations.push_back({{numbering.next(batch), record.ert},
                                       record.seq,
                                       record.sclk,

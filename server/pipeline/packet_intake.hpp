@@ -5,7 +5,7 @@
 #include "server/pipeline/pipeline.hpp"
 #include "server/pipeline/segment_builder.hpp"
 #include "telemetry/alarms.hpp"
-#include "telemetry/decommutator.hpp"
+#include "telemetry/decoded_packet.hpp"
 #include "telemetry/other_mission.hpp"
 #include "telemetry/packet_clocks.hpp"
 #include "telemetry/unit_identity.hpp"
@@ -44,7 +44,7 @@ class Numbering {
 };
 
 /// Takes one run's packets, on either path: identifies each, whether it was seen before, and derives everything from
-/// it.
+/// it. Decodes those that nobody has decoded before.
 ///
 /// In       packets in the order of receipt               Out   records, appended to a batch
 /// Time     another mission's packet without a time of its own stands at its reception (telemetry/packet_clocks.hpp)
@@ -62,8 +62,7 @@ class PacketIntake {
     PacketIntake(const dictionary::Dictionary& dictionary, const archive::PacketColumns& columns,
                  const telemetry::OtherMission* other);
 
-    void take(const telemetry::ReceivedPacket& packet, Numbering& numbering, archive::Batch& batch,
-              const Observer& observer);
+    void take(const telemetry::ReceivedPacket& packet, Numbering& numbering, archive::Batch& batch);
     void seal(archive::Batch& batch) { segments_.seal(batch); }
 
     archive::RecordingTotals totals() const;
@@ -83,14 +82,16 @@ class PacketIntake {
     };
     static std::optional<FiringFields> find_firing_fields(const dictionary::Dictionary& dictionary);
 
-    /// Decodes into decoded_. Returns the reason if it was not decoded.
-    std::optional<std::string> decode(std::span<const std::uint8_t> packet);
-    void sample(const archive::PacketRecord& record, Numbering& numbering, archive::Batch& batch);
-    void interpret(const archive::PacketRecord& record, Numbering& numbering, archive::Batch& batch) const;
+    /// The packet's one decode. Valid until the next call.
+    const telemetry::DecodedPacket& decoded(const telemetry::ReceivedPacket& packet);
+    void sample(const archive::PacketRecord& record, const telemetry::Decoded& content, Numbering& numbering,
+                archive::Batch& batch);
+    void interpret(const archive::PacketRecord& record, const telemetry::DecodedPacket& decoded, Numbering& numbering,
+                   archive::Batch& batch) const;
     void judge(const archive::PacketRecord& record, std::span<const double> values, Numbering& numbering,
                archive::Batch& batch);
 
-    void note_phase(const archive::PacketRecord& record);
+    void note_phase(const archive::PacketRecord& record, const telemetry::Decoded& content);
     void tell_once(const std::string& words);
 
     const dictionary::Dictionary& dictionary_;
@@ -100,8 +101,8 @@ class PacketIntake {
     std::string phase_;
     Sclk phase_sclk_{};
     const telemetry::OtherMission* other_;  ///< null: our own mission
-    std::optional<telemetry::Decommutator> decommutator_;
-    telemetry::Decoded decoded_;
+    telemetry::PacketDecoder decoder_;
+    telemetry::DecodedPacket decoded_;  ///< of the packet decoded here last
     telemetry::UnitRegister register_;
     telemetry::AlarmMonitor alarms_;
     std::vector<telemetry::AlarmChange> changes_;

@@ -85,7 +85,6 @@ struct Pipeline::State {
     const telemetry::OtherMission* other;
     archive::PacketColumns columns;
     Publish publish;
-    Observer observer;
     bool items_wanted = true;
     std::uint64_t raw_kept = archive::raw_octets_kept;
     std::optional<Run> run;
@@ -101,9 +100,6 @@ Pipeline::~Pipeline() = default;
 
 void Pipeline::on_publish(Publish publish) {
     state_->publish = std::move(publish);
-}
-void Pipeline::on_decoded(Observer observer) {
-    state_->observer = std::move(observer);
 }
 void Pipeline::want_items(bool wanted) {
     state_->items_wanted = wanted;
@@ -310,7 +306,7 @@ void Pipeline::State::take(const telemetry::ReceivedOctets& piece) {
 }
 
 void Pipeline::State::take(const telemetry::ReceivedPacket& packet) {
-    run->intake.take(packet, run->numbering, run->pending, observer);
+    run->intake.take(packet, run->numbering, run->pending);
     if (const auto& remark = run->intake.remark(); !remark.empty()) {
         archive::NoteRecord note;
         note.seq = run->numbering.next(run->pending);

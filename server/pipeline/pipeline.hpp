@@ -6,7 +6,6 @@
 #include "dictionaries/dictionary.hpp"
 #include "server/archive/archive.hpp"
 #include "server/archive/records.hpp"
-#include "telemetry/decommutator.hpp"
 #include "telemetry/other_mission.hpp"
 #include "telemetry/station/received.hpp"
 
@@ -31,9 +30,6 @@ struct PublishedBatch {
     std::vector<v1::Item> items;  ///< in order of seq; when built, first_seq … last_seq without gaps
 };
 
-/// Sees each decoded packet before it is durable: for the command path, which must match replies.
-using Observer = std::function<void(const telemetry::Decoded& decoded, std::span<const std::uint8_t> octets,
-                                    archive::Source source, Ert ert)>;
 using Publish = std::function<void(std::shared_ptr<const PublishedBatch>)>;
 /// Compares items flown again with the archive's. The Error names the first that differs.
 using Compare = std::function<Result<void>(const PublishedBatch& again)>;
@@ -70,7 +66,6 @@ class Pipeline {
     ~Pipeline();
 
     void on_publish(Publish publish);
-    void on_decoded(Observer observer);
     /// Whether PublishedBatch::items are built: needed only while someone follows. Initially true.
     void want_items(bool wanted);
 

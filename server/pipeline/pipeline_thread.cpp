@@ -45,13 +45,16 @@ Result<void> same_items(archive::Reader& stored, const pipeline::PublishedBatch&
 
 }  // namespace
 
-void Delivery::add(const telemetry::Received& received) {
-    entries.insert(entries.end(), received.octets.begin(), received.octets.end());
-    entries.insert(entries.end(), received.packets.begin(), received.packets.end());
-    entries.insert(entries.end(), received.tones.begin(), received.tones.end());
-    entries.insert(entries.end(), received.carrier.begin(), received.carrier.end());
-    entries.insert(entries.end(), received.seen.begin(), received.seen.end());
-    entries.insert(entries.end(), received.links.begin(), received.links.end());
+void Delivery::add(telemetry::Received&& received) {
+    const auto move_in = [this](auto& from) {
+        entries.insert(entries.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
+    };
+    move_in(received.octets);
+    move_in(received.packets);
+    move_in(received.tones);
+    move_in(received.carrier);
+    move_in(received.seen);
+    move_in(received.links);
 }
 
 void Delivery::pass(std::uint64_t cycles, Ert now) {

@@ -32,7 +32,7 @@ struct Delivery {
     /// disk thus does not delay answers.
     std::vector<std::function<void(const std::string& fault)>> answers;
 
-    void add(const telemetry::Received& received);
+    void add(telemetry::Received&& received);
     /// Adds the time on Earth, once a second of the run.
     void pass(std::uint64_t cycles, Ert now);
 };

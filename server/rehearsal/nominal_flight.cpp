@@ -198,7 +198,7 @@ Result<NominalFlight> fly_nominally(const simulation::Scenario& expected, const 
         for (std::uint64_t cycle = 0; !landing.landing().flown(); ++cycle) {
             if (cycle % cycles_between_stops == 0 && stop && stop())
                 return Error{.message = "the nominal flight was stopped", .internal = true};
-            const auto& received = landing.step();
+            auto& received = landing.step();
             if (!landing.script_sent()) {
                 landing.hear(received);
                 landing.take_stages();

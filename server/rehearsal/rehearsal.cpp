@@ -24,7 +24,7 @@ Rehearsal::Rehearsal(const simulation::Scenario& scenario, std::uint64_t seed, s
                      const std::optional<ClockCorrelation>& clock)
     : scenario_(scenario), dictionary_(dictionary), seed_(seed), case_number_(case_number),
       flight_(scenario, seed, case_number, dictionary, clock), product_packet_(dictionary.packet(product_packet_name)),
-      decommutator_(dictionary), firings_(dictionary) {
+      firings_(dictionary) {
     if (runner == nullptr && scenario.test_venue == simulation::TestVenue::performance) {
         ThreadedExecutive::Options options;
         options.measure = true;
@@ -34,10 +34,10 @@ Rehearsal::Rehearsal(const simulation::Scenario& scenario, std::uint64_t seed, s
     flight_.equip_station(scenario, seed, case_number, dictionary);
 }
 
-const telemetry::Received& Rehearsal::step() {
+telemetry::Received& Rehearsal::step() {
     if (!broken_.empty()) return nothing_;
     try {
-        const auto& received = flight_.step();
+        auto& received = flight_.step();
         ++cycles_;
         take(received);
         score(landing().report(), received);
@@ -81,11 +81,11 @@ std::vector<archive::StageRecord> Rehearsal::take_stages() {
     return records;
 }
 
-void Rehearsal::take(const telemetry::Received& received) {
+void Rehearsal::take(telemetry::Received& received) {
     flight_.hear(received);
-    for (const auto& packet : received.packets) {
+    for (auto& packet : received.packets) {
         units_.add(packet.octets, packet.link.recorded ? telemetry::Path::recorded : telemetry::Path::realtime);
-        note_product(packet.octets);
+        note_product(packet);
     }
 }
 
@@ -112,11 +112,12 @@ void Rehearsal::add_to_digest(std::span<const std::uint8_t> recorded) {
     }
 }
 
-void Rehearsal::note_product(std::span<const std::uint8_t> packet) {
-    const auto header = read_primary_header(packet);
+void Rehearsal::note_product(telemetry::ReceivedPacket& packet) {
+    const auto header = read_primary_header(packet.octets);
     if (!header || product_packet_ == nullptr || header->apid != product_packet_->apid) return;
-    if (decommutator_.decode(packet, decoded_)) return;
-    if (const auto part = telemetry::part_of(dictionary_, decoded_, packet))
+    const auto& decoded = flight_.decoded(packet);
+    if (!decoded.refusal.empty()) return;
+    if (const auto part = telemetry::part_of(dictionary_, decoded.content, packet.octets))
         static_cast<void>(products_.add(*part));  // most parts arrive twice, in real time and recorded
 }
 

@@ -37,8 +37,8 @@ class Rehearsal {
               const std::optional<ClockCorrelation>& clock = {});
 
     /// Sends the script's commands that are due, then flies one cycle of 1/64 s. The result is valid until the next
-    /// step.
-    const telemetry::Received& step();
+    /// step, and until then the caller's to move from.
+    telemetry::Received& step();
 
     /// See request_of().
     v1::CommandReply submit(const v1::CommandRequest& request, const std::string& browser = {}, bool director = false);
@@ -93,11 +93,11 @@ class Rehearsal {
     bool takes_commands() const {
         return scenario_.test_venue != simulation::TestVenue::gnc_alone;
     }  ///< whether it has a flight computer
-    void take(const telemetry::Received& received);
+    void take(telemetry::Received& received);
     void score(const simulation::CycleReport& truth, const telemetry::Received& received);
     /// Adds the cycle's recording, without measured times, which always vary; without a recording, the path flown.
     void add_to_digest(std::span<const std::uint8_t> recorded);
-    void note_product(std::span<const std::uint8_t> packet);
+    void note_product(telemetry::ReceivedPacket& packet);
 
     simulation::Scenario scenario_;
     const dictionary::Dictionary& dictionary_;
@@ -109,8 +109,6 @@ class Rehearsal {
     std::string broken_;  ///< the failed check in the simulation
 
     const dictionary::Packet* product_packet_ = nullptr;
-    telemetry::Decommutator decommutator_;
-    telemetry::Decoded decoded_;
     std::vector<simulation::TruthEvent> events_;
     RecordedFirings firings_;
     ToneScore tones_;

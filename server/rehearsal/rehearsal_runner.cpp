@@ -218,7 +218,7 @@ Result<void> RehearsalRunner::catch_up(Rehearsal& rehearsal) {
             if (rehearsal.finished())
                 return given_up(fmt::format("flown again it ends before item {}", cut_->last_seq));
         }
-        collect(rehearsal, rehearsal.step());
+        step(rehearsal);
     }
     spdlog::info("run {} goes on from item {}, at E{:+.1f} s", run_id_.value, cut_->last_seq, rehearsal.clocks().e_s());
     return {};
@@ -263,7 +263,7 @@ void RehearsalRunner::fly(Rehearsal& rehearsal) {
         }
         if (paused_ || now - due > duration<double>{behind_s_max}) count_pace_from(rehearsal, now);
         if (paused_) continue;
-        collect(rehearsal, rehearsal.step());
+        step(rehearsal);
         if (now - delivered_ >= delivery_interval || delivery_.entries.size() >= delivery_entries)
             archive_gave_up_ = archive_gave_up_ || !deliver(rehearsal, now);
     }
@@ -413,8 +413,8 @@ bool RehearsalRunner::repeat(Rehearsal& rehearsal, const std::string& request) {
     return false;
 }
 
-void RehearsalRunner::collect(Rehearsal& rehearsal, const telemetry::Received& received) {
-    delivery_.add(received);
+void RehearsalRunner::step(Rehearsal& rehearsal) {
+    delivery_.add(std::move(rehearsal.step()));
     delivery_.pass(rehearsal.cycles(), rehearsal.landing().ert_now());
     take_stages(rehearsal);
 }

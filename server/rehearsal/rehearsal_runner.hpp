@@ -123,7 +123,8 @@ class RehearsalRunner {
     v1::CommandReply submit(Rehearsal& rehearsal, const v1::CommandRequest& request, const SendCommands& order);
     /// Checks commands. @return the replies of refused commands, or of all in a dry run; empty: each may be accepted
     static std::vector<v1::CommandReply> look_at(Rehearsal& rehearsal, const SendCommands& order);
-    void collect(Rehearsal& rehearsal, const telemetry::Received& received);
+    /// Flies a cycle and collects what ground then has.
+    void step(Rehearsal& rehearsal);
     void take_stages(Rehearsal& rehearsal);
     bool deliver(const Rehearsal& rehearsal, Clock::time_point now);
     void tell(const Rehearsal& rehearsal, Clock::time_point now, bool changed);

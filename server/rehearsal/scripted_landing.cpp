@@ -6,7 +6,6 @@
 #include "dictionaries/analysis/timeline_analysis.hpp"
 #include "server/rehearsal/predict_silences.hpp"
 #include "server/rehearsal/predicted_doppler.hpp"
-#include "telemetry/text.hpp"
 
 #include <algorithm>
 #include <cstdlib>
@@ -107,12 +106,12 @@ std::deque<ScriptedRequest> script_of(const simulation::Scenario& scenario, cons
 
 ScriptedLanding::ScriptedLanding(const simulation::Scenario& scenario, std::uint64_t seed, std::uint64_t case_number,
                                  const dictionary::Dictionary& dictionary, const std::optional<ClockCorrelation>& clock)
-    : dictionary_(dictionary), entry_(scenario.entry_sclk),
+    : entry_(scenario.entry_sclk),
       landing_(scenario, seed, case_number, event_reports(dictionary), clock ? *clock : clock_of(scenario, dictionary)),
       station_(landing_.light_time_s()),
       gateway_(dictionary, landing_.light_time_s(), solution_arguments(landing_.solution()), scenario.second_person,
                stations_of(scenario), landing_.correlation().scet_of(scenario.entry_sclk), landing_.correlation()),
-      script_(script_of(scenario, dictionary)), dispersed_(landing_.dispersed()), decommutator_(dictionary),
+      script_(script_of(scenario, dictionary)), dispersed_(landing_.dispersed()), decoder_(dictionary),
       progress_(dictionary) {}
 
 void ScriptedLanding::equip_station(const simulation::Scenario& scenario, std::uint64_t seed, std::uint64_t case_number,
@@ -131,9 +130,9 @@ void ScriptedLanding::equip_station(const simulation::Scenario& scenario, std::u
     station_.listen_by({dictionary.mfsk, predict_hz, entry});
 }
 
-const telemetry::Received& ScriptedLanding::step() {
+telemetry::Received& ScriptedLanding::step() {
     send_script();
-    const auto& received = station_.receive(landing_.step().earth);
+    auto& received = station_.receive(landing_.step().earth);
     if (!received.links.empty() || cycles_ % cycles_between_silences == 0)
         station_.explain_silences(recording_progress());
     for (const auto& pltu : station_.take_forward()) landing_.forward(pltu);
@@ -143,22 +142,29 @@ const telemetry::Received& ScriptedLanding::step() {
     return received;
 }
 
-void ScriptedLanding::hear(const telemetry::Received& received) {
-    for (const auto& packet : received.packets) receive(packet);
+void ScriptedLanding::hear(telemetry::Received& received) {
+    for (auto& packet : received.packets) receive(packet);
     // Once a second suffices for windows of many seconds.
     if (cycles_ % 64 == 0) gateway_.pass(landing_.ert_now(), stages_);
     radiate();
 }
 
-void ScriptedLanding::receive(const telemetry::ReceivedPacket& packet) {
+const telemetry::DecodedPacket& ScriptedLanding::decoded(telemetry::ReceivedPacket& packet) const {
+    if (!packet.decoded) {
+        auto decoded = std::make_shared<telemetry::DecodedPacket>();
+        decoder_.decode(packet.octets, *decoded);
+        packet.decoded = std::move(decoded);
+    }
+    return *packet.decoded;
+}
+
+void ScriptedLanding::receive(telemetry::ReceivedPacket& packet) {
     const bool live = telemetry::is_live_telemetry(packet.link.name);
     if (!live && !gateway_.awaits_answers() && !progress_.may_close(packet.octets)) return;
-    if (decommutator_.decode(packet.octets, decoded_)) return;
-    progress_.note(decoded_, live);
-    const auto* event = telemetry::event_of(dictionary_, decoded_);
-    gateway_.receive({decoded_, packet.octets, live, packet.ert, event,
-                      event != nullptr ? telemetry::event_text(dictionary_, *event, decoded_) : ""},
-                     stages_);
+    const auto& [content, refusal, event, text] = decoded(packet);
+    if (!refusal.empty()) return;
+    progress_.note(content, live);
+    gateway_.receive({content, packet.octets, live, packet.ert, event, text}, stages_);
 }
 
 void ScriptedLanding::send_script() {

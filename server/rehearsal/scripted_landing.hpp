@@ -5,7 +5,7 @@
 #include "common/check.hpp"
 #include "dictionaries/dictionary.hpp"
 #include "simulation/landing.hpp"
-#include "telemetry/decommutator.hpp"
+#include "telemetry/decoded_packet.hpp"
 #include "telemetry/station/ground_station.hpp"
 #include "telemetry/station/recording_progress.hpp"
 
@@ -52,10 +52,13 @@ class ScriptedLanding {
                        const dictionary::Dictionary& dictionary);
 
     /// Sends the script's commands that are due, then flies one cycle of 1/64 s. The result is valid until the next
-    /// step.
-    const telemetry::Received& step();
-    /// Gives received packets to the command path: for replies, and for the preconditions of later commands.
-    void hear(const telemetry::Received& received);
+    /// step, and until then the caller's to move from.
+    telemetry::Received& step();
+    /// Gives received packets to the command path: for replies, and for the preconditions of later commands. Those that
+    /// it needs are then decoded.
+    void hear(telemetry::Received& received);
+    /// The packet's one decode, made now unless it was before.
+    const telemetry::DecodedPacket& decoded(telemetry::ReceivedPacket& packet) const;
 
     commands::Reply submit(const commands::Request& request);
     /// See CommandGateway::look.
@@ -81,12 +84,11 @@ class ScriptedLanding {
     double recording_progress() const;
 
   private:
-    void receive(const telemetry::ReceivedPacket& packet);
+    void receive(telemetry::ReceivedPacket& packet);
     void send_script();
     void refuse(const commands::Request& request, const std::string& reason);
     void radiate();
 
-    const dictionary::Dictionary& dictionary_;
     Sclk entry_;
     simulation::Landing landing_;
     telemetry::GroundStation station_;
@@ -96,9 +98,8 @@ class ScriptedLanding {
     std::vector<std::string> script_refusals_;
     bool dispersed_;
     std::uint64_t cycles_ = 0;
-    telemetry::Decommutator decommutator_;
+    telemetry::PacketDecoder decoder_;
     telemetry::RecordingProgress progress_;
-    telemetry::Decoded decoded_;
 };
 
 /// Ground's navigation solution as arguments of "set edl parameters", by argument name.

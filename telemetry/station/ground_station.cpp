@@ -7,7 +7,7 @@
 
 namespace aeolis::telemetry {
 
-const Received& GroundStation::receive(const Downlink& downlink) {
+Received& GroundStation::receive(const Downlink& downlink) {
     now_ = downlink.now;
     out_ = downlink.station_out;
     received_.clear();

@@ -37,8 +37,8 @@ class GroundStation {
     /// Sets the predictions that explain silences.
     void explain_by(SilenceClassifier silences) { silences_.emplace(std::move(silences)); }
 
-    /// Processes a delivery. The result is valid until the next call.
-    const Received& receive(const Downlink& downlink);
+    /// Processes a delivery. The result is valid until the next call, and until then the caller's to move from.
+    Received& receive(const Downlink& downlink);
     /// Replaces the links' states in the last result by those with ground's reasons, if it has any.
     /// @param recording_progress  0 … 1, the fraction received
     void explain_silences(double recording_progress);

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "telemetry/decoded_packet.hpp"
 #include "telemetry/port.hpp"
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 namespace aeolis::telemetry {
@@ -13,6 +15,8 @@ struct ReceivedPacket {
     Link link;
     Ert ert;
     std::vector<std::uint8_t> octets;
+    /// Its one decode, by whoever needs it first and shared from then on; null: nobody has needed it yet.
+    std::shared_ptr<const DecodedPacket> decoded{};
 };
 
 /// The time at the station, which passes even when nothing arrives.

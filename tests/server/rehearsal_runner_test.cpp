@@ -173,7 +173,7 @@ std::vector<std::string> items_flown(const archive::CutOffRun& cut, archive::Seq
                 REQUIRE(rehearsal.submit(again.command()).accepted());
                 for (auto& stage : rehearsal.take_stages()) delivery.entries.emplace_back(std::move(stage));
             }
-            delivery.add(rehearsal.step());
+            delivery.add(std::move(rehearsal.step()));
             delivery.pass(rehearsal.cycles(), rehearsal.landing().ert_now());
             for (auto& stage : rehearsal.take_stages()) delivery.entries.emplace_back(std::move(stage));
             REQUIRE(pipeline.deliver(std::move(delivery)));

@@ -101,6 +101,30 @@ TEST_CASE("over three orbiters a unit keeps one identity, and the recording come
     CHECK(seen["relay"] == recorded);
 }
 
+TEST_CASE("what comes live is decoded when it arrives, once, and what a recording brings only where it is needed",
+          "[rehearsal]") {
+    Rehearsal rehearsal{test::shipped_scenario("nominal_auto"), 1, 0, tests::shipped_dictionary()};
+    std::uint64_t live = 0, recorded = 0, recorded_decoded = 0;
+    bool all_live = true, as_they_are = true;
+    const telemetry::PacketDecoder decoder{tests::shipped_dictionary()};
+    telemetry::DecodedPacket again;
+    while (!rehearsal.finished() && (live < 1000 || recorded < 1000))
+        for (const auto& packet : rehearsal.step().packets) {
+            ++(packet.link.recorded ? recorded : live);
+            all_live = all_live && (packet.link.recorded || packet.decoded != nullptr);
+            if (packet.decoded == nullptr) continue;
+            recorded_decoded += packet.link.recorded ? 1 : 0;
+            decoder.decode(packet.octets, again);
+            as_they_are = as_they_are && packet.decoded->content.raw == again.content.raw &&
+                          packet.decoded->text == again.text && packet.decoded->refusal == again.refusal;
+        }
+    CHECK(live >= 1000);
+    CHECK(recorded >= 1000);
+    CHECK(all_live);
+    CHECK(as_they_are);
+    CHECK(recorded_decoded < recorded);
+}
+
 TEST_CASE("when no pass is left to bring the recording down, nothing is said to be proven", "[rehearsal][relay][R41]") {
     auto scenario = test::shipped_scenario("relay_passes");
     scenario.radio.relay_passes.resize(1);  // the bent pipe of the landing alone

@@ -397,14 +397,28 @@ TEST_CASE("alarms are raised and cleared by real-time samples only", "[pipeline]
     CHECK(severities == std::vector<std::string>{"warning", "none"});
 }
 
-TEST_CASE("the observer sees each decoded packet once a path, before it is durable", "[pipeline][R44]") {
+TEST_CASE("a packet that was decoded on its way is not decoded again: what that decode says is stored", "[pipeline]") {
     Ground ground;
-    std::vector<archive::Source> seen;
-    ground.pipeline.on_decoded([&](const auto&, auto, archive::Source source, Ert) { seen.push_back(source); });
-    const auto packet = mortar_packet(0, 1000.0, 405.0F);
-    for (const auto& received : {live(packet), live(packet), recorded(packet)})
-        REQUIRE(ground.pipeline.accept(received).ok());
-    CHECK(seen == std::vector<archive::Source>{archive::Source::realtime, archive::Source::recorded});
+    const auto decoded_as = [&](const std::vector<std::uint8_t>& octets) {
+        auto decoded = std::make_shared<telemetry::DecodedPacket>();
+        telemetry::PacketDecoder{ground.dictionary}.decode(octets, *decoded);
+        return decoded;
+    };
+    auto navigation = live(navigation_packet(0, 1000.0, 1.0F, 6100.0F));
+    navigation.decoded = decoded_as(navigation_packet(0, 1000.0, 1.0F, 5555.0F));
+    auto mortar = live(mortar_packet(0, 1000.0, 405.0F));
+    mortar.decoded = decoded_as(mortar_packet(0, 1000.0, 333.0F));
+    auto refused = live(mortar_packet(1, 1001.0, 405.0F));
+    refused.decoded = decoded_as({1, 2, 3});
+    for (const auto& packet : {navigation, mortar, refused}) REQUIRE(ground.pipeline.accept(packet).ok());
+    REQUIRE(ground.pipeline.commit().ok());
+    const auto stored = text_of(ground.items());
+    CHECK(stored.find("5555") != std::string::npos);
+    CHECK(stored.find("6100") == std::string::npos);
+    CHECK(stored.find("333") != std::string::npos);
+    CHECK(stored.find("405") == std::string::npos);
+    CHECK(stored.find("not_a_packet") != std::string::npos);
+    CHECK(ground.pipeline.totals().not_decoded == 1);
 }
 
 TEST_CASE("the tone's vehicle time is its start less the light time", "[pipeline][R42]") {
