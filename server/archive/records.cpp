@@ -3,7 +3,6 @@
 
 #include "server/archive/item_tables.hpp"
 
-#include <map>
 #include <utility>
 
 namespace aeolis::archive {
@@ -19,22 +18,6 @@ void Extremes::add(const Extremes& later) {
         largest_sclk_s = later.largest_sclk_s;
     }
     defined += later.defined;
-}
-
-void merge(LinkTotals& into, LinkTotals later) {
-    auto sequences = std::move(into.sequences);
-    std::map<std::pair<bool, std::string>, std::size_t> places;
-    if (!later.sequences.empty())
-        for (std::size_t i = 0; i < sequences.size(); ++i) places[{sequences[i].packets, sequences[i].name}] = i;
-    for (auto& each : later.sequences) {
-        const auto [place, is_new] = places.try_emplace({each.packets, each.name}, sequences.size());
-        if (is_new)
-            sequences.push_back(std::move(each));
-        else
-            sequences[place->second].counters = each.counters;
-    }
-    into = std::move(later);
-    into.sequences = std::move(sequences);
 }
 
 void Batch::add(Annotation annotation) {

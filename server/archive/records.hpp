@@ -8,9 +8,8 @@
 #include "dictionaries/dictionary.hpp"
 #include "telemetry/alarm_desk.hpp"
 #include "telemetry/explanation.hpp"
-#include "telemetry/link_counters.hpp"
-#include "telemetry/packet_extractor.hpp"
 #include "telemetry/situation.hpp"
+#include "telemetry/station/link_ledger.hpp"
 #include "telemetry/unit_identity.hpp"
 
 #include <cstdint>
@@ -228,18 +227,7 @@ struct RecordingTotals {
     double progress = 0.0;
 };
 
-/// Totals of a link since the start of the run; see telemetry::LinkCounters.
-struct LinkTotals {
-    std::string link;
-    telemetry::LinkCounters counters;
-    double octets_per_s = 0.0;
-    telemetry::PacketCounters packets{};
-    std::uint64_t bad_datagrams = 0;  ///< that hold anything but whole packets
-    std::vector<telemetry::SequenceTotals> sequences{};
-};
-
-/// Adds what was told later of the same link.
-void merge(LinkTotals& into, LinkTotals later);
+using telemetry::LinkTotals, telemetry::merge;
 
 /// Octets of a link as they came, good and bad. They have no number as items have: what is made of them has.
 struct RawRecord {

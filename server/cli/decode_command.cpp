@@ -210,7 +210,8 @@ int decode(const DecodeOptions& options) {
     take();
     printed.print_kinds();
     const bool all_decoded = print_losses(source, printed);
-    if (const auto words = nothing_found(options.format, source); !words.empty())
+    if (const auto words = nothing_found(options.format, source.link(), source.packets(), !source.sequences().empty());
+        !words.empty())
         return failed(options.packets.string() + ": " + words);
     return all_decoded ? 0 : 1;
 }

@@ -6,8 +6,8 @@
 #include "server/cli/commands.hpp"
 #include "server/cli/options.hpp"
 #include "server/cli/xtce_file.hpp"
-#include "server/links/link_ledger.hpp"
 #include "server/pipeline/pipeline_thread.hpp"
+#include "telemetry/station/foreign_station.hpp"
 
 #include <algorithm>
 #include <cerrno>
@@ -27,8 +27,7 @@ namespace aeolis::server {
 namespace {
 
 constexpr std::size_t plain_piece_octets = 65536;
-constexpr std::size_t window_octets = std::size_t{1} << 20U;         // of a file in memory
-constexpr std::size_t beginning_octets_max = std::size_t{1} << 20U;  // by which a layout is recognised
+constexpr std::size_t window_octets = std::size_t{1} << 20U;  // of a file in memory
 constexpr std::int64_t microseconds_a_second = 1'000'000;
 constexpr double bits_an_octet = 8.0;
 constexpr std::size_t ingest_delivery_entries = 256;
@@ -164,8 +163,9 @@ class Recording {
     std::optional<pcap::File> capture_;
 };
 
-/// Recognises the layout of recordings, which are one stream, by their first octets.
-Result<RecognisedSource> source_of(const std::vector<Recording>& recordings, const PacketStreamFormat& format) {
+/// Has the station recognise the layout of recordings, which are one stream, by their first octets.
+Result<void> recognise(const std::vector<Recording>& recordings, telemetry::ForeignStation& station) {
+    constexpr auto beginning_octets_max = telemetry::ForeignStation::beginning_octets_max;
     std::vector<std::uint8_t> beginning;
     for (const auto& recording : recordings) {
         if (beginning.size() >= beginning_octets_max) break;
@@ -174,7 +174,7 @@ Result<RecognisedSource> source_of(const std::vector<Recording>& recordings, con
             return beginning.size() < beginning_octets_max;
         });
     }
-    return packet_source(format, beginning, beginning.size() < beginning_octets_max);
+    return station.recognise(beginning, beginning.size() < beginning_octets_max);
 }
 
 /// Microseconds in which octets of a plain file came.
@@ -204,34 +204,35 @@ Result<void> check_rate(const IngestOptions& options) {
 /// Hands the pieces of a recording to the archive as a link does.
 class Ingest {
   public:
-    Ingest(const IngestOptions& options, PipelineThread& pipeline) : options_(options), pipeline_(pipeline) {}
+    Ingest(const IngestOptions& options, telemetry::ForeignStation station, PipelineThread& pipeline)
+        : options_(options), station_(std::move(station)), pipeline_(pipeline) {}
 
-    Result<void> add(const Recording& recording, telemetry::PacketSource& source, const std::string& name) {
+    Result<void> add(const Recording& recording, const std::string& name) {
         bool empty = true;
         const auto unused = recording.each([&](const Piece& piece) {
             empty = empty && piece.octets.empty();
-            return take(piece, source);
+            return take(piece);
         });
         if (!unused.empty()) fault(name + ": " + unused);
         if (empty) fault(name + ": no octets of a link are in it");
-        if (source.lost()) {  // bare packets that no other can follow: the next recording begins with one
-            end(source);
-            source = telemetry::PacketSource::of_packets(options_.format.skip);
-        }
+        if (station_.lost()) collect(station_.end(now_));  // the next recording begins with a packet
         return hand_over();
     }
 
     /// Ends the stream and hands over the totals. False when it was not as it should be.
-    Result<bool> finish(telemetry::PacketSource& source) {
-        end(source);
-        auto totals = ledger_.totals(nullptr, now_);
-        const auto faults = ledger_.faults_since(totals);
+    Result<bool> finish() {
+        collect(station_.end(now_));
+        auto totals = station_.totals(now_);
+        const auto faults = station_.ledger().faults_since(totals);
         fmt::print("{} packets of {} octets\n", packets_, totals.counters.octets);
         if (!faults.empty()) fault(faults);
-        if (source.stray_octets() > 0)
-            fault(fmt::format("{} octets skipped that are neither good frames nor fill", source.stray_octets()));
+        if (const auto stray = station_.stray_octets(); stray > 0)
+            fault(fmt::format("{} octets skipped that are neither good frames nor fill", stray));
         if (packets_ + totals.packets.idle_packets == 0)
-            if (const auto words = nothing_found(options_.format, source); !words.empty()) fault(words);
+            if (const auto words = nothing_found(options_.format, totals.counters, totals.packets,
+                                                 station_.ledger().heard_sequences());
+                !words.empty())
+                fault(words);
         delivery_.links.push_back(std::move(totals));
         if (auto done = hand_over(); !done) return done.error();
         return faults_ == 0;
@@ -243,13 +244,7 @@ class Ingest {
         fmt::print(stderr, "{}\n", words);
     }
 
-    void end(telemetry::PacketSource& source) {
-        source.end();
-        take_packets(source);
-        ledger_.end(source);
-    }
-
-    bool take(const Piece& piece, telemetry::PacketSource& source) {
+    bool take(const Piece& piece) {
         wait_for(piece.ert);
         if (!began_) {
             began_ = true;
@@ -259,25 +254,21 @@ class Ingest {
         if (piece.ert.microseconds - passed_.microseconds >= microseconds_a_second) {
             passed_ = piece.ert;
             delivery_.entries.emplace_back(telemetry::EarthTime{piece.ert});
-            delivery_.links.push_back(ledger_.totals(&source, piece.ert));
+            delivery_.links.push_back(station_.totals(piece.ert));
         }
         now_ = piece.ert;
-        ledger_.received(piece.ert, piece.octets.size());
-        if (!piece.octets.empty())
-            delivery_.entries.emplace_back(telemetry::ReceivedOctets{
-                telemetry::downlink_link, piece.ert, {piece.octets.begin(), piece.octets.end()}, piece.datagram});
-        source.receive(piece.octets);
-        take_packets(source);
-        if (piece.datagram && !source.end_datagram()) ledger_.bad_datagram();
-        take_packets(source);
+        telemetry::Downlink downlink;
+        downlink.now = piece.ert;
+        downlink.octets.push_back(
+            {telemetry::downlink_link, piece.ert, {piece.octets.begin(), piece.octets.end()}, piece.datagram});
+        collect(station_.receive(std::move(downlink)));
         const bool due = delivery_.entries.size() >= ingest_delivery_entries || options_.pace > 0.0;
         return !due || hand_over().ok();
     }
 
-    void take_packets(telemetry::PacketSource& source) {
-        for (; const auto packet = source.next(); ++packets_)
-            delivery_.entries.emplace_back(
-                telemetry::ReceivedPacket{telemetry::downlink_link, now_, {packet->begin(), packet->end()}});
+    void collect(telemetry::Received& received) {
+        packets_ += received.packets.size();
+        delivery_.add(std::move(received));
     }
 
     Result<void> hand_over() {
@@ -298,8 +289,8 @@ class Ingest {
     }
 
     const IngestOptions& options_;
+    telemetry::ForeignStation station_;
     PipelineThread& pipeline_;
-    LinkLedger ledger_{telemetry::downlink_link.name};
     Delivery delivery_;
     Ert now_, passed_, first_;
     std::chrono::steady_clock::time_point started_;
@@ -333,9 +324,11 @@ int ingest(const IngestOptions& options) {
     }
     const auto& first = options.files.front();
     if (before == 0) return failed(first.string() + ": no octets of a link are in it");
-    auto source = source_of(recordings, options.format);
-    if (!source) return failed(first.string() + ": " + source.error().message, 2);
-    if (!source->layout.empty()) fmt::print(stderr, "{}: taken for {}\n", first.string(), source->layout);
+    telemetry::ForeignStation station{recognise_by(options.format)};
+    if (const auto recognised = recognise(recordings, station); !recognised)
+        return failed(first.string() + ": " + recognised.error().message, 2);
+    if (const auto layout = station.take_layout(); !layout.empty())
+        fmt::print(stderr, "{}: taken for {}\n", first.string(), layout);
     auto xtce = read_xtce(options.xtce);
     if (!xtce) return xtce.exit_code;
     const telemetry::OtherMission mission{std::move(*xtce.model), xtce.id, std::move(xtce.time)};
@@ -353,12 +346,11 @@ int ingest(const IngestOptions& options) {
     const auto run = pipeline.begin(run_start);
     if (!run) return failed(run.error().message);
     fmt::print("run {}\n", run->value);
-    Ingest ingest{options, pipeline};
+    Ingest ingest{options, std::move(station), pipeline};
     std::optional<Error> broken;
     for (std::size_t i = 0; i < recordings.size() && !broken; ++i)
-        if (auto added = ingest.add(recordings[i], source->source, options.files[i].string()); !added)
-            broken = added.error();
-    const auto right = ingest.finish(source->source);
+        if (auto added = ingest.add(recordings[i], options.files[i].string()); !added) broken = added.error();
+    const auto right = ingest.finish();
     const auto finished =
         pipeline.finish({"stopped", broken ? broken->message : "the recording ended", "", wall_clock_text()});
     if (broken) return failed(broken->message);

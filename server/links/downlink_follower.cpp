@@ -19,7 +19,8 @@ constexpr std::int64_t fault_log_interval_us = 10'000'000;  // chosen: a link th
 
 DownlinkFollower::DownlinkFollower(Settings settings, PipelineThread& pipeline, OnState on_state, OnClock on_clock)
     : settings_(std::move(settings)), pipeline_(pipeline), on_state_(std::move(on_state)),
-      on_clock_(std::move(on_clock)), clock_(settings_.clocks), wait_(settings_.retry_first) {}
+      on_clock_(std::move(on_clock)), clock_(settings_.clocks), station_(recognise_by(settings_.format)),
+      wait_(settings_.retry_first) {}
 
 Result<std::unique_ptr<DownlinkFollower>> DownlinkFollower::start(Settings settings, PipelineThread& pipeline,
                                                                   OnState on_state, OnClock on_clock) {
@@ -99,7 +100,6 @@ void DownlinkFollower::receive_until_end() {
         if (received.got == DownlinkSocket::Got::end)
             return lost(telemetry::SilenceClass::ground_fault, received.reason);
         if (received.got == DownlinkSocket::Got::nothing) continue;
-        ledger_.received(clock_.now(), received.octets);
         take(std::span{piece}.first(received.octets));
         if (stop_) return;
         if (out_of_step_ && !settings_.address.udp) {
@@ -111,101 +111,43 @@ void DownlinkFollower::receive_until_end() {
 }
 
 void DownlinkFollower::take(std::span<const std::uint8_t> octets) {
-    brought_ = telemetry::ReceivedOctets{
-        telemetry::downlink_link, clock_.now(), {octets.begin(), octets.end()}, settings_.address.udp};
-    if (!source_) {
-        if (!recognise(octets)) return deliver_packets();
-        octets = {};
-    }
-    if (!octets.empty()) {
-        source_->receive(octets);
-        end_datagram();
-    }
-    deliver_packets();
-    out_of_step_ = source_->lost();
-}
-
-/// Makes the packet source once the frame length is known, and passes it all octets received.
-bool DownlinkFollower::recognise(std::span<const std::uint8_t> octets) {
-    beginning_.insert(beginning_.end(), octets.begin(), octets.end());
-    if (!settings_.address.udp) datagrams_.clear();
-    datagrams_.push_back(settings_.address.udp ? octets.size() : beginning_.size());
-    // Retried each time the octets have doubled, so that octets received one by one cost at most twice the work.
-    const bool full = beginning_.size() >= beginning_octets_max;
-    const bool told = !needs_beginning(settings_.format);
-    if (!told && !full && beginning_.size() < 2 * tried_octets_) return false;
-    tried_octets_ = beginning_.size();
-    const auto recognised = begin_source(full);
-    if (!recognised && full) ledger_.unread(beginning_.size());
-    if (recognised || full) {
-        beginning_.clear();
-        datagrams_.clear();
-        tried_octets_ = 0;
-    }
-    if (full && !recognised) lost(telemetry::SilenceClass::ground_fault, recognised.error().message);
-    return recognised.ok();
-}
-
-/// Makes the packet source from the first octets, which it then has received. @param ended  no more of them come
-Result<void> DownlinkFollower::begin_source(bool ended) {
-    auto recognised = packet_source(settings_.format, beginning_, ended);
-    if (!recognised) return recognised.error();
-    if (!recognised->layout.empty())
-        spdlog::info("downlink {}: taken for {}", settings_.address.text(), recognised->layout);
-    source_.emplace(std::move(recognised->source));
-    auto rest = std::span<const std::uint8_t>{beginning_};
-    for (const std::size_t size : datagrams_) {
-        source_->receive(rest.first(size));
-        end_datagram();
-        rest = rest.subspan(size);
-    }
-    return {};
-}
-
-void DownlinkFollower::end_datagram() {
-    if (settings_.address.udp && !source_->end_datagram()) ledger_.bad_datagram();
+    const Ert now = clock_.now();
+    telemetry::Downlink downlink;
+    downlink.now = now;
+    downlink.octets.push_back({telemetry::downlink_link, now, {octets.begin(), octets.end()}, settings_.address.udp});
+    auto& received = station_.receive(std::move(downlink));
+    tell_layout();
+    if (const auto unread = station_.take_unread()) lost(telemetry::SilenceClass::ground_fault, unread->why);
+    deliver(received, now);
+    out_of_step_ = station_.lost();
 }
 
 void DownlinkFollower::end_of_stream() {
-    if (!source_ && !beginning_.empty())
-        if (const auto recognised = begin_source(true); !recognised) {
-            ledger_.unread(beginning_.size());
-            spdlog::warn("downlink {}: {} octets are not read: {}", settings_.address.text(), beginning_.size(),
-                         recognised.error().message);
-        }
-    if (source_) {
-        source_->end();
-        deliver_packets();
-        ledger_.end(*source_);
-    }
-    source_.reset();
-    tell_totals(clock_.now(), false);
-    beginning_.clear();
-    datagrams_.clear();
-    tried_octets_ = 0;
+    const Ert now = clock_.now();
+    auto& received = station_.end(now);
+    tell_layout();
+    if (const auto unread = station_.take_unread())
+        spdlog::warn("downlink {}: {} octets are not read: {}", settings_.address.text(), unread->octets, unread->why);
+    deliver(received, now);
+    tell_totals(now, false);
 }
 
-void DownlinkFollower::deliver_packets() {
-    Delivery delivery;
-    const Ert ert = clock_.now();
-    if (brought_ && !brought_->octets.empty()) delivery.entries.emplace_back(std::move(*brought_));
-    brought_.reset();
-    std::uint64_t packets = 0;
-    for (; source_; ++packets) {
-        const auto packet = source_->next();
-        if (!packet) break;
-        delivery.entries.emplace_back(
-            telemetry::ReceivedPacket{telemetry::downlink_link, ert, {packet->begin(), packet->end()}});
-    }
-    if (delivery.entries.empty()) return;
-    packets_ += packets;
-    if (packets > 0) {
+void DownlinkFollower::tell_layout() {
+    if (const auto layout = station_.take_layout(); !layout.empty())
+        spdlog::info("downlink {}: taken for {}", settings_.address.text(), layout);
+}
+
+void DownlinkFollower::deliver(telemetry::Received& received, Ert ert) {
+    packets_ += received.packets.size();
+    if (!received.packets.empty()) {
         wait_ = settings_.retry_first;
         rhythm_.heard(ert);
         // Before the packets: what comes with them is then known to come over a link that is up.
         if (!up_) say({telemetry::downlink_link, ert, true, "packets come"});
     }
-    if (!pipeline_.deliver(std::move(delivery))) stop_ = true;
+    Delivery delivery;
+    delivery.add(std::move(received));
+    if (!delivery.entries.empty() && !pipeline_.deliver(std::move(delivery))) stop_ = true;
 }
 
 /// Reports the time on Earth, also while nothing is received, and a silence.
@@ -228,14 +170,14 @@ void DownlinkFollower::pass() {
 
 /// Hands on the link's totals, and logs what went wrong. @param last  the run ends: however short ago the last line was
 void DownlinkFollower::tell_totals(Ert now, bool last) {
-    auto totals = ledger_.totals(source_ ? &*source_ : nullptr, now);
+    auto totals = station_.totals(now);
     const bool due =
         !faults_logged_ || now.microseconds - faults_logged_->microseconds >= fault_log_interval_us || last;
-    if (const auto faults = due ? ledger_.faults_since(totals) : std::string{}; !faults.empty()) {
+    if (const auto faults = due ? station_.ledger().faults_since(totals) : std::string{}; !faults.empty()) {
         faults_logged_ = now;
         spdlog::warn("downlink {}: {}", settings_.address.text(), faults);
     }
-    if (!ledger_.changed(totals)) return;
+    if (!station_.ledger().changed(totals)) return;
     Delivery delivery;
     delivery.links.push_back(std::move(totals));
     if (!pipeline_.deliver(std::move(delivery))) stop_ = true;

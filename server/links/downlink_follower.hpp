@@ -5,9 +5,9 @@
 #include "server/base/clock_watch.hpp"
 #include "server/links/downlink_socket.hpp"
 #include "server/links/frame_format.hpp"
-#include "server/links/link_ledger.hpp"
 #include "server/pipeline/pipeline_thread.hpp"
 #include "telemetry/link_rhythm.hpp"
+#include "telemetry/station/foreign_station.hpp"
 #include "telemetry/station/silence_classifier.hpp"
 
 #include <chrono>
@@ -19,7 +19,8 @@
 
 namespace aeolis::server {
 
-/// Follows another mission in its own thread: receives octets, finds packets, hands them to the archive as one run.
+/// Follows another mission in its own thread: receives octets, has a station find the packets in them, hands both to the
+/// archive as one run.
 ///
 /// In       octets of a TCP connection or of datagrams       Out   deliveries to the pipeline, the octets as they came
 ///          among them; run states on change
@@ -33,13 +34,11 @@ namespace aeolis::server {
 /// Silence  the link is up once packets come. It is lost when the connection breaks, and when packets stay out longer than
 ///          it has learnt that they do (telemetry/link_rhythm.hpp)
 /// Times    Earth received times go on with the monotonic clock when the system's clock jumps (EarthClock)
-/// Memory   a piece of `piece_octets`, a frame, and the beginning of a stream whose frame length is not yet known. A
-///          slow disk blocks the thread and so the TCP sender; datagrams that arrive meanwhile may be lost, as UDP
-///          permits
+/// Memory   a piece of `piece_octets`, and the station's. A slow disk blocks the thread and so the TCP sender; datagrams
+///          that arrive meanwhile may be lost, as UDP permits
 class DownlinkFollower {
   public:
-    static constexpr std::size_t piece_octets = 65536;                          ///< the largest datagram
-    static constexpr std::size_t beginning_octets_max = std::size_t{1} << 20U;  ///< chosen: two frames of any length
+    static constexpr std::size_t piece_octets = 65536;  ///< the largest datagram
 
     struct Settings {
         DownlinkAddress address;
@@ -67,13 +66,11 @@ class DownlinkFollower {
     bool connect_again();
     void receive_until_end();
     void take(std::span<const std::uint8_t> octets);
-    Result<void> begin_source(bool ended);
-    bool recognise(std::span<const std::uint8_t> octets);
-    void end_datagram();
     void end_of_stream();
     void pass();
     void tell_totals(Ert now, bool last);
-    void deliver_packets();
+    void tell_layout();
+    void deliver(telemetry::Received& received, Ert ert);
     void say(telemetry::LinkState state);
     void waits(const std::string& how);
     void lost(telemetry::SilenceClass silence, const std::string& why);
@@ -88,13 +85,8 @@ class DownlinkFollower {
     std::uint16_t port_ = 0;
     archive::RunId run_;
     archive::RunStart start_;
-    std::optional<telemetry::ReceivedOctets> brought_;  ///< not yet delivered
-    std::optional<telemetry::PacketSource> source_;
-    LinkLedger ledger_{telemetry::downlink_link.name};
+    telemetry::ForeignStation station_;
     std::optional<Ert> faults_logged_;
-    std::vector<std::uint8_t> beginning_;  ///< of a stream whose frames are not yet recognised
-    std::vector<std::size_t> datagrams_;   ///< sizes of the datagrams in it; of TCP its own
-    std::size_t tried_octets_ = 0;
     std::string said_;  ///< the last message, so that a lasting fault is reported once
     std::uint64_t packets_ = 0;
     telemetry::LinkRhythm rhythm_;

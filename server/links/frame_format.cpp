@@ -141,9 +141,9 @@ std::string words_of(const telemetry::FrameStream& stream) {
 
 }  // namespace
 
-Result<RecognisedSource> packet_source(const PacketStreamFormat& format, std::span<const std::uint8_t> beginning,
-                                       bool ended) {
-    using telemetry::PacketSource;
+Result<telemetry::RecognisedSource> packet_source(const PacketStreamFormat& format,
+                                                  std::span<const std::uint8_t> beginning, bool ended) {
+    using telemetry::PacketSource, telemetry::RecognisedSource;
     const auto kind = telemetry::downlink_format(format.name);
     if (!kind) return Error{"there is no format '" + format.name + "': packets, tm, aos, cadu or pltu"};
     if (const auto checked = check_code(format); !checked) return checked.error();
@@ -155,10 +155,15 @@ Result<RecognisedSource> packet_source(const PacketStreamFormat& format, std::sp
     return RecognisedSource{PacketSource::of_frames(*frames), words_of(*frames)};
 }
 
-std::string nothing_found(const PacketStreamFormat& format, const telemetry::PacketSource& source) {
-    const auto link = source.link();
-    const auto packets = source.packets();
-    if (link.frames > 0 && format.virtual_channel && source.sequences().empty())
+telemetry::ForeignStation::Recognise recognise_by(const PacketStreamFormat& format) {
+    return [format](std::span<const std::uint8_t> beginning, bool ended) {
+        return packet_source(format, beginning, ended);
+    };
+}
+
+std::string nothing_found(const PacketStreamFormat& format, const telemetry::LinkCounters& link,
+                          const telemetry::PacketCounters& packets, bool counted) {
+    if (link.frames > 0 && format.virtual_channel && !counted)
         return fmt::format("no frame is of virtual channel {}: look at --virtual-channel", *format.virtual_channel);
     if (link.frames + packets.packets + packets.idle_packets + packets.encapsulation_packets > 0) return {};
     return fmt::format("nothing that is {} was found: look at --format {}, and whether this is the right file",

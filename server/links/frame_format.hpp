@@ -3,6 +3,7 @@
 
 #include "common/result.hpp"
 #include "telemetry/packet_source.hpp"
+#include "telemetry/station/foreign_station.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -25,19 +26,18 @@ struct PacketStreamFormat {
     std::optional<std::uint8_t> virtual_channel{};
 };
 
-/// A packet source, and the layout that was recognised, in words; empty: none had to be.
-struct RecognisedSource {
-    telemetry::PacketSource source;
-    std::string layout;
-};
 /// Makes the packet source for a stream, from its format and its first octets. Fails on an unknown format, or when
 /// `beginning` does not reveal the layout of frames.
 /// @param ended  no more octets come
-Result<RecognisedSource> packet_source(const PacketStreamFormat& format, std::span<const std::uint8_t> beginning,
-                                       bool ended);
+Result<telemetry::RecognisedSource> packet_source(const PacketStreamFormat& format,
+                                                  std::span<const std::uint8_t> beginning, bool ended);
+/// The same, for the streams of a station.
+telemetry::ForeignStation::Recognise recognise_by(const PacketStreamFormat& format);
 
-/// What to look at when nothing, not even idle data, was found in all that a source received; empty: something was.
-std::string nothing_found(const PacketStreamFormat& format, const telemetry::PacketSource& source);
+/// What to look at when nothing, not even idle data, was found in all that was received; empty: something was.
+/// @param counted  frames or packets with a count were found
+std::string nothing_found(const PacketStreamFormat& format, const telemetry::LinkCounters& link,
+                          const telemetry::PacketCounters& packets, bool counted);
 
 /// Whether packet_source() uses the beginning at all.
 bool needs_beginning(const PacketStreamFormat& format);

@@ -1,18 +1,35 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/links/link_ledger.hpp"
+#include "telemetry/station/link_ledger.hpp"
 
+#include <algorithm>
 #include <array>
 #include <fmt/format.h>
 #include <string_view>
 
-namespace aeolis::server {
+namespace aeolis::telemetry {
+
+void merge(LinkTotals& into, LinkTotals later) {
+    auto sequences = std::move(into.sequences);
+    std::map<std::pair<bool, std::string>, std::size_t> places;
+    if (!later.sequences.empty())
+        for (std::size_t i = 0; i < sequences.size(); ++i) places[{sequences[i].packets, sequences[i].name}] = i;
+    for (auto& each : later.sequences) {
+        const auto [place, is_new] = places.try_emplace({each.packets, each.name}, sequences.size());
+        if (is_new)
+            sequences.push_back(std::move(each));
+        else
+            sequences[place->second].counters = each.counters;
+    }
+    into = std::move(later);
+    into.sequences = std::move(sequences);
+}
 
 void LinkLedger::received(Ert ert, std::size_t octets) {
     octets_ += octets;
     rate_.add(ert, octets);
 }
 
-void LinkLedger::end(const telemetry::PacketSource& source) {
+void LinkLedger::end(const PacketSource& source) {
     ended_ += source.link();
     ended_packets_ += source.packets();
     for (const auto& sequence : source.sequences())
@@ -22,15 +39,15 @@ void LinkLedger::end(const telemetry::PacketSource& source) {
 /// The row that a sequence is counted in, always the same: its own, or that of the others.
 LinkLedger::Key LinkLedger::row_of(Key name) {
     constexpr std::size_t rows_of_others = 2;
-    for (const bool packets : {false, true}) sequences_.try_emplace({packets, telemetry::other_sequences});
-    const bool room = sequences_.size() < telemetry::sequences_named_max + rows_of_others;
-    if (!room && !sequences_.contains(name)) name.second = telemetry::other_sequences;
+    for (const bool packets : {false, true}) sequences_.try_emplace({packets, other_sequences});
+    const bool room = sequences_.size() < sequences_named_max + rows_of_others;
+    if (!room && !sequences_.contains(name)) name.second = other_sequences;
     return name;
 }
 
-archive::LinkTotals LinkLedger::totals(const telemetry::PacketSource* source, Ert now) {
-    archive::LinkTotals totals{link_, ended_, rate_.per_second(now), ended_packets_, bad_datagrams_, {}};
-    std::map<Key, telemetry::SequenceCounters> of_source;
+LinkTotals LinkLedger::totals(const PacketSource* source, Ert now) {
+    LinkTotals totals{link_, ended_, rate_.per_second(now), ended_packets_, bad_datagrams_, {}};
+    std::map<Key, SequenceCounters> of_source;
     if (source != nullptr) {
         totals.counters += source->link();
         totals.packets += source->packets();
@@ -51,7 +68,7 @@ archive::LinkTotals LinkLedger::totals(const telemetry::PacketSource* source, Er
     return totals;
 }
 
-bool LinkLedger::changed(const archive::LinkTotals& totals) {
+bool LinkLedger::changed(const LinkTotals& totals) {
     const bool same = last_ && totals.sequences.empty() && last_->counters == totals.counters &&
                       last_->packets == totals.packets && last_->bad_datagrams == totals.bad_datagrams &&
                       last_->octets_per_s == totals.octets_per_s;
@@ -59,7 +76,11 @@ bool LinkLedger::changed(const archive::LinkTotals& totals) {
     return !same;
 }
 
-std::string LinkLedger::faults_since(const archive::LinkTotals& totals) {
+bool LinkLedger::heard_sequences() const {
+    return std::ranges::any_of(sequences_, [](const auto& row) { return row.second.ended != SequenceCounters{}; });
+}
+
+std::string LinkLedger::faults_since(const LinkTotals& totals) {
     const auto& link = totals.counters;
     const auto& packets = totals.packets;
     const std::array<std::pair<std::string_view, std::uint64_t>, 13> faults{
@@ -86,4 +107,4 @@ std::string LinkLedger::faults_since(const archive::LinkTotals& totals) {
     return words;
 }
 
-}  // namespace aeolis::server
+}  // namespace aeolis::telemetry

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "server/archive/records.hpp"
+#include "telemetry/link_counters.hpp"
 #include "telemetry/packet_source.hpp"
 
 #include <cstdint>
@@ -11,7 +11,20 @@
 #include <utility>
 #include <vector>
 
-namespace aeolis::server {
+namespace aeolis::telemetry {
+
+/// Totals of a link since the start of the run.
+struct LinkTotals {
+    std::string link;
+    LinkCounters counters;
+    double octets_per_s = 0.0;
+    PacketCounters packets{};
+    std::uint64_t bad_datagrams = 0;  ///< that hold anything but whole packets
+    std::vector<SequenceTotals> sequences{};
+};
+
+/// Adds what was told later of the same link.
+void merge(LinkTotals& into, LinkTotals later);
 
 /// Totals of a followed link over all connections of a run, good and bad.
 ///
@@ -28,30 +41,32 @@ class LinkLedger {
     void unread(std::size_t octets) { ended_.skipped_octets += octets; }
     void bad_datagram() { ++bad_datagrams_; }
     /// Adds the counters of a source that has ended.
-    void end(const telemetry::PacketSource& source);
+    void end(const PacketSource& source);
 
     /// The totals with those of `source`, if there is one. Of sequences only those that changed since the last call.
-    archive::LinkTotals totals(const telemetry::PacketSource* source, Ert now);
+    LinkTotals totals(const PacketSource* source, Ert now);
     /// Whether the totals changed since the last call.
-    bool changed(const archive::LinkTotals& totals);
+    bool changed(const LinkTotals& totals);
     /// What went wrong since the last such line, such as "2 frames with a wrong CRC, 1 bad datagram"; empty: nothing.
-    std::string faults_since(const archive::LinkTotals& totals);
+    std::string faults_since(const LinkTotals& totals);
+    /// Whether ended sources had frames or packets with a count.
+    bool heard_sequences() const;
 
   private:
     struct Sequence {
-        telemetry::SequenceCounters ended, told;
+        SequenceCounters ended, told;
     };
     using Key = std::pair<bool, std::string>;  ///< of packets; name
     Key row_of(Key name);
 
     std::string link_;
-    telemetry::RateMeter rate_;
+    RateMeter rate_;
     std::uint64_t octets_ = 0, bad_datagrams_ = 0;
-    telemetry::LinkCounters ended_;
-    telemetry::PacketCounters ended_packets_;
+    LinkCounters ended_;
+    PacketCounters ended_packets_;
     std::map<Key, Sequence> sequences_;  ///< `sequences_named_max` and the others of frames and of packets
-    std::optional<archive::LinkTotals> last_;
+    std::optional<LinkTotals> last_;
     std::vector<std::uint64_t> logged_;
 };
 
-}  // namespace aeolis::server
+}  // namespace aeolis::telemetry

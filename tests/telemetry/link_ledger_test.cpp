@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/links/link_ledger.hpp"
+#include "telemetry/station/link_ledger.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/octets.hpp"
 
 #include <map>
 
-namespace server_link_ledger_test {
+namespace telemetry_link_ledger_test {
 
 using namespace aeolis;
-using namespace aeolis::server;
+using namespace aeolis::telemetry;
 
 TEST_CASE("a link's totals go on over its connections, and what went wrong is said once", "[server][downlink][R54]") {
     LinkLedger ledger{"downlink"};
@@ -51,7 +51,7 @@ TEST_CASE("sequences of a link beyond a number are told in one row, in time in p
           "[server][downlink][R54]") {
     constexpr std::size_t prefixes = 3, apids = 2000;
     LinkLedger ledger{"downlink"};
-    archive::LinkTotals all;
+    LinkTotals all;
     for (std::size_t connection = 0; connection < 2 * prefixes; ++connection) {
         // Packets in frames of another spacecraft each: as many names again.
         auto source =
@@ -75,7 +75,7 @@ TEST_CASE("sequences of a link beyond a number are told in one row, in time in p
         std::map<std::pair<bool, std::string>, std::uint64_t> before;
         for (const auto& each : all.sequences) before[{each.packets, each.name}] = each.counters.received;
         for (const auto& each : told.sequences) CHECK(each.counters.received > before[{each.packets, each.name}]);
-        archive::merge(all, std::move(told));
+        merge(all, std::move(told));
         ledger.end(source);
     }
     CHECK(all.sequences.size() == telemetry::sequences_named_max + 1);
@@ -84,4 +84,4 @@ TEST_CASE("sequences of a link beyond a number are told in one row, in time in p
     CHECK(packets == 2 * prefixes * apids);
 }
 
-}  // namespace server_link_ledger_test
+}  // namespace telemetry_link_ledger_test
