@@ -132,6 +132,7 @@ void ScriptedLanding::equip_station(const simulation::Scenario& scenario, std::u
 
 telemetry::Received& ScriptedLanding::step() {
     send_script();
+    for (const auto& cltu : gateway_.take_uplinks()) landing_.uplink(cltu);
     auto& received = station_.receive(landing_.step().earth);
     if (!received.links.empty() || cycles_ % cycles_between_silences == 0)
         station_.explain_silences(recording_progress());
@@ -146,7 +147,6 @@ void ScriptedLanding::hear(telemetry::Received& received) {
     for (auto& packet : received.packets) receive(packet);
     // Once a second suffices for windows of many seconds.
     if (cycles_ % 64 == 0) gateway_.pass(landing_.ert_now(), stages_);
-    radiate();
 }
 
 const telemetry::DecodedPacket& ScriptedLanding::decoded(telemetry::ReceivedPacket& packet) const {
@@ -173,7 +173,6 @@ void ScriptedLanding::send_script() {
         if (due.refused.empty()) {
             const auto reply =
                 gateway_.submit(due.request, landing_.ert_now(), stages_, commands::CommandGateway::Asker::script);
-            radiate();
             if (!reply.accepted) refuse(due.request, reply.reason);
         } else {
             refuse(due.request, due.refused);
@@ -187,19 +186,11 @@ void ScriptedLanding::refuse(const commands::Request& request, const std::string
 }
 
 commands::Reply ScriptedLanding::submit(const commands::Request& request) {
-    auto reply = gateway_.submit(request, landing_.ert_now(), stages_);
-    radiate();
-    return reply;
+    return gateway_.submit(request, landing_.ert_now(), stages_);
 }
 
 Result<void> ScriptedLanding::judge(const commands::TimelineVerdict& verdict) {
-    auto judged = gateway_.judge(verdict, landing_.ert_now(), stages_);
-    radiate();
-    return judged;
-}
-
-void ScriptedLanding::radiate() {
-    for (const auto& cltu : gateway_.take_uplinks()) landing_.uplink(cltu);
+    return gateway_.judge(verdict, landing_.ert_now(), stages_);
 }
 
 double ScriptedLanding::recording_progress() const {
