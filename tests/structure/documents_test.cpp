@@ -54,4 +54,40 @@ TEST_CASE("the files and folders that the front pages and the glossary name exis
     CHECK(missing.empty());
 }
 
+TEST_CASE(
+    "the two ways through the ground have ten steps at most, each begins with its function, and all they name exist",
+    "[structure]") {
+    static const std::regex step{R"(^\d+\. `(?:\w+::)+\w+` )"}, function{R"(`((?:\w+::)*[A-Z]\w*::[a-z]\w*)`)"};
+    std::vector<int> steps;  // of each list
+    std::string section, wrong;
+    bool inside = false;
+    for (const std::string& line : lines_of("docs/architecture.md")) {
+        if (line.starts_with("## ")) inside = line == "## The two ways through the ground";
+        if (!inside) continue;
+        section += line + "\n";
+        if (line.starts_with("1. ")) steps.push_back(0);
+        if (!steps.empty() && line.starts_with(std::to_string(steps.back() + 1) + ". ")) ++steps.back();
+        if (!line.empty() && line.front() >= '0' && line.front() <= '9' && !std::regex_search(line, step))
+            wrong += "begins with no function: " + line + "\n";
+    }
+    std::string sources;
+    for (const std::string folder : {"telemetry", "commands", "server", "simulation"})
+        for (const std::string& file : files_under(folder, {".cpp", ".hpp"})) sources += text_of(file);
+    for (const std::string& name : groups_of(section, function)) {
+        const auto method = name.rfind("::"), type = name.rfind("::", method - 1);
+        const std::string of_class = type == std::string::npos ? name : name.substr(type + 2);
+        const std::string class_name = of_class.substr(0, of_class.find("::"));
+        const bool defined = sources.find(" " + of_class + "(") != std::string::npos;
+        // Within a class in a .cpp, its functions are defined without its name.
+        const auto declared = sources.find("\nclass " + class_name + " {");
+        const bool within =
+            declared != std::string::npos && sources.substr(declared, sources.find("\n};", declared) - declared)
+                                                     .find(" " + name.substr(method + 2) + "(") != std::string::npos;
+        if (!defined && !within) wrong += "no function " + name + "\n";
+    }
+    INFO(wrong);
+    CHECK(wrong.empty());
+    CHECK(steps == std::vector{10, 10});
+}
+
 }  // namespace structure_documents_test
