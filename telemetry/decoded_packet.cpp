@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "telemetry/decoded_packet.hpp"
 
+#include "telemetry/other_mission.hpp"
 #include "telemetry/text.hpp"
 
 namespace aeolis::telemetry {

@@ -4,7 +4,6 @@
 #include "dictionaries/decoded.hpp"
 #include "dictionaries/dictionary.hpp"
 #include "telemetry/decommutator.hpp"
-#include "telemetry/other_mission.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -12,6 +11,8 @@
 #include <string>
 
 namespace aeolis::telemetry {
+
+class OtherMission;
 
 /// What a packet says, from the one decode that it gets. Uplink, score and archive all read this.
 struct DecodedPacket {

@@ -102,7 +102,7 @@ TEST_CASE("over three orbiters a unit keeps one identity, and the recording come
 }
 
 TEST_CASE("what comes live is decoded when it arrives, once, and what a recording brings only where it is needed",
-          "[rehearsal][R44]") {
+          "[rehearsal]") {
     Rehearsal rehearsal{test::shipped_scenario("nominal_auto"), 1, 0, tests::shipped_dictionary()};
     std::uint64_t live = 0, recorded = 0, recorded_decoded = 0;
     bool all_live = true, as_they_are = true;
