@@ -79,7 +79,7 @@ TEST_CASE("the metrics tell build, fault, log, clock, replays, and how long each
     REQUIRE(web_request(server.port(), "GET", "/api/v1/runs/1/channels?names=altitude_m").status == 200);
     const auto text = metrics_with(server, "aeolis_query_wait_seconds_count{");
     CHECK(std::regex_search(text,
-                            std::regex{R"(\naeolis_build_info\{version="[^"]+",schema="4",dictionary="\d+"\} 1\n)"}));
+                            std::regex{R"(\naeolis_build_info\{version="[^"]+",schema="1",dictionary="\d+"\} 1\n)"}));
     CHECK_THAT(text, Catch::Contains("\naeolis_archive_fault 0\n") &&
                          Catch::Contains("\naeolis_clock_jumps_total 0\n") &&
                          Catch::Contains("\naeolis_stream_clients_replaying 0\n"));
