@@ -22,6 +22,8 @@ namespace aeolis::cfdp {
 
 inline constexpr std::size_t written_header_octets = 12;
 inline constexpr std::size_t nak_requests_max = 64;  ///< per PDU, chosen; further requests go into the next PDU
+/// The rover delivers its recording as files; the name of the last one ends so. Chosen.
+inline constexpr std::string_view last_file_ending = ".last";
 
 struct Header {
     bool toward_sender = false;

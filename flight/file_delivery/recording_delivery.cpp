@@ -16,13 +16,14 @@ namespace {
 constexpr std::string_view name_of_files = "recording/";
 constexpr std::size_t pdu_octets_max = proximity_data_octets_max - primary_header_octets;
 
-/// Name of a file: "recording/17".
-FixedVector<char, CfdpSource::name_octets_max> file_name(std::uint32_t number) {
+/// Name of a file: "recording/17"; of the last one "recording/18.last".
+FixedVector<char, CfdpSource::name_octets_max> file_name(std::uint32_t number, bool last) {
     FixedVector<char, CfdpSource::name_octets_max> name;
     name.append(name_of_files);
     std::array<char, std::numeric_limits<std::uint32_t>::digits10 + 1> digits{};
     const auto end = std::to_chars(digits.begin(), digits.end(), number).ptr;
     name.append(std::string_view{digits.data(), static_cast<std::size_t>(end - digits.data())});
+    if (last) name.append(cfdp::last_file_ending);
     return name;
 }
 
@@ -77,13 +78,13 @@ std::size_t RecordingDelivery::next_of_open(const Recording& recording, std::spa
         if (file->source.delivered())
             file.reset();
         else
-            file->source = source_of(file->number, file->octets);
+            file->source = source_of(file->number, file->octets, file->last);
     }
     return size;
 }
 
-CfdpSource RecordingDelivery::source_of(std::uint32_t number, std::uint32_t octets) {
-    const auto name = file_name(number);
+CfdpSource RecordingDelivery::source_of(std::uint32_t number, std::uint32_t octets, bool last) {
+    const auto name = file_name(number, last);
     return CfdpSource{{.source = spacecraft_id, .destination = ground_entity, .sequence = number, .octets = octets},
                       std::string_view{name.begin(), name.size()}};
 }
@@ -106,9 +107,10 @@ bool RecordingDelivery::begin_next(const Recording& recording) {
         scanned_ += static_cast<std::uint32_t>(*packet);
     }
     const std::uint32_t octets = scanned_ - next_start_;
-    if (octets == 0 || (octets < file_octets && !recording.closed)) return false;
+    if (last_begun_ || (octets < file_octets && !recording.closed)) return false;
+    last_begun_ = octets < file_octets;
     ++files_;
-    place->emplace(OpenFile{files_, next_start_, octets, source_of(files_, octets)});
+    place->emplace(OpenFile{files_, next_start_, octets, last_begun_, source_of(files_, octets, last_begun_)});
     next_start_ = scanned_;
     return true;
 }

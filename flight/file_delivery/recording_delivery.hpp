@@ -17,8 +17,8 @@ namespace aeolis::flight {
 ///
 /// In      the recording, which only grows; forward PLTUs from ground (any octets); repeat() when answers are overdue
 /// Out     PLTUs, one by one; requested retransmissions go before new data
-/// Files   whole packets: at least `file_octets`, rounded up to the end of a packet; the last file when the recording
-///         is closed
+/// Files   whole packets: at least `file_octets`, rounded up to the end of a packet. Once the recording is closed, the
+///         rest is the last file, and its name says so; it is empty when nothing is left
 /// Memory  this object: `open_max` transactions; the next file waits until one of them has ended
 /// Faults  unreadable input, or input for another file, changes nothing. After a restart, a new object begins again
 ///         with the first file: ground drops duplicates, and reports each file that it already has. A file that ground
@@ -44,18 +44,17 @@ class RecordingDelivery {
 
     bool waits_for_answers() const;
     /// Whether the whole recording was sent and ground has reported the end of every file.
-    bool done(const Recording& recording) const {
-        return recording.closed && next_start_ == recording.octets.size() && !any_open();
-    }
+    bool done(const Recording& recording) const { return recording.closed && last_begun_ && !any_open(); }
 
   private:
     struct OpenFile {
         std::uint32_t number = 0, start = 0, octets = 0;
+        bool last = false;
         CfdpSource source;
     };
 
     bool any_open() const;
-    static CfdpSource source_of(std::uint32_t number, std::uint32_t octets);
+    static CfdpSource source_of(std::uint32_t number, std::uint32_t octets, bool last);
     std::size_t next_of_open(const Recording& recording, std::span<std::uint8_t> pdu);
     std::size_t next_acknowledgement(std::span<std::uint8_t> pdu);
     bool begin_next(const Recording& recording);
@@ -65,6 +64,7 @@ class RecordingDelivery {
     FixedVector<std::uint32_t, open_max>
         ends_to_acknowledge_;  ///< of closed files: ground has not received the acknowledgement
     std::uint32_t files_ = 0;
+    bool last_begun_ = false;
     std::uint32_t next_start_ = 0;
     std::uint32_t scanned_ = 0;  ///< end of the packets assigned to the next file so far
     std::uint16_t packet_count_ = 0;

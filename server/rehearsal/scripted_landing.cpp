@@ -152,9 +152,9 @@ void ScriptedLanding::hear(const telemetry::Received& received) {
 
 void ScriptedLanding::receive(const telemetry::ReceivedPacket& packet) {
     const bool live = telemetry::is_live_telemetry(packet.link.name);
-    if (!live && !gateway_.awaits_answers() && !progress_.may_close(packet.octets)) return;
+    if (!live && !gateway_.awaits_answers()) return;
     if (decommutator_.decode(packet.octets, decoded_)) return;
-    progress_.note(decoded_, live);
+    if (live) progress_.note(decoded_);
     const auto* event = telemetry::event_of(dictionary_, decoded_);
     gateway_.receive({decoded_, packet.octets, live, packet.ert, event,
                       event != nullptr ? telemetry::event_text(dictionary_, *event, decoded_) : ""},

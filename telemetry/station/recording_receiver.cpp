@@ -126,6 +126,15 @@ std::uint64_t RecordingReceiver::received_octets() const {
     return octets;
 }
 
+bool RecordingReceiver::whole() const {
+    const auto last = std::ranges::find_if(files_, [](const auto& each) {
+        const Reception& file = each.second.receiver.state();
+        return file.outcome == Outcome::complete && file.source_name.ends_with(cfdp::last_file_ending);
+    });
+    // All have one source and are numbered from 1.
+    return last != files_.end() && files_under_way() == 0 && last->first.second == files_.size();
+}
+
 std::size_t RecordingReceiver::files_whole() const {
     return static_cast<std::size_t>(std::ranges::count_if(
         files_, [](const auto& each) { return each.second.receiver.state().outcome == Outcome::complete; }));

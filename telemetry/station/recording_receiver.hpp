@@ -38,6 +38,8 @@ class RecordingReceiver {
 
     std::uint64_t received_octets() const;  ///< of the recording, each counted once
     std::size_t files_whole() const;
+    /// Whether all of the recording is here: the file that the rover names its last, and each one before it.
+    bool whole() const;
     std::size_t files_under_way() const { return files_.size() - files_whole(); }
     std::uint64_t asked() const { return asked_; }  ///< PDUs that requested something
     std::uint64_t refused() const;                  ///< octets that are no PDU, belong to no file, or contradict one

@@ -83,7 +83,7 @@ TEST_CASE("the recording arrives as files of whole packets, and both ends know i
 }
 
 TEST_CASE("how much of the recording is down is told by the size that the vehicle told, and whole is it by its last "
-          "packet alone",
+          "file alone",
           "[file_delivery][R29][R53]") {
     const auto& dictionary = tests::shipped_dictionary();
     const auto heard = [&](std::string_view event) {
@@ -101,27 +101,31 @@ TEST_CASE("how much of the recording is down is told by the size that the vehicl
         return decoded;
     };
     Delivery delivery;
+    delivery.closed = false;
     telemetry::RecordingProgress progress{dictionary};
     const auto size = delivery.recording.size();
     for (int i = 0; i < 4; ++i) delivery.second();
     REQUIRE(delivery.ground.received_octets() > 0);
     CHECK(progress.fraction(delivery.ground) == 0.0);
-    progress.note(telling("CommStatus", "nvm_used_octets", 1000), false);
+    progress.note(telling("CommStatus", "nvm_used_octets", 1000));  // in cruise: far from what it will be
     CHECK(progress.fraction(delivery.ground) == 0.0);
-    progress.note(telling("CommStatus", "nvm_used_octets", 1000), true);  // in cruise: far from what it will be
-    progress.note(heard("TOUCHDOWN"), false);
-    CHECK(progress.fraction(delivery.ground) == 0.0);
-    progress.note(heard("TOUCHDOWN"), true);
-    progress.note(telling("CommStatus", "nvm_used_octets", 2 * size), true);
-    progress.note(telling("CommStatus", "nvm_used_octets", size), true);
+    progress.note(heard("TOUCHDOWN"));
+    progress.note(telling("CommStatus", "nvm_used_octets", 2 * size));
+    progress.note(telling("CommStatus", "nvm_used_octets", size));
     CHECK(progress.fraction(delivery.ground) ==
           Approx(0.5 * static_cast<double>(delivery.ground.received_octets()) / static_cast<double>(size)));
-    while (!delivery.done()) delivery.second();
-    CHECK(progress.fraction(delivery.ground) == 0.5);
-    progress.note(telling("RECORDING_CLOSED", "used_octets", size), false);
-    CHECK(progress.fraction(delivery.ground) == 0.999);
-    progress.note(telling("RECORDING_CLOSED", "used_octets", size - 30), false);
+    progress.note(telling("CommStatusB", "nvm_used_octets_b", size / 4));
+    for (int i = 0; i < 100; ++i) delivery.second();
+    CHECK(progress.fraction(delivery.ground) < 0.5);
+    delivery.closed = true;
+    while (!delivery.ground.whole()) {
+        CHECK(progress.fraction(delivery.ground) < 1.0);
+        delivery.second();
+    }
     CHECK(progress.fraction(delivery.ground) == 1.0);
+    for (int i = 0; i < 100 && !delivery.done(); ++i) delivery.second();
+    REQUIRE(delivery.done());
+    CHECK(delivery.received() == delivery.recording);
     for (const auto& file : delivery.files) CHECK(read_primary_header(file));
 }
 
@@ -135,6 +139,44 @@ TEST_CASE("no file ends before the recording is closed, but whole ones go", "[fi
     delivery.closed = true;
     for (int i = 0; i < 100 && !delivery.done(); ++i) delivery.second();
     CHECK(delivery.received() == delivery.recording);
+}
+
+TEST_CASE("a recording whose last whole file takes all that is left ends with an empty file, which is its last",
+          "[file_delivery][R29]") {
+    Delivery delivery;
+    std::size_t end = 0;
+    while (end < RecordingDelivery::file_octets)
+        end += space_packet_octets(std::span{delivery.recording}.subspan(end)).value();
+    delivery.recording.resize(end);
+    delivery.closed = false;
+    for (int i = 0; i < 50; ++i) delivery.second();
+    CHECK(delivery.files.size() == 1);
+    CHECK_FALSE(delivery.ground.whole());
+    delivery.closed = true;
+    for (int i = 0; i < 50 && !delivery.done(); ++i) delivery.second();
+    REQUIRE(delivery.done());
+    CHECK(delivery.ground.whole());
+    CHECK(delivery.received() == delivery.recording);
+}
+
+TEST_CASE("the last file alone is not the whole recording", "[file_delivery][R29]") {
+    Delivery delivery;
+    telemetry::RecordingReceiver late{0.0};  // begins to listen when the first file has passed
+    std::vector<std::uint8_t> pltu(pltu_octets_max);
+    bool first_passed = false;
+    for (int i = 0; i < 100'000; ++i) {
+        const std::size_t size = delivery.rover.next({delivery.recording, true}, pltu);
+        if (size == 0) break;
+        const auto frame = read_pltu(std::span{pltu}.first(size));
+        REQUIRE(frame);
+        const auto octets = frame->data.subspan(primary_header_octets);
+        const auto pdu = cfdp::read(octets);
+        REQUIRE(pdu);
+        first_passed |= pdu->header.sequence > 1;
+        if (first_passed) late.receive(octets, Ert{}, [](auto) {});
+    }
+    REQUIRE(late.files_whole() >= 1);
+    CHECK_FALSE(late.whole());
 }
 
 TEST_CASE("frames lost either way are sent again until all has arrived, each octet taken once", "[file_delivery]") {
