@@ -132,9 +132,9 @@ std::string sentence_of(const dictionary::Dictionary& dictionary, const Explanat
         return in_words(quantity) + " " + in_words(*name);
     if (is_fact(condition)) return in_words(quantity) + (condition.value != 0.0 ? ": yes" : ": no");
     const std::string amount = name_of_amount(dictionary, explanation, quantity);
-    return in_words(without_unit(quantity)) + " " + named_value_text(amount, condition.value) + " " +
-           (condition.holds ? condition.comparison : opposite_of(condition.comparison)) + " " +
-           named_value_text(amount, condition.bound);
+    const auto [value, bound] = told_apart(amount, condition.value, condition.bound);
+    return in_words(without_unit(quantity)) + " " + value + " " +
+           (condition.holds ? condition.comparison : opposite_of(condition.comparison)) + " " + bound;
 }
 
 /// All conditions in order; of a decision that was held or refused first the unmet ones, then in brackets the others.

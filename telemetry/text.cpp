@@ -28,6 +28,9 @@ constexpr std::array notations{
 
 /// Words of names that are written in capitals.
 constexpr std::array<std::string_view, 6> acronyms{"edl", "gnc", "imu", "mfsk", "sufr", "uhf"};
+/// Parts of names that are written with a hyphen.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 2> with_hyphen{
+    {{"x_band", "X-band"}, {"sub_constraint", "sub-constraint"}}};
 
 constexpr double kilometres_from_m = 100'000.0;
 constexpr double metres_in_km = 1000.0;
@@ -36,17 +39,19 @@ constexpr double tenths_from_s = 100.0;
 constexpr double hours_in_day = 24.0;
 constexpr double seconds_in_hour = 3600.0;
 constexpr double seconds_in_minute = 60.0;
+constexpr int more_decimals_max = 6;  // what differs less is noise of single precision
 
 bool is_whole(double value) {
     return value == std::floor(value) && std::abs(value) < 1e15;
 }
 
-std::string digits(double value, std::optional<int> decimals) {
+std::string digits(double value, std::optional<int> decimals, int more = 0) {
+    constexpr int significant = 6;
     char buffer[400];  // a double printed whole has at most 309 digits before the point
     if (decimals && std::abs(value) < 1e12)
-        std::snprintf(buffer, sizeof buffer, "%.*f", *decimals, value);
+        std::snprintf(buffer, sizeof buffer, "%.*f", *decimals + more, value);
     else
-        std::snprintf(buffer, sizeof buffer, "%.6g", value);
+        std::snprintf(buffer, sizeof buffer, "%.*g", significant + more, value);
     // "-0.0" would be a sign without a number.
     std::string text = buffer;
     if (text.front() == '-' && text.find_first_not_of("-0.") == std::string::npos) text.erase(0, 1);
@@ -76,9 +81,9 @@ std::string trimmed(std::string number) {
 }
 
 /// "14.016 s", "4 h 59 min 24 s", from two days on "6 d 2 h"
-std::string duration_text(double value_s) {
+std::string duration_text(double value_s, int more_decimals) {
     double left_s = std::abs(value_s);
-    const int decimals = left_s >= tenths_from_s ? 1 : 3;
+    const int decimals = (left_s >= tenths_from_s ? 1 : 3) + more_decimals;
     if (left_s < seconds_in_hour || left_s > 1e12) return trimmed(digits(value_s, decimals)) + " s";
     const double scale = std::pow(10.0, decimals);
     left_s = std::round(left_s * scale) / scale;
@@ -152,26 +157,39 @@ std::string_view without_unit(std::string_view name) {
     return underscore == std::string_view::npos ? name : name.substr(0, underscore);
 }
 
-std::string named_value_text(std::string_view name, double value) {
+std::string named_value_text(std::string_view name, double value, int more_decimals) {
     const Notation* notation = notation_of_name(name);
-    if (notation == nullptr) return digits(value, is_whole(value) ? std::optional{0} : std::nullopt);
-    if (notation->unit == "s") return duration_text(value);
-    if (notation->unit == "m/s" && std::abs(value) < slow_below_mps) return digits(value, 2) + " m/s";
+    const bool whole = is_whole(value) && more_decimals == 0;
+    if (notation == nullptr) return digits(value, whole ? std::optional{0} : std::nullopt, more_decimals);
+    if (notation->unit == "s") return duration_text(value, more_decimals);
+    if (notation->unit == "m/s" && std::abs(value) < slow_below_mps) return digits(value, 2, more_decimals) + " m/s";
     if (notation->unit == "m" && std::abs(value) >= kilometres_from_m)
-        return digits(value / metres_in_km, notation->decimals) + " km";
-    return digits(value, notation->decimals) + (notation->unit.empty() ? "" : " ") + std::string{notation->unit};
+        return digits(value / metres_in_km, notation->decimals, more_decimals) + " km";
+    return digits(value, notation->decimals, more_decimals) + (notation->unit.empty() ? "" : " ") +
+           std::string{notation->unit};
+}
+
+std::pair<std::string, std::string> told_apart(std::string_view name, double value, double other) {
+    std::pair<std::string, std::string> texts;
+    for (int more = 0; more <= more_decimals_max; ++more) {
+        texts = {named_value_text(name, value, more), named_value_text(name, other, more)};
+        if (value == other || texts.first != texts.second) break;
+    }
+    return texts;
 }
 
 std::string in_words(std::string_view name) {
-    constexpr std::string_view x_band = "x_band";
     std::string words;
     while (!name.empty()) {
-        const bool band = name == x_band || name.starts_with("x_band_");
-        const std::string_view word = band ? x_band : name.substr(0, name.find('_'));
+        const auto* const hyphenated = std::ranges::find_if(with_hyphen, [&](const auto& each) {
+            return name.starts_with(each.first) && (name.size() == each.first.size() || name[each.first.size()] == '_');
+        });
+        const bool hyphen = hyphenated != with_hyphen.end();
+        const std::string_view word = hyphen ? hyphenated->first : name.substr(0, name.find('_'));
         name.remove_prefix(std::min(name.size(), word.size() + 1));
         if (!words.empty()) words += ' ';
-        if (band) {
-            words += "X-band";
+        if (hyphen) {
+            words += hyphenated->second;
             continue;
         }
         const bool acronym = std::ranges::find(acronyms, word) != acronyms.end();

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 // Telemetry in words. Pure functions of the dictionary and one decoded packet.
@@ -34,7 +35,9 @@ std::string in_words(std::string_view name);
 /// As people say it: from 100 km on in kilometres, from an hour on in hours, minutes and seconds; slow speeds to a
 /// hundredth, and long times to a tenth.
 std::string_view without_unit(std::string_view name);  ///< "speed"
-std::string named_value_text(std::string_view name, double value);
+std::string named_value_text(std::string_view name, double value, int more_decimals = 0);
+/// Two amounts of one kind, with as many more decimals as tell them apart when they differ: "1.963 m/s2", "1.960 m/s2".
+std::pair<std::string, std::string> told_apart(std::string_view name, double value, double other);
 
 const char* name_of(dictionary::EventLevel level);  ///< "ACTIVITY_HI"
 

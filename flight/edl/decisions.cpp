@@ -151,10 +151,10 @@ void explain(const PhaseChange& change, MaybeTime entry, Outbox& out) {
         const double to_entry_s = *entry.get() - out.now();
         if (change.event == EdlPhaseEvent::late_cruise_begins)
             conditions.push_back(
-                at_most(Quantity::time_to_entry_s, to_entry_s, build_parameters.late_cruise_before_entry_s));
+                at_most(Quantity::time_to_uplinked_entry_s, to_entry_s, build_parameters.late_cruise_before_entry_s));
         if (change.event == EdlPhaseEvent::entry_moves_away)
             conditions.push_back(
-                above(Quantity::time_to_entry_s, to_entry_s, build_parameters.late_cruise_before_entry_s));
+                above(Quantity::time_to_uplinked_entry_s, to_entry_s, build_parameters.late_cruise_before_entry_s));
     }
     out.record(explanation(Decision::edl_phase, ExplanationVerdict::changed, number_of(change.to), conditions.span()));
 }

@@ -293,7 +293,7 @@ void EdlMain::on(const DoEdlCommand& command, Outbox& out) {
     FixedVector<gnc::Condition, 8> conditions;
     conditions.push_back(is(Quantity::parameters_received, parameters_.has_value()));
     if (entry().defined())
-        conditions.push_back(at_most(Quantity::time_to_entry_s, *entry().get() - out.now(),
+        conditions.push_back(at_most(Quantity::time_to_uplinked_entry_s, *entry().get() - out.now(),
                                      build_parameters.late_cruise_before_entry_s));
     if (timeline_.first_desired().defined())
         conditions.push_back(above(Quantity::time_to_first_timepoint_s, *timeline_.first_desired().get() - out.now(),

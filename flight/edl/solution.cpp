@@ -24,7 +24,7 @@ SolutionConditions conditions_of(const command::EDL_SET_PARAMETERS& p, Sclk now)
                                         p.velocity_y_mps + gnc::mars_spin_rps * p.position_x_m, p.velocity_z_mps);
     const double to_entry_s = p.entry_sclk - now.seconds;
     SolutionConditions conditions;
-    conditions.push_back(gnc::above(Quantity::time_to_entry_s, to_entry_s, 0.0));
+    conditions.push_back(gnc::above(Quantity::time_to_uplinked_entry_s, to_entry_s, 0.0));
     conditions.push_back(gnc::at_most(Quantity::solution_age_s, std::abs(p.epoch_sclk - now.seconds),
                                       build_parameters.solution_age_max_s));
     conditions.push_back(gnc::at_least(Quantity::solution_radius_m, radius_m, build_parameters.solution_radius_min_m));
@@ -32,7 +32,7 @@ SolutionConditions conditions_of(const command::EDL_SET_PARAMETERS& p, Sclk now)
     conditions.push_back(
         gnc::at_most(Quantity::solution_speed_mps, speed_mps, build_parameters.solution_speed_max_mps));
     conditions.push_back(gnc::at_least(Quantity::epoch_before_entry_s, p.entry_sclk - p.epoch_sclk, 0.0));
-    conditions.push_back(gnc::at_most(Quantity::time_to_entry_s, to_entry_s, clock_end_s - now.seconds));
+    conditions.push_back(gnc::at_most(Quantity::time_to_uplinked_entry_s, to_entry_s, clock_end_s - now.seconds));
     // Backshell altitude and speed belong together: from there on, the powered approach needs its height.
     constexpr Parameters as_built;
     const double ends_m = p.backshell_altitude_m - gnc::powered_descent::altitude_used_until_constant_velocity_m(

@@ -186,7 +186,7 @@ TEST_CASE("do edl explains why it was refused", "[edl][R38]") {
     CHECK_FALSE(conditions()[0].holds);
     f.handle(ParametersUpdate{{}, parameters_before(620'000.0)}, entry_s - 620'000.0);
     CHECK(f.do_edl(entry_s - 610'000.0) == CommandRefusal::too_early);
-    CHECK(conditions()[0].quantity == Quantity::time_to_entry_s);
+    CHECK(conditions()[0].quantity == Quantity::time_to_uplinked_entry_s);
     CHECK(conditions()[0].value == 610'000.0);
     CHECK(conditions()[0].bound == build_parameters.late_cruise_before_entry_s);
     CHECK_FALSE(conditions()[0].holds);
@@ -208,7 +208,7 @@ TEST_CASE("parameters explain why they were taken or refused", "[edl][R23][R38]"
     CHECK(conditions()[0].quantity == Quantity::gnc_enabled);
     CHECK(conditions()[1].quantity == Quantity::entry_apart_from_navigation_s);
     CHECK(conditions()[1].value < 0.001);
-    CHECK(conditions()[2].quantity == Quantity::time_to_entry_s);
+    CHECK(conditions()[2].quantity == Quantity::time_to_uplinked_entry_s);
     CHECK(conditions()[2].value == 1190.0);
     CHECK(conditions()[3].quantity == Quantity::solution_age_s);
     CHECK(conditions()[3].value == 10.0);
@@ -220,7 +220,7 @@ TEST_CASE("parameters explain why they were taken or refused", "[edl][R23][R38]"
     CHECK(conditions()[0].bound == build_parameters.entry_moved_max_s);
     CHECK_FALSE(conditions()[0].holds);
     f.handle(ParametersUpdate{{}, possible_parameters()}, entry_s + 1.0);
-    CHECK(conditions()[0].quantity == Quantity::time_to_entry_s);
+    CHECK(conditions()[0].quantity == Quantity::time_to_uplinked_entry_s);
     CHECK(conditions()[0].value == -1.0);
 }
 

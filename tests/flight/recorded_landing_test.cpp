@@ -513,7 +513,7 @@ class Recorded {
         if (quantity == "time_since_previous_timepoint_s") return exactly(at - latest(fired_, at));
         // A command's owner decides a cycle or two before the dispatcher explains; entry is kept in ticks.
         const auto nearly = [](double value) { return Range{value - 0.04, value + 0.04}; };
-        if (quantity == "time_to_entry_s") return nearly(held_.at("entry_sclk") - at);
+        if (quantity == "time_to_uplinked_entry_s") return nearly(held_.at("entry_sclk") - at);
         if (quantity == "time_to_first_timepoint_s") return nearly(held_.at("entry_sclk") - at - first_on_clock_s);
         if (quantity == "solution_age_s") return nearly(std::abs(held_.at("epoch_sclk") - at));
         if (quantity == "entry_apart_from_navigation_s") return Range{0.0, 1.0 / 64};  // both are ground's, in ticks
@@ -557,7 +557,7 @@ class Recorded {
         if (quantity == "radar_altitude_m") return any({p.radar_altitude_max_m});
         if (quantity == "bank_deg") return any({0.0});
         if (quantity == "bank_command_deg") return any({p.reversal_settled_below_deg});
-        if (quantity == "time_to_entry_s")
+        if (quantity == "time_to_uplinked_entry_s")
             return any({told.explanation.subject == "EDL_SET_PARAMETERS" ? 0.0 : b.late_cruise_before_entry_s});
         if (quantity == "time_to_first_timepoint_s") return any({b.do_edl_margin_s});
         if (quantity == "solution_age_s") return any({b.solution_age_max_s});

@@ -144,7 +144,7 @@ TEST_CASE("a sub-constraint that does not hold is told by its two moments and it
         .real("bound_1", 20.0)
         .raw("comparison_1", number_of(dictionary, "comparison_1", "ge"));
     REQUIRE_FALSE(decommutator.decode(packet.seal(), decoded));
-    CHECK(explain(dictionary, decoded)->text == "sub constraint " + subject + " violated: elapsed 12.5 s < 20 s");
+    CHECK(explain(dictionary, decoded)->text == "sub-constraint " + subject + " violated: elapsed 12.5 s < 20 s");
 
     auto event = PacketFiller{dictionary, "SUB_CONSTRAINT_VIOLATED"};
     event.raw("constraint", number).real("elapsed_s", 12.5).real("bound_s", 20.0).raw("violations", 1);

@@ -60,6 +60,22 @@ TEST_CASE("names, distances and times read as people say them", "[text][R38]") {
     CHECK(named_value_text("time_to_entry_s", -525600.0) == "-6 d 2 h");
     CHECK(named_value_text("descent_rate_mps", 0.83) == "0.83 m/s");
     CHECK(named_value_text("time_to_separation_s", -3601.0) == "-1 h 1 s");
+    CHECK(in_words("sub_constraint") == "sub-constraint");
+    CHECK(in_words("sub_constraints") == "sub constraints");
+}
+
+TEST_CASE("a value and its bound are written with as many decimals as tell them apart", "[text][R38]") {
+    using Texts = std::pair<std::string, std::string>;
+    CHECK(told_apart("drag_mps2", 1.9634, 1.96) == Texts{"1.963 m/s2", "1.960 m/s2"});
+    CHECK(told_apart("drag_mps2", 1.96, 1.96) == Texts{"1.96 m/s2", "1.96 m/s2"});
+    CHECK(told_apart("speed_mps", 404.6, 405.0) == Texts{"404.6 m/s", "405.0 m/s"});
+    CHECK(told_apart("speed_mps", 404.96, 405.0) == Texts{"404.96 m/s", "405.00 m/s"});
+    CHECK(told_apart("elapsed_s", 21.0004, 21.0) == Texts{"21.0004 s", "21 s"});
+    CHECK(told_apart("elapsed_s", 7200.04, 7200.0) == Texts{"2 h 0.04 s", "2 h"});
+    CHECK(told_apart("radius_m", 3'522'201.0, 3'522'200.0) == Texts{"3522.201 km", "3522.200 km"});
+    CHECK(told_apart("cycles_true", 3.0, 3.0) == Texts{"3", "3"});
+    CHECK(told_apart("ratio", 0.12345678, 0.1234567) == Texts{"0.1234568", "0.1234567"});
+    CHECK(told_apart("drag_mps2", 1.96 + 1e-12, 1.96).first == "1.96000000 m/s2");
 }
 
 TEST_CASE("an event's text holds its arguments, undefined ones too", "[text][R48]") {
