@@ -272,7 +272,9 @@ bool is_possible(flight::Device device, DeviceFault::Kind kind) {
     case DeviceFault::Kind::silent: return true;
     case DeviceFault::Kind::refuses: return !sensor;
     case DeviceFault::Kind::late:
-    case DeviceFault::Kind::doubled: return !sensor && device != Device::descent_engines;
+    case DeviceFault::Kind::doubled:
+    case DeviceFault::Kind::claims:
+    case DeviceFault::Kind::denies: return !sensor && device != Device::descent_engines;
     case DeviceFault::Kind::dropout: return sensor || device == Device::uhf;
     }
     return false;
@@ -284,7 +286,7 @@ void check_device_faults(const Scenario& scenario, std::vector<std::string>& fou
         const std::string name = "device_faults[" + std::to_string(i) + "]";
         if (!is_possible(fault.device, fault.kind))
             found.push_back(name + ".kind: is not possible for this device (sensors: silent, dropout; uhf: all; "
-                                   "descent_engines: silent, refuses; others: silent, refuses, late, doubled)");
+                                   "descent_engines: silent, refuses; others: all but dropout)");
         if (!(fault.begin_before_entry_s <= scenario.start_before_entry_s &&
               fault.begin_before_entry_s >= -scenario.timeout_after_entry_s))
             found.push_back(name + ".begin_before_entry_s: " + number(fault.begin_before_entry_s) +

@@ -189,7 +189,7 @@ struct SystemFault {
 
 /// A temporary fault of one unit of a device; simulation/buses/device_faults.hpp gives the effects. R2
 struct DeviceFault {
-    enum class Kind : std::uint8_t { silent, refuses, late, dropout, doubled };
+    enum class Kind : std::uint8_t { silent, refuses, late, dropout, doubled, claims, denies };
     flight::Device device{};
     flight::Unit unit{};
     Kind kind{};

@@ -485,6 +485,7 @@ World::Inspection World::inspect() const {
             .swing_deg = s.vehicle.swing_rad() / degree_rad,
             .q_MB = array4(s.vehicle.q_MB()),
             .rate_B_rps = array3(s.vehicle.body().rate_B_rps),
+            .uhf_on = uhf_on(),
             .parachute_open = s.vehicle.parachute_open(s.now_s())};
 }
 

@@ -112,7 +112,7 @@ void EdlMain::run_timeline(Sclk now, Outbox& out) {
                                           .fired_sclk = firing.fired.seconds,
                                           .verdict = firing.verdict});
         tell_reply(firing, timeline_specs[firing.timepoint.value], out);
-        if (firing.verdict == FiringVerdict::unverified) unverified_.add(firing);
+        unverified_.add(firing);
     }
     if (firings.empty() || !timeline_.finished()) return;
     out.event(evr::TIMELINE_COMPLETE{});

@@ -66,14 +66,18 @@ void tell_reply(const Firing& firing, const TimepointSpec& row, Outbox& out) {
 }
 
 void UnverifiedActions::add(const Firing& firing) {
+    const bool awaited = firing.verdict != FiringVerdict::completed && firing.verdict != FiringVerdict::no_operation;
+    const bool by_imu = awaited && row_of(firing).if_unverified == IfUnverified::done_unless_imu;
+    if (!by_imu && firing.verdict != FiringVerdict::unverified) return;
     if (kept_.full()) kept_.erase_at(0);
-    kept_.push_back({firing, row_of(firing).if_unverified == IfUnverified::done_unless_imu, false, 0.0});
+    kept_.push_back({firing, by_imu, false, 0.0});
 }
 
 bool UnverifiedActions::on(const ActionReply& reply, ActionContext& context) {
     if (reply.evidence == Evidence::none) return false;
-    const auto found = std::ranges::find_if(
-        kept_, [&](const Unverified& unverified) { return reply.answers(unverified.firing.asked); });
+    const auto found = std::ranges::find_if(kept_, [&](const Followed& followed) {
+        return followed.firing.verdict == FiringVerdict::unverified && reply.answers(followed.firing.asked);
+    });
     if (found == kept_.end()) return false;
     const Firing firing = found->firing;
     kept_.erase_at(static_cast<std::size_t>(found - kept_.begin()));
@@ -90,31 +94,42 @@ bool UnverifiedActions::on(const ActionReply& reply, ActionContext& context) {
     return true;
 }
 
+void UnverifiedActions::tell_felt(const Followed& followed, gnc::Configuration& configuration, Outbox& out) {
+    const Firing& firing = followed.firing;
+    if (firing.verdict == FiringVerdict::verified) return;
+    out.event(evr::TIMEPOINT_FELT{.timepoint = firing.timepoint.value, .felt_mps2 = single(followed.felt_mps2)});
+    if (firing.verdict != FiringVerdict::refused) return;
+    configuration.learn(firing.fact, firing.triggered);
+    ActionContext{out, configuration}.announce(row_of(firing));
+}
+
+void UnverifiedActions::tell_not_felt(const Followed& followed, std::span<const gnc::Condition> conditions,
+                                      gnc::Configuration& configuration, Outbox& out) {
+    const Firing& firing = followed.firing;
+    if (followed.unheard || firing.verdict == FiringVerdict::refused) return;
+    if (firing.verdict == FiringVerdict::unverified) configuration.forget(firing.fact);
+    out.event(
+        evr::TIMEPOINT_CONTRADICTED{.timepoint = firing.timepoint.value, .felt_mps2 = single(followed.felt_mps2)});
+    out.send(ModuleId::mfsk, ToneRequest{tone::pyro_not_fired, out.now()});
+    out.record(explanation(Decision::timepoint, ExplanationVerdict::contradicted, firing.timepoint.value, conditions));
+}
+
 void UnverifiedActions::watch(const Parameters& parameters, const gnc::Output& gnc, gnc::Configuration& configuration,
                               Outbox& out) {
-    for (Unverified& unverified : kept_) {
-        if (!unverified.by_imu) continue;
-        const Firing& firing = unverified.firing;
-        unverified.unheard = unverified.unheard || gnc.dead_reckoned_s >= parameters.imu_silence_told_s;
+    for (Followed& followed : kept_) {
+        if (!followed.by_imu) continue;
+        followed.unheard = followed.unheard || gnc.dead_reckoned_s >= parameters.imu_silence_told_s;
         if (gnc.dead_reckoned_s > 0.0) continue;
-        unverified.felt_mps2 = std::max(unverified.felt_mps2, magnitude(gnc.acceleration_B_mps2));
-        const auto felt = at_least(Quantity::sensed_mps2, unverified.felt_mps2, parameters.parachute_felt_mps2);
-        if (felt.holds) {
-            unverified.by_imu = false;
-            out.event(evr::TIMEPOINT_FELT{.timepoint = firing.timepoint.value, .felt_mps2 = single(felt.value)});
-            continue;
-        }
+        followed.felt_mps2 = std::max(followed.felt_mps2, magnitude(gnc.acceleration_B_mps2));
+        const auto felt = at_least(Quantity::sensed_mps2, followed.felt_mps2, parameters.parachute_felt_mps2);
         const auto waited =
-            at_least(Quantity::elapsed_s, out.now() - firing.triggered, parameters.parachute_felt_within_s);
-        if (!waited.holds) continue;
-        unverified.by_imu = false;
-        if (unverified.unheard) continue;
-        configuration.forget(firing.fact);
-        out.event(evr::TIMEPOINT_CONTRADICTED{.timepoint = firing.timepoint.value, .felt_mps2 = single(felt.value)});
-        out.send(ModuleId::mfsk, ToneRequest{tone::pyro_not_fired, out.now()});
-        const std::array conditions{felt, waited};
-        out.record(
-            explanation(Decision::timepoint, ExplanationVerdict::contradicted, firing.timepoint.value, conditions));
+            at_least(Quantity::elapsed_s, out.now() - followed.firing.triggered, parameters.parachute_felt_within_s);
+        if (!felt.holds && !waited.holds) continue;
+        followed.by_imu = false;
+        if (felt.holds)
+            tell_felt(followed, configuration, out);
+        else
+            tell_not_felt(followed, std::array{felt, waited}, configuration, out);
     }
 }
 

@@ -14,6 +14,8 @@ namespace aeolis::simulation {
 /// refuses  the terminal answers, and the device does not act
 /// late     replies come later than they should
 /// doubled  each reply comes twice, a tick apart
+/// claims   the device does not act, and replies that it did
+/// denies   the device acts, and replies that it refuses
 /// dropout  the device's data fail: the radar has no valid measurement, the IMU loses every other sample, UHF radiates
 ///          nothing
 class DeviceFaults {

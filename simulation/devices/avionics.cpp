@@ -44,13 +44,16 @@ Avionics::Avionics(double start_before_entry_s, Random random) : random_(random)
 
 bool Avionics::execute(const BusCommand& command, std::int64_t tick, const DeviceFaults& faults) {
     bool first_firing = false;
-    Reply reply = faults.has(DeviceFault::Kind::refuses, command.device, command.unit) ? refuse(command)
-                                                                                       : obey(command, first_firing);
+    const auto has = [&](DeviceFault::Kind kind) { return faults.has(kind, command.device, command.unit); };
+    Reply reply = has(DeviceFault::Kind::refuses)  ? refuse(command)
+                  : has(DeviceFault::Kind::claims) ? done(command)
+                                                   : obey(command, first_firing);
+    if (has(DeviceFault::Kind::denies)) reply = deny(command);
     reply.ready_tick = tick + work_ticks(command) + static_cast<std::int64_t>(random_.bits() % jitter_ticks) +
                        faults.late_ticks(command.device, command.unit);
     // A flooded terminal loses replies; flight's time-outs cover that.
     (void)replies_.try_push_back(reply);
-    if (faults.has(DeviceFault::Kind::doubled, command.device, command.unit)) {
+    if (has(DeviceFault::Kind::doubled)) {
         ++reply.ready_tick;
         (void)replies_.try_push_back(reply);
     }
@@ -75,7 +78,19 @@ Avionics::Reply Avionics::obey(const BusCommand& command, bool& first_firing) {
         break;
     case BusCommand::Kind::thrusters: thrusters_enabled_ = command.on; break;
     }
+    return done(command);
+}
+
+Avionics::Reply Avionics::done(const BusCommand& command) {
     return {0, command.device, command.unit, command.kind, command.pyro, command.switch_id, command.on, false};
+}
+
+/// As a device replies that has not acted.
+Avionics::Reply Avionics::deny(const BusCommand& command) {
+    Reply reply = done(command);
+    reply.on = !command.on;
+    reply.refused = true;
+    return reply;
 }
 
 Avionics::Reply Avionics::refuse(const BusCommand& command) const {

@@ -48,6 +48,8 @@ class Avionics {
   private:
     Reply obey(const BusCommand& command, bool& first_firing);
     Reply refuse(const BusCommand& command) const;
+    static Reply done(const BusCommand& command);
+    static Reply deny(const BusCommand& command);
 
     std::array<std::array<bool, 2>, flight::switch_count> on_{};
     std::array<bool, flight::pyro_count> fired_{};

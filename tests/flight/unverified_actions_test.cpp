@@ -15,16 +15,17 @@ namespace {
 
 constexpr ActionReply mortar{ReplyKind::pyro, static_cast<std::uint8_t>(PyroId::parachute_mortar)};
 
-/// The mortar was commanded at 1000 s, and nothing answered within its second: taken as done.
+/// The mortar was commanded at 1000 s, and nothing answered within its second: taken as done. Or it was refused, or
+/// verified.
 struct Fixture {
     UnverifiedActions actions;
     gnc::Configuration configuration;
     test::OutboxRecorder recorder;
 
-    Fixture() {
-        configuration.learn(gnc::Fact::parachute_out, Sclk{1000.0});
-        actions.add({timepoint::parachute_deploy, Sclk{1000.0}, Sclk{1001.0}, FiringVerdict::unverified, mortar,
-                     gnc::Fact::parachute_out});
+    explicit Fixture(FiringVerdict verdict = FiringVerdict::unverified) {
+        if (verdict != FiringVerdict::refused) configuration.learn(gnc::Fact::parachute_out, Sclk{1000.0});
+        actions.add(
+            {timepoint::parachute_deploy, Sclk{1000.0}, Sclk{1001.0}, verdict, mortar, gnc::Fact::parachute_out});
     }
     bool reply(Evidence evidence, double at_s) {
         recorder.begin(ModuleId::edl, Sclk{at_s});
@@ -102,6 +103,46 @@ TEST_CASE("without a snatch in time the IMU contradicts, GNC has no parachute, a
     CHECK(f.recorder.out.sent().empty());
     CHECK(f.reply(Evidence::verified, 1005.0));  // it fired after all
     CHECK(f.configuration.parachute_out);
+}
+
+TEST_CASE("a mortar that was refused and that the IMU feels has fired, and that is told and announced", "[edl][R50]") {
+    Fixture f{FiringVerdict::refused};
+    f.feel(6.0, 1001.5);
+    CHECK(f.recorder.out.sent().empty());
+    CHECK_FALSE(f.configuration.parachute_out);
+    f.feel(40.0, 1001.8);
+    CHECK(f.recorder.events<evr::TIMEPOINT_FELT>() == 1);
+    REQUIRE(f.recorder.sent<ToneRequest>().size() == 1);
+    CHECK(f.recorder.sent<ToneRequest>()[0].tone == tone::parachute_deploy);
+    CHECK(f.configuration.parachute_time == Sclk{1000.0});
+    f.feel(40.0, 1003.5);
+    CHECK(f.recorder.out.sent().empty());
+}
+
+TEST_CASE("a mortar that was refused and that nobody feels was told already", "[edl][R50]") {
+    Fixture f{FiringVerdict::refused};
+    f.feel(6.0, 1000.0 + parameters.parachute_felt_within_s);
+    CHECK(f.recorder.out.sent().empty());
+    CHECK_FALSE(f.configuration.parachute_out);
+}
+
+TEST_CASE("a mortar that is said to have fired and that the IMU does not feel is contradicted, told and explained; GNC "
+          "flies on as said",
+          "[edl][R38][R50]") {
+    Fixture f{FiringVerdict::verified};
+    f.feel(6.0, 1001.5);
+    CHECK(f.recorder.out.sent().empty());
+    f.feel(6.0, 1000.0 + parameters.parachute_felt_within_s);
+    CHECK(f.recorder.events<evr::TIMEPOINT_CONTRADICTED>() == 1);
+    CHECK(f.recorder.packets<packet::Explanation>() == 1);
+    CHECK(f.recorder.sent<ToneRequest>()[0].tone == tone::pyro_not_fired);
+    CHECK(f.configuration.parachute_out);
+
+    Fixture felt{FiringVerdict::verified};
+    felt.feel(40.0, 1001.8);
+    felt.feel(6.0, 1004.0);
+    CHECK(felt.recorder.out.sent().empty());
+    CHECK_FALSE(felt.reply(Evidence::verified, 1004.0));  // of nothing that is awaited
 }
 
 TEST_CASE("an IMU that was silent neither bears out a mortar nor contradicts it: the mortar stays unverified",

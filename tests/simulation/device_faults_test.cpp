@@ -4,7 +4,7 @@
 #include "common/space_packet.hpp"
 #include "generated/dictionary_flight.hpp"
 #include "simulation/devices/recorder.hpp"
-#include "simulation/landing.hpp"
+#include "simulation/limits.hpp"
 #include "tests/simulation/gale.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/telecommands.hpp"
@@ -34,7 +34,7 @@ constexpr Selection only(Device device) {
 }
 
 struct Landed {
-    Outcome outcome{};
+    Judgement judgement;  ///< by the scenario's limits
     std::string reason;
     std::vector<std::uint8_t> recording;
     std::map<std::uint16_t, flight::TimepointVerdict> verdicts;  ///< by timepoint
@@ -81,7 +81,9 @@ Landed land(const std::vector<DeviceFault>& faults, const Selection& units = all
     for (int i = 0; i < 64; ++i) landing.step();
     landing.uplink(test::do_edl());
     while (landing.outcome() == Outcome::running) landing.step();
-    Landed landed{landing.outcome(), landing.outcome_reason(), {}, {}, {}};
+    Landed landed;
+    landed.judgement = judge(scenario.limits, figures_of(landing));
+    landed.reason = reason_of(landing, landed.judgement);
     landed.recording.assign(landing.recording().begin(), landing.recording().end());
     read(landed);
     return landed;
@@ -101,7 +103,7 @@ DeviceFault at_its_start(Kind kind) {
 TEST_CASE("a landing without faults has every reply in time, and no device module has anything to report",
           "[simulation][faults][R2][R14]") {
     const Landed landed = land({});
-    CHECK(landed.outcome == Outcome::touchdown);
+    CHECK(landed.judgement.verdict == Verdict::landed);
     CHECK(landed.not_verified().empty());
     for (const EvrId id :
          {flight::evr::REPLY_UNEXPECTED::id, flight::evr::DEVICE_REFUSED::id, flight::evr::PYRO_NOT_FIRED::id,
@@ -114,7 +116,7 @@ TEST_CASE("a landing without faults has every reply in time, and no device modul
 TEST_CASE("the timeline is held for a UHF unit that does not answer, commanding it again, and goes on unverified",
           "[simulation][faults][R2][R14][R50]") {
     const Landed landed = land({at_its_start(Kind::silent)});
-    CHECK(landed.outcome == Outcome::touchdown);
+    CHECK(landed.judgement.verdict == Verdict::landed);
     CHECK(landed.verdict(flight::timepoint::uhf_start) == flight::TimepointVerdict::unverified);
     CHECK(landed.not_verified() == std::vector<std::uint16_t>{flight::timepoint::uhf_start.value});
     CHECK(landed.count(flight::evr::TIMEPOINT_UNVERIFIED::id) == 1);
@@ -125,14 +127,14 @@ TEST_CASE("the timeline is held for a UHF unit that does not answer, commanding 
 TEST_CASE("a UHF unit that refuses ends uhf_start as refused; one that answers within the hold verifies it",
           "[simulation][faults][R2][R14][R50]") {
     const Landed refused = land({at_its_start(Kind::refuses)});
-    CHECK(refused.outcome == Outcome::touchdown);
+    CHECK(refused.judgement.verdict == Verdict::landed);
     CHECK(refused.verdict(flight::timepoint::uhf_start) == flight::TimepointVerdict::refused);
     CHECK(refused.count(flight::evr::DEVICE_REFUSED::id) == 3);  // commanded, and twice again
     CHECK(refused.count(flight::evr::TIMEPOINT_REFUSED::id) == 1);
     CHECK(refused.count(flight::evr::UHF_STARTED::id) == 0);
 
     const Landed late = land({at_its_start(Kind::late)});
-    CHECK(late.outcome == Outcome::touchdown);
+    CHECK(late.judgement.verdict == Verdict::landed);
     CHECK(late.verdict(flight::timepoint::uhf_start) == flight::TimepointVerdict::verified);
     CHECK(late.count(flight::evr::DEVICE_REFUSED::id) == 0);
     CHECK(late.count(flight::evr::UHF_STARTED::id) == 1);
@@ -153,7 +155,7 @@ TEST_CASE("with all B units selected the vehicle lands as well, by other sensors
         faults.push_back(all_the_time(static_cast<Device>(device), Kind::silent, Unit::a));
     const Landed landed = land(faults, all_b);
     INFO(landed.reason);
-    CHECK(landed.outcome == Outcome::touchdown);
+    CHECK(landed.judgement.verdict == Verdict::landed);
     CHECK(landed.not_verified().empty());
     CHECK(landed.count(flight::evr::UNITS_SELECTED::id) == 1);
     CHECK(landed.recording != land({}).recording);
@@ -167,7 +169,7 @@ TEST_CASE("a pyro controller that is silent or refuses costs nothing and is told
         for (const Selection& units : {all_a, only(Device::pyro)}) {
             const Landed landed = land({all_the_time(Device::pyro, kind)}, units);
             INFO(landed.reason);
-            CHECK(landed.outcome == Outcome::touchdown);
+            CHECK(landed.judgement.verdict == Verdict::landed);
             CHECK(landed.verdicts == sound.verdicts);
             CHECK(landed.count(told) == flight::pyro_count);
             CHECK(landed.count(flight::evr::PYRO_NOT_FIRED::id) == 0);
@@ -178,7 +180,7 @@ TEST_CASE("both pyro controllers silent: separation is unverified, nothing says 
           "[simulation][faults][R2][R50]") {
     const Landed lost =
         land({all_the_time(Device::pyro, Kind::silent), all_the_time(Device::pyro, Kind::silent, Unit::b)});
-    CHECK(lost.outcome == Outcome::lost);
+    CHECK(lost.judgement.verdict == Verdict::lost);
     CHECK(lost.reason == "entered with the cruise stage attached: it was commanded to separate, and did not");
     CHECK(lost.verdict(flight::timepoint::cruise_stage_separation) == flight::TimepointVerdict::unverified);
     CHECK(lost.count(flight::evr::CRUISE_STAGE_SEPARATION::id) == 0);
@@ -210,7 +212,7 @@ TEST_CASE("a radar that loses its ground under the parachute is reported, and th
     const Landed landed = land({{Device::radar, Unit::a, Kind::dropout, -300.0, 20.0}});
     INFO(landed.reason);
     CHECK(landed.count(flight::evr::RADAR_LOST::id) == 1);
-    CHECK(landed.outcome == Outcome::touchdown);
+    CHECK(landed.judgement.verdict == Verdict::landed);
 }
 
 TEST_CASE("IMU samples that are lost are counted in flight", "[simulation][faults][R2]") {
@@ -219,13 +221,13 @@ TEST_CASE("IMU samples that are lost are counted in flight", "[simulation][fault
     // Both computers listen to the IMU, and each reports the seconds of the fault.
     CHECK(landed.count(flight::evr::IMU_SAMPLES_MISSING::id) >= 10);
     CHECK(landed.count(flight::evr::IMU_SAMPLES_MISSING::id) <= 12);
-    CHECK(landed.outcome == Outcome::touchdown);
+    CHECK(landed.judgement.verdict == Verdict::landed);
 }
 
 TEST_CASE("with one message in twenty garbled on both buses the vehicle still lands", "[simulation][faults][R2]") {
     const Landed landed = land({}, all_a, 0.05);
     INFO(landed.reason);
-    CHECK(landed.outcome == Outcome::touchdown);
+    CHECK(landed.judgement.verdict == Verdict::landed);
     CHECK(landed.not_verified().empty());
 }
 

@@ -116,14 +116,13 @@ void check_short_entry(double short_km, std::uint64_t seed) {
     while (landing.outcome() == Outcome::running)
         for (const TruthEvent& event : landing.step().events)
             if (event.name == "parachute_deploy") mortar_m = event.altitude_m;
-    INFO(landing.outcome_reason());
+    const Judgement judgement = judge(tests::gale_scenario().limits, figures_of(landing));
+    INFO(reason_of(landing, judgement));
     REQUIRE(landing.parachute());
     INFO("mortar at " << mortar_m.value_or(0.0) << " m, Mach " << landing.parachute()->mach << ", "
                       << landing.parachute()->dynamic_pressure_Pa << " Pa");
     CHECK(mortar_m.value_or(0.0) >= 5500.0);
-    CHECK(landing.parachute()->mach <= 2.2);
-    CHECK(landing.parachute()->dynamic_pressure_Pa <= 750.0);
-    CHECK(landing.outcome() == Outcome::touchdown);
+    CHECK(judgement.verdict == Verdict::landed);
 }
 
 }  // namespace
