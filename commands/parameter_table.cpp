@@ -4,6 +4,7 @@
 #include "commands/number.hpp"
 #include "common/bytes.hpp"
 #include "common/crc.hpp"
+#include "common/deviation.hpp"
 
 #include <array>
 
@@ -23,6 +24,22 @@ Result<void> ParameterTable::set(ParameterId id, double value) {
                      shortest_text(row.max) + (row.unit == "1" ? "" : " " + row.unit)};
     values_[id.value] = value;
     return {};
+}
+
+Result<void> ParameterTable::may_fly() const {
+    double sum = 0.0, largest = 0.0;
+    std::string largest_name;
+    for (const dictionary::ParameterRow& row : dictionary_.parameters) {
+        const double part = deviation(values_[row.id.value], row.default_value, row.min, row.max);
+        sum += part;
+        if (part <= largest) continue;
+        largest = part;
+        largest_name = row.name;
+    }
+    if (sum <= table_deviation_max) return {};
+    return Error{"the changes together are too much: as parts of their ranges they add up to " + shortest_text(sum) +
+                 ", at most " + shortest_text(table_deviation_max) + "; " + largest_name + " has " +
+                 shortest_text(largest)};
 }
 
 std::uint16_t ParameterTable::crc() const {

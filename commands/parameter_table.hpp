@@ -21,6 +21,10 @@ class ParameterTable {
     /// range; so would flight.
     [[nodiscard]] Result<void> set(ParameterId id, double value);
 
+    /// Whether the table may fly: fails where its deviations from the one built in add up to more than one range, and
+    /// names the largest. Flight refuses to activate such a table too.
+    [[nodiscard]] Result<void> may_fly() const;
+
     /// CRC-16 over each row in order, its number in 16 bits and its value as a binary64: as of the data product that
     /// dumps the table, and the channel parameter_crc.
     std::uint16_t crc() const;

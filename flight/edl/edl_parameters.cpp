@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "common/deviation.hpp"
 #include "flight/edl/edl_main.hpp"
 #include "flight/explanation/explanation.hpp"
 #include "flight/kernel/parameter_parts.hpp"
@@ -64,6 +65,8 @@ void EdlMain::on(const ActivateParametersCommand& command, Outbox& out) {
     outcome.conditions.push_back(is(Quantity::parameter_version_new, arguments.parameter_version != table_.version()));
     outcome.conditions.push_back(
         is(Quantity::parameter_crc_as_sent, arguments.parameter_crc == table_.crc_with_staged()));
+    outcome.conditions.push_back(
+        at_most(Quantity::table_deviation, table_.deviation_with_staged(), table_deviation_max));
     if (!all_hold(outcome.conditions)) outcome.refused = CommandRefusal::bad_argument;
     if (!outcome.refused) {
         table_.activate(arguments.parameter_version);

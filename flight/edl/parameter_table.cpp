@@ -4,6 +4,7 @@
 #include "common/bytes.hpp"
 #include "common/check.hpp"
 #include "common/crc.hpp"
+#include "common/deviation.hpp"
 
 #include <algorithm>
 #include <span>
@@ -66,6 +67,14 @@ Parameters ParameterTable::with_staged() const {
 
 std::uint16_t ParameterTable::crc_with_staged() const {
     return crc16(rows_of(with_staged()));
+}
+
+double ParameterTable::deviation_with_staged() const {
+    const Parameters values = with_staged();
+    double sum = 0.0;
+    for (const ParameterSpec& spec : parameter_specs)
+        if (spec.member != nullptr) sum += deviation(values.*spec.member, built_in_.*spec.member, spec.min, spec.max);
+    return sum;
 }
 
 void ParameterTable::activate(std::uint16_t version) {

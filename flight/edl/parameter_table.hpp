@@ -13,7 +13,8 @@
 // The table of parameters that flight flies by (parameters.csv), and the changes that ground has staged for it.
 //
 // In       EDL_STAGE_PARAMETER one by one, then EDL_ACTIVATE_PARAMETERS for all of them, or EDL_DISCARD_PARAMETERS
-// Rule     a change is within the range of its row, and its row may change; the table is replaced whole or not at all
+// Rule     a change is within the range of its row, and its row may change; the table is replaced whole or not at all,
+//          and only by one whose deviations from the one built in add up to no more than one range
 // Memory   one value a row, and up to 32 staged changes: the largest number that EDL_ACTIVATE_PARAMETERS can name
 // R25, R48
 namespace aeolis::flight {
@@ -56,6 +57,8 @@ class ParameterTable {
     void discard() { staged_count_ = 0; }
     /// CRC of the table that activation would make.
     std::uint16_t crc_with_staged() const;
+    /// Sum of its deviations from the table built in (common/deviation.hpp).
+    double deviation_with_staged() const;
     /// Takes all staged changes into the table.
     void activate(std::uint16_t version);
 

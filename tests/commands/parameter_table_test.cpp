@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "commands/parameter_table.hpp"
 
+#include "common/deviation.hpp"
 #include "flight/edl/parameter_table.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/shipped_dictionary.hpp"
 
 #include <limits>
+#include <utility>
+#include <vector>
 
 namespace commands_parameter_table_test {
 
@@ -43,6 +46,34 @@ TEST_CASE("ground refuses the changes of parameters that flight would refuse, an
     CHECK(why(parameter::entry_moved_max_s, 10.0) == "entry_moved_max_s is fixed when flight is built");
     CHECK(why(ParameterId{60000}, 1.0) == "parameters.csv has no row 60000");
     CHECK(table.crc() == before);
+}
+
+TEST_CASE("ground and flight agree which tables may fly: of several parameters their deviations add up",
+          "[commands][parameters][R25]") {
+    const auto agree = [](const std::vector<std::pair<ParameterId, double>>& changes) {
+        commands::ParameterTable ground{tests::shipped_dictionary()};
+        flight::ParameterTable table{flight::Parameters{}};
+        for (const auto& [id, value] : changes) {
+            REQUIRE(ground.set(id, value));
+            table.stage(id, value);
+        }
+        const bool may_fly = static_cast<bool>(ground.may_fly());
+        CHECK(may_fly == (table.deviation_with_staged() <= table_deviation_max));
+        return may_fly;
+    };
+    const auto& gain = flight::parameter_specs.at(parameter::guidance_gain.value);  // 1 … 10, 5 as built
+    CHECK(agree({}));
+    CHECK(agree({{parameter::guidance_gain, gain.max}}));
+    CHECK(agree({{parameter::guidance_gain, 3.0}, {parameter::guidance_saturation, 0.975}}));
+    CHECK_FALSE(agree({{parameter::guidance_gain, 3.0}, {parameter::guidance_saturation, 0.976}}));
+    CHECK_FALSE(agree({{parameter::guidance_gain, 1.0}, {parameter::tilt_max_deg, 60.0001}}));
+    CHECK(agree({{parameter::guidance_gain, 1.0}, {parameter::guidance_gain, 9.0}}));  // the last one counts
+    commands::ParameterTable ground{tests::shipped_dictionary()};
+    REQUIRE(ground.set(parameter::guidance_gain, 1.0));
+    REQUIRE(ground.set(parameter::guidance_saturation, 0.975));
+    CHECK(ground.may_fly().error().message ==
+          "the changes together are too much: as parts of their ranges they add up to 1.5, at most 1; guidance_gain "
+          "has 1");
 }
 
 }  // namespace commands_parameter_table_test

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "commands/parameter_table.hpp"
+#include "common/deviation.hpp"
 #include "flight/edl/edl_main.hpp"
 #include "flight/kernel/parameter_parts.hpp"
 #include "tests/support/catch.hpp"
@@ -120,6 +121,22 @@ TEST_CASE("an activation of another table than ground means is refused, though n
     CHECK(f.report().parameter_crc == meant.crc());
 }
 
+TEST_CASE("an activation whose deviations add up to more than one range is refused, counted from the table built in",
+          "[edl][parameters][R25][R38]") {
+    Fixture f;
+    REQUIRE(f.stage(parameter::guidance_gain, 3.0));  // half of what is below 5
+    REQUIRE(f.activate(1, 1));
+    REQUIRE(f.stage(parameter::tilt_max_deg, 80.0));  // all of what is above 60
+    CHECK_FALSE(f.activate(2, 1));
+    CHECK(f.refused == CommandRefusal::bad_argument);
+    REQUIRE(f.why.size() == 4);
+    CHECK(f.why[3].quantity == Quantity::table_deviation);
+    CHECK(f.why[3].value == 1.5);
+    CHECK(f.why[3].bound == 1.0);
+    REQUIRE(f.stage(parameter::tilt_max_deg, 70.0));
+    CHECK(f.activate(2, 1));
+}
+
 TEST_CASE("what may not be staged is refused with the reason: range, fixed, unknown, no room",
           "[edl][parameters][R25][R38]") {
     Fixture f;
@@ -213,6 +230,16 @@ TEST_CASE("in any order of these commands the table is that of a simple model, a
     Parameters held;
     std::vector<std::pair<ParameterId, double>> staged;
     std::uint16_t version = 0;
+    const auto deviation_of = [](const Parameters& table) {
+        double sum = 0.0;
+        for (std::uint16_t row = 0; row < parameter_count; ++row) {
+            const ParameterSpec& spec = parameter_specs.at(row);
+            sum += deviation(value_of(table, ParameterId{row}), value_of(Parameters{}, ParameterId{row}), spec.min,
+                             spec.max);
+        }
+        return sum;
+    };
+    int activated = 0;
     for (int i = 0; i < 20'000; ++i) {
         const auto kind = below(20);
         if (kind < 16) {
@@ -220,7 +247,10 @@ TEST_CASE("in any order of these commands the table is that of a simple model, a
             const bool known = id.value < parameter_count && parameter_specs.at(id.value).member != nullptr;
             const double min = known ? parameter_specs.at(id.value).min : 0.0;
             const double max = known ? parameter_specs.at(id.value).max : 1.0;
-            const double value = min + (max - min) * (static_cast<double>(below(130)) - 15.0) / 100.0;
+            // Mostly so near the value built in that several may change together.
+            const double near = known ? value_of(Parameters{}, id) : 0.0;
+            const double value = below(16) == 0 ? min + (max - min) * (static_cast<double>(below(130)) - 15.0) / 100.0
+                                                : near + (max - near) * static_cast<double>(below(10)) / 1000.0;
             const auto same = std::ranges::find(staged, id, &std::pair<ParameterId, double>::first);
             const bool room = same != staged.end() || staged.size() < staged_changes_max;
             const bool taken = known && value >= min && value <= max && room;
@@ -230,10 +260,14 @@ TEST_CASE("in any order of these commands the table is that of a simple model, a
         } else if (kind < 19) {
             const auto next = static_cast<std::uint16_t>(version + below(3));
             const auto changes = static_cast<std::uint16_t>(staged.size() + (below(4) == 0 ? 1 : 0));
-            const bool taken = next != version && changes == staged.size();
+            Parameters together = held;
+            for (const auto& [id, value] : staged) set_value(together, id, value);
+            const bool taken =
+                next != version && changes == staged.size() && deviation_of(together) <= table_deviation_max;
             REQUIRE(f.activate(next, changes) == taken);
+            activated += taken;
             if (!taken) continue;
-            for (const auto& [id, value] : staged) set_value(held, id, value);
+            held = together;
             staged.clear();
             version = next;
         } else {
@@ -244,6 +278,7 @@ TEST_CASE("in any order of these commands the table is that of a simple model, a
         REQUIRE(f.report().parameters_staged == staged.size());
         REQUIRE(f.report().parameter_version == version);
     }
+    CHECK(activated > 100);
     for (std::uint16_t row = 0; row < parameter_count; ++row) {
         const double value = value_of(held, ParameterId{row});
         CHECK(value >= parameter_specs.at(row).min);
