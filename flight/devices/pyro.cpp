@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "flight/devices/pyro.hpp"
 
+#include "common/check.hpp"
+
 #include <algorithm>
 
 namespace aeolis::flight {
@@ -90,6 +92,7 @@ void PyroManager::on(const Tick& tick, Outbox& out) {
 }
 
 PyroState PyroManager::state(PyroId pyro) const {
+    AEOLIS_CHECK(static_cast<std::size_t>(pyro) < pyro_count);
     const Shot& shot = shots_[static_cast<std::size_t>(pyro)];
     if (shot.fired) return PyroState::fired;
     if (shot.wanted) return PyroState::commanded;
@@ -122,6 +125,7 @@ void PyroManager::record(Sclk now, Outbox& out) {
 
 // A pyro without room on the bus waits for the next cycle.
 void PyroManager::fire(PyroId pyro, Shot& shot, Outbox& out) {
+    AEOLIS_CHECK(armed_ && shot.wanted && !shot.fired);
     auto& bus = out.bus().pyros;
     if (bus.size() + both_controllers.size() > bus.capacity()) return;
     if (shot.next_try.defined()) answer(pyro, Evidence::none, out);
@@ -135,6 +139,7 @@ void PyroManager::fire(PyroId pyro, Shot& shot, Outbox& out) {
 }
 
 void PyroManager::end(PyroId pyro, Shot& shot, Outbox& out) {
+    AEOLIS_CHECK(shot.wanted);
     shot.wanted = false;
     for (const Unit unit : both_controllers) {
         const Controller& controller = shot.controllers[static_cast<std::size_t>(unit)];

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "flight/edl_bg/edl_bg.hpp"
 
+#include "common/check.hpp"
 #include "flight/edl/parameter_table.hpp"
 #include "flight/edl/solution.hpp"
 
@@ -75,6 +76,7 @@ void EdlBg::on(const ClockTick& tick, Outbox& out) {
 }
 
 void EdlBg::watch_radar(Sclk now, Outbox& out) {
+    AEOLIS_CHECK(navigated_);  // before, there is no time from which a gap counts
     const bool wanted = now - attitude_at_ < 1.0;
     const double gap_s = now - solved_at_;
     // Under the parachute the vehicle may first swing so far that its beams miss the ground: the first solution may

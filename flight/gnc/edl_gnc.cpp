@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "flight/gnc/edl_gnc.hpp"
 
+#include "common/check.hpp"
 #include "flight/devices/effectors.hpp"
 #include "flight/gnc/entry/heading_alignment.hpp"
 #include "flight/gnc/entry/height_guard.hpp"
@@ -200,6 +201,7 @@ bool EdlGnc::take(GncModeEvent event, Sclk now, Output& out, const std::optional
 }
 
 bool EdlGnc::fire(Trigger trigger, const Conditions& conditions, Output& out) {
+    AEOLIS_CHECK(static_cast<std::size_t>(trigger) < fired_.size());
     bool& done = fired_[static_cast<std::size_t>(trigger)];
     if (done || out.triggers.full()) return false;
     if (!all_hold(conditions)) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "flight/mfsk/tone_selector.hpp"
 
+#include "common/check.hpp"
 #include "flight/explanation/explanation.hpp"
 
 #include <initializer_list>
@@ -105,6 +106,7 @@ void ToneSelector::on(const ClockTick& tick, Outbox& out) {
 }
 
 void ToneSelector::send(const ToneRequest& request, Outbox& out) {
+    AEOLIS_CHECK(!sending_ && !silent_);  // one tone at a time, each to its end
     sending_ = Sending{request.tone, out.now()};
     out.bus().tone = request.tone;
     out.record(packet::ToneSelected{.tone = request.tone.value,
@@ -139,6 +141,7 @@ void ToneSelector::explain_choice(const ToneRequest& chosen, Outbox& out) const 
 }
 
 std::size_t ToneSelector::most_important() const {
+    AEOLIS_CHECK(!outstanding_.empty());
     std::size_t best = 0;
     for (std::size_t i = 1; i < outstanding_.size(); ++i) {
         const auto a = priority(outstanding_[i].tone);
@@ -149,6 +152,7 @@ std::size_t ToneSelector::most_important() const {
 }
 
 std::size_t ToneSelector::least_important() const {
+    AEOLIS_CHECK(!outstanding_.empty());
     std::size_t worst = 0;
     for (std::size_t i = 1; i < outstanding_.size(); ++i)
         if (priority(outstanding_[i].tone) < priority(outstanding_[worst].tone)) worst = i;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "flight/gnc/attitude/thruster_selection.hpp"
 
+#include "common/check.hpp"
 #include "common/time.hpp"
 #include "flight/devices/effectors.hpp"
 
@@ -23,6 +24,7 @@ ThrusterSelection::ThrusterSelection() {
         torques.col(static_cast<Eigen::Index>(mount)) = to_vector(even.position_B_m).cross(to_vector(even.direction_B));
     }
     const Matrix3 square = torques * torques.transpose();
+    AEOLIS_CHECK(square.determinant() > 0.0);  // the mounts turn the vehicle about every axis
     forces_by_torque_ = torques.transpose() * square.inverse();
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "flight/gnc/entry/range_control.hpp"
 
+#include "common/check.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -15,6 +17,7 @@ double between(double a, double b, double part) {
 }  // namespace
 
 EntryReferenceRow reference_at(const EntryReference& reference, double velocity_mps) {
+    AEOLIS_CHECK(reference.row_count <= reference.rows.size());
     if (reference.row_count == 0) return {};
     const EntryReferenceRow* const rows = reference.rows.data();
     const EntryReferenceRow* const end = rows + reference.row_count;
@@ -24,6 +27,7 @@ EntryReferenceRow reference_at(const EntryReference& reference, double velocity_
     if (above == end) return end[-1];
     const EntryReferenceRow& a = above[-1];
     const EntryReferenceRow& b = above[0];
+    AEOLIS_CHECK(a.velocity_mps < b.velocity_mps);  // the load has them in this order
     const double part = (velocity_mps - a.velocity_mps) / (b.velocity_mps - a.velocity_mps);
     EntryReferenceRow row;
     row.velocity_mps = velocity_mps;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "flight/gnc/navigation/dead_reckoning.hpp"
 
+#include "common/check.hpp"
 #include "flight/gnc/mars.hpp"
 
 #include <algorithm>
@@ -33,6 +34,7 @@ double unknown_rate_rps(const Parameters& parameters, HeldBy held_by) {
 
 Felt DeadReckoning::feel(const Parameters& parameters, const Surroundings& now, const NavigatedState& state,
                          const Felt& last, double dt_s) {
+    AEOLIS_CHECK(dt_s > 0.0);
     if (silent_s_ == 0.0) {
         rate_B_rps_ = last.rate_B_rps;
         force_B_mps2_ = last.force_B_mps2;
@@ -81,6 +83,7 @@ Vector3 DeadReckoning::turn(const Parameters& parameters, const Surroundings& no
 }
 
 void Belief::pass(const Parameters& parameters, bool silent, HeldBy held_by, double force_mps2, double dt_s) {
+    AEOLIS_CHECK(dt_s > 0.0);  // what is believed only widens
     if (silent) {
         attitude_rad_ += unknown_rate_rps(parameters, held_by) * dt_s;
         velocity_mps_ += parameters.reckoned_force_error * force_mps2 * dt_s;

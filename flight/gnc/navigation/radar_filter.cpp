@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "flight/gnc/navigation/radar_filter.hpp"
 
+#include "common/check.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -40,6 +42,7 @@ RadarJudgement RadarFilter::on(const Parameters& parameters, const RadarSolution
     // Otherwise averages over different times would be compared.
     if (samples < std::max(1.0, parameters.radar_covered_fraction * remembered_hz * solution.span_s)) return {};
 
+    AEOLIS_CHECK(oldest != nullptr && newest != nullptr);
     // The remaining difference between the mean times of the history and of the radar is removed by the mean rates.
     const double late_s = time_sum_s / samples;
     const Vector3 a_mean = (newest->v_MB_M - oldest->v_MB_M) / std::max(newest->time - oldest->time, 0.0625);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "flight/gnc/powered_descent/thrust_allocation.hpp"
 
+#include "common/check.hpp"
 #include "flight/devices/effectors.hpp"
 
 #include <Eigen/LU>
@@ -21,6 +22,7 @@ Eigen::Matrix<double, n, 3> changes_by_torque() {
         effect(3, i) = 1.0;
     }
     const Eigen::Matrix4d square = effect * effect.transpose();
+    AEOLIS_CHECK(square.determinant() > 0.0);  // the running engines turn the vehicle about every axis
     return (effect.transpose() * square.inverse()).template leftCols<3>();
 }
 
@@ -30,6 +32,7 @@ TorqueAllocation::TorqueAllocation() : of_eight_(changes_by_torque<8>()), of_fou
 
 void TorqueAllocation::add(const Parameters& parameters, const Vector3& torque_B_Nm, int engines,
                            double engine_max_thrust_N, std::array<double, 8>& throttle) const {
+    AEOLIS_CHECK((engines == 4 || engines == 8) && engine_max_thrust_N > 0.0);
     const double engine_used_min_N = parameters.engine_used_min_N, engine_used_max_N = parameters.engine_used_max_N;
     Eigen::Matrix<double, 8, 1> change_N = Eigen::Matrix<double, 8, 1>::Zero();
     if (engines == 4)
@@ -52,6 +55,7 @@ void TorqueAllocation::add(const Parameters& parameters, const Vector3& torque_B
 
 std::array<double, 8> throttles_for(const Parameters& parameters, double thrust_N, int engines,
                                     double engine_max_thrust_N, double& given_N) {
+    AEOLIS_CHECK((engines == 4 || engines == 8) && engine_max_thrust_N > 0.0);
     const double each_N = std::clamp(thrust_N / engines, parameters.engine_used_min_N, parameters.engine_used_max_N);
     given_N = each_N * engines;
     std::array<double, 8> throttle{};

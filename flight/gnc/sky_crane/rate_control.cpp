@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "flight/gnc/sky_crane/rate_control.hpp"
 
+#include "common/check.hpp"
+
 #include <algorithm>
 
 namespace aeolis::flight::gnc::sky_crane {
 
 Vector3 RateControl::command_M(const Parameters& parameters, const Vector3& v_MB_M, const Vector3& up_M,
                                double wanted_descent_rate_mps, double dt_s) {
+    AEOLIS_CHECK(dt_s > 0.0);
     const double integral_max_mps2 = parameters.sky_crane_integral_max_mps2;
     const double command_max_mps2 = parameters.sky_crane_command_max_mps2;
     const double climb_mps = v_MB_M.dot(up_M);
