@@ -17,8 +17,11 @@ void DescentEngines::on(const PayOutBridle&, Outbox&) {
 }
 
 void DescentEngines::on(const EngineReply& reply, Outbox& out) {
-    if (reply.running != running_)
+    if (reply.running != running_) {
         out.send(ModuleId::edl, ActionReply{ReplyKind::engines, static_cast<std::uint8_t>(reply.running)});
+        if (!reply.running && command_.ignited)
+            out.event(evr::REPLY_CONTRADICTS{.device = static_cast<DeviceName>(Device::descent_engines)});
+    }
     running_ = reply.running;
     out.send(ModuleId::edl, reply);
 }

@@ -19,6 +19,17 @@ TEST_CASE("engines answer the timeline when they start to run and when they stop
     CHECK(engines.on(EngineReply{false, 0.0}).sent<ActionReply>() == std::vector{stopped});
 }
 
+TEST_CASE("engines that stop though they are to run are told once", "[devices][R50]") {
+    test::Spoken<DescentEngines> engines{ModuleId::descent_engines};
+    engines.on(RunEngines{{true, {}}});
+    CHECK(engines.on(EngineReply{true, 9000.0}).events<evr::REPLY_CONTRADICTS>() == 0);
+    CHECK(engines.on(EngineReply{false, 0.0}).events<evr::REPLY_CONTRADICTS>() == 1);
+    CHECK(engines.on(EngineReply{false, 0.0}).events<evr::REPLY_CONTRADICTS>() == 0);
+    CHECK(engines.on(EngineReply{true, 9000.0}).events<evr::REPLY_CONTRADICTS>() == 0);
+    engines.on(RunEngines{{false, {}}});
+    CHECK(engines.on(EngineReply{false, 0.0}).events<evr::REPLY_CONTRADICTS>() == 0);
+}
+
 TEST_CASE("a bridle that was released answers the timeline when it begins to pay out, once", "[devices][R14][R50]") {
     test::Spoken<DescentEngines> engines{ModuleId::descent_engines};
     CHECK(engines.on(BridleReply{0.2}).sent<ActionReply>().empty());
