@@ -125,15 +125,15 @@ int ingest_tones(const IngestTonesOptions& options) {
             std::this_thread::sleep_until(
                 begun + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
                             std::chrono::duration<double>(static_cast<double>(passed) / rate_hz / options.pace)));
-        const auto& received = station.receive(downlink);
+        auto& received = station.receive(downlink);
         heard.add(received);
         Delivery delivery;
-        delivery.add(received);
+        delivery.add(std::move(received));
         delivery.entries.emplace_back(telemetry::EarthTime{downlink.now});
         if (!pipeline.deliver(std::move(delivery))) broken = pipeline.fault();
     }
-    const auto finished =
-        pipeline.finish({"stopped", broken.empty() ? "the recording ended" : broken, "", wall_clock_text()});
+    const auto finished = pipeline.finish(
+        {archive::Outcome::stopped, broken.empty() ? "the recording ended" : broken, "", wall_clock_text()});
     if (!broken.empty()) return failed(broken);
     if (!finished) return failed(finished.error().message);
     fmt::print("{} tones, {} erasures, {} estimates of the carrier, {} spectra\n", heard.tones, heard.erasures,

@@ -244,8 +244,8 @@ TEST_CASE("over 500 dispersed landings each feature of the flight is seen by Dop
         simulation::Landing landing{scenario, seed, landing_number};
         std::array<std::optional<double>, count> there_s;
         std::vector<std::pair<double, double>> doppler_hz;
-        std::vector<double>
-            turns_s;  // also of heading alignment, which may turn the lift to its other side for the last time
+        // Also of heading alignment, which may turn the lift to its other side for the last time.
+        std::vector<double> turns_s;
         double bank_deg = 0.0;
         while (landing.outcome() == simulation::Outcome::running && landing.truth().e_s < earth_sets_s + 2.0) {
             const auto truth = landing.truth();
@@ -266,11 +266,11 @@ TEST_CASE("over 500 dispersed landings each feature of the flight is seen by Dop
         for (std::size_t i = 1; i < doppler_hz.size(); ++i) {
             double logarithm = 0.0;
             for (std::size_t k = 0; k < steps.size(); ++k)
-                if (const auto& turns_s = there_s[first_reversal + k])
+                if (const auto& turned_s = there_s[first_reversal + k])
                     logarithm +=
                         steps[k] *
                         (0.5 + 0.5 * std::sin(std::numbers::pi *
-                                              std::clamp((doppler_hz[i].first - *turns_s - 0.6) / 9.0, -0.5, 0.5)));
+                                              std::clamp((doppler_hz[i].first - *turned_s - 0.6) / 9.0, -0.5, 0.5)));
             const double gained_hz = doppler_hz[i].second - doppler_hz[i - 1].second;
             straight_hz[i].second =
                 straight_hz[i - 1].second + gained_hz * (gained_hz > 0.0 ? std::exp(-logarithm) : 1.0);

@@ -214,8 +214,8 @@ TEST_CASE("when the computers go off Earth hears that their links are down, not 
     }
     CHECK(last.at("x_band").reason == "computer off");
     CHECK_FALSE(told.at("uhf_live").up);
-    CHECK(told.at("uhf_live").reason.empty());  // ground finds its own
-    CHECK_FALSE(told.contains("x_band"));       // a receiver finds the carrier or does not, and none listens
+    CHECK(told.at("uhf_live").reason().empty());  // ground finds its own
+    CHECK_FALSE(told.contains("x_band"));         // a receiver finds the carrier or does not, and none listens
 }
 
 TEST_CASE("while the station is out nothing of what reaches Earth reaches ground; then each link is told as it is",
