@@ -343,7 +343,7 @@ void Landing::State::receive_tone(std::optional<ToneId> sent, std::int64_t cycle
         earth.gain.reset();  // left out: the carrier of telemetry, which the tones' receiver is not set to
     }
     const auto ended = x_band.cycle(sent, {truth.sclk, truth.e_s, earth.up, earth.gain});
-    if (antenna || receiver) {
+    if (scenario.radio.tones_from_samples.value_or(false) || receiver) {
         XBandField field;
         field.ert = {cycle_start_us + light_time_us};
         field.e_s = truth.sclk - scenario.entry_sclk;

@@ -51,13 +51,16 @@ std::string without_secrets(const std::string& urls) {
     return shown;
 }
 
-const char* text_of(natsStatus status, jsErrCode code) {
+std::string text_of(natsStatus status, jsErrCode code) {
     if (status == NATS_TIMEOUT) return "no answer";
     if (status == NATS_NO_RESPONDERS) return "it has no JetStream (start it with -js)";
     if (code == JSNotEnabledErr) return "JetStream is not enabled there (start it with -js)";
     if (code == JSNotEnabledForAccountErr) return "JetStream is not enabled for this account";
     const char* detail = nats_GetLastError(nullptr);
-    return detail != nullptr && *detail != '\0' ? detail : natsStatus_GetText(status);
+    if (detail == nullptr || *detail == '\0') return natsStatus_GetText(status);
+    const std::string text{detail};  // "(conn.c:1234): why"
+    const auto place = text.starts_with('(') ? text.find("): ") : std::string::npos;
+    return place == std::string::npos ? text : text.substr(place + 3);
 }
 
 }  // namespace

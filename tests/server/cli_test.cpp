@@ -1048,15 +1048,14 @@ TEST_CASE("a pass recorded elsewhere becomes a run with its tones, carrier, spec
     const auto carrier = run(program(), "export " + archive + " --run 1 --channel STA-0006");
     CHECK(carrier.code == 0);
     CHECK(std::ranges::count(carrier.text, '\n') > 250);
-    const auto packets = run(program(), "export " + archive + " --run 1 --packets --link station --format bin");
-    CHECK(packets.code == 0);
-    CHECK(packets.text.size() > 40 * 512);
+    // What ground measured was not received.
+    CHECK(run(program(), "export " + archive + " --run 1 --packets --link station --format bin").code == 1);
     CHECK_THAT(run(program(), "ingest " + archive + " --xtce x.xml" + path("s.sigmf-data")).text,
                Catch::Contains("no packets"));
     CHECK(run(program(), "ingest " + archive + path("s.sigmf-data") + path("s.sigmf-data")).code == 2);
     CHECK(run(program(), "ingest " + archive + " --start yesterday" + path("s.sigmf-data")).code == 2);
-    CHECK(run(program(), "ingest " + archive + path("tones.csv")).code ==
-          2);  // no samples: what mission it is is missing
+    // These are no samples, and of packets the mission is missing.
+    CHECK(run(program(), "ingest " + archive + path("tones.csv")).code == 2);
 
     const auto silent = run(program(), "tones simulate --tones" + path("tones.csv") +
                                            " --c-n0 0 --length 30 --format ci16 --out" + path("n.sigmf-meta"));

@@ -59,7 +59,7 @@ bool NatsServer::present() {
     return false;
 }
 
-NatsServer::NatsServer() : port_(free_port()) {
+NatsServer::NatsServer(JetStream streams) : streams_(streams), port_(free_port()) {
     start();
 }
 
@@ -79,8 +79,8 @@ void NatsServer::start() {
     if (process_ == 0) {
         const int nothing = ::open("/dev/null", O_RDWR);
         for (const int stream : {0, 1, 2}) ::dup2(nothing, stream);
-        ::execl(file.c_str(), file.c_str(), "-js", "-a", "127.0.0.1", "-p", port.c_str(), "-sd", store.c_str(),
-                static_cast<char*>(nullptr));
+        ::execl(file.c_str(), file.c_str(), "-a", "127.0.0.1", "-p", port.c_str(), "-sd", store.c_str(),
+                streams_ == JetStream::present ? "-js" : nullptr, static_cast<char*>(nullptr));
         ::_exit(127);
     }
     for (int tries = 0; tries < 3000; ++tries) {

@@ -16,7 +16,8 @@ class NatsServer {
     /// Whether there is such a program. If not, says on the output that a test was skipped.
     static bool present();
 
-    NatsServer();
+    enum class JetStream : std::uint8_t { present, absent };
+    explicit NatsServer(JetStream streams = JetStream::present);
     NatsServer(const NatsServer&) = delete;
     NatsServer& operator=(const NatsServer&) = delete;
     ~NatsServer();
@@ -29,6 +30,7 @@ class NatsServer {
 
   private:
     test::TemporaryFolder folder_;
+    JetStream streams_;
     std::uint16_t port_ = 0;
     pid_t process_ = -1;
 };
