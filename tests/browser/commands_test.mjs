@@ -80,7 +80,7 @@ test('the ground says before it is sent what would become of a command, and refu
   await shows('command-message', /“noon” is no time to leave/);
   await page.keyboard.press('Control+A');
   await page.keyboard.type('2011-001T00:00:00');
-  await shows('dry-run', /✖ It would be refused: release_at: 2011-001T00:00:00 is past/);
+  await shows('dry-run', /✖ It would be refused: release_at: 2011-001T00:00:00\.000 is past/);
   await page.keyboard.press('Control+A');
   await page.keyboard.type('2012-219T12:00:00');
   await shows(

@@ -93,7 +93,7 @@ function drawTimeline({ context: c, width: width_px, height: height_px, colours 
   const run = shownRun();
   const { from, to } = shown(run);
   const x = (e_s: number) => GUTTER + ((e_s - from) / (to - from)) * (width - GUTTER - 14);
-  const lane_px = Math.max(16, Math.min(grown > 1 ? 40 : 25, (height - TOP - LABELS) / LANES.length));
+  const lane_px = Math.max(13, Math.min(grown > 1 ? 40 : 25, (height - TOP - LABELS) / LANES.length));
   const y = (lane: number) => TOP + lane_px * (lane + 0.5);
   const bottom = TOP + lane_px * LANES.length;
   hits = [];
@@ -154,7 +154,7 @@ function drawTimeline({ context: c, width: width_px, height: height_px, colours 
   drawPredicted(c, x, y(1), Math.min(run.seenE, pastRange.value?.to ?? Infinity), colours);
   marks(lanes.tones, x, y(TONE), (px, py) => box(c, px, py, 3.8, colours.tone), false);
   marks(lanes.heardByTone, x, y(TONE), (px, py) => box(c, px, py, 3.8, colours.tone), true);
-  drawDoppler(c, lanes.doppler, x, y(DOPPLER), colours);
+  drawDoppler(c, lanes, x, y(DOPPLER), colours);
   marks(
     lanes.live,
     x,
@@ -323,21 +323,23 @@ function drawPredicted(
 /** Features that the carrier's Doppler shows: each where the vehicle was, and until when ground had recognised it. */
 function drawDoppler(
   c: CanvasRenderingContext2D,
-  all: Lanes['doppler'],
+  lanes: Lanes,
   x: (e: number) => number,
   y: number,
   colours: Surface['colours'],
 ): void {
   c.font = `${TYPE.mark}px ${colours.sans}`;
   c.textAlign = 'left';
-  for (const [i, { e_s, told_e_s }] of all.entries()) {
+  for (const [i, { e_s, told_e_s }] of lanes.doppler.entries()) {
     const px = x(e_s);
     if (px < GUTTER - 6) continue;
     c.strokeStyle = colours.tone;
     line(c, px, y, x(told_e_s), y);
     triangle(c, px, y, colours.tone);
     const delay = `+${(told_e_s - e_s).toFixed(1)} s`;
-    if (px + 12 + c.measureText(delay).width < x(all[i + 1]?.e_s ?? Infinity)) c.fillText(delay, px + 8, y + 0.5);
+    const silent_e_s = lanes.toneOutages.find(({ from }) => from > e_s)?.from;
+    const next_e_s = Math.min(lanes.doppler[i + 1]?.e_s ?? Infinity, silent_e_s ?? Infinity);
+    if (px + 12 + c.measureText(delay).width < x(next_e_s)) c.fillText(delay, px + 8, y + 0.5);
   }
 }
 
