@@ -36,6 +36,7 @@ class Worker {
 
     WorkerProgress run(const std::function<void(const WorkerProgress&)>& tell) {
         std::vector<std::jthread> threads;
+        threads.reserve(settings_.jobs);
         for (unsigned i = 0; i < settings_.jobs; ++i) threads.emplace_back([this, i] { fly_cases(i); });
         auto spoken = Clock::now();
         while (!stop_) {
