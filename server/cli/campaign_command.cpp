@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <functional>
 #include <memory>
+#include <spdlog/spdlog.h>
 #include <thread>
 
 namespace aeolis::server {
@@ -51,7 +52,12 @@ Result<campaign::Call> flown(const CampaignOptions& options, const campaign::Ord
     if (!store) return store.error();
     stop_at_interrupt();
     ProgressLine line;
-    const auto draw = [&](const campaign::Progress& so_far) { line.draw(campaign::progress_line(so_far)); };
+    std::string waiting_for;
+    const auto draw = [&](const campaign::Progress& so_far) {
+        if (so_far.waiting_for != waiting_for && !so_far.waiting_for.empty()) spdlog::warn("{}", so_far.waiting_for);
+        waiting_for = so_far.waiting_for;
+        line.draw(campaign::progress_line(so_far));
+    };
     const auto progress = options.nats.url.empty() ? campaign::fly(*store, order, dictionary, stop_asked(), draw)
                                                    : flown_elsewhere(options, order, dictionary, *store, draw);
     if (!progress) return progress.error();

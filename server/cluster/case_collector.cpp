@@ -20,7 +20,6 @@ constexpr std::size_t choose_below = 1500;
 constexpr std::size_t answers_at_once = 256;
 constexpr auto tell_every = std::chrono::milliseconds{100};
 constexpr auto engine_again = std::chrono::milliseconds{500};
-constexpr std::size_t set_aside_told_max = 1000;  // chosen: they are counted beyond
 
 class Collector {
   public:
@@ -32,26 +31,32 @@ class Collector {
     }
 
     Result<Progress> run(const std::atomic<bool>& stop, const std::function<void(const Progress&)>& tell) {
-        bool open = false;
-        while (!stop) {
-            if (const auto chosen = choose(); !chosen) return chosen.error();
-            if (waiting_.empty() && fresh_.empty()) break;
-            if (!open) open = told(opened());
-            if (open) open = told(listen());
-            if (open) open = told(queue_chosen());
-            if (!open) std::this_thread::sleep_for(engine_again);
-            if (const auto kept = keep(false); !kept) return kept.error();
-            if (open && Clock::now() - heard_ > times_.quiet) open = told(choose_lost_again());
-            report(tell);
-        }
-        if (const auto kept = keep(true); !kept) return kept.error();
+        const auto stored = collect(stop, tell);
         close();
+        if (!stored) return stored.error();
         told_ = {};
         report(tell);
         return std::move(progress_);
     }
 
   private:
+    /// The Error is the store's.
+    Result<void> collect(const std::atomic<bool>& stop, const std::function<void(const Progress&)>& tell) {
+        bool open = false;
+        while (!stop) {
+            if (const auto chosen = choose(); !chosen) return chosen;
+            if (waiting_.empty() && fresh_.empty()) break;
+            if (!open) open = told(opened());
+            if (open) open = told(listen());
+            if (open) open = told(queue_chosen());
+            if (!open) std::this_thread::sleep_for(engine_again);
+            if (const auto kept = keep(false); !kept) return kept;
+            if (open && Clock::now() - heard_ > times_.quiet) open = told(choose_lost_again());
+            report(tell);
+        }
+        return keep(true);
+    }
+
     /// The engine's part: an Error is told and waited for, never the end.
     bool told(const Result<void>& done) {
         progress_.waiting_for = done ? "" : done.error().message;
@@ -76,18 +81,22 @@ class Collector {
             return made;
         auto consumer = engine_.consumer(answer_stream, subjects_.answer_consumer, subjects_.answers);
         if (!consumer) return consumer.error();
+        done_.clear();  // of the consumer before; what was not taken is given again, and then known
         answers_.emplace(std::move(*consumer));
+        heard_ = Clock::now();
+        chosen_ = waiting_;
+        return publish_order();
+    }
+
+    /// The newest message of its subject: again does no harm.
+    Result<void> publish_order() {
         v1::CampaignOrder order;
         order.set_campaign(queue_);
         order.set_scenario_text(identity_.scenario_text);
         order.set_seed(identity_.seed);
         order.set_dictionary(identity_.dictionary);
         order.set_program(identity_.program);
-        if (const auto published = engine_.publish(subjects_.order, order.SerializeAsString()); !published)
-            return published;
-        heard_ = Clock::now();
-        chosen_ = waiting_;
-        return {};
+        return engine_.publish(subjects_.order, order.SerializeAsString());
     }
 
     /// Chooses more cases that the store lacks, when few wait.
@@ -127,7 +136,7 @@ class Collector {
             auto given = answers_->next(answers_at_once, tell_every);
             if (!given) return given.error();
             for (auto& one : *given) take(std::move(one));
-            more = given->size() == answers_at_once && fresh_.size() < ahead;
+            more = given->size() == answers_at_once && done_.size() < ahead;
         }
         return {};
     }
@@ -156,7 +165,7 @@ class Collector {
             ++progress_.done;
             ++progress_.flown;
             count(answer.worker());
-        } else if (progress_.set_aside.size() < set_aside_told_max) {
+        } else {
             progress_.set_aside.push_back({answer.number(), answer.set_aside()});
         }
         done_.push_back(std::move(given));
@@ -188,7 +197,7 @@ class Collector {
         const auto untaken = engine_.untaken(case_stream, subjects_.case_consumer);
         if (!untaken) return untaken.error();
         if (*untaken == 0) chosen_ = waiting_;
-        return {};
+        return publish_order();
     }
 
     void close() {

@@ -25,7 +25,7 @@ struct CollectorTimes {
 /// In       `identity` as the store has it. tell(progress): called on the calling thread, ten times a second
 /// Commit   an answer is durable when it is taken out of the queue: whoever dies, no case is lost and none is twice
 ///          in the file
-/// End      all cases are stored or set aside, or `stop` was set. Then the queue is emptied: no worker flies on
+/// End      all cases are stored or set aside, or `stop` was set. Then the queue is emptied: no further case begins
 /// Memory   the numbers of the cases that wait, at most two thousand
 /// Faults   a failed write to the store ends the campaign. An engine that is away is waited for, and told in
 ///          `waiting_for`; what it lost is queued again

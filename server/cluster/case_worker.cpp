@@ -59,7 +59,10 @@ class Worker {
         progress_.flown = flown_;
         progress_.set_aside = set_aside_;
         progress_.wall_s = std::chrono::duration<double>{Clock::now() - began_}.count();
-        return progress_;
+        auto now = progress_;
+        const std::scoped_lock lock{mutex_};
+        if (now.waiting_for.empty()) now.waiting_for = refusal_;
+        return now;
     }
 
     /// Which campaigns the engine has now.
@@ -135,6 +138,7 @@ class Worker {
         auto known = consumers.find(campaign.queue);
         if (known == consumers.end()) {
             auto made = engine_.consumer(case_stream, campaign.subjects.case_consumer, campaign.subjects.cases);
+            told(made ? Result<void>{} : made.error());
             if (!made) return false;
             known = consumers.emplace(campaign.queue, std::move(*made)).first;
         }
@@ -160,18 +164,36 @@ class Worker {
         answer.set_number(order.number());
         answer.set_worker(settings_.name);
         if (given.times() > tries_max) {
-            answer.set_set_aside(fmt::format("taken {} times, and no worker answered", tries_max));
-            ++set_aside_;
+            answer.set_set_aside(fmt::format("given {} times without an answer", tries_max));
         } else {
             hold(&given);
-            const auto result = campaign.fly(order.number());
+            const auto result = flown(campaign, order.number());
             release(&given);
             if (!result) return given.give_back();
             *answer.mutable_flown() = message_of(*result);
-            ++flown_;
         }
         // The answer first: a case that is taken without one would be lost.
-        if (engine_.publish(campaign.subjects.answers, answer.SerializeAsString())) (void)given.take();
+        const auto published = engine_.publish(campaign.subjects.answers, answer.SerializeAsString());
+        told(published);
+        if (!published) return;
+        ++(answer.has_flown() ? flown_ : set_aside_);
+        (void)given.take();
+    }
+
+    /// None: it was abandoned, or could not begin.
+    std::optional<campaign::CaseResult> flown(CampaignAtWork& campaign, std::uint64_t number) {
+        try {
+            return campaign.fly(number);
+        } catch (const std::exception& error) {
+            told(Error{fmt::format("case {}: {}", number, error.what())});
+            return std::nullopt;
+        }
+    }
+
+    /// What the threads have last been refused, for who looks at the progress.
+    void told(const Result<void>& done) {
+        const std::scoped_lock lock{mutex_};
+        refusal_ = done ? "" : done.error().message;
     }
 
     void hold(Given* given) {
@@ -192,7 +214,8 @@ class Worker {
     std::atomic<std::uint64_t> flown_{0}, set_aside_{0};
     WorkerProgress progress_;
     const Clock::time_point began_ = Clock::now();
-    std::mutex mutex_;  // of the two below
+    std::mutex mutex_;  // of the three below
+    std::string refusal_;
     Campaigns campaigns_;
     std::vector<Given*> in_flight_;
 };

@@ -2,6 +2,7 @@
 #include "server/cluster/engine.hpp"
 
 #include <fmt/format.h>
+#include <mutex>
 #include <nats/nats.h>
 #include <utility>
 
@@ -53,7 +54,8 @@ std::string without_secrets(const std::string& urls) {
 
 std::string text_of(natsStatus status, jsErrCode code) {
     if (status == NATS_TIMEOUT) return "no answer";
-    if (status == NATS_NO_RESPONDERS) return "it has no JetStream (start it with -js)";
+    if (status == NATS_NO_RESPONDERS)
+        return "nobody there takes it: no such stream, or no JetStream (start it with -js)";
     if (code == JSNotEnabledErr) return "JetStream is not enabled there (start it with -js)";
     if (code == JSNotEnabledForAccountErr) return "JetStream is not enabled for this account";
     const char* detail = nats_GetLastError(nullptr);
@@ -137,6 +139,8 @@ Result<std::vector<Given>> Consumer::next(std::size_t count, std::chrono::millis
 
 struct Engine::State {
     std::string shown;
+    std::mutex mutex;     // of the one below, which a thread of the library writes
+    std::string refusal;  // of what was published without waiting; empty: none
     Connection connection;
     Streams streams;
 
@@ -194,6 +198,13 @@ Result<Engine> Engine::connect(const EngineAddress& address, const std::string& 
     jsOptions_Init(&defaults);
     defaults.Wait = patience.count();
     defaults.PublishAsync.MaxPending = pending_max;
+    // Without this the library takes a refusal for done.
+    defaults.PublishAsync.ErrHandler = [](jsCtx*, jsPubAckErr* refusal, void* closure) {
+        auto& told = *static_cast<State*>(closure);
+        const std::scoped_lock lock{told.mutex};
+        if (told.refusal.empty()) told.refusal = refusal->ErrText != nullptr ? refusal->ErrText : "refused";
+    };
+    defaults.PublishAsync.ErrHandlerClosure = state.get();
     jsCtx* streams = nullptr;
     status = natsConnection_JetStream(&streams, connection, &defaults);
     if (status != NATS_OK) return state->refused("JetStream", status);
@@ -214,8 +225,10 @@ Result<void> Engine::make_stream(const std::string& stream, const std::string& s
     config.SubjectsLen = 1;
     config.Retention = keep == Keep::until_taken ? js_WorkQueuePolicy : js_LimitsPolicy;
     config.Storage = js_FileStorage;
-    config.MaxAge = forgotten_after_s * second_ns;
-    if (keep == Keep::newest) config.MaxMsgsPerSubject = 1;
+    if (keep == Keep::newest)
+        config.MaxMsgsPerSubject = 1;
+    else
+        config.MaxAge = forgotten_after_s * second_ns;
     jsErrCode code{};
     jsStreamInfo* info = nullptr;
     // An engine's administrator may have made it with more replicas or bounds; then it is used as it is.
@@ -239,19 +252,24 @@ Result<void> Engine::publish(const std::string& subject, std::string_view octets
 }
 
 Result<void> Engine::publish(const std::string& subject, const std::vector<std::string>& messages) {
-    for (const auto& message : messages) {
-        const auto status = js_PublishAsync(state_->streams.get(), subject.c_str(), message.data(),
-                                            static_cast<int>(message.size()), nullptr);
-        if (status != NATS_OK) return state_->refused("publishing to " + subject, status);
+    {
+        const std::scoped_lock lock{state_->mutex};
+        state_->refusal.clear();
     }
+    auto status = NATS_OK;
+    for (auto message = messages.begin(); message != messages.end() && status == NATS_OK; ++message)
+        status = js_PublishAsync(state_->streams.get(), subject.c_str(), message->data(),
+                                 static_cast<int>(message->size()), nullptr);
     jsPubOptions options;
     jsPubOptions_Init(&options);
     options.MaxWait = patience.count();
-    const auto status = js_PublishAsyncComplete(state_->streams.get(), &options);
-    // What was not confirmed must not be sent again behind the caller's back.
-    natsMsgList left{};
+    if (status == NATS_OK) status = js_PublishAsyncComplete(state_->streams.get(), &options);
+    natsMsgList left{};  // not confirmed, and no more waited for
     if (js_PublishAsyncGetPendingList(&left, state_->streams.get()) == NATS_OK) natsMsgList_Destroy(&left);
     if (status != NATS_OK) return state_->refused("publishing to " + subject, status);
+    const std::scoped_lock lock{state_->mutex};
+    if (!state_->refusal.empty())
+        return Error{fmt::format("{}: publishing to {}: {}", state_->shown, subject, state_->refusal)};
     return {};
 }
 
@@ -303,6 +321,7 @@ Result<void> Engine::make_consumer(const std::string& stream, const std::string&
     config.AckPolicy = js_AckExplicit;
     config.AckWait = again_after.count() * second_ns;
     config.MaxDeliver = -1;
+    config.MaxAckPending = -1;  // as many at a time as there are processors
     jsErrCode code{};
     jsConsumerInfo* info = nullptr;
     const auto status = js_AddConsumer(&info, state_->streams.get(), stream.c_str(), &config, nullptr, &code);

@@ -109,9 +109,9 @@ TEST_CASE("clients are served in turn, each in its own order, and no client take
 }
 
 TEST_CASE("a question of one client is answered while another's slow ones go on and wait", "[http][bounds]") {
+    std::atomic<bool> enough{false};
     const Recorded recorded;
     auto& threads = *recorded.threads;
-    std::atomic<bool> enough{false};
     const auto slow = [&](archive::Reader& reader) {
         while (!enough && !reader.stopped()) (void)reader.proof(archive::RunId{1}).ok();
     };
