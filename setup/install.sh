@@ -59,7 +59,8 @@ need_packages() {
     }
 }
 
-# need_unpacked PACKAGE: has Debian's package of a program in build/PACKAGE without installing it, so that no service begins.
+# need_unpacked PACKAGE: has Debian's package of a program in build/PACKAGE without installing it, so that no service
+# begins.
 need_unpacked() {
     local folder=$root/build/$1 as_root=()
     [ -e "$folder/unpacked" ] && return

@@ -23,7 +23,8 @@ const char* name_of(dictionary::Severity severity);
 /// "sky_crane" for a condition on one state of one channel; else the conditions in words.
 std::string context_text(const dictionary::Dictionary& dictionary,
                          const std::vector<dictionary::Precondition>& context);
-/// The first context that holds by the latest values, by channel; null: none, so that the limits without a context hold.
+/// The first context that holds by the latest values, by channel; null: none, so that the limits without a context
+/// hold.
 const dictionary::ContextAlarms* context_in_force(const dictionary::Alarms& alarms,
                                                   const std::vector<std::optional<double>>& latest);
 /// Whether an alarm of the channel, in any context, latches until it is reset.

@@ -147,7 +147,7 @@ std::string campaign_json(const Summary& summary, const Call& call) {
         .raw("failures", json_array(summary.failures, failure_json))
         .count("outside_limits", summary.outside_limits)
         .raw("outside", json_array(summary.outside, failure_json))
-        .count("jobs", call.jobs)
+        .count("jobs", call.queue.empty() ? call.jobs : 0)
         .count("flown", call.progress.flown)
         .raw("workers", json_array(call.progress.workers, worker_json))
         .raw("set_aside", json_array(call.progress.set_aside, set_aside_json))

@@ -11,7 +11,7 @@ namespace aeolis::server::campaign {
 /// The work of this call, beside the contents of the file.
 struct Call {
     Progress progress{};
-    unsigned jobs = 1;
+    unsigned jobs = 1;       ///< cases flown here at a time
     std::string scenario{};  ///< as given: a file, or the name of a shipped scenario
     std::string results{};   ///< the results file
     std::string queue{};     ///< the engine whose workers flew the cases; empty: flown here

@@ -79,8 +79,8 @@ int ingest_tones(const IngestTonesOptions& options) {
     if (!archive) return failed(archive.error().message);
     PipelineThread pipeline{std::move(*archive), *dictionary, PipelineThread::Faults::give_up, pipeline::Publish{}};
     pipeline.want_items(false);
-    // No clock of a vehicle is known: SCLK stands for the time of reception since J2000, and entry is 0 of the predict's
-    // scale.
+    // No clock of a vehicle is known: SCLK stands for the time of reception since J2000, and entry is 0 of the
+    // predict's scale.
     const auto sclk_of = [](Ert ert) { return Sclk{static_cast<double>(ert.microseconds) * 1.0e-6}; };
     archive::RunStart run_start;
     run_start.scenario = "recording";

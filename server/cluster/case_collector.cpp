@@ -155,8 +155,8 @@ class Collector {
         }
         heard_ = Clock::now();
         chosen_.erase(answer.number());
-        if (waiting_.erase(answer.number()) == 0) {  // stored already: a case that was given twice
-            done_.push_back(std::move(given));
+        if (waiting_.erase(answer.number()) == 0 && !(answer.has_flown() && no_longer_aside(answer.number()))) {
+            done_.push_back(std::move(given));  // stored already: a case that was given twice
             return;
         }
         if (answer.has_flown()) {
@@ -169,6 +169,11 @@ class Collector {
             progress_.set_aside.push_back({answer.number(), answer.set_aside()});
         }
         done_.push_back(std::move(given));
+    }
+
+    /// An answer that comes after its case was set aside is as good as any.
+    bool no_longer_aside(std::uint64_t number) {
+        return std::erase_if(progress_.set_aside, [&](const auto& one) { return one.number == number; }) > 0;
     }
 
     void count(const std::string& worker) {
@@ -201,11 +206,12 @@ class Collector {
     }
 
     void close() {
+        done_.clear();  // before their consumer
         answers_.reset();
         (void)engine_.clear(campaign_stream, subjects_.order);
         (void)engine_.clear(case_stream, subjects_.cases);
         (void)engine_.remove_consumer(case_stream, subjects_.case_consumer);
-        if (!waiting_.empty()) return;  // stopped: answers under way are for the next call
+        if (!waiting_.empty() || !fresh_.empty()) return;  // answers that are not stored are for the next call
         (void)engine_.clear(answer_stream, subjects_.answers);
         (void)engine_.remove_consumer(answer_stream, subjects_.answer_consumer);
     }

@@ -13,7 +13,8 @@
 #include <string_view>
 #include <vector>
 
-// NATS JetStream as the rest of server/cluster uses it: streams, messages, consumers. engine.cpp alone names its library.
+// NATS JetStream as the rest of server/cluster uses it: streams, messages, consumers. engine.cpp alone names its
+// library.
 namespace aeolis::server::cluster {
 
 /// Where an engine is, and who asks. A URL may hold user:password@ or token@; a file of credentials keeps them out of

@@ -19,8 +19,8 @@
 
 namespace aeolis::server {
 
-/// Follows another mission in its own thread: receives octets, has a station find the packets in them, hands both to the
-/// archive as one run.
+/// Follows another mission in its own thread: receives octets, has a station find the packets in them, hands both to
+/// the archive as one run.
 ///
 /// In       octets of a TCP connection or of datagrams       Out   deliveries to the pipeline, the octets as they came
 ///          among them; run states on change
@@ -31,11 +31,11 @@ namespace aeolis::server {
 ///          most every ten seconds, as numbers by kind
 /// Faults   octets that are no packet are counted and skipped. When bare packets cannot be found any more, it
 ///          reconnects. Each change is logged and is an item of the run
-/// Silence  the link is up once packets come. It is lost when the connection breaks, and when packets stay out longer than
-///          it has learnt that they do (telemetry/link_rhythm.hpp)
+/// Silence  the link is up once packets come. It is lost when the connection breaks, and when packets stay out longer
+///          than it has learnt that they do (telemetry/link_rhythm.hpp)
 /// Times    Earth received times go on with the monotonic clock when the system's clock jumps (EarthClock)
-/// Memory   a piece of `piece_octets`, and the station's. A slow disk blocks the thread and so the TCP sender; datagrams
-///          that arrive meanwhile may be lost, as UDP permits
+/// Memory   a piece of `piece_octets`, and the station's. A slow disk blocks the thread and so the TCP sender;
+///          datagrams that arrive meanwhile may be lost, as UDP permits
 class DownlinkFollower {
   public:
     static constexpr std::size_t piece_octets = 65536;  ///< the largest datagram

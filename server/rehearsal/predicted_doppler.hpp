@@ -9,8 +9,8 @@
 
 namespace aeolis::server {
 
-/// Ground's predict of a landing: its Doppler, and when lift changes sides in reversals of the bank, in seconds from the
-/// scenario's entry.
+/// Ground's predict of a landing: its Doppler, and when lift changes sides in reversals of the bank, in seconds from
+/// the scenario's entry.
 struct PredictedFlight {
     TimeTable doppler_hz;
     std::vector<double> reversals_s;

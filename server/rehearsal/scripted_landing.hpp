@@ -51,8 +51,8 @@ class ScriptedLanding {
     void equip_station(const simulation::Scenario& scenario, std::uint64_t seed, std::uint64_t case_number,
                        const dictionary::Dictionary& dictionary);
 
-    /// Sends the script's commands that are due, passes to the vehicle what the gateway radiates, then flies one cycle of
-    /// 1/64 s. The result is valid until the next step, and until then the caller's to move from.
+    /// Sends the script's commands that are due, passes to the vehicle what the gateway radiates, then flies one cycle
+    /// of 1/64 s. The result is valid until the next step, and until then the caller's to move from.
     telemetry::Received& step();
     /// Gives received packets to the command path: for replies, and for the preconditions of later commands. Those that
     /// it needs are then decoded.

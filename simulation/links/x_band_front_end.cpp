@@ -16,7 +16,8 @@ XBandFrontEnd::XBandFrontEnd(const MfskWaveform& waveform, double total_c_n0_dbh
       sampler_(waveform, telemetry::x_band_rate_hz, seed, case_number) {}
 
 telemetry::XBandSamples XBandFrontEnd::sample(const XBandField& field) {
-    // The Doppler goes from that of the last cycle's start to that of this one's; the predict removed is of those times.
+    // The Doppler goes from that of the last cycle's start to that of this one's; the predict removed is of those
+    // times.
     const double from_hz = last_doppler_hz_.value_or(field.doppler_hz);
     XBandSampler::Stretch stretch;
     stretch.samples = cycle_samples;

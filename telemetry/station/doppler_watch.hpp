@@ -43,8 +43,8 @@ class DopplerDeparture {
     std::vector<Past> past_;           ///< departures of the last seconds
 };
 
-/// Recognises features of the flight by the Doppler of the X-band carrier: drag, reversals of the bank, the parachute and
-/// the heatshield.
+/// Recognises features of the flight by the Doppler of the X-band carrier: drag, reversals of the bank, the parachute
+/// and the heatshield.
 ///
 /// In       the carrier, eight estimates a second            Out   features, each once
 /// Rule     a feature is seen when the carrier departs by as much as that feature makes it, three estimates in a row,
@@ -52,10 +52,10 @@ class DopplerDeparture {
 ///          that is found only after a feature does not show it. The heatshield's small step counts only after the
 ///          parachute was seen
 /// Drag     grows by e in some seconds, over the gravity's quadratic course
-/// Reversal lift points to Earth's side of the flight path or away from it, so that the rate of the Doppler takes a step
-///          by an eighth to a fifth of itself. The step is sought in the logarithm of the rate over that of the predict,
-///          of which the predicted reversals were taken out. So a reversal that comes when predicted is seen like one
-///          that does not, and one that does not come is not
+/// Reversal lift points to Earth's side of the flight path or away from it, so that the rate of the Doppler takes a
+///          step by an eighth to a fifth of itself. The step is sought in the logarithm of the rate over that of the
+///          predict, of which the predicted reversals were taken out. So a reversal that comes when predicted is seen
+///          like one that does not, and one that does not come is not
 /// Left out what the predict does not show; what comes after Earth's set
 /// Limits   chosen over 500 dispersed landings: docs/tones.md
 /// A value.

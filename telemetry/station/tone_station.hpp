@@ -16,7 +16,8 @@ namespace aeolis::telemetry {
 
 /// The receiving half of a deep-space station: tones and the state of X-band from samples.
 ///
-/// In       X-band samples in order, without a gap           Out   decisions, the carrier, whether there is one, spectra
+/// In       X-band samples in order, without a gap
+/// Out      decisions, the carrier, whether there is one, spectra
 /// Rate     16384 samples a second, or that of a recording; 2 ms of processor time a second of signal
 /// Rule     X-band is up while a carrier is tracked. Before the first one it is down once the receiver has searched for
 ///          `first_search_s` without success; an unnoticed carrier leaves no report

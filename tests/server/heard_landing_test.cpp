@@ -68,8 +68,8 @@ std::vector<Told> changes(const std::vector<telemetry::LinkState>& links) {
     return all;
 }
 
-/// X-band goes up and down when the receiver has found its carrier and lost it: for the same reasons as in truth, except
-/// for what is shorter than a receiver takes to notice.
+/// X-band goes up and down when the receiver has found its carrier and lost it: for the same reasons as in truth,
+/// except for what is shorter than a receiver takes to notice.
 void check_x_band(const std::vector<Told>& found, std::vector<Told> truth) {
     constexpr std::int64_t found_after_us = 4'500'000, lost_after_us = 2'600'000, first_search_us = 10'200'000;
     std::string all_found, all_truth;
@@ -195,9 +195,9 @@ TEST_CASE("over more landings, with a reset and with other seeds, ground names e
     for (const std::uint64_t seed : {1U, 2U}) check_silences("relay_passes", seed);
 }
 
-// GNC alone, the statistical carrier at 22 dB-Hz throughout, neither outages nor hand-over. Each landing is heard twice:
-// as flown, and with the lift's turns taken out of its Doppler, where a reversal that is told is false. The figures are
-// those of docs/tones.md.
+// GNC alone, the statistical carrier at 22 dB-Hz throughout, neither outages nor hand-over. Each landing is heard
+// twice: as flown, and with the lift's turns taken out of its Doppler, where a reversal that is told is false. The
+// figures are those of docs/tones.md.
 TEST_CASE("over 500 dispersed landings each feature of the flight is seen by Doppler, in time and never too early",
           "[.long][station][R53]") {
     constexpr double c_n0_dbhz = 22.0, earth_sets_s = 296.0, light_mps = 299'792'458.0, drag_mps2 = 0.02 * 9.80665;

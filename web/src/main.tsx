@@ -31,7 +31,8 @@ listenForMenus();
 listenForCalls();
 
 /**
- * What is opened in a hurry, perhaps when there is no connection any more, is loaded before that; else when it is opened.
+ * What is opened in a hurry, perhaps when there is no connection any more, is loaded before that; else when it is
+ * opened.
  */
 const loadSoon = () =>
   Promise.all([import('./alarms/view'), import('./menu/view'), import('./commands/details')]).catch(() => undefined);
