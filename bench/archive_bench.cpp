@@ -92,12 +92,13 @@ Cost raw_append(const std::filesystem::path& file, const std::vector<std::uint8_
     const auto run = [&](const char* sql) { must(sqlite3_exec(database, sql, nullptr, nullptr, nullptr) == 0, sql); };
     run("PRAGMA page_size=16384; PRAGMA journal_mode=WAL; PRAGMA synchronous=FULL; PRAGMA wal_autocheckpoint=1000; "
         "PRAGMA cache_size=-16000;"
-        "CREATE TABLE units (key INTEGER PRIMARY KEY, run INTEGER NOT NULL, apid INTEGER NOT NULL, packet INTEGER,"
+        "CREATE TABLE packets (key INTEGER PRIMARY KEY, run INTEGER NOT NULL, apid INTEGER NOT NULL, packet INTEGER,"
         " sclk REAL NOT NULL, ert_us INTEGER NOT NULL, link INTEGER NOT NULL, source INTEGER NOT NULL,"
         " standing INTEGER NOT NULL, sampled INTEGER NOT NULL, refusal TEXT, octets BLOB NOT NULL) STRICT;"
-        "CREATE INDEX units_by_time ON units (run, apid, source, sclk);");
+        "CREATE INDEX packets_by_time ON packets (run, apid, source, sclk);");
     sqlite3_stmt* insert = nullptr;
-    must(sqlite3_prepare_v2(database, "INSERT INTO units VALUES (?,?,?,?,?,?,?,?,?,?,?,?)", -1, &insert, nullptr) == 0,
+    must(sqlite3_prepare_v2(database, "INSERT INTO packets VALUES (?,?,?,?,?,?,?,?,?,?,?,?)", -1, &insert, nullptr) ==
+             0,
          "prepare");
     const Cost cost = cost_of([&] {
         for (std::size_t i = 0; i < stored_packets; ++i) {
@@ -305,7 +306,7 @@ int main() {
         ours = better(ours, archive_append(folder.path() / ("ours" + std::to_string(i)), octets));
     }
     const double ratio = raw.wall / ours.wall;
-    std::printf("append of 256-octet units, %zu a commit, FULL\n", batch_packets);
+    std::printf("append of 256-octet packets, %zu a commit, FULL\n", batch_packets);
     std::printf("  limit, raw SQLite  %9.0f rows/s  %5.2f us of CPU a row\n", stored_packets / raw.wall,
                 1e6 * raw.cpu / stored_packets);
     std::printf("  archive            %9.0f rows/s  %5.2f us of CPU a row\n", stored_packets / ours.wall,
@@ -329,7 +330,7 @@ int main() {
     must(open.ok(), "Reader::open");
     const archive::SeriesQuery all{{"wideband_7"}, {}, 2000},
         newest{{"wideband_7"}, {(landing_packets - 3840) / 64.0, {}}, 2000};
-    std::printf("  of a run that goes on, its open end from raw units: all %.2f ms, the last minute %.2f ms of CPU\n",
+    std::printf("  of a run that goes on, its open end from raw packets: all %.2f ms, the last minute %.2f ms of CPU\n",
                 median_ms([&] { must(open->series(RunId{1}, all).ok(), "open thinned"); }),
                 median_ms([&] { must(open->series(RunId{1}, newest).ok(), "open newest"); }));
 

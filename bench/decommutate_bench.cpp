@@ -4,7 +4,7 @@
 // The reference is the packet's CRC alone: the one pass over the octets that every decommutator needs.
 #include "common/crc.hpp"
 #include "telemetry/decommutator.hpp"
-#include "telemetry/unit_identity.hpp"
+#include "telemetry/packet_identity.hpp"
 
 #include <algorithm>
 #include <cstdio>
@@ -78,16 +78,16 @@ int main() {
         if (decommutator.decode(packet, decoded)) ++refused;
         sum += decoded.raw[0];
     });
-    telemetry::UnitRegister units;
+    telemetry::PacketRegister packets;
     const double registered =
-        rate_per_s(octets, [&](const auto& packet) { units.add(packet, telemetry::Path::recorded); });
+        rate_per_s(octets, [&](const auto& packet) { packets.add(packet, telemetry::Path::recorded); });
 
     std::printf("GncNavigation, %u octets, %zu fields (%llu)\n", wanted->octets, wanted->fields.size(),
                 static_cast<unsigned long long>(sum & 1U));
     std::printf("decommutated     %10.0f /s   goal %.0f /s   ratio %.2f\n", rate, goal_per_s, rate / goal_per_s);
     std::printf("CRC-16 alone     %10.0f /s   decommutation reaches %.2f of it\n", limit, rate / limit);
     std::printf("memcpy alone     %10.0f /s   decommutation reaches %.3f of it\n", copied, rate / copied);
-    std::printf("unit register    %10.0f /s\n", registered);
+    std::printf("packet register  %10.0f /s\n", registered);
     if (refused > 0) std::printf("%llu packets were refused\n", static_cast<unsigned long long>(refused));
     return rate >= goal_per_s && refused == 0 ? 0 : 1;
 }

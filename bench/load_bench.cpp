@@ -266,7 +266,7 @@ struct ListServer {
     ListServer(const std::filesystem::path& folder, const dictionary::Dictionary& dictionary,
                server::QueryThreads& queries, server::PipelineThread& pipeline, server::StreamHub& hub)
         : console(folder / "web"),
-          desk(
+          rehearsals(
               scenarios, dictionary, pipeline, [](const auto& action) { action(); },
               [](archive::RunId, const auto& done) { done(Error{"was not cut off"}); },
               {[](archive::RunId, const auto&, bool, const auto& done) { done(std::string{}); },
@@ -274,8 +274,8 @@ struct ListServer {
               {[](const auto&) {}, [](const auto&) {}}),
           campaigns(folder, scenarios, dictionary), predictions(dictionary),
           access(std::move(server::Access::open({.file = folder / "accounts.json"})).value()),
-          api({dictionary, scenarios, queries, desk, predictions, campaigns, hub, pipeline, console, *access, false,
-               [] { return std::size_t{0}; }, clock_watch}) {
+          api({dictionary, scenarios, queries, rehearsals, predictions, campaigns, hub, pipeline, console, *access,
+               false, [] { return std::size_t{0}; }, clock_watch}) {
         for (std::size_t i = 0; i < people; ++i) {
             v1::NewUser user;
             user.set_user("person" + std::to_string(i));
@@ -294,9 +294,9 @@ struct ListServer {
 
     server::ScenarioLibrary scenarios{AEOLIS_SOURCE_DIR "/simulation/scenarios"};
     server::StaticFiles console;
-    server::RehearsalDesk desk;
-    server::campaign::CampaignDesk campaigns;
-    server::PredictionDesk predictions;
+    server::RehearsalManager rehearsals;
+    server::campaign::CampaignManager campaigns;
+    server::PredictionService predictions;
     std::unique_ptr<server::Access> access;
     server::ClockWatch clock_watch;
     server::Api api;

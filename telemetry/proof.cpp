@@ -4,14 +4,14 @@
 namespace aeolis::telemetry {
 namespace {
 
-std::string units(std::uint64_t count) {
-    return std::to_string(count) + (count == 1 ? " unit" : " units");
+std::string packets(std::uint64_t count) {
+    return std::to_string(count) + (count == 1 ? " packet" : " packets");
 }
 
 }  // namespace
 
-Proof prove(const UnitRegister& register_of_run) {
-    const UnitRegister::Counts& counts = register_of_run.counts();
+Proof prove(const PacketRegister& register_of_run) {
+    const PacketRegister::Counts& counts = register_of_run.counts();
     Proof proof;
     proof.recorded = counts.recorded;
     proof.realtime = counts.realtime;
@@ -25,13 +25,13 @@ Proof prove(const UnitRegister& register_of_run) {
 std::string text_of(const Proof& proof) {
     std::string text;
     if (proof.holds()) {
-        text = "all " + units(proof.realtime) + " seen in real time are in the recording, bit for bit";
+        text = "all " + packets(proof.realtime) + " seen in real time are in the recording, bit for bit";
     } else {
-        text = "of " + units(proof.realtime) + " seen in real time, " + std::to_string(proof.realtime_not_recorded) +
+        text = "of " + packets(proof.realtime) + " seen in real time, " + std::to_string(proof.realtime_not_recorded) +
                " are not in the recording and " + std::to_string(proof.realtime_differs) + " differ";
-        if (proof.unregistered > 0) text += "; " + units(proof.unregistered) + " could not be compared";
+        if (proof.unregistered > 0) text += "; " + packets(proof.unregistered) + " could not be compared";
     }
-    return text + "; of " + units(proof.recorded) + " recorded, " + std::to_string(proof.never_seen_live) +
+    return text + "; of " + packets(proof.recorded) + " recorded, " + std::to_string(proof.never_seen_live) +
            " were never seen live";
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "telemetry/unit_identity.hpp"
+#include "telemetry/packet_identity.hpp"
 
 #include <cstdint>
 #include <string>
@@ -22,10 +22,10 @@ struct Proof {
     bool holds() const { return realtime_not_recorded == 0 && realtime_differs == 0 && unregistered == 0; }
 };
 
-Proof prove(const UnitRegister& register_of_run);
+Proof prove(const PacketRegister& register_of_run);
 
-/// "all 4120 units seen in real time are in the recording, bit for bit; of 65123 units recorded, 61003 were never seen
-/// …"
+/// "all 4120 packets seen in real time are in the recording, bit for bit; of 65123 packets recorded, 61003 were never
+/// seen …"
 std::string text_of(const Proof& proof);
 
 }  // namespace aeolis::telemetry

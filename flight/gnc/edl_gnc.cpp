@@ -119,8 +119,8 @@ std::optional<RadarDecision> EdlGnc::on(const RadarSolution& solution) {
     return RadarDecision{believed, judged.conditions};
 }
 
-// A tilt of the attitude subtracts gravity in a wrong direction, and velocity drifts sideways by tilt × g, which the radar
-// shows. Used only after a silence of the IMU: otherwise the attitude is better than the noise of the radar can tell.
+// A tilt of the attitude subtracts gravity in a wrong direction, and velocity drifts sideways by tilt × g, which the
+// radar shows. Used only after a silence of the IMU: otherwise the attitude is better than the noise of the radar can tell.
 void EdlGnc::level_by(const RadarCorrection& correction) {
     if (belief_.attitude_rad() > 0.0 && correction.gain < 1.0) {
         const Vector3 residual_mps = correction.v_M_mps / correction.gain;
@@ -156,10 +156,11 @@ void EdlGnc::reckon(double passed_s) {
     if (passed_s > parameters().tick_apart_max_s) return strapdown_.coast(passed_s);
     surroundings_.altitude_m = measured_.altitude_m;
     surroundings_.free_M_mps2 = measured_.free_M_mps2;
-    const Felt last{strapdown_.specific_force_B_mps2(), strapdown_.rate_B_rps()};
+    const ForceAndRate last{strapdown_.specific_force_B_mps2(), strapdown_.rate_B_rps()};
     const int ticks = static_cast<int>(std::ceil(passed_s / seconds_per_tick));
     for (int i = 0; i < ticks; ++i) {
-        const Felt felt = reckoning_.feel(parameters(), surroundings_, strapdown_.state(), last, seconds_per_tick);
+        const ForceAndRate felt =
+            reckoning_.reckon(parameters(), surroundings_, strapdown_.state(), last, seconds_per_tick);
         strapdown_.reckon(felt.force_B_mps2, felt.rate_B_rps, seconds_per_tick);
     }
 }

@@ -268,7 +268,7 @@ void Api::answer(const Route& route, ApiRequest call) {
 }
 
 void Api::name_latest(ApiRequest& call) const {
-    const auto run = parts_.desk.current().run();
+    const auto run = parts_.rehearsals.current().run();
     if (run == 0) return;
     call.parts[0] = std::to_string(run);
     const std::string_view latest = "latest";
@@ -430,7 +430,7 @@ void Api::remove_run(const ApiRequest& call) {
 }
 
 v1::RunState Api::current_run() const {
-    auto state = parts_.desk.current();
+    auto state = parts_.rehearsals.current();
     if (state.run() != 0) {
         state.set_last_seq(parts_.hub.last_seq());
         state.set_archive_fault(parts_.pipeline.fault());

@@ -10,10 +10,10 @@
 #include "server/api/static_files.hpp"
 #include "server/api/stream_hub.hpp"
 #include "server/base/clock_watch.hpp"
-#include "server/campaign/campaign_desk.hpp"
+#include "server/campaign/campaign_manager.hpp"
 #include "server/pipeline/pipeline_thread.hpp"
-#include "server/rehearsal/prediction_desk.hpp"
-#include "server/rehearsal/rehearsal_desk.hpp"
+#include "server/rehearsal/prediction_service.hpp"
+#include "server/rehearsal/rehearsal_manager.hpp"
 #include "server/scenario/scenario_library.hpp"
 
 #include <filesystem>
@@ -49,9 +49,9 @@ class Api {
         const dictionary::Dictionary& dictionary;
         const ScenarioLibrary& scenarios;
         QueryThreads& queries;
-        RehearsalDesk& desk;
-        PredictionDesk& predictions;
-        campaign::CampaignDesk& campaigns;
+        RehearsalManager& rehearsals;
+        PredictionService& predictions;
+        campaign::CampaignManager& campaigns;
         StreamHub& hub;
         PipelineThread& pipeline;
         const StaticFiles& console;
@@ -198,13 +198,14 @@ std::optional<archive::RunId> run_id(std::string_view text);
 /// The refusal when the operator lacks the right; empty when the operator has it.
 HttpResponse refusal_of(const Operator& who, Right right);
 /// Whether the operator may send this command, by its significance and the operator's list. An act on a queued command
-/// of the run of `desk` needs the right to send that command.
-Result<void> may_send(const Operator& who, const dictionary::Dictionary& dictionary, const RehearsalDesk& desk,
+/// of the run of `rehearsals` needs the right to send that command.
+Result<void> may_send(const Operator& who, const dictionary::Dictionary& dictionary, const RehearsalManager& rehearsals,
                       const v1::CommandRequest& request);
 
 /// The check of may_send(), made again later: the operator may have lost the right meanwhile.
-RehearsalDesk::AuthorityCheck may_still_send(Access& access, const Credentials& credentials,
-                                             const dictionary::Dictionary& dictionary, const RehearsalDesk& desk);
+RehearsalManager::AuthorityCheck may_still_send(Access& access, const Credentials& credentials,
+                                                const dictionary::Dictionary& dictionary,
+                                                const RehearsalManager& rehearsals);
 
 /// With accounts, gives the request the name of its sender, whatever name it carries.
 void name_asker(const Operator& who, v1::CommandRequest& request);

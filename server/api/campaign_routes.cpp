@@ -59,7 +59,7 @@ void Api::campaign_report(const ApiRequest& call) {
 void Api::campaign_touchdowns(const ApiRequest& call) {
     const auto query = QueryText::parse(call.request.query, {"after", "limit"});
     if (!query) return call.respond(error_response(400, query.error()));
-    constexpr auto most = campaign::CampaignDesk::touchdowns_max;
+    constexpr auto most = campaign::CampaignManager::touchdowns_max;
     const auto after = query->count("after", UINT32_MAX), limit = query->amount("limit", most);
     if (!after) return call.respond(error_response(400, after.error()));
     if (!limit) return call.respond(error_response(400, limit.error()));

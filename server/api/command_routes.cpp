@@ -39,11 +39,11 @@ Result<void> may_act_on_any(const Operator& who, const std::string& action) {
 
 /// The right to release or stop a waiting command equals the right to send it: stopping one that must be in time is as
 /// grave.
-Result<void> may_act(const Operator& who, const dictionary::Dictionary& dictionary, const RehearsalDesk& desk,
+Result<void> may_act(const Operator& who, const dictionary::Dictionary& dictionary, const RehearsalManager& rehearsals,
                      const v1::CommandRequest& request) {
     if (!who.accounts) return {};
     const std::string& action = request.action();
-    const auto name = desk.name_of_command(request.number());
+    const auto name = rehearsals.name_of_command(request.number());
     const auto allowed = name ? may_send_named(who, dictionary, *name, false) : may_act_on_any(who, action);
     if (!allowed && name)
         return Error{fmt::format("{} command {}: {}", action, request.number(), allowed.error().message)};
@@ -70,19 +70,20 @@ void name_asker(const Operator& who, v1::CommandRequest& request) {
     if (who.accounts) request.set_controller(person_of(who));
 }
 
-Result<void> may_send(const Operator& who, const dictionary::Dictionary& dictionary, const RehearsalDesk& desk,
+Result<void> may_send(const Operator& who, const dictionary::Dictionary& dictionary, const RehearsalManager& rehearsals,
                       const v1::CommandRequest& request) {
-    if (!request.action().empty()) return may_act(who, dictionary, desk, request);
+    if (!request.action().empty()) return may_act(who, dictionary, rehearsals, request);
     return may_send_named(who, dictionary, request.command(), request.dry_run());
 }
 
-RehearsalDesk::AuthorityCheck may_still_send(Access& access, const Credentials& credentials,
-                                             const dictionary::Dictionary& dictionary, const RehearsalDesk& desk) {
-    return [&access, credentials, &dictionary, &desk](const v1::CommandRequest& request) -> Result<void> {
+RehearsalManager::AuthorityCheck may_still_send(Access& access, const Credentials& credentials,
+                                                const dictionary::Dictionary& dictionary,
+                                                const RehearsalManager& rehearsals) {
+    return [&access, credentials, &dictionary, &rehearsals](const v1::CommandRequest& request) -> Result<void> {
         const auto who = access.identify(credentials);
         if (!may(who, Right::command))
             return Error{"the right to send it was lost while it waited for a change of the timeline"};
-        return may_send(who, dictionary, desk, request);
+        return may_send(who, dictionary, rehearsals, request);
     };
 }
 
@@ -110,14 +111,14 @@ void Api::post_command(const ApiRequest& call) {
     const auto respond = command.dry_run() ? call.respond : audited(call, "command");
     if (const auto many = count_commands(call.who, 1)) return respond(retry_response(429, many->reason, many->wait));
     if (const auto right = complete(call, command); !right) return respond(error_response(400, right.error()));
-    if (const auto allowed = may_send(call.who, parts_.dictionary, parts_.desk, command); !allowed)
+    if (const auto allowed = may_send(call.who, parts_.dictionary, parts_.rehearsals, command); !allowed)
         return respond(error_response(403, allowed.error()));
     const unsigned refused = parts_.dictionary.command(command.command()) == nullptr ? 422 : 409;
-    const auto still = may_still_send(parts_.access, call.request.credentials, parts_.dictionary, parts_.desk);
-    parts_.desk.command(std::move(command), {still, call.who.browser, may(call.who, Right::hazardous)},
-                        [respond, refused](const v1::CommandReply& reply) {
-                            respond(json_response(reply, reply.accepted() ? 202 : refused));
-                        });
+    const auto still = may_still_send(parts_.access, call.request.credentials, parts_.dictionary, parts_.rehearsals);
+    parts_.rehearsals.command(std::move(command), {still, call.who.browser, may(call.who, Right::hazardous)},
+                              [respond, refused](const v1::CommandReply& reply) {
+                                  respond(json_response(reply, reply.accepted() ? 202 : refused));
+                              });
 }
 
 void Api::post_sequence(const ApiRequest& call) {
@@ -138,11 +139,11 @@ void Api::post_sequence(const ApiRequest& call) {
         if (const auto right = complete(call, command); !right)
             return respond(error_response(400, at(right.error().message)));
         command.set_dry_run(sequence.dry_run());
-        if (const auto allowed = may_send(call.who, parts_.dictionary, parts_.desk, command); !allowed)
+        if (const auto allowed = may_send(call.who, parts_.dictionary, parts_.rehearsals, command); !allowed)
             return respond(error_response(403, at(allowed.error().message)));
     }
-    const auto still = may_still_send(parts_.access, call.request.credentials, parts_.dictionary, parts_.desk);
-    parts_.desk.sequence(
+    const auto still = may_still_send(parts_.access, call.request.credentials, parts_.dictionary, parts_.rehearsals);
+    parts_.rehearsals.sequence(
         {sequence.commands().begin(), sequence.commands().end()}, sequence.dry_run(),
         {still, call.who.browser, may(call.who, Right::hazardous)}, [respond](std::vector<v1::CommandReply> replies) {
             v1::SequenceReply reply;

@@ -193,18 +193,18 @@ void Api::metrics(const ApiRequest& call) {
     text.gauge("queries_waiting", "questions that wait for a query thread", parts_.queries.waiting());
     write(text, parts_.queries.waits(), parts_.access.accounts());
     // Of a run only while it goes on: what is over is in the archive.
-    const bool going_on = parts_.desk.going_on();
+    const bool going_on = parts_.rehearsals.going_on();
     const auto of_run = [going_on](auto value) { return going_on ? value : decltype(value){}; };
-    const auto run = parts_.desk.current();
+    const auto run = parts_.rehearsals.current();
     text.gauge("run_in_progress", "1 while a rehearsal goes on", going_on ? 1 : 0);
     text.gauge("commands_waiting", "commands and command files that wait for the run's next cycle",
-               of_run(parts_.desk.commands_waiting()));
+               of_run(parts_.rehearsals.commands_waiting()));
     text.gauge("commands_put_off", "commands and command files that wait until a change of the timeline is decided",
-               parts_.desk.commands_deferred());
+               parts_.rehearsals.commands_deferred());
     text.gauge("commands_queued", "commands that wait for their time, a controller, a pass or an analysis",
-               of_run(parts_.desk.commands_queued()));
+               of_run(parts_.rehearsals.commands_queued()));
     text.gauge("commands_at_uplink", "commands that have left the queue and are not radiated",
-               of_run(parts_.desk.commands_at_uplink()));
+               of_run(parts_.rehearsals.commands_at_uplink()));
     text.gauge("run", "number of the rehearsal that goes on; 0: none does", of_run(run.run()));
     text.gauge("run_pace", "seconds of the vehicle a second, as ordered; 0: as fast as it goes, or none goes on",
                of_run(run.pace()));

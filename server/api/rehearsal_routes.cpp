@@ -2,12 +2,12 @@
 #include "server/api/api.hpp"
 #include "server/base/json.hpp"
 
-// The routes of rehearsals: start, control and faults. RehearsalDesk carries out and answers.
+// The routes of rehearsals: start, control and faults. RehearsalManager carries out and answers.
 namespace aeolis::server {
 namespace {
 
 // 409: may be requested again later. 422: the request itself is wrong.
-RehearsalDesk::Began tell_begun(const Respond& respond, bool going_on) {
+RehearsalManager::Began tell_begun(const Respond& respond, bool going_on) {
     return [respond, refused = going_on ? 409U : 422U](const Result<v1::RunState>& state) {
         respond(state ? json_response(*state, 201) : error_response(refused, state.error()));
     };
@@ -37,7 +37,7 @@ void Api::start_rehearsal(const ApiRequest& call) {
         return call.respond(error_response(400, parsed.error()));
     if (const auto allowed = may_start(call.who, parts_.dictionary, start); !allowed)
         return call.respond(error_response(403, allowed.error()));
-    parts_.desk.start(start, tell_begun(call.respond, parts_.desk.going_on()));
+    parts_.rehearsals.start(start, tell_begun(call.respond, parts_.rehearsals.going_on()));
 }
 
 void Api::control_rehearsal(const ApiRequest& call) {
@@ -47,9 +47,9 @@ void Api::control_rehearsal(const ApiRequest& call) {
     if (const auto allowed = may_start(call.who, parts_.dictionary, control.start()); !allowed)
         return call.respond(error_response(403, allowed.error()));
     sign(call.who, control);
-    const bool going_on = parts_.desk.going_on();
+    const bool going_on = parts_.rehearsals.going_on();
     const bool starts = control.action_case() == v1::RehearsalControl::kStart;
-    const auto done = parts_.desk.control(control, tell_begun(call.respond, going_on));
+    const auto done = parts_.rehearsals.control(control, tell_begun(call.respond, going_on));
     if (!done) return call.respond(error_response(going_on ? 422 : 409, done.error()));
     if (!starts) call.respond(json_response(current_run(), 202));
 }

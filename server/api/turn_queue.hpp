@@ -32,8 +32,8 @@ class TurnQueue {
         return true;
     }
     /// The next job of a client that `may` be served.
-    template <typename May>
-    std::optional<Job> pop(const May& may) {
+    template <typename Predicate>
+    std::optional<Job> pop(const Predicate& may) {
         const auto turn = std::ranges::find_if(turns_, may);
         if (turn == turns_.end()) return std::nullopt;
         const std::string client = std::move(*turn);
@@ -48,8 +48,8 @@ class TurnQueue {
         --size_;
         return job;
     }
-    template <typename May>
-    bool has(const May& may) const {
+    template <typename Predicate>
+    bool has(const Predicate& may) const {
         return std::ranges::any_of(turns_, may);
     }
     std::size_t size() const { return size_; }

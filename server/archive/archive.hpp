@@ -14,7 +14,7 @@
 
 namespace aeolis::archive {
 
-inline constexpr std::int32_t application_id = 0x41454F4C;  ///< "AEOL": identifies the file to file(1) and to Aeolis
+inline constexpr std::int32_t application_id = 0x41454F31;  ///< "AEO1": identifies the file to file(1) and to Aeolis
 inline constexpr std::int32_t schema_version = 1;           ///< PRAGMA user_version
 
 /// The writer of an archive: one SQLite file, many runs, rows only ever added (docs/archive.md).

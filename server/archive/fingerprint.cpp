@@ -29,8 +29,8 @@ struct Rows {
 const std::vector<Rows>& rows_of_items() {
     static const std::vector<Rows> all = [] {
         std::vector<Rows> rows{
-            {"units", "SELECT key, ert_us, (SELECT word FROM words WHERE kind = 'link' AND number = link), source,"
-                      " octets FROM units WHERE key BETWEEN ?1 AND ?2 ORDER BY key LIMIT ?3"}};
+            {"packets", "SELECT key, ert_us, (SELECT word FROM words WHERE kind = 'link' AND number = link), source,"
+                        " octets FROM packets WHERE key BETWEEN ?1 AND ?2 ORDER BY key LIMIT ?3"}};
         for_item_kinds([&]<typename Record>(ItemKind<Record>) {
             if constexpr (!ItemTable<Record>::derived) {
                 rows.push_back({ItemTable<Record>::name, rows_sql<Record>()});

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-// Fingerprints of what was received or decided once and follows from nothing else: raw units, tones, stages of
+// Fingerprints of what was received or decided once and follows from nothing else: raw packets, tones, stages of
 // commands, links, notes, requests, outcome, seed, digest. An entry of the audit holds them; the first one of
 // an item counts (docs/decisions/0035).
 namespace aeolis::archive {

@@ -95,7 +95,7 @@ struct PartTable;
 
 template <>
 struct ItemTable<PacketRecord> {
-    static constexpr char name[] = "units";
+    static constexpr char name[] = "packets";
     static constexpr bool derived = true;
     static constexpr auto of_batch = &Batch::packets;
     static void columns(auto& record, auto&& visit) {
@@ -118,7 +118,7 @@ struct ItemTable<EventRecord> {
     static constexpr bool derived = true;
     static constexpr auto of_batch = &Batch::events;
     static void columns(auto& record, auto&& visit) {
-        visit("unit", record.packet_seq);
+        visit("packet_seq", record.packet_seq);
         visit("event", record.id);
         visit("name", record.name, Column::searched);
         visit("level", record.level);
@@ -187,7 +187,7 @@ struct ItemTable<FiringRecord> {
     static constexpr bool derived = true;
     static constexpr auto of_batch = &Batch::firings;
     static void columns(auto& record, auto&& visit) {
-        visit("unit", record.packet_seq);
+        visit("packet_seq", record.packet_seq);
         visit("timepoint", record.timepoint);
         visit("name", record.name);
         visit("triggered_sclk", record.triggered);
@@ -205,7 +205,7 @@ struct ItemTable<ExplanationRecord> {
     static constexpr auto of_batch = &Batch::explanations;
     static auto& parts(auto& record) { return record.explanation.conditions; }
     static void columns(auto& record, auto&& visit) {
-        visit("unit", record.packet_seq);
+        visit("packet_seq", record.packet_seq);
         visit("sclk", record.sclk);
         visit("decision", record.explanation.decision, Column::searched);
         visit("verdict", record.explanation.verdict, Column::searched);
@@ -248,7 +248,7 @@ struct ItemTable<AlarmRecord> {
     static constexpr bool derived = true;
     static constexpr auto of_batch = &Batch::alarms;
     static void columns(auto& record, auto&& visit) {
-        visit("unit", record.packet_seq);
+        visit("packet_seq", record.packet_seq);
         visit("channel", record.channel);
         visit("severity", record.severity);
         visit("value", record.value, Column::optional);

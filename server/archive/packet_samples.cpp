@@ -12,24 +12,24 @@ namespace {
 
 // ?1 run, ?2 APID, ?3 source, ?4 packet, ?5 … ?6 SCLK; octets, sclk, ert_us, key of sampled packets.
 constexpr char newest_by_time_sql[] =
-    "SELECT octets, sclk, ert_us, key FROM units WHERE run = ?1 AND apid = ?2 AND source = ?3 AND packet = ?4"
+    "SELECT octets, sclk, ert_us, key FROM packets WHERE run = ?1 AND apid = ?2 AND source = ?3 AND packet = ?4"
     " AND sclk BETWEEN ?5 AND ?6 AND sampled = 1 ORDER BY sclk DESC LIMIT 1";
 // By reception, among the keys ?7 … ?8: through all of these rows, or (the plus) through those of the APID by the time
 // index. The first suits fast packets, the second slow ones.
 constexpr char newest_by_key_sql[] =
-    "SELECT octets, sclk, ert_us, key FROM units WHERE key BETWEEN ?7 AND ?8 AND +run = ?1 AND ?2 IS NOT NULL"
+    "SELECT octets, sclk, ert_us, key FROM packets WHERE key BETWEEN ?7 AND ?8 AND +run = ?1 AND ?2 IS NOT NULL"
     " AND +source = ?3 AND packet = ?4 AND sclk BETWEEN ?5 AND ?6 AND sampled = 1 ORDER BY key DESC LIMIT 1";
 constexpr char newest_of_apid_sql[] =
-    "SELECT octets, sclk, ert_us, key FROM units WHERE run = ?1 AND apid = ?2 AND source = ?3 AND packet = ?4"
+    "SELECT octets, sclk, ert_us, key FROM packets WHERE run = ?1 AND apid = ?2 AND source = ?3 AND packet = ?4"
     " AND sclk BETWEEN ?5 AND ?6 AND +key BETWEEN ?7 AND ?8 AND sampled = 1 ORDER BY key DESC LIMIT 1";
 constexpr char last_segment_by_sql[] =
-    "SELECT first_unit, last_unit FROM segments WHERE run = ?1 AND packet = ?2 AND source = ?3 AND first_sclk <= ?4"
+    "SELECT first_packet, last_packet FROM segments WHERE run = ?1 AND packet = ?2 AND source = ?3 AND first_sclk <= ?4"
     " ORDER BY position DESC LIMIT 1";
 constexpr char in_range_sql[] =
-    "SELECT octets, sclk, ert_us, key FROM units WHERE run = ?1 AND apid = ?2 AND source = ?3 AND packet = ?4"
+    "SELECT octets, sclk, ert_us, key FROM packets WHERE run = ?1 AND apid = ?2 AND source = ?3 AND packet = ?4"
     " AND sclk BETWEEN ?5 AND ?6 AND sampled = 1 ORDER BY sclk, key";
 constexpr char in_range_of_any_apid_sql[] =
-    "SELECT octets, sclk, ert_us, key FROM units WHERE run = ?1 AND ?2 IS NOT NULL AND source = ?3 AND packet = ?4"
+    "SELECT octets, sclk, ert_us, key FROM packets WHERE run = ?1 AND ?2 IS NOT NULL AND source = ?3 AND packet = ?4"
     " AND sclk BETWEEN ?5 AND ?6 AND sampled = 1 ORDER BY sclk, key";
 
 struct PacketsOf {

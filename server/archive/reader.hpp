@@ -11,7 +11,7 @@
 #include "server/archive/audit.hpp"
 #include "server/archive/layouts.hpp"
 #include "server/archive/records.hpp"
-#include "telemetry/alarm_desk.hpp"
+#include "telemetry/alarm_register.hpp"
 #include "telemetry/other_mission.hpp"
 
 #include <array>
@@ -242,7 +242,8 @@ class Reader {
     Result<v1::ChannelSeriesList> series(RunId run, const SeriesQuery& query);
     /// A formula of channels as one series, at the times of its first channel. Each other channel counts with its
     /// newest value up to then. Exact, or thinned to the minimum and maximum of equal intervals. Memory does not grow
-    /// with the number of samples. Where a channel or the result is undefined, so is the sample; thinned, it is left out.
+    /// with the number of samples. Where a channel or the result is undefined, so is the sample; thinned, it is left
+    /// out.
     Result<v1::ChannelSeries> derived(RunId run, const std::string& expression, const SclkRange& range,
                                       std::optional<std::size_t> points);
     /// Passes all samples of the channels in a range to `take`, in order of SCLK, some thousands at a time. Memory does
@@ -254,8 +255,8 @@ class Reader {
     /// received after the first page was read are in no page.
     Result<SamplePage> sample_page(RunId run, const std::vector<std::string>& channels, const SclkRange& range,
                                    const std::optional<SampleCursor>& after = {});
-    /// The newest sample of every channel up to `at` (none: of the whole run), undefined ones too. Of our mission by its
-    /// clock; of another's by reception, because its clocks may restart.
+    /// The newest sample of every channel up to `at` (none: of the whole run), undefined ones too. Of our mission by
+    /// its clock; of another's by reception, because its clocks may restart.
     Result<std::vector<ChannelValue>> latest(RunId run, std::optional<Sclk> at);
 
     Result<v1::PacketList> packets(RunId run, const PacketQuery& query);
@@ -302,7 +303,7 @@ class Reader {
     Result<void> add_tones(RunId run, bool complete, v1::ProofReport& report);
     Result<void> add_counters(RunId run, v1::ProofReport& report);
     Result<void> add_sequences(RunId run, v1::ProofReport& report);
-    Result<telemetry::AlarmDesk> alarm_desk(RunId run, std::vector<v1::Item>& changes);
+    Result<telemetry::AlarmRegister> alarm_register(RunId run, std::vector<v1::Item>& changes);
     std::unique_ptr<State> state_;
 };
 

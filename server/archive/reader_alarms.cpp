@@ -2,7 +2,7 @@
 #include "server/archive/reader.hpp"
 #include "server/archive/reader_state.hpp"
 #include "server/archive/schema.hpp"
-#include "telemetry/alarm_desk.hpp"
+#include "telemetry/alarm_register.hpp"
 #include "telemetry/alarms.hpp"
 #include "telemetry/staleness.hpp"
 
@@ -19,19 +19,19 @@ const std::string& name_of_alarm(const v1::Item& item, const dictionary::Diction
     return item.has_staleness() ? item.staleness().packet() : item.alarm_action().alarm();
 }
 
-void apply(const v1::Item& item, const dictionary::Dictionary& dictionary, telemetry::AlarmDesk& desk) {
+void apply(const v1::Item& item, const dictionary::Dictionary& dictionary, telemetry::AlarmRegister& states) {
     using dictionary::Severity;
     const std::string& name = name_of_alarm(item, dictionary);
     if (item.has_alarm()) {
         const auto& alarms = dictionary.channels[item.alarm().channel()].type.alarms;
-        desk.change(name, static_cast<Severity>(item.alarm().severity()), telemetry::latches(alarms));
+        states.change(name, static_cast<Severity>(item.alarm().severity()), telemetry::latches(alarms));
     } else if (item.has_staleness()) {
-        desk.change(name, item.staleness().stale() ? telemetry::stale_severity : Severity::none, false);
+        states.change(name, item.staleness().stale() ? telemetry::stale_severity : Severity::none, false);
     } else if (item.has_link()) {
-        desk.change(name, item.link().lost() ? telemetry::lost_severity : Severity::none, false);
+        states.change(name, item.link().lost() ? telemetry::lost_severity : Severity::none, false);
     } else {
-        desk.act(name, static_cast<telemetry::AlarmAct>(item.alarm_action().action()), Ert{item.ert_us()},
-                 Ert{item.alarm_action().until_us()});
+        states.act(name, static_cast<telemetry::AlarmAct>(item.alarm_action().action()), Ert{item.ert_us()},
+                   Ert{item.alarm_action().until_us()});
     }
 }
 
@@ -59,29 +59,29 @@ void describe(const v1::Item& item, v1::AlarmState& state) {
 }  // namespace
 
 /// All changes and actions of the run's alarms, and the states that result.
-Result<telemetry::AlarmDesk> Reader::alarm_desk(RunId run, std::vector<v1::Item>& changes) {
+Result<telemetry::AlarmRegister> Reader::alarm_register(RunId run, std::vector<v1::Item>& changes) {
     {
         const auto info = state_->info(run);
         if (!info) return info.error();
         if (auto same = state_->same_dictionary(*info); !same) return same.error();
     }
-    telemetry::AlarmDesk desk;
+    telemetry::AlarmRegister states;
     for (Sequence after = 0;;) {
         auto page = alarms(run, after, rows_page_max);
         if (!page) return page.error();
         for (auto& item : *page->mutable_changes()) {
-            apply(item, state_->dictionary, desk);
+            apply(item, state_->dictionary, states);
             changes.push_back(std::move(item));
         }
         after = page->next_after();
-        if (after == 0) return desk;
+        if (after == 0) return states;
     }
 }
 
 Result<v1::AlarmList> Reader::alarm_states(RunId run, std::optional<Ert> now) {
     std::vector<v1::Item> changes;
-    const auto desk = alarm_desk(run, changes);
-    if (!desk) return desk.error();
+    const auto states = alarm_register(run, changes);
+    if (!states) return states.error();
     const auto newest = newest_ert(run);
     if (!newest) return newest.error();
     const Ert at = now.value_or(*newest);
@@ -89,7 +89,7 @@ Result<v1::AlarmList> Reader::alarm_states(RunId run, std::optional<Ert> now) {
     std::map<std::string, v1::AlarmState> described;
     for (const auto& item : changes) describe(item, described[name_of_alarm(item, state_->dictionary)]);
     std::vector<v1::AlarmState> states;
-    for (const auto& [name, state] : desk->all()) {
+    for (const auto& [name, state] : states->all()) {
         const auto standing = state.standing(at);
         if (standing == telemetry::AlarmStanding::normal) continue;
         auto& written = states.emplace_back(std::move(described[name]));
@@ -127,9 +127,9 @@ Result<std::vector<std::string>> Reader::links() {
 
 Result<void> Reader::may(RunId run, const std::string& alarm, telemetry::AlarmAct act, Ert now) {
     std::vector<v1::Item> changes;
-    const auto desk = alarm_desk(run, changes);
-    if (!desk) return desk.error();
-    return desk->may(alarm, act, now);
+    const auto states = alarm_register(run, changes);
+    if (!states) return states.error();
+    return states->may(alarm, act, now);
 }
 
 Result<Ert> Reader::newest_ert(RunId run) {

@@ -179,7 +179,7 @@ Result<void> Reader::each_recorded_packet(RunId run, const TakePacket& take) {
     const auto instant = state_->instant(run);
     if (!instant) return instant.error();
     if (auto same = state_->same_dictionary(instant->run); !same) return same.error();
-    auto rows = state_->query("SELECT octets FROM units WHERE key BETWEEN ?1 AND ?2 AND source = 2 ORDER BY key");
+    auto rows = state_->query("SELECT octets FROM packets WHERE key BETWEEN ?1 AND ?2 AND source = 2 ORDER BY key");
     if (!rows) return rows.error();
     (*rows)->bind(1, item_key(run, 1)).bind(2, item_key(run, sequence_max));
     for (;;) {

@@ -29,17 +29,17 @@ const char* name_of(PathComparison found, Source source, bool recording_complete
 namespace {
 
 constexpr char other_sql[] =
-    "SELECT o.octets <> u.octets, o.octets FROM units u JOIN units o ON o.run = u.run AND o.apid = u.apid"
+    "SELECT o.octets <> u.octets, o.octets FROM packets u JOIN packets o ON o.run = u.run AND o.apid = u.apid"
     " AND o.source = 3 - u.source AND o.sclk = u.sclk AND o.packet IS NOT NULL"
     " AND substr(o.octets, 3, 2) = substr(u.octets, 3, 2) WHERE u.key = ?1 ORDER BY 1 LIMIT 1";
 
 const std::string totals_sql = std::string("SELECT (SELECT word FROM words WHERE kind = 'link' AND number = u.link), "
                                            "u.packet, u.apid, u.source, u.standing = 1, ") +
                                path_comparison_sql +
-                               ", count(*) FROM units u WHERE u.key BETWEEN ?1 AND ?2 GROUP BY 1, 2, 3, 4, 5, 6";
+                               ", count(*) FROM packets u WHERE u.key BETWEEN ?1 AND ?2 GROUP BY 1, 2, 3, 4, 5, 6";
 
 constexpr char selections_sql[] =
-    "SELECT octets FROM units WHERE run = ?1 AND apid = ?2 AND source = 2 AND packet = ?3 ORDER BY sclk";
+    "SELECT octets FROM packets WHERE run = ?1 AND apid = ?2 AND source = 2 AND packet = ?3 ORDER BY sclk";
 
 constexpr char counters_sql[] =
     "SELECT link, octets, frames, bad_crc, bad_header, skipped_octets, gaps, missing_frames,"

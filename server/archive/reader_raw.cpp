@@ -13,7 +13,7 @@ constexpr char octets_sql[] =
     "SELECT link, ert_us, first, octets FROM raw_octets WHERE run = ?1 AND (link, first) > (?2, ?3)"
     " AND (?4 = '' OR link = ?4) AND ert_us BETWEEN ?5 AND ?6 ORDER BY link, first LIMIT ?7";
 constexpr char packets_sql[] =
-    "SELECT l.word, u.ert_us, u.key & 0xFFFFFFFFFF, u.octets FROM units u"
+    "SELECT l.word, u.ert_us, u.key & 0xFFFFFFFFFF, u.octets FROM packets u"
     " JOIN words l ON l.kind = 'link' AND l.number = u.link"
     " WHERE u.key > (?1 << 40) + ?3 AND u.key < (?1 + 1) << 40 AND (?4 = '' OR l.word = ?4) AND ?2 IS NOT NULL"
     " AND l.word <> 'station'"  // made on ground: no link brought it

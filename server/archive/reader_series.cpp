@@ -20,7 +20,7 @@ constexpr std::size_t page_samples = 10'000;                 ///< chosen: likewi
 
 constexpr char sealed_span_sql[] = "SELECT min(first_sclk), max(last_sclk), sum(samples) FROM segments WHERE run = ?1";
 constexpr char packet_span_sql[] =
-    "SELECT min(sclk), max(sclk), count(*) FROM units WHERE key BETWEEN ?1 AND ?2 AND sampled = 1";
+    "SELECT min(sclk), max(sclk), count(*) FROM packets WHERE key BETWEEN ?1 AND ?2 AND sampled = 1";
 
 Result<std::vector<const dictionary::Channel*>> find_channels(const dictionary::Dictionary& dictionary,
                                                               const std::vector<std::string>& names) {

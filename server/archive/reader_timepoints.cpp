@@ -21,9 +21,10 @@ constexpr std::string_view anchor_report_end = "_anchor_sclk";
 // Parameter: how long before the start of EDL flight begins to refuse "do edl" [s].
 constexpr std::string_view begin_margin = "do_edl_margin_s";
 
-constexpr char packets_before_sql[] = "SELECT ert_us FROM units WHERE key BETWEEN ?1 AND ?2 ORDER BY key DESC LIMIT 1";
+constexpr char packets_before_sql[] =
+    "SELECT ert_us FROM packets WHERE key BETWEEN ?1 AND ?2 ORDER BY key DESC LIMIT 1";
 constexpr char newest_report_sql[] =
-    "SELECT octets FROM units WHERE run = ?1 AND apid = ?2 AND source = ?3 AND sclk <= ?4 AND packet = ?5"
+    "SELECT octets FROM packets WHERE run = ?1 AND apid = ?2 AND source = ?3 AND sclk <= ?4 AND packet = ?5"
     " AND sampled = 1 AND ert_us <= ?6 ORDER BY sclk DESC LIMIT 1";
 
 /// The limits of what is known at an instant.

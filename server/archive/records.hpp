@@ -6,12 +6,12 @@
 #include "common/time.hpp"
 #include "common/tone_evidence.hpp"
 #include "dictionaries/dictionary.hpp"
-#include "telemetry/alarm_desk.hpp"
+#include "telemetry/alarm_register.hpp"
 #include "telemetry/explanation.hpp"
+#include "telemetry/packet_identity.hpp"
 #include "telemetry/silence_class.hpp"
 #include "telemetry/situation.hpp"
 #include "telemetry/station/link_ledger.hpp"
-#include "telemetry/unit_identity.hpp"
 
 #include <cstdint>
 #include <optional>

@@ -48,8 +48,9 @@ Result<RowWriter> RowWriter::open(sqlite::Database& database) {
     const std::pair<sqlite::Statement RowWriter::*, const char*> statements[] = {
         {&RowWriter::search_, add_to_search_sql},
         {&RowWriter::segment_number_, "SELECT max(segment) FROM segments WHERE segment BETWEEN ?1 AND ?2"},
-        {&RowWriter::segment_, "INSERT INTO segments (segment, run, packet, source, position, first_unit, last_unit,"
-                               " samples, first_sclk, last_sclk, sclk) VALUES (?,?,?,?,?,?,?,?,?,?,?)"},
+        {&RowWriter::segment_,
+         "INSERT INTO segments (segment, run, packet, source, position, first_packet, last_packet,"
+         " samples, first_sclk, last_sclk, sclk) VALUES (?,?,?,?,?,?,?,?,?,?,?)"},
         {&RowWriter::block_number_,
          "SELECT max(key) / 65536 FROM pyramid_columns WHERE key BETWEEN ?1 * 65536 AND ?2 * 65536 + 65535"},
         {&RowWriter::block_, "INSERT INTO pyramid VALUES (?,?,?,?,?,?,?,?,?,?)"},

@@ -21,15 +21,15 @@ constexpr char nodes_sql[] =
     " ORDER BY position";
 // Two ways to the packets after ?5, the last in a segment: through this packet's rows by the time index (the plus keeps
 // SQLite on it), or through all later rows. The first suits slow packets, the second fast ones.
-constexpr char tail_by_time_sql[] = "SELECT octets, sclk FROM units WHERE run = ?1 AND apid = ?2 AND source = ?6 AND "
+constexpr char tail_by_time_sql[] = "SELECT octets, sclk FROM packets WHERE run = ?1 AND apid = ?2 AND source = ?6 AND "
                                     "sclk BETWEEN ?3 AND ?4 AND +key > ?5"
                                     " AND +key <= ?8 AND packet = ?7 AND sampled = 1";
 constexpr char tail_by_key_sql[] =
-    "SELECT octets, sclk FROM units WHERE key > ?5 AND key <= ?8 AND +run = ?1 AND +apid = ?2 AND +source = ?6"
+    "SELECT octets, sclk FROM packets WHERE key > ?5 AND key <= ?8 AND +run = ?1 AND +apid = ?2 AND +source = ?6"
     " AND sclk BETWEEN ?3 AND ?4 AND packet = ?7 AND sampled = 1";
 // For another mission's packets, whose containers may have any APID.
 constexpr char tail_of_any_apid_sql[] =
-    "SELECT octets, sclk FROM units WHERE key > ?5 AND key <= ?8 AND +run = ?1 AND ?2 IS NOT NULL AND +source = ?6"
+    "SELECT octets, sclk FROM packets WHERE key > ?5 AND key <= ?8 AND +run = ?1 AND ?2 IS NOT NULL AND +source = ?6"
     " AND sclk BETWEEN ?3 AND ?4 AND packet = ?7 AND sampled = 1";
 
 Error damaged(const Reader::State& reader, const std::string& what, const std::string& why) {

@@ -7,7 +7,7 @@ namespace aeolis::archive {
 
 namespace {
 
-constexpr char last_segment_sql[] = "SELECT position, samples, last_unit FROM segments"
+constexpr char last_segment_sql[] = "SELECT position, samples, last_packet FROM segments"
                                     " WHERE run = ?1 AND packet = ?2 AND source = ?3 ORDER BY position DESC LIMIT 1";
 constexpr char last_block_sql[] = "SELECT position, nodes FROM pyramid WHERE run = ?1 AND packet = ?2 AND source = ?3"
                                   " AND level = ?4 ORDER BY position DESC LIMIT 1";

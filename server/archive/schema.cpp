@@ -48,14 +48,14 @@ CREATE TABLE recordings (
     realtime_not_recorded INTEGER NOT NULL, realtime_differs INTEGER NOT NULL, never_seen_live INTEGER NOT NULL,
     not_decoded INTEGER NOT NULL, progress REAL NOT NULL) STRICT;
 
-CREATE INDEX units_by_time ON units (run, apid, source, sclk);
+CREATE INDEX packets_by_time ON packets (run, apid, source, sclk);
 CREATE TABLE segments (
     segment INTEGER PRIMARY KEY, run INTEGER NOT NULL, packet INTEGER NOT NULL, source INTEGER NOT NULL,
-    position INTEGER NOT NULL, first_unit INTEGER NOT NULL, last_unit INTEGER NOT NULL, samples INTEGER NOT NULL,
+    position INTEGER NOT NULL, first_packet INTEGER NOT NULL, last_packet INTEGER NOT NULL, samples INTEGER NOT NULL,
     first_sclk REAL NOT NULL, last_sclk REAL NOT NULL, sclk BLOB NOT NULL) STRICT;
 -- All that a plot asks of a segment but its values lies in the index: it is found in three pages less (decision 0028).
 CREATE INDEX segments_by_position ON segments
-    (run, packet, source, position, samples, last_unit, first_sclk, last_sclk, sclk);
+    (run, packet, source, position, samples, last_packet, first_sclk, last_sclk, sclk);
 CREATE TABLE segment_columns (
     key INTEGER PRIMARY KEY, defined INTEGER NOT NULL, least REAL, least_sclk REAL, largest REAL, largest_sclk REAL,
     first REAL, last REAL, value BLOB NOT NULL) STRICT;
@@ -67,9 +67,9 @@ CREATE TABLE pyramid (
 CREATE TABLE pyramid_columns (key INTEGER PRIMARY KEY, nodes BLOB NOT NULL) STRICT;
 
 CREATE TABLE link_totals (
-    run INTEGER NOT NULL, link TEXT NOT NULL, octets INTEGER NOT NULL, frames INTEGER NOT NULL, bad_crc INTEGER NOT NULL,
-    bad_header INTEGER NOT NULL, skipped_octets INTEGER NOT NULL, gaps INTEGER NOT NULL, missing_frames INTEGER NOT NULL,
-    repeated_frames INTEGER NOT NULL, octets_per_s REAL NOT NULL, late_frames INTEGER NOT NULL,
+    run INTEGER NOT NULL, link TEXT NOT NULL, octets INTEGER NOT NULL, frames INTEGER NOT NULL,
+    bad_crc INTEGER NOT NULL, bad_header INTEGER NOT NULL, skipped_octets INTEGER NOT NULL, gaps INTEGER NOT NULL,
+    missing_frames INTEGER NOT NULL, repeated_frames INTEGER NOT NULL, octets_per_s REAL NOT NULL, late_frames INTEGER NOT NULL,
     restarts INTEGER NOT NULL, cut_frames INTEGER NOT NULL, slips INTEGER NOT NULL, corrected_frames INTEGER NOT NULL,
     corrected_symbols INTEGER NOT NULL, uncorrectable_frames INTEGER NOT NULL, forgotten_channels INTEGER NOT NULL,
     packets INTEGER NOT NULL, idle_packets INTEGER NOT NULL, encapsulation_packets INTEGER NOT NULL,
@@ -103,11 +103,11 @@ INSERT INTO words VALUES
 // Views for people who open the file with other tools: run, seq, words and UTC instead of keys, numbers and
 // microseconds.
 const char* const views_sql = R"sql(
-CREATE VIEW packets AS
+CREATE VIEW packet_log AS
     SELECT u.run, u.key & 0xFFFFFFFFFF AS seq, p.name, u.apid, u.sclk,
            strftime('%Y-%jT%H:%M:%f', u.ert_us / 1e6 + 946728000, 'unixepoch') AS ert, l.word AS link,
            s.word AS source, d.word AS standing, u.refusal, length(u.octets) AS octets, hex(u.octets) AS hex
-    FROM units u JOIN runs r ON r.run = u.run
+    FROM packets u JOIN runs r ON r.run = u.run
     LEFT JOIN dictionary_packets p ON p.dictionary = r.dictionary AND p.packet = u.packet
     JOIN words l ON l.kind = 'link' AND l.number = u.link
     JOIN words s ON s.kind = 'source' AND s.number = u.source
@@ -169,7 +169,8 @@ CREATE VIEW situation_log AS
 CREATE VIEW alarm_action_log AS
     SELECT a.key >> 40 AS run, a.key & 0xFFFFFFFFFF AS seq,
            strftime('%Y-%jT%H:%M:%f', a.ert_us / 1e6 + 946728000, 'unixepoch') AS at, a.alarm, a.action, a.author, a.note,
-           CASE WHEN a.until_us > a.ert_us THEN strftime('%Y-%jT%H:%M:%f', a.until_us / 1e6 + 946728000, 'unixepoch') END AS until
+           CASE WHEN a.until_us > a.ert_us
+                THEN strftime('%Y-%jT%H:%M:%f', a.until_us / 1e6 + 946728000, 'unixepoch') END AS until
     FROM alarm_actions a;
 CREATE VIEW shift_log AS
     SELECT n.key >> 40 AS run, n.key & 0xFFFFFFFFFF AS seq,
@@ -260,6 +261,9 @@ Error not_ours(const sqlite::Database& database) {
     return {database.file() + " is not an Aeolis archive"};
 }
 
+constexpr std::int64_t before_release_id =
+    0x41454F4C;  ///< "AEOL": archives made before the first release, of other tables
+
 /// Whether the database is empty. An Error when it is neither empty nor of our schema.
 Result<bool> is_empty(sqlite::Database& database) {
     auto id = database.integer_of("PRAGMA application_id");
@@ -273,6 +277,10 @@ Result<bool> is_empty(sqlite::Database& database) {
     if (!version) return version.error();
     if (!tables) return tables.error();
     if (*id == 0 && *version == 0 && *tables == 0) return true;
+    if (*id == before_release_id)
+        return Error{database.file() +
+                     " was written before the first release, in another layout: open it with the Aeolis "
+                     "that wrote it, or name another file"};
     if (*id != application_id || *version < 1) return not_ours(database);
     if (*version == schema_version) return false;
     return Error{database.file() + " has archive schema " + std::to_string(*version) + ", this program has " +
@@ -288,7 +296,7 @@ const std::vector<RunTable>& run_tables() {
 
 const char* last_key_sql() {
     static const std::string sql = [] {
-        std::string keys = "SELECT (SELECT key + sampled FROM units WHERE key BETWEEN ?1 AND ?2 ORDER BY key DESC"
+        std::string keys = "SELECT (SELECT key + sampled FROM packets WHERE key BETWEEN ?1 AND ?2 ORDER BY key DESC"
                            " LIMIT 1) AS key";
         for_item_kinds([&]<typename Record>(ItemKind<Record>) {
             keys += std::string(" UNION ALL SELECT max(key) FROM ") + ItemTable<Record>::name +

@@ -17,7 +17,7 @@ namespace {
 
 /// SQL for every sequence number used by an item of the run.
 std::string item_keys_sql(const std::string& schema) {
-    std::string sql = "SELECT key + 1 AS key FROM " + schema + "units WHERE key BETWEEN ?1 AND ?2 AND sampled = 1";
+    std::string sql = "SELECT key + 1 AS key FROM " + schema + "packets WHERE key BETWEEN ?1 AND ?2 AND sampled = 1";
     for_item_kinds([&]<typename Record>(ItemKind<Record>) {
         sql += " UNION ALL SELECT key FROM " + schema + ItemTable<Record>::name + " WHERE key BETWEEN ?1 AND ?2";
     });
@@ -62,7 +62,7 @@ Result<Maintenance> Maintenance::open(const std::filesystem::path& file) {
 
 Result<std::vector<RunLine>> run_lines(sqlite::Database& database) {
     auto rows =
-        database.prepare("SELECT run, scenario, state, outcome, started, (SELECT count(*) FROM units u"
+        database.prepare("SELECT run, scenario, state, outcome, started, (SELECT count(*) FROM packets u"
                          " WHERE u.key BETWEEN r.run << 40 AND r.run << 40 | 0xFFFFFFFFFF) FROM runs r ORDER BY run");
     if (!rows) return rows.error();
     std::vector<RunLine> lines;

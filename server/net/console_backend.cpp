@@ -82,7 +82,10 @@ Result<std::unique_ptr<ConsoleBackend>> ConsoleBackend::open(Settings settings,
     backend->pipeline_ = std::make_unique<PipelineThread>(
         std::move(*archive), dictionary, PipelineThread::Faults::hold,
         [self, post](std::shared_ptr<const pipeline::PublishedBatch> batch) {
-            post([self, batch = std::move(batch)]() mutable { self->hub_->published(std::move(batch)); });
+            post([self, batch = self->hub_feed_.departs(std::move(batch))]() mutable {
+                self->hub_feed_.arrived(*batch);
+                self->hub_->published(std::move(batch));
+            });
         },
         chosen.other);
     backend->pipeline_->keep_raw(chosen.raw_octets_kept);
@@ -90,23 +93,23 @@ Result<std::unique_ptr<ConsoleBackend>> ConsoleBackend::open(Settings settings,
     backend->pipeline_->on_fault(
         [self, post](const std::string& fault) { post([self, fault] { self->hub_->archive_fault(fault); }); });
     backend->pipeline_->on_audited([self](const archive::AuditHead& head) { self->keep_audit_head(head); });
-    backend->desk_ = std::make_unique<RehearsalDesk>(
+    backend->rehearsals_ = std::make_unique<RehearsalManager>(
         backend->scenarios_, dictionary, *backend->pipeline_, post,
         [self](archive::RunId run, const auto& done) {
             const bool taken = self->queries_->ask([run, done](archive::Reader& reader) { done(reader.cut_off(run)); });
             if (!taken) done(Error{QueryThreads::busy});
         },
         self->timeline_questions(),
-        RehearsalDesk::Callbacks{[self](v1::RunState state) { self->hub_->run_state(std::move(state)); },
-                                 [self](v1::Clocks clocks) { self->hub_->clocks(std::move(clocks)); }});
+        RehearsalManager::Callbacks{[self](v1::RunState state) { self->hub_->run_state(std::move(state)); },
+                                    [self](v1::Clocks clocks) { self->hub_->clocks(std::move(clocks)); }});
     // The last step that can fail: the first password is shown once, and only by a server that starts.
     auto access = Access::open({.file = chosen.accounts, .secure = backend->server_->secure()});
     if (!access) return access.error();
     backend->access_ = std::move(*access);
     backend->campaigns_ =
-        std::make_unique<campaign::CampaignDesk>(chosen.archive.parent_path(), backend->scenarios_, dictionary);
+        std::make_unique<campaign::CampaignManager>(chosen.archive.parent_path(), backend->scenarios_, dictionary);
     backend->api_ = std::make_unique<Api>(
-        Api::Parts{dictionary, backend->scenarios_, *backend->queries_, *backend->desk_, backend->predictions_,
+        Api::Parts{dictionary, backend->scenarios_, *backend->queries_, *backend->rehearsals_, backend->predictions_,
                    *backend->campaigns_, *backend->hub_, *backend->pipeline_, backend->console_, *backend->access_,
                    backend->server_->secure(), [self] { return self->server_->connections(); }, backend->clock_watch_});
     backend->check_audit_head();
@@ -157,7 +160,7 @@ StreamSession::Client ConsoleBackend::stream_client(const Credentials& credentia
         const auto who = access_->identify(credentials);
         name_asker(who, request);
         auto right = allowed(who, Right::command);
-        if (right) right = may_send(who, dictionary_, *desk_, request);
+        if (right) right = may_send(who, dictionary_, *rehearsals_, request);
         if (right)
             if (const auto many = api_->count_commands(who, 1)) right = Error{many->reason};
         const auto noted = [this, who, detail = to_json(request), dry_run = request.dry_run(), full,
@@ -169,10 +172,10 @@ StreamSession::Client ConsoleBackend::stream_client(const Credentials& credentia
             reply(answer);
         };
         if (right)
-            return desk_->command(
-                std::move(request),
-                {may_still_send(*access_, credentials, dictionary_, *desk_), who.browser, may(who, Right::hazardous)},
-                noted);
+            return rehearsals_->command(std::move(request),
+                                        {may_still_send(*access_, credentials, dictionary_, *rehearsals_), who.browser,
+                                         may(who, Right::hazardous)},
+                                        noted);
         v1::CommandReply refusal;
         refusal.set_request(request.request());
         refusal.set_reason(right.error().message);
@@ -190,7 +193,7 @@ StreamSession::Client ConsoleBackend::stream_client(const Credentials& credentia
         if (const auto right = allowed(who, Right::rehearse); !right) return noted(right);
         if (const auto right = may_start(who, dictionary_, control.start()); !right) return noted(right);
         const bool starts = control.action_case() == v1::RehearsalControl::kStart;
-        const auto now = desk_->control(control, [noted](const Result<v1::RunState>& began) {
+        const auto now = rehearsals_->control(control, [noted](const Result<v1::RunState>& began) {
             noted(began ? Result<void>{} : Result<void>{began.error()});
         });
         if (!now || !starts) noted(now);
@@ -206,7 +209,7 @@ ConsoleBackend::~ConsoleBackend() {
     api_.reset();
     campaigns_.reset();  // abandons cases in flight
     downlink_.reset();
-    desk_.reset();
+    rehearsals_.reset();
     queries_.reset();
     pipeline_.reset();
     server_.reset();
@@ -215,8 +218,8 @@ ConsoleBackend::~ConsoleBackend() {
 
 /// The timeline checks on the query threads: a second of work each, limited as a query; consoles repeat dry runs each
 /// second.
-RehearsalDesk::TimelineQuestions ConsoleBackend::timeline_questions() {
-    RehearsalDesk::TimelineQuestions questions;
+RehearsalManager::TimelineQuestions ConsoleBackend::timeline_questions() {
+    RehearsalManager::TimelineQuestions questions;
     questions.check = [this](archive::RunId run, const std::vector<v1::CommandRequest>& requests, bool only_check,
                              const auto& done) {
         if (std::ranges::none_of(requests, changes_timeline)) return done(std::string{});
@@ -349,8 +352,8 @@ void ConsoleBackend::watch_clock() {
         note.ert = downlink_->now();
     } else {
         const auto now = hub_->ert_now();
-        run = archive::RunId{static_cast<std::uint32_t>(desk_->current().run())};
-        if (!desk_->going_on() || run.value != hub_->current_run() || !now) return;
+        run = archive::RunId{static_cast<std::uint32_t>(rehearsals_->current().run())};
+        if (!rehearsals_->going_on() || run.value != hub_->current_run() || !now) return;
         note.ert = *now;
     }
     note.text = fmt::format("{}. Earth received times of this run do not follow it.", told);
@@ -362,10 +365,10 @@ void ConsoleBackend::watch_clock() {
     if (!pipeline_->annotate(run, std::move(note), added)) added(Error{"too much waits to be stored"});
 }
 
-void ConsoleBackend::start(RehearsalDesk::Flight flight) {
+void ConsoleBackend::start(RehearsalManager::Flight flight) {
     const auto detail =
         fmt::format("serve --scenario {} --seed {} --pace {}", flight.scenario.name, flight.seed, flight.pace);
-    desk_->start(std::move(flight), [this, detail](const Result<v1::RunState>& began) {
+    rehearsals_->start(std::move(flight), [this, detail](const Result<v1::RunState>& began) {
         pipeline_->audit(audit_record(command_line_operator(), "rehearsal", detail,
                                       began ? "done" : "refused: " + began.error().message));
         if (!began) spdlog::error("the rehearsal could not be started: {}", began.error().message);
@@ -374,7 +377,7 @@ void ConsoleBackend::start(RehearsalDesk::Flight flight) {
 
 Result<void> ConsoleBackend::follow(DownlinkFollower::Settings settings) {
     AEOLIS_CHECK(settings_.other != nullptr);
-    desk_->close("this server follows the downlink of another mission: rehearsals need one of their own");
+    rehearsals_->close("this server follows the downlink of another mission: rehearsals need one of their own");
     campaigns_->close("this server follows the downlink of another mission: campaigns need one of their own");
     const auto detail = fmt::format("serve --downlink {} --xtce {}", settings.address.text(), settings.xtce);
     settings.clocks = settings_.clocks;

@@ -4,6 +4,7 @@
 #include "common/result.hpp"
 #include "dictionaries/dictionary.hpp"
 #include "server/api/api.hpp"
+#include "server/api/hub_feed.hpp"
 #include "server/archive/records.hpp"
 #include "server/base/clock_watch.hpp"
 #include "server/links/downlink_follower.hpp"
@@ -39,7 +40,7 @@ class ConsoleBackend {
     ~ConsoleBackend();  ///< stops a run in progress; its end is stored
 
     /// Starts a first rehearsal. Call before run().
-    void start(RehearsalDesk::Flight flight);
+    void start(RehearsalManager::Flight flight);
     /// Follows another mission's packets in a run of its own; rehearsals cannot be started then. Call before run().
     Result<void> follow(DownlinkFollower::Settings settings);
     std::uint16_t downlink_port() const { return downlink_ ? downlink_->port() : std::uint16_t{0}; }
@@ -55,7 +56,7 @@ class ConsoleBackend {
   private:
     ConsoleBackend(Settings settings, const dictionary::Dictionary& dictionary);
     StreamHub::Services stream_services();
-    RehearsalDesk::TimelineQuestions timeline_questions();
+    RehearsalManager::TimelineQuestions timeline_questions();
     WebServer::Handlers web_handlers();
     StreamSession::Client stream_client(const Credentials& credentials);
     void adopt_newest_run();
@@ -72,12 +73,13 @@ class ConsoleBackend {
     StaticFiles console_;
     std::unique_ptr<Access> access_;
     std::unique_ptr<StreamHub> hub_;
+    HubFeed hub_feed_;
     std::unique_ptr<WebServer> server_;
     std::unique_ptr<QueryThreads> queries_;
     std::unique_ptr<PipelineThread> pipeline_;
-    std::unique_ptr<RehearsalDesk> desk_;
-    PredictionDesk predictions_;
-    std::unique_ptr<campaign::CampaignDesk> campaigns_;
+    std::unique_ptr<RehearsalManager> rehearsals_;
+    PredictionService predictions_;
+    std::unique_ptr<campaign::CampaignManager> campaigns_;
     std::unique_ptr<DownlinkFollower> downlink_;
     std::unique_ptr<Api> api_;
 };

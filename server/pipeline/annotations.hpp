@@ -6,7 +6,7 @@
 #include "common/result.hpp"
 #include "dictionaries/dictionary.hpp"
 #include "server/archive/records.hpp"
-#include "telemetry/alarm_desk.hpp"
+#include "telemetry/alarm_register.hpp"
 
 #include <span>
 #include <string>

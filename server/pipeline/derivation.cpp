@@ -102,7 +102,7 @@ Result<std::optional<std::size_t>> derive(sqlite::Database& database, const RunT
                                           const dictionary::Dictionary& dictionary,
                                           const telemetry::OtherMission* other, const ProgressCallback& on_progress) {
     const auto of_packets = database.integer_of(
-        ("SELECT count(*) FROM archive.units WHERE run = " + std::to_string(run.run.value)).c_str());
+        ("SELECT count(*) FROM archive.packets WHERE run = " + std::to_string(run.run.value)).c_str());
     if (!of_packets) return of_packets.error();
     auto writer = archive::RowWriter::open(database);
     if (!writer) return writer.error();
@@ -176,9 +176,9 @@ class Comparison {
             if (!*found) return {};
             const auto side = rows->integer(1);
             add(table.name, named(table.name, *rows),
-                side == 1   ? "is stored, and no unit says it"
-                : side == 2 ? "is missing: a unit says it"
-                            : "is not what its unit says");
+                side == 1   ? "is stored, and no packet says it"
+                : side == 2 ? "is missing: a packet says it"
+                            : "is not what its packet says");
         }
     }
 
@@ -201,7 +201,7 @@ class Comparison {
                                                     std::bit_cast<std::uint64_t, double>);
             if (same) continue;
             add(table, named(table, *rows),
-                readable ? "its samples are not those of its units" : "is damaged: " + readable.error().message);
+                readable ? "its samples are not those of its packets" : "is damaged: " + readable.error().message);
             ++faults;
         }
         return {};
@@ -333,7 +333,7 @@ Result<Verification> verify(const std::filesystem::path& file, std::optional<Run
         auto packets = derive(database, run, dictionary, other, on_progress);
         if (!packets)
             return Error{"run " + std::to_string(run.run.value) +
-                         ": its units cannot be told again: " + packets.error().message};
+                         ": its packets cannot be told again: " + packets.error().message};
         found.stopped = !*packets;
         if (found.stopped) return found;
         found.packets += **packets;
@@ -377,7 +377,7 @@ Result<Rebuilt> rebuild(const std::filesystem::path& file, std::optional<RunId> 
             if (!transaction) return transaction.error();
             const auto packets = derive(scratch->database(), run, dictionary, other, on_progress);
             if (!packets) {
-                rebuilt.left.push_back(of_run + ": its units cannot be told again: " + packets.error().message);
+                rebuilt.left.push_back(of_run + ": its packets cannot be told again: " + packets.error().message);
                 continue;
             }
             rebuilt.stopped = !*packets;
@@ -412,7 +412,7 @@ Result<Rebuilt> rebuild(const std::filesystem::path& file, std::optional<RunId> 
             rebuilt.runs.push_back(run.run);
         else
             rebuilt.left.push_back(of_run +
-                                   ": its units now say something else, and its items would get other numbers (" +
+                                   ": its packets now say something else, and its items would get other numbers (" +
                                    replaced->front() + ")");
     }
     // The whole index: the words of damaged rows that it should forget are unknown.

@@ -8,7 +8,7 @@
 #include "telemetry/decoded_packet.hpp"
 #include "telemetry/other_mission.hpp"
 #include "telemetry/packet_clocks.hpp"
-#include "telemetry/unit_identity.hpp"
+#include "telemetry/packet_identity.hpp"
 
 #include <optional>
 #include <set>
@@ -48,15 +48,15 @@ class Numbering {
 ///
 /// In       packets in the order of receipt               Out   records, appended to a batch
 /// Time     another mission's packet without a time of its own stands at its reception (telemetry/packet_clocks.hpp)
-/// Partly   another mission's packet that is not decoded to its end is sampled as far as it is; it has the reason, counts
-///          as not decoded, and the first of each kind is told
+/// Partly   another mission's packet that is not decoded to its end is sampled as far as it is; it has the reason,
+///          counts as not decoded, and the first of each kind is told
 /// Newest   of real time: ours by its clock, which never goes back; another mission's by reception, because its clocks
 ///          may restart and stand still
 /// Rules    a packet seen before on the other path is stored (it is the proof) and marked, but its samples are not
 ///          added again. A packet seen before on the same path yields nothing new. Alarms are judged in real time only:
 ///          the recording tells the past. Another mission's packets count as real time and are never compared: nothing
 ///          in them identifies a packet of ours. The station's own packets are not compared either
-/// Memory   the register of packets (telemetry/unit_identity.hpp) and the open segments
+/// Memory   the register of packets (telemetry/packet_identity.hpp) and the open segments
 class PacketIntake {
   public:
     PacketIntake(const dictionary::Dictionary& dictionary, const archive::PacketColumns& columns,
@@ -103,7 +103,7 @@ class PacketIntake {
     const telemetry::OtherMission* other_;  ///< null: our own mission
     telemetry::PacketDecoder decoder_;
     telemetry::DecodedPacket decoded_;  ///< of the packet decoded here last
-    telemetry::UnitRegister register_;
+    telemetry::PacketRegister register_;
     telemetry::AlarmMonitor alarms_;
     std::vector<telemetry::AlarmChange> changes_;
     SegmentBuilder segments_;

@@ -6,9 +6,9 @@
 namespace aeolis::pipeline {
 namespace {
 
-using telemetry::SituationDesk;
+using telemetry::SituationMonitor;
 
-SituationDesk::Clocks clocks_of(const archive::RunStart& start) {
+SituationMonitor::Clocks clocks_of(const archive::RunStart& start) {
     const bool known = start.entry != Sclk{};  // of another mission nobody knows when it enters
     return {known ? std::optional(start.entry) : std::nullopt, start.correlation, start.light_time_s};
 }
@@ -21,52 +21,53 @@ void each_new(const std::vector<Record>& records, archive::Sequence followed, au
     for (; first != records.end(); ++first) take(*first);
 }
 
-SituationDesk::Origin origin_of(const archive::ItemRecord& record, archive::Source source = archive::Source::realtime) {
+SituationMonitor::Origin origin_of(const archive::ItemRecord& record,
+                                   archive::Source source = archive::Source::realtime) {
     return {record.seq, record.ert, source == archive::Source::recorded};
 }
 
 }  // namespace
 
 SituationFeed::SituationFeed(const dictionary::Dictionary& dictionary, const archive::RunStart& start)
-    : desk_(dictionary, clocks_of(start)) {}
+    : monitor_(dictionary, clocks_of(start)) {}
 
 void SituationFeed::follow(const archive::Batch& batch) {
     if (batch.last_seq <= followed_) return;
     each_new(batch.links, followed_, [&](const archive::LinkRecord& link) {
-        desk_.link({{link.link, false}, link.ert, link.up, link.words, link.lost, link.until, link.silence},
-                   origin_of(link));
+        monitor_.link({{link.link, false}, link.ert, link.up, link.words, link.lost, link.until, link.silence},
+                      origin_of(link));
     });
     each_new(batch.packets, followed_, [&](const archive::PacketRecord& packet) {
         if (packet.packet && packet.source == archive::Source::realtime && packet.link != telemetry::station_link.name)
-            desk_.heard(packet.sclk);
+            monitor_.heard(packet.sclk);
     });
     each_new(batch.events, followed_, [&](const archive::EventRecord& event) {
-        desk_.event({event.name, event.text, event.level, event.sclk}, origin_of(event, event.source));
+        monitor_.event({event.name, event.text, event.level, event.sclk}, origin_of(event, event.source));
     });
     each_new(batch.firings, followed_, [&](const archive::FiringRecord& firing) {
-        desk_.fired(firing.timepoint, firing.triggered, firing.fired, origin_of(firing, firing.source));
+        monitor_.fired(firing.timepoint, firing.triggered, firing.fired, origin_of(firing, firing.source));
     });
     each_new(batch.explanations, followed_, [&](const archive::ExplanationRecord& explanation) {
-        desk_.explained(explanation.explanation, origin_of(explanation, explanation.source));
+        monitor_.explained(explanation.explanation, origin_of(explanation, explanation.source));
     });
     each_new(batch.alarms, followed_, [&](const archive::AlarmRecord& alarm) {
-        desk_.alarm(alarm.channel, alarm.severity, alarm.limit, alarm.sclk, origin_of(alarm));
+        monitor_.alarm(alarm.channel, alarm.severity, alarm.limit, alarm.sclk, origin_of(alarm));
     });
     each_new(batch.tones, followed_, [&](const archive::ToneRecord& tone) {
-        if (tone.tone) desk_.tone(*tone.tone, tone.likelihood, tone.sclk, origin_of(tone));
+        if (tone.tone) monitor_.tone(*tone.tone, tone.likelihood, tone.sclk, origin_of(tone));
     });
     each_new(batch.stages, followed_, [&](const archive::StageRecord& stage) {
         const bool executed = stage.stage == commands::Stage::executed || stage.stage == commands::Stage::verified;
-        desk_.stage({stage.command, stage.name, stage.evidence, stage.status == commands::Status::failed,
-                     executed && stage.status == commands::Status::ok},
-                    origin_of(stage));
+        monitor_.stage({stage.command, stage.name, stage.evidence, stage.status == commands::Status::failed,
+                        executed && stage.status == commands::Status::ok},
+                       origin_of(stage));
     });
     followed_ = batch.last_seq;
 }
 
 std::optional<archive::SituationRecord> SituationFeed::changed(Ert now) {
     now_ = now;
-    auto entries = desk_.at(now);
+    auto entries = monitor_.at(now);
     if (entries == told_) return {};
     told_ = entries;
     archive::SituationRecord record;

@@ -3,14 +3,14 @@
 
 #include "dictionaries/dictionary.hpp"
 #include "server/archive/records.hpp"
-#include "telemetry/situation_desk.hpp"
+#include "telemetry/situation_monitor.hpp"
 
 #include <optional>
 #include <vector>
 
 namespace aeolis::pipeline {
 
-/// Gives a run's records to the situation desk, before they are committed, and returns each new situation.
+/// Gives a run's records to the situation monitor, before they are committed, and returns each new situation.
 ///
 /// In       the batch after each entry, in the order of the items; the time on Earth, once a second of the run
 /// Rule     Items that people add are left out: a run flown again has the same situations without them
@@ -26,7 +26,7 @@ class SituationFeed {
     std::optional<archive::SituationRecord> changed() { return now_ ? changed(*now_) : std::nullopt; }
 
   private:
-    telemetry::SituationDesk desk_;
+    telemetry::SituationMonitor monitor_;
     archive::Sequence followed_ = 0;
     std::optional<Ert> now_;
     std::vector<telemetry::SituationEntry> told_;

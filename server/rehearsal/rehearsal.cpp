@@ -98,7 +98,7 @@ std::vector<archive::StageRecord> Rehearsal::take_stages() {
 void Rehearsal::take(telemetry::Received& received) {
     flight_.hear(received);
     for (auto& packet : received.packets) {
-        units_.add(packet.octets, packet.link.recorded ? telemetry::Path::recorded : telemetry::Path::realtime);
+        register_.add(packet.octets, packet.link.recorded ? telemetry::Path::recorded : telemetry::Path::realtime);
         note_product(packet);
     }
 }
@@ -167,11 +167,11 @@ std::vector<archive::LinkTotals> Rehearsal::link_totals() const {
 }
 
 telemetry::Proof Rehearsal::proof() const {
-    if (landing().relaying()) return telemetry::prove(units_);  // by the received part, complete or not
-    auto units = units_;
+    if (landing().relaying()) return telemetry::prove(register_);  // by the received part, complete or not
+    auto packets = register_;
     telemetry::PacketStream recording{landing().recording()};
-    while (const auto packet = recording.next()) units.add(*packet, telemetry::Path::recorded);
-    return telemetry::prove(units);
+    while (const auto packet = recording.next()) packets.add(*packet, telemetry::Path::recorded);
+    return telemetry::prove(packets);
 }
 
 archive::RunStart Rehearsal::run_start(double pace) const {

@@ -114,7 +114,7 @@ class Rehearsal {
     std::vector<simulation::TruthEvent> events_;
     RecordedFirings firings_;
     ToneScore tones_;
-    telemetry::UnitRegister units_;
+    telemetry::PacketRegister register_;
     telemetry::ProductAssembler products_;
     telemetry::Received nothing_;
 };

@@ -10,7 +10,7 @@
 #include <variant>
 #include <vector>
 
-// Orders to a run. RehearsalDesk decides on the network thread whether and when; RehearsalRunner carries them out
+// Orders to a run. RehearsalManager decides on the network thread whether and when; RehearsalRunner carries them out
 // between two cycles.
 namespace aeolis::server {
 

@@ -53,14 +53,14 @@ test('a value leads to plots, limits, evidence and bytes, by mouse and by key al
   await shows('menu', /speed_mps/);
   await page.keyboard.press('w');
   await page.keyboard.press('Enter');
-  await shows('menu-sheet', /Why: speed_mps[^]*m\/s[^]*packet\s+GncNavigation, unit \d+[^]*octets \d+ to \d+/);
+  await shows('menu-sheet', /Why: speed_mps[^]*m\/s[^]*packet\s+GncNavigation, packet \d+[^]*octets \d+ to \d+/);
   await page.keyboard.press('Escape');
   assert.equal(await value(), 'channel speed_mps', 'the focus is where it was');
   await page.keyboard.press('Enter');
   await page.getByRole('menuitem', { name: 'Its bytes' }).press('Enter');
   await shows('packet', /GncNavigation/);
   await shows('packet-place', /^speed_mps: octets \d+ to \d+, 32 bits/);
-  assert.match(await text('unit-table'), /GncNavigation/);
+  assert.match(await text('packet-table'), /GncNavigation/);
   assert.deepEqual(problems, []);
   await page.close();
 });

@@ -137,7 +137,7 @@ try {
   await page.setViewportSize({ width: 1600, height: 760 });
   await page.getByRole('button', { name: 'GncNavigation', exact: true }).click();
   await page.keyboard.press('ArrowDown');
-  await shows('packet', /unit \d/);
+  await shows('packet', /packet \d/);
   await page.getByTestId('packet-fields').focus();
   for (let field = 0; field < 9; ++field) await page.keyboard.press('ArrowDown');
   await take('tour_packet.png');

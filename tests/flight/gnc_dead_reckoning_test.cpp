@@ -38,12 +38,13 @@ Surroundings held(HeldBy by) {
 TEST_CASE("while nothing holds the vehicle a spin goes on, a torque changes it, and no force is felt", "[gnc][R27]") {
     DeadReckoning reckoning;
     Surroundings now = held(HeldBy::nothing);
-    const Felt last{{0.1, 0.2, 0.3}, {0.0, 0.0, 0.2}};
-    Felt felt = reckoning.feel(parameters, now, flying(5800.0), last, seconds_per_tick);
+    const ForceAndRate last{{0.1, 0.2, 0.3}, {0.0, 0.0, 0.2}};
+    ForceAndRate felt = reckoning.reckon(parameters, now, flying(5800.0), last, seconds_per_tick);
     CHECK(felt.force_B_mps2.isZero());
     CHECK(felt.rate_B_rps.isApprox(last.rate_B_rps));
     now.torque_B_Nm = {0.0, 0.0, -50.0};
-    for (int tick = 0; tick < 64; ++tick) felt = reckoning.feel(parameters, now, flying(5800.0), {}, seconds_per_tick);
+    for (int tick = 0; tick < 64; ++tick)
+        felt = reckoning.reckon(parameters, now, flying(5800.0), {}, seconds_per_tick);
     CHECK(felt.rate_B_rps.z() == Approx(0.2 - 50.0 / 5000.0));
     CHECK(reckoning.silent_s() == Approx(65.0 * seconds_per_tick));
     reckoning.end();
@@ -53,27 +54,27 @@ TEST_CASE("while nothing holds the vehicle a spin goes on, a torque changes it, 
 TEST_CASE("in the air the force follows speed and density, and attitude the velocity", "[gnc][R27]") {
     DeadReckoning reckoning;
     Surroundings now = held(HeldBy::air);
-    const Felt last{{0.0, -60.0, 0.0}, {0.05, 0.0, 0.0}};  // B lies along M: drag against y, tumbling about x
-    const Felt first = reckoning.feel(parameters, now, flying(4000.0), last, seconds_per_tick);
+    const ForceAndRate last{{0.0, -60.0, 0.0}, {0.05, 0.0, 0.0}};  // B lies along M: drag against y, tumbling about x
+    const ForceAndRate first = reckoning.reckon(parameters, now, flying(4000.0), last, seconds_per_tick);
     CHECK(first.force_B_mps2.isApprox(last.force_B_mps2));
     // What turns it across the velocity is the air's to stop: it turns as its velocity does.
     CHECK(std::abs(first.rate_B_rps.x()) < 1e-3);
     now.altitude_m -= parameters.reckoned_scale_height_m * std::log(2.0);
-    const Felt later = reckoning.feel(parameters, now, flying(2000.0), {}, seconds_per_tick);
+    const ForceAndRate later = reckoning.reckon(parameters, now, flying(2000.0), {}, seconds_per_tick);
     CHECK(later.force_B_mps2.isApprox(0.5 * last.force_B_mps2));  // a quarter by speed, twice by density
     now.free_M_mps2 = {-3.7, 0.0, 0.0};
-    const Felt falling = reckoning.feel(parameters, now, flying(2000.0), {}, seconds_per_tick);
+    const ForceAndRate falling = reckoning.reckon(parameters, now, flying(2000.0), {}, seconds_per_tick);
     CHECK(falling.rate_B_rps.z() - later.rate_B_rps.z() == Approx(3.7 / 2000.0));  // its path bends down, and it too
 }
 
 TEST_CASE("a bank reversal under way goes on by its rate and the thrusters' torque", "[gnc][R27]") {
     DeadReckoning reckoning;
     Surroundings now = held(HeldBy::air);
-    const Felt last{{0.0, -60.0, 0.0}, {0.0, 0.3, 0.0}};  // about the velocity
+    const ForceAndRate last{{0.0, -60.0, 0.0}, {0.0, 0.3, 0.0}};  // about the velocity
     now.torque_B_Nm = {0.0, -400.0, 0.0};
-    Felt felt;
+    ForceAndRate felt;
     for (int tick = 0; tick < 32; ++tick)
-        felt = reckoning.feel(parameters, now, flying(2000.0), last, seconds_per_tick);
+        felt = reckoning.reckon(parameters, now, flying(2000.0), last, seconds_per_tick);
     CHECK(felt.rate_B_rps.y() == Approx(0.3 - 0.5 * 400.0 / 4000.0).margin(1e-3));
 }
 
@@ -83,11 +84,11 @@ TEST_CASE("under the parachute the force stays where it is and the vehicle swing
     NavigatedState state = flying(90.0);
     // The riser pulls against z of B once it hangs straight: here it hangs 0.1 rad aslant.
     const double aslant_rad = 0.1;
-    const Felt last{4.0 * Vector3(std::sin(aslant_rad), 0.0, -std::cos(aslant_rad)), Vector3::Zero()};
+    const ForceAndRate last{4.0 * Vector3(std::sin(aslant_rad), 0.0, -std::cos(aslant_rad)), Vector3::Zero()};
     const Vector3 force_M = state.q_MB * last.force_B_mps2;
     double least_rad = aslant_rad;
     for (int tick = 0; tick < 128; ++tick) {
-        const Felt felt = reckoning.feel(parameters, now, state, last, seconds_per_tick);
+        const ForceAndRate felt = reckoning.reckon(parameters, now, state, last, seconds_per_tick);
         CHECK((state.q_MB * felt.force_B_mps2).isApprox(force_M));
         const Vector3 turned = felt.rate_B_rps * seconds_per_tick;
         state.q_MB = state.q_MB * Quaternion{Eigen::AngleAxisd{turned.norm(), turned.normalized()}};
@@ -102,11 +103,11 @@ TEST_CASE("on engines the force follows their thrust", "[gnc][R27]") {
     DeadReckoning reckoning;
     Surroundings now = held(HeldBy::engines);
     now.thrust_N = 12000.0;
-    const Felt last{{0.0, 0.0, -5.3}, Vector3::Zero()};
-    CHECK(
-        reckoning.feel(parameters, now, flying(30.0), last, seconds_per_tick).force_B_mps2.isApprox(last.force_B_mps2));
+    const ForceAndRate last{{0.0, 0.0, -5.3}, Vector3::Zero()};
+    CHECK(reckoning.reckon(parameters, now, flying(30.0), last, seconds_per_tick)
+              .force_B_mps2.isApprox(last.force_B_mps2));
     now.thrust_N = 6000.0;
-    CHECK(reckoning.feel(parameters, now, flying(30.0), {}, seconds_per_tick)
+    CHECK(reckoning.reckon(parameters, now, flying(30.0), {}, seconds_per_tick)
               .force_B_mps2.isApprox(0.5 * last.force_B_mps2));
 }
 

@@ -2,8 +2,8 @@
 // Octets from a link, decommutated by the shipped dictionary and put into words. The first octet chooses a packet whose
 // headers and CRC are written around the rest, so that the fields are reached; or the octets are taken as they are.
 #include "telemetry/explanation.hpp"
+#include "telemetry/packet_identity.hpp"
 #include "telemetry/text.hpp"
-#include "telemetry/unit_identity.hpp"
 
 #include <algorithm>
 #include <cstdlib>

@@ -29,7 +29,7 @@ struct Server {
         std::ofstream{recorded.folder / "web/assets/a.js"} << "1";
         std::ofstream{recorded.folder / "secret.txt"} << secret;
         std::filesystem::create_symlink(recorded.folder / "secret.txt", recorded.folder / "web/link.txt");
-        desk.close("nothing can be started here");
+        rehearsals.close("nothing can be started here");
         campaigns.close("nothing can be started here");
     }
     static StreamHub::Services no_services() {
@@ -47,20 +47,20 @@ struct Server {
                             PipelineThread::Faults::hold,
                             {}};
     StreamHub hub{recorded.dictionary.id, no_services()};
-    RehearsalDesk desk{scenarios,
-                       recorded.dictionary,
-                       pipeline,
-                       [](const auto& action) { action(); },
-                       [](archive::RunId, const auto& done) { done(Error{"was not cut off"}); },
-                       {[](archive::RunId, const auto&, bool, const auto& done) { done(std::string{}); },
-                        [](archive::RunId, const auto& done) { done(TimelineCheck::Reanalysis{}); }},
-                       {[](const auto&) {}, [](const auto&) {}}};
-    campaign::CampaignDesk campaigns{recorded.folder / "campaigns", scenarios, recorded.dictionary};
-    PredictionDesk predictions{recorded.dictionary};
+    RehearsalManager rehearsals{scenarios,
+                                recorded.dictionary,
+                                pipeline,
+                                [](const auto& action) { action(); },
+                                [](archive::RunId, const auto& done) { done(Error{"was not cut off"}); },
+                                {[](archive::RunId, const auto&, bool, const auto& done) { done(std::string{}); },
+                                 [](archive::RunId, const auto& done) { done(TimelineCheck::Reanalysis{}); }},
+                                {[](const auto&) {}, [](const auto&) {}}};
+    campaign::CampaignManager campaigns{recorded.folder / "campaigns", scenarios, recorded.dictionary};
+    PredictionService predictions{recorded.dictionary};
     std::unique_ptr<Access> access = std::move(Access::open({})).value();
     ClockWatch clock_watch;
-    Api api{{recorded.dictionary, scenarios, *queries, desk, predictions, campaigns, hub, pipeline, console, *access,
-             false, [] { return std::size_t{1}; }, clock_watch}};
+    Api api{{recorded.dictionary, scenarios, *queries, rehearsals, predictions, campaigns, hub, pipeline, console,
+             *access, false, [] { return std::size_t{1}; }, clock_watch}};
 };
 
 HttpResponse ask(Server& server, const HttpRequest& request) {

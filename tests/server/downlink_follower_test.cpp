@@ -422,12 +422,13 @@ TEST_CASE("while the system's clock is set back and forth under a run, Earth rec
     REQUIRE(page);
     auto database = archive::sqlite::Database::open(follower.archive().string(), archive::sqlite::Mode::read_only);
     REQUIRE(database);
-    CHECK(database->integer_of("SELECT count(*) FROM units").value() == 3);
-    CHECK(database
-              ->integer_of("SELECT count(*) FROM (SELECT ert_us, lag(ert_us) OVER (ORDER BY key) AS before FROM units)"
-                           " WHERE ert_us < before")
-              .value() == 0);
-    CHECK(database->integer_of("SELECT max(ert_us) - min(ert_us) FROM units").value() < 60'000'000);
+    CHECK(database->integer_of("SELECT count(*) FROM packets").value() == 3);
+    CHECK(
+        database
+            ->integer_of("SELECT count(*) FROM (SELECT ert_us, lag(ert_us) OVER (ORDER BY key) AS before FROM packets)"
+                         " WHERE ert_us < before")
+            .value() == 0);
+    CHECK(database->integer_of("SELECT max(ert_us) - min(ert_us) FROM packets").value() < 60'000'000);
 }
 
 /// Packets with a clock of whole seconds and a number (APID 1), and without a time: a whole number and a text (APID 2).

@@ -23,7 +23,7 @@ using server::from_json;
 
 namespace {
 
-struct Asked {
+struct Exchange {
     const char* method;
     const char* target;
     const char* body;
@@ -40,7 +40,7 @@ TEST_CASE("every route answers what it can and refuses the rest by name", "[http
         if (web_request(port, "GET", "/api/v1/runs/1").status == 200) break;
         std::this_thread::sleep_for(std::chrono::milliseconds{20});
     }
-    const Asked table[] = {
+    const Exchange table[] = {
         {"GET", "/healthz", "", 200, "ok"},
         {"GET", "/metrics", "", 200, "\naeolis_build_info{version=\""},
         {"GET", "/metrics", "", 200, "\naeolis_resident_memory_bytes "},
@@ -323,7 +323,7 @@ TEST_CASE("an instructor breaks something in the rehearsal that goes on, and is 
         web_request(server.port(), "POST", "/api/v1/rehearsals/current", R"({"run":2,"stop":true})");
     CHECK(of_another.status == 422);
     CHECK_THAT(of_another.body, Catch::Contains("run 2 is not the one that goes on (1)"));
-    const Asked refused[] = {
+    const Exchange refused[] = {
         {"", "", R"({})", 422, "device_fault, system_fault, computer_reset or station_outage"},
         {"", "", R"({"computer_reset":false})", 422, "false asks for nothing"},
         {"", "", R"({"system_fault":{"duration_s":0}})", 422, "duration_s: 0"},

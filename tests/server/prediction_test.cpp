@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "aeolis/v1/prediction.pb.h"
 #include "server/base/json.hpp"
-#include "server/rehearsal/prediction_desk.hpp"
+#include "server/rehearsal/prediction_service.hpp"
 #include "tests/server/running_server.hpp"
 #include "tests/server/web_client.hpp"
 #include "tests/support/slept_time.hpp"
@@ -14,7 +14,7 @@ namespace server_prediction_test {
 using namespace aeolis;
 using namespace aeolis::test;
 using server::from_json;
-using server::PredictionDesk;
+using server::PredictionService;
 
 namespace {
 
@@ -29,9 +29,9 @@ WebReply prediction_of(const RunningServer& server, int run, const std::string& 
     return {};
 }
 
-PredictionDesk::Answer answer_of(PredictionDesk& desk, const simulation::Scenario& scenario) {
+PredictionService::Answer answer_of(PredictionService& service, const simulation::Scenario& scenario) {
     for (int i = 0; i < 3000; ++i) {
-        auto answer = desk.prediction(scenario);
+        auto answer = service.prediction(scenario);
         if (answer.flight || !answer.none.empty()) return answer;
         std::this_thread::sleep_for(std::chrono::milliseconds{20});
     }
@@ -140,24 +140,25 @@ TEST_CASE("runs that differ in seed and faults have one prediction, to the octet
     }
 }
 
-TEST_CASE("the desk keeps a few nominal flights, and of those flown forgets the one asked for longest ago",
+TEST_CASE("the service keeps a few nominal flights, and of those flown forgets the one asked for longest ago",
           "[prediction]") {
-    PredictionDesk desk{tests::shipped_dictionary()};
-    for (int i = 0; i < 4; ++i) CHECK_THAT(answer_of(desk, of_no_telemetry(i)).none, Catch::Contains("no telemetry"));
-    CHECK(desk.flown() == 4);
-    CHECK_FALSE(desk.prediction(of_no_telemetry(0)).none.empty());  // known at once, and now the newest
-    CHECK_FALSE(answer_of(desk, of_no_telemetry(4)).none.empty());
-    CHECK_FALSE(desk.prediction(of_no_telemetry(0)).none.empty());
-    CHECK(desk.prediction(of_no_telemetry(1)).none.empty());  // forgotten: it is flown anew
-    CHECK_FALSE(answer_of(desk, of_no_telemetry(1)).none.empty());
-    CHECK(desk.flown() == 6);
+    PredictionService service{tests::shipped_dictionary()};
+    for (int i = 0; i < 4; ++i)
+        CHECK_THAT(answer_of(service, of_no_telemetry(i)).none, Catch::Contains("no telemetry"));
+    CHECK(service.flown() == 4);
+    CHECK_FALSE(service.prediction(of_no_telemetry(0)).none.empty());  // known at once, and now the newest
+    CHECK_FALSE(answer_of(service, of_no_telemetry(4)).none.empty());
+    CHECK_FALSE(service.prediction(of_no_telemetry(0)).none.empty());
+    CHECK(service.prediction(of_no_telemetry(1)).none.empty());  // forgotten: it is flown anew
+    CHECK_FALSE(answer_of(service, of_no_telemetry(1)).none.empty());
+    CHECK(service.flown() == 6);
 }
 
-TEST_CASE("a desk that ends does not fly to the end", "[prediction]") {
+TEST_CASE("a service that ends does not fly to the end", "[prediction]") {
     const tests::SleptTime time;
     {
-        PredictionDesk desk{tests::shipped_dictionary()};
-        CHECK_FALSE(desk.prediction(shipped_scenario("nominal_auto")).flight);
+        PredictionService service{tests::shipped_dictionary()};
+        CHECK_FALSE(service.prediction(shipped_scenario("nominal_auto")).flight);
     }
     CHECK(time.passed() < std::chrono::seconds{1});
 }

@@ -48,7 +48,7 @@ TEST_CASE("a run is removed, and its space returned, while another is recorded, 
     REQUIRE(start(R"({"scenario":"nominal_auto","pace":0})") == 201);
     const auto remove = [&](const char* path) { return web_request(server.port(), "DELETE", path); };
     CHECK(remove("/api/v1/runs/1").status == 409);  // it goes on
-    REQUIRE(comes(server.archive(), "SELECT count(*) > 20000 FROM units"));
+    REQUIRE(comes(server.archive(), "SELECT count(*) > 20000 FROM packets"));
     REQUIRE(web_request(server.port(), "POST", "/api/v1/rehearsals/current", R"({"stop":true})").status == 202);
     REQUIRE(comes(server.archive(), "SELECT count(*) FROM runs WHERE run = 1 AND state = 'finished'"));
     CHECK_THAT(remove("/api/v1/runs/1").body, Catch::Contains("the consoles show it"));
@@ -59,7 +59,7 @@ TEST_CASE("a run is removed, and its space returned, while another is recorded, 
     REQUIRE(remove("/api/v1/runs/1").status == 204);
     CHECK(web_request(server.port(), "GET", "/api/v1/runs/1").status == 404);
     REQUIRE(comes(server.archive(),
-                  "SELECT NOT EXISTS (SELECT 1 FROM units WHERE run = 1) AND NOT EXISTS (SELECT 1 "
+                  "SELECT NOT EXISTS (SELECT 1 FROM packets WHERE run = 1) AND NOT EXISTS (SELECT 1 "
                   "FROM segments WHERE run = 1) AND NOT EXISTS (SELECT 1 FROM pyramid WHERE run = 1)"));
     CHECK(ask(server.archive(), "SELECT count(*) FROM runs WHERE run = 2 AND state = 'running'") == 1);
     CHECK(ask(server.archive(), "SELECT count(*) FROM audit WHERE action = 'prune' AND detail = 'runs 1'") == 1);

@@ -69,33 +69,33 @@ TEST_CASE("the scenarios in which a computer fails end on the ground", "[.long][
     }
 }
 
-TEST_CASE("over three orbiters a unit keeps one identity, and the recording comes down in passes",
+TEST_CASE("over three orbiters a packet keeps one identity, and the recording comes down in passes",
           "[rehearsal][relay][R29][R41]") {
     auto scenario = test::shipped_scenario("relay_passes");
     scenario.radio.delivery_restarts_after_touchdown_s = {200.0};
     Rehearsal rehearsal{scenario, 2, 0, tests::shipped_dictionary()};
-    telemetry::UnitRegister units;
+    telemetry::PacketRegister packets;
     std::map<std::string, std::uint64_t> seen;
     std::uint64_t again = 0;
     while (!rehearsal.finished())
         for (const auto& packet : rehearsal.step().packets) {
             ++seen[packet.link.name];
             if (packet.link.recorded) continue;
-            again += units.add(packet.octets, telemetry::Path::realtime) == telemetry::Standing::again;
+            again += packets.add(packet.octets, telemetry::Path::realtime) == telemetry::Standing::again;
         }
     CHECK(rehearsal.outcome() == archive::Outcome::touchdown);
     CHECK(seen["uhf_live"] > 5000);
     CHECK(seen["uhf_mro"] > 1000);
     CHECK(seen["uhf_mex"] > 1000);
     CHECK(again > 0);
-    CHECK(units.counts().realtime > seen["uhf_live"]);  // what the bent pipe lost another orbiter had
-    CHECK(units.counts().realtime + again ==
+    CHECK(packets.counts().realtime > seen["uhf_live"]);  // what the bent pipe lost another orbiter had
+    CHECK(packets.counts().realtime + again ==
           seen["uhf_live"] + seen["uhf_mro"] + seen["uhf_mex"] + seen["x_band_telemetry"]);
     CHECK(rehearsal.recording_progress() == 1.0);
     CHECK(rehearsal.station().recording().asked() > 0);
     const auto proof = rehearsal.proof();
     CHECK(proof.holds());
-    CHECK(proof.realtime == units.counts().realtime);
+    CHECK(proof.realtime == packets.counts().realtime);
     std::uint64_t recorded = 0;
     for (telemetry::PacketStream recording{rehearsal.landing().recording()}; recording.next();) ++recorded;
     CHECK(seen["relay"] == recorded);

@@ -5,7 +5,7 @@
 #include "server/rehearsal/rehearsal.hpp"
 #include "telemetry/decommutator.hpp"
 #include "telemetry/packet_stream.hpp"
-#include "telemetry/situation_desk.hpp"
+#include "telemetry/situation_monitor.hpp"
 #include "telemetry/text.hpp"
 #include "tests/server/running_server.hpp"
 #include "tests/support/catch.hpp"
@@ -119,7 +119,7 @@ const SituationEntry* find(const v1::Situation& situation, const std::string& su
 /// The list itself: ranked, bounded, in words.
 void check_list(const v1::Situation& situation) {
     REQUIRE_FALSE(situation.entries().empty());
-    CHECK(situation.entries_size() <= static_cast<int>(telemetry::SituationDesk::entries_max));
+    CHECK(situation.entries_size() <= static_cast<int>(telemetry::SituationMonitor::entries_max));
     CHECK(situation.entries(0).rank() >= SituationEntry::calm);
     for (int i = 0; i + 1 < situation.entries_size(); ++i)
         CHECK(situation.entries(i).rank() >= situation.entries(i + 1).rank());
@@ -131,7 +131,7 @@ void check_list(const v1::Situation& situation) {
 
 /// Countdowns count to what is to come; what is past is overdue.
 void check_countdowns(const Told::Second& at) {
-    const auto late_us = static_cast<std::int64_t>(telemetry::SituationDesk::tone_late_s * 1e6) + second_us;
+    const auto late_us = static_cast<std::int64_t>(telemetry::SituationMonitor::tone_late_s * 1e6) + second_us;
     for (const auto& entry : at.situation.entries()) {
         if (!entry.has_at_us()) continue;
         CAPTURE(entry.sentence(), entry.awaited(), entry.at_us() - at.now.microseconds, entry.overdue());

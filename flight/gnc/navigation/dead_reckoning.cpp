@@ -32,8 +32,8 @@ double unknown_rate_rps(const Parameters& parameters, HeldBy held_by) {
 
 }  // namespace
 
-Felt DeadReckoning::feel(const Parameters& parameters, const Surroundings& now, const NavigatedState& state,
-                         const Felt& last, double dt_s) {
+ForceAndRate DeadReckoning::reckon(const Parameters& parameters, const Surroundings& now, const NavigatedState& state,
+                                   const ForceAndRate& last, double dt_s) {
     AEOLIS_CHECK(dt_s > 0.0);
     if (silent_s_ == 0.0) {
         rate_B_rps_ = last.rate_B_rps;

@@ -30,7 +30,7 @@ namespace aeolis::flight::gnc {
 enum class HeldBy : std::uint8_t { nothing, air, new_trim, parachute, engines };
 
 /// Specific force and rate relative to inertial space, in B.
-struct Felt {
+struct ForceAndRate {
     Vector3 force_B_mps2 = Vector3::Zero();
     Vector3 rate_B_rps = Vector3::Zero();
 };
@@ -49,8 +49,8 @@ struct Surroundings {
 class DeadReckoning {
   public:
     /// Force and rates over the next `dt_s`. A silence's first call starts from `last`, the IMU's last measurement.
-    Felt feel(const Parameters& parameters, const Surroundings& now, const NavigatedState& state, const Felt& last,
-              double dt_s);
+    ForceAndRate reckon(const Parameters& parameters, const Surroundings& now, const NavigatedState& state,
+                        const ForceAndRate& last, double dt_s);
     /// Ends the silence.
     void end() { silent_s_ = 0.0; }
 

@@ -38,10 +38,10 @@ test('axe finds nothing on any panel in both themes, and each panel says its mod
       [
         'packets',
         async () => {
-          await shows('unit-table', /UHF/);
-          await page.getByTestId('units').focus();
+          await shows('packet-table', /UHF/);
+          await page.getByTestId('packet-rows').focus();
           await page.keyboard.press('ArrowDown');
-          await shows('packet', /unit \d/);
+          await shows('packet', /packet \d/);
         },
       ],
       [

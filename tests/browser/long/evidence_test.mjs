@@ -67,12 +67,12 @@ test('a packet is read by keyboard: its fields light their octets, an octet ligh
   await page.getByRole('button', { name: 'GncNavigation', exact: true }).focus();
   await page.keyboard.press('Enter');
   await waitFor(
-    async () => new Set(await page.locator('[data-testid="unit-table"] tbody tr td:nth-child(4)').allInnerTexts()),
+    async () => new Set(await page.locator('[data-testid="packet-table"] tbody tr td:nth-child(4)').allInnerTexts()),
     (names) => names.size === 1 && names.has('GncNavigation'),
   );
   await waitFor(
     () => focused(page),
-    (id) => id === 'units',
+    (id) => id === 'packet-rows',
   );
   await page.keyboard.press('ArrowDown');
   await shows('packet', /GncNavigation over [^]*octets/);
@@ -83,7 +83,7 @@ test('a packet is read by keyboard: its fields light their octets, an octet ligh
     (now) => now !== first,
   );
 
-  const unit = /unit (\d+)/.exec(await text('packet'))[1];
+  const unit = /packet (\d+)/.exec(await text('packet'))[1];
   const { packets } = await server.get(`/runs/latest/packets?name=GncNavigation&limit=1000`);
   const packet = packets.find((each) => each.unit.unit === unit);
   const shown = (await page.locator('[data-octet]').allInnerTexts()).join('');
@@ -108,7 +108,7 @@ test('a packet is read by keyboard: its fields light their octets, an octet ligh
   );
   await waitFor(
     () => focused(page),
-    (id) => id === 'units',
+    (id) => id === 'packet-rows',
   );
   assert.deepEqual(problems, []);
   await page.close();

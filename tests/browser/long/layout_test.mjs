@@ -421,7 +421,7 @@ const ALARMS = [
 ];
 
 for (const [panel, tables] of [
-  ['packets', ['packet-streams', 'unit-table']],
+  ['packets', ['packet-streams', 'packet-table']],
   ['links', ['link-table']],
   ['alarms', ['alarm-table']],
 ]) {

@@ -165,12 +165,12 @@ test('an export tells how much has come, is cancelled where it was asked for and
   await page.close();
 });
 
-test('all units of a range are come to page by page, and one packet is looked for in all of the range', async () => {
+test('all packets of a range are come to page by page, and one packet is looked for in all of the range', async () => {
   const { page, problems, shows } = await open(server.address);
   await shows('waiting', /Touchdown reported/);
   const { entry_sclk: entry } = (await server.get('/runs')).runs[0];
   const all = (await server.get(`/runs/1/packets?from=${entry + 290}&to=${entry + 292}&limit=1000`)).packets;
-  assert.ok(all.length > 100 && all.length < 1000, `${all.length} units`);
+  assert.ok(all.length > 100 && all.length < 1000, `${all.length} packets`);
   await page.keyboard.press('r');
   await page.getByTestId('range-from').fill('E+4:50');
   await page.getByTestId('range-to').fill('E+4:52');
@@ -178,41 +178,41 @@ test('all units of a range are come to page by page, and one packet is looked fo
   await shows('past-bar', /THE PAST/);
   await page.evaluate(() => document.activeElement.blur());
   await page.keyboard.press('k');
-  await shows('unit-pages', /units 1 to 100 of more than 100, oldest first/);
-  const units = () => page.locator('[data-testid="unit-table"] tbody tr td:nth-child(2)').allInnerTexts();
+  await shows('packet-pages', /packets 1 to 100 of more than 100, oldest first/);
+  const numbers = () => page.locator('[data-testid="packet-table"] tbody tr td:nth-child(2)').allInnerTexts();
   const through = async () => {
     const seen = [];
     for (;;) {
-      await shows('unit-pages', /units \d+ to \d+/);
-      const now = await waitFor(units, (each) => each.length > 0 && each[0] !== seen.at(-100));
+      await shows('packet-pages', /packets \d+ to \d+/);
+      const now = await waitFor(numbers, (each) => each.length > 0 && each[0] !== seen.at(-100));
       seen.push(...now);
       const later = page.getByRole('button', { name: 'later ›' });
       if (await later.isDisabled()) return seen;
       await later.click();
-      await waitFor(units, (each) => each[0] !== now[0]);
+      await waitFor(numbers, (each) => each[0] !== now[0]);
     }
   };
   assert.deepEqual(
     await through(),
     all.map(({ unit }) => unit.unit),
   );
-  await shows('unit-pages', new RegExp(`to ${all.length} of ${all.length}, oldest first`));
+  await shows('packet-pages', new RegExp(`to ${all.length} of ${all.length}, oldest first`));
   await page.getByRole('button', { name: '‹ earlier' }).click();
-  await shows('unit-pages', /of more than/);
+  await shows('packet-pages', /of more than/);
   const name = 'GncNavigation';
   const named = all.filter(({ unit }) => unit.name === name).map(({ unit }) => unit.unit);
   await page.getByRole('button', { name, exact: true }).click();
-  await waitFor(units, (now) => now.join() === named.slice(0, 100).join());
+  await waitFor(numbers, (now) => now.join() === named.slice(0, 100).join());
   await shows(
-    'unit-pages',
+    'packet-pages',
     new RegExp(
-      named.length > 100 ? 'units 1 to 100 of more than 100' : `units 1 to ${named.length} of ${named.length}`,
+      named.length > 100 ? 'packets 1 to 100 of more than 100' : `packets 1 to ${named.length} of ${named.length}`,
     ),
   );
   assert.match(
     await page
       .locator('.panel')
-      .filter({ has: page.getByTestId('unit-pages') })
+      .filter({ has: page.getByTestId('packet-pages') })
       .innerText(),
     /only GncNavigation, of all of the range/,
   );

@@ -82,7 +82,7 @@ TEST_CASE("what is not an archive is refused by name and left as it was", "[arch
         CHECK(opened.error().message == file.string() + " is not an Aeolis archive");
         CHECK(ask(file, "SELECT count(*) FROM sqlite_schema") == 1);
     }
-    SECTION("another schema, as that of a build before the first release") {
+    SECTION("another schema, as that of a later build") {
         const auto file = folder / "other_schema.db";
         {
             REQUIRE(Archive::open(file).ok());
@@ -101,11 +101,23 @@ TEST_CASE("what is not an archive is refused by name and left as it was", "[arch
         CHECK(read.error().message == line);
         CHECK(ask(file, "PRAGMA user_version") == 4);
     }
+    SECTION("the mark of builds before the first release") {
+        const auto file = folder / "early.db";
+        {
+            auto early = sqlite::Database::open(file.string(), sqlite::Mode::read_write_create);
+            REQUIRE(early->execute("PRAGMA application_id = 0x41454F4C; PRAGMA user_version = 1").ok());
+        }
+        const std::string line = file.string() +
+                                 " was written before the first release, in another layout: open it with "
+                                 "the Aeolis that wrote it, or name another file";
+        CHECK(Archive::open(file).error().message == line);
+        CHECK(Reader::open(file, test::small_dictionary()).error().message == line);
+    }
     SECTION("a mark without tables") {
         const auto file = folder / "marked.db";
         {
             auto marked = sqlite::Database::open(file.string(), sqlite::Mode::read_write_create);
-            REQUIRE(marked->execute("PRAGMA application_id = 1095061324").ok());
+            REQUIRE(marked->execute("PRAGMA application_id = 0x41454F31").ok());
         }
         CHECK_FALSE(Archive::open(file).ok());
     }
@@ -179,15 +191,15 @@ TEST_CASE("a batch is stored whole or not at all, and may be given again", "[arc
     auto batch = packets(11, 10);
     batch.packets.back().seq = 5;  // taken: the ten before it must not be stored either
     CHECK_FALSE(archive->append(*run, batch).ok());
-    CHECK(ask(file, "SELECT count(*) FROM units") == 10);
+    CHECK(ask(file, "SELECT count(*) FROM packets") == 10);
 
     batch.packets.back().seq = 20;
     CHECK(archive->append(*run, batch).ok());
-    CHECK(ask(file, "SELECT count(*) FROM units") == 20);
-    CHECK(ask(file, "SELECT max(seq) FROM packets") == 20);
+    CHECK(ask(file, "SELECT count(*) FROM packets") == 20);
+    CHECK(ask(file, "SELECT max(seq) FROM packet_log") == 20);
 }
 
-TEST_CASE("runs are numbered in one file and keep their units apart", "[archive][R43]") {
+TEST_CASE("runs are numbered in one file and keep their packets apart", "[archive][R43]") {
     TemporaryFolder folder;
     const auto file = folder / "a.db";
     auto archive = Archive::open(file);
@@ -201,7 +213,7 @@ TEST_CASE("runs are numbered in one file and keep their units apart", "[archive]
     CHECK(second->value == first->value + 1);
     REQUIRE(archive->append(*second, packets(1, 4)).ok());
     CHECK(ask(file, "SELECT count(*) FROM packets WHERE run = 1") == 3);
-    CHECK(ask(file, "SELECT count(*) FROM packets WHERE run = 2 AND name = 'Status'") == 4);
+    CHECK(ask(file, "SELECT count(*) FROM packet_log WHERE run = 2 AND name = 'Status'") == 4);
     CHECK(ask(file, "SELECT last_seq FROM runs WHERE run = 1 AND state = 'finished'") == 3);
     CHECK(ask(file, "SELECT count(*) FROM dictionaries") == 1);
 }

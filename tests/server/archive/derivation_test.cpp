@@ -87,21 +87,21 @@ struct Recorded {
 
 }  // namespace
 
-TEST_CASE("everything derived is made again from the raw units, identical", "[archive][rebuild][R43]") {
+TEST_CASE("everything derived is made again from the raw packets, identical", "[archive][rebuild][R43]") {
     const Recorded recorded;
     const auto before = recorded.derived_rows();
     REQUIRE(before.size() > 100'000);
     for (const char* table :
-         {"segment_columns", "pyramid_columns", "events", "timepoint_firings", "alarms", "recordings", "units"})
+         {"segment_columns", "pyramid_columns", "events", "timepoint_firings", "alarms", "recordings", "packets"})
         REQUIRE(before.find(table) != std::string::npos);
     SECTION("as they are") {}
     SECTION("after damage to each of them") {
         recorded.spoil(
             "UPDATE events SET text = 'nothing happened'; DELETE FROM alarms; UPDATE segment_columns SET value = x'00';"
             "DELETE FROM segments WHERE run = 2; DELETE FROM pyramid; UPDATE pyramid_columns SET nodes = x'';"
-            "UPDATE timepoint_firings SET fired_sclk = 0; UPDATE recordings SET realtime = 7; UPDATE units SET "
+            "UPDATE timepoint_firings SET fired_sclk = 0; UPDATE recordings SET realtime = 7; UPDATE packets SET "
             "standing = 0;"
-            "UPDATE units SET sampled = 0, packet = NULL WHERE key & 3 = 1");
+            "UPDATE packets SET sampled = 0, packet = NULL WHERE key & 3 = 1");
     }
     const auto rebuilt = pipeline::rebuild(recorded.file, {}, recorded.dictionary, nullptr, {});
     REQUIRE(rebuilt.ok());
@@ -157,25 +157,25 @@ TEST_CASE("verify names what is wrong, and finds nothing in a good archive", "[a
         REQUIRE(faults.size() == 2);
         CHECK(faults[0].find("run 1: no item has the number ") == 0);
         CHECK(faults[1].find("run 1: alarms: item ") == 0);
-        CHECK(faults[1].find("is missing: a unit says it") != std::string::npos);
+        CHECK(faults[1].find("is missing: a packet says it") != std::string::npos);
     }
     SECTION("a sample's octets") {
         CHECK(only("UPDATE segment_columns SET value = CAST(substr(value, 1, 60) || x'0102' || substr(value, 63) AS "
                    "BLOB) WHERE key = (8388608 + 1) * 65536")
                   .find("run 1: segment_columns: segment 8388609, channel altitude_m is damaged: ") == 0);
     }
-    SECTION("samples that are whole but not those of the units") {
+    SECTION("samples that are whole but not those of the packets") {
         CHECK(only("UPDATE segment_columns SET value = (SELECT value FROM segment_columns WHERE key = 8388608 * 65536 "
                    "+ 1) WHERE key = 8388608 * 65536")
                   .find("run 1: segment_columns: segment 8388608, channel altitude_m its samples are not those of its "
-                        "units") == 0);
+                        "packets") == 0);
     }
     SECTION("a node of the pyramid") {
         CHECK(only("UPDATE pyramid_columns SET nodes = zeroblob(length(nodes)) WHERE key = 8388608 * 65536 + 1")
-                  .find("run 1: pyramid_columns: block 8388608, channel speed_mps is not what its unit says") == 0);
+                  .find("run 1: pyramid_columns: block 8388608, channel speed_mps is not what its packet says") == 0);
     }
-    SECTION("a raw unit") {
-        recorded.spoil("UPDATE units SET octets = CAST(substr(octets, 1, 20) || x'FF' || substr(octets, 22) AS BLOB) "
+    SECTION("a raw packet") {
+        recorded.spoil("UPDATE packets SET octets = CAST(substr(octets, 1, 20) || x'FF' || substr(octets, 22) AS BLOB) "
                        "WHERE key = (1 << 40) + 40");
         const auto faults = recorded.faults();
         CHECK_FALSE(faults.empty());  // its own row, and all that followed from it
@@ -208,7 +208,7 @@ TEST_CASE("a run that this program would tell otherwise is left as it is", "[arc
         const auto rebuilt = pipeline::rebuild(recorded.file, RunId{1}, other, nullptr, {});
         REQUIRE(rebuilt.ok());
         REQUIRE(rebuilt->left.size() == 1);
-        CHECK(rebuilt->left.front().find("run 1: its units now say something else") == 0);
+        CHECK(rebuilt->left.front().find("run 1: its packets now say something else") == 0);
     }
     CHECK((recorded.derived_rows() == before));
     CHECK(pipeline::rebuild(recorded.file, RunId{9}, recorded.dictionary, nullptr, {}).error().message == "no run 9");

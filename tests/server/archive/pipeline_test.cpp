@@ -244,7 +244,7 @@ TEST_CASE("reading after any number, in pages of any size, gives every item once
     for (const auto& item : events->items) CHECK_FALSE((item.has_unit() || item.has_samples()));
 }
 
-TEST_CASE("a unit of the recording that was seen in real time is kept as proof and not doubled", "[pipeline][R29]") {
+TEST_CASE("a packet of the recording that was seen in real time is kept as proof and not doubled", "[pipeline][R29]") {
     Ground ground;
     for (std::uint16_t i = 0; i < 10; ++i)
         if (i % 2 == 0) REQUIRE(ground.pipeline.accept(live(navigation_packet(i, 1000.0 + i, 100.0F * i, 1.0F))).ok());
@@ -278,7 +278,7 @@ TEST_CASE("a unit of the recording that was seen in real time is kept as proof a
     CHECK(reader.events(ground.run(), both)->events_size() == 2);
 }
 
-TEST_CASE("a unit whose octets differ in the recording is told", "[pipeline][R29]") {
+TEST_CASE("a packet whose octets differ in the recording is told", "[pipeline][R29]") {
     Ground ground;
     REQUIRE(ground.pipeline.accept(live(status_packet(0, 1000.0, 2))).ok());
     REQUIRE(ground.pipeline.accept(recorded(status_packet(0, 1000.0, 3))).ok());

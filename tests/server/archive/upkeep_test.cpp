@@ -75,7 +75,7 @@ TEST_CASE("pruned runs are gone from every table, are noted, and their numbers a
             of_second.replace(at, 2, "2");
         CHECK(total == ask(file, (std::string("SELECT count(*) FROM ") + table.name + " WHERE " + of_second).c_str()));
     }
-    CHECK(ask(file, "SELECT count(*) FROM units") == 2500);
+    CHECK(ask(file, "SELECT count(*) FROM packets") == 2500);
     CHECK(ask(file, "SELECT count(*) FROM pruned_runs WHERE scenario = 'nominal'") == 2);
     CHECK(ask(file, "SELECT count(*) FROM audit WHERE action <> 'fingerprint'") == 1);  // the refused one did nothing
     CHECK(ask(file, "SELECT count(*) FROM audit WHERE who = 'nina' AND peer = 'command line' AND action = 'prune' AND "
@@ -126,7 +126,7 @@ TEST_CASE("a pruning that a crash cut off is gone on with, piece by piece, and n
             of_first.replace(at, 2, "1");
         CHECK(ask(file, (std::string("SELECT count(*) FROM ") + table.name + " WHERE " + of_first).c_str()) == 0);
     }
-    CHECK(ask(file, "SELECT count(*) FROM units") == 2500);
+    CHECK(ask(file, "SELECT count(*) FROM packets") == 2500);
     CHECK(ask(file, "PRAGMA freelist_count") == 0);
     CHECK(std::filesystem::file_size(file) < before * 9 / 10);
     auto archive = std::move(Archive::open(file)).value();
@@ -145,7 +145,7 @@ TEST_CASE("a run that is pruned while the rows of another go is removed as well"
     REQUIRE(*archive.remove_pruned());
     REQUIRE(archive.prune(RunId{2}, {}).ok());
     for (int pieces = 0; *archive.remove_pruned(); ++pieces) REQUIRE(pieces < 1000);
-    CHECK(ask(file, "SELECT count(DISTINCT key >> 40) FROM units") == 1);
+    CHECK(ask(file, "SELECT count(DISTINCT key >> 40) FROM packets") == 1);
     CHECK(ask(file, "PRAGMA freelist_count") == 0);
 }
 
@@ -255,9 +255,9 @@ TEST_CASE("numbers that no item has, or two have, are named", "[archive][verify]
     auto database = std::move(sqlite::Database::open(file.string(), sqlite::Mode::read_write_create)).value();
     CHECK(sequence_faults(database, RunId{1}, "main.", 10)->empty());
     REQUIRE(database
-                .execute("DELETE FROM units WHERE key = (1 << 40) + 11; INSERT INTO link_changes VALUES ((1 << 40) + "
+                .execute("DELETE FROM packets WHERE key = (1 << 40) + 11; INSERT INTO link_changes VALUES ((1 << 40) + "
                          "21, 0, 1, 1, NULL, '', 0, NULL);"
-                         "UPDATE units SET sampled = 0 WHERE key = (1 << 40) + 31")
+                         "UPDATE packets SET sampled = 0 WHERE key = (1 << 40) + 31")
                 .ok());
     CHECK(*sequence_faults(database, RunId{1}, "main.", 10) ==
           std::vector<std::string>{"run 1: no item has the numbers 11 to 12", "run 1: two items have the number 21",

@@ -24,7 +24,7 @@ export interface LinkView {
   reason: string;
   since_e_s: number | undefined;
   silences: Outage[];
-  units: number;
+  packets: number;
   octets: number;
   seenBefore: number;
   counters: LinkCounters | undefined;
@@ -54,7 +54,7 @@ export function linkViews(store: RunStore, proof: ProofReport | undefined, cutof
       reason: silent ? 'no connection' : (last?.reason ?? ''),
       since_e_s: known && store.sclkSeenAt(known.ert_s) - store.entrySclk,
       silences: outages(store, link, now, cutoff),
-      units: total?.units ?? 0,
+      packets: total?.packets ?? 0,
       octets: total?.octets ?? 0,
       seenBefore: total?.duplicates ?? 0,
       counters: proof?.counters.find((each) => each.link === link),

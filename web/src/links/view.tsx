@@ -75,7 +75,7 @@ function Row({ view }: { view: LinkView }) {
         </td>
       )}
       <td class="number">
-        {judged ? count(judged.live > 0 ? judged.live : judged.recorded) : count(view.units)}
+        {judged ? count(judged.live > 0 ? judged.live : judged.recorded) : count(view.packets)}
         {view.seenBefore > 0 && <small> {count(view.seenBefore)} again</small>}
       </td>
       <td class="number">{judged && judged.live > 0 ? count(judged.identical) : ''}</td>

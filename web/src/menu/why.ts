@@ -64,7 +64,7 @@ export function packetLines(row: PacketRow, channel: string): Lines {
   const { unit } = row;
   const field = fieldOf(row, channel);
   return [
-    ['packet', `${unit?.name}, unit ${unit?.unit}, over ${linkTitle(unit?.link ?? '')}`],
+    ['packet', `${unit?.name}, packet ${unit?.unit}, over ${linkTitle(unit?.link ?? '')}`],
     ['received', `${dayOfYear(secondsOfErt(row.ertUs))} (ERT)`],
     ['bits', field ? `${placeWords(field)}, ${field.bits} bits` : 'its place in the packet is not told'],
     ['verdict', row.verdict.replaceAll('_', ' ')],
@@ -100,12 +100,12 @@ export function linkLines(run: RunStore, link: string): Lines {
 }
 
 export function packetStateLines(run: RunStore, packet: string, reason: string | undefined): Lines {
-  const last = run.units.findLast(({ fact, ert_s }) => fact.name === packet && run.knownBy(ert_s, lookedAt(run)));
+  const last = run.packets.findLast(({ fact, ert_s }) => fact.name === packet && run.knownBy(ert_s, lookedAt(run)));
   return [
     [
       'last',
       last
-        ? `unit ${last.fact.unit} of ${instant(run, last.fact.sclk)}, over ${linkTitle(last.fact.link)}`
+        ? `packet ${last.fact.unit} of ${instant(run, last.fact.sclk)}, over ${linkTitle(last.fact.link)}`
         : 'not among the newest that are held',
     ],
     ...(reason ? [['alarm', reason] as const] : []),

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // Packets as received: the rates of each link and packet, and the octets of each field.
-import type { Unit } from '../gen/aeolis/v1/items_pb';
+import type { Packet } from '../gen/aeolis/v1/items_pb';
 import type { PacketField, PacketRow } from '../gen/aeolis/v1/run_pb';
-import type { Known, RunStore, UnitTotals } from '../run/store';
+import type { Known, RunStore, PacketTotals } from '../run/store';
 import { secondsOfErt } from '../run/time';
 import { SOURCE_RECORDED } from '../stream/columns';
 
 interface Totals {
-  units: number;
+  packets: number;
   octets: number;
   duplicates: number;
 }
 export interface Rate {
-  units_per_s: number;
+  packets_per_s: number;
   octets_per_s: number;
 }
 interface LinkRow extends Totals {
@@ -31,30 +31,33 @@ const WINDOW_S = 10; // chosen: of stream time
  * The packets of the last ten seconds, or as far back as they are held. Undefined after the end of the run, when there
  * are no rates.
  */
-function recentOf(store: RunStore): { units: Unit[]; span_s: number } | undefined {
+function recentOf(store: RunStore): { packets: Packet[]; span_s: number } | undefined {
   const now = secondsOfErt(store.clocks?.ertUs);
-  const oldest = store.units[0];
+  const oldest = store.packets[0];
   if (!store.going || !oldest || !Number.isFinite(now)) return undefined;
   const from = Math.max(now - WINDOW_S, oldest.ert_s);
   if (now <= from) return undefined;
-  const first = store.units.findLastIndex(({ ert_s }) => ert_s < from) + 1;
-  return { units: store.units.slice(first).map(({ fact }) => fact), span_s: now - from };
+  const first = store.packets.findLastIndex(({ ert_s }) => ert_s < from) + 1;
+  return { packets: store.packets.slice(first).map(({ fact }) => fact), span_s: now - from };
 }
 
-function rateOf(recent: ReturnType<typeof recentOf>, belongs: (unit: Unit) => boolean): Rate | undefined {
+function rateOf(recent: ReturnType<typeof recentOf>, belongs: (unit: Packet) => boolean): Rate | undefined {
   if (!recent) return undefined;
-  const units = recent.units.filter(belongs);
+  const packets = recent.packets.filter(belongs);
   return {
-    units_per_s: units.length / recent.span_s,
-    octets_per_s: units.reduce((sum, unit) => sum + unit.octets, 0) / recent.span_s,
+    packets_per_s: packets.length / recent.span_s,
+    octets_per_s: packets.reduce((sum, unit) => sum + unit.octets, 0) / recent.span_s,
   };
 }
 
-function grouped<K>(all: Iterable<UnitTotals>, key: (each: UnitTotals) => K): Map<K, { first: UnitTotals } & Totals> {
-  const groups = new Map<K, { first: UnitTotals } & Totals>();
+function grouped<K>(
+  all: Iterable<PacketTotals>,
+  key: (each: PacketTotals) => K,
+): Map<K, { first: PacketTotals } & Totals> {
+  const groups = new Map<K, { first: PacketTotals } & Totals>();
   for (const each of all) {
-    const group = groups.get(key(each)) ?? { first: each, units: 0, octets: 0, duplicates: 0 };
-    group.units += each.units;
+    const group = groups.get(key(each)) ?? { first: each, packets: 0, octets: 0, duplicates: 0 };
+    group.packets += each.packets;
     group.octets += each.octets;
     group.duplicates += each.duplicates;
     groups.set(key(each), group);
@@ -63,7 +66,7 @@ function grouped<K>(all: Iterable<UnitTotals>, key: (each: UnitTotals) => K): Ma
 }
 
 export function linkTotals(store: RunStore): (Totals & { link: string })[] {
-  return [...grouped(store.unitTotals.values(), (each) => each.link).values()].map(({ first, ...totals }) => ({
+  return [...grouped(store.packetTotals.values(), (each) => each.link).values()].map(({ first, ...totals }) => ({
     link: first.link,
     ...totals,
   }));
@@ -78,7 +81,7 @@ export function linkRows(store: RunStore, rated = true): LinkRow[] {
 /** Each packet of the dictionary that has arrived, over any link. Several may share an APID. */
 export function packetStreams(store: RunStore, rated = true): PacketStream[] {
   const recent = rated ? recentOf(store) : undefined;
-  return [...grouped(store.unitTotals.values(), (each) => `${each.apid} ${each.name}`).values()]
+  return [...grouped(store.packetTotals.values(), (each) => `${each.apid} ${each.name}`).values()]
     .map(({ first, ...totals }) => ({
       apid: first.apid,
       name: first.name,
@@ -98,8 +101,8 @@ export function heardRows(store: RunStore, rows: readonly PacketRow[], cutoff: n
   );
 }
 
-export function newestUnits(store: RunStore, most: number, packet?: string): Known<Unit>[] {
-  return store.units
+export function newestPackets(store: RunStore, most: number, packet?: string): Known<Packet>[] {
+  return store.packets
     .filter(({ fact }) => packet === undefined || fact.name === packet)
     .slice(-most)
     .reverse();
@@ -108,8 +111,8 @@ export function newestUnits(store: RunStore, most: number, packet?: string): Kno
 /** The position of a page within a range of the archive, in words. */
 export function pageWords(page: number, size: number, listed: number, more: boolean): string {
   const first = page * size;
-  if (listed === 0) return 'no unit in this range';
-  return `units ${first + 1} to ${first + listed} of ${more ? `more than ${first + listed}` : first + listed}, oldest first`;
+  if (listed === 0) return 'no packet in this range';
+  return `packets ${first + 1} to ${first + listed} of ${more ? `more than ${first + listed}` : first + listed}, oldest first`;
 }
 
 interface HexLine {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import { create } from '@bufbuild/protobuf';
 import { describe, expect, it } from 'vitest';
-import { UnitSchema } from '../gen/aeolis/v1/items_pb';
+import { PacketSchema } from '../gen/aeolis/v1/items_pb';
 import { PacketRowSchema } from '../gen/aeolis/v1/run_pb';
 import { aRun, aStore, ertUs, unit } from '../testing/fixtures';
 import {
@@ -9,7 +9,7 @@ import {
   heardRows,
   hexLines,
   linkRows,
-  newestUnits,
+  newestPackets,
   octetsOf,
   packetStreams,
   pageWords,
@@ -29,25 +29,25 @@ describe('what the links bring', () => {
   it('is counted by link and by packet, its rate over the last ten seconds of stream time', () => {
     const store = aStore(some);
     expect(linkRows(store)).toEqual([
-      { link: 'uhf_live', units: 3, octets: 1499, duplicates: 0, rate: { units_per_s: 0.2, octets_per_s: 50 } },
-      { link: 'relay', units: 1, octets: 100, duplicates: 1, rate: { units_per_s: 0.1, octets_per_s: 10 } },
+      { link: 'uhf_live', packets: 3, octets: 1499, duplicates: 0, rate: { packets_per_s: 0.2, octets_per_s: 50 } },
+      { link: 'relay', packets: 1, octets: 100, duplicates: 1, rate: { packets_per_s: 0.1, octets_per_s: 10 } },
     ]);
     expect(packetStreams(store)).toEqual([
       {
         apid: 0x20,
         name: 'Status',
-        units: 3,
+        packets: 3,
         octets: 1199,
         duplicates: 1,
-        rate: { units_per_s: 0.2, octets_per_s: 20 },
+        rate: { packets_per_s: 0.2, octets_per_s: 20 },
       },
       {
         apid: 0x21,
         name: 'Navigation',
-        units: 1,
+        packets: 1,
         octets: 400,
         duplicates: 0,
-        rate: { units_per_s: 0.1, octets_per_s: 40 },
+        rate: { packets_per_s: 0.1, octets_per_s: 40 },
       },
     ]);
   });
@@ -55,16 +55,16 @@ describe('what the links bring', () => {
     expect(linkRows(aStore(some, aRun({ state: 'finished' })))[0]?.rate).toBeUndefined();
   });
   it('is listed newest first, all of it or one packet', () => {
-    expect(newestUnits(aStore(some), 2).map(({ fact }) => Number(fact.unit))).toEqual([4, 3]);
-    expect(newestUnits(aStore(some), 2, 'Status').map(({ fact }) => Number(fact.unit))).toEqual([4, 2]);
+    expect(newestPackets(aStore(some), 2).map(({ fact }) => Number(fact.unit))).toEqual([4, 3]);
+    expect(newestPackets(aStore(some), 2, 'Status').map(({ fact }) => Number(fact.unit))).toEqual([4, 2]);
   });
 });
 
-it('in the past as it was heard are neither units of the recording nor those that an orbiter brought later', () => {
+it('in the past as it was heard are neither packets of the recording nor those that an orbiter brought later', () => {
   const row = (unit: number, ert: string, source = 1) =>
     create(PacketRowSchema, {
       ertUs: ertUs(ert),
-      unit: create(UnitSchema, { unit: BigInt(unit), sclk: 800, source }),
+      unit: create(PacketSchema, { unit: BigInt(unit), sclk: 800, source }),
     });
   const rows = [row(1, at(20)), row(2, at(40)), row(3, at(20), 2)]; // E-100 is heard at 05:00:00, E-130 at 04:59:30
   expect(
@@ -74,9 +74,9 @@ it('in the past as it was heard are neither units of the recording nor those tha
 
 it('a page of a range says where in it it lies, and how many there are once that is known', () => {
   expect([pageWords(0, 100, 100, true), pageWords(2, 100, 43, false), pageWords(0, 100, 0, false)]).toEqual([
-    'units 1 to 100 of more than 100, oldest first',
-    'units 201 to 243 of 243, oldest first',
-    'no unit in this range',
+    'packets 1 to 100 of more than 100, oldest first',
+    'packets 201 to 243 of 243, oldest first',
+    'no packet in this range',
   ]);
 });
 

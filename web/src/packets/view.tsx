@@ -3,7 +3,7 @@
 // its fields.
 import { signal } from '@preact/signals';
 import { useEffect } from 'preact/hooks';
-import type { Unit } from '../gen/aeolis/v1/items_pb';
+import type { Packet as ReceivedPacket } from '../gen/aeolis/v1/items_pb';
 import type { PacketList, PacketRow } from '../gen/aeolis/v1/run_pb';
 import { linkTitle } from '../links/model';
 import { ask } from '../run/connection';
@@ -16,7 +16,7 @@ import {
   heardRows,
   hexLines,
   linkRows,
-  newestUnits,
+  newestPackets,
   octetsOf,
   packetStreams,
   pageWords,
@@ -30,7 +30,7 @@ const SHOWN = 100;
 
 /** A line of the list. The row of a live packet is fetched from the archive when it is opened. */
 interface Line {
-  fact: Unit;
+  fact: ReceivedPacket;
   seq: number;
   row?: PacketRow;
 }
@@ -97,12 +97,12 @@ function close(): void {
   opened.value = undefined;
   held.value = undefined;
   current.value = undefined;
-  document.querySelector<HTMLElement>('[data-testid="units"]')?.focus();
+  document.querySelector<HTMLElement>('[data-testid="packet-rows"]')?.focus();
 }
 
 function linesOf(run: RunStore, past: boolean): Line[] {
   if (held.value?.run === run.id) return held.value.lines;
-  if (!past) return newestUnits(run, SHOWN, wanted.value);
+  if (!past) return newestPackets(run, SHOWN, wanted.value);
   const rows = withRecording.value ? pastRows.value.packets : heardRows(run, pastRows.value.packets, cutoff.value);
   return rows.flatMap((row) =>
     row.unit && (wanted.value === undefined || row.unit.name === wanted.value) ? [{ fact: row.unit, seq: 0, row }] : [],
@@ -139,15 +139,15 @@ function Links({ whole }: { whole: boolean }) {
       {rows.map((row) => (
         <span key={row.link}>
           <b>{linkTitle(row.link)}</b>
-          {whole ? ', whole run:' : ''} {row.units} units, {row.octets} octets
+          {whole ? ', whole run:' : ''} {row.packets} packets, {row.octets} octets
           {row.rate && `, ${rateText(row.rate)}`}
           {row.duplicates > 0 && `, ${row.duplicates} seen before`}
         </span>
       ))}
-      {rows.length === 0 && <span>no unit yet</span>}
+      {rows.length === 0 && <span>no packet yet</span>}
       {!whole && run.run.relayProgress > 0 && (
         <span>
-          units of the recording: ask for a range <kbd>r</kbd>
+          packets of the recording: ask for a range <kbd>r</kbd>
         </span>
       )}
     </div>
@@ -167,7 +167,7 @@ function Streams({ whole }: { whole: boolean }) {
           <tr>
             <th class="number">APID</th>
             <th>packet</th>
-            <th class="number">units</th>
+            <th class="number">packets</th>
             <th class="number">a second</th>
             <th class="number">rate</th>
           </tr>
@@ -191,8 +191,8 @@ function Streams({ whole }: { whole: boolean }) {
                   {row.name}
                 </button>
               </td>
-              <td class="number">{row.units}</td>
-              <td class="number">{row.rate?.units_per_s.toFixed(1) ?? ''}</td>
+              <td class="number">{row.packets}</td>
+              <td class="number">{row.rate?.packets_per_s.toFixed(1) ?? ''}</td>
               <td class="number">{rateText(row.rate)}</td>
             </tr>
           ))}
@@ -202,21 +202,21 @@ function Streams({ whole }: { whole: boolean }) {
   );
 }
 
-function Units({ run, lines }: { run: RunStore; lines: Line[] }) {
+function PacketRows({ run, lines }: { run: RunStore; lines: Line[] }) {
   return (
     <div
-      class="table-scroll units"
+      class="table-scroll packet-rows"
       tabIndex={0}
       role="region"
-      aria-label={`units, ${pastRange.value ? 'oldest' : 'newest'} first; up and down open them`}
-      data-testid="units"
+      aria-label={`packets, ${pastRange.value ? 'oldest' : 'newest'} first; up and down open them`}
+      data-testid="packet-rows"
       onKeyDown={(event) => onListKey(event, lines)}
     >
-      <table data-testid="unit-table">
+      <table data-testid="packet-table">
         <thead>
           <tr>
             <th class="number">from entry</th>
-            <th>unit</th>
+            <th>packet</th>
             <th class="number">APID</th>
             <th>packet</th>
             <th class="number">octets</th>
@@ -355,7 +355,7 @@ function Packet({ packet }: { packet: PacketRow }) {
     <div class="packet" data-testid="packet">
       <p>
         <b>
-          unit {String(packet.unit?.unit ?? '')} · {packet.unit?.name}
+          packet {String(packet.unit?.unit ?? '')} · {packet.unit?.name}
         </b>{' '}
         over {linkTitle(packet.unit?.link ?? '')}, {packet.hex.length / 2} octets · <Mark verdict={packet.verdict} />
         {packet.unit?.duplicate ? ', came before over another link' : ''}
@@ -381,7 +381,7 @@ function Pages({ after, listed }: { after: number[]; listed: number }) {
     pages.value = { ...pages.value, after: to };
   };
   return (
-    <div class="table-tools" data-testid="unit-pages">
+    <div class="table-tools" data-testid="packet-pages">
       <button type="button" disabled={after.length < 2} onClick={() => turn(after.slice(0, -1))}>
         ‹ earlier
       </button>
@@ -430,7 +430,7 @@ export function Packets() {
   if (moving)
     return (
       <p class="none" data-testid="packets-not-replayed">
-        ▲ Units are not replayed. Hold the replay (<kbd>p</kbd>) to see those of the ten seconds before it.
+        ▲ Packets are not replayed. Hold the replay (<kbd>p</kbd>) to see those of the ten seconds before it.
       </p>
     );
   const packet = opened.value;
@@ -439,11 +439,11 @@ export function Packets() {
   const since =
     top === undefined
       ? 0
-      : run.units.filter(({ fact }) => fact.unit > top && (wanted.value === undefined || fact.name === wanted.value))
+      : run.packets.filter(({ fact }) => fact.unit > top && (wanted.value === undefined || fact.name === wanted.value))
           .length;
   return (
     <div class="table-box">
-      {past && <p class="not-past">▲ Counts are of the whole run; the units are those of the past that is shown.</p>}
+      {past && <p class="not-past">▲ Counts are of the whole run; the packets are those of the past that is shown.</p>}
       <Links whole={past !== undefined} />
       {(wanted.value !== undefined || since > 0) && (
         <div class="table-tools">
@@ -471,7 +471,7 @@ export function Packets() {
       {past && <Pages after={after} listed={held.value ? pastRows.value.packets.length : lines.length} />}
       <div class={`packets ${packet ? 'with-packet' : ''}`}>
         <Streams whole={past !== undefined} />
-        <Units run={run} lines={lines} />
+        <PacketRows run={run} lines={lines} />
         {packet && <Packet packet={packet} />}
       </div>
     </div>

@@ -9,7 +9,7 @@ import { read } from '../run/connection';
 import { pastRange, store, tick } from '../run/shown';
 import type { RunStore } from '../run/store';
 import { fromEntry } from '../run/time';
-import { InterventionList } from './desk';
+import { InterventionList } from './instructor_panel';
 import { askInterventions, ofRun } from './instructor';
 import type { Intervention } from './instructor';
 

@@ -12,7 +12,7 @@ import { control } from '../run/connection';
 import { startRehearsal, watch } from '../run/session';
 import { modeNow, pastRange, replay, runNow, runs, scenarios, store } from '../run/shown';
 import { isGoing } from '../run/start';
-import { InstructorDesk } from './desk';
+import { InstructorPanel } from './instructor_panel';
 import { PACES, attainedText, nextPace, paceText } from './model';
 import './style.css';
 
@@ -215,7 +215,7 @@ export function Rehearsal() {
           ✖ {refused.value}
         </p>
       )}
-      {going && run?.going && !isReal(run.run) && !past && <InstructorDesk />}
+      {going && run?.going && !isReal(run.run) && !past && <InstructorPanel />}
       {past && <p class="not-past">▲ The list is of now; of the run that is shown it says nothing that came later.</p>}
       <div class="table-scroll" tabIndex={0} role="group" aria-label="runs">
         {store.value?.run.state === 'finished' && !isReal(store.value.run) && <Review />}

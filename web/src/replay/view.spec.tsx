@@ -24,7 +24,7 @@ it('the past as it was heard says where it no longer knows what was heard when; 
   };
   expect([said(-99.5), said(0), said(300)]).toEqual([
     undefined,
-    `▲ Too much came late to tell it all apart: ${LATE_LIMIT / 2} units of Navigation may be shown before they were heard.`,
+    `▲ Too much came late to tell it all apart: ${LATE_LIMIT / 2} packets of Navigation may be shown before they were heard.`,
     undefined,
   ]);
   act(() => {

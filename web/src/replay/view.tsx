@@ -17,8 +17,8 @@ export function Reading() {
       {notTold.length > 0 && (
         <span data-testid="not-told">
           ▲ Too much came late to tell it all apart:{' '}
-          {notTold.map(({ packet, units }) => `${units} units of ${packet}`).join(', ')} may be shown before they were
-          heard.
+          {notTold.map(({ packet, packets }) => `${packets} packets of ${packet}`).join(', ')} may be shown before they
+          were heard.
         </span>
       )}
       <button type="button" onClick={toggleRecording}>

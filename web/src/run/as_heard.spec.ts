@@ -55,7 +55,7 @@ describe('a past as it was heard', () => {
     expect(few.notTold(1000)).toEqual([]);
     expect([900, 1000, 1231].map((cutoff) => many.asHeardBy(cutoff, packetOf).notTold(cutoff))).toEqual([
       [],
-      [{ packet: 'Navigation', units: LATE_LIMIT / 2 }],
+      [{ packet: 'Navigation', packets: LATE_LIMIT / 2 }],
       [],
     ]);
   });

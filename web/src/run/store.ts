@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // All data that the page holds of one run, filled by the stream and read by every panel. Each run has its own store, so
 // that no data of one run appear in another.
-import type { Clocks, Explanation, LinkChange, Unit } from '../gen/aeolis/v1/items_pb';
+import type { Clocks, Explanation, LinkChange, Packet } from '../gen/aeolis/v1/items_pb';
 import { SOURCE_RECORDED } from '../stream/columns';
 import type { BatchOfFacts, Column, Fact, Newest } from '../stream/messages';
 import type {
@@ -18,7 +18,7 @@ import { isGoing } from './start';
 import { secondsOfErt } from './time';
 
 const EVENT_LIMIT = 20000;
-const UNIT_LIMIT = 400;
+const PACKET_LIMIT = 400;
 const LINK_LIMIT = 5000;
 const ALARM_LIMIT = 1000; // per channel
 const SITUATION_LIMIT = 5000; // chosen: a landing has a hundred or two
@@ -61,11 +61,11 @@ export interface CommandRow {
   stages: Map<string, StageWord[]>;
 }
 /** Totals of one packet over one link. */
-export interface UnitTotals {
+export interface PacketTotals {
   link: string;
   apid: number;
   name: string;
-  units: number;
+  packets: number;
   octets: number;
   duplicates: number;
 }
@@ -126,9 +126,9 @@ export class RunStore {
   private readonly alarmChanges = new Map<number, NamedAlarm[]>();
   /** What mattered, each from its item to the next. */
   situations: Known<NamedSituation>[] = [];
-  units: Known<Unit>[] = [];
+  packets: Known<Packet>[] = [];
   /** Totals by link and packet. */
-  unitTotals = new Map<string, UnitTotals>();
+  packetTotals = new Map<string, PacketTotals>();
   clocks: Clocks | undefined;
   completeThrough = 0;
   /** Channels whose history has arrived. Other channels without samples may not have been requested yet. */
@@ -149,11 +149,11 @@ export class RunStore {
    */
   private readonly late = new Map<string, { sclk: number[]; heard: number[] }>();
   /** By packet: the number of late ones forgotten, the first SCLK concerned, and when the last of them was heard. */
-  private readonly lateForgotten = new Map<string, { units: number; from: number; heard: number }>();
+  private readonly lateForgotten = new Map<string, { packets: number; from: number; heard: number }>();
   /** By channel: SCLK of the last sample from an answer of live samples alone. */
   private readonly liveAloneThrough = new Map<number, number>();
   private readonly heardSeries = new Map<number, { of: Series; version: number; key: string; series: Series }>();
-  private lastUnit = { ert_s: NaN, sclk: NaN };
+  private lastPacket = { ert_s: NaN, sclk: NaN };
   /** Counts arrivals of samples of plotted channels. */
   samplesDrawn = 0;
   /** Counts all changes. */
@@ -456,7 +456,7 @@ export class RunStore {
         else this.alarms.set(item.fact.channel, item.fact);
         break;
       case 'unit':
-        this.addUnit(item);
+        this.addPacket(item);
         break;
       case 'situation':
         this.situations.push(item);
@@ -512,22 +512,22 @@ export class RunStore {
     row.stages.set(stage.stage, [...(row.stages.get(stage.stage) ?? []), stage]);
   }
 
-  private addUnit(item: Known<Unit>): void {
+  private addPacket(item: Known<Packet>): void {
     const { link, apid, name } = item.fact;
     const key = `${link} ${apid} ${name}`;
-    const totals = this.unitTotals.get(key) ?? { link, apid, name, units: 0, octets: 0, duplicates: 0 };
-    ++totals.units;
+    const totals = this.packetTotals.get(key) ?? { link, apid, name, packets: 0, octets: 0, duplicates: 0 };
+    ++totals.packets;
     totals.octets += item.fact.octets;
     if (item.fact.duplicate) ++totals.duplicates;
-    this.unitTotals.set(key, totals);
+    this.packetTotals.set(key, totals);
     if (item.fact.source !== SOURCE_RECORDED && !item.fact.duplicate) this.judgeLate(item);
-    this.units.push(item);
-    if (this.units.length > UNIT_LIMIT * 2) this.units.splice(0, UNIT_LIMIT);
+    this.packets.push(item);
+    if (this.packets.length > PACKET_LIMIT * 2) this.packets.splice(0, PACKET_LIMIT);
   }
 
-  private judgeLate({ fact: unit, ert_s }: Known<Unit>): void {
-    if (ert_s !== this.lastUnit.ert_s) this.lastUnit = { ert_s, sclk: this.sclkSeenAt(ert_s) };
-    const heard = this.lastUnit.sclk;
+  private judgeLate({ fact: unit, ert_s }: Known<Packet>): void {
+    if (ert_s !== this.lastPacket.ert_s) this.lastPacket = { ert_s, sclk: this.sclkSeenAt(ert_s) };
+    const heard = this.lastPacket.sclk;
     if (!(heard - unit.sclk > LATE_S)) return;
     let late = this.late.get(unit.name);
     if (!late) {
@@ -544,7 +544,7 @@ export class RunStore {
     const [sclk, heard] = [late.sclk.splice(0, half), late.heard.splice(0, half)];
     const before = this.lateForgotten.get(packet);
     this.lateForgotten.set(packet, {
-      units: (before?.units ?? 0) + half,
+      packets: (before?.packets ?? 0) + half,
       from: Math.min(before?.from ?? Infinity, ...sclk),
       heard: Math.max(before?.heard ?? -Infinity, heard.at(-1) as number),
     });
@@ -554,9 +554,9 @@ export class RunStore {
    * Packets for which it is no longer known which samples were under way at `cutoff`; these samples may be shown as
    * heard.
    */
-  notTold(cutoff: number): { packet: string; units: number }[] {
-    return [...this.lateForgotten].flatMap(([packet, { units, from, heard }]) =>
-      from <= cutoff && heard > cutoff ? [{ packet, units }] : [],
+  notTold(cutoff: number): { packet: string; packets: number }[] {
+    return [...this.lateForgotten].flatMap(([packet, { packets, from, heard }]) =>
+      from <= cutoff && heard > cutoff ? [{ packet, packets }] : [],
     );
   }
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Messages between the page and its worker, as plain data. Sequence and run numbers are JavaScript numbers, exact up to
 // 2^53.
-import type { Clocks, Explanation, LinkChange, Unit } from '../gen/aeolis/v1/items_pb';
+import type { Clocks, Explanation, LinkChange, Packet } from '../gen/aeolis/v1/items_pb';
 import type { CommandReply } from '../gen/aeolis/v1/run_pb';
 import type { NamedAlarm, NamedEvent, NamedFiring, NamedRun, NamedSituation, NamedStage, NamedTone } from './names';
 
@@ -36,7 +36,7 @@ export type Fact = { seq: number; ert_s: number } & (
   | { kind: 'explanation'; fact: Explanation }
   | { kind: 'link'; fact: LinkChange }
   | { kind: 'alarm'; fact: NamedAlarm }
-  | { kind: 'unit'; fact: Unit }
+  | { kind: 'unit'; fact: Packet }
   | { kind: 'situation'; fact: NamedSituation }
 );
 

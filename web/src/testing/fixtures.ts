@@ -22,7 +22,7 @@ import {
   TimepointFiringSchema,
   TimepointFiring_Verdict,
   ToneSchema,
-  UnitSchema,
+  PacketSchema,
 } from '../gen/aeolis/v1/items_pb';
 import type { Item } from '../gen/aeolis/v1/items_pb';
 import {
@@ -284,8 +284,8 @@ export const stage = ({
     },
     ert,
   );
-export const unit = ({ ert, ...fields }: Fields<typeof UnitSchema>) =>
-  item({ case: 'unit', value: create(UnitSchema, { source: 1, link: 'uhf_live', ...fields }) }, ert);
+export const unit = ({ ert, ...fields }: Fields<typeof PacketSchema>) =>
+  item({ case: 'unit', value: create(PacketSchema, { source: 1, link: 'uhf_live', ...fields }) }, ert);
 export const samples = (
   sclk: number,
   values: Record<number, number>,

@@ -140,7 +140,7 @@ function Difference({ packet }: { packet: PacketRow }) {
     <div class="difference" data-testid="difference">
       <p>
         <b>
-          unit {String(packet.unit?.unit ?? '')} · {packet.unit?.name}
+          packet {String(packet.unit?.unit ?? '')} · {packet.unit?.name}
         </b>{' '}
         over {linkTitle(packet.unit?.link ?? '')} · <Mark verdict={packet.verdict} />
         {compared ? ` · ${differing} of ${packet.hex.length / 2} octets differ, marked` : ''}

@@ -384,7 +384,7 @@ function beginning(store: RunStore, dictionary: Dictionary, told: Told, cutoff: 
 function listening(store: RunStore, dictionary: Dictionary): Waiting {
   return {
     kind: 'waiting',
-    title: store.unitTotals.size + store.live.size > 0 ? 'Listening' : 'Nothing has come yet',
+    title: store.packetTotals.size + store.live.size > 0 ? 'Listening' : 'Nothing has come yet',
     lines: [],
     words:
       dictionary.commands.length === 0

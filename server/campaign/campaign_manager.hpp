@@ -23,15 +23,15 @@ namespace aeolis::server::campaign {
 ///          else wants the processor; another thread stores the results
 /// Memory   one landing per thread; a query holds no more than the touchdowns requested
 /// Faults   a failed write ends the campaign, with the write's Error as its fault; stored cases stay
-class CampaignDesk {
+class CampaignManager {
   public:
     static constexpr std::uint32_t cases_max = 10'000;  ///< chosen: three hours at a case a second; a summary in 0.5 s
     static constexpr std::uint64_t touchdowns_max = 10'000;  ///< chosen: in one answer, 1 MB
 
     /// The arguments must outlive this.
-    CampaignDesk(std::filesystem::path folder, const ScenarioLibrary& scenarios,
-                 const dictionary::Dictionary& dictionary);
-    ~CampaignDesk();  ///< abandons cases in flight within a cycle; flown cases are stored
+    CampaignManager(std::filesystem::path folder, const ScenarioLibrary& scenarios,
+                    const dictionary::Dictionary& dictionary);
+    ~CampaignManager();  ///< abandons cases in flight within a cycle; flown cases are stored
 
     /// Checks a request. The Error names the field at fault.
     Result<Order> order_of(const v1::StartCampaign& request) const;

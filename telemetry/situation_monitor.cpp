@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "telemetry/situation_desk.hpp"
+#include "telemetry/situation_monitor.hpp"
 
 #include "common/entry_time.hpp"
 #include "dictionaries/timeline_plan.hpp"
@@ -127,7 +127,7 @@ const char* name_of(SituationRank rank) {
     return names[static_cast<std::size_t>(rank)];
 }
 
-std::vector<std::string_view> SituationDesk::mission_names() {
+std::vector<std::string_view> SituationMonitor::mission_names() {
     std::vector<std::string_view> names{begin_event,         begin_tone,      begin_command,  touchdown_event,
                                         touchdown_timepoint, take_over_event, take_over_tone, resume_event,
                                         designate_event,     role_channel,    stand_by_event, fatal_tone};
@@ -138,7 +138,7 @@ std::vector<std::string_view> SituationDesk::mission_names() {
     return names;
 }
 
-SituationDesk::SituationDesk(const dictionary::Dictionary& dictionary, const Clocks& clocks)
+SituationMonitor::SituationMonitor(const dictionary::Dictionary& dictionary, const Clocks& clocks)
     : dictionary_(&dictionary), clocks_(clocks), timeline_(dictionary) {
     if (!clocks_.entry) return;
     std::optional<double> last_e_s;
@@ -149,42 +149,42 @@ SituationDesk::SituationDesk(const dictionary::Dictionary& dictionary, const Clo
                    static_cast<std::int64_t>(2.0 * clocks_.light_time_s * 1e6)};
 }
 
-Ert SituationDesk::seen(Sclk sclk) const {
+Ert SituationMonitor::seen(Sclk sclk) const {
     return {clocks_.correlation.scet_of(sclk).microseconds + static_cast<std::int64_t>(clocks_.light_time_s * 1e6)};
 }
 
-std::string SituationDesk::when(Ert ert) const {
+std::string SituationMonitor::when(Ert ert) const {
     if (!clocks_.entry) return day_of_year_text(ert);
     const Scet sent{ert.microseconds - static_cast<std::int64_t>(clocks_.light_time_s * 1e6)};
     return from_entry_text(clocks_.correlation.sclk_of(sent) - *clocks_.entry);
 }
 
-void SituationDesk::add_news(SituationEntry entry) {
+void SituationMonitor::add_news(SituationEntry entry) {
     std::erase_if(news_, [&](const auto& old) { return old.subject == entry.subject; });
     entry.sentence = shortened(std::move(entry.sentence));
     news_.push_back(std::move(entry));
     if (news_.size() > news_max) news_.erase(news_.begin());
 }
 
-void SituationDesk::follow(std::string_view subject) {
+void SituationMonitor::follow(std::string_view subject) {
     std::erase_if(news_, [&](const auto& old) { return old.subject == subject; });
 }
 
-bool SituationDesk::up(std::string_view link) const {
+bool SituationMonitor::up(std::string_view link) const {
     const auto found = links_.find(link);
     return found != links_.end() && found->second.up;
 }
 
-bool SituationDesk::telemetry_comes() const {
+bool SituationMonitor::telemetry_comes() const {
     return std::ranges::any_of(links_,
                                [](const auto& link) { return link.second.up && is_live_telemetry(link.first); });
 }
 
-bool SituationDesk::anything_up() const {
+bool SituationMonitor::anything_up() const {
     return std::ranges::any_of(links_, [](const auto& link) { return link.second.up; });
 }
 
-Ert SituationDesk::last_change() const {
+Ert SituationMonitor::last_change() const {
     Ert last;
     for (const auto& [name, link] : links_) last = std::max(last, link.since);
     return last;
@@ -192,13 +192,13 @@ Ert SituationDesk::last_change() const {
 
 // ---- facts -------------------------------------------------------------------------------------------------------
 
-void SituationDesk::heard(Sclk sclk) {
+void SituationMonitor::heard(Sclk sclk) {
     if (!clocks_.entry) return;
     const Ert at = seen(sclk);
     if (!last_heard_ || at > *last_heard_) last_heard_ = at;
 }
 
-void SituationDesk::take_over(std::string_view how, Ert at, const Origin& origin, std::string evidence) {
+void SituationMonitor::take_over(std::string_view how, Ert at, const Origin& origin, std::string evidence) {
     if (backup_ && (!how.empty() || backup_->evidence.starts_with("event"))) return;  // an event knows better
     const std::string flying = flying_on(backup_name_, "backup");
     const std::string sentence = how.empty() ? fmt::format("{} since {}: it took over the timeline", flying, when(at))
@@ -215,7 +215,7 @@ void SituationDesk::take_over(std::string_view how, Ert at, const Origin& origin
     backup_ = std::move(entry);
 }
 
-void SituationDesk::touch_down(Ert at, std::string_view how, const Origin& origin, std::string evidence) {
+void SituationMonitor::touch_down(Ert at, std::string_view how, const Origin& origin, std::string evidence) {
     begun_ = true;
     if (landed_) return;
     landed_ = SituationEntry{SituationRank::news,
@@ -229,7 +229,7 @@ void SituationDesk::touch_down(Ert at, std::string_view how, const Origin& origi
         if (news.subject == computer) news.rank = SituationRank::news;  // the landing is what matters now
 }
 
-void SituationDesk::event(const EventFact& event, const Origin& origin) {
+void SituationMonitor::event(const EventFact& event, const Origin& origin) {
     const Ert at = seen(event.sclk, origin);
     const std::string evidence = fmt::format("event {}{}", event.name, origin.recorded ? ", by the recording" : "");
     if (event.name == begin_event) begun_ = true;
@@ -263,7 +263,7 @@ void SituationDesk::event(const EventFact& event, const Origin& origin) {
 }
 
 // The event's only value stands in its text where the dictionary's format has a brace.
-void SituationDesk::designate(std::string_view text) {
+void SituationMonitor::designate(std::string_view text) {
     const auto event = std::ranges::find(dictionary_->events, designate_event, &dictionary::Event::name);
     const auto brace = event == dictionary_->events.end() ? std::string::npos : event->format.find('{');
     const char number = brace < text.size() ? text[brace] : '?';
@@ -271,7 +271,7 @@ void SituationDesk::designate(std::string_view text) {
     backup_name_ = number == '0' ? "B" : number == '1' ? "A" : "";
 }
 
-void SituationDesk::fired(TimepointId timepoint, Sclk triggered, Sclk fired, const Origin& origin) {
+void SituationMonitor::fired(TimepointId timepoint, Sclk triggered, Sclk fired, const Origin& origin) {
     if (!clocks_.entry || timepoint.value >= dictionary_->timeline.size()) return;
     begun_ = true;
     timeline_.fired(timepoint, triggered - *clocks_.entry, fired - *clocks_.entry, origin.recorded, origin.seq);
@@ -279,7 +279,7 @@ void SituationDesk::fired(TimepointId timepoint, Sclk triggered, Sclk fired, con
         touch_down(seen(fired), origin.recorded ? "by the recording" : "", origin, "timepoint touchdown");
 }
 
-void SituationDesk::tone(ToneId tone, double likelihood, Sclk start, const Origin& origin) {
+void SituationMonitor::tone(ToneId tone, double likelihood, Sclk start, const Origin& origin) {
     if (!clocks_.entry || likelihood < tone_believed || tone.value >= dictionary_->tones.size()) return;
     const auto& row = dictionary_->tones[tone.value];
     const bool twin = row.set == dictionary::ToneSet::second_chance;
@@ -308,7 +308,7 @@ void SituationDesk::tone(ToneId tone, double likelihood, Sclk start, const Origi
               {}});
 }
 
-void SituationDesk::link(const LinkState& state, const Origin& origin) {
+void SituationMonitor::link(const LinkState& state, const Origin& origin) {
     LinkRow& row = links_[state.link.name];
     if (state.up) {
         note_loss(state.link.name, row, state.ert, origin);
@@ -340,7 +340,7 @@ void SituationDesk::link(const LinkState& state, const Origin& origin) {
     if (silence == SilenceClass::no_orbiter && state.until) pass_ = {*state.until, row.words};
 }
 
-void SituationDesk::note_loss(const std::string& link, const LinkRow& row, Ert to, const Origin& origin) {
+void SituationMonitor::note_loss(const std::string& link, const LinkRow& row, Ert to, const Origin& origin) {
     if (!row.station && (!row.lost_since || row.outlasted)) return;
     const std::string_view of = row.station ? station_fault : std::string_view(link);
     auto loss = std::ranges::find(losses_, of, &Loss::of);
@@ -357,7 +357,7 @@ void SituationDesk::note_loss(const std::string& link, const LinkRow& row, Ert t
     loss->seq = origin.seq;
 }
 
-void SituationDesk::stage(const StageFact& stage, const Origin& origin) {
+void SituationMonitor::stage(const StageFact& stage, const Origin& origin) {
     const std::string subject = fmt::format("command {}", stage.name);
     if (stage.done) {
         follow(subject);
@@ -373,8 +373,8 @@ void SituationDesk::stage(const StageFact& stage, const Origin& origin) {
               {}});
 }
 
-void SituationDesk::alarm(ChannelId channel, Severity severity, std::string_view limit, Sclk sclk,
-                          const Origin& origin) {
+void SituationMonitor::alarm(ChannelId channel, Severity severity, std::string_view limit, Sclk sclk,
+                             const Origin& origin) {
     const auto& name = dictionary_->channels[channel.value].name;
     if (name == role_channel) return;
     const std::string subject = fmt::format("channel {}", name);
@@ -390,7 +390,7 @@ void SituationDesk::alarm(ChannelId channel, Severity severity, std::string_view
               {}});
 }
 
-void SituationDesk::explained(const Explanation& explanation, const Origin& origin) {
+void SituationMonitor::explained(const Explanation& explanation, const Origin& origin) {
     if (explanation.verdict != "held" || origin.recorded) return;
     const auto unmet = std::ranges::find(explanation.conditions, false, &Condition::holds);
     if (unmet == explanation.conditions.end()) return;
@@ -400,7 +400,7 @@ void SituationDesk::explained(const Explanation& explanation, const Origin& orig
 
 // ---- the situation -----------------------------------------------------------------------------------------------
 
-Entries SituationDesk::at(Ert now) const {
+Entries SituationMonitor::at(Ert now) const {
     Entries all = news_;
     if (landed_) all.push_back(*landed_);
     const bool silent = add_not_heard(all, now);
@@ -422,7 +422,7 @@ Entries SituationDesk::at(Ert now) const {
     return all;
 }
 
-void SituationDesk::add_links(Entries& all, Ert now, bool not_heard) const {
+void SituationMonitor::add_links(Entries& all, Ert now, bool not_heard) const {
     bool station = false;
     for (const auto& [name, link] : links_) {
         if (link.up) continue;
@@ -447,11 +447,11 @@ void SituationDesk::add_links(Entries& all, Ert now, bool not_heard) const {
 }
 
 // The timeline switches it on, and telemetry would have told that the timeline runs: that is said where "do EDL" is.
-bool SituationDesk::awaits_begin(const LinkRow& link) const {
+bool SituationMonitor::awaits_begin(const LinkRow& link) const {
     return !begun_ && telemetry_comes() && link.lost_since && link.outlasted == SilenceClass::not_begun;
 }
 
-void SituationDesk::add_lost(Entries& all, const std::string& name, const LinkRow& link) const {
+void SituationMonitor::add_lost(Entries& all, const std::string& name, const LinkRow& link) const {
     const std::string title = title_of(name);
     SituationEntry entry{SituationRank::news, name, {}, "link " + name, link.lost_seq, *link.lost_since, {}};
     if (link.outlasted == SilenceClass::not_begun && link.outlasted_until) {
@@ -472,7 +472,7 @@ void SituationDesk::add_lost(Entries& all, const std::string& name, const LinkRo
     all.push_back(std::move(entry));
 }
 
-void SituationDesk::add_silent(Entries& all, const std::string& name, const LinkRow& link, Ert now) const {
+void SituationMonitor::add_silent(Entries& all, const std::string& name, const LinkRow& link, Ert now) const {
     if (!link.silence || is_over(*link.silence) || *link.silence == SilenceClass::not_begun) return;
     const std::string title = title_of(name);
     const bool uhf = name == uhf_live_link.name;
@@ -502,7 +502,7 @@ void SituationDesk::add_silent(Entries& all, const std::string& name, const Link
     all.push_back(std::move(entry));
 }
 
-bool SituationDesk::add_not_heard(Entries& all, Ert now) const {
+bool SituationMonitor::add_not_heard(Entries& all, Ert now) const {
     if (!clocks_.entry || dictionary_->timeline.empty() || !last_heard_ || landed_ || anything_up()) return false;
     const LinkRow* next = nullptr;
     bool lost = links_.empty(), down = false;
@@ -545,7 +545,7 @@ bool SituationDesk::add_not_heard(Entries& all, Ert now) const {
     return true;
 }
 
-void SituationDesk::add_waiting(Entries& all, Ert now) const {
+void SituationMonitor::add_waiting(Entries& all, Ert now) const {
     if (!clocks_.entry || dictionary_->timeline.empty()) {
         const bool heard = anything_up();
         all.push_back(
@@ -582,7 +582,7 @@ void SituationDesk::add_waiting(Entries& all, Ert now) const {
         add_recording(all, now);
 }
 
-void SituationDesk::add_step(Entries& all, std::size_t next, Ert now) const {
+void SituationMonitor::add_step(Entries& all, std::size_t next, Ert now) const {
     const auto& row = dictionary_->timeline[next];
     SituationEntry entry{SituationRank::waiting,
                          "step",
@@ -622,7 +622,7 @@ void SituationDesk::add_step(Entries& all, std::size_t next, Ert now) const {
     all.push_back(std::move(entry));
 }
 
-void SituationDesk::add_recording(Entries& all, Ert now) const {
+void SituationMonitor::add_recording(Entries& all, Ert now) const {
     SituationEntry entry{SituationRank::waiting, "recording", "Waiting for the recording", {}, 0, last_change(), {}};
     if (landed_) entry.since = landed_->since;
     if (const auto found = links_.find(relay_link.name); found != links_.end()) {
@@ -649,7 +649,7 @@ void SituationDesk::add_recording(Entries& all, Ert now) const {
     all.push_back(std::move(entry));
 }
 
-void SituationDesk::add_lasting(Entries& all, Ert now) const {
+void SituationMonitor::add_lasting(Entries& all, Ert now) const {
     if (backup_) all.push_back(*backup_);
     for (const Loss& loss : losses_) {
         const bool station = loss.of == station_fault;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/campaign/campaign_desk.hpp"
+#include "server/campaign/campaign_manager.hpp"
 
 #include "server/base/json.hpp"
 #include "server/campaign/campaign_results.hpp"
@@ -14,7 +14,7 @@
 #include <set>
 #include <sys/resource.h>
 
-namespace server_campaign_desk_test {
+namespace server_campaign_manager_test {
 
 using namespace aeolis;
 using namespace aeolis::server;
@@ -208,4 +208,4 @@ TEST_CASE("a campaign that cannot be flown, or does not exist, is refused by nam
     }
 }
 
-}  // namespace server_campaign_desk_test
+}  // namespace server_campaign_manager_test

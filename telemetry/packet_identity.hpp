@@ -13,16 +13,16 @@
 namespace aeolis::telemetry {
 
 /// The identity of a packet in its run. The 14-bit count wraps; with SCLK it does not repeat.
-struct UnitIdentity {
+struct PacketIdentity {
     Apid apid;
     std::uint64_t sclk_65536 = 0;  ///< SCLK in its own unit, 1/65536 s: all 48 bits
     std::uint16_t count = 0;
     std::uint16_t crc = 0;
-    constexpr auto operator<=>(const UnitIdentity&) const = default;
+    constexpr auto operator<=>(const PacketIdentity&) const = default;
 };
 
 /// Identifies a telemetry packet that has been decoded, so that its length and CRC are right.
-UnitIdentity identity_of(std::span<const std::uint8_t> packet);
+PacketIdentity identity_of(std::span<const std::uint8_t> packet);
 
 enum class Path : std::uint8_t { realtime, recorded };
 
@@ -39,15 +39,15 @@ const char* name_of(Standing standing);
 /// Every packet of one run, by identity, with the paths on which it was received.
 ///
 /// In       packets of one run, in any order                 Out   each packet's relation to the others
-/// Memory   about 64 octets a packet (a nominal landing: some 100 000 packets, 6 MB), at most `units_max`, the rest
+/// Memory   about 64 octets a packet (a nominal landing: some 100 000 packets, 6 MB), at most `packets_max`, the rest
 ///          unregistered; made for one run and dropped with it
 /// Octets are compared by length, CRC-16 and a 64-bit digest: two different packets pass as equal once in 2^64 random
 /// cases
-class UnitRegister {
+class PacketRegister {
   public:
-    static constexpr std::size_t units_max_default = 1'000'000;  ///< chosen: ten landings' packets, 64 MB
+    static constexpr std::size_t packets_max_default = 1'000'000;  ///< chosen: ten landings' packets, 64 MB
 
-    explicit UnitRegister(std::size_t units_max = units_max_default) : units_max_(units_max) {}
+    explicit PacketRegister(std::size_t packets_max = packets_max_default) : packets_max_(packets_max) {}
 
     Standing add(std::span<const std::uint8_t> packet, Path path);
 
@@ -63,7 +63,7 @@ class UnitRegister {
 
     /// The first few packets whose octets differ, for the message to the controller.
     static constexpr std::size_t differing_max = 16;
-    const std::vector<UnitIdentity>& differing() const { return differing_; }
+    const std::vector<PacketIdentity>& differing() const { return differing_; }
 
   private:
     struct Key {
@@ -80,10 +80,10 @@ class UnitRegister {
         bool realtime = false, recorded = false, differs = false;
     };
 
-    std::size_t units_max_;
+    std::size_t packets_max_;
     std::unordered_map<Key, Seen, KeyHash> seen_;
     Counts counts_;
-    std::vector<UnitIdentity> differing_;
+    std::vector<PacketIdentity> differing_;
 };
 
 }  // namespace aeolis::telemetry

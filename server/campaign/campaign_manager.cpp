@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/campaign/campaign_desk.hpp"
+#include "server/campaign/campaign_manager.hpp"
 
 #include "server/campaign/campaign_results.hpp"
 #include "server/scenario/script_check.hpp"
@@ -116,7 +116,7 @@ void add(const Summary& summary, v1::CampaignReport& report) {
 }  // namespace
 
 /// The campaign in flight, and afterwards its end. Its thread writes; others read.
-struct CampaignDesk::Flight {
+struct CampaignManager::Flight {
     std::string name;
     Order order;
     std::optional<CampaignStore> store;  ///< none once over: other programs may then open the file
@@ -154,26 +154,26 @@ struct CampaignDesk::Flight {
     }
 };
 
-CampaignDesk::CampaignDesk(std::filesystem::path folder, const ScenarioLibrary& scenarios,
-                           const dictionary::Dictionary& dictionary)
+CampaignManager::CampaignManager(std::filesystem::path folder, const ScenarioLibrary& scenarios,
+                                 const dictionary::Dictionary& dictionary)
     : folder_(folder.empty() ? "." : std::move(folder)), scenarios_(scenarios), dictionary_(dictionary) {}
 
-CampaignDesk::~CampaignDesk() = default;
+CampaignManager::~CampaignManager() = default;
 
-unsigned CampaignDesk::jobs_max() {
+unsigned CampaignManager::jobs_max() {
     return std::max(1U, std::thread::hardware_concurrency());
 }
 
-void CampaignDesk::close(std::string reason) {
+void CampaignManager::close(std::string reason) {
     const std::scoped_lock lock{mutex_};
     closed_ = std::move(reason);
 }
 
-bool CampaignDesk::flying() const {
+bool CampaignManager::flying() const {
     return flight_ && !flight_->over;
 }
 
-Result<Order> CampaignDesk::order_of(const v1::StartCampaign& request) const {
+Result<Order> CampaignManager::order_of(const v1::StartCampaign& request) const {
     auto scenario = scenarios_.scenario(request.scenario());
     if (!scenario) return scenario.error();
     if (const auto flyable = check(*scenario); !flyable)
@@ -195,7 +195,7 @@ Result<Order> CampaignDesk::order_of(const v1::StartCampaign& request) const {
                  true};
 }
 
-Result<v1::CampaignState> CampaignDesk::start(Order order) {
+Result<v1::CampaignState> CampaignManager::start(Order order) {
     const auto file = order.file;
     {
         const std::scoped_lock lock{mutex_};
@@ -214,7 +214,7 @@ Result<v1::CampaignState> CampaignDesk::start(Order order) {
     return state_of(file);
 }
 
-Result<v1::CampaignState> CampaignDesk::cancel(const std::string& campaign) {
+Result<v1::CampaignState> CampaignManager::cancel(const std::string& campaign) {
     std::filesystem::path file;
     {
         const std::scoped_lock lock{mutex_};
@@ -225,7 +225,7 @@ Result<v1::CampaignState> CampaignDesk::cancel(const std::string& campaign) {
     return state_of(file);
 }
 
-v1::CampaignState CampaignDesk::state_of(const std::filesystem::path& file) {
+v1::CampaignState CampaignManager::state_of(const std::filesystem::path& file) {
     auto state = kept_in(file);
     const std::scoped_lock lock{mutex_};
     if (!flight_ || flight_->name != state.campaign() || state.state() == "unreadable") return state;
@@ -242,7 +242,7 @@ v1::CampaignState CampaignDesk::state_of(const std::filesystem::path& file) {
     return state;
 }
 
-v1::CampaignList CampaignDesk::list() {
+v1::CampaignList CampaignManager::list() {
     v1::CampaignList list;
     list.set_cases_max(cases_max);
     list.set_jobs_max(jobs_max());
@@ -251,14 +251,14 @@ v1::CampaignList CampaignDesk::list() {
     return list;
 }
 
-std::optional<std::filesystem::path> CampaignDesk::file_of(const std::string& campaign) const {
+std::optional<std::filesystem::path> CampaignManager::file_of(const std::string& campaign) const {
     // The name comes from a client: it is looked up among the files and never made a path.
     for (auto& file : files_in(folder_))
         if (name_of_file(file) == campaign) return std::move(file);
     return std::nullopt;
 }
 
-Result<v1::CampaignReport> CampaignDesk::report(const std::filesystem::path& file, std::function<bool()> stop) {
+Result<v1::CampaignReport> CampaignManager::report(const std::filesystem::path& file, std::function<bool()> stop) {
     v1::CampaignReport report;
     *report.mutable_state() = state_of(file);
     if (report.state().state() == "unreadable") return Error{report.state().fault()};
@@ -272,8 +272,8 @@ Result<v1::CampaignReport> CampaignDesk::report(const std::filesystem::path& fil
     return report;
 }
 
-Result<v1::CampaignTouchdowns> CampaignDesk::touchdowns(const std::filesystem::path& file, std::uint64_t place,
-                                                        std::uint64_t limit, std::function<bool()> stop) {
+Result<v1::CampaignTouchdowns> CampaignManager::touchdowns(const std::filesystem::path& file, std::uint64_t place,
+                                                           std::uint64_t limit, std::function<bool()> stop) {
     const auto header = results_header(file);
     if (!header) return header.error();
     auto results = CampaignResults::open(file, header->cases);

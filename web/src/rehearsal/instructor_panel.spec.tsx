@@ -8,7 +8,7 @@ import { uplink } from '../commands/line';
 import { useForTest } from '../run/session';
 import { aDictionary, aRun, aStore } from '../testing/fixtures';
 import { aServer } from '../testing/server';
-import { InstructorDesk } from './desk';
+import { InstructorPanel } from './instructor_panel';
 import { faultWords, injectionOf } from './faults';
 import { Review } from './review';
 import { interventions, message, ofRun, refreshInterventions } from './instructor';
@@ -21,7 +21,7 @@ let page: HTMLElement;
 const shown = (name: string) => page.querySelector<HTMLElement>(`[data-testid="${name}"]`);
 const soon = () => act(() => new Promise<void>((done) => setTimeout(done, 10)));
 const open = async () => {
-  act(() => render(<InstructorDesk />, page));
+  act(() => render(<InstructorPanel />, page));
   const fold = shown('instructor') as HTMLDetailsElement | null;
   if (!fold) return;
   act(() => {
@@ -50,10 +50,10 @@ afterEach(() => {
   access.value = { state: 'asking' };
 });
 
-describe('the instructor’s desk', () => {
+describe('the instructor’s panel', () => {
   it('is folded away, and shows nothing of what was done until it is opened', () => {
     interventions.value = { run: 1, all: [{ e_s: 12.25, fault: silent }] };
-    act(() => render(<InstructorDesk />, page));
+    act(() => render(<InstructorPanel />, page));
     expect([shown('instructor')?.hasAttribute('open'), shown('interventions')]).toEqual([false, null]);
     expect(page.textContent).not.toContain('radar');
   });

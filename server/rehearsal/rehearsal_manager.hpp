@@ -30,7 +30,7 @@ namespace aeolis::server {
 ///           analysing ──moved again──► outdated ──answer──► analysing
 ///           analysing ──not known──► unknown ──next state of the run──► analysing
 /// Thread    the network thread only; `post` brings functions there, such as the Callbacks
-class RehearsalDesk {
+class RehearsalManager {
   public:
     struct Callbacks {
         std::function<void(v1::RunState)> on_state;
@@ -61,9 +61,10 @@ class RehearsalDesk {
         bool director = false;  ///< may send hazardous commands
     };
 
-    RehearsalDesk(const ScenarioLibrary& scenarios, const dictionary::Dictionary& dictionary, PipelineThread& pipeline,
-                  Post post, ReadCutOff read_cut_off, TimelineQuestions timeline, Callbacks callbacks);
-    ~RehearsalDesk();
+    RehearsalManager(const ScenarioLibrary& scenarios, const dictionary::Dictionary& dictionary,
+                     PipelineThread& pipeline, Post post, ReadCutOff read_cut_off, TimelineQuestions timeline,
+                     Callbacks callbacks);
+    ~RehearsalManager();
 
     /// Starts a rehearsal. Fails at once when one is in progress or the scenario is unknown or impossible. Calls
     /// `began` once the run is in the archive, or when the analysis refuses the script's changes of the timeline.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/rehearsal/rehearsal_desk.hpp"
+#include "server/rehearsal/rehearsal_manager.hpp"
 
 #include "tests/server/running_server.hpp"
 #include "tests/server/small_mission.hpp"
@@ -10,7 +10,7 @@
 #include <deque>
 #include <mutex>
 
-namespace server_rehearsal_desk_test {
+namespace server_rehearsal_manager_test {
 
 using namespace aeolis;
 using namespace aeolis::server;
@@ -61,21 +61,21 @@ TEST_CASE(
     PipelineThread pipeline{std::move(archive::Archive::open(folder / "a.db")).value(), tests::shipped_dictionary(),
                             PipelineThread::Faults::hold, [](const auto&) {}};
     std::function<void(Result<std::string>)> analysed;  // the answer of the analysis, which takes its time
-    RehearsalDesk::TimelineQuestions questions;
+    RehearsalManager::TimelineQuestions questions;
     questions.check = [&](archive::RunId, const auto& requests, bool, auto done) {
         if (std::ranges::none_of(requests, changes_timeline)) return done(std::string{});
         analysed = std::move(done);
     };
     questions.reanalyse = [](archive::RunId, const auto& done) { done(TimelineCheck::Reanalysis{}); };
-    RehearsalDesk desk{scenarios,
-                       tests::shipped_dictionary(),
-                       pipeline,
-                       [&](auto action) { network.post(std::move(action)); },
-                       [](archive::RunId, const auto& done) { done(Error{"none was cut off"}); },
-                       questions,
-                       {[](const auto&) {}, [](const auto&) {}}};
+    RehearsalManager rehearsals{scenarios,
+                                tests::shipped_dictionary(),
+                                pipeline,
+                                [&](auto action) { network.post(std::move(action)); },
+                                [](archive::RunId, const auto& done) { done(Error{"none was cut off"}); },
+                                questions,
+                                {[](const auto&) {}, [](const auto&) {}}};
     bool begun = false;
-    desk.start({test::shipped_scenario("nominal"), 1, 1.0}, [&](const Result<v1::RunState>& state) {
+    rehearsals.start({test::shipped_scenario("nominal"), 1, 1.0}, [&](const Result<v1::RunState>& state) {
         CHECK(state);
         begun = true;
     });
@@ -92,18 +92,18 @@ TEST_CASE(
         return has_rights ? Result<void>{} : Result<void>{Error{"not any more"}};
     };
     const auto always = [](const v1::CommandRequest&) { return Result<void>{}; };
-    desk.command(request_of("EDL_SET_TIMEPOINT_OFFSET"), {always}, answer("change"));
+    rehearsals.command(request_of("EDL_SET_TIMEPOINT_OFFSET"), {always}, answer("change"));
     REQUIRE(analysed);
-    desk.command(request_of("NO_OP"), {may}, answer("loses rights"));
-    desk.command(request_of("NO_OP"), {always}, answer("keeps them"));
-    CHECK(desk.commands_deferred() == 2);
+    rehearsals.command(request_of("NO_OP"), {may}, answer("loses rights"));
+    rehearsals.command(request_of("NO_OP"), {always}, answer("keeps them"));
+    CHECK(rehearsals.commands_deferred() == 2);
     CHECK(answers.empty());
     has_rights = false;
     analysed(Error{"it breaks a constraint"});
     REQUIRE(network.until([&] { return answers.size() == 3; }));
     CHECK(answers == std::vector<std::string>{"change: it breaks a constraint", "loses rights: not any more",
                                               "keeps them: taken"});
-    CHECK(desk.commands_deferred() == 0);
+    CHECK(rehearsals.commands_deferred() == 0);
 }
 
-}  // namespace server_rehearsal_desk_test
+}  // namespace server_rehearsal_manager_test

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The instructor's desk of a running rehearsal: faults to inject, a line for notes, and the list so far. It is folded
+// The instructor's panel of a running rehearsal: faults to inject, a line for notes, and the list so far. It is folded
 // away, since the people rehearsed may look at the same screen.
 import { signal } from '@preact/signals';
 import { useEffect } from 'preact/hooks';
@@ -63,7 +63,7 @@ function NoteForm() {
   );
 }
 
-function Desk() {
+function OpenPanel() {
   const run = runNow();
   const id = run?.id;
   useEffect(() => {
@@ -88,8 +88,8 @@ function Desk() {
   );
 }
 
-/** The desk, for users with the right to rehearse; others do not see that it exists. */
-export function InstructorDesk() {
+/** The panel, for users with the right to rehearse; others do not see that it exists. */
+export function InstructorPanel() {
   if (!mayRehearse()) return null;
   return (
     <details
@@ -99,7 +99,7 @@ export function InstructorDesk() {
       onToggle={(event) => (open.value = event.currentTarget.open)}
     >
       <summary>Instructor: break something, write notes for the review</summary>
-      {open.value && <Desk />}
+      {open.value && <OpenPanel />}
     </details>
   );
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/rehearsal/rehearsal_desk.hpp"
+#include "server/rehearsal/rehearsal_manager.hpp"
 
 #include "commands/command_gateway.hpp"
 #include "commands/shares.hpp"
@@ -44,22 +44,22 @@ std::vector<v1::CommandRequest> timeline_changes(const simulation::Scenario& sce
 
 }  // namespace
 
-RehearsalDesk::RehearsalDesk(const ScenarioLibrary& scenarios, const dictionary::Dictionary& dictionary,
-                             PipelineThread& pipeline, Post post, ReadCutOff read_cut_off, TimelineQuestions timeline,
-                             Callbacks callbacks)
+RehearsalManager::RehearsalManager(const ScenarioLibrary& scenarios, const dictionary::Dictionary& dictionary,
+                                   PipelineThread& pipeline, Post post, ReadCutOff read_cut_off,
+                                   TimelineQuestions timeline, Callbacks callbacks)
     : scenarios_(scenarios), dictionary_(dictionary), pipeline_(pipeline), post_(std::move(post)),
       read_cut_off_(std::move(read_cut_off)), timeline_(std::move(timeline)), callbacks_(std::move(callbacks)) {}
 
-RehearsalDesk::~RehearsalDesk() = default;
+RehearsalManager::~RehearsalManager() = default;
 
-Result<void> RehearsalDesk::refusal_while_going_on() const {
+Result<void> RehearsalManager::refusal_while_going_on() const {
     if (!closed_.empty()) return Error{closed_};
     if (!going_on()) return {};
     const auto what = state_.run() == 0 ? "a rehearsal begins" : fmt::format("run {} goes on", state_.run());
     return Error{what + ": stop it first, or wait until it has ended"};
 }
 
-void RehearsalDesk::start(const v1::StartRehearsal& request, Began began) {
+void RehearsalManager::start(const v1::StartRehearsal& request, Began began) {
     if (const auto busy = refusal_while_going_on(); !busy) return began(busy.error());
     const auto pace = checked_pace(request.pace());
     if (!pace) return began(pace.error());
@@ -84,7 +84,7 @@ void RehearsalDesk::start(const v1::StartRehearsal& request, Began began) {
     start({std::move(*scenario), request.seed(), *pace}, std::move(began));
 }
 
-void RehearsalDesk::start(Flight flight, Began began) {
+void RehearsalManager::start(Flight flight, Began began) {
     if (const auto busy = refusal_while_going_on(); !busy) return began(busy.error());
     if (const auto script = check_script(flight.scenario, dictionary_); !script) return began(script.error());
     const auto changes = timeline_changes(flight.scenario);
@@ -101,7 +101,7 @@ void RehearsalDesk::start(Flight flight, Began began) {
         });
 }
 
-void RehearsalDesk::fly(Flight flight, Began began) {
+void RehearsalManager::fly(Flight flight, Began began) {
     if (const auto busy = refusal_while_going_on(); !busy) return began(busy.error());
     runner_.reset();
     phase_ = Phase::beginning;
@@ -109,7 +109,7 @@ void RehearsalDesk::fly(Flight flight, Began began) {
                                                 pipeline_, callbacks_for(std::move(began)));
 }
 
-void RehearsalDesk::continue_run(archive::CutOffRun cut, double pace, Began began) {
+void RehearsalManager::continue_run(archive::CutOffRun cut, double pace, Began began) {
     if (const auto busy = refusal_while_going_on(); !busy) return began(busy.error());
     auto scenario = scenario_from_text(cut.scenario_text, fmt::format("the scenario of run {}", cut.run.value));
     if (!scenario) return began(scenario.error());
@@ -119,7 +119,7 @@ void RehearsalDesk::continue_run(archive::CutOffRun cut, double pace, Began bega
                                                 callbacks_for(std::move(began)));
 }
 
-RehearsalRunner::Callbacks RehearsalDesk::callbacks_for(Began began) {
+RehearsalRunner::Callbacks RehearsalManager::callbacks_for(Began began) {
     RehearsalRunner::Callbacks callbacks;
     callbacks.on_begun = [this, began = std::move(began)](Result<v1::RunState> state) {
         post_([this, began, state = std::move(state)] { begun(state, began); });
@@ -143,7 +143,7 @@ RehearsalRunner::Callbacks RehearsalDesk::callbacks_for(Began began) {
     return callbacks;
 }
 
-void RehearsalDesk::begun(const Result<v1::RunState>& state, const Began& began) {
+void RehearsalManager::begun(const Result<v1::RunState>& state, const Began& began) {
     if (state) {  // otherwise its runner is over
         phase_ = Phase::under_way;
         state_ = *state;
@@ -153,11 +153,11 @@ void RehearsalDesk::begun(const Result<v1::RunState>& state, const Began& began)
     began(state);
 }
 
-std::string RehearsalDesk::not_going_on(std::uint64_t run) const {
+std::string RehearsalManager::not_going_on(std::uint64_t run) const {
     return fmt::format("run {} is not the one that goes on ({})", run, state_.run());
 }
 
-Result<void> RehearsalDesk::control(const v1::RehearsalControl& control, Began began) {
+Result<void> RehearsalManager::control(const v1::RehearsalControl& control, Began began) {
     if (control.action_case() == v1::RehearsalControl::kStart) {
         start(control.start(), std::move(began));
         return {};
@@ -165,7 +165,7 @@ Result<void> RehearsalDesk::control(const v1::RehearsalControl& control, Began b
     return order_of_run(control);
 }
 
-Result<void> RehearsalDesk::order_of_run(const v1::RehearsalControl& control) {
+Result<void> RehearsalManager::order_of_run(const v1::RehearsalControl& control) {
     if (!going_on()) return Error{"no rehearsal goes on"};
     if (control.run() != 0 && control.run() != state_.run()) return Error{not_going_on(control.run())};
     InterveneRun intervene;
@@ -190,7 +190,7 @@ Result<void> RehearsalDesk::order_of_run(const v1::RehearsalControl& control) {
     }
 }
 
-void RehearsalDesk::command(v1::CommandRequest request, const Sender& sender, const Reply& reply) {
+void RehearsalManager::command(v1::CommandRequest request, const Sender& sender, const Reply& reply) {
     const bool only_check = request.dry_run();
     std::vector<v1::CommandRequest> one;
     one.push_back(std::move(request));
@@ -198,12 +198,12 @@ void RehearsalDesk::command(v1::CommandRequest request, const Sender& sender, co
              [reply](std::vector<v1::CommandReply> replies) { reply(std::move(replies.front())); });
 }
 
-void RehearsalDesk::sequence(std::vector<v1::CommandRequest> requests, bool only_check, const Sender& sender,
-                             Replies replies) {
+void RehearsalManager::sequence(std::vector<v1::CommandRequest> requests, bool only_check, const Sender& sender,
+                                Replies replies) {
     receive({std::move(requests), only_check, std::move(replies), sender.browser, sender.director}, sender.authority);
 }
 
-void RehearsalDesk::receive(SendCommands order, const AuthorityCheck& authority) {
+void RehearsalManager::receive(SendCommands order, const AuthorityCheck& authority) {
     if (const auto refusal = refusal_of(order); !refusal.empty()) return order.refuse(refusal);
     if (runner_->unknown(order.requests).empty())  // sent again: answered in turn, and no change of anything
         return hand_over(std::move(order), state_.run(), timeline_undone_count_, std::string{});
@@ -211,7 +211,7 @@ void RehearsalDesk::receive(SendCommands order, const AuthorityCheck& authority)
     analyse(std::move(order));
 }
 
-std::string RehearsalDesk::refusal_of(const SendCommands& order) const {
+std::string RehearsalManager::refusal_of(const SendCommands& order) const {
     if (phase() != Phase::under_way) return nobody_listens;
     if (!order.only_check && pipeline_.blocked())
         return "the run waits until its archive can be written again: " + pipeline_.fault();
@@ -221,13 +221,13 @@ std::string RehearsalDesk::refusal_of(const SendCommands& order) const {
     return {};
 }
 
-bool RehearsalDesk::waits(const SendCommands& order) const {
+bool RehearsalManager::waits(const SendCommands& order) const {
     const bool hold = std::ranges::all_of(order.requests,
                                           [](const v1::CommandRequest& request) { return request.action() == "hold"; });
     return change_pending_ && !order.only_check && !hold;
 }
 
-void RehearsalDesk::wait(SendCommands order, const AuthorityCheck& authority) {
+void RehearsalManager::wait(SendCommands order, const AuthorityCheck& authority) {
     const auto own = static_cast<std::size_t>(
         std::ranges::count_if(waiting_, [&](const Waiting& each) { return each.order.asker() == order.asker(); }));
     if (!commands::may_take(own, waiting_.size(), RehearsalRunner::requests_max))
@@ -239,7 +239,7 @@ void RehearsalDesk::wait(SendCommands order, const AuthorityCheck& authority) {
     waiting_.push_back({std::move(order), authority});
 }
 
-void RehearsalDesk::analyse(SendCommands order) {
+void RehearsalManager::analyse(SendCommands order) {
     const auto sent = runner_->unknown(order.requests);
     if (!order.only_check && std::ranges::any_of(sent, changes_timeline)) {
         change_pending_ = true;
@@ -258,8 +258,8 @@ void RehearsalDesk::analyse(SendCommands order) {
                     });
 }
 
-void RehearsalDesk::hand_over(SendCommands order, std::uint64_t run, std::uint64_t undone_count,
-                              const Result<std::string>& timeline) {
+void RehearsalManager::hand_over(SendCommands order, std::uint64_t run, std::uint64_t undone_count,
+                                 const Result<std::string>& timeline) {
     if (!timeline) return order.refuse(timeline.error().message);
     if (phase() != Phase::under_way || state_.run() != run) return order.refuse(nobody_listens);
     if (!order.only_check && !timeline->empty() && undone_count != timeline_undone_count_)
@@ -274,7 +274,7 @@ void RehearsalDesk::hand_over(SendCommands order, std::uint64_t run, std::uint64
     static_cast<void>(runner_->order(std::move(order)));  // a refusal is in the replies
 }
 
-void RehearsalDesk::change_decided() {
+void RehearsalManager::change_decided() {
     for (auto& [order, authority] : std::exchange(waiting_, {})) {
         Result<void> allowed;
         for (const auto& request : order.requests)
@@ -286,7 +286,7 @@ void RehearsalDesk::change_decided() {
     }
 }
 
-void RehearsalDesk::reanalyse() {
+void RehearsalManager::reanalyse() {
     if (phase() != Phase::under_way) return;
     const bool in_progress = analysis_state_ == AnalysisState::analysing || analysis_state_ == AnalysisState::outdated;
     analysis_state_ = in_progress ? AnalysisState::outdated : AnalysisState::analysing;
@@ -298,7 +298,7 @@ void RehearsalDesk::reanalyse() {
                         });
 }
 
-void RehearsalDesk::reanalysed(std::uint64_t run, const Result<TimelineCheck::Reanalysis>& reanalysis) {
+void RehearsalManager::reanalysed(std::uint64_t run, const Result<TimelineCheck::Reanalysis>& reanalysis) {
     if (std::exchange(analysis_state_, AnalysisState::settled) == AnalysisState::outdated) return reanalyse();
     if (phase() != Phase::under_way || state_.run() != run) return;
     const std::string not_known = reanalysis ? reanalysis->not_known : reanalysis.error().message;
@@ -309,7 +309,7 @@ void RehearsalDesk::reanalysed(std::uint64_t run, const Result<TimelineCheck::Re
     if (reanalysis) tell(*reanalysis);
 }
 
-void RehearsalDesk::tell(const TimelineCheck::Reanalysis& reanalysis) {
+void RehearsalManager::tell(const TimelineCheck::Reanalysis& reanalysis) {
     for (const auto& each : reanalysis.known)
         static_cast<void>(
             runner_->order(commands::TimelineVerdict{each.number, reanalysis.undone, each.refuted, each.words}));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "telemetry/alarm_desk.hpp"
+#include "telemetry/alarm_register.hpp"
 
 #include <algorithm>
 #include <array>
@@ -50,7 +50,7 @@ AlarmStanding AlarmState::standing(Ert now) const {
     return latches ? AlarmStanding::latched : AlarmStanding::returned;
 }
 
-void AlarmDesk::change(std::string_view name, Severity severity, bool latches) {
+void AlarmRegister::change(std::string_view name, Severity severity, bool latches) {
     if (severity == Severity::none && !states_.contains(name)) return;
     AlarmState& state = states_[std::string(name)];
     const bool came_again = state.severity == Severity::none && severity != Severity::none;
@@ -61,7 +61,7 @@ void AlarmDesk::change(std::string_view name, Severity severity, bool latches) {
     settle(state);
 }
 
-Result<void> AlarmDesk::may(std::string_view name, AlarmAct act, Ert now) const {
+Result<void> AlarmRegister::may(std::string_view name, AlarmAct act, Ert now) const {
     const std::string who = "alarm " + std::string(name);
     const auto found = states_.find(name);
     const AlarmState state = found == states_.end() ? AlarmState{} : found->second;
@@ -84,7 +84,7 @@ Result<void> AlarmDesk::may(std::string_view name, AlarmAct act, Ert now) const 
     return Error{"no such act"};
 }
 
-void AlarmDesk::act(std::string_view name, AlarmAct act, Ert now, Ert until) {
+void AlarmRegister::act(std::string_view name, AlarmAct act, Ert now, Ert until) {
     if (!may(name, act, now)) return;
     AlarmState& state = states_[std::string(name)];
     switch (act) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/rehearsal/prediction_desk.hpp"
+#include "server/rehearsal/prediction_service.hpp"
 
 #include "server/scenario/scenario_text.hpp"
 
@@ -16,9 +16,9 @@ constexpr int niceness = 10;  // chosen: behind the run's threads, before the ca
 
 }  // namespace
 
-PredictionDesk::PredictionDesk(const dictionary::Dictionary& dictionary) : dictionary_(dictionary) {}
+PredictionService::PredictionService(const dictionary::Dictionary& dictionary) : dictionary_(dictionary) {}
 
-PredictionDesk::~PredictionDesk() {
+PredictionService::~PredictionService() {
     {
         const std::lock_guard lock{mutex_};
         over_ = true;
@@ -27,7 +27,7 @@ PredictionDesk::~PredictionDesk() {
     if (thread_.joinable()) thread_.join();
 }
 
-PredictionDesk::Answer PredictionDesk::prediction(const simulation::Scenario& scenario) {
+PredictionService::Answer PredictionService::prediction(const simulation::Scenario& scenario) {
     auto expected = expected_scenario(scenario);
     auto key = scenario_to_text(expected);
     const std::lock_guard lock{mutex_};
@@ -50,12 +50,12 @@ PredictionDesk::Answer PredictionDesk::prediction(const simulation::Scenario& sc
     return {};
 }
 
-std::uint64_t PredictionDesk::flown() const {
+std::uint64_t PredictionService::flown() const {
     const std::lock_guard lock{mutex_};
     return flown_;
 }
 
-void PredictionDesk::fly() {
+void PredictionService::fly() {
     setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), niceness);
     const auto next = [this] { return std::ranges::find_if(kept_, [](const auto& each) { return !each->known; }); };
     std::unique_lock lock{mutex_};

@@ -20,13 +20,13 @@ namespace aeolis::server {
 /// Threads  prediction() from any, without waiting; a thread of its own flies, one flight after another
 /// Memory   the flights of `kept_max` scenarios, some megabytes each; of those flown, the one asked for longest ago
 ///          goes first. While that many wait, a further question waits too: it is asked again
-class PredictionDesk {
+class PredictionService {
   public:
     static constexpr std::size_t kept_max = 4;  ///< chosen: a live run, the run compared with it, and two more
 
     /// The dictionary must outlive this.
-    explicit PredictionDesk(const dictionary::Dictionary& dictionary);
-    ~PredictionDesk();  ///< stops a flight within a second of flight
+    explicit PredictionService(const dictionary::Dictionary& dictionary);
+    ~PredictionService();  ///< stops a flight within a second of flight
 
     struct Answer {
         std::shared_ptr<const NominalFlight> flight;  ///< null: none, or not flown yet

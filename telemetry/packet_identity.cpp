@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "telemetry/unit_identity.hpp"
+#include "telemetry/packet_identity.hpp"
 
 #include "common/bytes.hpp"
 #include "common/space_packet.hpp"
@@ -30,7 +30,7 @@ std::uint64_t digest_of(std::span<const std::uint8_t> octets) {
 
 }  // namespace
 
-UnitIdentity identity_of(std::span<const std::uint8_t> packet) {
+PacketIdentity identity_of(std::span<const std::uint8_t> packet) {
     AEOLIS_CHECK(packet.size() >= tm_overhead_octets);
     return {Apid{static_cast<std::uint16_t>(read_bits(packet, 5, 11))}, read_bits(packet, 48, 48),
             static_cast<std::uint16_t>(read_bits(packet, 18, 14)),
@@ -48,18 +48,18 @@ const char* name_of(Standing standing) {
     return "";
 }
 
-std::size_t UnitRegister::KeyHash::operator()(const Key& key) const noexcept {
+std::size_t PacketRegister::KeyHash::operator()(const Key& key) const noexcept {
     return mixed(key.sclk_65536 ^ (static_cast<std::uint64_t>(key.apid) << 53) ^
                  (static_cast<std::uint64_t>(key.count) << 48 >> 14));
 }
 
-Standing UnitRegister::add(std::span<const std::uint8_t> packet, Path path) {
-    const UnitIdentity identity = identity_of(packet);
+Standing PacketRegister::add(std::span<const std::uint8_t> packet, Path path) {
+    const PacketIdentity identity = identity_of(packet);
     const Key key{identity.sclk_65536, identity.apid.value, identity.count};
     const std::uint64_t digest = digest_of(packet);
     auto known = seen_.find(key);
     if (known == seen_.end()) {
-        if (seen_.size() >= units_max_) {
+        if (seen_.size() >= packets_max_) {
             ++counts_.unregistered;
             return Standing::unregistered;
         }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "telemetry/situation_desk.hpp"
+#include "telemetry/situation_monitor.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/support/shipped_dictionary.hpp"
@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-namespace telemetry_situation_desk_test {
+namespace telemetry_situation_monitor_test {
 
 using namespace aeolis;
 using namespace aeolis::telemetry;
@@ -27,48 +27,48 @@ Sclk sclk(double e_s) {
     return entry + e_s;
 }
 
-SituationDesk desk_at(double light_time_s) {
-    SituationDesk::Clocks clocks;
+SituationMonitor monitor_at(double light_time_s) {
+    SituationMonitor::Clocks clocks;
     clocks.entry = entry;
     clocks.correlation = {entry, Scet{1'000'000'000}};
     clocks.light_time_s = light_time_s;
     return {tests::shipped_dictionary(), clocks};
 }
 
-/// A desk whose facts are given by seconds from entry.
+/// A monitor whose facts are given by seconds from entry.
 struct Ground {
-    SituationDesk desk = desk_at(0.0);
+    SituationMonitor monitor = monitor_at(0.0);
     std::uint64_t seq = 0;
 
-    SituationDesk::Origin from(double e_s, bool recorded = false) { return {++seq, at(e_s), recorded}; }
-    void up(const Link& link, double e_s) { desk.link({link, at(e_s), true, "nominal"}, from(e_s)); }
+    SituationMonitor::Origin from(double e_s, bool recorded = false) { return {++seq, at(e_s), recorded}; }
+    void up(const Link& link, double e_s) { monitor.link({link, at(e_s), true, "nominal"}, from(e_s)); }
     void down(const Link& link, double e_s, const std::string& reason, bool lost = false,
               std::optional<double> until_e_s = {}) {
-        desk.link(
+        monitor.link(
             tests::silent_link(link, at(e_s), reason, lost, until_e_s ? std::optional(at(*until_e_s)) : std::nullopt),
             from(e_s));
     }
     void event(const std::string& name, double e_s, const std::string& text = "said so", bool recorded = false) {
         const auto* known = tests::shipped_dictionary().event(name);
         REQUIRE(known != nullptr);
-        desk.event({name, text, known->level, sclk(e_s)}, from(e_s, recorded));
+        monitor.event({name, text, known->level, sclk(e_s)}, from(e_s, recorded));
     }
     void fired(const std::string& name, double e_s) {
         const auto& timeline = tests::shipped_dictionary().timeline;
         const auto row = std::ranges::find(timeline, name, &dictionary::TimelineRow::name);
-        desk.heard(sclk(e_s));
-        desk.fired(row->id, sclk(e_s), sclk(e_s), from(e_s));
+        monitor.heard(sclk(e_s));
+        monitor.fired(row->id, sclk(e_s), sclk(e_s), from(e_s));
     }
     void tone(const std::string& name, double e_s, double likelihood = 0.999) {
         const auto& tones = tests::shipped_dictionary().tones;
         const auto row = std::ranges::find(tones, name, &dictionary::ToneRow::name);
         REQUIRE(row != tones.end());
-        desk.tone(row->id, likelihood, sclk(e_s), from(e_s + 10.0));
+        monitor.tone(row->id, likelihood, sclk(e_s), from(e_s + 10.0));
     }
-    SituationEntry first(double e_s) const { return desk.at(at(e_s)).front(); }
+    SituationEntry first(double e_s) const { return monitor.at(at(e_s)).front(); }
     std::string sentence(double e_s) const { return first(e_s).sentence; }
     std::optional<SituationEntry> about(const std::string& subject, double e_s) const {
-        const auto all = desk.at(at(e_s));
+        const auto all = monitor.at(at(e_s));
         const auto found = std::ranges::find(all, subject, &SituationEntry::subject);
         return found == all.end() ? std::nullopt : std::optional(*found);
     }
@@ -84,7 +84,7 @@ TEST_CASE("every name of the mission in the situation's rules is a word of the s
     for (const auto& tone : dictionary.tones) words.insert(tone.name);
     for (const auto& row : dictionary.timeline) words.insert(row.name);
     for (const auto& channel : dictionary.channels) words.insert(channel.name);
-    for (const auto name : SituationDesk::mission_names()) {
+    for (const auto name : SituationMonitor::mission_names()) {
         CAPTURE(name);
         CHECK(words.contains(name));
     }
@@ -229,7 +229,7 @@ TEST_CASE(
     ground.tone("sc_taken_over", 105.0);
     CHECK(ground.sentence(116.0) == "Flying on backup computer B, by tone at E+1:45");
     ground.event("SECOND_CHANCE_TAKES_OVER", 100.3);
-    const auto all = ground.desk.at(at(120.0));
+    const auto all = ground.monitor.at(at(120.0));
     CHECK(all.front().rank == Rank::danger);
     CHECK(all.front().sentence == "Flying on backup computer B since E+1:40: it took over the timeline");
     CHECK(all.front().evidence == "event SECOND_CHANCE_TAKES_OVER");
@@ -280,7 +280,7 @@ TEST_CASE("what the ground awaits is the next step, with the condition that is m
     held.decision = "parachute";
     held.verdict = "held";
     held.conditions = {{"radar_ready", 1.0, "==", 1.0, true}, {"speed_mps", 420.0, "<=", 405.0, false}};
-    ground.desk.explained(held, ground.from(251.0));
+    ground.monitor.explained(held, ground.from(251.0));
     CHECK(ground.sentence(251.0) == "Waiting for parachute deploy, not yet speed ≤ 405.0 m/s at E+4:11");
     CHECK(ground.sentence(257.0) == "Waiting for parachute deploy");  // it would have been told again
     CHECK_FALSE(ground.first(258.0).overdue);
@@ -293,11 +293,11 @@ TEST_CASE("news stays until something follows it: a command that failed, until o
           "[situation]") {
     Ground ground;
     ground.up(uhf_live_link, -900.0);
-    ground.desk.stage({1, "EDL_DO_EDL", "refused: not in late cruise", true, false}, ground.from(-800.0));
+    ground.monitor.stage({1, "EDL_DO_EDL", "refused: not in late cruise", true, false}, ground.from(-800.0));
     CHECK(ground.sentence(-700.0) == "EDL_DO_EDL failed: refused: not in late cruise");
-    ground.desk.stage({2, "NO_OP", "cancelled by Ann", true, false}, ground.from(-790.0));
+    ground.monitor.stage({2, "NO_OP", "cancelled by Ann", true, false}, ground.from(-790.0));
     CHECK_FALSE(ground.about("command NO_OP", -700.0));
-    ground.desk.stage({3, "EDL_DO_EDL", "event EDL_BEGUN", false, true}, ground.from(-600.0));
+    ground.monitor.stage({3, "EDL_DO_EDL", "event EDL_BEGUN", false, true}, ground.from(-600.0));
     CHECK_FALSE(ground.about("command EDL_DO_EDL", -500.0));
     ground.event("TIMEPOINT_UNVERIFIED", -400.0, "Timepoint 3: no reply in time, unverified");
     CHECK(ground.sentence(-399.0) == "E−6:40: Timepoint 3: no reply in time, unverified");
@@ -314,9 +314,9 @@ TEST_CASE("danger is above all news: a failed check on board, a limit that is cr
     ground.event("COMPUTER_STARTED", -470.0);
     CHECK(ground.first(-399.0).rank == Rank::news);
     const auto& channel = *tests::shipped_dictionary().channel("sensed_deceleration_g");
-    ground.desk.alarm(channel.id, dictionary::Severity::critical, "> 16 g", sclk(70.0), ground.from(70.0));
+    ground.monitor.alarm(channel.id, dictionary::Severity::critical, "> 16 g", sclk(70.0), ground.from(70.0));
     CHECK(ground.sentence(71.0) == "Sensed deceleration > 16 g: critical since E+1:10");
-    ground.desk.alarm(channel.id, dictionary::Severity::warning, "> 14.5 g", sclk(80.0), ground.from(80.0));
+    ground.monitor.alarm(channel.id, dictionary::Severity::warning, "> 14.5 g", sclk(80.0), ground.from(80.0));
     CHECK(ground.first(81.0).rank == Rank::news);
 }
 
@@ -352,9 +352,9 @@ TEST_CASE("a tone that is not sure enough says nothing, and what went wrong is t
 TEST_CASE("it is too late for planned steps when nothing sent now can precede a planned step, a light time each way "
           "before it",
           "[situation]") {
-    const SituationDesk desk = desk_at(100.0);
+    const SituationMonitor monitor = monitor_at(100.0);
     const auto closed = [&](double seen_e_s) {
-        const auto all = desk.at({at(seen_e_s).microseconds + 100'000'000});
+        const auto all = monitor.at({at(seen_e_s).microseconds + 100'000'000});
         return std::ranges::any_of(all, [](const auto& entry) {
             return entry.rank == Rank::lasting && entry.sentence.starts_with("Too late for planned steps since E−3:20");
         });
@@ -367,24 +367,24 @@ TEST_CASE("the list is bounded, and keeps what is most important and what lasts"
     Ground ground;
     ground.up(uhf_live_link, -900.0);
     for (int i = 0; i < 100; ++i)
-        ground.desk.stage({static_cast<std::uint64_t>(i), "COMMAND_" + std::to_string(i), "refused", true, false},
-                          ground.from(-800.0 + i));
-    const auto all = ground.desk.at(at(10.0));
-    CHECK(all.size() == SituationDesk::entries_max);
+        ground.monitor.stage({static_cast<std::uint64_t>(i), "COMMAND_" + std::to_string(i), "refused", true, false},
+                             ground.from(-800.0 + i));
+    const auto all = ground.monitor.at(at(10.0));
+    CHECK(all.size() == SituationMonitor::entries_max);
     CHECK(std::ranges::any_of(all, [](const auto& entry) { return entry.rank == Rank::lasting; }));
     CHECK_THAT(all.front().sentence, Catch::Contains("Too late for planned steps") || Catch::Contains("COMMAND_99"));
 }
 
 TEST_CASE("of another mission, whose entry nobody knows, times are of day, and nothing is awaited", "[situation]") {
     dictionary::Dictionary other;
-    SituationDesk desk{other, {}};
-    CHECK(desk.at(Ert{0}).front().sentence == "Nothing comes yet");
-    desk.link({downlink_link, Ert{0}, true, "connected"}, {1, Ert{0}});
-    CHECK(desk.at(Ert{0}).front().rank == Rank::calm);
-    desk.link({downlink_link, Ert{60'000'000}, false, "ground fault: refused", true}, {2, Ert{60'000'000}});
-    const auto all = desk.at(Ert{61'000'000});
+    SituationMonitor monitor{other, {}};
+    CHECK(monitor.at(Ert{0}).front().sentence == "Nothing comes yet");
+    monitor.link({downlink_link, Ert{0}, true, "connected"}, {1, Ert{0}});
+    CHECK(monitor.at(Ert{0}).front().rank == Rank::calm);
+    monitor.link({downlink_link, Ert{60'000'000}, false, "ground fault: refused", true}, {2, Ert{60'000'000}});
+    const auto all = monitor.at(Ert{61'000'000});
     CHECK(all.front().rank == Rank::news);
     CHECK_THAT(all.front().sentence, Catch::Contains("2000-001T12:01:00.000"));
 }
 
-}  // namespace telemetry_situation_desk_test
+}  // namespace telemetry_situation_monitor_test

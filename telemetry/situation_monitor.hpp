@@ -27,7 +27,7 @@ namespace aeolis::telemetry {
 ///          fault that the station knows. A touchdown is reported by its own evidence alone. A predicted time that has
 ///          passed is overdue, and none is given where nothing is predicted
 /// Memory   bounded: entries_max entries; a row a link, a timepoint, a command under way
-class SituationDesk {
+class SituationMonitor {
   public:
     static constexpr std::size_t entries_max = 12;  ///< chosen: more is a list of alarms, which has its own panel
     static constexpr std::size_t news_max = 32;     ///< chosen: kept at once; the oldest are dropped first
@@ -47,7 +47,7 @@ class SituationDesk {
     /// The names of events, tones, commands, timepoints and channels that the rules know.
     static std::vector<std::string_view> mission_names();
 
-    SituationDesk(const dictionary::Dictionary& dictionary, const Clocks& clocks);
+    SituationMonitor(const dictionary::Dictionary& dictionary, const Clocks& clocks);
 
     /// Where a fact comes from.
     struct Origin {

@@ -52,7 +52,7 @@ struct AlarmState {
 /// same states.
 /// In       changes of severity of anything with a name (a channel, a packet); actions of controllers
 /// Memory   a row for each name that was ever in alarm or shelved
-class AlarmDesk {
+class AlarmRegister {
   public:
     void change(std::string_view name, dictionary::Severity severity, bool latches);
 
