@@ -26,18 +26,19 @@ struct Board {
     std::array<std::atomic<std::uint32_t>, latency_bins> latencies{};
 };
 
-/// Begins the time stamp in a message; the time of making follows (ns of CLOCK_MONOTONIC, 16 hexadecimal digits).
+/// Begins the time stamp in a message. The time at which the message was made follows: ns of CLOCK_MONOTONIC, in 16
+/// hexadecimal digits.
 inline constexpr std::string_view mark = "made=";
-/// An unsolicited pong: the server drops a client that stays silent.
+/// An unsolicited pong, which clients send because the server drops a client that stays silent.
 inline constexpr std::string_view alive{"\x8A\x80\0\0\0\0", 6};
 std::string mark_now();
 
 class LoopbackClients {
   public:
     struct Settings {
-        std::size_t clients = 1000, stalled = 0;  ///< stalled: this many of them, the last, subscribe and never read
+        std::size_t clients = 1000, stalled = 0;  ///< stalled: the last ones, which subscribe and never read
         bool websocket = true;                    ///< false: a plain socket that only reads
-        std::vector<std::string> subscriptions;   ///< ClientMessages; the clients send them in turn, one each
+        std::vector<std::string> subscriptions;   ///< ClientMessages, given to the clients in turn
     };
     /// Forks the client process. Call before any thread starts. Raises the limit of open files to its maximum.
     LoopbackClients();
