@@ -11,7 +11,7 @@
 
 namespace aeolis::telemetry {
 
-/// Watches the clocks of another mission's packets, and places packets that hold no time.
+/// Watches the clocks of another mission's packets, and finds a time for packets that hold none.
 ///
 /// In       packets in the order of reception: which, its own time if it has one, and when it was received
 /// Out      the time at which its samples stand, and a remark when a clock did what clocks do not do
@@ -53,7 +53,7 @@ class PacketClocks {
     std::optional<std::string> follow(Clock& clock, const std::string& name, double sclk_s, Ert received);
 
     std::vector<Clock> clocks_;
-    std::optional<std::size_t> reference_;  ///< the type whose clock places what has none
+    std::optional<std::size_t> reference_;  ///< the type whose clock gives a time to packets without one
     double reference_s_ = 0.0;
     Ert reference_ert_;
 };

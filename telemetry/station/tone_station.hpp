@@ -27,7 +27,7 @@ class ToneStation {
   public:
     static constexpr double first_search_s = 10.0;  ///< chosen: twice the longest search
 
-    /// What is told of samples that were recorded elsewhere.
+    /// Properties of samples that were recorded elsewhere.
     struct Samples {
         double rate_hz = x_band_rate_hz;  ///< as ToneReceiver takes it
         TimeTable expected_hz{};          ///< Doppler still in them, beyond the predict; then there are no spectra
