@@ -71,7 +71,7 @@ struct Summary {
     double touchdown_fraction() const;
 };
 
-/// What a results file says of its campaign.
+/// The campaign that a results file belongs to, and its size.
 struct ResultsHeader {
     std::string scenario;
     std::uint64_t seed = 0;

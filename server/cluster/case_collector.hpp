@@ -13,11 +13,11 @@
 
 namespace aeolis::server::cluster {
 
-/// How long a collector waits for what. Chosen; tests wait less.
+/// How long a collector waits. Chosen; tests wait less.
 struct CollectorTimes {
     std::chrono::milliseconds store_every{500};  ///< longest time until an answer is durable
     std::chrono::seconds quiet{15};        ///< without an answer: the queue is asked whether it still has the cases
-    std::chrono::seconds again_after{30};  ///< a worker that says nothing for so long has lost its case
+    std::chrono::seconds again_after{30};  ///< a worker that is silent for so long has lost its case
 };
 
 /// Queues the cases among 1 … `cases` that the store lacks, for the workers of the engine, and stores each answer once.

@@ -35,7 +35,7 @@ struct WorkerProgress {
 
 /// Flies one case; none: it was abandoned because of `stop`.
 using FlyCase = std::function<std::optional<campaign::CaseResult>(std::uint64_t)>;
-/// Gets ready for the cases of a campaign. The Error says why they cannot be flown here.
+/// Prepares for the cases of a campaign. The Error says why they cannot be flown here.
 using BeginCampaign = std::function<Result<FlyCase>(const v1::CampaignOrder& order)>;
 
 /// Reads the order's scenario; its cases are landings, whose common part is flown with the first one.
