@@ -898,8 +898,8 @@ TEST_CASE("a recorded capture becomes a run, and what is exported of it is what 
          {std::tuple{write("empty", ""), 1, "no octets of a link are in it"},
           {stream + " " + write("empty", ""), 1, "empty: no octets of a link are in it"},
           {write("zeros", std::string(5000, '\0')) + " --format pltu", 1, "nothing that is a frame was found"},
-          {stream + " --bits-per-second nan", 2, "--bits-per-second: a number, more than 0"},
-          {stream + " --bits-per-second inf", 2, "--bits-per-second: a number, more than 0"},
+          {stream + " --bits-per-second nan", 2, "--bits-per-second: must be a number above 0"},
+          {stream + " --bits-per-second inf", 2, "--bits-per-second: must be a number above 0"},
           {stream + " --bits-per-second -1", 2, "--bits-per-second"},
           {stream + " --bits-per-second 1e-300", 2, "would take more than 100 years"}}) {
         const auto ended = ingest(arguments);
