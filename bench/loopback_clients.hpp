@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-// Many clients on loopback, in a process of their own so that their cost is not charged to the server.
+// Many clients on loopback. They run in a process of their own, so that the server is not charged for their cost.
 namespace aeolis::bench {
 
 constexpr std::size_t latency_bins = 20'000;  ///< bins of 50 us: up to one second
@@ -20,7 +20,7 @@ struct Board {
     std::atomic<int> phase{0};    ///< odd: connect and read; even: close
     std::atomic<int> settled{0};  ///< the last phase that the clients have reached
     std::atomic<std::uint16_t> port{0};
-    std::atomic<std::uint64_t> messages{0};  ///< messages with a mark received, over all clients
+    std::atomic<std::uint64_t> messages{0};  ///< messages received with a mark, over all clients
     std::atomic<std::uint64_t> octets{0};
     std::atomic<std::uint64_t> broken{0};  ///< connections that the other end closed or that failed
     std::array<std::atomic<std::uint32_t>, latency_bins> latencies{};

@@ -23,7 +23,7 @@ struct PreconditionState {
     enum class State { holds, fails, unknown };
     State state = State::unknown;
     std::optional<double> value;
-    std::string text;  ///< "parameters_received == 1: is 0", "late_cruise == 1: not received yet"
+    std::string text;  ///< such as "parameters_received == 1: is 0", "late_cruise == 1: not received yet"
 };
 
 /// "holds", "fails", "unknown"

@@ -54,22 +54,21 @@ std::optional<double> targets_apart_m(std::span<const NamedValue> one, std::span
 std::string apart_from(std::span<const NamedValue> solution, std::span<const NamedValue> arguments) {
     const auto position_m = apart(arguments, solution, {"position_x_m", "position_y_m", "position_z_m"});
     if (position_m && *position_m > position_max_m)
-        return fmt::format(
-            "the position is {:.1f} km from ground's own solution of that epoch, at most {:g} km are sent",
-            *position_m * 1e-3, position_max_m * 1e-3);
+        return fmt::format("the position is {:.1f} km from ground's own solution of that epoch; the limit is {:g} km",
+                           *position_m * 1e-3, position_max_m * 1e-3);
     const auto velocity_mps = apart(arguments, solution, {"velocity_x_mps", "velocity_y_mps", "velocity_z_mps"});
     if (velocity_mps && *velocity_mps > velocity_max_mps)
         return fmt::format(
-            "the velocity differs by {:.2f} m/s from ground's own solution of that epoch, at most {:g} m/s are sent",
+            "the velocity differs by {:.2f} m/s from ground's own solution of that epoch; the limit is {:g} m/s",
             *velocity_mps, velocity_max_mps);
     const auto target_m = targets_apart_m(arguments, solution);
     if (target_m && *target_m > target_moved_max_m)
-        return fmt::format("the target is {:.1f} km from that of ground's solution, at most {:g} km are sent",
+        return fmt::format("the target is {:.1f} km from that of ground's solution; the limit is {:g} km",
                            *target_m * 1e-3, target_moved_max_m * 1e-3);
     const auto radius_m = value_of(arguments, "target_radius_m"),
                known_radius_m = value_of(solution, "target_radius_m");
     if (radius_m && known_radius_m && std::abs(*radius_m - *known_radius_m) > radius_apart_max_m)
-        return fmt::format("target_radius_m is {:.1f} km from that of ground's solution, at most {:g} km are sent",
+        return fmt::format("target_radius_m is {:.1f} km from that of ground's solution; the limit is {:g} km",
                            std::abs(*radius_m - *known_radius_m) * 1e-3, radius_apart_max_m * 1e-3);
     return {};
 }

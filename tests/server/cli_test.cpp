@@ -1095,7 +1095,7 @@ TEST_CASE("the program writes the command file that changes parameters, with the
         {"guidance_gain=400", "guidance_gain: 400 is outside 1 to 10"},
         {"guidance_gian=4", "parameters.csv has no parameter 'guidance_gian'"},
         {"guidance_gain=4 guidance_gain=5", "named twice"},
-        {"guidance_gain=1 constant_velocity_mps=31", "the changes together are too much"},
+        {"guidance_gain=1 constant_velocity_mps=31", "the changes together are too large"},
         {"guidance_gain=four", "the value is no number"},
         {"guidance_gain", "a change is NAME=VALUE"},
         {"entry_moved_max_s=5", "entry_moved_max_s is fixed when flight is built"},
