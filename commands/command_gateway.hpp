@@ -163,7 +163,7 @@ class CommandGateway {
     const CommandQueue::Entry* waiting(std::uint64_t number) const;
     /// Why this controller may not approve the command; empty: they may.
     static std::string not_another_person(const Request& asked, const Underway& command);
-    /// Fills in when the command arrives, when Earth can see its effect, and what it would be too late for.
+    /// Fills in when the command arrives, when Earth can see its effect, and which timepoints it would miss.
     void tell_arrival(const dictionary::Command& command, std::span<const std::uint8_t> packet, Ert now, Ert leaves,
                       Reply& reply) const;
     void tell_station(Ert leaves, Reply& reply) const;
