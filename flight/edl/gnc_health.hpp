@@ -8,7 +8,7 @@ namespace aeolis::flight {
 
 /// Reports once, by event and tone, when GNC loses what it needs: the IMU, its attitude, propellant.
 ///
-/// In      what GNC tells, each cycle        Out   IMU_SILENT, IMU_HEARD_AGAIN, ATTITUDE_LOST, PROPELLANT_LOW; tones
+/// In      GNC's output, each cycle          Out   IMU_SILENT, IMU_HEARD_AGAIN, ATTITUDE_LOST, PROPELLANT_LOW; tones
 class GncHealth {
   public:
     void watch(const Parameters& parameters, const gnc::Output& gnc, Outbox& out);
