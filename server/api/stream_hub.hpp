@@ -162,7 +162,7 @@ class StreamHub {
     };
     /// The items after `after`, at most message_items_max, encoded for `selection`. Requires holds(after).
     /// @param left_out         samples left out after `sent_through` up to `after`
-    /// @param left_out_before  of the items up to `after`; those told in this range are removed
+    /// @param left_out_before  of the items up to `after`; those marked in this range are removed
     EncodedRange encoded_range(const StreamSelection& selection, archive::Sequence after,
                                archive::Sequence sent_through, std::uint64_t left_out, LeftOutBefore& left_out_before);
     Encoded encoded_state(StreamFormat format);

@@ -116,7 +116,7 @@ class StreamSession : public std::enable_shared_from_this<StreamSession> {
     archive::Sequence cursor_ = 0;                          ///< served up to here
     archive::Sequence sent_through_ = 0;                    ///< last complete_through sent to the client
     std::uint64_t left_out_ = 0;                            ///< samples left out after it, up to the cursor
-    LeftOutBefore left_out_before_;                         ///< by a page, and not told yet
+    LeftOutBefore left_out_before_;                         ///< by a page, and not marked yet
     bool asking_ = false;                                   ///< an archive query is in progress
     std::function<void()> next_question_;                   ///< null: none waits
     bool reading_ = false, exhausted_ = false, was_live_ = false;

@@ -138,7 +138,7 @@ struct InterventionQuery {
 struct TimepointQuery {
     std::optional<Sclk> at{};  ///< as known when this time was received from the vehicle; none: as known now
     std::optional<Ert> now{};  ///< of the current run: an overdue timepoint is predicted no earlier than now
-    bool recorded = true;      ///< include what only the recording tells
+    bool recorded = true;      ///< include what only the recording has
     std::optional<dictionary::OffsetChange> change{};  ///< a change to be previewed
 };
 

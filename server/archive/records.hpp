@@ -120,7 +120,7 @@ struct StageRecord : ItemRecord {
     std::uint32_t count = 0;
     std::vector<std::uint8_t> octets;
     bool held = false, needs_approval = false;  ///< of a pending `released`: what it waits for
-    std::string asked_by;                       ///< of a command that needs approval: who may not give it
+    std::string asked_by;                       ///< the sender of a command that needs approval, who may not give it
     std::string client_id;                      ///< the client's own; empty: none
 };
 

@@ -27,7 +27,7 @@ struct CollectorTimes {
 ///          in the file
 /// End      all cases are stored or set aside, or `stop` was set. Then the queue is emptied: no further case begins
 /// Memory   the numbers of the cases that wait, at most two thousand
-/// Faults   a failed write to the store ends the campaign. An engine that is away is waited for, and told in
+/// Faults   a failed write to the store ends the campaign. An engine that is away is waited for, and named in
 ///          `waiting_for`; what it lost is queued again
 Result<campaign::Progress> collect(campaign::CampaignStore& store, const campaign::Identity& identity,
                                    std::uint64_t cases, Engine& engine, const std::atomic<bool>& stop,

@@ -45,7 +45,7 @@ BeginCampaign landings(const dictionary::Dictionary& dictionary, const std::atom
 ///
 /// In       `own`: of the running program and its dictionary; campaigns of others are left out. tell(progress): called
 ///          on the calling thread, at each look
-/// Faults   an engine that is away is waited for, and told in `waiting_for`
+/// Faults   an engine that is away is waited for, and named in `waiting_for`
 WorkerProgress work(Engine& engine, const campaign::Identity& own, const BeginCampaign& begin,
                     const WorkerSettings& settings, const std::atomic<bool>& stop,
                     const std::function<void(const WorkerProgress&)>& tell);

@@ -110,7 +110,7 @@ class PacketIntake {
     std::vector<std::optional<LatestValue>> latest_;
     telemetry::PacketClocks clocks_;  ///< of another mission's packets
     std::string remark_;
-    static constexpr std::size_t told_max = 20;  ///< chosen: nobody reads more; all are counted
+    static constexpr std::size_t told_max = 20;  ///< chosen: kinds that are reported; all are counted
     std::set<std::string> told_;                 ///< kinds of packets that were not decoded whole
     std::uint64_t recorded_octets_ = 0;
     std::uint64_t not_decoded_ = 0;

@@ -7,7 +7,7 @@
 #include <vector>
 
 // Estimates the error of an inertial path from radar readings along it: a Kalman filter forward, and a smoother back
-// (Rauch, Tung and Striebel), so that the radar of the last two minutes tells about the entry too.
+// (Rauch, Tung and Striebel), so that the radar of the last two minutes improves the entry too.
 //
 //   truth = path ⊕ error:  p + δp,  v + δv,  Exp(ψ) · R_MB
 //   δṗ = δv        δv̇ = ψ × R f − R (b + s ∘ f) + G δp − 2 ω × δv        ψ̇ = −ω × ψ
