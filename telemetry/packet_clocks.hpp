@@ -26,7 +26,7 @@ class PacketClocks {
     static constexpr std::size_t remarks_max = 10;              ///< chosen
     static constexpr double jump_steps = 100.0;                 ///< chosen: as many times the largest step before
     static constexpr double jump_least_s = 60.0;                ///< chosen
-    static constexpr std::uint32_t steps_known = 8;             ///< chosen: steps seen before a jump can be told
+    static constexpr std::uint32_t steps_known = 8;             ///< chosen: steps seen before a jump can be recognised
     static constexpr std::uint32_t still_packets = 64;          ///< chosen: packets with one time …
     static constexpr std::int64_t still_least_us = 10'000'000;  ///< … and this long, after the clock had moved
 

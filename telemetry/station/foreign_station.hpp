@@ -31,7 +31,7 @@ struct RecognisedSource {
 /// Layout   recognised by the first octets of each stream; tried again whenever these have doubled
 /// Datagrams  each holds whole packets, whole frames, or a piece of a stream, as the format has it
 /// Memory   a frame or a packet, and the beginning of a stream until its layout is recognised
-/// Faults   octets that are no packet are counted. A beginning that reveals no layout is not read; it is counted
+/// Faults   octets that are not packets are counted. A beginning that reveals no layout is not read; it is counted
 class ForeignStation {
   public:
     static constexpr std::size_t beginning_octets_max = std::size_t{1} << 20U;  ///< chosen: two frames of any length

@@ -62,7 +62,7 @@ class ToneStation {
     std::optional<ThinnedSpectrum> spectrum_;
     std::vector<std::complex<float>> samples_;
     bool ended_ = false;
-    bool follows_ = false;    ///< a carrier, as told
+    bool follows_ = false;    ///< a carrier, as reported
     std::optional<bool> up_;  ///< as reported; none: not yet
 };
 
