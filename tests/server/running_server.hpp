@@ -35,7 +35,7 @@ class RunningServer {
     }
     ~RunningServer() { end(); }
 
-    /// With accounts, in the folder of the archive.
+    /// Selects a server with accounts, whose file is in the folder of the archive.
     struct WithAccounts {};
     explicit RunningServer(WithAccounts) {
         accounts_ = folder_ / "accounts.json";
@@ -43,7 +43,7 @@ class RunningServer {
         start_thread();
     }
 
-    /// With clocks that the test moves.
+    /// Starts a server with clocks that the test moves.
     explicit RunningServer(server::ReadClocks clocks) : clocks_(std::move(clocks)) {
         open();
         start_thread();
