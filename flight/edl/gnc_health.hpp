@@ -6,9 +6,9 @@
 
 namespace aeolis::flight {
 
-/// Reports once, by event and tone, when GNC loses what it needs: the IMU, its attitude, propellant.
+/// Tells ground once when GNC loses something that it needs, by event and tone: the IMU, its attitude, propellant.
 ///
-/// In      GNC's output, each cycle          Out   IMU_SILENT, IMU_HEARD_AGAIN, ATTITUDE_LOST, PROPELLANT_LOW; tones
+/// In      what GNC tells, each cycle        Out   IMU_SILENT, IMU_HEARD_AGAIN, ATTITUDE_LOST, PROPELLANT_LOW; tones
 class GncHealth {
   public:
     void watch(const Parameters& parameters, const gnc::Output& gnc, Outbox& out);
@@ -21,7 +21,7 @@ class GncHealth {
   private:
     void watch_imu(const Parameters& parameters, const gnc::Output& gnc, Outbox& out);
 
-    double silent_s_ = 0.0;  ///< as last reported; 0 while the IMU is heard
+    double silent_s_ = 0.0;  ///< as told last; 0 while the IMU speaks
     bool attitude_lost_ = false;
     bool propellant_low_ = false;
 };

@@ -10,7 +10,7 @@
 
 namespace aeolis::flight {
 
-/// Follows actions whose reply did not come in time, and those that the IMU proves better than a reply. R50
+/// Follows actions whose reply did not come in time, and those of which the IMU knows better than the reply. R50
 ///
 /// In       firings, replies that no timepoint awaits, GNC's output
 /// Out      a late reply verifies the action and announces it (TIMEPOINT_VERIFIED_LATE), or refuses it
@@ -21,15 +21,14 @@ namespace aeolis::flight {
 /// Reset    not handed over: the other computer keeps the assumptions of the configuration
 class UnverifiedActions {
   public:
-    /// Keeps a firing whose result may still become known.
+    /// Keeps a firing that something may still be learnt about.
     void add(const Firing& firing);
 
-    /// Takes a reply. True when it belongs to an unverified action.
+    /// Takes a reply. True: it was that of an unverified action.
     bool on(const ActionReply& reply, ActionContext& context);
 
-    /// Judges the firing of the mortar by the force that the IMU senses; other actions give too small an impulse. While
-    /// the IMU is silent, GNC's force is only estimated, which is no evidence. A mortar fired in such a time is not
-    /// judged.
+    /// Judges a mortar by the force that the IMU senses. Other actions give too small a kick. While the IMU is silent
+    /// GNC's force is reckoned, which is no evidence: of a mortar in whose time it was silent nothing is said.
     void watch(const Parameters& parameters, const gnc::Output& gnc, gnc::Configuration& configuration, Outbox& out);
 
   private:

@@ -198,7 +198,7 @@ struct Output {
     double propellant_kg = 0.0;
     bool radar_locked = false;
     std::uint16_t radar_beams = 0;  ///< of the last radar solution
-    double dead_reckoned_s = 0.0;   ///< time for which the IMU has been silent; 0 while it is heard
+    double dead_reckoned_s = 0.0;   ///< the IMU has been silent for so long; 0 while it speaks
     double attitude_uncertainty_deg = 0.0, velocity_uncertainty_mps = 0.0, altitude_uncertainty_m = 0.0;
     bool propellant_low = false;  ///< before fly-away
 };
@@ -319,7 +319,7 @@ class EdlGnc {
 
     double mass_kg_ = 0.0;  ///< estimate, while on engines
     double thrust_command_N_ = 0.0;
-    double thrust_felt_N_ = 0.0;  ///< as the engines last reported; until then as commanded
+    double thrust_felt_N_ = 0.0;  ///< as engines told last; what was asked for until they do
     Steering steering_;
     powered_descent::ApproachProfile approach_;
     powered_descent::Divert divert_;

@@ -52,9 +52,9 @@ struct TouchdownFacts {
     };
     Sclk entry, now;
     std::vector<Told> told;         ///< in any order
-    std::string flag_name;          ///< of the channel that reports it
+    std::string flag_name;          ///< of the channel that tells it
     std::optional<Flag> flag;       ///< its newest sample
-    std::string live_name;          ///< of the channel whose samples show that UHF is received
+    std::string live_name;          ///< of the channel whose samples show that UHF comes
     std::vector<Sclk> live;         ///< its samples over UHF, by time
     std::vector<Silence> silences;  ///< of UHF, by time
 };
