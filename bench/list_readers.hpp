@@ -10,18 +10,19 @@
 
 namespace aeolis::bench {
 
-/// Programs that ask for lists over HTTP, all at the same time, in a process of their own so that their memory and
-/// their time are not charged to the server.
+/// Programs that ask for lists over HTTP at the same time. They run in a process of their own, so that the server is
+/// not charged for their memory and time.
 class ListReaders {
   public:
-    /// Chosen: fewer than the server's places for connections besides streams, which a closing one holds for a moment.
+    /// Chosen: fewer than the connections that the server takes besides streams. A closing one still counts for a
+    /// moment.
     static constexpr std::size_t readers = 48;
-    /// Each reader asks for each target once, the next when it has the answer; each begins with another one.
-    /// Forks: call before any thread starts.
+    /// Forks the process of the readers; call before any thread starts. Each reader asks for every target once, one
+    /// after another, and begins with a different one.
     explicit ListReaders(std::vector<std::string> targets);
     ~ListReaders();
 
-    /// @param tokens  of programs; the readers have them in turn, one each
+    /// @param tokens  of programs, given to the readers in turn
     void begin(std::uint16_t port, const std::vector<std::string>& tokens);
     bool over() const { return board_->over == readers; }
 

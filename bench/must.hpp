@@ -7,7 +7,7 @@
 
 namespace aeolis::bench {
 
-/// Ends the benchmark with a message unless `done`.
+/// Ends the benchmark with exit code 1 and "PROGRAM: WHAT failed" unless `done`.
 inline void must(bool done, const char* what) {
     if (done) return;
     std::fprintf(stderr, "%s: %s failed\n", program_invocation_short_name, what);

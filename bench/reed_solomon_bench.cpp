@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reed-Solomon codeblocks corrected a second on one core: (255,223) interleaved 4, dual basis, in octets of codeblocks.
+// Measures how many octets of Reed-Solomon codeblocks one core corrects in a second: (255,223), interleaved 4, dual
+// basis.
 //
-// Goals: 20 MB/s without errors, 5 MB/s with as many wrong symbols in every code word as can be corrected, and with
-// more.
-// Beside them the least work of any decoder that knows a block to be clean: one copy of it through a table of symbols.
+// Goals: 20 MB/s without errors; 5 MB/s with as many wrong symbols in every code word as can be corrected, or more.
+// For comparison, each line ends with the rate of the least work that any decoder does for a clean block: copying it
+// through a table of symbols.
 #include "telemetry/reed_solomon.hpp"
 #include "tests/support/octets.hpp"
 #include "tests/support/reed_solomon_encoder.hpp"

@@ -18,9 +18,9 @@ struct Intent {
     std::string confirmation;  ///< what the controller typed
 };
 
-/// Checks whether the command may be released. Refused, with the reason in words, when it is hazardous and not armed or
-/// its name was not typed exactly, or when a precondition fails. An unknown precondition does not refuse: flight holds
-/// the same conditions and decides with its own data; the caller tells the controller. R23
+/// Checks whether the command may be released. Fails, with the reason in words, when it is hazardous and not armed or
+/// its name was not typed exactly, or when a precondition fails. An unknown precondition does not refuse it: flight
+/// checks the same conditions with its own data, and the caller informs the controller. R23
 Result<void> authorise(const dictionary::Command& command, const Intent& intent,
                        std::span<const PreconditionState> preconditions);
 

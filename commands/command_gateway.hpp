@@ -38,16 +38,16 @@ namespace aeolis::commands {
 /// Shares   nobody has more commands under way than places are free: commands/shares
 /// Faults   a refused request has no number, changes nothing, and the reply names the check and its values
 /// Timeline commands that change the timeline leave in the order of their numbers, as they were analysed. When one
-///          fails, those behind it wait until the server has analysed the timeline without it. Each is judged when it is
-///          asked for and whenever it leaves, on the timeline as it will stand on arrival: commands/timeline_judge
+///          fails, those behind it wait until the server has analysed the timeline without it. Each is judged when it
+///          is asked for and whenever it leaves, on the timeline as it will stand on arrival: commands/timeline_judge
 ///
 /// The run's thread owns it: a decision depends on what has reached Earth by this cycle and never on another thread's
 /// progress, so the digest of a run does not change with its pace.
 class CommandGateway {
   public:
     static constexpr std::size_t commands_max = 4096;  ///< under way at a time. Our assumption: a landing needs two
-    /// Commands at the uplink, and CLTUs radiated in a cycle: the vehicle's receiver holds eight, and hands two a cycle
-    /// to the flight software.
+    /// Limits of commands at the uplink and of CLTUs radiated in a cycle: the vehicle's receiver holds eight, and hands
+    /// two a cycle to the flight software.
     static constexpr std::size_t at_uplink_max = 8, radiated_a_cycle_max = 2;
 
     /// `second_person`: names of commands that need the approval of a controller other than the one who asked.
@@ -163,7 +163,7 @@ class CommandGateway {
     const CommandQueue::Entry* waiting(std::uint64_t number) const;
     /// Why this controller may not approve the command; empty: they may.
     static std::string not_another_person(const Request& asked, const Underway& command);
-    /// Fills in when the command arrives, when Earth can see its effect, and what it would be too late for.
+    /// Fills in when the command arrives, when Earth can see its effect, and which timepoints it would miss.
     void tell_arrival(const dictionary::Command& command, std::span<const std::uint8_t> packet, Ert now, Ert leaves,
                       Reply& reply) const;
     void tell_station(Ert leaves, Reply& reply) const;
@@ -174,9 +174,10 @@ class CommandGateway {
     std::string leaving_text(const CommandQueue::Entry& entry) const;
     /// The preconditions that are known not to hold now, and what the command would do to the timeline; empty: none.
     std::string failing_now(const Underway& underway, Ert now) const;
-    /// Why a command's parameters are none that ground sends; empty: they are, or it has none.
+    /// Why the command's parameters do not come from ground's solutions; empty: they do, or it has none.
     std::string apart_from_solutions(const dictionary::Command& command, std::span<const std::uint8_t> packet) const;
-    /// Why the command must not leave then, for what it does to the timeline; empty: it may, or does nothing there.
+    /// Why the command must not leave at that time, because of its effect on the timeline; empty: it may leave, or has
+    /// no such effect.
     /// @param number  of the command, where it has one
     std::string unsafe_on_timeline(const dictionary::Command& command, std::span<const std::uint8_t> packet, Ert leaves,
                                    std::uint64_t number = 0) const;
@@ -198,7 +199,7 @@ class CommandGateway {
     void begin_pass(Ert now, std::vector<StageReport>& stages);
     static std::vector<FieldPlace> clcw_places(const dictionary::Dictionary& dictionary);
     Underway* underway(std::optional<std::uint64_t> number);
-    void forget_finished();  ///< and their places are free
+    void forget_finished();  ///< frees their places
     void radiate(Ert now, std::vector<StageReport>& stages);
     void hear_clcw(std::uint32_t word, Ert ert, std::vector<StageReport>& stages);
     void note_frames(Ert now, std::vector<StageReport>& stages);

@@ -29,7 +29,7 @@ class CommandQueue {
         bool in_order = false;        ///< leaves after all others of this kind that have a smaller number
         bool doubted = false;         ///< an earlier command in order failed: it waits until it is judged anew
         bool ahead = false;           ///< hazardous, or a director's: before others' commands
-        std::string asker{};          ///< for whom it counts
+        std::string asker{};          ///< whose share of the places it takes
     };
 
     void add(const Entry& entry);
@@ -38,11 +38,11 @@ class CommandQueue {
     bool hold(std::uint64_t number) { return set_held(number, true); }
     bool release(std::uint64_t number) { return set_held(number, false); }  ///< from hold; it still waits for its time
     bool cancel(std::uint64_t number);
-    /// Returns false also when it needs no approval.
+    /// Returns false when no such command waits, or when it needs no approval.
     bool approve(std::uint64_t number);
     /// Marks as doubted the waiting commands that are in order behind the failed one. Returns their numbers.
     std::vector<std::uint64_t> doubt_after(std::uint64_t number);
-    /// Ends a doubt. Returns false also when the command was not doubted.
+    /// Ends a doubt. Returns false when no such command waits, or when it is not doubted.
     bool judged(std::uint64_t number);
     /// The command that must leave before it; none: it waits for none.
     std::optional<std::uint64_t> leaves_after(const Entry& entry) const;
@@ -53,7 +53,7 @@ class CommandQueue {
     std::optional<std::uint64_t> take_next(Ert now);
     /// Takes out all commands in the order of leaving.
     std::vector<std::uint64_t> take_all();
-    /// Postpones the due commands until then; returns their numbers.
+    /// Postpones the due commands to `until`; returns their numbers.
     std::vector<std::uint64_t> postpone_due(Ert now, Ert until);
 
     /// Waiting commands in the order of leaving.

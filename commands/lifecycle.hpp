@@ -70,7 +70,7 @@ class CommandLifecycle {
     /// Notes that the frame was radiated again: the windows restart.
     void radiated_again(std::string evidence, Ert at, std::vector<StageChange>& out);
     /// Notes a doubt about a radiated command that would not be sent now. The evidence says why its frame is not
-    /// radiated again, or what its analysis relied on and no longer holds.
+    /// radiated again, or which assumption of its analysis no longer holds.
     void radiated_in_doubt(std::string evidence, Ert at, std::vector<StageChange>& out);
     /// Notes that the vehicle's frame receiver reports the frame: `received`, observed.
     void frame_taken(std::string evidence, Ert at, std::vector<StageChange>& out);

@@ -37,13 +37,13 @@ Result<void> ParameterTable::may_fly() const {
         largest_name = row.name;
     }
     if (sum <= table_deviation_max) return {};
-    return Error{"the changes together are too much: as parts of their ranges they add up to " + shortest_text(sum) +
-                 ", at most " + shortest_text(table_deviation_max) + "; " + largest_name + " has " +
-                 shortest_text(largest)};
+    return Error{"the changes together are too large: as fractions of their ranges they add up to " +
+                 shortest_text(sum) + ", at most " + shortest_text(table_deviation_max) + "; the largest, " +
+                 largest_name + ", has " + shortest_text(largest)};
 }
 
 std::uint16_t ParameterTable::crc() const {
-    constexpr std::size_t row_octets = 10;
+    constexpr std::size_t row_octets = 10;  // number 2, value 8
     std::vector<std::uint8_t> octets(values_.size() * row_octets);
     BitWriter writer{octets};
     for (std::size_t row = 0; row < values_.size(); ++row) {

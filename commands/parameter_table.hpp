@@ -8,25 +8,25 @@
 #include <string_view>
 #include <vector>
 
-// The parameter table as ground means it: the values built in, and the changes made to them. Flight compares the CRC
-// with that of its own table before it activates one. R25
+// The parameter table as ground intends it: the values built in, and the changes made to them. Before flight activates
+// a table, it compares the CRC with that of its own. R25
 namespace aeolis::commands {
 
 class ParameterTable {
   public:
-    /// As built. `dictionary` outlives the table.
+    /// Starts with the values built in. `dictionary` must outlive the table.
     explicit ParameterTable(const dictionary::Dictionary& dictionary);
 
-    /// Sets the value of a row. Fails, naming what is wrong, where the row may not change or the value is out of its
-    /// range; so would flight.
+    /// Sets the value of a row. Fails, with the reason, when the row is fixed or the value is outside its range; flight
+    /// refuses the same.
     [[nodiscard]] Result<void> set(ParameterId id, double value);
 
-    /// Whether the table may fly: fails where its deviations from the one built in add up to more than one range, and
-    /// names the largest. Flight refuses to activate such a table too.
+    /// Checks whether the table may fly. Fails when its deviations from the table built in add up to more than one
+    /// range, and names the largest. Flight refuses to activate such a table too.
     [[nodiscard]] Result<void> may_fly() const;
 
-    /// CRC-16 over each row in order, its number in 16 bits and its value as a binary64: as of the data product that
-    /// dumps the table, and the channel parameter_crc.
+    /// CRC-16 over the rows in order, each with its number in 16 bits and its value as a binary64. The data product
+    /// that dumps the table and the channel parameter_crc have the same CRC.
     std::uint16_t crc() const;
 
   private:

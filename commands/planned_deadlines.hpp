@@ -39,7 +39,7 @@ class PlannedDeadlines {
                                Ert leaves) const;
     /// The earliest deadline that a command can still meet.
     std::optional<Deadline> next(Ert now) const;
-    /// Timepoints planned after `now` that a command leaving at `leaves` would miss; in their order.
+    /// Names of the timepoints planned after `now` that a command leaving at `leaves` would miss, in their order.
     std::vector<std::string> missed(Ert now, Ert leaves) const;
 
   private:
@@ -56,7 +56,8 @@ class PlannedDeadlines {
         changed_;  ///< with the offsets that flight has now; none: those of dictionary_
     std::optional<Scet> entry_;
     std::int64_t light_time_us_;
-    std::vector<Planned> planned_, predicted_;  ///< in order of time; the latter has all of known or predicted time
+    std::vector<Planned> planned_,
+        predicted_;  ///< in order of time; predicted_ has all whose time is known or predicted
 };
 
 }  // namespace aeolis::commands

@@ -13,17 +13,17 @@ namespace aeolis::commands {
 /// The latest value of a channel that ground has received.
 struct LatestValue {
     std::optional<double> value;  ///< none: never received, or undefined on board
-    double age_s = 0.0;           ///< since its receipt; light time comes on top
+    double age_s = 0.0;           ///< since its receipt, without the light time
 };
 
-/// A value older than this says nothing about now. Our assumption: thirty missed samples of a 1 Hz channel.
+/// A value older than this is not current. Our assumption: thirty missed samples of a 1 Hz channel.
 inline constexpr double stale_after_s = 30.0;
 
 struct PreconditionState {
     enum class State { holds, fails, unknown };
     State state = State::unknown;
     std::optional<double> value;
-    std::string text;  ///< "parameters_received == 1: is 0", "late_cruise == 1: not received yet"
+    std::string text;  ///< such as "parameters_received == 1: is 0", "late_cruise == 1: not received yet"
 };
 
 /// "holds", "fails", "unknown"

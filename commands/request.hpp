@@ -31,9 +31,9 @@ struct Request {
     std::uint32_t priority = 0;       ///< of due commands the largest leaves first
     std::string action{};             ///< on the waiting command `number`
     std::uint64_t number = 0;
-    std::string controller{};  ///< who asks
-    std::string browser{};     ///< from where, when there are no accounts
-    bool director = false;     ///< asked by one who may send hazardous commands
+    std::string controller{};  ///< the sender
+    std::string browser{};     ///< of the sender, when there are no accounts
+    bool director = false;     ///< the sender may send hazardous commands
 };
 
 /// The server's verdict on the timeline of a waiting command that changes it.

@@ -11,7 +11,8 @@
 namespace aeolis::commands {
 namespace {
 
-// Chosen: what is ground's own is equal, so these only leave room for rounding by people; each lands at its bound.
+// Chosen: a solution of ground's own is equal, so the bounds only allow for rounding by people. The vehicle lands with
+// each error at its bound.
 constexpr double same_epoch_s = 1.0 / 128.0;  // half a tick of the clock
 constexpr double position_max_m = 1000.0, velocity_max_mps = 1.0;
 constexpr double target_moved_max_m = 30'000.0, radius_apart_max_m = 3000.0;
@@ -21,7 +22,7 @@ std::optional<double> value_of(std::span<const NamedValue> values, std::string_v
     return found == values.end() ? std::nullopt : std::optional{found->value};
 }
 
-/// Distance between two vectors; none where one of them is not given.
+/// Distance between two vectors; none when one of them is not given.
 std::optional<double> apart(std::span<const NamedValue> one, std::span<const NamedValue> other,
                             const std::array<std::string_view, 3>& names) {
     std::array<double, 3> difference{};
@@ -33,7 +34,7 @@ std::optional<double> apart(std::span<const NamedValue> one, std::span<const Nam
     return std::hypot(difference[0], difference[1], difference[2]);
 }
 
-/// Distance of two targets along the ground; none where one of them is not given.
+/// Distance between two targets along the ground; none when one of them is not given.
 std::optional<double> targets_apart_m(std::span<const NamedValue> one, std::span<const NamedValue> other) {
     const auto direction = [](std::span<const NamedValue> of) -> std::optional<std::array<double, 3>> {
         constexpr double degree_rad = std::numbers::pi / 180.0;
@@ -49,26 +50,25 @@ std::optional<double> targets_apart_m(std::span<const NamedValue> one, std::span
     return 2.0 * std::asin(std::min(1.0, 0.5 * chord)) * *radius_m;
 }
 
-/// Why the arguments are not near a solution of their epoch; empty: they are.
+/// Why the arguments are not near a solution of the same epoch; empty: they are near.
 std::string apart_from(std::span<const NamedValue> solution, std::span<const NamedValue> arguments) {
     const auto position_m = apart(arguments, solution, {"position_x_m", "position_y_m", "position_z_m"});
     if (position_m && *position_m > position_max_m)
-        return fmt::format(
-            "the position is {:.1f} km from ground's own solution of that epoch, at most {:g} km are sent",
-            *position_m * 1e-3, position_max_m * 1e-3);
+        return fmt::format("the position is {:.1f} km from ground's own solution of that epoch; the limit is {:g} km",
+                           *position_m * 1e-3, position_max_m * 1e-3);
     const auto velocity_mps = apart(arguments, solution, {"velocity_x_mps", "velocity_y_mps", "velocity_z_mps"});
     if (velocity_mps && *velocity_mps > velocity_max_mps)
         return fmt::format(
-            "the velocity differs by {:.2f} m/s from ground's own solution of that epoch, at most {:g} m/s are sent",
+            "the velocity differs by {:.2f} m/s from ground's own solution of that epoch; the limit is {:g} m/s",
             *velocity_mps, velocity_max_mps);
     const auto target_m = targets_apart_m(arguments, solution);
     if (target_m && *target_m > target_moved_max_m)
-        return fmt::format("the target is {:.1f} km from that of ground's solution, at most {:g} km are sent",
+        return fmt::format("the target is {:.1f} km from that of ground's solution; the limit is {:g} km",
                            *target_m * 1e-3, target_moved_max_m * 1e-3);
     const auto radius_m = value_of(arguments, "target_radius_m"),
                known_radius_m = value_of(solution, "target_radius_m");
     if (radius_m && known_radius_m && std::abs(*radius_m - *known_radius_m) > radius_apart_max_m)
-        return fmt::format("target_radius_m is {:.1f} km from that of ground's solution, at most {:g} km are sent",
+        return fmt::format("target_radius_m is {:.1f} km from that of ground's solution; the limit is {:g} km",
                            std::abs(*radius_m - *known_radius_m) * 1e-3, radius_apart_max_m * 1e-3);
     return {};
 }

@@ -9,10 +9,10 @@
 
 namespace aeolis::commands {
 
-/// Judges on ground whether parameters are those of ground's own navigation. R51
+/// Checks on ground that the parameters of a command come from ground's own navigation. R51
 ///
-/// Flight cannot know that a position is wrong: it has no other. So what is sent is near one of the solutions that
-/// ground has had: position and velocity at the same epoch, and the target.
+/// Flight cannot recognise a wrong position, because it has no other. So the parameters sent must be near one of the
+/// solutions that ground has had: in position and velocity at the same epoch, and in the target.
 ///
 /// In      the arguments of a command; ground's solutions, by argument name
 /// Out     why they are not ground's, as a sentence; empty where they are, or where ground has no solution

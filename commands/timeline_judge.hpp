@@ -18,8 +18,8 @@ namespace aeolis::commands {
 ///
 /// In      live packets; changes made or under way; a requested change
 /// Out     why the change is unsafe; nothing where it is safe, or where ground does not know
-/// Rule    dictionaries/timeline_change_rule.hpp, applied to what was heard and, until the arrival, to what fires by the
-///         plan. Flight judges again by its own state
+/// Rule    dictionaries/timeline_change_rule.hpp, applied to what was heard and, until the arrival, to what fires by
+///         the plan. Flight judges again by its own state
 /// Memory  the times of all timepoints, and the offsets. A value
 class TimelineJudge {
   public:
@@ -38,7 +38,8 @@ class TimelineJudge {
     /// @param arrives  at the vehicle; none: its clock is not known, and only what holds at any time is judged
     std::optional<timeline::Unsafe> judge(const timeline::Change& change, std::optional<Sclk> navigated_entry,
                                           std::optional<Sclk> arrives) const;
-    /// Seconds by which "do edl" would arrive too late for its first timepoint on the clock. None: in time, or unknown. R23
+    /// Seconds by which "do edl" would arrive too late for its first timepoint on the clock. None: in time, or unknown.
+    /// R23
     std::optional<double> begins_late_s(std::optional<Sclk> navigated_entry, std::optional<Sclk> arrives) const;
     /// The reason as text for controllers.
     std::string text(const timeline::Unsafe& unsafe) const;

@@ -25,7 +25,7 @@ class TrackingSchedule {
 
     bool always() const { return passes_.empty(); }
     bool sees(Ert at) const { return always() || pass_at(at) != nullptr; }
-    /// Of the passes at that time, the one that ends last; null: none, or no table.
+    /// The pass at that time; of several, the one that ends last. Null: there is none, or no table.
     const TrackingPass* pass_at(Ert at) const;
     /// The first pass to begin after `at`; null: none.
     const TrackingPass* next_after(Ert at) const;

@@ -117,8 +117,8 @@ struct Pdu {
 };
 
 /// Parses one whole PDU; spans and names in it point into `octets`.
-/// Fails with too_short, too_long, other_version, bad_checksum; bad_field for a directive, condition or flag that is
-/// not read here.
+/// Fails with too_short, too_long, other_version or bad_checksum; with bad_field for a directive, condition or flag
+/// that is not read here.
 Parsed<Pdu> read(std::span<const std::uint8_t> octets);
 
 /// Number of octets that write() produces for `pdu`.

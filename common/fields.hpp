@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <utility>
 
-// The fields of an aggregate, from the type itself: a field that is added later is met too.
+// The fields of an aggregate, derived from its type, so that a field added later is not forgotten.
 namespace aeolis {
 
 /// Converts to any type: counts the initialisers of an aggregate.

@@ -8,7 +8,7 @@
 #include <limits>
 #include <string_view>
 
-// Names that people write, and the one that they may have meant.
+// Finds the name that a person may have meant by a misspelt one.
 namespace aeolis {
 
 inline constexpr std::size_t name_length_max = 63;
@@ -25,7 +25,8 @@ struct Name {
     constexpr std::string_view view() const { return text.data(); }
 };
 
-/// Letters to put in, take out or replace to make one name of the other. Names are cut after name_length_max.
+/// Number of letters to insert, delete or replace to turn one name into the other. Names are cut off after
+/// name_length_max letters.
 constexpr std::size_t edit_distance(std::string_view from, std::string_view to) {
     from = from.substr(0, name_length_max);
     to = to.substr(0, name_length_max);
@@ -42,7 +43,8 @@ constexpr std::size_t edit_distance(std::string_view from, std::string_view to) 
     return row[to.size()];
 }
 
-/// The name of `all`, by `name_of`, that is fewest letters from `name`; the first of equals. Empty when there is none.
+/// The name in `all` with the smallest edit distance to `name`; of several, the first. Empty when `all` is empty.
+/// `name_of` gives the name of an element.
 template <typename All, typename NameOf = std::identity>
 constexpr std::string_view nearest(std::string_view name, const All& all, NameOf name_of = {}) {
     std::string_view best;

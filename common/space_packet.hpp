@@ -41,25 +41,26 @@ inline constexpr std::size_t space_packet_octets_max = primary_header_octets + 6
 inline constexpr std::uint16_t idle_apid = 0x7FF;
 inline constexpr Apid file_delivery_apid{0x7FD};  ///< packets whose data are a CFDP PDU; 2045, the APID reserved for
                                                   ///< CFDP
-/// Packets that ground makes itself, of what its station measures; no vehicle sends them. Chosen: beside CFDP's.
+/// Whether ground itself makes packets of this APID, from its station's measurements; no vehicle sends them. The range
+/// is chosen: beside CFDP's APID.
 constexpr bool is_made_on_ground(Apid apid) {
     return apid.value >= 0x7E0 && apid.value <= 0x7EF;
 }
 inline constexpr Apid station_carrier_apid{0x7E0}, station_event_apid{0x7E1}, station_spectrum_apid{0x7E2};
 
-/// What begins a run of octets: a space packet, or an encapsulation packet beside it in the same frames, of one octet
-/// and more. [ccsds-133.0-b-2] [ccsds-133.1-b-3]
+/// The packet that begins a run of octets. Beside space packets, frames may carry encapsulation packets, of one octet
+/// or more. [ccsds-133.0-b-2] [ccsds-133.1-b-3]
 struct PacketStart {
     enum class Kind : std::uint8_t {
         space,
         idle,           ///< a space packet of the idle APID, or an encapsulation packet of protocol 0
         encapsulation,  ///< of another protocol
-        unknown,        ///< no packet, or one of another version
+        unknown,        ///< not a packet, or one of another version
     };
     Kind kind = Kind::unknown;
     std::size_t octets = 0;  ///< of the whole packet; 0: its header is not complete
 };
-/// `octets` must not be empty.
+/// Recognises the packet that begins `octets`, which must not be empty.
 PacketStart packet_start(std::span<const std::uint8_t> octets);
 inline constexpr std::size_t encapsulation_octets_max = std::size_t{1} << 20U;  ///< chosen; a longer one is unknown
 

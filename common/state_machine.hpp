@@ -5,7 +5,7 @@
 
 namespace aeolis {
 
-/// One row of a state machine's table: in `from`, `event` leads to `to`.
+/// One row of a state machine's table: in the state `from`, `event` leads to the state `to`.
 template <typename State, typename Event>
 struct Transition {
     State from;

@@ -9,9 +9,10 @@
 namespace aeolis {
 
 /// A quantity over time, interpolated smoothly between rows.
-/// Cubic Hermite, with slopes from the chords of neighbouring rows: value and rate are continuous. The slopes are limited
-/// so that no value lies beyond the two rows about it. Before the first and after the last row the value is held. An empty
-/// table is zero everywhere. Source: [fritsch-carlson-1980] for the limit.
+///
+/// The interpolation is cubic Hermite, with slopes from the chords of neighbouring rows, so that value and rate are
+/// continuous. The slopes are limited so that no value lies beyond the two rows around it. Before the first and after
+/// the last row the value is held. An empty table is zero everywhere. Source: [fritsch-carlson-1980] for the limit.
 class TimeTable {
   public:
     TimeTable() = default;

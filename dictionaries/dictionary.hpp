@@ -93,7 +93,7 @@ struct Type {
     std::optional<double> valid_min, valid_max;
     Alarms alarms;
 };
-/// Whether a double does not hold every value of the type: text, and whole numbers of more than 53 bits.
+/// Whether a double cannot hold every value of the type: true for text, and for whole numbers of more than 53 bits.
 bool needs_text(const Type& type);
 
 // ---- telemetry -------------------------------------------------------------------------------------------------
@@ -207,7 +207,7 @@ struct TimelineRow {
     std::optional<double> hold_repeat_s;  ///< set when the timeline is held: interval of repeating the action
     std::string backtrack;                ///< timepoint to return to after a reboot in pre-EDL; empty: none
     bool essential = true;                ///< kept in Second Chance
-    bool may_be_late = false;             ///< a "do edl" after its time does no harm: it then follows at once
+    bool may_be_late = false;             ///< a "do edl" after its time does no harm: the timepoint then fires at once
     std::optional<ToneId> tone;
     std::string event;  ///< name of an event emitted when the action is done; empty: none
     std::string note;
@@ -226,7 +226,7 @@ enum class ToneSet { prime, second_chance, spare };
 
 /// Prefix of the Second Chance tone with the same meaning: "touchdown" and "sc_touchdown". R35
 inline constexpr std::string_view second_chance_prefix = "sc_";
-/// Prefix of the prime tone that is sent in a phase for want of a request: "heartbeat_sky_crane". R31
+/// Prefix of the prime tone that is sent in a phase while no tone is requested: "heartbeat_sky_crane". R31
 inline constexpr std::string_view heartbeat_prefix = "heartbeat_";
 
 struct ToneRow {
@@ -236,7 +236,7 @@ struct ToneRow {
     std::string meaning;     ///< for people
     int priority = 0;        ///< larger is more important
     double expires_s = 0.0;  ///< a request older than this is dropped
-    std::string supersedes;  ///< tone whose outstanding request a request for this one drops, by name; empty: none
+    std::string supersedes;  ///< name of the tone whose outstanding request is dropped for this one's; empty: none
 };
 
 /// A flight parameter: parameters.csv.
@@ -248,14 +248,14 @@ struct ParameterRow {
     ParameterId id;
     std::string name;
     double default_value = 0.0;
-    double min = 0.0, max = 0.0;  ///< what ground may change it to; the default lies between
+    double min = 0.0, max = 0.0;  ///< range that ground may set; the default lies in it
     Change change = Change::until_gnc;
     std::string unit;
     std::string text;
     std::string source;
 };
 
-/// A row of state_machines.csv: in `from`, `event` leads to `to`.
+/// A row of state_machines.csv: in the state `from`, `event` leads to the state `to`.
 struct StateTransition {
     std::string from, event, to;
     std::string note;
@@ -288,8 +288,8 @@ using timeline::Moment;  // NAME:anchor, NAME:triggered, NAME:fired, do_edl
 struct ConstraintRow {
     enum class Kind {
         required,  ///< must follow from the timeline and the given rows
-        given,     ///< a bound that GNC or ground's commands keep on when an anchor is set
-        ensured,   ///< given in any flight: GNC's own logic sets the anchor no sooner
+        given,     ///< a bound on the time of an anchor, kept by GNC or by ground's commands
+        ensured,   ///< holds in any flight: GNC's own logic sets the anchor no sooner
     };
     Kind kind = Kind::required;
     Moment from, to;
@@ -312,7 +312,7 @@ struct ClockRow {
 struct Dictionary {
     std::string mission;                 ///< SpaceSystem name
     std::uint16_t id = 0;                ///< in every telemetry packet; changes with any change of a file used on board
-    std::uint32_t timeline_version = 0;  ///< in telemetry and archive; changes with what the timeline's sheets hold
+    std::uint32_t timeline_version = 0;  ///< in telemetry and archive; changes with any change of the timeline's sheets
     std::vector<Channel> channels;
     std::vector<Packet> packets;
     std::vector<Event> events;

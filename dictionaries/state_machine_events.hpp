@@ -9,7 +9,7 @@
 
 namespace aeolis::dictionary {
 
-/// The events of a state machine by their numbers on board: in the order of first use in the sheet.
+/// The events of a state machine in the order of their numbers on board, which is that of first use in the sheet.
 inline std::vector<std::string> events_of(const StateMachineTable& machine) {
     std::vector<std::string> events;
     for (const StateTransition& row : machine.transitions)

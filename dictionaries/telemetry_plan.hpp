@@ -9,7 +9,8 @@
 #include <string_view>
 #include <utility>
 
-// telemetry_plan.csv: what is recorded at which rate, and the part sent in real time, by the state of the vehicle.
+// telemetry_plan.csv: the rate at which each packet is recorded, and the part of it that is sent in real time in each
+// state of the vehicle.
 // R30, R52
 namespace aeolis::dictionary {
 

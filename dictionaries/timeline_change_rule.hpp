@@ -17,9 +17,9 @@
 //                rows()  offsets(row)  reply_timeout_s(row)  is_essential(row)
 //                anchors()  parent(anchor)  anchor_offset_s(anchor)  is_decided_in_flight(anchor)
 //                constraints()  the rows of constraints.csv
-// Projection   The firings from now on, each as early as the timeline's rule allows. An anchor that GNC has yet to decide
-//              comes at the earliest time that constraints.csv gives. A change does not move it.
-// Comparison   The projection with the change against the projection without it. A fault of both does not count.
+// Projection   The firings from now on, each as early as the timeline's rule allows. An anchor that GNC has yet to
+//              decide comes at the earliest time that constraints.csv gives. A change does not move it.
+// Comparison   The projection with the change against the projection without it. A fault that both have does not count.
 // Not judged   Dispatch: after a restart or a hand-over, overdue timepoints must fire together.
 // Memory       Two `Times`, owned by the caller
 namespace aeolis::timeline {
@@ -75,10 +75,10 @@ struct Standing {
 struct Unsafe {
     enum class Why : std::uint8_t {
         decided_in_flight,  ///< the anchor is GNC's
-        not_navigated,      ///< the judge's own navigation has entry at another time
+        not_navigated,      ///< the judge's own navigation gives another time of entry
         triggered_already,  ///< the timepoint's action has begun
         overdue,            ///< the timepoint's time would have passed: it would fire at once
-        burst,              ///< the timepoint would be the sixth within a second; the plan has the six apart
+        burst,              ///< the timepoint would be the sixth within a second, which the plan avoids
         too_soon,           ///< a constraint's minimum would be missed
         too_late,           ///< a constraint's maximum would be exceeded
     };
@@ -250,7 +250,7 @@ constexpr std::optional<Unsafe> unsafe_change(const Plan& plan, const Change& ch
     return std::nullopt;
 }
 
-/// The reason why entry cannot be at `said`: the judge's own navigation has it more than `most_s` away, or not at all.
+/// The reason why entry cannot be at `said`: the judge's own navigation gives a time more than `most_s` away, or none.
 constexpr std::optional<Unsafe> unsafe_entry(AnchorId entry, Sclk said, MaybeTime navigated, double most_s) {
     const double late_s = navigated.defined() ? said - *navigated.get() : 0.0;
     if (navigated.defined() && late_s <= most_s && late_s >= -most_s) return std::nullopt;

@@ -49,7 +49,7 @@ struct Offsets {
     std::optional<AnchorId> anchor;  ///< none: the desired offset, too, counts from the previous firing
     MaybeOffset desired_s;
     MaybeOffset minimum_s;     ///< from the previous firing
-    bool may_be_late = false;  ///< fires at once when "do edl" comes after its time, and does no harm then
+    bool may_be_late = false;  ///< fires at once, without harm, when "do edl" comes after its time
 };
 /// Offsets of a row of timeline.csv, as the dictionary or flight holds it.
 template <typename Row>
@@ -97,7 +97,7 @@ constexpr MaybeTime anchor_time(MaybeTime parent, MaybeOffset offset_s) {
     return parent + offset_s;
 }
 
-/// Latest time at which "do edl" can be accepted without making a timepoint overdue (but those that may be late). R23
+/// Latest time at which "do edl" can be accepted so that no timepoint is overdue except those that may be late. R23
 /// It is the desired time of the first timepoint that has an anchor and may not be late, less the durations of those
 /// before it. Undefined while that anchor is undefined, or when there is no such timepoint.
 /// @param offsets_of  Offsets of a row         @param reply_timeout_of  of a row, if any

@@ -159,8 +159,8 @@ struct Landing::State {
     /// The commands of this cycle that go out on the buses; null: nobody runs them.
     const flight::DeviceOutputs* run_computers(bool skipped);
     const flight::DeviceOutputs* run_gnc_alone();
-    /// Sends telemetry by X-band while that is its mode and its antenna for it is there, then by UHF; never by both. The
-    /// other carries idle frames, which bring no octets. X-band ends the frame under way before it goes over to tones.
+    /// Sends telemetry by X-band while that is its mode and its antenna for it is attached, then by UHF; never by both.
+    /// The other carries idle frames, which bring no octets. X-band ends its present frame before it changes to tones.
     void radiate(std::span<const std::uint8_t> pltus, std::int64_t cycle_start_us);
     void radiate_by_x_band(std::int64_t cycle_start_us);
     void receive_tone(std::optional<ToneId> sent, std::int64_t cycle_start_us);

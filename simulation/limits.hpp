@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-// The one judge of landings: rehearsals, campaigns and tests ask it, by the limits that the scenario sets.
+// Judges landings by the limits that the scenario sets; the same for rehearsals, campaigns and tests.
 namespace aeolis::simulation {
 
 enum class Verdict : std::uint8_t { flying, landed, landed_outside_limits, lost };
@@ -22,11 +22,11 @@ struct LandingFigures {
     std::optional<TouchdownReport> touchdown;
     std::optional<ParachuteReport> parachute;
     SeparationReport separation;
-    std::optional<double> least_timeline_margin_s;  ///< the recording has it, ground's dictionary reads it
+    std::optional<double> least_timeline_margin_s;  ///< from the recording, read by ground's dictionary
 };
 LandingFigures figures_of(const Landing& landing, std::optional<double> least_timeline_margin_s = {});
 
-/// A limit that was not kept.
+/// A limit that was exceeded.
 struct ExceededLimit {
     enum class Bound : std::uint8_t { at_least, at_most };
 
@@ -38,13 +38,13 @@ struct ExceededLimit {
 
 struct Judgement {
     Verdict verdict = Verdict::flying;
-    std::vector<ExceededLimit> exceeded;  ///< of a landing only: of a vehicle that is lost its outcome tells why
+    std::vector<ExceededLimit> exceeded;  ///< of a landing only; for a lost vehicle the outcome says why
 };
 Judgement judge(const Limits& limits, const LandingFigures& figures);
 
 /// "touchdown_vertical_max_mps 0.91 instead of at most 0.85; …"; empty when all were kept.
 std::string text_of(const std::vector<ExceededLimit>& exceeded);
-/// Why the landing ended as it did, with the limits that it did not keep.
+/// Why the landing ended as it did, with the limits that it exceeded.
 std::string reason_of(const Landing& landing, const Judgement& judgement);
 
 }  // namespace aeolis::simulation

@@ -30,8 +30,8 @@ struct Target {
     double latitude_deg = -4.6019;
     double longitude_deg = 137.4102;
     double radius_m = 3391148.0;
-    /// Full axes of the ellipse about the target that is to hold 99 % of the landings, the longer one along the course:
-    /// what a mission aims at, so none (0) unless a scenario says so.
+    /// Full axes of the ellipse about the target that should hold 99 % of the landings, the longer one along the
+    /// course. They are a mission's goal, so there are none (0) unless the scenario sets them.
     double ellipse_major_m = 0.0, ellipse_minor_m = 0.0;
 };
 
@@ -212,16 +212,17 @@ struct StationOutage {
 /// The faults that an instructor may inject during a landing.
 using Fault = std::variant<SystemFault, DeviceFault, ComputerReset, StationOutage>;
 
-/// What a landing has to keep: outside of it the rover stands all the same, and it is told by how much (limits.hpp).
+/// The limits of a landing. A rover that lands outside them still stands; limits.hpp reports by how much they were
+/// exceeded.
 struct Limits {
-    double propellant_left_min_kg = 4.0;        ///< after fly-away: 1 % of what is loaded cannot be drawn. Ours
+    double propellant_left_min_kg = 4.0;        ///< after fly-away: 1 % of the load cannot be drawn. Our assumption
     double touchdown_vertical_max_mps = 0.85;   ///< [facts] Dispersed landings (M)
     double touchdown_horizontal_max_mps = 0.5;  ///< [facts] (M)
-    double touchdown_tilt_max_deg = 10.0;       ///< of the descent stage off the vertical. Ours
-    double recontact_min_m = 25.0;              ///< to what was let go, once that was clear: a parachute's width. Ours
-    double parachute_mach_max = 2.2;            ///< [sengupta-2009], at the mortar
-    double parachute_pressure_max_Pa = 750.0;   ///< the same
-    double timeline_margin_min_s = 0.5;         ///< that a decision of GNC finds the timeline ready earlier. Ours
+    double touchdown_tilt_max_deg = 10.0;       ///< of the descent stage off the vertical. Our assumption
+    double recontact_min_m = 25.0;             ///< to a jettisoned body once clear: a parachute's width. Our assumption
+    double parachute_mach_max = 2.2;           ///< [sengupta-2009], at the mortar
+    double parachute_pressure_max_Pa = 750.0;  ///< the same
+    double timeline_margin_min_s = 0.5;        ///< from the timeline being ready to GNC's decision. Our assumption
 };
 
 /// The part of the flight software that flies, and what stands in for the rest. The software is the same in each. R36
@@ -272,8 +273,8 @@ struct Scenario {
     double bus_message_error_fraction = 1.0e-4;  ///< of the messages on the buses, at each transmission. Our assumption
 };
 
-/// Maximum rows of a list in a scenario. Our assumption: more than a landing needs, and few enough to look at all of
-/// them in every cycle at no cost beside the flight, wherever the scenario comes from.
+/// Maximum rows of a list in a scenario. Our assumption: more than a landing needs, and few enough that looking at all
+/// of them in every cycle costs little, whoever wrote the scenario.
 inline constexpr std::size_t scenario_passes_max =
     128;  ///< of orbiters or stations: five a day over the whole permitted time
 inline constexpr std::size_t scenario_rows_max = 256;  ///< of any other list

@@ -23,14 +23,14 @@ const char* name_of(dictionary::Severity severity);
 /// "sky_crane" for a condition on one state of one channel; else the conditions in words.
 std::string context_text(const dictionary::Dictionary& dictionary,
                          const std::vector<dictionary::Precondition>& context);
-/// The first context that holds by the latest values, by channel; null: none, so that the limits without a context
-/// hold.
+/// The first context that holds by the latest values; null: none holds, and the limits without a context apply. The
+/// values are indexed by ChannelId.
 const dictionary::ContextAlarms* context_in_force(const dictionary::Alarms& alarms,
                                                   const std::vector<std::optional<double>>& latest);
 /// Whether an alarm of the channel, in any context, latches until it is reset.
 bool latches(const dictionary::Alarms& alarms);
 
-/// Detects when a channel enters, leaves, or changes its severity of alarm.
+/// Detects when a channel enters or leaves alarm, and when the severity of its alarm changes.
 ///
 /// In       samples of each channel in the order of reception, from one source only (real time, or the recording)
 /// Out      changes, appended to `out`

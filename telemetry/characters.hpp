@@ -10,8 +10,8 @@
 
 namespace aeolis::telemetry {
 
-/// Text of a packet in UTF-8, without the zeros that fill it up at its end; none when the octets are no text in these
-/// characters. UTF-16 may begin with a mark of its octets' order. [xtce-1.2]
+/// Converts a text in a packet to UTF-8, without the zeros that pad its end. None when the octets are not text in this
+/// encoding. UTF-16 may begin with a byte order mark. [xtce-1.2]
 std::optional<std::string> text_of(std::span<const std::uint8_t> octets,
                                    dictionary::xtce::Coding::Characters characters);
 

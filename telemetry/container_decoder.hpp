@@ -48,7 +48,7 @@ struct NamedPlace {
     std::string_view name;
     std::size_t position_bits = 0, bits = 0;
 };
-/// Whether two numbers are, by names and places, the counts of a clock and their binary fraction.
+/// Whether two numbers are the counts of a clock and their binary fraction, by their names and places.
 bool are_coarse_and_fine(const NamedPlace& coarse, const NamedPlace& fine);
 
 /// Decodes packets of any mission into values by the containers of its XTCE file.
@@ -70,13 +70,13 @@ class ContainerDecoder {
     static constexpr std::size_t values_max = 65536;  ///< chosen: as many as the longest packet has octets
     static constexpr unsigned depth_max = 16;         ///< chosen
 
-    /// The containers with which packets may begin. One whose base is not known is none: without it, it would be taken
-    /// for a packet of its own.
+    /// The containers with which packets may begin. A container whose base is unknown is not among them: it would be
+    /// taken for a packet of its own.
     static std::vector<std::size_t> roots_of(const dictionary::xtce::PacketModel& model);
-    /// The root by its name or path, or the only one. The Error names those there are.
+    /// The root with this name or path; with an empty name, the only root. The Error names the roots there are.
     static Result<std::size_t> root_of(const dictionary::xtce::PacketModel& model, const std::string& name);
 
-    /// `model` must outlive this. Without a root of the model's or only one of roots_of(), nothing is decoded.
+    /// `model` must outlive this. Nothing is decoded unless the model names a root, or roots_of() has exactly one.
     explicit ContainerDecoder(const dictionary::xtce::PacketModel& model);
 
     DecodedContents decode(std::span<const std::uint8_t> packet) const;

@@ -13,20 +13,20 @@
 
 namespace aeolis::telemetry {
 
-/// A decoder compiled once from the containers of fixed or count-dependent layout. Gives the same values as
+/// A decoder compiled once from the containers of fixed or count-dependent layout. It gives the same values as
 /// ContainerDecoder.
 ///
 /// In       the octets of a packet, any octets     Out   true, and the decoded fields; or false: the packet is none
 ///          of those, or incomplete; use ContainerDecoder
 /// Compiled numbers, labels and flags, in aggregates too; repetitions as often as a number before them says;
-///          restrictions that compare whole numbers. Not compiled: text, octets, arrays, conditions on entries, times but
-///          coarse and fine counts, calibrations by context
+///          restrictions that compare whole numbers. Not compiled: text, octets, arrays, conditions on entries, times
+///          but coarse and fine counts, calibrations by context
 /// Rate     half of what a decoder written by hand reaches, for repetitions a quarter (bench/mission_decode_bench.cpp)
 /// Memory   some 64 octets a field and container, at most 20 MB; what is beyond is not compiled
 /// Many threads may share one.
 class ContainerPlan {
   public:
-    /// The field of a value in a container's packet; none: it is no field.
+    /// The field of a value in a container's packet; none: the value is not a field.
     using FieldOf = std::function<std::optional<std::size_t>(std::size_t container, std::size_t parameter,
                                                              const std::string& name)>;
     /// Compiles from the model's root. The model must outlive this.
@@ -59,7 +59,7 @@ class ContainerPlan {
         Load load = Load::any;
         bool text = false;           ///< its exact value is needed
         bool moves = false;          ///< position_bits counts from the end of the step before it
-        bool skipped = false;        ///< it is no field
+        bool skipped = false;        ///< it is not a field
         std::uint32_t count = once;  ///< of repetitions: in counts_
         const dictionary::xtce::Coding* coding = nullptr;
         const dictionary::xtce::Calibration* calibration = nullptr;  ///< null: none

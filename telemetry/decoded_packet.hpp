@@ -14,11 +14,11 @@ namespace aeolis::telemetry {
 
 class OtherMission;
 
-/// What a packet says, from the one decode that it gets. Uplink, score and archive all read this.
+/// The content of a packet, which is decoded once. Uplink, score and archive all read it from here.
 struct DecodedPacket {
     Decoded content;
-    std::string refusal;                       ///< why it was not decoded: nothing else here holds; empty: it was
-    const dictionary::Event* event = nullptr;  ///< of an event report, in the dictionary; null: of no event
+    std::string refusal;  ///< why it was not decoded, so that nothing else here is valid; empty: it was
+    const dictionary::Event* event = nullptr;  ///< of an event report, in the dictionary; null: not an event report
     std::string text;                          ///< of an event report: its format with the arguments inserted
 };
 
@@ -28,8 +28,8 @@ struct DecodedPacket {
 /// Memory   the plans of the decoder that it holds or refers to
 class PacketDecoder {
   public:
-    /// The dictionary must outlive this and what it decodes. With `other`, the mission of the dictionary, packets are
-    /// read as that mission's; it must outlive this.
+    /// The dictionary must outlive this and every packet decoded. `other`, if given, is the mission of the dictionary,
+    /// and packets are read as its; it must outlive this.
     explicit PacketDecoder(const dictionary::Dictionary& dictionary, const OtherMission* other = nullptr);
 
     /// Reuses the memory of `into`.

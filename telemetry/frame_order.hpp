@@ -14,7 +14,7 @@ enum class FramePlace : std::uint8_t {
     next,       ///< continues the frame before it, or is the first
     after_gap,  ///< frames before it are missing
     repeated,   ///< the same frame was received before: its data must not be used twice
-    late,       ///< was missing: it belongs before frames that were received already
+    late,       ///< was missing, and belongs before frames that were received already
     restarted,  ///< the count began anew: what it continues is not known
 };
 
@@ -32,7 +32,8 @@ class FrameOrder {
         FramePlace place = FramePlace::next;
         std::uint32_t missing = 0;  ///< frames before it, of after_gap
     };
-    /// Counts a frame in `counters`. @param modulus  of the count, a power of two @param octets  of the whole frame
+    /// Finds the place of a frame in its sequence, and counts it in `counters`. @param modulus of the count, a power of
+    /// two @param octets of the whole frame
     Placed place(std::uint32_t count, std::uint32_t modulus, std::span<const std::uint8_t> octets,
                  SequenceCounters& counters);
 

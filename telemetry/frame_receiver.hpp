@@ -26,7 +26,7 @@ struct FrameStream {
     BitAlignment alignment{};         ///< of the first markers; others are found
     std::size_t prefix_octets = 0;    ///< ignored before each frame, as a station's recorder adds; only without marker
     std::size_t suffix_octets = 0;    ///< after each frame: the code's check symbols
-    /// With it the suffix is its check symbols, by which frames are corrected; without it the suffix is ignored.
+    /// The code by whose check symbols, the suffix, frames are corrected; none: the suffix is ignored.
     std::optional<ReedSolomonCode> code{};
     bool randomised = false;  ///< frames with their check symbols
     FrameAgreement agreed{};
@@ -39,7 +39,8 @@ inline constexpr std::uint32_t virtual_channels_max = 64;
 constexpr ChannelNumber channel_number(const TransferFrame& frame) {
     return frame.spacecraft * virtual_channels_max + frame.virtual_channel;
 }
-/// Chosen: followed at a time. Of more, which only damaged headers make, the one heard longest ago is forgotten.
+/// Channels followed at a time; chosen. Only damaged headers make more, and the one heard longest ago is then
+/// forgotten.
 inline constexpr std::size_t channels_followed_max = 256;
 
 /// Finds TM or AOS frames in a stream of octets.
@@ -68,14 +69,14 @@ class FrameReceiver {
     std::optional<Received> next();
     /// Ends the stream: counts octets of an incomplete frame as skipped.
     void end();
-    /// Ends a datagram. Without markers it ends the frame, too: the next octets begin with one. False when octets of an
-    /// incomplete one were left.
+    /// Ends a datagram. Without markers this also ends the frame, and the next octets begin another. False when octets
+    /// of an incomplete frame were left.
     bool end_datagram();
 
     LinkCounters counters() const;
-    /// Of the skipped octets those that are no fill.
+    /// Skipped octets that are not fill.
     std::uint64_t stray_octets() const { return stray_.number(); }
-    /// Of virtual channels, also of those that are not followed any more.
+    /// Totals of each virtual channel, also of those that are no longer followed.
     std::vector<SequenceTotals> sequences() const;
 
   private:
@@ -102,40 +103,41 @@ class FrameReceiver {
     LinkCounters counters_;  ///< without sequences_
 };
 
-/// Most frequent distance of two markers with one alignment, without the marker.
+/// The most frequent distance between two markers of one alignment, without the marker itself.
 struct MarkerSpacing {
     std::size_t octets = 0;
     BitAlignment alignment;
 };
-/// None with fewer than two markers.
+/// Measures the spacing of markers; none with fewer than two.
 std::optional<MarkerSpacing> marker_spacing(std::span<const std::uint8_t> octets);
 
-/// The octets of it: length of a CADU stream's frames with their check symbols.
+/// Length in octets of a CADU stream's frames with their check symbols, from the spacing of its markers.
 std::optional<std::size_t> cadu_frame_octets(std::span<const std::uint8_t> octets);
 
-/// Length of contiguous frames with a CRC-16, each after `prefix_octets`: the smallest at which the CRCs of the first
-/// three are right. When no more octets come, of as many as there are, and nothing is behind them.
+/// Length in octets of contiguous frames with a CRC-16, each after `prefix_octets`: the smallest at which the CRCs of
+/// the first three frames are right. If `ended`, so that no more octets come, fewer frames suffice when nothing is left
+/// behind them.
 std::optional<std::size_t> crc_frame_octets(std::span<const std::uint8_t> octets, std::size_t prefix_octets,
                                             bool ended);
 
-/// What is known of frames before any is seen.
+/// What is known about a stream's frames before any is received.
 struct FrameHints {
     std::optional<std::size_t> frame_octets{}, suffix_octets{};
-    /// Of the code: whether there is one that is to be used, and what of it is known.
+    /// Whether a code is to be used, and its known properties.
     std::optional<bool> coded{};
     std::optional<std::size_t> check_symbols{}, interleave{};
     std::optional<ReedSolomonCode::Basis> basis{};
     std::optional<bool> crc{}, randomised{};
-    FrameAgreement agreed{};  ///< but for its `crc`
+    FrameAgreement agreed{};  ///< except its `crc`
     std::optional<std::uint8_t> virtual_channel{};
 };
 
-inline constexpr std::uint64_t frames_to_agree = 8;  ///< chosen: before a layout is believed in a stream that goes on
+inline constexpr std::uint64_t frames_to_agree = 8;  ///< chosen: needed to accept a layout while the stream goes on
 
 /// Detects a CADU stream's layout by trial, as far as it is not known: frame length, Reed–Solomon code, TM or AOS,
-/// randomisation, check symbols, CRC. A code is believed when two codeblocks are of it, or one without any error. None
+/// randomisation, check symbols, CRC. A code is accepted when two codeblocks fit it, or one without any error. None
 /// when no layout reads the frames.
-/// @param ended  no more octets come: fewer than frames_to_agree must do
+/// @param ended  no more octets come, so that fewer than frames_to_agree suffice
 std::optional<FrameStream> recognise_cadus(std::span<const std::uint8_t> octets, const FrameHints& known, bool ended);
 
 }  // namespace aeolis::telemetry

@@ -9,13 +9,13 @@
 
 namespace aeolis::telemetry {
 
-/// The limits that a channel had from an instant on.
+/// The limits of a channel from an instant on.
 struct LimitStretch {
     std::optional<Sclk> from;                            ///< none: from the beginning
     const dictionary::ContextAlarms* context = nullptr;  ///< null: the limits without a context
 };
 
-/// Tells which alarm limits of each channel held when, by the rule of AlarmMonitor.
+/// Finds which alarm limits of each channel were in force when, by the rule of AlarmMonitor.
 ///
 /// In       samples of the channels in decided_by(), by time
 /// Out      the stretches of each channel whose limits have contexts; neighbours differ
@@ -27,7 +27,7 @@ class LimitsInForce {
     /// The channels that the contexts compare, by number.
     const std::vector<ChannelId>& decided_by() const { return decided_by_; }
 
-    /// A sample; NaN, which is undefined on board, decides nothing.
+    /// Takes a sample. NaN stands for undefined on board, and decides nothing.
     void sample(ChannelId channel, double value, Sclk sclk);
 
     struct OfChannel {

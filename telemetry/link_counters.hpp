@@ -15,7 +15,7 @@ struct SequenceCounters {
     std::uint64_t gaps = 0;      ///< counts that do not continue the last
     std::uint64_t missing = 0;   ///< by the count; multiples of its modulus go unnoticed
     std::uint64_t repeated = 0;  ///< received before
-    std::uint64_t late = 0;      ///< received behind later ones; not missing any more
+    std::uint64_t late = 0;      ///< received after later ones; no longer missing
     std::uint64_t restarts = 0;  ///< the count began anew
     std::uint64_t wraps = 0;     ///< the count went from its largest value on to 0
 
@@ -40,7 +40,7 @@ struct LinkCounters {
     std::uint64_t gaps = 0;             ///< frame sequences that do not continue the last
     std::uint64_t missing_frames = 0;   ///< by frame sequence; multiples of its modulus go unnoticed
     std::uint64_t repeated_frames = 0;  ///< received before, and dropped
-    std::uint64_t late_frames = 0;      ///< received behind later ones; not missing any more
+    std::uint64_t late_frames = 0;      ///< received after later ones; no longer missing
     std::uint64_t restarts = 0;         ///< the sequence began anew
     std::uint64_t cut_frames = 0;       ///< the stream ended within it
     std::uint64_t slips = 0;            ///< good frames at another bit, or inverted, than the one before
@@ -52,7 +52,7 @@ struct LinkCounters {
     /// Channels given up because more were heard than are followed; the count of each begins anew.
     std::uint64_t forgotten_channels = 0;
 
-    /// Adds frames' sequences.
+    /// Adds the counters of a sequence of frames.
     LinkCounters& operator+=(const SequenceCounters& frames);
     LinkCounters& operator+=(const LinkCounters& other);
     bool operator==(const LinkCounters&) const = default;

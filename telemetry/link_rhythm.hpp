@@ -9,7 +9,7 @@
 
 namespace aeolis::telemetry {
 
-/// Learns how often a followed link brings something, and tells when it is silent by that measure.
+/// Learns how often a followed link delivers, and detects by that measure when it is silent.
 ///
 /// In       the times of reception, and the time now            Out   the silence, once it is one
 /// Rule     silent after `silent_intervals` times the longest interval lately, at least `silent_least_us`; not before
@@ -26,7 +26,7 @@ class LinkRhythm {
     void heard(Ert at) {
         if (last_ && at.microseconds > last_->microseconds) {
             const auto interval_us = static_cast<double>(at.microseconds - last_->microseconds);
-            // A silence that was told is no interval of the rhythm, but several in a row are a new one.
+            // A silence that was reported is not an interval of the rhythm, but several in a row are a new rhythm.
             silences_ = silent(at) ? silences_ + 1 : 0;
             if (silences_ == 0 || silences_ == silences_until_slower) {
                 longest_us_ = std::max(interval_us, fades * longest_us_);

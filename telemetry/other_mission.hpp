@@ -22,14 +22,14 @@ namespace aeolis::telemetry {
 /// In       the octets of a packet                       Out   Decoded by the indices of dictionary(), or the reason
 ///          for refusal
 /// Channels numbers, labels (by their number), flags, times and text; of arrays, and of parameters whose size varies,
-/// the first `elements_max`. Octets are no channels: contents() has everything.
+///          the first `elements_max`. Octets are not channels; contents() has everything
 /// Exact    whole numbers of more than 53 bits and text are in Decoded::texts
-/// Alarms   those of the file; not_judged() names contexts that are no comparison of channels
+/// Alarms   those of the file; not_judged() names contexts that do not compare channels
 /// Names    those of the file; of two equal names the later is prefixed with its SpaceSystem's path
-/// Time     the packet's own time, as if from the spacecraft's clock; Decoded::timed says whether there is one
-/// Rate     containers whose fields stand at fixed places are compiled (telemetry/container_plan.hpp); others are looked
-///          up in the XTCE for each packet
-///          Its absolute value is 1e12 s at most; beyond, there is none
+/// Time     the packet's own time, as if from the spacecraft's clock, none beyond 1e12 s; Decoded::timed says whether
+///          there is one
+/// Rate     containers whose fields stand at fixed places are compiled (telemetry/container_plan.hpp); others are
+///          looked up in the XTCE for each packet
 /// Faults   a partly readable packet is decoded in part; the rest is undefined, and Decoded::problem says why
 /// Many threads may share one.
 class OtherMission {
@@ -37,7 +37,7 @@ class OtherMission {
     static constexpr std::size_t elements_max = 16;  ///< chosen: of a list of unknown length
     static constexpr std::size_t channels_max = 0xFFFF;
     static constexpr std::size_t fields_max = std::size_t{1} << 20U;  ///< chosen: of all packets together
-    /// APID for a packet whose container asks for none; no real packet has it.
+    /// APID of a packet whose container does not restrict it; no real packet has this one.
     static constexpr Apid any_apid{0xFFFF};
 
     /// @param id    of the XTCE text, like the id of our dictionary
@@ -49,7 +49,7 @@ class OtherMission {
     const dictionary::Dictionary& dictionary() const { return dictionary_; }
     /// Number of fields beyond channels_max and fields_max.
     std::size_t left_out() const { return left_out_; }
-    /// What in the file's alarms is not judged, a line each.
+    /// The alarms of the file that are not judged, each described in a line.
     const std::vector<std::string>& not_judged() const { return not_judged_; }
 
     DecodedContents contents(std::span<const std::uint8_t> packet) const;
@@ -65,7 +65,7 @@ class OtherMission {
     std::optional<TimeSource> time_;
     dictionary::Dictionary dictionary_;
     std::vector<std::map<FieldKey, std::size_t>> fields_;  ///< by packet
-    std::optional<ContainerPlan> plan_;                    ///< none: where a packet's time is has been named
+    std::optional<ContainerPlan> plan_;                    ///< none: the caller named the place of a packet's time
     std::size_t left_out_ = 0;
     std::vector<std::string> not_judged_;
 };

@@ -11,7 +11,7 @@
 
 namespace aeolis::telemetry {
 
-/// Watches the clocks of another mission's packets, and places packets that hold no time.
+/// Watches the clocks of another mission's packets, and finds a time for packets that hold none.
 ///
 /// In       packets in the order of reception: which, its own time if it has one, and when it was received
 /// Out      the time at which its samples stand, and a remark when a clock did what clocks do not do
@@ -26,7 +26,7 @@ class PacketClocks {
     static constexpr std::size_t remarks_max = 10;              ///< chosen
     static constexpr double jump_steps = 100.0;                 ///< chosen: as many times the largest step before
     static constexpr double jump_least_s = 60.0;                ///< chosen
-    static constexpr std::uint32_t steps_known = 8;             ///< chosen: steps seen before a jump can be told
+    static constexpr std::uint32_t steps_known = 8;             ///< chosen: steps seen before a jump can be recognised
     static constexpr std::uint32_t still_packets = 64;          ///< chosen: packets with one time …
     static constexpr std::int64_t still_least_us = 10'000'000;  ///< … and this long, after the clock had moved
 
@@ -53,7 +53,7 @@ class PacketClocks {
     std::optional<std::string> follow(Clock& clock, const std::string& name, double sclk_s, Ert received);
 
     std::vector<Clock> clocks_;
-    std::optional<std::size_t> reference_;  ///< the type whose clock places what has none
+    std::optional<std::size_t> reference_;  ///< the type whose clock gives a time to packets without one
     double reference_s_ = 0.0;
     Ert reference_ert_;
 };

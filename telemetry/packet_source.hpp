@@ -64,10 +64,10 @@ class PacketSource {
     bool lost() const;
     LinkCounters link() const;  ///< of frames; zero for bare packets
     PacketCounters packets() const;
-    /// Octets between frames or PLTUs that are no fill; zero for bare packets, which count them as unreadable.
+    /// Octets between frames or PLTUs that are not fill; zero for bare packets, which count them as unreadable.
     std::uint64_t stray_octets() const;
-    /// Of the virtual channels of frames, and of packets by virtual channel and id (APID, type and version). Counters
-    /// never fall: what is followed no more keeps them.
+    /// Totals of frames by virtual channel, and of packets by virtual channel and id (APID, type and version). No
+    /// counter ever falls: a sequence that is no longer followed keeps its own.
     std::vector<SequenceTotals> sequences() const;
     static constexpr std::size_t packet_ids_followed_max = 4096;  ///< chosen: 1 kB each
 

@@ -38,9 +38,9 @@ class PltuReceiver {
     void end() { ended_ = true; }
 
     LinkCounters counters() const;
-    /// Of the skipped octets those that are no fill.
+    /// Skipped octets that are not fill.
     std::uint64_t stray_octets() const { return stray_.number(); }
-    /// Of each spacecraft, channel and service.
+    /// Totals of each spacecraft, channel and service.
     std::vector<SequenceTotals> sequences() const;
 
   private:

@@ -29,10 +29,10 @@ struct Link {
 };
 inline const Link uhf_live_link{"uhf_live", false}, relay_link{"relay", true}, x_band_link{"x_band", false},
     x_band_telemetry_link{"x_band_telemetry", false}, downlink_link{"downlink", false};
-/// Not a link: what the station itself measures, as packets that ground makes.
+/// Stands for the station's own measurements, which are packets that ground makes; not a link.
 inline const Link station_link{"station", false};
 
-/// Whether a link brings telemetry the moment that it reaches Earth.
+/// Whether a link delivers telemetry as soon as it reaches Earth.
 inline bool is_live_telemetry(std::string_view link) {
     return link == uhf_live_link.name || link == x_band_telemetry_link.name || link == downlink_link.name;
 }

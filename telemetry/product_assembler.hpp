@@ -31,8 +31,8 @@ struct ProductPart {
     std::vector<std::uint8_t> content;  ///< without the last part's padding
 };
 
-/// Reads a part of a product. None when the packet is no such part, or when its numbers disagree. `packet`: the octets
-/// that `decoded` was made of.
+/// Reads a part of a product. None when the packet is not such a part, or when its numbers disagree. `packet`: the
+/// octets from which `decoded` was made.
 std::optional<ProductPart> part_of(const dictionary::Dictionary& dictionary, const Decoded& decoded,
                                    std::span<const std::uint8_t> packet);
 
@@ -85,8 +85,8 @@ std::string text_of(const ProductIdentity& identity, const Product& product);
 std::optional<std::vector<std::vector<std::uint8_t>>> rows_of(const dictionary::Dictionary& dictionary, Apid row_apid,
                                                               std::span<const std::uint8_t> content);
 
-/// The rows in a packet that holds a table (it has fields row_apid and table_rows, and content). None when it is no
-/// such packet, or when its numbers disagree. `packet`: the octets that `decoded` was made of.
+/// The rows in a packet that holds a table (it has fields row_apid and table_rows, and content). None when it is not
+/// such a packet, or when its numbers disagree. `packet`: the octets from which `decoded` was made.
 std::optional<std::vector<std::vector<std::uint8_t>>>
 rows_in(const dictionary::Dictionary& dictionary, const Decoded& decoded, std::span<const std::uint8_t> packet);
 

@@ -11,8 +11,8 @@ namespace aeolis::telemetry {
 
 using RawNumber = std::variant<std::uint64_t, std::int64_t, double>;
 
-/// Reads a number from `bits` (1 … 64) bits of a coding, most significant bit first. NaN: the bits are none, as decimal
-/// digits beyond 9 are.
+/// Reads a number from `bits` (1 … 64) bits of a coding, most significant bit first. NaN when the bits are not a
+/// number, such as a decimal digit above 9.
 ///
 /// Source: [xtce-1.2]; [mil-std-1750a] for its real number of 24 bits mantissa and 8 bits exponent, both two's
 /// complement

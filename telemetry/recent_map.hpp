@@ -9,7 +9,7 @@
 
 namespace aeolis::telemetry {
 
-/// Values by key, `most` at most: of more, the one that was asked for longest ago is forgotten.
+/// At most `most` values by key. Adding one more forgets the value that was requested longest ago.
 template <typename Key, typename Value>
 class RecentMap {
   public:

@@ -36,8 +36,8 @@ struct Correction {
     std::size_t uncorrectable_words = 0;  ///< left as they were
 };
 
-/// Corrects a codeblock in place. A word with more wrong symbols than can be corrected is left as it is; that it passes
-/// for another one has a chance of 1 in 16! with 32 check symbols, of 1 in 8! (40 320) with 16.
+/// Corrects a codeblock in place. A word with more wrong symbols than can be corrected is left as it is. The chance
+/// that it is taken for another word is 1 in 16! with 32 check symbols, and 1 in 8! (40 320) with 16.
 ///
 /// Rate     above 20 MB/s without errors, above 5 MB/s with as many as can be corrected (bench/reed_solomon_bench.cpp)
 /// @param codeblock  data and check symbols, of a length that `code` fits

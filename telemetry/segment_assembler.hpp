@@ -10,7 +10,7 @@
 
 namespace aeolis::telemetry {
 
-/// Puts together what a sender has divided into several space packets, by their sequence flags. [ccsds-133.0-b-2,
+/// Reassembles data that a sender divided into several space packets, by their sequence flags. [ccsds-133.0-b-2,
 /// 4.1.3.4.2]
 ///
 /// In       space packets of any mission, in order          Out   unsegmented packets as they came; segments as one
@@ -24,9 +24,9 @@ class SegmentAssembler {
     static constexpr std::size_t unfinished_max = 64;  ///< chosen; of more, the one with the least key is given up
 
     /// The whole packet, if there is one now; valid until the next call.
-    /// @param channel  on which it came: segments of two channels never make one packet
+    /// @param channel  on which it was received: segments of two channels never make one packet
     std::optional<std::span<const std::uint8_t>> add(std::span<const std::uint8_t> packet, std::uint32_t channel = 0);
-    /// Gives up what is unfinished.
+    /// Gives up unfinished packets.
     void end();
     std::uint64_t lost_segments() const { return lost_; }
 

@@ -8,13 +8,13 @@
 
 namespace aeolis::telemetry {
 
-/// Chosen: sequences of a link told by name. More are made only by damaged or random headers.
+/// Sequences of a link that are counted by name; chosen. Only damaged or random headers make more.
 inline constexpr std::size_t sequences_named_max = 4096;
 /// Name of the row of all others.
 inline constexpr char other_sequences[] = "others";
 
-/// Counters of sequences by key: of the first `sequences_named_max` keys each its own, of all others together one row.
-/// None is ever dropped, so that no total falls.
+/// Counters of sequences by key: a row for each of the first `sequences_named_max` keys, and one for all others
+/// together. No row is ever dropped, so that no total falls.
 template <typename Key>
 class SequenceTable {
   public:

@@ -30,7 +30,7 @@ inline constexpr std::size_t silence_classes = 13;
 const char* name_of(SilenceClass silence);
 /// As people read it: "plasma blackout", "Earth set", …
 const char* title_of(SilenceClass silence);
-/// Whether nothing more is awaited of a link with this silence.
+/// Whether nothing more is expected from a link with this silence.
 bool is_over(SilenceClass silence);
 /// Whether a link with this silence should be up.
 bool is_lost(SilenceClass silence);

@@ -10,8 +10,8 @@
 
 namespace aeolis::telemetry {
 
-/// The order of importance; numbers equal those of the schema. A lost connection is above all and known to a client
-/// alone.
+/// The order of importance; numbers equal those of the schema. A lost connection ranks above them all; only a client
+/// knows of it.
 enum class SituationRank : std::uint8_t {
     lasting,  ///< a state that goes on
     calm,
@@ -27,7 +27,7 @@ const char* name_of(SituationRank rank);
 struct SituationEntry {
     SituationRank rank{};
     std::string subject;             ///< "computer", "uhf_live", "command 3"; unique within a rank
-    std::string sentence;            ///< holds no time that passes
+    std::string sentence;            ///< contains no running time
     std::string evidence;            ///< in words
     std::uint64_t evidence_seq = 0;  ///< the item that it rests on; 0: a prediction alone
     Ert since;                       ///< since when it is so

@@ -9,11 +9,11 @@
 
 namespace aeolis::telemetry {
 
-/// Counts the skipped octets that are no fill. Fill is what Proximity-1 sends before, between and after PLTUs: 352EF853
-/// over and over, from any of its octets on. [ccsds-211.2-b]
+/// Counts the skipped octets that are not fill. Proximity-1 sends fill before, between and after PLTUs: 352EF853 over
+/// and over, from any of its octets on. [ccsds-211.2-b]
 class StrayOctets {
   public:
-    /// Octets that were skipped, right behind those of the last call.
+    /// Takes skipped octets, which directly follow those of the last call.
     void skipped(std::span<const std::uint8_t> octets) {
         for (const std::uint8_t octet : octets) {
             const auto place = static_cast<std::size_t>(std::ranges::find(fill, octet) - fill.begin());
@@ -27,7 +27,7 @@ class StrayOctets {
             next_ = (place + 1) % fill.size();
         }
     }
-    /// A frame stands between what was skipped before and what is skipped next.
+    /// Notes that a frame separates the octets skipped so far from those skipped next.
     void frame() { run_ = 0; }
     std::uint64_t number() const { return number_; }
 

@@ -9,15 +9,15 @@
 
 namespace aeolis::telemetry {
 
-/// How a stream of bits lies in its octets: units begin `shift` bits, 0 … 7, behind the beginning of an octet, and all
-/// bits may be inverted, as a receiver leaves them that does not know the phase of its carrier.
+/// How the bits of a stream lie in its octets. Octets as they were sent begin `shift` bits, 0 … 7, behind the beginning
+/// of an octet as received. All bits may be inverted, by a receiver that does not know the phase of its carrier.
 struct BitAlignment {
     unsigned shift = 0;
     bool inverted = false;
     bool operator==(const BitAlignment&) const = default;
 };
 
-/// Octets `first` … `first + size` of a stream as they were sent; with a shift one more of them is read.
+/// Writes octets `first` … `first + size` of a stream as they were sent. With a shift, one more octet is read.
 void align(std::span<const std::uint8_t> octets, std::size_t first, std::size_t size, const BitAlignment& alignment,
            std::vector<std::uint8_t>& into);
 
@@ -29,8 +29,8 @@ struct MarkerFound {
     std::size_t octet = 0;  ///< in which it begins
     BitAlignment alignment;
 };
-/// The first marker at any bit, inverted or not, that begins at octet `from` or later. Those that octets to come can
-/// complete are not found: they begin in the last four octets.
+/// The first marker at any bit, inverted or not, that begins at octet `from` or later. A marker that needs octets still
+/// to come is not found; it begins in the last four octets.
 std::optional<MarkerFound> find_marker(std::span<const std::uint8_t> octets, std::size_t from);
 
 }  // namespace aeolis::telemetry

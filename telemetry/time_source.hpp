@@ -11,16 +11,16 @@
 
 namespace aeolis::telemetry {
 
-/// Where a packet's time is, as the user says who follows a mission whose XTCE file does not: "NAME" or "NAME:FORM".
+/// Where a packet's time is, as "NAME" or "NAME:FORM". A user gives it for a mission whose XTCE file does not.
 ///
 /// NAME     a parameter by name or path, also with a member: "TIME", "/M/TIME", "HEADER.time"
-/// FORM     seconds, milliseconds, microseconds: of a number. cuc: counts and their binary fraction, of a parameter with
-///          two whole numbers, or of four to seven octets, of which the first four are counts. cds: days, milliseconds of
-///          the day and, where there are more, microseconds or picoseconds of the millisecond, of two or three numbers,
-///          or of 6, 8 or 10 octets with 16 bits of days. cuc-preamble, cds-preamble: octets that begin with the preamble
-///          (P-field), which says their sizes. [ccsds-301.0-b-4]
-///          Left out: seconds of a number, cuc of two whole numbers. Of octets it must be said: the values of a clock may
-///          look like a preamble
+/// FORM     seconds, milliseconds, microseconds: of a number. cuc: counts and their binary fraction, of a parameter
+///          with two whole numbers, or of four to seven octets, of which the first four are counts. cds: days,
+///          milliseconds of the day and, where there are more, microseconds or picoseconds of the millisecond, of two
+///          or three numbers, or of 6, 8 or 10 octets with 16 bits of days. cuc-preamble, cds-preamble: octets that
+///          begin with the preamble (P-field), which says their sizes. [ccsds-301.0-b-4] Without FORM: seconds for a
+///          number, cuc for two whole numbers. For octets FORM is needed, because the values of a clock may look like a
+///          preamble
 /// Epoch    that of the parameter's type; TAI where a preamble says so; else none is known
 struct TimeSource {
     enum class Form : std::uint8_t {
@@ -40,7 +40,7 @@ struct TimeSource {
     std::string epoch;   ///< of its type
     Form form = Form::as_fits;
 
-    /// The Error names what is wrong and what there is.
+    /// The Error names the fault and the possible parameters.
     static Result<TimeSource> parse(const dictionary::xtce::PacketModel& model, const std::string& text);
 
     /// The time among a packet's values; none: the packet does not hold it, or it is undefined.

@@ -61,7 +61,7 @@ struct BoundProof {
     std::vector<Instant> schedule;
 };
 
-/// Worst case of the time from when a timepoint is free to fire until its anchor makes it due.
+/// Worst case of the margin by which a timepoint is free to fire before its anchor makes it due.
 struct DueMargin {
     TimepointId timepoint;
     MaybeOffset slack_s;  ///< negative: it may fire that late; undefined: unbounded, the anchor may be set at any time
@@ -86,14 +86,14 @@ struct TimelineAnalysis {
     std::vector<DueMargin> margins;  ///< of the timepoints with an anchor
     std::vector<HoldProof> holds;    ///< each timepoint that GNC triggers with each before it that is not essential
 
-    /// Every bound, and every hold.
+    /// Whether every bound and every hold is proven.
     bool all_proven() const;
 };
 
 /// Analyses the timeline.
 /// `stop` is called at each step, some thousand times a second; null: runs to the end.
 TimelineAnalysis analyse_timeline(const Dictionary& dictionary, const std::function<bool()>& stop = {});
-/// The bounds alone.
+/// Analyses the bounds alone.
 TimelineAnalysis analyse_bounds(const Dictionary& dictionary, const std::function<bool()>& stop = {});
 
 /// Text of a moment as in constraints.csv: "do_edl", "parachute:anchor", "radar_power:fired".

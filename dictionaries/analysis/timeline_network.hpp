@@ -22,7 +22,7 @@ class TimelineNetwork {
     TimelineNetwork(const Dictionary& dictionary, std::function<bool()> stop);
 
     /// Why nothing satisfies the constraints; empty when a solution exists.
-    /// In that solution, timepoints may fire later than the rule has them.
+    /// In that solution, timepoints may fire later than by the rule.
     std::vector<ChainStep> contradiction() const;
 
     /// The least difference of two moments, and how it was found.

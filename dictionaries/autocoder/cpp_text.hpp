@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-// Small pieces of C++ text. The loader has checked all names: they are identifiers and not keywords.
+// Small pieces of C++ text. The loader has checked that all names are identifiers and no keywords.
 namespace aeolis::dictionary::autocoder {
 
 /// The first line of every generated file: names the mission and `source`, the file to edit instead.

@@ -12,9 +12,9 @@
 #include <iterator>
 
 // aeolis_autocoder MSL_DIR OUT_DIR: writes dictionary_flight.hpp, state_machines.hpp, parameters.hpp, owners.hpp,
-// timeline.cpp and telemetry_plan.cpp, or prints every finding and writes nothing. Unchanged files are not rewritten, so
-// that a change of the autocoder alone does not recompile flight. Exit status: 0 done, 1 findings or not writable, 2 bad
-// usage.
+// timeline.cpp and telemetry_plan.cpp, or prints every finding and writes nothing. Unchanged files are not rewritten,
+// so that a change of the autocoder alone does not recompile flight. Exit status: 0 done, 1 findings or not writable,
+// 2 bad usage.
 namespace {
 
 bool write(const std::filesystem::path& path, const std::string& text) {

@@ -7,8 +7,8 @@
 
 namespace aeolis::dictionary::autocoder {
 
-/// generated/parameters.hpp: what ground may change as members of Parameters, what is fixed as constants, and the table
-/// of all by id with their ranges. R25, R48
+/// generated/parameters.hpp: members of Parameters for what ground may change, constants for what is fixed, and the
+/// table of all parameters by id with their ranges. R25, R48
 std::string parameters_header(const Dictionary& dictionary);
 
 }  // namespace aeolis::dictionary::autocoder

@@ -10,8 +10,8 @@ namespace {
 
 constexpr std::size_t clock_rows_max = 1000;  // chosen: one a week for twenty years
 constexpr double drift_max = 1.0e-4;          // chosen: an oscillator with more drift is broken
-constexpr double step_max_s = 0.5;  // chosen: less than a leap second, more than a clock drifts between two rows
-constexpr std::int64_t leap_seconds_max = 99;  // chosen; 37 in 2017
+constexpr double step_max_s = 0.5;  // chosen: less than a leap second, and more than the drift between two rows
+constexpr std::int64_t leap_seconds_max = 99;  // chosen; 10 in 1972, 37 since 2017
 
 ClockRow row_of(RowReader& cells) {
     ClockRow row;
@@ -24,10 +24,10 @@ ClockRow row_of(RowReader& cells) {
     if (const auto scet = scet_from_text(cells.required_text("scet")))
         clock.scet = *scet;
     else
-        cells.fault("scet: " + in_quotes(cells.text("scet")) + " is no time as 2012-219T05:10:47.400");
+        cells.fault("scet: " + in_quotes(cells.text("scet")) + " is not a time like 2012-219T05:10:47.400");
     clock.rate = 1.0 + cells.number("drift").value_or(0.0);
     clock.leap_seconds = static_cast<std::int32_t>(cells.integer("leap_seconds", 10, leap_seconds_max).value_or(0));
-    if (std::abs(clock.rate - 1.0) > drift_max) cells.fault("drift: is more than 1e-4, no clock's");
+    if (std::abs(clock.rate - 1.0) > drift_max) cells.fault("drift: is more than 1e-4, which no clock has");
     return row;
 }
 

@@ -37,7 +37,7 @@ std::optional<std::vector<ParameterRow>> read_parameters(std::string_view text, 
 /// except for leap seconds and the error of a clock.
 std::optional<std::vector<ClockRow>> read_clock_correlation(std::string_view text, Findings& findings);
 
-/// Reads predicted_anchors.csv, by anchor: the design's time of each, in seconds from entry.
+/// Reads predicted_anchors.csv: the time of each anchor in the design, in seconds from entry.
 /// `anchors` null: their file could not be read, so names are not checked.
 std::optional<std::vector<std::optional<double>>>
 read_predicted_anchors(std::string_view text, const std::vector<AnchorRow>* anchors, Findings& findings);

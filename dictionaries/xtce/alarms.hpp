@@ -20,7 +20,7 @@ inline constexpr std::array alarm_levels{
     AlarmLevel{"CriticalRange", "critical", Severity::critical}, AlarmLevel{"SevereRange", "severe", Severity::severe}};
 
 /// Reads the DefaultAlarm of a type; an absent element gives no alarms.
-/// Static ranges, each lying outside all less severe ones, or labels of an enumeration. minViolations and
+/// It has static ranges, each outside all less severe ones, or labels of an enumeration. minViolations and
 /// minConformance count consecutive samples. AncillaryData "latch" with the content "true" makes the alarm stay until
 /// it is reset.
 Alarms read_alarms(pugi::xml_node default_alarm, const Type& type, Reporter& report);

@@ -59,7 +59,7 @@ struct Calibration {
     std::vector<double> polynomial{};                 ///< coefficient of each power
     std::vector<std::pair<double, double>> spline{};  ///< raw, calibrated; sorted; linear between points
     bool flat = false;                                ///< spline of order 0: steps
-    bool extrapolate = false;                         ///< outside the points, too; else it is undefined there
+    bool extrapolate = false;                         ///< also applies outside the points; false: undefined there
     bool known = true;                                ///< false: not supported; the value is undefined
     bool empty() const { return known && polynomial.empty() && spline.empty(); }
 };
@@ -86,7 +86,7 @@ struct Coding {
     std::vector<std::uint8_t> terminator{};  ///< a character that ends the text; `bits` is then its maximum size
     unsigned leading_size_bits = 0;          ///< text: size in bits of the leading field that holds its size …
     unsigned leading_size_unit_bits = 1;     ///< … in units of so many bits
-    bool boxed = true;                       ///< text always takes `bits`, wherever it ends in them; false: only as
+    bool boxed = true;                       ///< text always takes `bits`, even where it ends before; false: only as
                                              ///< many as it needs
     Calibration calibration{};
     struct Context {
@@ -183,7 +183,7 @@ struct PacketModel {
     std::optional<std::size_t> root{};  ///< the container with which packets begin, where the file leaves it open
 };
 
-/// What a file does not say of itself.
+/// Properties of a file that it does not state itself.
 struct ReadAgreement {
     unsigned leading_size_unit_bits = 1;  ///< LeadingSize counts bits (1, by [xtce-1.2]) or octets (8)
 };
@@ -197,7 +197,7 @@ struct XtceText {
 /// file's. None when a text is not XTCE; unsupported or wrong content becomes findings with file and line.
 std::optional<PacketModel> read_packet_model(const std::vector<XtceText>& texts, std::vector<Finding>& findings,
                                              const ReadAgreement& agreement = {});
-/// The same of one text.
+/// Reads the model from one text.
 std::optional<PacketModel> read_packet_model(const std::string& text, Findings& findings);
 
 }  // namespace aeolis::dictionary::xtce

@@ -26,10 +26,10 @@ class Symbols {
   public:
     enum class Names : std::uint8_t {
         strict,  ///< as XTCE permits: without any of ./:[] and blanks
-        any,     ///< also those, as other missions' files have them
+        any,     ///< also names with these, which other missions' files have
     };
-    /// Duplicates within a SpaceSystem are findings. The root SpaceSystems of several files are beside each other; where
-    /// they have the same name, they are one.
+    /// Duplicates within a SpaceSystem are findings. The root SpaceSystems of several files stand side by side; those
+    /// with the same name are merged.
     Symbols(const std::vector<const Document*>& documents, Reporter& report, Names names = Names::strict);
 
     const Symbol* find(Kind kind, const std::string& scope, std::string_view reference) const;

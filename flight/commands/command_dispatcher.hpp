@@ -37,7 +37,7 @@ class CommandDispatcher {
 
     Role role_;
     Farm farm_{{.spacecraft = spacecraft_id, .virtual_channel = telecommand_channel, .locked_at_start = true}};
-    bool in_control_ = false;  ///< while Second Chance
+    bool in_control_ = false;  ///< as Second Chance
     std::uint16_t refused_ = 0;
 };
 

@@ -22,9 +22,9 @@ inline constexpr double state_age_max_s = 0.9;
 ///
 /// In      StatePart from edl (prime) or from the line (Second Chance), StoredStatePart, ClockTick,
 ///         EnableSecondChanceCommand, SelectPrimeCommand, ResumePrimeCommand, OtherRunsBuses, EdlFinished
-/// Out     prime: the state on the line each cycle, and stored for a restart when its revision has changed, else
-///         each second; after a restart, Resume and the stored state to edl. Second Chance: the same when it takes over; the units that
-///         prime addresses, to units; SecondChanceStatus; CommandOutcome
+/// Out     prime: the state on the line each cycle, and stored for a restart when its revision has changed, else each
+///         second; after a restart, Resume and the stored state to edl. Second Chance: the same when it takes over; the
+///         units that prime addresses, to units; SecondChanceStatus; CommandOutcome
 /// Rule    Second Chance takes over when ground has enabled it, prime's line has been silent for 0.25 s, and prime's
 ///         last state is less than 0.9 s old and says that EDL had begun, the cruise stage was gone and touchdown was
 ///         still to come. Anything received on the line, readable or not, counts as a sign of life: in doubt it does

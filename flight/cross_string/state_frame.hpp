@@ -17,7 +17,7 @@ struct StateHeader {
     std::uint32_t revision = 0;  ///< changes with everything that must survive a restart: parameters, "do edl",
                                  ///< timepoints
     bool begun = false;          ///< "do edl" was accepted
-    bool separated = false;      ///< from the cruise stage: prime does not start anew any more
+    bool separated = false;      ///< from the cruise stage: prime no longer starts anew
     bool touchdown = false;
     UnitSelection units{};  ///< units addressed
 
@@ -49,7 +49,7 @@ class StateFrame {
     static std::optional<StateFrame> read(std::span<const std::uint8_t> octets);
 
     StateHeader header() const { return header_of(octets()); }
-    /// Header of octets that may or may not be a frame.
+    /// Reads the header of octets that may or may not be a frame.
     static StateHeader header_of(std::span<const std::uint8_t> octets);
 
     /// Reads the state. False when it does not fill the frame exactly: then `state` must not be used.
@@ -85,7 +85,8 @@ class StateAssembly {
     /// The frame that this part completes, if it does.
     std::optional<StateFrame> on(const StatePart& part);
 
-    /// For forwarding: true when this part is the last, and octets() holds the whole frame, unchecked.
+    /// Takes a part that is only to be forwarded. True when it is the last, and octets() holds the whole frame,
+    /// unchecked.
     bool take(const StatePart& part);
     std::span<const std::uint8_t> octets() const { return octets_.span(); }
 

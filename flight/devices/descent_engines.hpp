@@ -12,7 +12,7 @@ namespace aeolis::flight {
 /// In      RunEngines, PayOutBridle, EngineReply and BridleReply (interrupts), Tick, UnitsSelected
 /// Out     engine commands at its tick; EngineReply and BridleReply forwarded to Edl; ActionReply when the engines
 ///         start or stop, and when a released bridle begins to pay out; Confirm
-/// Faults  what does not react sends no reply: a time-out handles it. Engines that stop by themselves are told
+/// Faults  what does not react sends no reply: a time-out handles it. Engines that stop by themselves are reported
 class DescentEngines {
   public:
     explicit DescentEngines(const Load&) {}

@@ -15,9 +15,10 @@ namespace aeolis::flight {
 /// Fires    each pyro over both controllers in one cycle, the selected one first. Until a controller reports that the
 ///          pyro fired, both are commanded again every 1/8 s, while a reply can still arrive before the time-out
 /// Answers  verified when one controller fired; refused when both did not; none when commanded again
-/// Faults   a pyro commanded while safe is reported (PYRO_NOT_ARMED) and refused. A controller that refuses or is silent
-///          is reported once (PYRO_CONTROLLER_REFUSED, PYRO_CONTROLLER_SILENT) and costs nothing if the other fires. A
-///          reply that was not due, or one more than commands, is reported (REPLY_UNEXPECTED) and not forwarded
+/// Faults   a pyro commanded while safe is reported (PYRO_NOT_ARMED) and refused. A controller that refuses or is
+///          silent is reported once (PYRO_CONTROLLER_REFUSED, PYRO_CONTROLLER_SILENT) and costs nothing if the other
+///          fires. A reply that was not due, or one more than commands, is reported (REPLY_UNEXPECTED) and not
+///          forwarded
 class PyroManager {
   public:
     /// Chosen: longer than the 6 cycles that a reply takes: two on the bus, two in the controller, two of jitter.

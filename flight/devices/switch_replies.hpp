@@ -13,10 +13,10 @@ class SwitchReplies {
   public:
     /// Puts `command` on its owner's part of the bus, or reports that there is no room (SWITCH_QUEUE_FULL).
     void command(const SetSwitch& command, SwitchCommands& bus, Outbox& out);
-    /// Turns a reply into an answer for the timeline, verified or refused. Also reports a reply that refuses, contradicts
-    /// the command, was not due, or comes from the other unit.
+    /// Turns a reply into an answer for the timeline, verified or refused. Also reports a reply that refuses,
+    /// contradicts the command, was not due, or comes from the other unit.
     void reply(const SwitchReply& reply, Unit selected, Outbox& out);
-    /// By the last reply, or by a command that is not answered yet.
+    /// The state of a switch by its last reply, or by a command that is not answered yet.
     SwitchState state(SwitchId id) const { return awaited_[static_cast<std::size_t>(id)].state; }
 
   private:

@@ -9,7 +9,7 @@
 
 #include <optional>
 
-// Announces GNC's triggers to timeline and ground: anchor, event. Explains what EdlMain decides. R17, R38
+// Announces GNC's triggers to the timeline as anchors, and to ground as events. Explains what EdlMain decides. R17, R38
 namespace aeolis::flight {
 
 Decision decision_of(gnc::Trigger trigger);
@@ -25,7 +25,7 @@ void announce_bank_reversal(const gnc::Output& gnc, Outbox& out);
 void explain(const gnc::JudgedTrigger& fired, std::uint16_t suppressed, Outbox& out);
 void explain(const gnc::ModeChange& change, Outbox& out);
 void explain(const gnc::RadarDecision& decision, Outbox& out);
-/// `entry`: late cruise is judged by the time to it.
+/// Explains a change of phase. `entry`: the time of entry, by which late cruise is judged.
 void explain(const PhaseChange& change, MaybeTime entry, Outbox& out);
 
 /// Explains triggers that are near, and which of their conditions are missing.

@@ -32,7 +32,7 @@ namespace aeolis::flight {
 /// Out     actions to the device managers; tones; events, firings, explanations and channels to EdlComm; Confirm;
 ///         the table of parameters to EdlBg and MFSK when it changes, and to EdlComm when it is to be dumped
 /// Gate    nothing runs before parameters and then "do edl" were received, the latter in late cruise and in time. R23
-/// The table of parameters is ground's to change until GNC is enabled, whole or not at all. R25
+/// Ground may change the table of parameters until GNC is enabled, as a whole or not at all. R25
 /// Changes of the timeline are judged on arrival, and refused where they are unsafe. R51
 /// Roles   prime flies, and sends its state each cycle; Second Chance keeps recent IMU readings until it must take
 ///         over; a prime that was restarted after cruise-stage separation stands by, until ground orders it on.
@@ -98,7 +98,7 @@ class EdlMain {
     void take_over(const StateHeader& prime, Sclk now, Outbox& out);
     void watch_approach(Sclk now, Outbox& out);
     void set_inhibited(bool inhibited, Outbox& out);
-    /// The reason why entry cannot be set to `said`; `navigated`: where navigation has it.
+    /// The reason why entry cannot be set to `said`. `navigated`: the time of entry by navigation.
     std::optional<timeline::Unsafe> unsafe_entry(Sclk said, MaybeTime navigated, Sclk now);
     static void refuse(const timeline::Unsafe& unsafe, const CommandTag& tag, Outbox& out);
     void run_timeline(Sclk now, Outbox& out);
@@ -107,11 +107,11 @@ class EdlMain {
     void update_phase(Sclk now, Outbox& out);
     void record_channels(Sclk now, Outbox& out);
     packet::ParametersHeld parameters_held() const;
-    /// Whether the table of parameters is still ground's to change; otherwise the command is answered.
+    /// Whether ground may still change the table of parameters. If not, the command is refused here.
     bool may_change_table(const CommandTag& tag, Outbox& out) const;
     void table_changed(Outbox& out);
     void fly_by_table(Outbox& out);
-    /// Once GNC is enabled: what is still staged stays staged.
+    /// Reports, once GNC is enabled, the staged changes that can no longer be activated.
     void tell_not_activated(Outbox& out) const;
     std::uint8_t reset_count() const {
         return static_cast<std::uint8_t>(

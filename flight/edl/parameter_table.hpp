@@ -21,13 +21,13 @@ namespace aeolis::flight {
 
 inline constexpr std::size_t staged_changes_max = 32;
 
-/// The value held of any parameter, also of one that is fixed at build. `id` is one of the table.
+/// The value held of any parameter, also of one that is fixed at build. The table has a row `id`.
 constexpr double value_of(const Parameters& parameters, ParameterId id) {
     const ParameterSpec& spec = parameter_specs[id.value];
     return spec.member != nullptr ? parameters.*spec.member : spec.fixed;
 }
 
-/// Sets a parameter; without effect for one that is fixed at build, or in no row.
+/// Sets a parameter. Does nothing when it is fixed at build, or when the table has no such row.
 constexpr void set_value(Parameters& parameters, ParameterId id, double value) {
     if (id.value < parameter_count && parameter_specs[id.value].member != nullptr)
         parameters.*parameter_specs[id.value].member = value;
@@ -35,12 +35,12 @@ constexpr void set_value(Parameters& parameters, ParameterId id, double value) {
 
 inline constexpr std::size_t parameter_rows_octets =
     parameter_count * (packet::ParameterRow::octets - tm_overhead_octets);
-/// The table as a data product has it: each parameter as a packet::ParameterRow, by id.
+/// The content of the table's data product: each parameter as a packet::ParameterRow, by id.
 std::array<std::uint8_t, parameter_rows_octets> rows_of(const Parameters& parameters);
 
-/// The conditions under which a change may be staged: its row is there, may change, and has the value in its range.
+/// The conditions under which a change may be staged: its row exists and may change, and the value is within its range.
 gnc::Conditions conditions_of(const command::EDL_STAGE_PARAMETER& change);
-/// Why a change is refused whose conditions do not hold.
+/// The reason for refusing a change whose conditions do not hold.
 CommandRefusal refusal_of(const gnc::Conditions& conditions);
 
 class ParameterTable {
@@ -51,20 +51,20 @@ class ParameterTable {
     std::uint16_t version() const { return version_; }  ///< ground's number; 0: as built in
     std::size_t staged() const { return staged_count_; }
 
-    /// Room for a change of this parameter: a second change of the same one replaces the first.
+    /// Whether a change of this parameter can be staged. A second change of the same parameter replaces the first.
     bool has_room(ParameterId id) const;
     void stage(ParameterId id, double value);
     void discard() { staged_count_ = 0; }
     /// CRC of the table that activation would make.
     std::uint16_t crc_with_staged() const;
-    /// Sum of its deviations from the table built in (common/deviation.hpp).
+    /// Sum of that table's deviations from the one built in (common/deviation.hpp).
     double deviation_with_staged() const;
     /// Takes all staged changes into the table.
     void activate(std::uint16_t version);
 
     packet::ParameterTable report() const;
 
-    /// What is built in is left out: the other computer has the same.
+    /// State for another computer, without the built-in values, which are the same there.
     template <typename Exchange>
     void carry(Exchange& exchange) {
         exchange(values_, version_, changes_, staged_count_, staged_);

@@ -16,7 +16,7 @@ struct PhaseChange {
 };
 using PhaseChanges = FixedVector<PhaseChange, 6>;  ///< late cruise, "do edl", pre-EDL, GNC's mode, ...
 
-/// What the clock and "do edl" say of the phase before GNC is enabled.
+/// The facts that decide the phase before GNC is enabled, from the clock and "do edl".
 struct Approach {
     bool late_cruise = false;   ///< "do edl" is possible by time
     bool begun = false;         ///< "do edl" was accepted

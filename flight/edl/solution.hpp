@@ -34,7 +34,7 @@ inline gnc::Solution solution_of(const command::EDL_SET_PARAMETERS& p) {
 /// Each argument is already within its own range. Checked here: combinations of arguments, and their relation to `now`.
 SolutionConditions conditions_of(const command::EDL_SET_PARAMETERS& p, Sclk now);
 
-/// Where the position and velocity of the parameters lead. R51
+/// The entry to which the position and velocity of the parameters lead. R51
 struct NavigatedEntry {
     Sclk at;                             ///< entry interface, close to `entry_sclk` if that is sound
     gnc::Vector3 p_MoB_M_m, v_MB_M_mps;  ///< at `entry_sclk`

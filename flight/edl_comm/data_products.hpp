@@ -37,7 +37,7 @@ class ImuBurst {
     static constexpr std::size_t rows_after = 600;
 
     void on(const ImuReadings& readings);
-    /// The mortar fired: keeps the readings so far, and appends the next ones.
+    /// Notes that the mortar has fired: keeps the readings so far, and appends the next ones.
     void begin();
     bool begun() const { return begun_; }
     bool complete() const { return begun_ && rows_ == kept_ + rows_after; }
@@ -59,14 +59,14 @@ class DataProducts {
     void on(const Record& record);
     void on(const ImuReadings& readings);
     void on(const PhaseChanged& change);
-    /// The table of parameters, to be dumped. A newer one replaces one that is not sent yet, or only in part.
+    /// Takes the table of parameters to be dumped. It replaces an older one that is not sent yet, or only in part.
     void on(const ParameterPart& part);
 
     /// Sends the next part, if one is due; it is recorded like every packet.
     void cycle(Outbox& out);
 
     std::uint16_t made() const { return made_; }
-    /// The last timepoint has fired, and every product is out.
+    /// Whether the last timepoint has fired and every product is sent.
     bool complete() const { return timeline_complete_ && !sending_ && due_.empty(); }
 
   private:

@@ -10,7 +10,7 @@
 
 namespace aeolis::flight {
 
-/// Gathers rows, each the data field of a `Row`, into packets of the recording: a packet's headers are paid for once.
+/// Gathers rows, each the data field of a `Row`, into packets of the recording, so that many rows share one header.
 template <typename Packet, typename Row, auto Content>
 class SensorTable {
   public:
@@ -40,7 +40,8 @@ class SensorTable {
 
 /// Every reading of the IMU and of the radar's beams through EDL, as received. R52
 ///
-/// From separation of the cruise stage to the end of fly-away: in cruise a day of it would fill NVM eight times.
+/// They are recorded from separation of the cruise stage to the end of fly-away. In cruise, a day of readings would
+/// fill NVM eight times.
 class SensorTables {
   public:
     void on(const ImuReadings& readings, Outbox& out);

@@ -8,13 +8,12 @@
 
 namespace aeolis::flight {
 
-/// Reports decisions that are near but held, without flooding the link: they are held in every cycle.
-/// R38
+/// Reports decisions that are near but held, at a limited rate, because a decision is held in every cycle. R38
 ///
 /// In       a decision that is held in this cycle, with its conditions          Out   Explanation, verdict held
 /// Limit    once in 4 s for a decision (chosen: the console shows one for 5 s), two a second over all decisions
-///          (chosen: a quarter of the 8 kb/s link). Suppressed explanations are counted, and the next one of the decision
-///          and its subject gives the count
+///          (chosen: a quarter of the 8 kb/s link). Suppressed explanations are counted, and the next one of the
+///          decision and its subject gives the count
 /// Memory   fixed; one subject a decision, whose count stays until it is reported or another subject is held
 class HeldExplanations {
   public:

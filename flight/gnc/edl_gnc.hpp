@@ -99,7 +99,8 @@ struct Configuration {
     bool flyaway_started = false;
     bool engines_off = false;  ///< order to GNC
 
-    /// Takes in an action, commanded at `since`, that is done or taken as done. A repeated action keeps its first time.
+    /// Records an action, commanded at `since`, that is done or assumed to be done. A repeated action keeps its first
+    /// time.
     void learn(Fact fact, Sclk since);
     /// Takes back an action that was not done after all.
     void forget(Fact fact);
@@ -134,7 +135,7 @@ inline constexpr std::size_t trigger_count = static_cast<std::size_t>(Trigger::t
 
 using Mode = GncMode;  ///< in the order in which they occur
 
-/// A trigger with its own conditions: those that it fired on, or of which some hold it. R38
+/// A trigger with its own conditions: all hold when it has fired; some do not while it is held. R38
 struct JudgedTrigger {
     Trigger trigger{};
     Conditions conditions;
@@ -206,7 +207,7 @@ struct Output {
 Steers steers(Mode mode, const Configuration& configuration, const EngineCommand& engines);
 /// Inertia of the body that is steered: the vehicle, later the stage with or without the rover.
 Inertia inertia_of(Mode mode, const Configuration& configuration, double rigid_kg);
-/// What holds the vehicle in a mode, and so what it feels while the IMU is silent.
+/// What carries the vehicle in a mode, by which the force on it is estimated while the IMU is silent.
 HeldBy held_by(Mode mode, const EngineCommand& engines);
 
 /// The whole state of GNC, a value of fixed size.
@@ -223,7 +224,7 @@ class EdlGnc {
     /// Attitude from cruise attitude determination, accepted until the cruise stage is gone.
     void on(const CruiseAttitude& attitude);
 
-    /// One radar solution, at 1 Hz. Returns what is not ordinary about it.
+    /// Takes a radar solution, at 1 Hz. Returns the decision on it unless it is ordinary.
     std::optional<RadarDecision> on(const RadarSolution& solution);
 
     /// Runs GNC; call exactly once in each 64 Hz cycle.

@@ -44,7 +44,7 @@ constexpr Condition names(Quantity quantity, double number) {
 
 using Conditions = FixedVector<Condition, 4>;
 
-/// The four conditions that tell most: first those that do not hold, then others, each in order.
+/// Selects the four most informative conditions: first those that do not hold, then others, each in order.
 constexpr Conditions telling(std::span<const Condition> conditions) {
     Conditions told;
     for (const bool holds : {false, true})

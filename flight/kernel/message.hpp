@@ -108,7 +108,7 @@ struct NvmStatus {
 // ---- timeline's actions and the devices' answers ---------------------------------------------------------------
 
 enum class ReplyKind : std::uint8_t { none, pyro, arming, device_switch, thrusters, engines, bridle, recording };
-/// A device's word on its command. None: commanded again, so that an earlier word no longer counts. R50
+/// A device's answer to its command. None: it was commanded again, so that an earlier answer no longer counts. R50
 enum class Evidence : std::uint8_t { none, verified, refused };
 /// The reply that a timepoint waits for, and that a device manager sends. R14, R50
 struct ActionReply {

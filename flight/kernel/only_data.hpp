@@ -18,8 +18,9 @@ constexpr void expect_only_data(FixedVector<T, N>& values);
 template <typename T>
 constexpr void expect_only_data(std::optional<T>& value);
 
-/// Does not compile when there is a pointer or a view anywhere in a T: the receiver would read the sender's memory when
-/// the sender has gone on. Fields are found from the type, those of a class with private state by its carry(). R3
+/// Does not compile when there is a pointer or a view anywhere in a T, through which the receiver would read memory
+/// that the sender has changed since. Fields are found from the type, those of a class with private state by its
+/// carry(). R3
 template <typename T>
 constexpr void expect_only_data(T& value) {
     static_assert(std::is_trivially_copyable_v<T>, "what a message holds is copied octet by octet");

@@ -20,13 +20,13 @@ void parameter_parts(const Parameters& parameters, Send&& send) {
     }
 }
 
-/// A table of parameters that comes in parts. It changes as a whole, with the last part: when one was lost or is out of
-/// order, the table stays as it was until all come again.
+/// A table of parameters that is received in parts. It changes as a whole, with the last part. When a part is lost or
+/// out of order, the table stays as it was until all parts come again.
 class ReceivedParameters {
   public:
     explicit ReceivedParameters(const Parameters& first = {}) : values_(first) {}
 
-    /// True: a whole table has come.
+    /// Takes a part. True when it completes a table.
     bool on(const ParameterPart& part) {
         if (part.first == 0) next_ = 0;
         const bool fits = part.first == next_ && part.count <= part_parameters_max &&

@@ -65,7 +65,7 @@ void announce(ActionContext& context) {
 }
 
 /// An action of timeline.csv: its owner, the only module that it commands, and what it does. R5, R40
-/// That is the spacecraft's action, and the change of GNC's configuration, at once or when the action is done.
+/// It commands the spacecraft, and changes GNC's configuration at once or when the action is done.
 struct Action {
     std::string_view name;
     ModuleId owner;

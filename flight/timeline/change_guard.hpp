@@ -13,7 +13,7 @@ namespace aeolis::flight {
 
 /// Judges a change of the timeline on board when it arrives, independently of ground. R51
 ///
-/// In      "do edl", the firings; a change, with the timeline as it stands      Out   why the change is unsafe, if it is
+/// In      "do edl", the firings; a change, with the timeline as it stands      Out   why the change is unsafe
 /// Rule    dictionaries/timeline_change_rule.hpp. Dispatch is not judged: after a restart or a hand-over, overdue
 ///         timepoints fire together
 /// Reset   the firings are part of the state that the other computer gets: it judges with all of them

@@ -31,8 +31,8 @@ using Firings = FixedVector<Firing, timeline::triggered_per_cycle_max + 1>;
 /// The engine that interprets the timeline, by dictionaries/timeline_rule.hpp. R11–R18
 ///
 /// In       the clock, replies, changed offsets, anchors that GNC sets "now"
-/// Out      actions through ActionContext; a Firing for each completed timepoint. A row's event, its tone and its change
-///          of the configuration follow the reply, not the triggering. R50
+/// Out      actions through ActionContext; a Firing for each completed timepoint. A row's event, its tone and its
+///          change of the configuration follow the reply, not the triggering. R50
 /// Memory   fixed; the rows stay in the autocoder's table
 /// The acceptance of "do edl" precedes the first timepoint (R16): nothing happens before begin(). Actions may be
 /// repeated: after a restart in pre-EDL, and when Second Chance takes over while prime still awaited a reply.

@@ -41,12 +41,12 @@ class Access {
     static constexpr std::chrono::seconds longest_lock_out{900};
 
     struct Settings {
-        std::filesystem::path file;  ///< empty: no accounts; everybody may do all but administer
+        std::filesystem::path file;  ///< empty: no accounts; everybody may do everything except administer
         bool secure = false;         ///< over TLS: cookies have names that only this host can set
         std::function<Clock::time_point()> now = Clock::now;
     };
     /// Reads the accounts file. A missing file is created with one administrator, whose password is first_password().
-    /// Fails with a line that names the file.
+    /// The Error names the file.
     static Result<std::unique_ptr<Access>> open(Settings settings);
 
     bool accounts() const { return !settings_.file.empty(); }
@@ -68,7 +68,7 @@ class Access {
     };
     /// Logs a user in. Slow. Fails when user or password is wrong, and while locked out (the error says for how long).
     Result<LoggedIn> log_in(const v1::LogIn& asked, const std::string& from);
-    /// How long this user, from this address, is refused without a look at the password; 0: not locked out.
+    /// How long this user, from this address, is refused without checking the password; 0: not locked out.
     std::chrono::seconds locked_out(const std::string& user, const std::string& from);
     void log_out(const Operator& who);
 

@@ -68,7 +68,7 @@ class Api {
         std::string reason;
         std::chrono::seconds wait;
     };
-    /// Counts commands of this operator; none: they may be sent.
+    /// Counts commands of this operator. Returns why they must not be sent now; none: they may.
     std::optional<TooMany> count_commands(const Operator& who, std::size_t commands);
     /// The largest body accepted from this peer for this path. The body of a request that will be refused is not read,
     /// since reading takes the network thread's time.
@@ -158,7 +158,7 @@ class Api {
     /// for every route.
     void name_latest(ApiRequest& call) const;
     void note(const Operator& who, std::string_view action, std::string detail, const std::string& outcome);
-    /// Answers with a page of a list that is not of a run, on a query thread.
+    /// Answers on a query thread with a page of a list that belongs to no run.
     using AnswerPage = std::function<HttpResponse(archive::Reader&, const ListRequest&)>;
     void answer_page(const ApiRequest& call, const ListPage::Limits& limits, AnswerPage answer,
                      JobPriority priority = JobPriority::soon);

@@ -11,8 +11,8 @@ namespace aeolis::server {
 /// Reads the next part of a body. Called on a query thread, once for each part.
 using ReadPart = std::function<BodyPart(archive::Reader&)>;
 
-/// HttpResponse::more of a body that is longer than memory should hold: each part is read once the client has taken the
-/// one before, in a job of its own.
+/// Makes HttpResponse::more for a body too long to be held in memory. Each part is read in a job of its own, once the
+/// client has taken the part before.
 decltype(HttpResponse::more) in_parts(QueryThreads& queries, const Asker& asker, ReadPart read);
 
 }  // namespace aeolis::server

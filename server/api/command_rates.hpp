@@ -9,7 +9,7 @@
 
 namespace aeolis::server {
 
-/// Bounds how often each client sends commands, dry runs among them: so many at once, and so many a second for long.
+/// Limits how often each client sends commands, including dry runs: a number at once, and a lasting rate.
 ///
 /// Memory   clients_max clients; those that have sent nothing for long are forgotten, and more than that share one
 ///          allowance
@@ -21,7 +21,7 @@ class CommandRates {
     static constexpr double at_once = 2'500.0;          ///< chosen: more than one may have under way: commands/shares
     static constexpr std::size_t clients_max = 10'000;  ///< chosen
 
-    /// Counts `commands` of a client. @return none: they may go; else how long to wait until so many may
+    /// Counts `commands` of a client. @return none when they may be sent; else the time until that many may be
     std::optional<std::chrono::seconds> take(const std::string& client, std::size_t commands, Clock::time_point now);
 
   private:

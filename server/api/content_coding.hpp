@@ -11,10 +11,10 @@ namespace aeolis::server {
 
 /// The content codings that a client accepts, of those that this server has (RFC 9110, 12.5.3).
 struct AcceptedCodings {
-    bool gzip = false;     ///< accepted, and not less than the text as it is
-    bool identity = true;  ///< the text as it is
+    bool gzip = false;     ///< accepted, and preferred no less than plain text
+    bool identity = true;  ///< plain text is accepted
 };
-/// Reads the header Accept-Encoding; its lines joined by commas. What is not well formed in it counts as absent.
+/// Reads the header Accept-Encoding, with its lines joined by commas. Malformed parts count as absent.
 AcceptedCodings accepted_codings(std::string_view accept_encoding);
 
 /// Compresses a text that comes in parts (gzip, RFC 1952).
@@ -34,14 +34,14 @@ class Gzip {
     std::shared_ptr<State> state_;
 };
 
-/// A response of this many octets is sent as it is: compressed it would take as many packets of the network.
+/// A shorter response is sent uncompressed, because compressed it would take as many network packets.
 inline constexpr std::size_t coded_octets_min = 1'024;  // chosen: below one TCP segment
 
 /// Compresses the body of a response that is text, if the client accepts that. A body in parts is compressed part by
 /// part, on the thread that gives the part.
 void encode(HttpResponse& response, const AcceptedCodings& accepted);
 
-/// A callback that encodes the answer to a reading request; of any other request, the callback itself.
+/// Returns a callback that encodes the response to GET or HEAD; for other requests, returns `respond` itself.
 Respond in_accepted_coding(const HttpRequest& request, const Respond& respond);
 
 }  // namespace aeolis::server

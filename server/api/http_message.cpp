@@ -14,7 +14,7 @@ struct Phrase {
     unsigned status;
     const char* text;
 };
-/// The phrases of RFC 9110, 15, for the statuses that this server gives.
+/// The reason phrases of RFC 9110, 15, for the statuses that this server sends.
 constexpr std::array phrases{
     Phrase{400, "Bad Request"},
     Phrase{401, "Unauthorized"},

@@ -24,9 +24,9 @@ struct HttpRequest {
     std::string query;  ///< the text after '?', still percent-encoded
     std::string body;
     Credentials credentials{};
-    std::function<bool()>
-        gone{};  ///< whether the client has disconnected, so that work may stop; from any thread; null: unknown
-    std::string accept_encoding{};  ///< the header; its lines joined by commas
+    /// Whether the client has disconnected, so that work may stop. Call from any thread. Null: unknown.
+    std::function<bool()> gone{};
+    std::string accept_encoding{};  ///< the header, with its lines joined by commas
 };
 
 /// The next part of a body, which may be empty; none at the end of the body.
@@ -45,15 +45,16 @@ struct HttpResponse {
     /// the client sees that the body is incomplete.
     std::function<void(std::function<void(BodyPart)>)> more{};
 
-    std::string field(std::string_view name) const;  ///< of `fields`; empty: absent
+    std::string field(std::string_view name) const;  ///< the value of a field; empty: absent
 };
 
-/// A problem (RFC 9457), the shape of every error: status, its phrase, and one sentence that names the fault.
+/// Makes a problem (RFC 9457), the form of every error: the status, its reason phrase, and a sentence that names the
+/// fault.
 HttpResponse error_response(unsigned status, const std::string& error);
-/// A problem that passes by itself, with the time after which the request may be sent again.
+/// Makes a problem that passes by itself, with the time after which the client may send the request again.
 HttpResponse retry_response(unsigned status, const std::string& error, std::chrono::seconds after);
 
-/// The response callback. Call it once, from any thread.
+/// Sends the response. Call it once, from any thread.
 using Respond = std::function<void(HttpResponse)>;
 
 }  // namespace aeolis::server

@@ -21,7 +21,7 @@ struct Rows {
     std::vector<std::string_view> kinds{};  ///< "event"
 };
 
-/// Which rows of a list are asked for: the parameters after, limit and order.
+/// The rows of a list that are requested, by the parameters after, limit and order.
 struct ListPage {
     struct Limits {
         std::size_t usual = 0, most = 0;            ///< rows when none is asked for; most that may be asked for
@@ -45,7 +45,8 @@ struct ListPage {
 /// jsonl  one line per row, each as in the list
 inline constexpr std::array<std::string_view, 3> list_formats{"json", "csv", "jsonl"};
 
-/// Builds the response in a format. The header Aeolis-Next-After also tells where the next page begins; 0: nowhere.
+/// Builds the response in a format. The header Aeolis-Next-After also says where the next page begins; 0: there is
+/// none.
 /// @param format  one of list_formats
 /// @param clock   clock correlation of the run that the rows belong to
 HttpResponse list_response(std::string_view format, google::protobuf::Message&& list, const Rows& rows,
@@ -54,13 +55,13 @@ HttpResponse list_response(std::string_view format, google::protobuf::Message&& 
 /// Adds the address of the next page (Link, rel="next", RFC 8288) to the response of a list that has one.
 void add_next_link(HttpResponse& response, std::string_view path, std::string_view query);
 
-/// Keeps one page of a list that was made whole, and sets its next_after. A row's number is its place in the list as it
+/// Reduces a complete list to one page, and sets its next_after. A row's number is its place in the list as it
 /// stands now, from 1: rows removed between two requests move the later ones.
 /// @param list   oldest first
 /// @param field  the list's field with the rows
 void keep_page(google::protobuf::Message& list, std::string_view field, const ListPage& page);
 
-/// A request for a page of a list that is not of a run. Its parameters are after, limit, order and format.
+/// A request for a page of a list that belongs to no run. Its parameters are after, limit, order and format.
 struct ListRequest {
     ListPage page;
     std::string format;       ///< one of list_formats
@@ -69,7 +70,7 @@ struct ListRequest {
     static Result<ListRequest> of(const HttpRequest& request, const ListPage::Limits& limits);
     /// The response with the page, and with the address of the next.
     HttpResponse response(google::protobuf::Message&& rows_of_page, const Rows& rows) const;
-    /// The same, of a list that was made whole, oldest first.
+    /// The same for a complete list, oldest first.
     HttpResponse response_of_whole(google::protobuf::Message&& list, const Rows& rows) const;
 };
 

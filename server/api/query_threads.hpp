@@ -31,7 +31,7 @@ enum class JobPriority : std::uint8_t {
     in_turn,  ///< a query of up to question_seconds_max
 };
 
-/// Who asks: jobs are shared out by client.
+/// The client for whom a job is done, by which jobs are served in turn.
 struct Asker {
     std::string client{};          ///< an account, a browser, or an address; empty: the server itself
     std::function<bool()> gone{};  ///< whether the client has disconnected; null: unknown
@@ -55,7 +55,8 @@ class QueryThreads {
     /// Chosen, by JobPriority; beyond it a job is refused ("busy"). Each stream connection asks for one page at a time,
     /// and there are at most 1 000 of them: room for two pages each means that none is refused.
     static constexpr std::array<std::size_t, 3> waiting_max{256, 2'000, 256};
-    /// Chosen: of them by one client, of each priority. Streams read as the server itself, a page a connection.
+    /// Waiting jobs of one client, of each priority; chosen. Streams count as the server itself, with one page a
+    /// connection.
     static constexpr std::size_t of_client_waiting_max = 64;
     static constexpr const char* busy = "too many questions wait: try again";
 

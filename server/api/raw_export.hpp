@@ -10,14 +10,14 @@
 
 namespace aeolis::server {
 
-/// Writes what links brought as `aeolis export --raw` and GET /api/v1/runs/{run}/raw do: the octets as they came, good
-/// and bad, or the packets found in them.
+/// Writes the octets of links as received, good and bad, or the packets found in them, for `aeolis export --raw` and
+/// GET /api/v1/runs/{run}/raw.
 ///
 /// Formats  bin: the octets alone, of one link; pcap: each piece or packet with its time, a UDP port a link
 /// Memory   a page
 class RawExport {
   public:
-    /// Fails on an unknown format, and when the run has nothing of the kind that is asked for.
+    /// Fails on an unknown format, and when the run has nothing of the requested kind.
     static Result<RawExport> begin(archive::Reader& reader, archive::RunId run, archive::RawQuery query,
                                    const std::string& format);
 
@@ -26,7 +26,7 @@ class RawExport {
     Result<std::optional<std::string>> page(archive::Reader& reader);
     bool done() const { return done_; }
     bool is_pcap() const { return pcap_; }
-    /// Octets of the asked links that are no longer kept, since newer ones took their place.
+    /// Octets of the requested links that are no longer kept, because newer ones took their place.
     std::uint64_t octets_removed() const { return octets_removed_; }
 
   private:

@@ -10,8 +10,8 @@
 
 namespace aeolis::server {
 
-/// What the score of a finished rehearsal rests on: what was received, and what people did. Nothing of the simulation's
-/// own truth.
+/// The facts on which the score of a finished rehearsal rests: what was received, and what people did. They contain
+/// nothing of the simulation's truth.
 struct ScoreFacts {
     struct Landed {
         double e_s = 0.0;
@@ -24,7 +24,7 @@ struct ScoreFacts {
     std::vector<v1::Intervention> interventions;
 };
 
-/// Worth of a reaction after so many seconds of the run, 0 … 1; none: nobody reacted.
+/// Value of a reaction `after_s` seconds of the run, 0 … 1; none: nobody reacted.
 double promptness(std::optional<double> after_s);
 
 /// The facts in words and the points of each term, by the rule that the answer states.
@@ -32,12 +32,12 @@ v1::Score score_of(const ScoreFacts& facts, const dictionary::Dictionary& dictio
 
 inline constexpr std::size_t scored_alarms_max = 200'000;  ///< chosen, some 40 MB: no landing comes near it
 
-/// The as-flown report with all commands and notes, of which Reader::as_flown() has the first page of each.
+/// The as-flown report with all commands and notes; Reader::as_flown() has only the first page of each.
 Result<v1::AsFlownReport> whole_report(archive::Reader& reader, archive::RunId run);
 
 /// Whether a run has a score: it is a rehearsal that has finished.
 bool has_score(const v1::RunState& run);
-/// The score of the run of a whole report, which has one. Fails where it would be made of a part.
+/// The score of a run with has_score(), from its whole report. Fails when only a part of the run could be scored.
 Result<v1::Score> rehearsal_score(archive::Reader& reader, v1::AsFlownReport report,
                                   const dictionary::Dictionary& dictionary);
 

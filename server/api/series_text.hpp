@@ -11,8 +11,8 @@ namespace aeolis::server {
 
 enum class SeriesFormat : std::uint8_t { json, csv, protobuf };
 
-/// The text of a list of series, written straight from the columns, a megabyte at a time: an exact answer has millions
-/// of numbers.
+/// The text of a list of series, written straight from the columns, a megabyte at a time, because an exact answer may
+/// have millions of numbers.
 ///
 /// json      v1::ChannelSeriesList, the same as to_json() writes
 /// csv       one row per sample, for spreadsheets and scripts

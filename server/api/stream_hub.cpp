@@ -75,8 +75,8 @@ bool has_any(const v1::Samples& samples, const std::vector<std::uint32_t>& chann
     return any;
 }
 
-/// Tells packets apart by all of their channels, and their source: packets of other missions share the channels of their
-/// headers. (FNV-1a)
+/// Tells packets apart by all of their channels, and their source, because packets of other missions share the channels
+/// of their headers. (FNV-1a)
 std::uint64_t packet_of(const v1::Samples& samples) {
     std::uint64_t hash = 14695981039346656037ULL;
     const auto add = [&](std::uint64_t value) { hash = (hash ^ value) * 1099511628211ULL; };

@@ -33,7 +33,7 @@ struct StreamSelection {
     std::vector<std::uint32_t> channels;  ///< ascending
     double max_rate_hz = 0.0;
     bool packets = true;
-    /// Vehicle time from one sample of a packet to the next that goes out, at least; 0: every sample goes out.
+    /// Least vehicle time between two samples of a packet that go out; 0: every sample goes out.
     double interval_s() const { return max_rate_hz > 0.0 ? 1.0 / max_rate_hz : 0.0; }
     bool operator==(const StreamSelection&) const = default;
 };
@@ -62,8 +62,8 @@ struct RatedItem {
     std::uint64_t packet = 0;  ///< as in SampleFacts
 };
 
-/// Packets whose newest sample a session left out by an interval of its own, which the hub's facts do not know: the
-/// next sample of each goes out as thinned.
+/// Packets whose newest sample a session left out by an interval of its own, which the hub's facts do not contain. The
+/// next sample of each is marked as thinned.
 using LeftOutBefore = std::vector<std::uint64_t>;
 
 /// Adds the selected items to a Batch. Commands, events, alarms, tones, firings, explanations, links: all.
@@ -73,7 +73,7 @@ using LeftOutBefore = std::vector<std::uint64_t>;
 void select_items(const StreamSelection& selection, double interval_s, std::span<const ItemWithFacts> items,
                   v1::Batch& batch);
 
-/// By which times a client's rate counts.
+/// The times by which a client's rate is counted.
 enum class RateBy : std::uint8_t {
     vehicle,    ///< the vehicle's time: of our mission, whose clock never stands still
     reception,  ///< of another mission's packets, whose clocks may
@@ -136,7 +136,7 @@ class StreamHub {
     /// Closes clients that may no longer follow.
     void check_clients();
     std::size_t sessions() const { return sessions_.size(); }
-    std::size_t sessions_replaying() const;  ///< that are given another run than the current one, or it again
+    std::size_t sessions_replaying() const;  ///< that receive another run than the current one, or a replay of that
     std::size_t sessions_behind() const;     ///< that have not yet received everything
 
     // ---- for sessions ------------------------------------------------------------------------------------------
@@ -162,7 +162,7 @@ class StreamHub {
     };
     /// The items after `after`, at most message_items_max, encoded for `selection`. Requires holds(after).
     /// @param left_out         samples left out after `sent_through` up to `after`
-    /// @param left_out_before  of the items up to `after`; those told in this range are removed
+    /// @param left_out_before  of the items up to `after`; those marked in this range are removed
     EncodedRange encoded_range(const StreamSelection& selection, archive::Sequence after,
                                archive::Sequence sent_through, std::uint64_t left_out, LeftOutBefore& left_out_before);
     Encoded encoded_state(StreamFormat format);

@@ -69,22 +69,23 @@ class StreamSession : public std::enable_shared_from_this<StreamSession> {
   private:
     void look_at_rights();
     void subscribe(const v1::Subscribe& subscribe);
-    /// Why no run, or not this one, can be replayed at that pace; empty: it can.
+    /// Why this run cannot be replayed at that pace; empty: it can.
     std::string refusal_of_pace(double pace, std::uint64_t run) const;
     void read_run(std::uint64_t run, archive::Sequence after);
     void stall(const std::string& why, std::function<void()> retry);
-    /// Ends the subscription: its run is not there any more.
+    /// Ends the subscription, because its run no longer exists.
     void lose_run(std::string why);
     void refuse(std::string reason, bool goes_on = false);
     void reply(const v1::ServerMessage& message);
     void follow(std::uint64_t run, archive::Sequence after);
     Encoded next_due();
     Encoded welcome();
-    /// How far the client has come, without items.
+    /// A message that says how far the client has come, without items.
     Encoded progress();
     Encoded next_items();
     Encoded from_page();
-    /// Takes from the page what goes out next: all of it, json_items, or with a pace the items due. None: nothing yet.
+    /// Takes from the page the items that go out next: all, json_items of them or, with a pace, those due. None:
+    /// nothing yet.
     std::optional<archive::ItemPage> take_page();
     void ask_archive();
     void read_page();
@@ -115,7 +116,7 @@ class StreamSession : public std::enable_shared_from_this<StreamSession> {
     archive::Sequence cursor_ = 0;                          ///< served up to here
     archive::Sequence sent_through_ = 0;                    ///< last complete_through sent to the client
     std::uint64_t left_out_ = 0;                            ///< samples left out after it, up to the cursor
-    LeftOutBefore left_out_before_;                         ///< by a page, and not told yet
+    LeftOutBefore left_out_before_;                         ///< by a page, and not marked yet
     bool asking_ = false;                                   ///< an archive query is in progress
     std::function<void()> next_question_;                   ///< null: none waits
     bool reading_ = false, exhausted_ = false, was_live_ = false;

@@ -11,17 +11,17 @@
 #include <string_view>
 #include <vector>
 
-// The touchdown in the three signals that flown landings used: the vehicle tells it, the rover's own IMU is still, UHF
-// goes on without a break [steltzner-2012]. It is reported until all three are there, then confirmed. The bounds are
-// not published: chosen here.
+// The touchdown, by the three signals that flown landings used: the vehicle reports it, the rover's own IMU is at rest,
+// and UHF continues without a break [steltzner-2012]. It counts as reported until all three are there, then as
+// confirmed. The bounds are not published; they are chosen here.
 namespace aeolis::server {
 
-// The names of the mission by which a touchdown is told. A dictionary without them has no touchdown.
+// Names of the mission's dictionary that report a touchdown. A dictionary without them has no touchdown.
 inline constexpr std::string_view touchdown_timepoint = "touchdown", touchdown_event = "TOUCHDOWN",
                                   touchdown_flag = "touchdown_declared", touchdown_live = "edl_phase";
 inline constexpr std::array<std::string_view, 3> position_channels{"nav_position_x_m", "nav_position_y_m",
                                                                    "nav_position_z_m"};
-/// Of the ground's solution: latitude, longitude, radius.
+/// The target in ground's solution: latitude, longitude, radius.
 inline constexpr std::array<std::string_view, 3> target_arguments{"target_latitude_deg", "target_longitude_deg",
                                                                   "target_radius_m"};
 struct TouchdownChannel {
@@ -32,10 +32,10 @@ inline constexpr std::array touchdown_channels{TouchdownChannel{"down", "descent
                                                TouchdownChannel{"propellant left", "propellant_kg"}};
 
 inline constexpr double touchdown_uhf_s = 10.0;   ///< chosen: half of what is planned
-inline constexpr double touchdown_gap_s = 3.0;    ///< chosen: the channel that is looked at comes each second
+inline constexpr double touchdown_gap_s = 3.0;    ///< chosen: the channel used here is sent each second
 inline constexpr double touchdown_close_s = 2.0;  ///< chosen: an older sample is not the value at the touchdown
 
-/// What had been received by an instant. Times by the vehicle's clock.
+/// The facts received by an instant. Times are by the vehicle's clock.
 struct TouchdownFacts {
     struct Told {
         Sclk sclk;
@@ -59,10 +59,10 @@ struct TouchdownFacts {
     std::vector<Silence> silences;  ///< of UHF, by time
 };
 
-/// Verdict, time and steps. Untold without `told`.
+/// Judges the touchdown: verdict, time and steps. Without `told` it is not reported.
 v1::TouchdownReport judge_touchdown(const TouchdownFacts& facts);
 
-/// East and north of the target, over ground, of a place from Mars's centre. @param radius_m  of the target
+/// Converts a position from Mars's centre to east and north of the target, over ground. @param radius_m  of the target
 v1::TouchdownPlace place_over_ground(const std::array<double, 3>& p_MoB_M, double latitude_deg, double longitude_deg,
                                      double radius_m);
 bool is_inside(const v1::TouchdownPlace& place, const v1::TargetEllipse& ellipse);

@@ -41,7 +41,7 @@ class Archive {
     /// Continues a run that was cut off; durable when it returns. Fails when the run was not cut off.
     Result<void> continue_run(RunId run);
 
-    /// The octets of each link of a run that have been stored as they came, also those removed since.
+    /// For each link of a run, the number of octets stored as received, including those removed since.
     Result<std::map<std::string, std::uint64_t>> raw_ends(RunId run);
 
     /// Stores all of `batch` or none of it; durable when it returns. `batch.end` finishes the run, whose

@@ -47,14 +47,14 @@ struct AuditHead {
     bool operator==(const AuditHead&) const = default;
 };
 Result<AuditHead> audit_head(sqlite::Database& database);
-/// A head as text, "ENTRY:HASH", and from it; none for any other text.
+/// Converts a head to the text "ENTRY:HASH", and back; none for any other text.
 std::string text_of(const AuditHead& head);
 std::optional<AuditHead> head_from_text(std::string_view text);
-/// Whether the chain still has the entry that was once its head; else what is wrong, as a sentence.
+/// Checks that the chain still has the entry that was once its head. Returns the fault as a sentence; none: it has.
 Result<std::optional<std::string>> head_fault(sqlite::Database& database, const AuditHead& known);
 
-/// Writes a head into a file, as a line, all of it or nothing, readable by its owner only; reads it. None: there is no
-/// such file.
+/// Writes a head as a line into a file, readable by its owner only, all of it or nothing; or reads it. None: there is
+/// no such file.
 Result<void> write_head(const std::filesystem::path& file, const AuditHead& head);
 Result<std::optional<AuditHead>> read_head(const std::filesystem::path& file);
 /// The file of an archive's head, in `folder`.

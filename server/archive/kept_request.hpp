@@ -5,12 +5,12 @@
 
 #include <string>
 
-// What was asked of a run, as the table `requests` keeps it: Protobuf text, which anyone who opens the file can read.
+// Requests to a run as the table `requests` keeps them: Protobuf text, which anyone who opens the file can read.
 namespace aeolis::archive {
 
 std::string kept_text(const v1::KeptRequest& request);
 
-/// Its case is KEPT_NOT_SET when the text is not of a kept request.
+/// Parses a kept request. Its case is KEPT_NOT_SET when the text is not one.
 v1::KeptRequest kept_request(const std::string& text);
 
 }  // namespace aeolis::archive

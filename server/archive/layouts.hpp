@@ -10,11 +10,11 @@
 #include <string>
 #include <vector>
 
-// Layouts of the console, by owner and name. Unlike all other rows they are replaced and removed: they are no record of
-// a run. They are kept here since every server has an archive, and not every one has accounts.
+// Layouts of the console, by owner and name. Unlike all other rows they are replaced and removed, because they do not
+// record a run. They are kept here because every server has an archive, but not every server has accounts.
 namespace aeolis::archive {
 
-inline constexpr std::size_t layouts_max = 32;               ///< chosen: of one owner; more is no choice but a search
+inline constexpr std::size_t layouts_max = 32;               ///< chosen: of one owner; more are hard to choose from
 inline constexpr std::size_t layout_name_octets_max = 40;    ///< chosen: fits a line of the console's menu
 inline constexpr std::size_t layout_view_octets_max = 2048;  ///< chosen: sixteen plots of three channels each
 
@@ -43,7 +43,7 @@ enum class LayoutOutcome : std::uint8_t {
 
 /// Call within a transaction.
 Result<LayoutOutcome> change_layout(sqlite::Database& database, const LayoutChange& change);
-/// The layouts of the owner, the one saved first before the others.
+/// The layouts of the owner, the one saved longest ago first.
 Result<std::vector<LayoutRecord>> layouts_of(sqlite::Database& database, const std::string& owner);
 
 }  // namespace aeolis::archive

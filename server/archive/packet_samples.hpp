@@ -12,9 +12,9 @@ namespace aeolis::archive {
 /// The newest sample of each channel, by ChannelId; none: no packet with the channel has been received.
 using Newest = std::vector<std::optional<ChannelValue>>;
 
-/// Takes into `newest` the values of a packet type's newest packet from one source, where they are newer than what is
-/// there. Of our mission, newer is what has the later time, because its clock is one and never goes back; of another
-/// mission, what was received later. Call within a read transaction.
+/// Updates `newest` with the values of a packet type's newest packet from one source, where they are newer. In our
+/// mission the value with the later time is newer, because its only clock never goes back; in another mission, the
+/// value received later. Call within a read transaction.
 /// @param to_s  SCLK: later packets do not count
 Result<void> note_newest(Reader::State& reader, const RunInfo& run, std::size_t packet, Source source, double to_s,
                          Newest& newest);

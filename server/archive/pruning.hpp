@@ -17,7 +17,7 @@ namespace aeolis::archive {
 Result<void> mark_pruned(sqlite::Database& database, std::span<const RunId> runs, AuditRecord by);
 
 /// Removes the rows of runs that are marked as pruned, then returns the free pages to the disk; piece by piece, so that
-/// a writer proceeds between. After a crash the next one goes on: all it needs to know is in the archive.
+/// a writer proceeds between. After a crash the next Pruning continues, because all that it needs is in the archive.
 class Pruning {
   public:
     static constexpr std::int64_t items_a_step = 512;      ///< chosen: some milliseconds, most of it one commit

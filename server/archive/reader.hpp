@@ -97,13 +97,13 @@ struct CommandQuery {
     Order order{};
 };
 
-/// What to export of what links brought.
+/// The octets of links that are to be exported.
 struct RawQuery {
     bool packets = false;             ///< the packets found in it; false: the octets as they came
     std::string link;                 ///< empty: of all
     std::optional<Ert> from{}, to{};  ///< received between these, both included
 };
-/// Octets of a link in one piece: as they came together, or a packet.
+/// Octets of a link in one piece: as received together, or a packet.
 struct RawPiece {
     std::string link;
     Ert ert;
@@ -138,7 +138,7 @@ struct InterventionQuery {
 struct TimepointQuery {
     std::optional<Sclk> at{};  ///< as known when this time was received from the vehicle; none: as known now
     std::optional<Ert> now{};  ///< of the current run: an overdue timepoint is predicted no earlier than now
-    bool recorded = true;      ///< include what only the recording tells
+    bool recorded = true;      ///< include what only the recording has
     std::optional<dictionary::OffsetChange> change{};  ///< a change to be previewed
 };
 
@@ -212,7 +212,7 @@ class Reader {
 
     /// The links of which octets are kept as they came.
     Result<std::vector<RawLink>> raw_links(RunId run);
-    /// A page of what links brought. @param after  the last piece of the page before; none: the first page
+    /// A page of the octets of links. @param after the last piece of the page before; none: the first page
     Result<RawPage> raw(RunId run, const RawQuery& query, const std::optional<RawPiece>& after);
 
     /// The kinds of items to include. complete_through counts excluded ones as given.
@@ -230,8 +230,8 @@ class Reader {
     /// The scenario of a run of this dictionary, as Protobuf text. The Error says why there is none.
     Result<std::string> scenario_text(RunId run);
 
-    /// The channels of a series query, each once, and the samples that series() would give of them at most. Fails where
-    /// series() fails of one channel.
+    /// The channels of a series query, each once, and the largest number of samples that series() would give. Fails
+    /// when series() would fail for one of the channels.
     struct SeriesSize {
         std::vector<std::string> channels;
         std::size_t samples = 0;
@@ -241,9 +241,9 @@ class Reader {
     /// too; thinned ones leave them out. With an open end each series also has the newest sample (latest()).
     Result<v1::ChannelSeriesList> series(RunId run, const SeriesQuery& query);
     /// A formula of channels as one series, at the times of its first channel. Each other channel counts with its
-    /// newest value up to then. Exact, or thinned to the minimum and maximum of equal intervals. Memory does not grow
-    /// with the number of samples. Where a channel or the result is undefined, so is the sample; thinned, it is left
-    /// out.
+    /// newest value up to then. It is exact, or thinned to the minimum and maximum of equal intervals. Memory does not
+    /// grow with the number of samples. Where a channel or the result is undefined, so is the sample; a thinned series
+    /// leaves it out.
     Result<v1::ChannelSeries> derived(RunId run, const std::string& expression, const SclkRange& range,
                                       std::optional<std::size_t> points);
     /// Passes all samples of the channels in a range to `take`, in order of SCLK, some thousands at a time. Memory does
@@ -255,8 +255,8 @@ class Reader {
     /// received after the first page was read are in no page.
     Result<SamplePage> sample_page(RunId run, const std::vector<std::string>& channels, const SclkRange& range,
                                    const std::optional<SampleCursor>& after = {});
-    /// The newest sample of every channel up to `at` (none: of the whole run), undefined ones too. Of our mission by
-    /// its clock; of another's by reception, because its clocks may restart.
+    /// The newest sample of every channel up to `at` (none: of the whole run), undefined ones too. In our mission the
+    /// newest is that by its clock; in another, by reception, because its clocks may restart.
     Result<std::vector<ChannelValue>> latest(RunId run, std::optional<Sclk> at);
 
     Result<v1::PacketList> packets(RunId run, const PacketQuery& query);
@@ -293,7 +293,7 @@ class Reader {
     Result<v1::AsFlownReport> as_flown(RunId run);
 
     Result<std::vector<AuditEntry>> audit(std::uint64_t after, std::size_t limit, Order order = {});
-    /// The layouts of the owner, the one saved first before the others.
+    /// The layouts of the owner, the one saved longest ago first.
     Result<std::vector<LayoutRecord>> layouts(const std::string& owner);
 
     struct State;  ///< reader_state.hpp: shared by the reader's parts

@@ -90,8 +90,8 @@ struct Reader::State {
         if (other == nullptr) decommutator.emplace(dictionary_in);
     }
 
-    /// Decodes a packet into `decoded`; false when it was not decoded as the packet that was stored. The id of another
-    /// mission's XTCE has 16 bits and may be that of another file by chance.
+    /// Decodes a packet into `decoded`; false when the result is not the packet type that was stored. The id of another
+    /// mission's XTCE has 16 bits, and may by chance be that of another file.
     bool decode(std::span<const std::uint8_t> octets, std::size_t packet) {
         const bool done = other != nullptr ? !other->decode(octets, decoded) : !decommutator->decode(octets, decoded);
         return done && decoded.packet == packet;

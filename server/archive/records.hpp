@@ -120,11 +120,11 @@ struct StageRecord : ItemRecord {
     std::uint32_t count = 0;
     std::vector<std::uint8_t> octets;
     bool held = false, needs_approval = false;  ///< of a pending `released`: what it waits for
-    std::string asked_by;                       ///< of a command that needs approval: who may not give it
+    std::string asked_by;                       ///< the sender of a command that needs approval, who may not give it
     std::string client_id;                      ///< the client's own; empty: none
 };
 
-/// How a timepoint ended, as flight reports it; `unknown`: by a word that is none of these.
+/// How a timepoint ended, as flight reports it; `unknown`: flight reported another word.
 enum class FiringVerdict : std::uint8_t { unknown, completed, verified, unverified, no_operation, refused };
 /// Its name in the dictionary, the API and the archive.
 const char* name_of(FiringVerdict verdict);
@@ -241,7 +241,7 @@ struct RecordingTotals {
 
 using telemetry::LinkTotals, telemetry::merge;
 
-/// Octets of a link as they came, good and bad. They have no number as items have: what is made of them has.
+/// Octets of a link as received, good and bad. They have no sequence number; only the items made from them have.
 struct RawRecord {
     static constexpr std::size_t octets_max = 65536;        ///< pieces of a stream are joined up to here
     static constexpr std::int64_t joined_us_max = 250'000;  ///< chosen: and as long as they came within this time
@@ -249,9 +249,9 @@ struct RawRecord {
     Ert begun, ert;           ///< of the first and of the last piece of them
     std::uint64_t first = 0;  ///< number of octets of this link before them in the run
     std::vector<std::uint8_t> octets;
-    bool datagram = false;  ///< joined with no other
+    bool datagram = false;  ///< not joined with another
 };
-/// Chosen: octets of a link kept of a run, by default; of more, the oldest are removed.
+/// Octets kept of each link of a run by default; chosen. When there are more, the oldest are removed.
 inline constexpr std::uint64_t raw_octets_kept = std::uint64_t{1} << 30U;
 
 struct RunStart {

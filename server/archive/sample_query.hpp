@@ -28,17 +28,17 @@ struct SampleSources {
 Result<SampleSources> find_sample_sources(Reader::State& reader, const RunInfo& run, ChannelId channel,
                                           const ClosedRange& range, std::optional<Source> only = std::nullopt);
 
-/// The samples of one channel in a range, undefined ones (NaN) too, in order of SCLK, live and recorded as one series. Valid until the
-/// next call: they stand in a buffer that the reader keeps, so that its memory is not allocated anew each time.
+/// The samples of one channel in a range, undefined ones (NaN) too, in order of SCLK, live and recorded as one series.
+/// They are valid until the next call, because they are in a buffer that the reader reuses.
 Result<std::span<const Sample>> exact_samples(Reader::State& reader, const SampleSources& sources);
 
 struct Thinned {
     std::vector<Sample> points;
     std::uint64_t samples = 0;  ///< number of defined samples, which the points represent
 };
-/// Thins the defined samples to the minimum and maximum, each at its own time, of each of `points` / 2 equal intervals. Reads nodes of the
-/// pyramid (at least half as many as intervals) or, where those are too few, samples. The extremes of the whole range
-/// are always among the points; one node may serve both intervals at whose border it lies.
+/// Thins the defined samples to the minimum and maximum of each of `points` / 2 equal intervals, each at its own time.
+/// Reads nodes of the pyramid (at least half as many as intervals) or, where those are too few, samples. The extremes
+/// of the whole range are always among the points. A node on the border of two intervals may serve both.
 Result<Thinned> thinned_samples(Reader::State& reader, const SampleSources& sources, std::size_t points);
 
 }  // namespace aeolis::archive

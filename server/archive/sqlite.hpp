@@ -65,8 +65,8 @@ enum class Mode { read_only, read_write_create };
 /// One connection, one owner.
 class Database {
   public:
-    /// A file that is made is its owner's alone (mode 0600), whatever the umask, and SQLite gives its log and its
-    /// shared memory the same mode. An existing file keeps its mode.
+    /// Opens a file. Only the owner may read a new file (mode 0600), whatever the umask, and SQLite gives its log and
+    /// its shared memory the same mode. An existing file keeps its mode.
     static Result<Database> open(const std::string& file, Mode mode);
 
     Result<void> execute(const char* sql);

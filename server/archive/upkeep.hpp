@@ -56,8 +56,8 @@ Result<void> backup(const std::filesystem::path& file, const std::filesystem::pa
 /// when it fails.
 Result<void> copy_whole(const sqlite::Database& source, const std::filesystem::path& into);
 
-/// A sentence when others than its owner may read or write the file. A new archive is its owner's alone; an older one,
-/// or one opened to others by hand, keeps its mode.
+/// A sentence when anyone besides its owner may read or write the file. A new archive is its owner's alone; an older
+/// one, or one opened to others by hand, keeps its mode.
 std::optional<std::string> open_to_others(const std::filesystem::path& file);
 
 /// Makes a file durable: its contents, and its name in its folder.

@@ -39,17 +39,17 @@ struct ClockJump {
     std::int64_t by_us = 0;      ///< negative: back
     std::int64_t system_us = 0;  ///< what the system's clock reads now
 };
-/// A sentence: by how much, from what time to what time.
+/// A sentence that gives the size of the jump, and the times before and after it.
 std::string text_of(const ClockJump& jump);
 
 /// Finds jumps of the system's clock, at each look.
 class ClockWatch {
   public:
-    static constexpr std::int64_t least_us = 500'000;    ///< chosen: far above what reading the clocks blurs
+    static constexpr std::int64_t least_us = 500'000;    ///< chosen: far above the error of reading the clocks
     static constexpr std::int64_t blurred_us = 100'000;  ///< chosen: a reading that took longer shows nothing
 
     explicit ClockWatch(ReadClocks read = read_clocks);
-    /// The jump since the last one told; small steps add up. None: none of `least_us` or more.
+    /// The jump since the last one returned, including small steps, which add up. None when it is less than `least_us`.
     std::optional<ClockJump> look();
 
     std::uint64_t jumps() const { return jumps_; }
@@ -58,7 +58,7 @@ class ClockWatch {
 
   private:
     ReadClocks read_;
-    std::int64_t apart_us_ = 0;  ///< system's clock minus monotonic clock, as told
+    std::int64_t apart_us_ = 0;  ///< system's clock minus monotonic clock, as of the last jump returned
     std::int64_t moved_us_ = 0;
     std::uint64_t jumps_ = 0;
 };

@@ -11,12 +11,12 @@ namespace aeolis::server {
 
 /// proto3 JSON with snake_case names; fields without presence are always printed.
 std::string to_json(const google::protobuf::Message& message);
-/// The same, of a message with many rows, some rows at a time: Protobuf takes twenty times the memory of the text.
-/// Frees the rows as it goes.
+/// The same for a message with many rows, some rows at a time, because Protobuf takes twenty times the memory of the
+/// text. Frees the rows meanwhile.
 /// @param rows  name of the message's field with the rows, which are messages
 std::string to_json_by_rows(google::protobuf::Message&& message, std::string_view rows);
 
-/// Strict: an unknown field or a wrong type is an Error that names it.
+/// Parses strictly: an unknown field or a wrong type is an Error that names it.
 Result<void> from_json(std::string_view json, google::protobuf::Message& message);
 
 }  // namespace aeolis::server

@@ -13,8 +13,7 @@ namespace aeolis::server {
 /// Escapes control characters as \n, \t or \x1b; leaves all else unchanged.
 std::string printable(std::string_view text);
 
-/// Prints a line besides the log: as it is or, after print_json(), as an object like the log's, of level error on
-/// stderr.
+/// Prints a line outside the log. After print_json() it is an object like the log's, with level error on stderr.
 void print_line(std::FILE* to, std::string_view text);
 void print_json();
 

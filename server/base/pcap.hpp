@@ -27,7 +27,7 @@ inline constexpr std::uint16_t first_port = 4200;  ///< chosen; a further link h
 inline constexpr std::size_t datagram_octets_max = 65507;
 
 std::string head();
-/// The records of `octets`; more than a datagram holds are several.
+/// Appends `octets` as records; more than a datagram holds become several.
 void append(std::string& to, Ert ert, std::uint16_t port, std::span<const std::uint8_t> octets);
 
 struct Datagram {
@@ -36,20 +36,20 @@ struct Datagram {
     std::span<const std::uint8_t> octets;
 };
 
-/// Octets of a file from a place on, as many as are asked for, or fewer where it ends; valid until the next call.
+/// Reads octets of a file from `at` on: as many as requested, or fewer at its end. They are valid until the next call.
 using Source = std::function<std::span<const std::uint8_t>(std::size_t at, std::size_t octets)>;
 
 class File {
   public:
-    /// Whether a file begins as one of these.
+    /// Whether a file begins like a capture.
     static bool is(std::span<const std::uint8_t> beginning);
-    /// Fails for what is no capture, and for a pcap file of another link type.
+    /// Fails for a file that is not a capture, and for a pcap file of another link type.
     static Result<File> open(Source source);
     static Result<File> open(std::span<const std::uint8_t> octets);  ///< which must outlive this
 
     /// The next datagram, valid until the next call; none at the end.
     std::optional<Datagram> next();
-    std::uint64_t others() const { return others_; }  ///< packets that are no whole UDP over IPv4 with a time
+    std::uint64_t others() const { return others_; }  ///< packets other than whole UDP over IPv4 with a time
     bool cut() const { return cut_; }                 ///< the file ends within a record, or is damaged there
 
   private:

@@ -12,7 +12,7 @@ inline std::string utc_text(std::chrono::system_clock::time_point time) {
     return fmt::format("{:%Y-%m-%dT%H:%M:%S}Z", fmt::gmtime(std::chrono::floor<std::chrono::seconds>(time)));
 }
 
-/// The machine's clock: only for a run's start and end, never for what happened in it (EarthClock).
+/// The machine's clock as text: only for a run's start and end, never for events in it (EarthClock).
 inline std::string wall_clock_text() {
     return utc_text(std::chrono::system_clock::now());
 }

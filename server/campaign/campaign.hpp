@@ -13,7 +13,7 @@
 
 namespace aeolis::server::campaign {
 
-/// A worker elsewhere, by what it answered in this call.
+/// A worker on another machine, and the cases that it flew in this call.
 struct WorkerShare {
     std::string name;
     std::uint64_t flown = 0;
@@ -31,11 +31,11 @@ struct Progress {
     std::uint64_t of = 0;
     std::uint64_t flown = 0;  ///< in this call
     double wall_s = 0.0;      ///< of this call
-    // Of workers elsewhere, empty without.
+    // Of workers on other machines; empty without them.
     std::vector<WorkerShare> workers{};
     std::vector<SetAside> set_aside{};
     std::uint64_t refused_answers = 0;  ///< of another campaign, of cases not asked for, or not understood
-    std::string waiting_for{};          ///< what keeps the campaign from going on, in words; empty: nothing
+    std::string waiting_for{};          ///< what the campaign waits for, in words; empty: nothing
     double rate_per_s() const { return wall_s > 0.0 ? static_cast<double>(flown) / wall_s : 0.0; }
 };
 

@@ -71,14 +71,14 @@ struct Summary {
     double touchdown_fraction() const;
 };
 
-/// What a results file says of its campaign.
+/// The campaign that a results file belongs to, and its size.
 struct ResultsHeader {
     std::string scenario;
     std::uint64_t seed = 0;
     std::uint64_t cases = 0;  ///< requested by the last call
     std::uint64_t kept = 0;   ///< stored in the file
 };
-/// Reads the header. The Error names the file and, if it is no campaign file of this version, says what it is.
+/// Reads the header. The Error names the file and, if it is not a campaign file of this version, says what it is.
 Result<ResultsHeader> results_header(const std::filesystem::path& file);
 
 /// The touchdown of a case.

@@ -28,7 +28,7 @@ struct Identity {
 /// The results of a campaign in an SQLite file. Rows are only ever added, and each case once.
 ///
 ///  campaign   one row: schema version, scenario, seed, dictionary, program, cases requested by the last call, queue
-///  cases      number, outcome, reason, end_cycle, touchdown, parachute, …; NULL where there was none
+///  cases      number, outcome, reason, end_cycle, touchdown, parachute, …; NULL when there was none
 ///  arrivals   place (from 1, in the order in which cases were stored), case_number
 ///  events     case_number, place (in the order of time), name, e_s, altitude_m, speed_mps
 ///

@@ -98,7 +98,7 @@ int archive_verify(const VerifyOptions& options) {
     if (!found) return failed_at("verify", found.error());
     if (found->stopped) return failed("archive verify: stopped before everything was compared");
     if (!*known && found->faults.empty())
-        fmt::print("note: audit: no head of it was kept outside the archive: an end that was cut off would not show\n");
+        fmt::print("note: audit: no head was kept outside the archive, so a cut-off end would not show\n");
     for (const auto& fault : found->faults) fmt::print("{}\n", fault);
     for (const auto& note : found->notes) fmt::print("note: {}\n", note);
     fmt::print("{}: {} runs, {} packets compared, {}\n", options.archive.string(), found->runs, found->packets,
@@ -175,12 +175,12 @@ void add_archive_verify(CLI::App& archive, int& exit_code) {
     auto& command = *archive.add_subcommand(
         "verify",
         "checks the file's structure, its audit, its sequence numbers, every derived row against the packets, "
-        "and all other rows against the run's fingerprint; a line a fault; exit code 1 when there is one");
+        "and all other rows against the run's fingerprint; prints a line per fault; exit code 1 when there is one");
     add_archive_and_dictionary(command, *options);
     command.add_option(
         "--audit-head", options->head,
-        "newest entry of the audit that is known to have been there: a file that the server keeps beside "
-        "its accounts, or ENTRY:HASH from its log; if left out, ARCHIVE-audit where it exists");
+        "newest audit entry that is known to have existed: a file that the server keeps beside its accounts, or "
+        "ENTRY:HASH from its log; if left out, the file ARCHIVE-audit, if it exists");
     command.add_option("--run", options->run, "only this run")->check(whole_number());
     command.callback([options, &exit_code] { exit_code = archive_verify(*options); });
 }
@@ -188,7 +188,7 @@ void add_archive_verify(CLI::App& archive, int& exit_code) {
 void add_archive_rebuild(CLI::App& archive, int& exit_code) {
     const auto options = std::make_shared<ArchiveOptions>();
     auto& command =
-        *archive.add_subcommand("rebuild", "derives everything again from the packets, in place of what is there; "
+        *archive.add_subcommand("rebuild", "derives everything again from the packets and replaces the stored rows; "
                                            "not while another program writes");
     add_archive_and_dictionary(command, *options);
     command.add_option("--run", options->run, "only this run")->check(whole_number());
@@ -212,7 +212,7 @@ void add_archive_prune(CLI::App& archive, int& exit_code) {
 void add_archive_vacuum(CLI::App& archive, int& exit_code) {
     const auto file = std::make_shared<std::filesystem::path>(default_archive);
     auto& command = *archive.add_subcommand(
-        "vacuum", "returns the space of pruned runs to the disk; needs as much again meanwhile");
+        "vacuum", "returns the space of pruned runs to the disk; needs as much space again meanwhile");
     add_archive_file(command, *file);
     command.callback([file, &exit_code] { exit_code = archive_vacuum(*file); });
 }

@@ -111,7 +111,7 @@ void add_campaign_command(CLI::App& program, int& exit_code) {
         ->check(whole_number())
         ->check(CLI::Range(std::uint64_t{1}, campaign_cases_max));
     command.add_option("--seed", options->seed, "seed of the errors")->check(whole_number())->capture_default_str();
-    auto& jobs = *command.add_option("--jobs", options->jobs, "cases at a time; one a processor if left out")
+    auto& jobs = *command.add_option("--jobs", options->jobs, "cases flown at a time; one per processor if left out")
                       ->check(whole_number())
                       ->check(CLI::Range(1U, campaign_jobs_max));
     add_engine(command, options->nats, "have the workers of this NATS engine fly the cases (aeolis worker)")

@@ -146,7 +146,7 @@ bool print_losses(const telemetry::PacketSource& source, const Printed& printed)
                    link.frames, link.bad_crc, link.bad_header, link.missing_frames, link.gaps, link.repeated_frames,
                    link.late_frames, link.restarts, link.cut_frames, link.skipped_octets);
     if (link.slips > 0)
-        fmt::print(stderr, "bits: {} times a frame began at another bit, or was inverted, than the one before\n",
+        fmt::print(stderr, "bits: {} frames began at another bit than the one before, or with another polarity\n",
                    link.slips);
     if (link.corrected_frames + link.uncorrectable_frames > 0)
         fmt::print(stderr, "Reed-Solomon: {} frames corrected, {} symbols; {} frames uncorrectable\n",
@@ -240,11 +240,12 @@ void add_decode_command(CLI::App& program, int& exit_code) {
                     "partition of the clock; the first that holds the count if left out")
         ->check(whole_number())
         ->needs(clock_kernel);
-    command.add_flag("--csv", options->csv,
-                     "print a row a packet: index, APID, count, time, then NAME=RAW|CALIBRATED each. Time is the first "
-                     "absolute time in the packet, seconds since its epoch (UNIX: as UTC). Where the XTCE file "
-                     "has none, it is the two numbers behind the primary header if their names contain 'coarse' "
-                     "and 'fine': counts and their binary fraction (CUC). Otherwise it is empty");
+    command.add_flag(
+        "--csv", options->csv,
+        "print a row per packet: index, APID, count, time, then NAME=RAW|CALIBRATED for each value. Time is "
+        "the first absolute time in the packet, seconds since its epoch (UNIX: as UTC). If the XTCE file "
+        "has none, it is the two numbers behind the primary header if their names contain 'coarse' "
+        "and 'fine': counts and their binary fraction (CUC). Otherwise it is empty");
     command.callback([options, &exit_code] { exit_code = decode(*options); });
 }
 

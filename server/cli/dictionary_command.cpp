@@ -37,7 +37,7 @@ std::vector<dictionary::Finding> unknown_actions(const dictionary::Dictionary& d
 int dictionary_check(const std::filesystem::path& directory) {
     std::error_code error;
     if (!std::filesystem::exists(directory, error))
-        return failed(fmt::format("dictionary check: {} is no directory and no file", directory.string()), 2);
+        return failed(fmt::format("dictionary check: {} is neither a directory nor a file", directory.string()), 2);
     const auto dictionary = loaded_dictionary(directory);
     if (!dictionary) return 1;
     if (const auto unknown = unknown_actions(*dictionary); !unknown.empty()) {
@@ -123,7 +123,7 @@ bool is_other_mission(const std::filesystem::path& path) {
 int dictionary_export(const std::filesystem::path& directory, const std::filesystem::path& out) {
     std::error_code error;
     if (!std::filesystem::exists(directory, error))
-        return failed(fmt::format("dictionary export: {} is no directory and no file", directory.string()), 2);
+        return failed(fmt::format("dictionary export: {} is neither a directory nor a file", directory.string()), 2);
     // A dictionary that breaks a rule is not exported.
     if (!loaded_dictionary(directory)) return 1;
     std::vector<dictionary::Finding> findings;
@@ -131,7 +131,7 @@ int dictionary_export(const std::filesystem::path& directory, const std::filesys
     if (!text) return failed("dictionary export: " + text.error().message);
     if (out.empty()) {
         std::fwrite(text->data(), 1, text->size(), stdout);
-        return std::fflush(stdout) == 0 ? 0 : failed("dictionary export: the standard output takes no more");
+        return std::fflush(stdout) == 0 ? 0 : failed("dictionary export: standard output cannot be written");
     }
     std::ofstream file{out, std::ios::binary};
     file << *text << std::flush;
@@ -158,8 +158,8 @@ void add_dictionary_command(CLI::App& program, int& exit_code) {
     auto& check = *command.add_subcommand("check", "checks every rule, and names each error with file and line");
     add_directory(check, "the dictionary's directory, a file that export wrote, or another mission's XTCE file");
     add_mission_xtce(check, options->xtce,
-                     "another mission's XTCE file, of which is said what is used, unused and not understood; may be "
-                     "given several times");
+                     "another mission's XTCE file; prints what of it is used, unused and not understood; may be given "
+                     "several times");
     check.callback([options, &exit_code] {
         if (options->xtce.empty() && is_other_mission(options->directory)) options->xtce.files = {options->directory};
         exit_code = options->xtce.empty() ? dictionary_check(options->directory) : xtce_check(options->xtce);

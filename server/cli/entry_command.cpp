@@ -35,7 +35,7 @@ int entry_reference(const EntryReferenceOptions& options) {
 
 void add_entry_command(CLI::App& program, int& exit_code) {
     const auto options = std::make_shared<EntryReferenceOptions>();
-    auto& command = *program.add_subcommand("entry", "entry guidance");
+    auto& command = *program.add_subcommand("entry", "prints tables of entry guidance");
     command.require_subcommand(1);
     auto& reference = *command.add_subcommand(
         "reference", "prints the tables that entry guidance follows, flown from the scenario (CSV)");

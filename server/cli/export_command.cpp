@@ -43,7 +43,7 @@ Result<std::optional<double>> sclk_of(const char* name, const std::optional<std:
 Result<std::optional<Ert>> ert_of(const char* name, const std::optional<std::string>& text) {
     if (!text) return std::optional<Ert>{};
     if (const auto ert = ert_from_text(*text)) return std::optional{*ert};
-    return Error{fmt::format("{} {}: no UTC time, such as 2012-219T05:10:47.4", name, *text)};
+    return Error{fmt::format("{} {}: not a UTC time, such as 2012-219T05:10:47.4", name, *text)};
 }
 
 using Begin = std::function<Result<void>(const v1::RunState&, const dictionary::Dictionary&)>;
@@ -84,11 +84,11 @@ class Output {
     }
     Result<void> write(std::string_view text) {
         if (std::fwrite(text.data(), 1, text.size(), to()) == text.size()) return {};
-        return Error{name_ + " takes no more"};
+        return Error{name_ + " cannot be written further"};
     }
     Result<void> finish() {
         if (std::fflush(to()) == 0) return {};
-        return Error{"what was written could not be kept"};
+        return Error{"the data could not be written completely"};
     }
 
   private:
@@ -189,8 +189,8 @@ void add_selection(CLI::App& command, ExportOptions& options) {
         .add_option("--channel,--channels", options.channels,
                     "names or aliases, separated by blanks or commas; all if left out")
         ->delimiter(',');
-    command.add_option("--from", options.from, "first SCLK [s]; of raw octets and packets UTC of reception");
-    command.add_option("--to", options.to, "last SCLK [s], or UTC");
+    command.add_option("--from", options.from, "first SCLK [s]; for raw octets and packets, UTC of reception");
+    command.add_option("--to", options.to, "last SCLK [s], or UTC of reception");
 }
 
 }  // namespace
@@ -199,33 +199,34 @@ void add_export_command(CLI::App& program, int& exit_code) {
     const auto options = std::make_shared<ExportOptions>();
     auto& command =
         *program.add_subcommand("export", "prints a run's samples in order of SCLK, live and recorded as one series, a "
-                                          "row a sample; or what its links brought, as it came (--raw), or the packets "
-                                          "found in that (--packets)");
+                                          "row per sample; or the octets of its links as received (--raw), or the "
+                                          "packets found in them (--packets)");
     add_selection(command, *options);
     auto* format = command
                        .add_option("--format", options->format,
-                                   "of samples csv (the default) or jsonl; of raw octets and packets bin (the default: "
-                                   "the octets alone) or pcap (UDP datagrams with their times, port 4200 and on, a "
-                                   "port a link)")
+                                   "for samples csv (the default) or jsonl; for raw octets and packets bin (the "
+                                   "default: the octets alone) or pcap (UDP datagrams with their times, from port 4200 "
+                                   "on, a port per link)")
                        ->check(CLI::IsMember({"csv", "jsonl", "bin", "pcap"}));
-    auto* raw = command.add_flag("--raw", options->raw, "octets of links as they came, good and bad");
-    command.add_flag("--packets", options->packets, "packets, in the order of reception")->excludes(raw);
+    auto* raw = command.add_flag("--raw", options->raw, "print octets of links as received, good and bad");
+    command.add_flag("--packets", options->packets, "print packets, in the order of reception")->excludes(raw);
     command.add_option("--link", options->link, "raw octets or packets of this link only");
     command.add_flag("--csv")->description("as CSV, the default")->excludes(format);
     command.add_option("--align", options->align,
-                       "print a line an instant and a column a channel, each with its newest value: at the "
-                       "times of the named channel, or at multiples of so many seconds");
+                       "print a line per instant and a column per channel, each with its newest value: at the "
+                       "times of the named channel, or at multiples of this many seconds");
     command.add_option("--out", options->out, "new file; standard output if left out");
     command.callback([options, &exit_code] {
         const bool raw_format = options->format == "bin" || options->format == "pcap";
         if (options->raw || options->packets) {
             const bool samples =
                 (!options->format.empty() && !raw_format) || !options->align.empty() || !options->channels.empty();
-            exit_code = samples ? failed("export: octets and packets are bin or pcap, without channels", 2)
-                                : export_raw(*options);
+            exit_code = samples
+                            ? failed("export: --raw and --packets take the formats bin and pcap, and no channels", 2)
+                            : export_raw(*options);
         } else {
             exit_code = raw_format || !options->link.empty()
-                            ? failed("export: bin, pcap and --link are of --raw and --packets", 2)
+                            ? failed("export: bin, pcap and --link need --raw or --packets", 2)
                             : export_samples(*options);
         }
     });

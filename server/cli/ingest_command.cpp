@@ -111,7 +111,7 @@ class Recording {
         Recording recording{file, options, start};
         if (!pcap::File::is(file.read(0, 4))) return recording;
         if (options.start || options.bits_per_second)
-            return Error{"a capture has times of its own: --start and --bits-per-second are of plain files"};
+            return Error{"a capture has times of its own: --start and --bits-per-second are for plain files"};
         const auto capture =
             pcap::File::open([&file](std::size_t at, std::size_t octets) { return file.read(at, octets); });
         if (!capture) return capture.error();
@@ -191,7 +191,7 @@ Result<void> check_rate(const IngestOptions& options) {
     constexpr double years_max = 100.0, seconds_a_year = 31'557'600.0;  // chosen
     if (!options.bits_per_second) return {};
     if (!std::isfinite(*options.bits_per_second) || *options.bits_per_second <= 0.0)
-        return Error{"--bits-per-second: a number, more than 0"};
+        return Error{"--bits-per-second: must be a number above 0"};
     double octets = 0.0;
     for (const auto& file : options.files) {
         std::error_code error;
@@ -302,8 +302,9 @@ class Ingest {
 
 /// A recording of X-band's samples, which is a run by itself.
 int ingest_samples(const IngestOptions& options) {
-    if (options.files.size() > 1) return failed("samples: one recording is a run, given by one file", 2);
-    if (!options.xtce.empty()) return failed("--xtce: samples hold tones of our own mission, no packets", 2);
+    if (options.files.size() > 1) return failed("samples: a recording is one run; give one file", 2);
+    if (!options.xtce.empty())
+        return failed("--xtce: not for samples, which hold tones of our own mission and no packets", 2);
     IngestTonesOptions tones = options.tones;
     tones.samples = options.files.front();
     tones.archive = options.archive;
@@ -321,7 +322,7 @@ int ingest(const IngestOptions& options) {
     Ert start = EarthClock{read_clocks}.now();
     if (options.start) {
         const auto told = ert_from_text(*options.start);
-        if (!told) return failed("--start " + *options.start + ": no UTC time, such as 2012-219T05:10:47.4", 2);
+        if (!told) return failed("--start " + *options.start + ": not a UTC time, such as 2012-219T05:10:47.4", 2);
         start = *told;
     }
     std::vector<RecordedFile> files;
@@ -382,32 +383,32 @@ void add_ingest_command(CLI::App& program, int& exit_code) {
     const auto options = std::make_shared<IngestOptions>();
     auto& command = *program.add_subcommand(
         "ingest",
-        "takes recorded files of a mission into a run of the archive, as a followed link brings it: plain "
-        "octets, or pcap and pcapng with the times of reception; or SigMF and WAV with samples of our own mission's "
-        "tones. Exit code 1 when anything was lost or not used");
+        "reads recorded files of a mission into a run of the archive, like a followed link: plain octets, or pcap and "
+        "pcapng with the times of reception; or SigMF and WAV with samples of our own mission's tones. Exit code 1 "
+        "when anything was lost or not used");
     command.add_option("files", options->files, "recorded files, in the order of reception: one stream")->required();
     command.add_option("--archive", options->archive, "SQLite file that keeps everything")->required();
     add_mission_xtce(command, options->xtce, "the mission's XTCE file; may be given several times; not for samples");
     add_stream_format(command, options->format);
-    command.add_option("--udp-port", options->port, "of a capture: datagrams to this port only; all if left out");
+    command.add_option("--udp-port", options->port, "for a capture: datagrams to this port only; all if left out");
     command.add_option(
         "--start", options->start,
-        "of a plain file: when its first octet was received, UTC; now if left out. Of samples: the first one, as the "
-        "file says if left out");
+        "for a plain file: UTC at which its first octet was received; now if left out. For samples: UTC of the first "
+        "one; as the file says if left out");
     command.add_option("--bits-per-second", options->bits_per_second,
-                       "of a plain file: the rate at which it was received; all at once if left out");
-    command.add_option("--pace", options->pace, "seconds of reception a second; 0: as fast as it goes")
+                       "for a plain file: the rate at which it was received; all at once if left out");
+    command.add_option("--pace", options->pace, "seconds of reception per second; 0: as fast as it goes")
         ->check(CLI::Range(0.0, 1.0e6))
         ->capture_default_str();
     auto& tones = options->tones;
     command
-        .add_option("--dictionary", tones.dictionary, "of samples: directory of the dictionary that names the tones")
+        .add_option("--dictionary", tones.dictionary, "for samples: directory of the dictionary that names the tones")
         ->capture_default_str();
-    command.add_option("--predict", tones.predict, "of samples: CSV of the Doppler that was removed before sampling");
-    command.add_option("--expected", tones.expected, "of samples: CSV of a Doppler that is still in them");
-    command.add_option("--at", tones.at_s, "of samples: the first one's time on the scale of those files, in seconds")
+    command.add_option("--predict", tones.predict, "for samples: CSV of the Doppler that was removed before sampling");
+    command.add_option("--expected", tones.expected, "for samples: CSV of a Doppler that is still in them");
+    command.add_option("--at", tones.at_s, "for samples: the first one's time on the scale of those files, in seconds")
         ->capture_default_str();
-    command.add_option("--exclude", tones.excluded_hz, "of samples: lines to leave out, in Hz; 0 is a DC block")
+    command.add_option("--exclude", tones.excluded_hz, "for samples: lines to remove, in Hz; 0 is a DC block")
         ->delimiter(',');
     command.callback([options, &exit_code] { exit_code = ingest(*options); });
 }

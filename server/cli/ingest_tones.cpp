@@ -29,7 +29,7 @@ Result<TimeTable> doppler_of(const std::optional<std::filesystem::path>& file) {
 Result<Ert> start_of(const IngestTonesOptions& options, const SampleRecording& recording) {
     if (options.start) {
         if (const auto told = ert_from_text(*options.start)) return *told;
-        return Error{"--start " + *options.start + ": no UTC time, such as 2012-219T05:10:47.4"};
+        return Error{"--start " + *options.start + ": not a UTC time, such as 2012-219T05:10:47.4"};
     }
     if (const auto told = ert_from_text(recording.datetime)) return *told;
     return EarthClock{read_clocks}.now();
@@ -65,7 +65,7 @@ int ingest_tones(const IngestTonesOptions& options) {
     if (!start) return failed(start.error().message, 2);
     const Ert entry{start->microseconds - std::llround(options.at_s * 1.0e6)};
     if (std::min(start->microseconds, entry.microseconds) < 0)
-        return failed("received before 2000, or --at is too great: packets cannot say such times", 2);
+        return failed("received before 2000, or --at is too great: packets cannot hold such times", 2);
     auto predict = doppler_of(options.predict);
     if (!predict) return failed(predict.error().message);
     auto expected = doppler_of(options.expected);

@@ -44,18 +44,17 @@ std::vector<CLI::Option*> add_stream_format(CLI::App& command, PacketStreamForma
                     if (word == "239") format.check_symbols = 16;
                 },
                 "frames are in Reed-Solomon codeblocks of (255,223) or (255,239), and are corrected; no: never. Code, "
-                "interleaving and basis are found by trying for cadu")
+                "interleaving and basis are found by trial for cadu")
             ->check(CLI::IsMember({"223", "239", "no"}));
     return {
         command.add_option("--format", format.name, "packets, tm, aos, cadu or pltu")->capture_default_str(),
         number("--skip", format.skip, "octets to skip before each packet, TM or AOS frame", 0, decode_skip_max)
             ->capture_default_str(),
         number("--frame-octets", format.frame_octets,
-               "octets of a TM or AOS frame, without marker and check symbols; found by trying if left out", 9, 65536),
-        number(
-            "--check-symbols", format.check_octets,
-            "octets behind each frame to skip, such as the check symbols of a code; found by trying for cadu, else 0",
-            0, 256),
+               "octets of a TM or AOS frame, without marker and check symbols; found by trial if left out", 9, 65536),
+        number("--check-symbols", format.check_octets,
+               "octets to skip behind each frame, such as the check symbols of a code; found by trial for cadu, else 0",
+               0, 256),
         reed_solomon,
         number("--interleave", format.interleave, "code words of a Reed-Solomon codeblock: 1, 2, 3, 4, 5 or 8", 1, 8)
             ->check(CLI::IsMember({1, 2, 3, 4, 5, 8}))
@@ -70,8 +69,8 @@ std::vector<CLI::Option*> add_stream_format(CLI::App& command, PacketStreamForma
                 "basis of Reed-Solomon symbols, dual or conventional; for tm and aos dual if left out")
             ->check(CLI::IsMember({"dual", "conventional"}))
             ->needs(reed_solomon),
-        yes_or_no("--randomised", format.randomised, "whether frames are randomised; found by trying for cadu"),
-        yes_or_no("--fecf", format.crc, "whether frames end with a CRC-16; found by trying if left out"),
+        yes_or_no("--randomised", format.randomised, "whether frames are randomised; found by trial for cadu"),
+        yes_or_no("--fecf", format.crc, "whether frames end with a CRC-16; found by trial if left out"),
         command.add_flag("--control-field", format.agreed.control_field,
                          "AOS frames have an operational control field of 4 octets; a TM frame says so itself"),
         command.add_flag("--header-error-control", format.agreed.header_error_control,
@@ -84,18 +83,18 @@ CLI::Option* add_mission_xtce(CLI::App& command, MissionXtce& xtce, const std::s
     auto* files = command.add_option("--xtce", xtce.files, description)->allow_extra_args(false);
     command
         .add_option("--root", xtce.root,
-                    "name of the container with which packets begin, where several in the XTCE files have no base")
+                    "name of the container with which packets begin, if several in the XTCE files have no base")
         ->needs(files);
     command
         .add_option("--leading-size", xtce.leading_size,
-                    "what the LeadingSize of a text counts, which XTCE files do not say: bits or octets")
+                    "unit of a text's LeadingSize, which XTCE files do not say: bits or octets")
         ->check(CLI::IsMember({"bits", "octets"}))
         ->capture_default_str()
         ->needs(files);
     command
         .add_option("--time", xtce.time,
-                    "the parameter that holds a packet's time, where the XTCE files do not say; with :seconds, "
-                    ":milliseconds, :microseconds, :cuc, :cuc-preamble, :cds or :cds-preamble behind it for how")
+                    "the parameter that holds a packet's time, if the XTCE files do not say; its form may follow: "
+                    ":seconds, :milliseconds, :microseconds, :cuc, :cuc-preamble, :cds or :cds-preamble")
         ->needs(files);
     return files;
 }

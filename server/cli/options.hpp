@@ -24,10 +24,11 @@ CLI::Validator whole_number();
 
 /// Adds the options for how a file or link carries packets. @return the options, each of which may need another
 std::vector<CLI::Option*> add_stream_format(CLI::App& command, PacketStreamFormat& format);
-/// Adds --xtce, which may be given several times, and what is said beside it: --root, --leading-size, --time. @return --xtce
+/// Adds --xtce, which may be given several times, and the options that go with it: --root, --leading-size, --time.
+/// @return --xtce
 CLI::Option* add_mission_xtce(CLI::App& command, MissionXtce& xtce, const std::string& description);
 
-/// Adds --nats and what is said beside it. @return --nats
+/// Adds --nats and the options that go with it. @return --nats
 CLI::Option* add_engine(CLI::App& command, cluster::EngineAddress& address, const std::string& description);
 
 inline constexpr const char* default_archive = "run-data/aeolis.db";
@@ -40,7 +41,7 @@ struct ArchiveOptions {
     std::optional<std::uint32_t> run;
 };
 void add_archive_file(CLI::App& command, std::filesystem::path& archive);
-/// Adds --archive, --dictionary, --xtce and what belongs to it.
+/// Adds --archive, --dictionary, --xtce and the options that go with --xtce.
 void add_archive_and_dictionary(CLI::App& command, ArchiveOptions& options);
 
 }  // namespace aeolis::server

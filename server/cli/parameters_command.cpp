@@ -123,13 +123,14 @@ void add_parameters_command(CLI::App& program, int& exit_code) {
     command.add_option("CHANGES", options->changes, "NAME=VALUE, up to 32, names and ranges as in parameters.csv")
         ->required()
         ->expected(1, 32);
-    command.add_option("--table", options->table, "version of the table that this makes, other than the one held")
+    command
+        .add_option("--table", options->table, "version of the new table; it must differ from that of the table held")
         ->required()
         ->check(CLI::Range(1, 65535));
     command
         .add_option("--after", options->after,
-                    "command file by which the table held was made; once for each, in their order; none: the table "
-                    "held is the one built in")
+                    "command file that changed the table held; give each such file, in their order; if left out, the "
+                    "table held is the one built in")
         ->allow_extra_args(false);
     command.add_option("--dictionary", options->directory, "the dictionary's directory")->capture_default_str();
     command.callback([options, &exit_code] { exit_code = parameters(*options); });

@@ -69,7 +69,7 @@ int perhaps_taken(const v1::CommandSequence& sequence, const std::string& why, c
     return failed(
         fmt::format(
             "send: {}: it is not known whether the commands were taken: while this run goes on, send the file again "
-            "with --id {}; what was taken is not taken again",
+            "with --id {}; commands that were taken are not taken again",
             why, options.id),
         exit_not_known);
 }
@@ -109,7 +109,7 @@ int send(const SendOptions& options) {
 void add_send_command(CLI::App& program, int& exit_code) {
     const auto options = std::make_shared<SendOptions>();
     auto& command = *program.add_subcommand(
-        "send", "sends a command file to a server, all of its commands or none; prints a line a command; exit code 1 "
+        "send", "sends a command file to a server, all of its commands or none; prints a line per command; exit code 1 "
                 "when nothing was sent, 3 when no answer tells whether it was");
     command.add_option("--file", options->file, "JSON, as POST /api/v1/runs/{run}/sequences takes it")->required();
     command.add_option("--server", options->server, "http://HOST:PORT or https://HOST:PORT")
@@ -126,10 +126,10 @@ void add_send_command(CLI::App& program, int& exit_code) {
     command.add_option("--by", options->by, "name of the sender, for a server without accounts, if the file has none");
     command.add_option(
         "--id", options->id,
-        "id of this sending, 1 to 56 of A-Z a-z 0-9 . _ : - ; a file sent again with the id of before is "
-        "not taken twice in one run. A new one if left out");
+        "id of this request, 1 to 56 characters of A-Z a-z 0-9 . _ : - ; a file sent again with the same id is not "
+        "executed twice in one run. A new id if left out");
     command.add_option("--run", options->run, "send only if this is the current run")->check(whole_number());
-    command.add_flag("--dry-run", options->dry_run, "only tell what would happen");
+    command.add_flag("--dry-run", options->dry_run, "only report what would happen");
     command.callback([options, &exit_code] {
         if (options->id.empty()) options->id = new_secret().substr(0, id_length);
         exit_code = send(*options);

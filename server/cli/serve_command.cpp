@@ -248,9 +248,9 @@ void add_backend_options(CLI::App& command, ServeOptions& options) {
             "--listen", options.listen,
             "ADDRESS:PORT; port 0 takes a free one. An address that other machines reach needs --accounts and TLS")
         ->capture_default_str();
-    command.add_option(
-        "--accounts", options.accounts,
-        "file of users and tokens, made at the first start; without it nobody logs in, on loopback only");
+    command.add_option("--accounts", options.accounts,
+                       "file of users and tokens, created at the first start; without it nobody logs in, and only "
+                       "loopback can be used");
     command.add_option("--tls-certificate", options.certificate,
                        "PEM file with the server's certificate and its chain; serves https only");
     command.add_option("--tls-key", options.key, "PEM file with its private key");
@@ -261,21 +261,21 @@ void add_backend_options(CLI::App& command, ServeOptions& options) {
     command
         .add_option("--trusted-proxies", options.trusted_proxies,
                     "addresses and networks of the proxies in front of this server, separated by commas: clients are "
-                    "told apart by the X-Forwarded-For that these send")
+                    "told apart by the X-Forwarded-For that the proxies send")
         ->delimiter(',');
     command.add_option("--archive", options.archive, "SQLite file that keeps everything")->capture_default_str();
     command
         .add_option(
             "--keep-raw", options.keep_raw_mb,
-            "MB (of 2^20 octets) of each link of a run that are kept as they came, bad frames too; of more, the "
-            "oldest are removed; 0: none")
+            "MB (2^20 octets) that are kept of each link of a run as received, bad frames too; the oldest beyond that "
+            "are removed; 0: none")
         ->check(CLI::Range(0, 1 << 20))
         ->capture_default_str();
     command.add_option("--web", options.web, "directory of the built console")->capture_default_str();
-    command.add_option("--log-level", options.log_level, "what is logged to standard error")
+    command.add_option("--log-level", options.log_level, "least severe level that is logged to standard error")
         ->check(CLI::IsMember(std::vector<std::string>{log_levels.begin(), log_levels.end()}))
         ->capture_default_str();
-    command.add_option("--log-format", options.log_format, "text for people, or json: an object a line")
+    command.add_option("--log-format", options.log_format, "text for people, or json: an object per line")
         ->check(CLI::IsMember({"text", "json"}))
         ->capture_default_str();
 }

@@ -53,7 +53,7 @@ Result<void> take_file(CLI::App& command, const std::filesystem::path& file) {
     for (const auto& item : *lines) {
         auto* option = item.name == "config" ? nullptr : command.get_option_no_throw("--" + item.name);
         if (option == nullptr || item.inputs.size() != 1)
-            return Error{fmt::format("{}: '{}' is no option of aeolis {} with one value", file.string(),
+            return Error{fmt::format("{}: '{}' is not an option of aeolis {} that takes one value", file.string(),
                                      item.fullname(), command.get_name())};
         try {
             option->run_callback_for_default()->default_val(item.inputs.front());

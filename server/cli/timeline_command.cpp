@@ -316,7 +316,7 @@ bool is_folder(const std::filesystem::path& path) {
 /// Returns 0 when every required row of constraints.csv and every hold is proven.
 int timeline_analyse(const TimelineAnalyseOptions& options) {
     if (!is_folder(options.directory))
-        return failed(fmt::format("timeline analyse: {} is no directory", options.directory.string()), 2);
+        return failed(fmt::format("timeline analyse: {} is not a directory", options.directory.string()), 2);
     const auto dictionary = loaded_dictionary(options.directory);
     if (!dictionary) return 1;
     const auto analysis = analyse_timeline(*dictionary);
@@ -331,7 +331,7 @@ int timeline_analyse(const TimelineAnalyseOptions& options) {
 int timeline_diff(const TimelineDiffOptions& options) {
     for (const auto& directory : {options.before, options.after})
         if (!is_folder(directory))
-            return failed(fmt::format("timeline diff: {} is no directory", directory.string()), 2);
+            return failed(fmt::format("timeline diff: {} is not a directory", directory.string()), 2);
     const auto before = loaded_dictionary(options.before);
     const auto after = loaded_dictionary(options.after);
     if (!before || !after)

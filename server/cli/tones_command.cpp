@@ -392,22 +392,22 @@ int tones_bench(const TonesBenchOptions& options) {
 
 void add_tones_decode(CLI::App& tones, int& exit_code) {
     const auto options = std::make_shared<TonesDecodeOptions>();
-    auto& command = *tones.add_subcommand("decode", "prints the tones in a file of complex samples, a line a symbol");
+    auto& command = *tones.add_subcommand("decode", "prints the tones in a file of complex samples, a line per symbol");
     command.add_option("--samples", options->samples, "the file: SigMF, WAV of two channels, or raw samples")
         ->required();
-    command.add_option("--rate", options->rate_hz, "samples a second; SigMF and WAV say it");
+    command.add_option("--rate", options->rate_hz, "samples per second; SigMF and WAV files state it");
     command.add_option("--format", options->format,
-                       "of raw samples: cf32, cf64, ci8, cu8, ci16, ci32; big-endian with _be");
+                       "for raw samples: cf32, cf64, ci8, cu8, ci16, ci32; big-endian with _be");
     command.add_option("--predict", options->predict, "CSV of the Doppler that was removed: time, doppler_hz");
     command.add_option("--start", options->start_s, "time of the first sample [s]")->capture_default_str();
     command.add_option("--expected", options->expected,
                        "CSV of the Doppler that is still in the samples, of a fixed oscillator: time, doppler_hz");
     command.add_option("--carrier", options->carrier, "CSV to write: the carrier, eight rows a second");
-    command.add_option("--exclude", options->excluded_hz, "lines in the samples to leave out [Hz]; 0 is a DC block")
+    command.add_option("--exclude", options->excluded_hz, "lines to remove from the samples [Hz]; 0 is a DC block")
         ->delimiter(',');
     command.add_option("--symbols-from", options->symbols_from_s,
                        "symbols begin at this time [s] and directly after each other: each is decided at its end");
-    command.add_flag("--json", options->json, "a JSON object a line");
+    command.add_flag("--json", options->json, "print a JSON object per line");
     add_shared(command, options->shared);
     command.callback([options, &exit_code] { exit_code = tones_decode(*options); });
 }
@@ -417,7 +417,7 @@ void add_tones_simulate(CLI::App& tones, int& exit_code) {
     auto& command = *tones.add_subcommand("simulate", "writes a file of samples, from lists or from a landing");
     command.add_option("--out", options->out, "file to write; as SigMF if it ends in .sigmf-meta or .sigmf-data")
         ->required();
-    command.add_option("--rate", options->rate_hz, "samples a second")->capture_default_str();
+    command.add_option("--rate", options->rate_hz, "samples per second")->capture_default_str();
     command.add_option("--format", options->format, "cf32, cf64, ci8, cu8, ci16, ci32; big-endian with _be")
         ->capture_default_str();
     auto* list = command.add_option("--tones", options->tones, "CSV: start_s,tone");

@@ -81,10 +81,10 @@ void add_worker_command(CLI::App& program, int& exit_code) {
     auto& command = *program.add_subcommand(
         "worker", "flies the cases that campaigns of the same program put into a queue (campaign --nats)");
     add_engine(command, options->nats, "the NATS engine, nats://HOST:PORT")->required();
-    command.add_option("--jobs", options->settings.jobs, "cases at a time; one a processor if left out")
+    command.add_option("--jobs", options->settings.jobs, "cases flown at a time; one per processor if left out")
         ->check(whole_number())
         ->check(CLI::Range(1U, worker_jobs_max));
-    command.add_option("--name", options->settings.name, "as the campaign shows it; host and process if left out");
+    command.add_option("--name", options->settings.name, "name that the campaign shows; host and process if left out");
     add_shared(command, options->shared);
     command.callback([options, &exit_code] { exit_code = run_worker(*options); });
 }

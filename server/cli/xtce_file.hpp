@@ -16,7 +16,7 @@ namespace aeolis::server {
 /// Reads the text of a file. The Error is one line that names the file.
 Result<std::string> text_of_file(const std::filesystem::path& path);
 
-/// The XTCE of a mission of others, as it is given on the command line.
+/// The XTCE of another mission, as given on the command line.
 struct MissionXtce {
     std::vector<std::filesystem::path> files;
     std::string root;  ///< name of the container with which packets begin; empty: the only one that can
@@ -27,13 +27,13 @@ struct MissionXtce {
     std::string text() const;  ///< the names of the files, without folders
 };
 
-/// What was read of it. Faults and unsupported elements have been printed to stderr with their files and lines.
+/// The model read from it. Faults and unsupported elements have been printed to stderr with their files and lines.
 struct XtceFile {
     std::optional<dictionary::xtce::PacketModel> model;  ///< none: the fault was printed
     int exit_code = 0;
-    std::uint16_t id = 0;  ///< changes with every change of the files, and of what was said beside them
+    std::uint16_t id = 0;  ///< changes with every change of the files, and of the options given with them
     std::optional<telemetry::TimeSource> time{};
-    std::size_t findings = 0;  ///< what of the files is not understood
+    std::size_t findings = 0;  ///< number of things in the files that are not understood
     explicit operator bool() const { return model.has_value(); }
 };
 XtceFile read_xtce(const MissionXtce& xtce);

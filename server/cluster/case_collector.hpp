@@ -13,11 +13,11 @@
 
 namespace aeolis::server::cluster {
 
-/// How long a collector waits for what. Chosen; tests wait less.
+/// How long a collector waits. Chosen; tests wait less.
 struct CollectorTimes {
     std::chrono::milliseconds store_every{500};  ///< longest time until an answer is durable
     std::chrono::seconds quiet{15};        ///< without an answer: the queue is asked whether it still has the cases
-    std::chrono::seconds again_after{30};  ///< a worker that says nothing for so long has lost its case
+    std::chrono::seconds again_after{30};  ///< a worker that is silent for so long has lost its case
 };
 
 /// Queues the cases among 1 … `cases` that the store lacks, for the workers of the engine, and stores each answer once.
@@ -27,7 +27,7 @@ struct CollectorTimes {
 ///          in the file
 /// End      all cases are stored or set aside, or `stop` was set. Then the queue is emptied: no further case begins
 /// Memory   the numbers of the cases that wait, at most two thousand
-/// Faults   a failed write to the store ends the campaign. An engine that is away is waited for, and told in
+/// Faults   a failed write to the store ends the campaign. An engine that is away is waited for, and named in
 ///          `waiting_for`; what it lost is queued again
 Result<campaign::Progress> collect(campaign::CampaignStore& store, const campaign::Identity& identity,
                                    std::uint64_t cases, Engine& engine, const std::atomic<bool>& stop,

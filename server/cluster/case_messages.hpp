@@ -8,7 +8,7 @@
 
 #include <string>
 
-// What a campaign and its workers say to each other, and where (docs/scale.md).
+// The messages between a campaign and its workers, and their subjects (docs/scale.md).
 namespace aeolis::server::cluster {
 
 inline constexpr const char* campaign_stream = "AEOLIS_CAMPAIGNS";   ///< the newest CampaignOrder of each
@@ -17,7 +17,7 @@ inline constexpr const char* answer_stream = "AEOLIS_CASE_ANSWERS";  ///< CaseAn
 
 inline constexpr std::uint64_t tries_max = 3;  ///< a case that was given this often without an answer is set aside
 
-/// The subjects of one campaign. `kind` tells what must be the same to fly alike: program and dictionary.
+/// The subjects of one campaign. `kind` stands for what must be equal to fly alike: program and dictionary.
 struct CampaignSubjects {
     CampaignSubjects(const std::string& kind, const std::string& campaign);
 
@@ -27,11 +27,11 @@ struct CampaignSubjects {
 
 /// Eight octets of SHA-256 over program and dictionary, in hexadecimal digits.
 std::string kind_of(const campaign::Identity& identity);
-/// The campaign that a subject of an order is of; empty: it is none of this kind.
+/// The campaign that an order's subject names; empty: it is not of this kind.
 std::string campaign_of(const std::string& subject, const std::string& kind);
 
 v1::FlownCase message_of(const campaign::CaseResult& result);
-/// The Error says what no case of ours holds.
+/// Reads the result from an answer. The Error names a value that no result of this program has.
 Result<campaign::CaseResult> result_of(const v1::CaseAnswer& answer);
 
 }  // namespace aeolis::server::cluster

@@ -35,7 +35,7 @@ struct WorkerProgress {
 
 /// Flies one case; none: it was abandoned because of `stop`.
 using FlyCase = std::function<std::optional<campaign::CaseResult>(std::uint64_t)>;
-/// Gets ready for the cases of a campaign. The Error says why they cannot be flown here.
+/// Prepares for the cases of a campaign. The Error says why they cannot be flown here.
 using BeginCampaign = std::function<Result<FlyCase>(const v1::CampaignOrder& order)>;
 
 /// Reads the order's scenario; its cases are landings, whose common part is flown with the first one.
@@ -45,7 +45,7 @@ BeginCampaign landings(const dictionary::Dictionary& dictionary, const std::atom
 ///
 /// In       `own`: of the running program and its dictionary; campaigns of others are left out. tell(progress): called
 ///          on the calling thread, at each look
-/// Faults   an engine that is away is waited for, and told in `waiting_for`
+/// Faults   an engine that is away is waited for, and named in `waiting_for`
 WorkerProgress work(Engine& engine, const campaign::Identity& own, const BeginCampaign& begin,
                     const WorkerSettings& settings, const std::atomic<bool>& stop,
                     const std::function<void(const WorkerProgress&)>& tell);

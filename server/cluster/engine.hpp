@@ -17,7 +17,8 @@
 // library.
 namespace aeolis::server::cluster {
 
-/// Where an engine is, and who asks. A URL may hold user:password@ or token@; a file of credentials keeps them out of
+/// The address of an engine, and the credentials of its client. A URL may hold user:password@ or token@; a file of
+/// credentials keeps them out of
 /// the list of processes.
 struct EngineAddress {
     std::string url;                    ///< nats://HOST:PORT or tls://HOST:PORT, or several with commas between them
@@ -32,7 +33,7 @@ struct EngineAddress {
 /// The address without its secrets, as logs and messages may show it.
 std::string shown(const EngineAddress& address);
 
-/// What becomes of a stream's messages.
+/// How long a stream keeps its messages.
 enum class Keep : std::uint8_t {
     newest,      ///< the newest of each subject
     until_taken  ///< each until its one consumer has taken it
@@ -48,7 +49,7 @@ class Given {
 
     std::string_view octets() const;
     std::uint64_t times() const;  ///< how often it was given, this time included
-    /// It is done, once the engine has confirmed that. The Error: it may be given again.
+    /// Marks the message as done; returns once the engine has confirmed that. After an Error it may be given again.
     Result<void> take();
     void keep_waiting();  ///< starts the consumer's time anew
     void give_back();     ///< somebody else may have it at once
@@ -97,9 +98,9 @@ class Engine {
 
     /// Makes the stream of these subjects unless there is one of this name, which must then be of the same form.
     Result<void> make_stream(const std::string& stream, const std::string& subjects, Keep keep);
-    /// Stored when it returns.
+    /// Publishes a message, which is stored when this returns.
     Result<void> publish(const std::string& subject, std::string_view octets);
-    /// Several at once, all stored when it returns. After an Error any of them may be.
+    /// Publishes several messages, which are all stored when this returns. After an Error, any of them may be stored.
     Result<void> publish(const std::string& subject, const std::vector<std::string>& messages);
     /// The subjects of a stream that have messages, among those that `filter` matches; none where there is no stream.
     Result<std::vector<std::string>> subjects(const std::string& stream, const std::string& filter);

@@ -29,7 +29,7 @@ namespace aeolis::server {
 ///          pieces of one stream
 /// Counts   totals of the link and of its sequences once a second, over all connections; what went wrong is logged at
 ///          most every ten seconds, as numbers by kind
-/// Faults   octets that are no packet are counted and skipped. When bare packets cannot be found any more, it
+/// Faults   octets that are not packets are counted and skipped. When bare packets cannot be found any more, it
 ///          reconnects. Each change is logged and is an item of the run
 /// Silence  the link is up once packets come. It is lost when the connection breaks, and when packets stay out longer
 ///          than it has learnt that they do (telemetry/link_rhythm.hpp)

@@ -16,13 +16,13 @@ namespace aeolis::server {
 struct PacketStreamFormat {
     std::string name = "packets";  ///< packets, tm, aos, cadu or pltu
     std::size_t skip = 0;          ///< octets before each packet or bare frame
-    // None: found by trying.
+    // None: found by trial.
     std::optional<std::size_t> frame_octets{}, check_octets{};
     std::optional<bool> crc{}, randomised{};
     std::optional<bool> coded{};  ///< in Reed–Solomon codeblocks, by which frames are corrected
     std::optional<std::size_t> check_symbols{}, interleave{};  ///< of the code: of a word, 32 or 16; 1 … 8
     std::optional<telemetry::ReedSolomonCode::Basis> basis{};
-    FrameAgreement agreed{};  ///< but for its `crc`
+    FrameAgreement agreed{};  ///< except its `crc`
     std::optional<std::uint8_t> virtual_channel{};
 };
 
@@ -34,7 +34,7 @@ Result<telemetry::RecognisedSource> packet_source(const PacketStreamFormat& form
 /// The same, for the streams of a station.
 telemetry::ForeignStation::Recognise recognise_by(const PacketStreamFormat& format);
 
-/// What to look at when nothing, not even idle data, was found in all that was received; empty: something was.
+/// Advice when nothing, not even idle data, was found in all that was received; empty: something was found.
 /// @param counted  frames or packets with a count were found
 std::string nothing_found(const PacketStreamFormat& format, const telemetry::LinkCounters& link,
                           const telemetry::PacketCounters& packets, bool counted);

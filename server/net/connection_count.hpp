@@ -12,7 +12,7 @@
 
 namespace aeolis::server {
 
-/// The places for connections, and who has them.
+/// Counts the places for connections, and who holds them.
 ///
 /// Rule     a connection begins as a stranger's, and is known once a request on it came from somebody with rights.
 ///          Strangers have a part of the places only, and of these each network a part. When a network's part is full,
@@ -43,7 +43,7 @@ class ConnectionCount {
         Place(const Place&) = delete;
         Place& operator=(const Place&) = delete;
         bool known() const { return entry_->known; }
-        /// Makes the connection a known one. The Error says why it must be refused: it stays a stranger's then.
+        /// Makes the connection a known one. The Error says why it must be refused; it then stays a stranger's.
         /// @param person  who it is by account; empty: there are no accounts
         Result<void> know(const std::string& person) { return count_.know(*entry_, person); }
 

@@ -27,13 +27,13 @@ class ConsoleBackend {
         WebServer::Settings web_server{};
         std::filesystem::path accounts{};  ///< empty: no accounts, possible on loopback only
         std::filesystem::path archive{}, scenarios{}, web{};
-        /// Null: our own mission; else that of the dictionary, and must outlive this.
+        /// The mission of the dictionary, which must outlive this. Null: our own mission.
         const telemetry::OtherMission* other = nullptr;
         ReadClocks clocks = read_clocks;
         std::uint64_t raw_octets_kept = archive::raw_octets_kept;  ///< of each link of a run, as they came
     };
-    /// Chosen: a block of memory of so many octets is mapped by itself and goes back to the system once it is free, so
-    /// that each thread's longest answer does not stay with the process.
+    /// Memory blocks of this size or more are mapped separately and returned to the system when freed; chosen. So the
+    /// memory of each thread's longest answer does not stay with the process.
     static constexpr int mapped_octets = 256 << 10;
     /// Opens all parts. Fails with one line that names the archive or the address. The dictionary must outlive this.
     static Result<std::unique_ptr<ConsoleBackend>> open(Settings settings, const dictionary::Dictionary& dictionary);
@@ -46,7 +46,7 @@ class ConsoleBackend {
     std::uint16_t downlink_port() const { return downlink_ ? downlink_->port() : std::uint16_t{0}; }
     void run();
     void stop();  ///< from any thread
-    /// Reads the certificate again; what comes of it is in the log. From any thread.
+    /// Reads the certificate again, and logs the result. Call from any thread.
     void renew_certificate();
     std::uint16_t port() const { return server_->port(); }
     bool secure() const { return server_->secure(); }

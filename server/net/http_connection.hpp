@@ -44,7 +44,7 @@ struct Peer {
 Task<> serve_http(Stream& stream, HttpService& service, Peer peer);
 Task<> serve_http(TlsStream& stream, HttpService& service, Peer peer);
 
-inline constexpr std::chrono::seconds refusal_max{1};  ///< chosen: for a connection beyond the limit to be told so
+inline constexpr std::chrono::seconds refusal_max{1};  ///< chosen: to answer a connection beyond the limit
 
 /// Answers a connection beyond the limit, whatever its request: 503 with the reason.
 Task<> refuse_connection(Stream& stream, const std::string& reason);

@@ -11,16 +11,16 @@
 
 namespace aeolis::server::net {
 
-/// The proxies in front of the server, whose X-Forwarded-For is believed: without it everybody behind a proxy would be
-/// one client.
+/// The proxies in front of the server, whose X-Forwarded-For is trusted. Without it, everybody behind a proxy would
+/// count as one client.
 class TrustedProxies {
   public:
     /// Reads addresses and networks ("127.0.0.1", "10.0.0.0/8", "fd00::/8"). Fails with the text that is neither.
     static Result<TrustedProxies> parse(const std::vector<std::string>& texts);
-    /// Whether the address is a proxy's; false for text that is no address.
+    /// Whether the address is a proxy's; false for text that is not an address.
     bool contains(std::string_view address) const;
-    /// The address from which a request comes: the peer's, or the last one of X-Forwarded-For that is no trusted proxy.
-    /// Addresses before that one are what the client says, and nobody's word is taken for them. Text that is no address
+    /// The address from which a request comes: the peer's, or the last one of X-Forwarded-For that is not a trusted
+    /// proxy's. Addresses before that one are only claimed by the client, and are ignored. Text that is not an address
     /// ends the search at the proxy that passed it on.
     std::string client(const std::string& peer, std::string_view forwarded_for) const;
 

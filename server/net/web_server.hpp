@@ -37,8 +37,8 @@ class WebServer {
 
     struct Handlers {
         std::function<void(HttpRequest, Respond)> request;
-        /// Who sends a request with these, as far as connections are shared: none, a stranger; empty, somebody known on
-        /// a server without accounts; else a person. Null: everybody is known.
+        /// Finds the person whose share of the connections a request takes. None: a stranger; empty: somebody known, on
+        /// a server without accounts. Null: everybody is known.
         std::function<std::optional<std::string>(const Credentials&)> person;
         /// The longest body accepted for this request; null: HttpRequest::body_octets_max.
         std::function<std::size_t(const Credentials&, std::string_view method, std::string_view path)> body_octets;
@@ -81,8 +81,8 @@ class WebServer {
     void every(unsigned milliseconds, std::function<void()> action);  ///< on the network thread; call before run()
     std::size_t connections() const;                                  ///< on the network thread
     bool secure() const;                                              ///< over TLS
-    /// Reads certificate and key again, for connections from then on. When it fails, those of before stay. On the
-    /// network thread.
+    /// Reads certificate and key again, for connections from then on. When it fails, the previous ones stay in use.
+    /// Call on the network thread.
     Result<void> renew_certificate();
 
   private:

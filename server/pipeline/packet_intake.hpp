@@ -48,8 +48,8 @@ class Numbering {
 ///
 /// In       packets in the order of receipt               Out   records, appended to a batch
 /// Time     another mission's packet without a time of its own stands at its reception (telemetry/packet_clocks.hpp)
-/// Partly   another mission's packet that is not decoded to its end is sampled as far as it is; it has the reason,
-///          counts as not decoded, and the first of each kind is told
+/// Partly   another mission's packet that is not decoded to its end is sampled as far as it is. It counts as not
+///          decoded, with the reason, and the first of each kind is reported
 /// Newest   of real time: ours by its clock, which never goes back; another mission's by reception, because its clocks
 ///          may restart and stand still
 /// Rules    a packet seen before on the other path is stored (it is the proof) and marked, but its samples are not
@@ -82,7 +82,7 @@ class PacketIntake {
     };
     static std::optional<FiringFields> find_firing_fields(const dictionary::Dictionary& dictionary);
 
-    /// The packet's one decode. Valid until the next call.
+    /// The packet's content, decoded here unless it was before. Valid until the next call.
     const telemetry::DecodedPacket& decoded(const telemetry::ReceivedPacket& packet);
     void sample(const archive::PacketRecord& record, const telemetry::Decoded& content, Numbering& numbering,
                 archive::Batch& batch);
@@ -110,7 +110,7 @@ class PacketIntake {
     std::vector<std::optional<LatestValue>> latest_;
     telemetry::PacketClocks clocks_;  ///< of another mission's packets
     std::string remark_;
-    static constexpr std::size_t told_max = 20;  ///< chosen: nobody reads more; all are counted
+    static constexpr std::size_t told_max = 20;  ///< chosen: kinds that are reported; all are counted
     std::set<std::string> told_;                 ///< kinds of packets that were not decoded whole
     std::uint64_t recorded_octets_ = 0;
     std::uint64_t not_decoded_ = 0;

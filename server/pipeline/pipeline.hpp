@@ -26,7 +26,7 @@ using archive::Sequence;
 struct PublishedBatch {
     RunId run;
     Sequence first_seq = 0, last_seq = 0;
-    bool built = true;            ///< false: nobody wanted items; read them from the archive
+    bool built = true;            ///< false: items were not wanted; read them from the archive
     std::vector<v1::Item> items;  ///< in order of seq; when built, first_seq … last_seq without gaps
 };
 

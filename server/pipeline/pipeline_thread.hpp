@@ -122,7 +122,7 @@ class PipelineThread {
         std::uint64_t commits = 0;                          ///< that made something durable
         double commit_s = 0.0, longest_commit_s = 0.0;      ///< of all commits; of one
         std::map<std::string, Received> links;              ///< by name: packets and tones that reached Earth
-        std::map<std::string, archive::LinkTotals> totals;  ///< by link: of the run, as last told
+        std::map<std::string, archive::LinkTotals> totals;  ///< by link: of the run, as last reported
     };
     Figures figures() const;
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 // Estimates the error of an inertial path from radar readings along it: a Kalman filter forward, and a smoother back
-// (Rauch, Tung and Striebel), so that the radar of the last two minutes tells about the entry too.
+// (Rauch, Tung and Striebel), so that the radar of the last two minutes improves the entry too.
 //
 //   truth = path ⊕ error:  p + δp,  v + δv,  Exp(ψ) · R_MB
 //   δṗ = δv        δv̇ = ψ × R f − R (b + s ∘ f) + G δp − 2 ω × δv        ψ̇ = −ω × ψ
@@ -58,10 +58,10 @@ struct Gap {
     double seconds = 0.0;
     Vector3 p_MoB_M = Vector3::Zero();       ///< [m] at its end
     Vector3 sensed_M_mps = Vector3::Zero();  ///< as flight navigated over it
-    /// Path less navigated state, before the gap: what the error grows by when the path changes over.
+    /// Path less navigated state, before the gap: the error grows by this when the path continues from that state.
     Vector3 p_M_m = Vector3::Zero(), v_M_mps = Vector3::Zero(), angle_M_rad = Vector3::Zero();
-    bool radar = false;  ///< may have mended the navigated state meanwhile: the difference then counts as unknown, too
-    /// What flight takes itself to be wrong by, for silences of the IMU.
+    bool radar = false;  ///< may have corrected the navigated state meanwhile: the difference is then uncertain too
+    /// Flight's own estimate of its error due to silences of the IMU.
     double attitude_rad = 0.0, velocity_mps = 0.0, altitude_m = 0.0;
 };
 
@@ -87,11 +87,11 @@ class ErrorFilter {
 
     ErrorFilter(const SensorErrors& errors, double accelerometer_bias_sigma_mps2, double target_radius_m);
 
-    /// Moves the error over a step, then takes in the readings of its time. `whole`: smoothed() tells the error at its
-    /// end.
+    /// Propagates the error over a step, then applies the readings of that time. `whole`: smoothed() gives the error at
+    /// its end.
     void step(const Motion& motion, const std::vector<Sighting>& sightings, bool whole = true);
-    /// Goes on with the error of the navigated state: that of the path before the gap and what they differed by, known no
-    /// better than before, and worse by what flight believes.
+    /// Continues with the error of the navigated state: that of the path before the gap, plus their difference. It is
+    /// known no better than before, and less well by flight's own estimate.
     void pass(const Gap& gap);
 
     /// The smoothed error at the end of each whole step.
@@ -121,8 +121,9 @@ class ErrorFilter {
     double target_radius_m_;
     State error_ = State::Zero();
     Covariance covariance_ = Covariance::Zero();
-    /// The attitude is not mended by the radar any more, but counts as unknown as it is (Schmidt's filter): after a
-    /// silence of the IMU the radar would narrow it to less than it is worth, by what this filter does not model.
+    /// Whether the radar no longer corrects the attitude, whose uncertainty still counts (Schmidt's filter). After a
+    /// silence of the IMU the radar would make it seem better known than it is, because of what this filter does not
+    /// model.
     bool attitude_considered_ = false;
     std::vector<Step> steps_;
     std::uint64_t taken_ = 0, refused_ = 0;

@@ -22,7 +22,7 @@ struct Navigated {
     flight::gnc::NavigatedState state;
 };
 
-/// What flight takes its navigation to be wrong by, for silences of the IMU; nought before the first.
+/// Flight's own estimate of its navigation's error due to silences of the IMU; zero before the first.
 struct Believed {
     Sclk at;
     double attitude_rad = 0.0, velocity_mps = 0.0, altitude_m = 0.0;
@@ -40,7 +40,8 @@ struct Recorded {
     std::map<std::int64_t, std::uint64_t> octets_in;  ///< by whole second of SCLK
 };
 
-/// What a recording holds of the path: each reading of IMU and radar, the navigated state, ground's solution. R52
+/// The data of a recording that concern the path: each reading of IMU and radar, the navigated state, ground's
+/// solution. R52
 ///
 /// In       packets of one landing, in any order, each any number of times       Out   each reading once, in order
 /// Faults   a packet that cannot be decoded is left out and counted
@@ -54,10 +55,10 @@ class RecordedLanding {
     const std::map<std::uint32_t, flight::ImuSample>& imu() const { return imu_; }  ///< by their count
     std::vector<BeamsAt> beams() const;
     std::vector<Navigated> navigated() const;
-    /// The belief recorded first from `time` on, else the last before it; none: nothing was recorded of it.
+    /// The first such estimate recorded from `time` on, else the last before it; none: none was recorded.
     std::optional<Believed> believed(Sclk time) const;
-    /// When the reading with count 0 ended. A packet's time is the first tick after its last reading, so the earliest of
-    /// all packets' times, each less 5 ms a reading, is right to 1/1600 s: ticks and readings meet on that grid.
+    /// When the reading with count 0 ended. A packet's time is the first tick after its last reading. So the earliest
+    /// of all packets' times, each less 5 ms a reading, is right to 1/1600 s, the common grid of ticks and readings.
     Sclk imu_began() const { return imu_began_; }
     std::optional<double> target_radius_m() const { return target_radius_m_; }
     std::optional<Sclk> entry() const { return entry_; }  ///< of the last parameters

@@ -12,10 +12,10 @@
 
 namespace aeolis::server {
 
-/// Fails when an id of these commands is none, or is given twice: 1 to 64 of A–Z a–z 0–9 . _ : -
+/// Fails when a command's id is malformed or given twice. An id has 1 to 64 characters of A–Z a–z 0–9 . _ : -
 Result<void> check_client_ids(std::span<const v1::CommandRequest> requests);
 
-/// The commands of a run that carry an id of their client, so that one sent again is not taken twice.
+/// The commands of a run that carry an id of their client, so that a command sent again is not executed twice.
 ///
 /// In       accepted requests and their stages             Out   the reply to a request that repeats one
 /// Rule     within a run an id belongs to one request: one that is equal, apart from its `request` number, repeats it;

@@ -20,7 +20,8 @@ Result<commands::Request> request_of(const v1::CommandRequest& message, const st
     request.dry_run = message.dry_run();
     if (const auto& at = message.release_at(); !at.empty()) {
         request.release_at = ert_from_text(at);
-        if (!request.release_at) return Error{fmt::format("release_at: '{}' is no time as 2012-219T05:10:47.400", at)};
+        if (!request.release_at)
+            return Error{fmt::format("release_at: '{}' is not a time like 2012-219T05:10:47.400", at)};
     }
     request.hold = message.hold();
     request.priority = message.priority();

@@ -12,9 +12,8 @@
 // Converts the command path's inputs and outputs to and from stream messages and archive rows.
 namespace aeolis::server {
 
-/// The Error names a field that cannot be read.
-/// `browser`: without accounts, the one that sends it, for the second person.
-/// `director`: whether its sender may send hazardous commands.
+/// Reads a request. The Error names a field that cannot be read. `browser`: without accounts, the browser that sends
+/// it, by which a second person is told apart. `director`: whether its sender may send hazardous commands.
 Result<commands::Request> request_of(const v1::CommandRequest& message, const std::string& browser = {},
                                      bool director = false);
 v1::CommandReply message_of(const commands::Reply& reply);

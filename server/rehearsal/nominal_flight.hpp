@@ -31,8 +31,8 @@ struct NominalFlight {
         double from_s = 0.0;
         std::optional<double> to_s;  ///< none: no end is predicted
     };
-    /// About the target, to hold 99 % of the landings: what the mission aims at. Full axes, the longer one along the
-    /// course.
+    /// The ellipse about the target that the mission wants to hold 99 % of the landings. Full axes, the longer one
+    /// along the course.
     struct Ellipse {
         double major_m = 0.0, minor_m = 0.0;
         double azimuth_deg = 0.0;  ///< from north to east, 0 … 180
@@ -52,7 +52,7 @@ inline constexpr double nominal_flight_before_entry_s = 1200.0;
 /// links and of the station, and without its name. Scenarios that differ only in these are expected to go alike.
 simulation::Scenario expected_scenario(simulation::Scenario scenario);
 
-/// The ellipse that the scenario aims at; none: it has none.
+/// The ellipse that the scenario sets as its goal; none: it sets none.
 std::optional<NominalFlight::Ellipse> ellipse_of(const simulation::Scenario& scenario);
 
 /// Flies the landing of an expected scenario, commanded as planned: by the scenario's script or, without "do edl" in

@@ -9,7 +9,7 @@
 
 namespace aeolis::server {
 
-/// Ground's predict of a landing: its Doppler, and when lift changes sides in reversals of the bank, in seconds from
+/// Ground's prediction of a landing: its Doppler, and when lift changes sides in reversals of the bank, in seconds from
 /// the scenario's entry.
 struct PredictedFlight {
     TimeTable doppler_hz;

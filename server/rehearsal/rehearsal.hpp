@@ -58,7 +58,7 @@ class Rehearsal {
     bool finished() const { return !broken_.empty() || landing().finished(); }
     archive::Outcome outcome() const;
     std::string outcome_reason() const;  ///< with the limits that a landing did not keep
-    /// By the scenario's limits.
+    /// The judgement by the scenario's limits.
     simulation::Judgement judgement() const;
     std::string digest() const { return digest_.text(); }
 

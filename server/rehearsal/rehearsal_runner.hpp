@@ -83,7 +83,7 @@ class RehearsalRunner {
     std::size_t at_uplink() const { return at_uplink_; }
     /// The name of the command with this number; none: no such number yet.
     std::optional<std::string> name_of_command(std::uint64_t number) const;
-    /// Those of the requests that do not carry the id of an accepted command: no other is sent.
+    /// The requests that do not carry the id of an accepted command; only these are sent.
     std::vector<v1::CommandRequest> unknown(const std::vector<v1::CommandRequest>& requests) const;
 
   private:

@@ -25,8 +25,8 @@ struct ScriptedRequest {
     commands::Request request;
     std::string refused;  ///< the constraint that it would break, after the changes before it; empty: none
 };
-/// The script in the order of sending. Each change of the timeline is analysed as one by hand is: a second of one
-/// processor each. R19, R51
+/// The script in the order of sending. Each change of the timeline is analysed like one sent by hand, which takes a
+/// second of one processor. R19, R51
 std::deque<ScriptedRequest> script_of(const simulation::Scenario& scenario, const dictionary::Dictionary& dictionary);
 
 /// A landing with its command path and the scenario's own script, which is sent through that path.
@@ -54,10 +54,10 @@ class ScriptedLanding {
     /// Sends the script's commands that are due, passes to the vehicle what the gateway radiates, then flies one cycle
     /// of 1/64 s. The result is valid until the next step, and until then the caller's to move from.
     telemetry::Received& step();
-    /// Gives received packets to the command path: for replies, and for the preconditions of later commands. Those that
-    /// it needs are then decoded.
+    /// Gives received packets to the command path, for replies and for the preconditions of later commands. Decodes
+    /// those that it needs.
     void hear(telemetry::Received& received);
-    /// The packet's one decode, made now unless it was before.
+    /// The packet's content, decoded now unless it was before.
     const telemetry::DecodedPacket& decoded(telemetry::ReceivedPacket& packet) const;
 
     commands::Reply submit(const commands::Request& request);

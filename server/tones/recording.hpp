@@ -11,7 +11,7 @@
 
 namespace aeolis::server {
 
-/// Where a recording's samples are, and what its file says of them.
+/// Where a recording's samples are, and what its file says about them.
 struct SampleRecording {
     std::filesystem::path samples;        ///< the file that has them
     std::uint64_t first_octet = 0;        ///< of the first sample
@@ -21,13 +21,14 @@ struct SampleRecording {
     std::optional<double> frequency_hz;   ///< of the middle of the band
     std::string datetime;                 ///< of the first sample, as the file has it
     std::string kind = "raw samples";     ///< SigMF, WAV
-    std::vector<std::string> told;        ///< what is not as it should be, a line each
+    std::vector<std::string> told;        ///< deviations from the format, a line each
 };
 
-/// Looks at a file: SigMF (by either of its two files), WAV (RIFF and RF64), otherwise raw samples, without metadata.
+/// Recognises the format of a file: SigMF (by either of its two files), WAV (RIFF and RF64), otherwise raw samples,
+/// without metadata.
 ///
-/// Fails in one line for what has no complex samples: mono audio, real samples, other kinds of files that are known by
-/// their first octets, metadata that cannot be read. Sources: [sigmf], [wave], [rf64].
+/// Fails with one line for a file without complex samples: mono audio, real samples, other kinds of files that are
+/// known by their first octets, metadata that cannot be read. Sources: [sigmf], [wave], [rf64].
 Result<SampleRecording> look_at_recording(const std::filesystem::path& file);
 
 /// The metadata of a SigMF recording.

@@ -41,8 +41,8 @@ class SampleReader {
     std::vector<char> octets_;
 };
 
-/// Writes samples. Integers are scaled so that noise of power 1 per sample has a deviation of a sixteenth of their range
-/// in each part.
+/// Writes samples. Integers are scaled so that noise of power 1 a sample has, in each part, a deviation of a sixteenth
+/// of their range.
 class SampleWriter {
   public:
     static Result<SampleWriter> open(const std::filesystem::path& file, SampleFormat format);

@@ -23,7 +23,7 @@ struct SampleFormat {
     bool operator==(const SampleFormat&) const = default;
 
     std::size_t octets_a_sample() const { return 2 * static_cast<std::size_t>(part_octets); }
-    /// As SigMF names it: cf32_le, ci16_be, ci8. Three octets have no name there, and are ci24_le here.
+    /// The name in SigMF: cf32_le, ci16_be, ci8. SigMF has no name for three octets; here it is ci24_le.
     std::string name() const;
 
     /// Reads whole samples. `octets`: as many as `samples` need.

@@ -49,8 +49,8 @@ ErrorCount carrier_aided_errors(const MfskWaveform& waveform, double carrier_c_n
 ErrorCount receiver_errors(const MfskWaveform& waveform, double total_c_n0_dbhz, std::uint64_t symbols,
                            std::uint64_t seed);
 
-/// The same when it is told when symbols begin, one after the other on a steady carrier. An error: the likeliest tone is
-/// another, erased or not, or there is none.
+/// Symbol errors of the receiver when it knows when symbols begin, one directly after the other on a steady carrier. An
+/// error is a symbol whose likeliest tone, erased or not, is another one, or that has none.
 struct SteadyCount {
     ErrorCount errors;
     double c_n0_dbhz = 0.0;  ///< as the receiver measured it, mean

@@ -40,9 +40,9 @@ constexpr std::array<std::string_view, sizeof...(I)> module_names(std::index_seq
 
 inline constexpr std::size_t message_type_count = std::variant_size_v<flight::Message>;
 
-/// By index in flight::Message.
+/// The names of messages, by index in flight::Message.
 inline constexpr auto message_names = name_detail::message_names(std::make_index_sequence<message_type_count>{});
-/// By flight::ModuleId.
+/// The names of modules, by flight::ModuleId.
 inline constexpr auto module_names = name_detail::module_names(std::make_index_sequence<flight::module_count>{});
 
 constexpr std::string_view name_of(flight::ModuleId id) {

@@ -18,7 +18,7 @@
 namespace aeolis::server {
 
 /// The threaded executive: each module is a task with its own thread and one blocking wait, on its mailbox. Priorities
-/// by deadline (flight/kernel/deadlines.hpp); SCHED_FIFO where the system permits. R4, R8
+/// follow the deadlines (flight/kernel/deadlines.hpp), with SCHED_FIFO where the system permits. R4, R8
 ///
 /// In       one tick's inputs, by cycle()                 Out   bit for bit what the deterministic executive gives
 /// Clock    virtual: cycle() returns when every task is idle, however long that takes. Real: a cycle not done within
@@ -45,7 +45,7 @@ class ThreadedExecutive final : public flight::CycleRunner {
 
     void cycle(flight::ComputerState& state, const flight::DeviceInputs& in, flight::DeviceOutputs& out) override;
 
-    /// Zero on a virtual clock.
+    /// Clock ticks lost since the last call; zero on a virtual clock.
     int take_ticks_skipped() override { return std::exchange(ticks_not_taken_, 0); }
     /// Why tasks do not run at real-time priorities, in words; empty when they do.
     const std::string& notice() const { return notice_; }

@@ -10,11 +10,11 @@ namespace aeolis::simulation {
 ///
 /// A command acts when it reaches its terminal; the reply is ready a fixed time later, plus up to 2 ticks of jitter.
 /// Our assumptions: pyro 2 ticks (31 ms), thrusters 3, heaters 4, antenna and X-band's mode 6, IMU 8, radar 12
-/// (0.19 s), UHF 32 (0.5 s); at start thrusters enabled, both IMUs on, entry antenna selected, radar and heaters off. An
-/// antenna that is switched on replaces the other. Both units of a device drive the same hardware; one switch powers
+/// (0.19 s), UHF 32 (0.5 s); at start thrusters enabled, both IMUs on, entry antenna selected, radar and heaters off.
+/// An antenna that is switched on replaces the other. Both units of a device drive the same hardware; one switch powers
 /// the UHF transmitters of both.
-/// UHF is off, and X-band sends telemetry, in a run that starts before the timeline changes that; later runs start as
-/// if it had.
+/// In a run that starts before the timeline switches to UHF and tones, UHF is off and X-band sends telemetry. A later
+/// run starts with both switched.
 class Avionics {
   public:
     Avionics(double start_before_entry_s, Random random);

@@ -29,7 +29,7 @@ class Recorder {
     std::uint64_t refused_octets_ = 0;
 };
 
-/// Takes the first whole packet off `octets`; empty when there is none or the octets are no packet.
+/// Takes the first whole packet off `octets`; empty when there is none or the octets are not a packet.
 std::span<const std::uint8_t> take_packet(std::span<const std::uint8_t>& octets);
 
 }  // namespace aeolis::simulation

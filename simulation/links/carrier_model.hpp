@@ -12,12 +12,13 @@
 
 namespace aeolis::simulation {
 
-/// What a receiver tells of the X-band carrier, in statistical form: no samples, but a phase with noise each 1/64 s.
+/// A statistical model of a receiver's estimates of the X-band carrier: no samples, but a phase with noise each 1/64 s.
 ///
 /// Eight times a second a parabola is fitted to the phases of 39, 25 or 7 cycles (0.61, 0.39, 0.11 s: the windows of
 /// telemetry/mfsk/carrier_tracker), the longest over which the carrier keeps coherent. Its slope is the frequency. So
-/// neighbouring estimates have noise in common, and a swerve smears or is not found, as it is with samples. Found: with
-/// an energy of 9 dB in the window. The carrier is acquired after 1 s at 20.5 dB-Hz, after 4 s at 15.8 (docs/tones.md);
+/// neighbouring estimates have noise in common, and a swerve smears or is not found, as it is with samples. The carrier
+/// is found with an energy of 9 dB in the window. The carrier is acquired after 1 s at 20.5 dB-Hz, after 4 s at 15.8
+/// (docs/tones.md);
 /// it is lost after 1.5 s without being found. Left out: false carriers, and cycle slips.
 /// In       X-band fields, one a cycle without a gap         Out   estimates, half the longest window late
 /// A value; copies continue alike.

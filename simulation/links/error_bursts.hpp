@@ -19,7 +19,7 @@ class ErrorBursts {
     void set_fraction(double fraction);
 
     void spoil(std::span<std::uint8_t> octets);
-    /// Lets the time of `octets` pass without sending: bursts begin and end all the same.
+    /// Lets the time of `octets` pass without sending; bursts begin and end meanwhile.
     void idle(double octets);
 
   private:

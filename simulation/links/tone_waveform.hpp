@@ -17,11 +17,11 @@ struct SentTone {
 
 /// One tone's modulation at a sample rate: exp(j m sq) = cos m + j sin m · sq.
 ///
-/// The square wave sq is without the harmonics that the sampling could not hold: a front end filters them off before it
-/// samples.
+/// The square wave sq lacks the harmonics that the samples could not represent, because a front end filters them off
+/// first.
 class ModulatedTone {
   public:
-    /// Harmonics up to 0.45 of `rate_hz`.
+    /// Keeps harmonics up to 0.45 of `rate_hz`.
     ModulatedTone(const MfskWaveform& waveform, int tone, double rate_hz);
 
     /// The signal relative to the unmodulated carrier, 1 · e^j0. `cycles`: of the subcarrier, from the rise of its

@@ -9,12 +9,12 @@
 
 namespace aeolis::simulation {
 
-/// The way of X-band's tones to Earth: symbols as they are sent, and whether anything of them can arrive.
+/// The path of X-band's tones to Earth: symbols as they are sent, and whether anything of them can arrive.
 ///
 /// A symbol lasts 10 s at most. The waveform's modulation index splits the power (mfsk.csv, docs/tones.md): at 32° the
 /// carrier has −1.4 dB of the total, the tone, both first sidebands together, −6.4 dB. Earth sets behind the terrain,
-/// or when the scenario says so; tones sent after Earth set do not count as sent. What is heard is the receiver's
-/// matter: XBandReceiverModel, or telemetry/mfsk from samples.
+/// or when the scenario says so; tones sent after Earth set do not count as sent. The receiver decides what is heard:
+/// XBandReceiverModel, or telemetry/mfsk from samples.
 class XBandLink {
   public:
     explicit XBandLink(const Radio& radio) : radio_(radio) {}

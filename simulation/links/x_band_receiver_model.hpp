@@ -14,7 +14,7 @@ namespace aeolis::simulation {
 
 /// Ground's receiver of X-band in statistical form: carrier, state of the link, and tones, from what arrives alone.
 ///
-/// In       X-band fields, one a cycle without a gap        Out   what a receiver of samples would tell
+/// In       X-band fields, one a cycle without a gap        Out   what a receiver of samples would report
 /// Link     up while the carrier is followed; before the first one it is down after a search of 10 s, as with samples
 /// Tones    one decision for each symbol during which the carrier was heard, none for others. It is drawn from the
 ///          exact symbol error of a symbol as long as the carrier was heard with the tone (detect_tone), at its mean
@@ -52,7 +52,7 @@ class XBandReceiverModel {
     bool found_ = false;  ///< the carrier, in the newest eighth
     CarrierLock lock_ = CarrierLock::searching;
     std::int64_t without_ticks_ = 0;
-    std::optional<bool> up_;  ///< as told; none: not yet
+    std::optional<bool> up_;  ///< as last reported; none: not yet
 };
 
 }  // namespace aeolis::simulation

@@ -23,7 +23,7 @@ class Gusts {
     bool blow_at(double altitude_m) const { return deviation_mps_ > 0.0 && altitude_m < top_m; }
     /// Advances the gusts by `step_s` of flight at this speed through the air.
     void advance(double altitude_m, double airspeed_mps, double step_s);
-    /// The gust's velocity [m/s], along the axes of M. Only where gusts blow: above `top_m` its sign would be reversed.
+    /// The gust's velocity [m/s], along the axes of M. Valid up to `top_m`; above, its sign would be reversed.
     Vector3 at(double altitude_m, const Horizon& local) const;
 
     static constexpr double top_m = 5000.0;

@@ -14,7 +14,8 @@ class Configuration {
     explicit Configuration(const Scenario& scenario)
         : masses_(scenario.masses), gyration_(scenario.gyration), stations_(scenario.stations),
           propellant_kg_(scenario.masses.propellant_kg) {}
-    /// The configurations that flight/devices/effectors.hpp draws: at entry, and when the engines take over.
+    /// The configurations for which flight/devices/effectors.hpp gives positions: at entry, and when the engines take
+    /// over.
     static Configuration at_entry(const Scenario& scenario);
     static Configuration at_powered_descent(const Scenario& scenario);
 

@@ -8,7 +8,7 @@
 
 namespace aeolis::simulation {
 
-/// Eight throttled descent engines, each with its own thrust, mounted as flight/devices/effectors.hpp draws them.
+/// Eight throttled descent engines, each with its own thrust, mounted as in flight/devices/effectors.hpp.
 ///
 /// 31 … 3603 N each, specific impulse 204 s at least thrust to 223 s at most. [facts]
 /// Our assumptions: they ignite 0.15 s after the command, and only when the valves have been open for 5 s (priming);

@@ -8,7 +8,7 @@
 
 namespace aeolis::simulation {
 
-/// Eight entry thrusters of 302 N, specific impulse 220 s [facts], mounted as flight/devices/effectors.hpp draws them.
+/// Eight entry thrusters of 302 N, specific impulse 220 s [facts], mounted as in flight/devices/effectors.hpp.
 ///
 /// Pulses are rectangular. Our assumption: a valve opens and closes 4 ms after its command, and stays open for at least
 /// 4 ms.
@@ -17,7 +17,8 @@ class Thrusters {
     /// Sets the pulses of the cycle that begins now.
     void command(const flight::ThrusterCommand& command, bool enabled, double now_s);
 
-    /// Mean force and torque over a step, in B, torque about the drawing's origin; and the propellant burnt.
+    /// Mean force and torque over a step, in B, and the propellant burnt. The torque is about the origin of
+    /// effectors.hpp.
     struct Push {
         Vector3 force_B = Vector3::Zero();
         Vector3 torque_B = Vector3::Zero();

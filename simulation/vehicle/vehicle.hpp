@@ -109,7 +109,7 @@ class Vehicle {
     Configuration configuration_;
     std::bitset<32> fired_;  ///< by PyroId
     Vector3 centre_B_m_;     ///< reference point of body_, from the stage's own centre of mass
-    /// Origins of the drawings of thrusters and engines, also from there: on the axis.
+    /// Origins of effectors.hpp for thrusters and engines, on the axis, also from the stage's centre of mass.
     Vector3 thrusters_from_B_m_, engines_from_B_m_;
     Engines engines_;
     Bridle bridle_;

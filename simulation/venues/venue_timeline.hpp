@@ -15,7 +15,7 @@ namespace aeolis::simulation {
 
 /// A short replacement of the timeline: the actions that a landing needs, at the times of timeline.csv.
 ///
-/// Nothing waits, fails or is reported.
+/// It waits for no reply, and reports nothing.
 /// In       GNC's triggers, which start anchors          Out   GNC's configuration, commands to devices
 /// Rate     64 Hz: act() before GNC and after it         Memory   none beyond itself; a value
 class VenueTimeline {

@@ -137,7 +137,7 @@ struct CarrierSearch::State {
         mean /= static_cast<float>(present);
         const int aside = std::min(noise_bins, bins / 4);
         medians.resize(static_cast<std::size_t>(bins));
-        // median_of[i]: of the bins i … i + aside − 1, every noise_step-th; those between are taken from the one before.
+        // medians[i]: of the bins i … i + aside − 1, for every noise_step-th i; those between repeat the one before.
         for (int i = 0; i < bins; ++i) {
             if (i % noise_step != 0) {
                 medians[static_cast<std::size_t>(i)] = medians[static_cast<std::size_t>(i - 1)];

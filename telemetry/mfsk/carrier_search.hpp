@@ -28,9 +28,9 @@ struct CarrierFound {
 /// Out     carriers in a window of 1 s, over ±1200 Hz/s in lines of 50 Hz/s, the strongest first; after four windows
 ///         without one, also in the window of all 4 s, over ±300 Hz/s in lines of 12.5
 /// Memory  the powers of 4 s
-/// Faults  the threshold is a union bound: Pfa of a window ≤ false_alarm in noise whose density changes little over 1 kHz,
-///         and anyhow with time. The noise of a frequency is the greater of the medians to either side, so that the edge
-///         of a filter gives no carrier. Zero power gives no carrier
+/// Faults  the threshold is a union bound: Pfa of a window ≤ false_alarm in noise whose density changes little over 1
+///         kHz, and anyhow with time. The noise of a frequency is the greater of the medians to either side, so that
+///         the edge of a filter gives no carrier. Zero power gives no carrier
 /// Source: [richards-radar] for the non-coherent sum and its distribution; lengths and grid are chosen.
 class CarrierSearch {
   public:

@@ -24,11 +24,11 @@ struct CarrierHop {
     double frequency_deviation_hz = 0.0;         ///< standard deviation of the frequency; 0 unless found
     double carrier_n0_hz = 0.0;                  ///< carrier power to noise density, of the window that was fitted
     double seen = 0.0;                           ///< fraction of the hop that is not a gap
-    /// Components in quadrature to the carrier, the tone, if any, and in phase with it, less the carrier; with noise of
-    /// deviation about 1 a sample, by the hop's own noise. Gaps are 0.
+    /// The component in quadrature to the carrier, which holds the tone, if any, and the component in phase with it,
+    /// less the carrier. Both are scaled by the hop's own noise to a noise deviation of about 1 a sample. Gaps are 0.
     std::vector<float> quadrature, in_phase;
-    /// Powers around `spectrum_hz` in the samples, near the carrier, as Spectrum gives them; of the hop's noise each has
-    /// mean 1.
+    /// Powers around `spectrum_hz` in the samples, near the carrier, as Spectrum gives them. In the hop's noise each
+    /// has a mean of 1.
     std::vector<float> spectrum;
     double spectrum_hz = 0.0;
 };
@@ -48,9 +48,10 @@ struct HopLayout {
     double hop_s() const { return hop_samples() / rate_hz; }
 };
 
-/// Tracks a carrier of known initial frequency. Each hop is fitted in the middle of a window of hops.
+/// Tracks a carrier of known initial frequency.
 ///
-/// Frequency and rate of the newest fit predict where the next is searched.
+/// Each hop is fitted in the middle of a window of hops. Frequency and rate of the newest fit predict where the next
+/// one is sought.
 /// In      hops of samples, contiguous; a sample of exactly 0 is a gap
 /// Out     each hop once, in order, up to half a window later
 /// Noise   of each hop by itself: the median of its spectrum around the carrier. All else is relative to it, so that a
@@ -58,10 +59,10 @@ struct HopLayout {
 /// Effort  a narrow fit over 0.6 s, a wide one when that fails or has too little energy, then over 0.4 and 0.1 s for a
 ///         carrier that swings; windows of 1.4, 2.6 and 5.1 s for a weak one
 /// Memory  the longest window
-/// Faults  a line beyond the parts' band, which the fit sees at another frequency, is not in the samples there: it is lost
-///         at once. The carrier is lost after 1.5 s, or three quarters of a window, without it (20 s when it has long been too
-///         weak to be acquired again), gaps not counted, or after a gap of 10 s: hops in memory are then reported as not
-///         found
+/// Faults  a line beyond the parts' band, which the fit sees at another frequency, is not in the samples there: it is
+///         lost at once. The carrier is lost after 1.5 s, or three quarters of a window, without it (20 s when it has
+///         long been too weak to be acquired again), gaps not counted, or after a gap of 10 s: hops in memory are then
+///         reported as not found
 class CarrierTracker {
   public:
     explicit CarrierTracker(const HopLayout& layout);
@@ -132,7 +133,7 @@ class CarrierTracker {
     std::int64_t frequency_sample_ = 0;            ///< the sample at which that holds
     double noise_density_ = 0.0;
     double level_hz_ = 0.0;  ///< carrier to noise density, a long average
-    double genuine_ = 1.0;   ///< of the amplitude that was fitted, what the samples have at the frequency; running mean
+    double genuine_ = 1.0;   ///< fraction of the fitted amplitude that the samples have at its frequency; running mean
     int missed_ = 0, gap_hops_ = 0;
     int short_in_row_ = 0;  ///< hops found by a shorter window alone
     bool lost_ = true, settled_ = false;

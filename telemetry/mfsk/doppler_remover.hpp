@@ -9,13 +9,13 @@
 
 namespace aeolis::telemetry {
 
-/// Removes an expected Doppler that is still in the samples, as of a receiver whose oscillator stayed at one frequency.
+/// Removes an expected Doppler from the samples of a receiver whose oscillator stayed at one frequency.
 ///
 /// In, out  samples in order, portions of any size; the phase is continuous
 /// Rule     the frequency is taken from the table each 1/64 s and is linear between
 class DopplerRemover {
   public:
-    /// `expected_hz`: frequency in the samples by time, of which the first sample is at `start_s`.
+    /// `expected_hz`: frequency in the samples by time. `start_s`: time of the first sample.
     DopplerRemover(TimeTable expected_hz, double rate_hz, double start_s);
 
     void remove(std::span<std::complex<float>> samples);

@@ -8,7 +8,7 @@
 
 namespace aeolis::telemetry {
 
-/// Marks the samples that carry no signal, and removes lines at frequencies that are to be left out.
+/// Marks the samples that carry no signal, and removes spectral lines at excluded frequencies.
 ///
 /// In      samples as recorded     Out     as many, in order; a sample without signal is exactly 0, and no other is
 /// Gaps    what is not a number; a run of equal samples (zeros, a stuck converter); a pulse 40 dB above the mean power,

@@ -23,8 +23,8 @@ class Spectrum {
     Spectrum(Spectrum&&) noexcept;
     Spectrum& operator=(Spectrum&&) noexcept;
 
-    /// Mean power a sample that each frequency would stand for if it were white noise; frequency 0 first, then up, the
-    /// negative ones last. A sample of exactly 0 is a gap.
+    /// For each frequency, the mean power per sample of white noise that would have its level. The order is: frequency
+    /// 0, upwards, then the negative ones. A sample of exactly 0 is a gap.
     const std::vector<float>& powers(std::span<const std::complex<float>> samples);
 
   private:

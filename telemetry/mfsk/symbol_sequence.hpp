@@ -43,8 +43,9 @@ struct DecidedSymbol {
 /// A symbol may start at any hop; it lasts `symbol_hops`, and symbols do not overlap. A start costs ln(symbol_hops), as
 /// one start is expected in that many hops, and gains the symbol's log likelihood ratio. A symbol is decided when the
 /// most likely path, including the symbol now being received, leads every path without that symbol (the same tone, the
-/// same start to a tenth of a symbol) by `decided_lead`; at the latest two symbols after its end. Erased: a symbol
-/// whose best tone has less than `least_likelihood`, or of which less than a quarter was seen. Source: [forney-1973]
+/// same start to a tenth of a symbol) by `decided_lead`; at the latest two symbols after its end. A symbol is erased
+/// when its best tone has less than `least_likelihood`, or when less than a quarter of it was seen. Source:
+/// [forney-1973]
 /// for the search over survivors; the early decision is our design. With a grid each symbol is decided at its end.
 class SymbolSequence {
   public:
@@ -53,7 +54,7 @@ class SymbolSequence {
         0.25;                                     ///< chosen: a smaller part is seen only while the carrier swerves
     static constexpr double decided_lead = 20.0;  ///< e^20 times likelier; chosen
 
-    /// When symbols begin, if that is known: in hops, which need not be whole.
+    /// When symbols begin, if that is known; in hops, not necessarily whole ones.
     struct Grid {
         double first_hop = 0.0, symbol_hops = 0.0;
     };

@@ -24,13 +24,14 @@ constexpr ToneTilt level_tilt() {
 
 /// Weighs the tones by the exact non-coherent statistic.
 ///
-/// With `sums` scaled so that noise has E|G|² = `energy` and the tone adds |G| = energy, tone k is likelier than none
-/// by I0(2|G_k|) exp(−energy). `energy`: expected E/N0 of the symbol, from the carrier. Source:
+/// `sums` are scaled so that noise has E|G|² = `energy` and the tone adds |G| = energy. Tone k is then likelier than
+/// none by I0(2|G_k|) exp(−energy). `energy` is the expected E/N0 of the symbol, from the carrier. Source:
 /// [proakis-digital-communications].
 ///
-/// `in_phase`: the same sums of the component in phase with the carrier. A tone has none, and thus two sidebands alike; a
-/// line in the samples has one. So a tone is weighed, beside noise, against a line of any strength at either sideband.
-/// `tilt`: a filter's, by which the sidebands differ.
+/// `in_phase` are the same sums of the component in phase with the carrier. A tone has no such component, because its
+/// two sidebands are alike; a spectral line in the samples has one. So a tone is weighed not only against noise but
+/// also against a line of any strength at either sideband. `tilt` is the ratio of the noise in the two sidebands, which
+/// a filter changes.
 ToneEvidence weigh(const ToneSums& sums, const ToneSums& in_phase, const ToneTilt& tilt, double energy);
 
 }  // namespace aeolis::telemetry

@@ -39,11 +39,11 @@ struct ReceiverStatus {
     double gap_s = 0.0;                       ///< of those, without usable samples
     int acquisitions = 0;
     double loudest = 0.0;  ///< largest power of a sample
-    int contradicted = 0;  ///< tones erased, as others lie between the tones' frequencies: a wrong rate
+    int contradicted = 0;  ///< tones erased because others lie between the tones' frequencies: a wrong rate
     std::optional<double> clock_error_ppm;  ///< of the samples' clock, from the tones' frequencies; none: not yet known
 };
 
-/// What a receiver is told of its samples.
+/// What a receiver is told about its samples.
 struct ReceiverInput {
     TimeTable predict_hz;                  ///< Doppler removed before sampling
     double start_s = 0.0;                  ///< the first sample's time on the predict's scale

@@ -14,10 +14,11 @@ struct ShapeAmplitude {
     double value = 0.0, sigma = 0.0;
 };
 
-/// The amplitude of a shape in `points`, beside a polynomial of the given order, by least squares.
+/// Finds the amplitude of a shape in `points`, fitted by least squares together with a polynomial of the given order.
 ///
-/// Its deviation is that by the points' own or by what the fit leaves, whichever is more; `shared` neighbours have
-/// their noise in common. None: the points are too few, or do not tell the shape from the polynomial.
+/// Its deviation follows from the deviations of the points or from the residuals of the fit, whichever are greater.
+/// `shared` is the number of neighbouring points that have their noise in common. None when the points are too few, or
+/// do not distinguish the shape from the polynomial.
 std::optional<ShapeAmplitude> amplitude_of(const std::function<double(double)>& shape,
                                            std::span<const MeasuredPoint> points, int order, double shared);
 

@@ -20,8 +20,8 @@ constexpr double rounding_s = 0.01;
 
 /// How far each feature makes the carrier depart, and how far from its predict it may come. Chosen over 500 dispersed
 /// landings at 22 dB-Hz. Drag of 0.02 g: 20 Hz. A parachute makes 700 Hz at least, where 19 Hz are the most in the
-/// 100 s before; a heatshield 14 to 32 Hz. A reversal: parts of its predicted step. Of the first, in thinner air, 0.6 are
-/// just reached in 1 landing of 60, and 0.5 where it was taken out; of the others 0.9 are, and 0.3.
+/// 100 s before; a heatshield 14 to 32 Hz. A reversal: parts of its predicted step. Of the first, in thinner air, 0.6
+/// are just reached in 1 landing of 60, and 0.5 where it was taken out; of the others 0.9 are, and 0.3.
 struct Limits {
     double least, most, within_s;
 };

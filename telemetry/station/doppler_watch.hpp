@@ -14,11 +14,11 @@
 
 namespace aeolis::telemetry {
 
-/// By how much more a carrier leaves the line of its frequency than it did before.
+/// Measures how much more a carrier departs from the line of its frequency than it did before.
 ///
-/// The line is that of the eight estimates that end 1.5 s before the newest, or up to 4 s where the carrier was not
-/// found meanwhile. Steady curvature makes each departure alike: the mean of 16 older ones is taken off, and their
-/// spread is part of the deviation. So a carrier that swings proves nothing.
+/// The line is fitted to the eight estimates that end 1.5 s before the newest, or up to 4 s where the carrier was not
+/// found meanwhile. Steady curvature makes all departures alike, so the mean of 16 older ones is subtracted. Their
+/// spread is part of the deviation, so that a carrier that swings proves nothing.
 /// A value.
 class DopplerDeparture {
   public:

@@ -24,14 +24,14 @@ struct RecognisedSource {
     std::string layout;
 };
 
-/// Receives the link of another mission: finds the packets in its octets, the same from a line and from a recording.
+/// Receives the link of another mission: finds the packets in its octets, in the same way for a line and a recording.
 ///
 /// In       the port's deliveries, octets in pieces of any size; where a stream ends
 /// Out      octets and packets in the order of reception; totals of the link over all its streams
 /// Layout   recognised by the first octets of each stream; tried again whenever these have doubled
 /// Datagrams  each holds whole packets, whole frames, or a piece of a stream, as the format has it
 /// Memory   a frame or a packet, and the beginning of a stream until its layout is recognised
-/// Faults   octets that are no packet are counted. A beginning that reveals no layout is not read; it is counted
+/// Faults   octets that are not packets are counted. A beginning that reveals no layout is not read; it is counted
 class ForeignStation {
   public:
     static constexpr std::size_t beginning_octets_max = std::size_t{1} << 20U;  ///< chosen: two frames of any length
@@ -41,11 +41,12 @@ class ForeignStation {
 
     explicit ForeignStation(Recognise recognise) : recognise_(std::move(recognise)) {}
 
-    /// Recognises the layout of the next stream ahead, by first octets that are received afterwards: of a recording.
+    /// Recognises the layout of a recording in advance, from its first octets, which are received afterwards.
     Result<void> recognise(std::span<const std::uint8_t> beginning, bool ended);
     /// Processes a delivery. The result is valid until the next call, and until then the caller's to move from.
     Received& receive(Downlink downlink);
-    /// Ends the stream: the line broke, or the recording is over. What comes next is another. The result: as above.
+    /// Ends the stream: the line broke, or the recording is over. Later octets belong to another stream. The result is
+    /// valid as that of receive().
     Received& end(Ert now);
 
     /// Whether bare packets lost their boundaries, so that none can follow in this stream.
@@ -59,10 +60,10 @@ class ForeignStation {
     /// A beginning that was given up since the last call, and why.
     std::optional<Unread> take_unread() { return std::exchange(unread_, {}); }
 
-    /// The link's totals, of its sequences only those that changed since the last call.
+    /// The link's totals, with only those sequences that changed since the last call.
     LinkTotals totals(Ert now) { return ledger_.totals(source_ ? &*source_ : nullptr, now); }
     LinkLedger& ledger() { return ledger_; }
-    /// Octets of ended streams between frames or PLTUs that are no fill.
+    /// Octets of ended streams, between frames or PLTUs, that are not fill.
     std::uint64_t stray_octets() const { return stray_octets_; }
 
   private:

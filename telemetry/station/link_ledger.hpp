@@ -23,7 +23,7 @@ struct LinkTotals {
     std::vector<SequenceTotals> sequences{};
 };
 
-/// Adds what was told later of the same link.
+/// Adds later totals of the same link.
 void merge(LinkTotals& into, LinkTotals later);
 
 /// Totals of a followed link over all connections of a run, good and bad.
@@ -43,11 +43,12 @@ class LinkLedger {
     /// Adds the counters of a source that has ended.
     void end(const PacketSource& source);
 
-    /// The totals with those of `source`, if there is one. Of sequences only those that changed since the last call.
+    /// The totals, including those of `source` if there is one, with only those sequences that changed since the last
+    /// call.
     LinkTotals totals(const PacketSource* source, Ert now);
     /// Whether the totals changed since the last call.
     bool changed(const LinkTotals& totals);
-    /// What went wrong since the last such line, such as "2 frames with a wrong CRC, 1 bad datagram"; empty: nothing.
+    /// Lists the faults since the last such line: "2 frames with a wrong CRC, 1 bad datagram"; empty: nothing.
     std::string faults_since(const LinkTotals& totals);
     /// Whether ended sources had frames or packets with a count.
     bool heard_sequences() const;

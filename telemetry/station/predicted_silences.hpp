@@ -22,7 +22,7 @@ struct PredictedSilences {
     std::optional<double> hand_over_s;  ///< to the parachute antenna
     std::optional<double> uhf_start_s;  ///< the plan switches the transmitter on; none: before the run
     std::optional<double> uhf_stop_s;   ///< and off
-    /// X-band goes over from telemetry to tones; none: it sends tones throughout.
+    /// When X-band changes from telemetry to tones; none: it sends tones throughout.
     std::optional<double> x_band_tones_s;
     std::optional<double> earth_set_s;  ///< none: not during the landing
     bool carrier_weak = false;          ///< too weak for a lock in any attitude

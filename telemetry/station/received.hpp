@@ -16,7 +16,7 @@ struct ReceivedPacket {
     Link link;
     Ert ert;
     std::vector<std::uint8_t> octets;
-    /// Its one decode, by whoever needs it first and shared from then on; null: nobody has needed it yet.
+    /// Its content, decoded by the first part that needs it and shared from then on; null: not decoded yet.
     std::shared_ptr<const DecodedPacket> decoded{};
 };
 
@@ -39,7 +39,7 @@ struct SeenByDoppler {
     Feature feature = Feature::entry;
     Ert ert;                                   ///< when it was recognised
     Ert at;                                    ///< when it reached Earth
-    double evidence_hz = 0.0, sigma_hz = 0.0;  ///< departure from its course before, and its standard deviation
+    double evidence_hz = 0.0, sigma_hz = 0.0;  ///< departure from its earlier course, and its standard deviation
 };
 
 /// The spectrum of X-band's samples over a second, less the predict; frequency 0 is the predicted carrier.

@@ -13,18 +13,18 @@ namespace aeolis::telemetry {
 
 class RecordingReceiver;
 
-/// How much of the recording is down, by what the vehicle told of its size.
+/// The fraction of the recording that is down, by the size that the vehicle reported.
 ///
 /// In       decoded packets; what was received of the recording        Out   a fraction
-/// Rule     once TOUCHDOWN was heard live, telemetry tells nearly the size (CommStatus); what it told earlier was a
-///          part. Whole is the recording when the file that the rover names its last is down, and all before it:
+/// Rule     once TOUCHDOWN was heard live, telemetry reports nearly the size (CommStatus); earlier reports are of a
+///          part. The recording is whole when the file that the rover names its last is down, and all before it:
 ///          RECORDING_CLOSED is the last packet of one computer, and Second Chance never announces it
-/// Faults   no size told: the fraction is not known, and is 0
+/// Faults   no size reported: the fraction is not known, and is 0
 class RecordingProgress {
   public:
     explicit RecordingProgress(const dictionary::Dictionary& dictionary);
 
-    /// Takes a packet that came live: what the recording brings may be older.
+    /// Takes a packet that was received live; a packet of the recording may be older.
     void note(const dictionary::Decoded& packet);
 
     /// 0 … 1; 1: all of it, in whole files.

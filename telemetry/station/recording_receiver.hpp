@@ -20,8 +20,8 @@ namespace aeolis::telemetry {
 /// Rule     missing parts are requested when a file's end is announced, and again when an answer is overdue: after both
 ///          light times and 30 s (our assumption). Without a bent pipe only once, until something is received again
 /// Memory   at most `files_under_way_max` incomplete files of `file_octets_max`; some octets for each complete one
-/// Faults   octets that are no PDU, or of no file of this vehicle, are counted. A failed file is forgotten and received
-///          anew: the rover resends what was not delivered. When too many are under way, the longest silent is
+/// Faults   octets that are not a PDU, or of no file of this vehicle, are counted. A failed file is forgotten and
+///          received anew: the rover resends what was not delivered. When too many are under way, the longest silent is
 ///          forgotten
 class RecordingReceiver {
   public:

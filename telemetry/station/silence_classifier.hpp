@@ -21,8 +21,9 @@ namespace aeolis::telemetry {
 /// Margin   a prediction counts for `margin_s` on both sides, since dispersed landings come that much earlier or later.
 ///          The clock alone ends X-band's telemetry: that counts from `pass_margin_s` before
 /// Rules    in this order: the plan's switching, passes, blackout, hand-over; X-band: the plan's switching, Earth set,
-///          link budget; the recording: complete, passes. If none holds: the station's fault, or unexplained. A fault of the station
-///          is told beside a prediction too, and the link is then lost: what is predicted excuses no fault
+///          link budget; the recording: complete, passes. If none holds: the station's fault, or unexplained. A fault
+///          of the station is reported beside a prediction too, and the link is then lost: a prediction excuses no
+///          fault
 /// Memory   a row a link
 /// A value, like the landing.
 class SilenceClassifier {

@@ -12,7 +12,7 @@
 // "Station" of the dictionary.
 namespace aeolis::telemetry {
 
-/// The packet "StationCarrier". Not heard: its values are undefined.
+/// The packet "StationCarrier". Its values are undefined when the carrier was not heard.
 ///
 /// @param sent   when the middle of the estimate's eighth of a second left the vehicle
 /// @param count  of this packet in its run

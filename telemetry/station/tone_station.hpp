@@ -27,7 +27,7 @@ class ToneStation {
   public:
     static constexpr double first_search_s = 10.0;  ///< chosen: twice the longest search
 
-    /// What is told of samples that were recorded elsewhere.
+    /// Properties of samples that were recorded elsewhere.
     struct Samples {
         double rate_hz = x_band_rate_hz;  ///< as ToneReceiver takes it
         TimeTable expected_hz{};          ///< Doppler still in them, beyond the predict; then there are no spectra
@@ -62,7 +62,7 @@ class ToneStation {
     std::optional<ThinnedSpectrum> spectrum_;
     std::vector<std::complex<float>> samples_;
     bool ended_ = false;
-    bool follows_ = false;    ///< a carrier, as told
+    bool follows_ = false;    ///< a carrier, as reported
     std::optional<bool> up_;  ///< as reported; none: not yet
 };
 

@@ -71,9 +71,10 @@ TEST_CASE("ground and flight agree which tables may fly: of several parameters t
     commands::ParameterTable ground{tests::shipped_dictionary()};
     REQUIRE(ground.set(parameter::guidance_gain, 1.0));
     REQUIRE(ground.set(parameter::guidance_saturation, 0.975));
-    CHECK(ground.may_fly().error().message ==
-          "the changes together are too much: as parts of their ranges they add up to 1.5, at most 1; guidance_gain "
-          "has 1");
+    CHECK(
+        ground.may_fly().error().message ==
+        "the changes together are too large: as fractions of their ranges they add up to 1.5, at most 1; the largest, "
+        "guidance_gain, has 1");
 }
 
 }  // namespace commands_parameter_table_test

@@ -12,7 +12,7 @@ TEST_CASE("each broken rule of the clock's table and of the predicted anchors gi
           "[dictionary][time]") {
     static const std::vector<Planted> all{
         {"no time", "clock_correlation.csv", "2012-219T05:10:47.400", "2012-08-06 05:10:47",
-         "scet: '2012-08-06 05:10:47' is no time as 2012-219T05:10:47.400"},
+         "scet: '2012-08-06 05:10:47' is not a time like 2012-219T05:10:47.400"},
         {"no clock drifts so", "clock_correlation.csv", ".400,0,35", ".400,0.001,35", "drift: is more than 1e-4"},
         {"no leap seconds", "clock_correlation.csv", ".400,0,35", ".400,0,", "leap_seconds '' is not a whole number"},
         {"no version", "clock_correlation.csv", "1,0,397501715,", "0,0,397501715,",

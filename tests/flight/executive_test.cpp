@@ -130,8 +130,8 @@ TEST_CASE("what a module outside the rate group sends is delivered at the start 
     CHECK(f.out->tone == ToneId{61});
 }
 
-// Only in the build that is shipped: with sanitizers the padding behind a member of one octet (AttitudeCommand::mode) keeps
-// what the stack had there, and together they can look like an address.
+// Only in the build that is shipped: with sanitizers the padding behind a member of one octet (AttitudeCommand::mode)
+// keeps what the stack had there, and together they can look like an address.
 TEST_CASE("a computer is one value of fixed size with nothing that points into it",
           "[executive][R7][invariant2][release]") {
     CHECK(sizeof(ComputerState) <= 4U * 1024 * 1024);

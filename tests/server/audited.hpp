@@ -9,7 +9,7 @@
 
 namespace aeolis::test {
 
-/// The audit's entry, once it is stored, of a server in which one thing was done.
+/// Waits for the only entry in the audit of a server in which one action was carried out.
 inline archive::AuditEntry only_audited(archive::Reader& reader) {
     std::vector<archive::AuditEntry> entries;
     for (int i = 0; i < 3000 && entries.empty(); ++i) {

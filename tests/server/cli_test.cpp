@@ -899,8 +899,8 @@ TEST_CASE("a recorded capture becomes a run, and what is exported of it is what 
          {std::tuple{write("empty", ""), 1, "no octets of a link are in it"},
           {stream + " " + write("empty", ""), 1, "empty: no octets of a link are in it"},
           {write("zeros", std::string(5000, '\0')) + " --format pltu", 1, "nothing that is a frame was found"},
-          {stream + " --bits-per-second nan", 2, "--bits-per-second: a number, more than 0"},
-          {stream + " --bits-per-second inf", 2, "--bits-per-second: a number, more than 0"},
+          {stream + " --bits-per-second nan", 2, "--bits-per-second: must be a number above 0"},
+          {stream + " --bits-per-second inf", 2, "--bits-per-second: must be a number above 0"},
           {stream + " --bits-per-second -1", 2, "--bits-per-second"},
           {stream + " --bits-per-second 1e-300", 2, "would take more than 100 years"}}) {
         const auto ended = ingest(arguments);
@@ -1096,7 +1096,7 @@ TEST_CASE("the program writes the command file that changes parameters, with the
         {"guidance_gain=400", "guidance_gain: 400 is outside 1 to 10"},
         {"guidance_gian=4", "parameters.csv has no parameter 'guidance_gian'"},
         {"guidance_gain=4 guidance_gain=5", "named twice"},
-        {"guidance_gain=1 constant_velocity_mps=31", "the changes together are too much"},
+        {"guidance_gain=1 constant_velocity_mps=31", "the changes together are too large"},
         {"guidance_gain=four", "the value is no number"},
         {"guidance_gain", "a change is NAME=VALUE"},
         {"entry_moved_max_s=5", "entry_moved_max_s is fixed when flight is built"},

@@ -17,7 +17,7 @@ TEST_CASE("the time at which a command leaves is read in either form, and what i
     request.set_release_at("tomorrow");
     const auto refused = server::request_of(request);
     REQUIRE_FALSE(refused.ok());
-    CHECK(refused.error().message == "release_at: 'tomorrow' is no time as 2012-219T05:10:47.400");
+    CHECK(refused.error().message == "release_at: 'tomorrow' is not a time like 2012-219T05:10:47.400");
 }
 
 }  // namespace server_command_messages_test

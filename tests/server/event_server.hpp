@@ -39,7 +39,7 @@ class EventServer {
         end();
         server_.reset();
     }
-    /// As when the program is asked to by a signal.
+    /// Ends it as a signal to the program does.
     void end() {
         if (!network_.joinable()) return;
         server_->stop();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// HTTP to the letter of RFC 9110 and 9112, case by case: where a request ends, for whom it is, and what may be expected.
+// HTTP to the letter of RFC 9110 and 9112, case by case: where a request ends, whom it is for, what may be expected.
 // The spellings of Transfer-Encoding are those of the default list of the tool smuggler (github.com/defparam/smuggler),
 // by its names.
 #include "tests/server/running_server.hpp"

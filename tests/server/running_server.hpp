@@ -35,7 +35,7 @@ class RunningServer {
     }
     ~RunningServer() { end(); }
 
-    /// With accounts, in the folder of the archive.
+    /// Selects a server with accounts, whose file is in the folder of the archive.
     struct WithAccounts {};
     explicit RunningServer(WithAccounts) {
         accounts_ = folder_ / "accounts.json";
@@ -43,7 +43,7 @@ class RunningServer {
         start_thread();
     }
 
-    /// With clocks that the test moves.
+    /// Starts a server with clocks that the test moves.
     explicit RunningServer(server::ReadClocks clocks) : clocks_(std::move(clocks)) {
         open();
         start_thread();
@@ -63,7 +63,7 @@ class RunningServer {
     std::uint16_t port() const { return port_; }
     std::string first_password() const { return backend_->first_password(); }
     std::filesystem::path accounts() const { return accounts_; }
-    /// Ends it and opens the same archive again: as after a restart.
+    /// Ends it and opens the same archive again, as a restart does.
     void restart() {
         end();
         open();
@@ -71,7 +71,7 @@ class RunningServer {
     }
     void renew_certificate() { backend_->renew_certificate(); }
     std::filesystem::path archive() const { return folder_ / "a.db"; }
-    /// As when it is asked to by a signal.
+    /// Ends it as a signal to the program does.
     void end() {
         if (!backend_) return;
         backend_->stop();

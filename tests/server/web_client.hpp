@@ -21,7 +21,7 @@ struct WebReply {
 };
 WebReply web_request(std::uint16_t port, std::string_view method, std::string_view target, std::string_view body = {},
                      const Headers& headers = {});
-/// Sends the octets as they are; what comes back until the server closes.
+/// Sends the octets as they are, and returns all that is received until the server closes.
 std::string raw_exchange(std::uint16_t port, std::string_view octets);
 
 class StreamClient {
@@ -35,7 +35,7 @@ class StreamClient {
     unsigned status() const;  ///< 101 when open
     std::string subprotocol() const;
     void send(std::string_view payload, bool binary);
-    /// None when the server has closed, or said nothing for some seconds.
+    /// The next message; none when the server has closed, or sent nothing for some seconds.
     std::optional<std::string> receive();
     std::uint16_t close_code() const;  ///< after receive() gave none
     std::string close_words() const;

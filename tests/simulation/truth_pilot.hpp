@@ -12,8 +12,8 @@
 
 namespace aeolis::tests {
 
-/// Lands the world without any flight software: what stands in for GNC and the few lines that stand in for the
-/// timeline. It is there to fly the models through a whole landing.
+/// Lands the world without any flight software, by a stand-in for GNC and a few lines in place of the timeline. It
+/// flies the models through a whole landing.
 class TruthPilot {
   public:
     explicit TruthPilot(const simulation::Scenario& scenario, std::uint64_t seed = 1, std::uint64_t case_number = 0)

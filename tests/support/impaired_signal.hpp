@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-// A transmitter and a channel with faults, for tests of the tone receiver. It follows docs/tones.md and shares no code with
-// the receiver, nor with the simulator.
+// A transmitter and a channel with faults, for tests of the tone receiver. They follow docs/tones.md, and share no code
+// with the receiver or the simulator.
 namespace aeolis::tests::impaired {
 
 using Samples = std::vector<std::complex<float>>;

@@ -7,8 +7,9 @@
 
 namespace aeolis::tests {
 
-/// Time as a thread that does nothing but sleep has had it: on a busy machine, where each sleep lasts longer than asked
-/// for, less than by the clock. So a bound on how long something may take fails for what waits, not for what others do.
+/// Measures time by the number of sleeps of 10 ms in a thread that does nothing else. On a busy machine each sleep
+/// lasts longer, so less time passes than by the clock. A bound on how long something may take thus fails when it
+/// waits, not when the machine is busy.
 class SleptTime {
   public:
     [[nodiscard]] std::chrono::milliseconds passed() const { return slept_.load() * one; }

@@ -23,7 +23,7 @@ class Steering {
     void cycle(const Parameters& parameters, const AttitudeCommand& wanted, const AttitudeState& state,
                const Inertia& inertia, Steers steers, ThrusterCommand& thrusters, EngineCommand& engines);
 
-    /// That was asked for last. [N m] in B
+    /// The torque wanted in the last cycle. [N m] in B
     const Vector3& torque_B_Nm() const { return torque_B_Nm_; }
 
   private:

@@ -6,7 +6,7 @@
 // Limits bank in range control so that the vehicle is high enough when it reaches the parachute's speed.
 //
 //   from now on with lift up:   v̇ = −D − g sin γ    γ̇ = (L − (g − v²/r) cos γ)/v    ḣ = v sin γ
-//   D = D₀ (v/v₀)² exp((h₀−h)/H), L/D as sensed: no table of the air is asked
+//   D = D₀ (v/v₀)² exp((h₀−h)/H), L/D as sensed: no table of the air is used
 //   cos(bank) ≥ 1 − 2 (h at the parachute's speed − guard)/band,  −1 … 1
 //
 // In       navigated and sensed state           Out   altitude [m]; the largest bank [rad]
@@ -26,7 +26,7 @@ struct PullUp {
 /// altitude at its end.
 double altitude_when_slow_m(const Parameters& parameters, const PullUp& now, double speed_mps);
 
-/// The largest bank for an altitude foreseen. 0 … π
+/// The largest bank [rad] for a predicted altitude, 0 … π.
 double bank_allowed_rad(const Parameters& parameters, double altitude_foreseen_m);
 
 }  // namespace aeolis::flight::gnc

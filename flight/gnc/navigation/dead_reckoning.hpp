@@ -17,16 +17,16 @@
 //   a parachute   f₀ (v/v₀)² exp((h₀−h)/H), fixed in M         I ω̇ = T − ω × Iω + r × m f − c ω
 //   engines       f₀ thrust/thrust₀, fixed in B                I ω̇ = T − ω × Iω
 //
-// T is the torque that attitude control asked for: what it steers by is the model, so it goes on steering.
+// T is the torque that attitude control commands. It continues to steer, by the attitude that the model gives.
 //
 // Frame    B for force, rates and torque         Rate     64 Hz, only while the IMU is silent
 // Memory   what was felt when the silence began
 // Valid    half a second at any time; two seconds where the rows above hold what turns the vehicle: not in reversals,
 //          not while the parachute opens, not on engines (docs/faults.md)
-// Source   ours; the parachute's row is the pendulum of the vehicle below the bridles' confluence
+// Source   our assumption; the parachute's row is the pendulum of the vehicle below the bridles' confluence
 namespace aeolis::flight::gnc {
 
-/// `new_trim`: by the air, while the balance masses go and it finds another angle of attack.
+/// What carries the vehicle. `new_trim`: the air, while the ejected balance masses change the angle of attack.
 enum class HeldBy : std::uint8_t { nothing, air, new_trim, parachute, engines };
 
 /// Specific force and rate relative to inertial space, in B.
@@ -35,7 +35,7 @@ struct ForceAndRate {
     Vector3 rate_B_rps = Vector3::Zero();
 };
 
-/// What is known without the IMU.
+/// Quantities that are known without the IMU.
 struct Surroundings {
     HeldBy held_by = HeldBy::nothing;
     Vector3 torque_B_Nm = Vector3::Zero();  ///< of thrusters or engines, as commanded
@@ -73,8 +73,8 @@ class DeadReckoning {
     double speed_mps_ = 0.0, altitude_m_ = 0.0, thrust_N_ = 0.0;
 };
 
-/// Navigation's error bound due to IMU silences; zero before the first. It widens while the IMU
-/// is silent and, by an attitude that is not known, after that; the radar narrows it.
+/// Navigation's error bound due to IMU silences; zero before the first. It widens while the IMU is silent, and
+/// afterwards because the attitude is uncertain. The radar narrows it.
 class Belief {
   public:
     /// Applies a measured or estimated `force_mps2` for `dt_s`.

@@ -26,7 +26,7 @@ namespace aeolis::flight::gnc {
 struct RadarCorrection {
     double altitude_m = 0.0;            ///< to add along the local vertical
     Vector3 v_M_mps = Vector3::Zero();  ///< to add to the velocity
-    double gain = 1.0;                  ///< part of the residual that this is
+    double gain = 1.0;                  ///< fraction of the residual that is corrected
 };
 
 /// How a solution was judged. R38
@@ -49,7 +49,8 @@ class RadarFilter {
     /// Adds the navigated state to the history; call each cycle, every fourth is kept.
     void remember(Sclk now, double altitude_m, const Vector3& v_MB_M);
 
-    /// The gate is as much wider as `belief` is, and what is beyond the narrow one then is believed.
+    /// Judges a solution. `belief` widens the gate; a solution beyond the narrow gate but within the wide one is
+    /// believed.
     RadarJudgement on(const Parameters& parameters, const RadarSolution& solution, Sclk now, const Vector3& up_M,
                       const Belief& belief = {});
 
@@ -57,7 +58,7 @@ class RadarFilter {
     std::uint32_t accepted() const { return accepted_; }
     std::uint32_t refused() const { return refused_; }
 
-    /// Without the history: it is complete again five seconds after a hand-over.
+    /// State for another computer, without the history, which is complete again five seconds after a hand-over.
     template <typename Exchange>
     void carry(Exchange& exchange) {
         exchange(accepted_, refused_, refused_in_a_row_);

@@ -60,8 +60,8 @@ void Strapdown::on(const Parameters& parameters, const ImuSample& sample, bool f
     step(delta_angle_B, force_B * imu_period_s, imu_period_s);
 }
 
-// Ticks were reckoned whole, and an increment lasts a third of one: the time left over, or reckoned too much, is less than
-// two increments.
+// Whole ticks were estimated, and an increment lasts a third of a tick. So the time that is missing, or was estimated
+// twice, is less than two increments.
 void Strapdown::fill(std::uint32_t missing) {
     if (reckoned_s_ > 0.0) {
         const double left_s = missing * imu_period_s - reckoned_s_;

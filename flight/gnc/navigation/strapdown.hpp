@@ -52,7 +52,8 @@ class Strapdown {
     /// Advances by any `dt_s` without the IMU: no force, and the last rate of rotation.
     void coast(double dt_s);
 
-    /// Corrects attitude by a small angle about an axis in M; velocity, which the radar tells in B, turns with it.
+    /// Corrects attitude by a small angle about an axis in M. The velocity, which the radar measures in B, turns with
+    /// it.
     void turn(const Vector3& angle_M_rad);
 
     const NavigatedState& state() const { return state_; }

@@ -36,7 +36,7 @@ class ApproachProfile {
   public:
     void start(const Parameters& parameters, double altitude_m, double descent_rate_mps);
     double descent_rate_mps(const Parameters& parameters, double altitude_m) const;
-    /// Up, to command.
+    /// The acceleration to command, positive up.
     double acceleration_mps2(const Parameters& parameters, double altitude_m, double descent_rate_mps) const;
     double deceleration_mps2() const { return deceleration_mps2_; }
 

@@ -29,11 +29,12 @@ class Persistence {
 };
 
 /// Whether a decision that is held is near enough to be reported with the conditions that hold it.
-/// Its first condition, the subject, must hold, or one that does not must be within a part of its bound
-/// (held_near_fraction). A timer alone is never near. A decision that has alternatives lists all of them while none holds.
+/// Either its first condition, the subject, holds, or one that does not hold is within a part of its bound
+/// (held_near_fraction). A timer alone is never near. A decision that has alternatives lists all of them while none
+/// holds.
 bool near(const Parameters& parameters, const Conditions& conditions);
 
-/// Conditions without a cycle count of zero: that repeats the condition it counts.
+/// The conditions without a cycle count of zero, which only repeats the condition that it counts.
 Conditions worth_telling(const Conditions& conditions);
 
 Conditions guidance_start(const Parameters& parameters, double filtered_drag_mps2);
@@ -60,12 +61,13 @@ struct ParachuteBounds {
 Conditions sufr_start(const Parameters& parameters, const InAir& at, double deceleration_mps2,
                       const ParachuteBounds& bounds);
 
-/// Slow enough or too low to wait any longer, and within the parachute's Mach number and pressure.
-/// Below a last altitude it is due at any speed.
+/// Whether the vehicle is slow enough or too low to wait any longer, and within the parachute's Mach number and
+/// pressure. Below a last altitude the parachute is due at any speed.
 bool parachute_due(const Parameters& parameters, const InAir& at, const ParachuteBounds& bounds);
 Conditions parachute(const Parameters& parameters, const InAir& at, const ParachuteBounds& bounds,
                      std::uint32_t cycles_true);
-/// Slow enough; or so low, or so long after the mortar, that the radar must see the ground at last.
+/// Conditions for heatshield separation: slow enough; or so low, or so long after the mortar, that the radar must see
+/// the ground at last.
 Conditions heatshield(const Parameters& parameters, const InAir& at, double heatshield_speed_mps,
                       double since_parachute_s);
 
@@ -81,7 +83,7 @@ struct BackshellBounds {
 double backshell_altitude_needed_m(const Parameters& parameters, const BackshellBounds& bounds,
                                    double descent_rate_mps);
 
-/// Powered approach is over: slow enough, or down at its end.
+/// Conditions for the end of the powered approach: slow enough, or at its lowest altitude.
 Conditions constant_velocity(const Parameters& parameters, double altitude_m, double descent_rate_mps);
 
 /// Conditions for priming.

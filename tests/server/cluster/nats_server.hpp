@@ -9,8 +9,8 @@
 
 namespace aeolis::tests {
 
-/// A nats-server with JetStream on a port of its own, with its streams in a folder that goes with it. It can be killed
-/// and started again with what it had. AEOLIS_NATS_SERVER names the program (./test unpacks Debian's).
+/// A nats-server with JetStream on a port of its own, with its streams in a folder that is removed with it. It can be
+/// killed, and started again with the same streams. AEOLIS_NATS_SERVER names the program (./test unpacks Debian's).
 class NatsServer {
   public:
     /// Whether there is such a program. If not, says on the output that a test was skipped.
