@@ -11,14 +11,15 @@ namespace {
 
 constexpr std::int32_t pointing_type = 3;
 constexpr std::size_t quaternion_numbers = 4, rate_numbers = 3;
-constexpr std::size_t directory_step = 100;
+constexpr std::size_t time_directory_step = 100;
 
-std::size_t directory_of(std::size_t times) {
-    return (times - 1) / directory_step;
+std::size_t time_directory_of(std::size_t times) {
+    return (times - 1) / time_directory_step;
 }
 void add_times(std::vector<double>& data, const std::vector<double>& times) {
     data.insert(data.end(), times.begin(), times.end());
-    for (std::size_t i = 1; i <= directory_of(times.size()); ++i) data.push_back(times[i * directory_step - 1]);
+    for (std::size_t i = 1; i <= time_directory_of(times.size()); ++i)
+        data.push_back(times[i * time_directory_step - 1]);
 }
 
 // Layout: pointings | times | every hundredth | intervals | every hundredth | number of intervals | of pointings.
@@ -30,8 +31,9 @@ Result<void> read_pointings(const DafArray& array, bool rates, CkSegment& segmen
     const auto is_count = [&](double n) { return n >= 1.0 && n <= static_cast<double>(size) && n == std::floor(n); };
     if (!is_count(pointings) || !is_count(intervals)) return wrong("has an impossible number of pointings");
     const auto count = static_cast<std::size_t>(pointings), begins = static_cast<std::size_t>(intervals);
-    const std::size_t times_at = count * each, begins_at = times_at + count + directory_of(count);
-    if (size != begins_at + begins + directory_of(begins) + 2) return wrong("is not as long as its pointings make it");
+    const std::size_t times_at = count * each, begins_at = times_at + count + time_directory_of(count);
+    if (size != begins_at + begins + time_directory_of(begins) + 2)
+        return wrong("is not as long as its pointings make it");
     for (std::size_t i = 0; i < count; ++i) {
         CkSegment::Pointing pointing;
         pointing.sclk_ticks = array.data[times_at + i];

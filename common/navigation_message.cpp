@@ -13,7 +13,7 @@
 namespace aeolis {
 namespace {
 
-constexpr double degree_rad = std::numbers::pi / 180.0;
+constexpr double degree_as_rad = std::numbers::pi / 180.0;
 
 std::string_view trimmed(std::string_view text) {
     const auto first = text.find_first_not_of(" \t\r");
@@ -335,8 +335,8 @@ Result<AttitudeHistory> attitude_of(const Segment& segment) {
         constexpr double off_unit_max = 0.02;  // printed with few digits; a quaternion of another length is none
         if (!(std::abs(length - 1.0) <= off_unit_max)) return at_line(row.line, "the quaternion is not of unit length");
         if (form->with_rates)
-            state.w_AB_B_rps =
-                std::array{row.numbers[4] * degree_rad, row.numbers[5] * degree_rad, row.numbers[6] * degree_rad};
+            state.w_AB_B_rps = std::array{row.numbers[4] * degree_as_rad, row.numbers[5] * degree_as_rad,
+                                          row.numbers[6] * degree_as_rad};
         history.states.push_back(state);
     }
     return history;
@@ -422,7 +422,8 @@ std::string attitude_message(const std::vector<AttitudeHistory>& segments, const
             for (const std::size_t i : {1U, 2U, 3U, 0U})
                 text += " " + number_text(state.q_BA.at(i), quaternion_decimals);
             if (rates)
-                for (const double rate : *state.w_AB_B_rps) text += " " + number_text(rate / degree_rad, rate_decimals);
+                for (const double rate : *state.w_AB_B_rps)
+                    text += " " + number_text(rate / degree_as_rad, rate_decimals);
             text += "\n";
         }
         text += "DATA_STOP\n";

@@ -19,19 +19,19 @@ const std::string& name_of_alarm(const v1::Item& item, const dictionary::Diction
     return item.has_staleness() ? item.staleness().packet() : item.alarm_action().alarm();
 }
 
-void apply(const v1::Item& item, const dictionary::Dictionary& dictionary, telemetry::AlarmRegister& states) {
+void apply(const v1::Item& item, const dictionary::Dictionary& dictionary, telemetry::AlarmRegister& entries) {
     using dictionary::Severity;
     const std::string& name = name_of_alarm(item, dictionary);
     if (item.has_alarm()) {
         const auto& alarms = dictionary.channels[item.alarm().channel()].type.alarms;
-        states.change(name, static_cast<Severity>(item.alarm().severity()), telemetry::latches(alarms));
+        entries.change(name, static_cast<Severity>(item.alarm().severity()), telemetry::latches(alarms));
     } else if (item.has_staleness()) {
-        states.change(name, item.staleness().stale() ? telemetry::stale_severity : Severity::none, false);
+        entries.change(name, item.staleness().stale() ? telemetry::stale_severity : Severity::none, false);
     } else if (item.has_link()) {
-        states.change(name, item.link().lost() ? telemetry::lost_severity : Severity::none, false);
+        entries.change(name, item.link().lost() ? telemetry::lost_severity : Severity::none, false);
     } else {
-        states.act(name, static_cast<telemetry::AlarmAct>(item.alarm_action().action()), Ert{item.ert_us()},
-                   Ert{item.alarm_action().until_us()});
+        entries.act(name, static_cast<telemetry::AlarmAct>(item.alarm_action().action()), Ert{item.ert_us()},
+                    Ert{item.alarm_action().until_us()});
     }
 }
 
@@ -65,23 +65,23 @@ Result<telemetry::AlarmRegister> Reader::alarm_register(RunId run, std::vector<v
         if (!info) return info.error();
         if (auto same = state_->same_dictionary(*info); !same) return same.error();
     }
-    telemetry::AlarmRegister states;
+    telemetry::AlarmRegister entries;
     for (Sequence after = 0;;) {
         auto page = alarms(run, after, rows_page_max);
         if (!page) return page.error();
         for (auto& item : *page->mutable_changes()) {
-            apply(item, state_->dictionary, states);
+            apply(item, state_->dictionary, entries);
             changes.push_back(std::move(item));
         }
         after = page->next_after();
-        if (after == 0) return states;
+        if (after == 0) return entries;
     }
 }
 
 Result<v1::AlarmList> Reader::alarm_states(RunId run, std::optional<Ert> now) {
     std::vector<v1::Item> changes;
-    const auto states = alarm_register(run, changes);
-    if (!states) return states.error();
+    const auto entries = alarm_register(run, changes);
+    if (!entries) return entries.error();
     const auto newest = newest_ert(run);
     if (!newest) return newest.error();
     const Ert at = now.value_or(*newest);
@@ -89,7 +89,7 @@ Result<v1::AlarmList> Reader::alarm_states(RunId run, std::optional<Ert> now) {
     std::map<std::string, v1::AlarmState> described;
     for (const auto& item : changes) describe(item, described[name_of_alarm(item, state_->dictionary)]);
     std::vector<v1::AlarmState> states;
-    for (const auto& [name, state] : states->all()) {
+    for (const auto& [name, state] : entries->all()) {
         const auto standing = state.standing(at);
         if (standing == telemetry::AlarmStanding::normal) continue;
         auto& written = states.emplace_back(std::move(described[name]));
@@ -127,9 +127,9 @@ Result<std::vector<std::string>> Reader::links() {
 
 Result<void> Reader::may(RunId run, const std::string& alarm, telemetry::AlarmAct act, Ert now) {
     std::vector<v1::Item> changes;
-    const auto states = alarm_register(run, changes);
-    if (!states) return states.error();
-    return states->may(alarm, act, now);
+    const auto entries = alarm_register(run, changes);
+    if (!entries) return entries.error();
+    return entries->may(alarm, act, now);
 }
 
 Result<Ert> Reader::newest_ert(RunId run) {
