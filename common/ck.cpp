@@ -106,7 +106,8 @@ Result<std::vector<std::uint8_t>> write_ck(const std::vector<CkSegment>& segment
 std::string clock_kernel(std::int32_t clock, EphemerisTime at, double seconds, double rate) {
     const int number = -clock;
     std::string text(2048, '\0');
-    // One partition of whole seconds and 1/65536 s. Coefficients: a tick (the first), its ephemeris time, seconds a second.
+    // One partition of whole seconds and 1/65536 s. The coefficients are the first tick, its ephemeris time,
+    // and seconds of TDB a second of the clock.
     const int length = std::snprintf(text.data(), text.size(),
                                      "KPL/SCLK\n\n\\begindata\n\n"
                                      "SCLK_KERNEL_ID             = ( @2000-01-01 )\n"

@@ -31,8 +31,8 @@ struct Daf {
 /// beyond the file.
 Result<Daf> read_daf(std::span<const std::uint8_t> file);
 
-/// Writes a file of little-endian doubles. All arrays have as many numbers, and as many integers, as the first; there are
-/// at most 25. @param program  up to 60 characters that say who wrote it
+/// Writes a file of little-endian doubles. All arrays have as many numbers, and as many integers, as the first.
+/// There are at most 25. @param program  up to 60 characters that say who wrote it
 std::vector<std::uint8_t> write_daf(const Daf& daf, std::string_view program);
 
 }  // namespace aeolis

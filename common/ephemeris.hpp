@@ -11,8 +11,8 @@
 
 namespace aeolis {
 
-// Trajectories and attitudes as the field exchanges them: CCSDS messages (common/navigation_message.hpp) and SPICE kernels
-// (common/spk.hpp, common/ck.hpp).
+// Trajectories and attitudes as the field exchanges them: CCSDS messages (common/navigation_message.hpp) and SPICE
+// kernels (common/spk.hpp, common/ck.hpp).
 
 /// Position [km] and velocity [km/s] of a body.
 struct EphemerisState {
@@ -31,14 +31,15 @@ struct Ephemeris {
     std::vector<EphemerisState> states;  ///< times ascend
 };
 
-/// State at an instant. Hermite: position by positions and velocities, velocity as its derivative. Lagrange: each by itself.
+/// State at an instant. Hermite: position by positions and velocities, velocity as its derivative. Lagrange: each by
+/// itself.
 /// From the states about it, fewer where there are no more. None outside start … stop.
 std::optional<EphemerisState> state_at(const Ephemeris& ephemeris, EphemerisTime time);
 
 /// Attitude: the rotation that turns components in frame A into components in frame B, and B's angular velocity.
 struct AttitudeState {
     EphemerisTime time;
-    std::array<double, 4> q_BA{1.0, 0.0, 0.0, 0.0};   ///< w, x, y, z
+    std::array<double, 4> q_BA{1.0, 0.0, 0.0, 0.0};  ///< w, x, y, z; the standard's own, which turns axes, is conjugate
     std::optional<std::array<double, 3>> w_AB_B_rps;  ///< of B in A, components in B [rad/s]
 };
 

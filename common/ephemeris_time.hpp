@@ -26,7 +26,8 @@ constexpr EphemerisTime operator+(EphemerisTime t, double seconds) {
 /// TAI − UTC [s] at an instant of UTC; none before 1972. Source: IERS Bulletin C 64, leap seconds to 2017-01-01.
 std::optional<int> leap_seconds_at(Scet utc);
 
-/// Whole microseconds of UTC to TDB and back. Before 1972 as at its start. TDB − TT by its annual term, to 30 µs [moyer-1981].
+/// Whole microseconds of UTC to TDB and back. Before 1972 as at its start. TDB − TT by its annual term, to 30 µs
+/// [naif-time].
 EphemerisTime ephemeris_time_of(Scet utc);
 Scet utc_of(EphemerisTime time);
 

@@ -9,7 +9,7 @@ namespace aeolis {
 
 using Matrix3 = std::array<std::array<double, 3>, 3>;  ///< rows
 
-/// How Mars is turned: its pole, prime meridian and spin [iau-wgccre-2009], as SPICE's IAU_MARS has them.
+/// How Mars is turned: its pole, prime meridian and spin [iau-mars], as SPICE's IAU_MARS has them.
 ///
 /// Turns components in J2000 (EME2000) into components in M, Mars's own frame (docs/frames_and_units.md).
 Matrix3 mars_from_j2000(EphemerisTime time);

@@ -328,7 +328,8 @@ Result<AttitudeHistory> attitude_of(const Segment& segment) {
                                          std::to_string(wanted));
         AttitudeState state{row.time, {}, std::nullopt};
         for (std::size_t i = 0; i < 4; ++i) state.q_BA.at(i) = row.numbers[form->scalar_first ? i : (i + 3) % 4];
-        if (form->from_b_to_a)
+        // The standard's quaternion turns the axes of A into those of B: as one that turns components, it is conjugate.
+        if (!form->from_b_to_a)
             for (std::size_t i = 1; i < 4; ++i) state.q_BA.at(i) = -state.q_BA.at(i);
         double length = 0.0;
         for (const double part : state.q_BA) length += part * part;
@@ -420,7 +421,7 @@ std::string attitude_message(const std::vector<AttitudeHistory>& segments, const
         for (const AttitudeState& state : segment.states) {
             text += instant(state.time);
             for (const std::size_t i : {1U, 2U, 3U, 0U})
-                text += " " + number_text(state.q_BA.at(i), quaternion_decimals);
+                text += " " + number_text(i == 0 ? state.q_BA.at(i) : -state.q_BA.at(i), quaternion_decimals);
             if (rates)
                 for (const double rate : *state.w_AB_B_rps)
                     text += " " + number_text(rate / degree_as_rad, rate_decimals);

@@ -10,14 +10,14 @@
 
 namespace aeolis {
 
-/// Trajectories and attitudes as CCSDS messages of keywords and values (KVN): the Orbit Ephemeris Message, versions 1 to
-/// 3 [ccsds-502.0-b-3], and the Attitude Ephemeris Message, versions 1 and 2 [ccsds-504.0-b-2].
+/// Trajectories and attitudes as CCSDS messages of keywords and values (KVN): the Orbit Ephemeris Message, versions 1
+/// to 3 [ccsds-502.0-b-3], and the Attitude Ephemeris Message, versions 1 and 2 [ccsds-504.0-b-2].
 ///
 /// Units    km, km/s, deg/s in the text                    Times    UTC, TAI, TT, TDB, GPS
-/// Read     states; of attitudes quaternions, alone or with angular velocity. Comments, accelerations and covariances are
-///          passed over
-/// Faults   anything else is refused with its line: an unknown keyword or attitude type, a missing one, times that do not
-///          ascend, a number that is none
+/// Read     states; of attitudes quaternions, alone or with angular velocity. Comments, accelerations and covariances
+///          are passed over
+/// Faults   anything else is refused with its line: an unknown keyword or attitude type, a missing one, times that do
+///          not ascend, a number that is none
 struct MessageHeader {
     EphemerisTime created;
     std::string originator = "AEOLIS";

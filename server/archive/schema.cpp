@@ -69,7 +69,8 @@ CREATE TABLE pyramid_columns (key INTEGER PRIMARY KEY, nodes BLOB NOT NULL) STRI
 CREATE TABLE link_totals (
     run INTEGER NOT NULL, link TEXT NOT NULL, octets INTEGER NOT NULL, frames INTEGER NOT NULL,
     bad_crc INTEGER NOT NULL, bad_header INTEGER NOT NULL, skipped_octets INTEGER NOT NULL, gaps INTEGER NOT NULL,
-    missing_frames INTEGER NOT NULL, repeated_frames INTEGER NOT NULL, octets_per_s REAL NOT NULL, late_frames INTEGER NOT NULL,
+    missing_frames INTEGER NOT NULL, repeated_frames INTEGER NOT NULL, octets_per_s REAL NOT NULL,
+    late_frames INTEGER NOT NULL,
     restarts INTEGER NOT NULL, cut_frames INTEGER NOT NULL, slips INTEGER NOT NULL, corrected_frames INTEGER NOT NULL,
     corrected_symbols INTEGER NOT NULL, uncorrectable_frames INTEGER NOT NULL, forgotten_channels INTEGER NOT NULL,
     packets INTEGER NOT NULL, idle_packets INTEGER NOT NULL, encapsulation_packets INTEGER NOT NULL,
@@ -168,7 +169,8 @@ CREATE VIEW situation_log AS
     FROM situation_entries p JOIN situations s ON s.key = p.key;
 CREATE VIEW alarm_action_log AS
     SELECT a.key >> 40 AS run, a.key & 0xFFFFFFFFFF AS seq,
-           strftime('%Y-%jT%H:%M:%f', a.ert_us / 1e6 + 946728000, 'unixepoch') AS at, a.alarm, a.action, a.author, a.note,
+           strftime('%Y-%jT%H:%M:%f', a.ert_us / 1e6 + 946728000, 'unixepoch') AS at, a.alarm, a.action, a.author,
+           a.note,
            CASE WHEN a.until_us > a.ert_us
                 THEN strftime('%Y-%jT%H:%M:%f', a.until_us / 1e6 + 946728000, 'unixepoch') END AS until
     FROM alarm_actions a;

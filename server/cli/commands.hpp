@@ -18,6 +18,7 @@ void add_entry_command(CLI::App& program, int& exit_code);
 void add_export_command(CLI::App& program, int& exit_code);
 void add_ingest_command(CLI::App& program, int& exit_code);
 void add_modules_command(CLI::App& program, int& exit_code);
+void add_overlay_command(CLI::App& program, int& exit_code);
 void add_parameters_command(CLI::App& program, int& exit_code);
 void add_reconstruct_command(CLI::App& program, int& exit_code);
 void add_rehearse_command(CLI::App& program, int& exit_code);

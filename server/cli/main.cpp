@@ -63,6 +63,7 @@ int main(int argc, char** argv) {
     add_send_command(program, exit_code);
     add_report_command(program, exit_code);
     add_reconstruct_command(program, exit_code);
+    add_overlay_command(program, exit_code);
     add_accounts_command(program, exit_code);
     add_archive_command(program, exit_code);
 

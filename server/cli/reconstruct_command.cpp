@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "server/archive/items.hpp"
 #include "server/archive/reader.hpp"
 #include "server/cli/commands.hpp"
 #include "server/cli/options.hpp"
 #include "server/cli/recorded_dictionary.hpp"
 #include "server/cli/shipped_paths.hpp"
 #include "server/reconstruction/path.hpp"
+#include "server/reconstruction/trajectory_files.hpp"
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
@@ -15,6 +18,7 @@
 #include <memory>
 #include <numbers>
 #include <string>
+#include <vector>
 
 namespace aeolis::server {
 namespace {
@@ -33,6 +37,24 @@ struct ReconstructOptions {
     ArchiveOptions of;
     std::filesystem::path out;
 };
+
+/// Writes the rebuilt path as a trajectory or an attitude of the field's formats.
+Result<void> write_trajectory(const std::filesystem::path& file, reconstruction::TrajectoryFormat format,
+                              const Path& path, const ClockCorrelation& clock) {
+    if (std::filesystem::exists(file)) return Error{file.string() + " is there already"};
+    std::vector<reconstruction::TimedState> states;
+    for (const PathPoint& point : path.points) states.push_back({point.at, point.state});
+    const auto created = std::chrono::duration_cast<std::chrono::microseconds>(
+        std::chrono::system_clock::now() - std::chrono::sys_days{std::chrono::year{2000} / 1 / 1} -
+        std::chrono::hours{12});
+    const auto text = reconstruction::trajectory_file(format, states, clock, Scet{created.count()});
+    if (!text) return text.error();
+    std::ofstream to{file, std::ios::binary};
+    to << *text;
+    to.close();
+    if (to.fail()) return Error{file.string() + " cannot be written"};
+    return {};
+}
 
 Result<void> write_csv(const std::filesystem::path& file, const Path& path) {
     if (std::filesystem::exists(file)) return Error{file.string() + " is there already"};
@@ -122,7 +144,10 @@ int reconstruct(const ReconstructOptions& options) {
         path->readings, path->readings_filled, path->breaks, path->beams_taken, path->beams_refused, bias.x(), bias.y(),
         bias.z());
     if (options.out.empty()) return 0;
-    if (const auto written = write_csv(options.out, *path); !written) return said(written.error());
+    const auto format = reconstruction::trajectory_format_of(options.out.string());
+    const auto written = format ? write_trajectory(options.out, *format, *path, archive::correlation_of(*state))
+                                : write_csv(options.out, *path);
+    if (!written) return said(written.error());
     fmt::print("{} points are in {}\n", path->points.size(), options.out.string());
     return 0;
 }
@@ -138,7 +163,10 @@ void add_reconstruct_command(CLI::App& program, int& exit_code) {
     command.add_option("--dictionary", options->of.shared.dictionary, "directory of the mission's dictionary")
         ->capture_default_str();
     command.add_option("--run", options->of.run, "number of the run")->required()->check(whole_number());
-    command.add_option("--out", options->out, "write the path, eight rows a second, to this new CSV file");
+    command.add_option(
+        "--out", options->out,
+        "write the path, eight states a second, to this new file: CSV, or by its ending .oem, .aem (CCSDS), .bsp, .bc, "
+        ".tsc (SPICE)");
     command.callback([options, &exit_code] { exit_code = reconstruct(*options); });
 }
 

@@ -122,12 +122,25 @@ TEST_CASE("the standard's attitude ephemeris is read, the scalar last, and with 
     REQUIRE(read.ok());
     REQUIRE(read->size() == 1);
     CHECK(read->front().frame_b == "SC_BODY_1");
-    CHECK(read->front().states[0].q_BA == std::array{0.68427, 0.56748, 0.03146, 0.45689});
+    CHECK(read->front().states[0].q_BA == std::array{0.68427, -0.56748, -0.03146, -0.45689});
     const auto first =
         read_attitude_message(with(attitude_example, "ATTITUDE_TYPE = QUATERNION",
                                    "ATTITUDE_DIR = B2A\nQUATERNION_TYPE = FIRST\nATTITUDE_TYPE = QUATERNION"));
     REQUIRE(first.ok());
-    CHECK(first->front().states[0].q_BA == std::array{0.56748, -0.03146, -0.45689, -0.68427});
+    CHECK(first->front().states[0].q_BA == std::array{0.56748, 0.03146, 0.45689, 0.68427});
+}
+
+TEST_CASE("the quaternion of a turn of axes by 90 degrees about z takes x to minus y, as the standard's example says",
+          "[navigation_message]") {
+    const auto read = read_attitude_message(
+        with(with(attitude_example, "0.56748 0.03146 0.45689 0.68427", "0.0 0.0 0.70710678 0.70710678"),
+             "USEABLE_START_TIME = 1996-11-28T22:08:02.5555\n", ""));
+    REQUIRE(read.ok());
+    const auto& [w, x, y, z] = read->front().states[0].q_BA;
+    // First column of the matrix: where [1, 0, 0] in A is in B.
+    CHECK(std::abs(w * w + x * x - y * y - z * z) < 1e-7);
+    CHECK(std::abs(2.0 * (x * y + w * z) - -1.0) < 1e-7);
+    CHECK(std::abs(2.0 * (x * z - w * y)) < 1e-7);
 }
 
 TEST_CASE("what is written is read again, to the last decimal of the text", "[navigation_message][property]") {
