@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // @vitest-environment happy-dom
 import { describe, expect, it } from 'vitest';
+import { LinkChange_Silence } from '../gen/aeolis/v1/items_pb';
 import { aStore, link, tone } from '../testing/fixtures';
 import type { Palette } from '../draw/palette';
 import { named } from '../stream/names';
@@ -28,11 +29,13 @@ describe('tones', () => {
   });
   it('are not lost before X-band goes over to them: they have not begun', () => {
     const reason = 'not begun: X-band sends telemetry until E−12:30';
-    const store = aStore([link({ link: 'x_band', up: false, reason, ert: '2012-219T04:40:00.0' })]);
+    const store = aStore([
+      link({ link: 'x_band', up: false, reason, silence: LinkChange_Silence.not_begun, ert: '2012-219T04:40:00.0' }),
+    ]);
     expect(toneEvidence(latestTone(store, Infinity), toneSilence(store, Infinity))).toBe(
       'tones have not begun: X-band sends telemetry until E−12:30',
     );
-    expect(toneEvidence(undefined, '')).toBe('one of 256, each for 10 s');
+    expect(toneEvidence(undefined)).toBe('one of 256, each for 10 s');
   });
   it('give the evidence with the meaning', () => {
     const store = aStore([

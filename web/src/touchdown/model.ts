@@ -20,7 +20,7 @@ export interface TouchdownReport {
   sclk?: number;
   steps: readonly TouchdownStep[];
   figures: readonly { name: string; channel: string; unit: string; value?: number; before_s: number }[];
-  place?: { east_m: number; north_m: number; inside_ellipse?: boolean };
+  place?: { east_m: number; north_m: number; inside_ellipse?: boolean; rests_on: string };
   place_unknown: string;
 }
 
@@ -66,6 +66,8 @@ export interface Result {
   value: string;
   unit: string;
   note: string;
+  /** What the note has no room for. */
+  more?: string;
 }
 
 const POINTS = ['north', 'north-east', 'east', 'south-east', 'south', 'south-west', 'west', 'north-west'];
@@ -98,8 +100,9 @@ export function resultsOf(
       ? {
           name: 'from the target',
           value: Math.hypot(place.east_m, place.north_m).toFixed(0),
-          unit: 'm',
-          note: `to the ${compass(place)}, by navigation on board; its uncertainty is not told`,
+          unit: 'm ± ?',
+          note: `to the ${compass(place)}, by navigation on board, uncertainty not known`,
+          more: `It rests on ${place.rests_on}.`,
         }
       : { name: 'from the target', value: '—', unit: '', note: `not known: ${place_unknown}` },
     ...told.slice(2),

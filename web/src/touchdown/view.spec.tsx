@@ -27,7 +27,7 @@ const REPORT: TouchdownReport = {
     { name: 'across', channel: 'horizontal_speed_mps', unit: 'm/s', value: -0.02, before_s: 0 },
     { name: 'propellant left', channel: 'propellant_kg', unit: 'kg', before_s: 0 },
   ],
-  place: { east_m: 400, north_m: 300, inside_ellipse: true },
+  place: { east_m: 400, north_m: 300, inside_ellipse: true, rests_on: 'the entry solution' },
   place_unknown: '',
 };
 
@@ -44,7 +44,7 @@ describe('the figures of a touchdown', () => {
     expect(results.map(({ note }) => note).slice(0, 4)).toEqual([
       'descent_rate_mps, 0.5 s before',
       'horizontal_speed_mps, at touchdown',
-      'to the north-east, by navigation on board; its uncertainty is not told',
+      'to the north-east, by navigation on board, uncertainty not known',
       'not known: propellant_kg did not come near it',
     ]);
   });

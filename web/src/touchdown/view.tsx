@@ -82,8 +82,8 @@ export function Touchdown() {
           </span>
         </h3>
         <dl class="touchdown-figures" data-testid="touchdown-figures">
-          {resultsOf(look, of).map(({ name, value, unit, note }) => (
-            <div key={name} title={note}>
+          {resultsOf(look, of).map(({ name, value, unit, note, more }) => (
+            <div key={name} title={more ? `${note}. ${more}` : note}>
               <dt>{name}</dt>
               <dd>
                 <output>{value}</output> {unit}
@@ -123,6 +123,7 @@ export function Touchdown() {
               {miss.inside_ellipse ? 'inside' : '▲ outside'} {ellipseWords(ellipse)}
             </small>
           )}
+          {miss && <small data-testid="place-rests-on">{`The place rests on ${miss.rests_on}.`}</small>}
         </div>
         <div class="touchdown-next" data-testid="touchdown-next">
           {restOf(look, pastRange.value === undefined).map((rest) => (
