@@ -8,8 +8,9 @@ import { pastRange, timepoints } from '../run/shown';
 import { ENTRY_SCLK } from '../testing/fixtures';
 import { aServer } from '../testing/server';
 import { lookAt, vehicleDictionary, vehiclePlan } from '../testing/vehicle';
-import { compass, refreshTouchdown, restOf, resultsOf, touchdownAnswer, touchdownKnown } from './model';
-import type { TouchdownReport } from './model';
+import { compass, refreshTouchdown, restOf, resultsOf } from './model';
+import { touchdownAnswer, touchdownKnown } from './shown';
+import type { TouchdownReport } from './shown';
 import { Touchdown } from './view';
 
 const server = aServer();

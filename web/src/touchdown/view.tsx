@@ -10,8 +10,9 @@ import { focusPanel } from '../shortcuts/model';
 import type { Tab } from '../places/model';
 import { fromEntry } from '../run/time';
 import { ellipseWords, Path } from '../vehicle/path';
-import { refreshTouchdown, restOf, resultsOf, touchdownKnown } from './model';
-import type { TouchdownStep } from './model';
+import { refreshTouchdown, restOf, resultsOf } from './model';
+import { touchdownKnown } from './shown';
+import type { TouchdownStep } from './shown';
 import './style.css';
 
 const LOOKS = {

@@ -23,6 +23,7 @@ import {
   stage,
   tone,
 } from '../testing/fixtures';
+import { touchdownAnswer } from '../touchdown/shown';
 import type { NamedStage } from '../stream/names';
 import { PredictionSchema } from '../gen/aeolis/v1/prediction_pb';
 import { predictForTest } from '../prediction/model';
@@ -481,6 +482,11 @@ describe('waiting for', () => {
         Infinity,
       ).title,
     ).toBe('Touchdown reported');
+    const report = { verdict: 'confirmed' as const, steps: [], figures: [], place_unknown: '' };
+    touchdownAnswer.value = { at: Infinity, live: false, report };
+    const landed = aStore([], aRun({ state: 'finished', outcome: 'touchdown', relayProgress: 1 }));
+    expect(waitingFor(landed, aDictionary, aPlan, Infinity).title).toBe('Touchdown confirmed');
+    touchdownAnswer.value = undefined;
     const lost = situation(
       '2012-219T04:59:55.0',
       {
