@@ -37,18 +37,4 @@ std::string from_entry_tenths_text(double e_s) {
     return clock_text(tenths < 0, all / 10) + "." + std::to_string(all % 10);
 }
 
-std::string span_text(double span_s) {
-    const double all_s = std::abs(span_s);
-    const auto whole = static_cast<std::int64_t>(all_s);
-    char buffer[40];
-    if (all_s < 60.0)
-        std::snprintf(buffer, sizeof buffer, "%.1f s", all_s);
-    else if (whole < 3600)
-        std::snprintf(buffer, sizeof buffer, "%d m %02d s", static_cast<int>(whole / 60), static_cast<int>(whole % 60));
-    else
-        std::snprintf(buffer, sizeof buffer, "%d h %02d m", static_cast<int>(whole / 3600),
-                      static_cast<int>(whole / 60 % 60));
-    return (span_s < 0.0 ? "−" : "") + std::string{buffer};
-}
-
 }  // namespace aeolis

@@ -10,7 +10,4 @@ std::string from_entry_text(double e_s);
 /// The same rounded to a tenth of a second: "E+4:58.3".
 std::string from_entry_tenths_text(double e_s);
 
-/// A duration, which may be negative: "9.5 s", "1 m 30 s", "2 h 05 m".
-std::string span_text(double span_s);
-
 }  // namespace aeolis

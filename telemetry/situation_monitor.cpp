@@ -108,6 +108,13 @@ double seconds_from(Ert from, Ert to) {
     return static_cast<double>(to.microseconds - from.microseconds) * 1e-6;
 }
 
+/// "heard by tone: parachute deploy, posterior 0.998"; what rounds to one is not certain.
+std::string heard_by_tone(std::string_view what, double likelihood) {
+    constexpr double almost_one = 0.9995;
+    return fmt::format("heard by tone: {}, posterior {}", what,
+                       likelihood >= almost_one ? "above 0.999" : fmt::format("{:.3f}", likelihood));
+}
+
 /// "speed ≤ 405.0 m/s", as it must become.
 std::string requirement(const Condition& condition) {
     const std::string sign = condition.comparison == "<="   ? "≤"
@@ -289,10 +296,10 @@ void SituationMonitor::tone(ToneId tone, double likelihood, Sclk start, const Or
     if (name.empty()) return;
     heard(start);
     const Ert at = seen(start);
-    const std::string evidence = fmt::format("tone {}", tone.value);
+    const std::string evidence = heard_by_tone(fmt::format("{} {}", tone.value, in_words(row.name)), likelihood);
     if (name == begin_tone) begun_ = true;
     if (name == take_over_tone && twin) take_over("by tone at", at, origin, evidence);
-    if (const auto told = timeline_.tone(tone, start - *clocks_.entry, origin.seq)) {
+    if (const auto told = timeline_.tone(tone, likelihood, start - *clocks_.entry, origin.seq)) {
         begun_ = true;
         if (dictionary_->timeline[told->value].name == touchdown_timepoint) touch_down(at, "by tone", origin, evidence);
     }
@@ -502,6 +509,12 @@ void SituationMonitor::add_silent(Entries& all, const std::string& name, const L
     all.push_back(std::move(entry));
 }
 
+std::string SituationMonitor::last_heard(std::size_t timepoint) const {
+    const auto& known = *timeline_.known(timepoint);
+    const auto name = in_words(dictionary_->timeline[timepoint].name);
+    return known.by_tone ? "last " + heard_by_tone(name, known.likelihood) : "last heard: " + name;
+}
+
 bool SituationMonitor::add_not_heard(Entries& all, Ert now) const {
     if (!clocks_.entry || dictionary_->timeline.empty() || !last_heard_ || landed_ || anything_up()) return false;
     const LinkRow* next = nullptr;
@@ -537,8 +550,7 @@ bool SituationMonitor::add_not_heard(Entries& all, Ert now) const {
     }
     if (const auto last = timeline_.last()) {
         const auto& known = *timeline_.known(*last);
-        entry.evidence = fmt::format("last heard: {}{}", in_words(dictionary_->timeline[*last].name),
-                                     known.by_tone ? ", by tone" : "");
+        entry.evidence = last_heard(*last);
         entry.evidence_seq = known.seq;
     }
     all.push_back(std::move(entry));
@@ -612,8 +624,7 @@ void SituationMonitor::add_step(Entries& all, std::size_t next, Ert now) const {
         entry.since = at;
         if (entry.evidence_seq == 0) {
             entry.evidence_seq = known.seq;
-            entry.evidence = fmt::format("last heard: {}{}", in_words(dictionary_->timeline[*last].name),
-                                         known.by_tone ? ", by tone" : "");
+            entry.evidence = last_heard(*last);
         }
         if (known.by_tone)
             entry.sentence +=

@@ -127,6 +127,7 @@ class SituationMonitor {
     void add_links(std::vector<SituationEntry>& all, Ert now, bool not_heard) const;
     void add_lost(std::vector<SituationEntry>& all, const std::string& name, const LinkRow& link) const;
     void add_silent(std::vector<SituationEntry>& all, const std::string& name, const LinkRow& link, Ert now) const;
+    std::string last_heard(std::size_t timepoint) const;  ///< of a known one, as evidence
     bool add_not_heard(std::vector<SituationEntry>& all, Ert now) const;
     void add_waiting(std::vector<SituationEntry>& all, Ert now) const;
     void add_step(std::vector<SituationEntry>& all, std::size_t next, Ert now) const;

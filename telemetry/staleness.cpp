@@ -14,41 +14,44 @@ double seconds_between(Ert from, Ert to) {
     return static_cast<double>(to.microseconds - from.microseconds) * 1e-6;
 }
 
+constexpr std::string_view lost_words = "the link is lost: ";
+
 bool brings_packets(std::string_view link) {
     return link.starts_with("uhf") || is_live_telemetry(link);
 }
 
 }  // namespace
 
-StalenessMonitor::StalenessMonitor(const dictionary::Dictionary& dictionary) {
+StalenessMonitor::StalenessMonitor(const dictionary::Dictionary& dictionary)
+    : by_rhythm_(dictionary.telemetry_plan.empty()) {
     for (std::size_t i = 0; i < dictionary.packets.size(); ++i) {
+        Row& row = rows_.emplace_back(Row{.packet = i});
         const auto& packet = dictionary.packets[i];
         if (!packet.expected_rate_hz || *packet.expected_rate_hz <= 0.0) continue;
-        Expected expected{i, {1.0 / *packet.expected_rate_hz}};
-        const auto named = [&](const dictionary::TelemetryPlanRow& row) { return row.packet == packet.name; };
-        const auto row = std::ranges::find_if(dictionary.telemetry_plan, named);
-        if (row == dictionary.telemetry_plan.end() && !dictionary.telemetry_plan.empty()) continue;
-        if (row != dictionary.telemetry_plan.end()) {
-            if (row->plan != "all") continue;  // ground does not know which plan is flown
-            expected.interval_s.clear();
-            for (const std::uint32_t every : row->every)
-                expected.interval_s.push_back(every / *packet.expected_rate_hz);
+        if (by_rhythm_) {
+            row.interval_s = {1.0 / *packet.expected_rate_hz};
+            continue;
         }
-        expected_.push_back(std::move(expected));
+        const auto named = [&](const dictionary::TelemetryPlanRow& each) { return each.packet == packet.name; };
+        const auto planned = std::ranges::find_if(dictionary.telemetry_plan, named);
+        if (planned == dictionary.telemetry_plan.end()) continue;
+        if (planned->plan != "all") continue;  // ground does not know which plan is flown
+        for (const std::uint32_t every : planned->every) row.interval_s.push_back(every / *packet.expected_rate_hz);
     }
 }
 
-double StalenessMonitor::interval_s(const Expected& expected) const {
-    if (expected.interval_s.size() == 1) return expected.interval_s.front();
-    return state_ ? expected.interval_s[*state_] : 0.0;
+double StalenessMonitor::interval_s(const Row& row) const {
+    if (row.interval_s.empty() || row.of_ground) return 0.0;
+    if (row.interval_s.size() == 1) return row.interval_s.front();
+    return state_ ? row.interval_s[*state_] : 0.0;
 }
 
-double StalenessMonitor::reckon(const Expected& expected, Ert ert) {
-    const double interval = interval_s(expected);
-    if (expected.last && !expected.stale && interval > 0.0) {
+double StalenessMonitor::reckon(const Row& row, Ert ert) {
+    const double interval = interval_s(row);
+    if (row.last && row.is != Staleness::missing && interval > 0.0) {
         const double remembered = std::exp(-seconds_between(reckoned_, ert) / stale_memory_s);
         reckoned_ = ert;
-        due_ = due_ * remembered + seconds_between(expected.since, ert) / interval;
+        due_ = due_ * remembered + seconds_between(row.since, ert) / interval;
         came_ = came_ * remembered + 1.0;
     }
     if (came_ >= due_) return stale_intervals;
@@ -56,38 +59,50 @@ double StalenessMonitor::reckon(const Expected& expected, Ert ert) {
     return std::clamp(std::log(stale_chance) / std::log(lost), stale_intervals, stale_intervals_max);
 }
 
-void StalenessMonitor::clear(Expected& expected, const std::string& reason, Ert now,
-                             std::vector<StalenessChange>& out) const {
-    if (!std::exchange(expected.stale, false)) return;
-    out.push_back({expected.packet, false, seconds_between(*expected.last, now), 0.0, reason});
+void StalenessMonitor::change(Row& row, Staleness to, std::string reason, Ert now,
+                              std::vector<StalenessChange>& out) const {
+    if (!row.last || std::exchange(row.is, to) == to) return;
+    const double expected_s = to == Staleness::missing ? interval_s(row) : 0.0;
+    out.push_back({row.packet, to, seconds_between(*row.last, now), expected_s, std::move(reason)});
 }
 
-std::string StalenessMonitor::lost_for() const {
-    if (best_ != LinkIs::lost) return {};
+std::string StalenessMonitor::silent_for() const {
+    if (best_ == LinkIs::up) return {};
+    if (best_ == LinkIs::down) return "the link is down: " + down_for_;
     const auto lost = std::ranges::find_if(links_, [](const auto& each) { return each.second.is == LinkIs::lost; });
-    return "the link is lost: " + lost->second.reason;
+    return std::string(lost_words) + lost->second.reason;
 }
 
 void StalenessMonitor::heard(std::size_t packet, Ert ert, std::vector<StalenessChange>& out) {
-    const auto found = std::ranges::find(expected_, packet, &Expected::packet);
-    if (found == expected_.end()) return;
-    found->intervals = reckon(*found, ert);
-    clear(*found, "heard again", ert, out);
-    found->last = found->since = ert;
+    Row& row = rows_.at(packet);
+    row.intervals = reckon(row, ert);
+    if (row.last) row.rhythm_s = std::max(seconds_between(*row.last, ert), rhythm_fades * row.rhythm_s);
+    change(row, Staleness::current, "heard again", ert, out);
+    row.last = row.since = ert;
+}
+
+void StalenessMonitor::made_on_ground(std::size_t packet, Ert ert, std::vector<StalenessChange>& out) {
+    Row& row = rows_.at(packet);
+    row.of_ground = true;
+    change(row, Staleness::current, "made again", ert, out);
+    row.last = row.since = ert;
 }
 
 void StalenessMonitor::link(std::string_view name, LinkIs is, std::string_view reason, Ert ert,
                             std::vector<StalenessChange>& out) {
     if (!brings_packets(name)) return;
     links_.insert_or_assign(std::string(name), Link{is, std::string(reason)});
+    if (is == LinkIs::down) down_for_ = reason;
     LinkIs best = LinkIs::down;
     for (const auto& each : links_) best = std::max(best, each.second.is);
     const LinkIs before = std::exchange(best_, best);
     if (best == before) return;
+    best_since_ = ert;
     if (before == LinkIs::up && best == LinkIs::lost) return;  // absence keeps counting from the last reception
-    for (Expected& expected : expected_) {
-        if (best == LinkIs::down) clear(expected, "the link is down: " + std::string(reason), ert, out);
-        expected.since = ert;
+    for (Row& row : rows_) {
+        if (best == LinkIs::down && row.is == Staleness::missing)
+            change(row, Staleness::explained, silent_for(), ert, out);
+        row.since = ert;
     }
 }
 
@@ -99,21 +114,49 @@ void StalenessMonitor::phase(std::string_view label, Ert ert, std::vector<Stalen
     const auto state =
         found == dictionary::telemetry_state_of_phase.end() ? std::nullopt : std::optional(found->second);
     if (state == std::exchange(state_, state)) return;
-    for (Expected& expected : expected_) {
-        if (interval_s(expected) == 0.0) clear(expected, "not expected in " + phase_, ert, out);
-        expected.since = ert;
+    for (Row& row : rows_) {
+        if (row.is == Staleness::missing && interval_s(row) == 0.0)
+            change(row, Staleness::explained, "not expected in " + phase_, ert, out);
+        row.since = ert;
     }
 }
 
 void StalenessMonitor::pass(Ert now, std::vector<StalenessChange>& out) {
-    if (best_ == LinkIs::down) return;
-    for (Expected& expected : expected_) {
-        const double interval = interval_s(expected);
-        if (expected.stale || !expected.last || interval == 0.0) continue;
-        if (seconds_between(expected.since, now) <= std::max(expected.intervals * interval, stale_least_s)) continue;
-        expected.stale = true;
-        out.push_back({expected.packet, true, seconds_between(*expected.last, now), interval, lost_for()});
+    for (Row& row : rows_)
+        if (row.last && row.is != Staleness::missing) judge(row, now, out);
+}
+
+void StalenessMonitor::judge(Row& row, Ert now, std::vector<StalenessChange>& out) const {
+    const double absent_s = seconds_between(*row.last, now);
+    if (row.of_ground) {
+        if (absent_s > stale_least_s) change(row, Staleness::explained, "the ground makes none", now, out);
+    } else if (best_ == LinkIs::down) {
+        if (std::min(absent_s, seconds_between(best_since_, now)) >= link_down_s)
+            change(row, Staleness::explained, silent_for(), now, out);
+    } else if (const double interval = interval_s(row); interval > 0.0) {
+        if (seconds_between(row.since, now) > std::max(row.intervals * interval, stale_least_s))
+            change(row, Staleness::missing, silent_for(), now, out);
+    } else if (!row.interval_s.empty() && state_) {
+        if (absent_s > stale_least_s) change(row, Staleness::explained, "not expected in " + phase_, now, out);
+    } else if (best_ == LinkIs::lost) {
+        change(row, Staleness::explained, silent_for(), now, out);
+    } else if (by_rhythm_ && row.rhythm_s > 0.0) {
+        if (absent_s > std::max(stale_intervals * row.rhythm_s, stale_least_s))
+            change(row, Staleness::explained, "it came more often before", now, out);
     }
+}
+
+std::optional<double> stale_after_s(const dictionary::Dictionary& dictionary, std::size_t packet) {
+    const auto& of = dictionary.packets[packet];
+    if (!of.expected_rate_hz || *of.expected_rate_hz <= 0.0) return {};
+    std::uint32_t every = 1;
+    for (const auto& row : dictionary.telemetry_plan)
+        if (row.packet == of.name) every = std::max(every, std::ranges::max(row.every));
+    return std::max(stale_intervals * every / *of.expected_rate_hz, stale_least_s);
+}
+
+bool names_lost_link(std::string_view reason, std::string_view link_reason) {
+    return reason.starts_with(lost_words) && reason.substr(lost_words.size()) == link_reason;
 }
 
 }  // namespace aeolis::telemetry

@@ -169,6 +169,11 @@ std::string named_value_text(std::string_view name, double value, int more_decim
            std::string{notation->unit};
 }
 
+std::string span_text(double span_s) {
+    constexpr double tenths = 10.0;
+    return duration_text(std::round(span_s * tenths) / tenths, 0);
+}
+
 std::pair<std::string, std::string> told_apart(std::string_view name, double value, double other) {
     std::pair<std::string, std::string> texts;
     for (int more = 0; more <= more_decimals_max; ++more) {

@@ -36,6 +36,8 @@ std::string in_words(std::string_view name);
 /// hundredth, and long times to a tenth.
 std::string_view without_unit(std::string_view name);  ///< "speed"
 std::string named_value_text(std::string_view name, double value, int more_decimals = 0);
+/// A duration in the same notation, to a tenth of a second: "9.5 s", "90 s", "2 h 5 min".
+std::string span_text(double span_s);
 /// Two amounts of one kind, with as many more decimals as tell them apart when they differ: "1.963 m/s2", "1.960 m/s2".
 std::pair<std::string, std::string> told_apart(std::string_view name, double value, double other);
 

@@ -37,11 +37,11 @@ void TimelineWatch::fired(TimepointId timepoint, double triggered_e_s, double fi
     predict();
 }
 
-std::optional<TimepointId> TimelineWatch::tone(ToneId tone, double e_s, std::uint64_t seq) {
+std::optional<TimepointId> TimelineWatch::tone(ToneId tone, double likelihood, double e_s, std::uint64_t seq) {
     if (tone.value >= of_tone_.size() || !of_tone_[tone.value]) return {};
     const TimepointId told = *of_tone_[tone.value];
     if (known_[told.value]) return {};
-    known_[told.value] = Known{e_s, true, false, seq};
+    known_[told.value] = Known{e_s, true, false, seq, likelihood};
     return told;
 }
 

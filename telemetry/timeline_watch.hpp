@@ -25,10 +25,11 @@ class TimelineWatch {
         double e_s = 0.0;  ///< when it was triggered
         bool by_tone = false, recorded = false;
         std::uint64_t seq = 0;
+        double likelihood = 1.0;  ///< of the tone, where it is known by one
     };
     void fired(TimepointId timepoint, double triggered_e_s, double fired_e_s, bool recorded, std::uint64_t seq);
     /// Returns the timepoint that the tone reports; none if it reports none or a known one.
-    std::optional<TimepointId> tone(ToneId tone, double e_s, std::uint64_t seq);
+    std::optional<TimepointId> tone(ToneId tone, double likelihood, double e_s, std::uint64_t seq);
 
     const std::optional<Known>& known(std::size_t timepoint) const { return known_[timepoint]; }
     /// The last one known, in the timeline's order; none before the first.

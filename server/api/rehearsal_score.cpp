@@ -4,6 +4,7 @@
 #include "common/entry_time.hpp"
 #include "server/api/touchdown.hpp"
 #include "server/archive/items.hpp"
+#include "telemetry/text.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -188,7 +189,7 @@ class Judge {
             if (!item.link().lost()) return raised_.take_inside(item.link().link());
             raised_.take_raised(item.link().link(), "lost", e_s);
         } else if (item.has_staleness()) {
-            if (!item.staleness().stale()) return raised_.take_inside(item.staleness().packet());
+            if (!item.staleness().missing()) return raised_.take_inside(item.staleness().packet());
             raised_.take_raised(item.staleness().packet(), "silent", e_s);
         } else if (item.has_alarm_action() && item.alarm_action().action() == v1::AlarmAction::acknowledge) {
             raised_.take_acknowledged(item.alarm_action(), e_s);
@@ -288,9 +289,10 @@ class Judge {
             shares.push_back(promptness(acknowledged ? std::optional{acknowledged->after_s} : std::nullopt));
             add_fact(score_, "alarm",
                      fmt::format("{} {}; {}", in_words(name), limit,
-                                 acknowledged ? fmt::format("acknowledged {} later by {}",
-                                                            span_text(acknowledged->after_s), acknowledged->by)
-                                              : "never acknowledged"),
+                                 acknowledged
+                                     ? fmt::format("acknowledged {} later by {}",
+                                                   telemetry::span_text(acknowledged->after_s), acknowledged->by)
+                                     : "never acknowledged"),
                      e_s);
         }
         if (!shares.empty())
@@ -309,11 +311,12 @@ class Judge {
             const auto first = std::ranges::find_if(acts_, [&](const Act& act) { return act.e_s >= felt_s; });
             const bool any = first != acts_.end();
             shares.push_back(promptness(any ? std::optional{first->e_s - felt_s} : std::nullopt));
-            add_fact(score_, "fault",
-                     fmt::format("{}; {}", fault_words(intervention.fault()),
-                                 any ? fmt::format("{} later: {}", span_text(first->e_s - felt_s), first->words)
-                                     : "nobody did anything afterwards"),
-                     felt_s);
+            add_fact(
+                score_, "fault",
+                fmt::format("{}; {}", fault_words(intervention.fault()),
+                            any ? fmt::format("{} later: {}", telemetry::span_text(first->e_s - felt_s), first->words)
+                                : "nobody did anything afterwards"),
+                felt_s);
         }
         if (!shares.empty())
             add_term(score_, "faults", faults_worth, mean(shares),

@@ -69,7 +69,7 @@ struct Stand {
 };
 
 bool stands(const v1::Item& alarm) {
-    return alarm.has_staleness() ? alarm.staleness().stale() : alarm.alarm().severity() != v1::Alarm::none;
+    return alarm.has_staleness() ? alarm.staleness().missing() : alarm.alarm().severity() != v1::Alarm::none;
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include "server/rehearsal/nominal_flight.hpp"
 #include "server/scenario/scenario_text.hpp"
 #include "telemetry/port.hpp"
+#include "telemetry/text.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -80,9 +81,10 @@ void add_uhf_step(const TouchdownFacts& facts, Sclk since, Report& report) {
     if (is_silent || facts.now - *before > touchdown_gap_s)
         return add_step(report, name, Step::unknown,
                         fmt::format("not known: no UHF since {}; {} had come without a break", since_words("", *before),
-                                    span_text(*before - *from)));
-    add_step(report, name, Step::waiting,
-             fmt::format("{} of {:.0f} s since {}", span_text(*before - *from), touchdown_uhf_s, when(*from)));
+                                    telemetry::span_text(*before - *from)));
+    add_step(
+        report, name, Step::waiting,
+        fmt::format("{} of {:.0f} s since {}", telemetry::span_text(*before - *from), touchdown_uhf_s, when(*from)));
 }
 
 Report::Verdict verdict_of(const Report& report) {
@@ -144,21 +146,20 @@ class FactsReader {
         return done;
     }
 
-    Result<void> add_silences(const v1::RunState& state, TouchdownFacts& facts) {
-        for (archive::Sequence after = 0;;) {
-            auto page = reader_.items(run_, after, archive::items_page_max, {.samples = false, .packets = false});
-            if (!page) return page.error();
-            for (const auto& item : page->items) {
-                if (!item.has_link() || item.link().link() != telemetry::uhf_live_link.name) continue;
-                const Sclk sclk = archive::sclk_at_ert(state, Ert{item.ert_us()});
-                if (at_ && sclk > *at_) continue;
-                if (!facts.silences.empty() && !facts.silences.back().to) facts.silences.back().to = sclk;
-                const auto& reason = item.link().reason();
-                if (!item.link().up()) facts.silences.push_back({sclk, {}, reason.empty() ? "silent" : reason});
-            }
-            if (!page->more) return {};
-            after = page->complete_through;
+    Result<void> add_silences(TouchdownFacts& facts) {
+        const auto silences = reader_.silences(run_);
+        if (!silences) return silences.error();
+        for (const auto& silence : *silences) {
+            const Sclk from{facts.entry.seconds + silence.from_e_s()};
+            if (silence.link() != telemetry::uhf_live_link.name || (at_ && from > *at_)) continue;
+            auto& known = facts.silences.emplace_back();
+            known.from = from;
+            known.words = silence.reason().empty() ? "silent" : silence.reason();
+            if (!silence.has_to_e_s()) continue;
+            const Sclk to{facts.entry.seconds + silence.to_e_s()};
+            if (!at_ || to <= *at_) known.to = to;
         }
+        return {};
     }
 
     /// Figures and place from the samples just before the touchdown.
@@ -167,6 +168,7 @@ class FactsReader {
         std::map<std::string, archive::ChannelValue> then;
         std::vector<std::string_view> names{position_channels.begin(), position_channels.end()};
         for (const auto& each : touchdown_channels) names.push_back(each.channel);
+        names.push_back(velocity_doubt_channel);
         const auto done = each(names, {touchdown.seconds - touchdown_close_s, touchdown.seconds},
                                [&](const auto& name, const auto& sample) { then[name] = sample; });
         if (!done) return done;
@@ -221,6 +223,9 @@ class FactsReader {
             position[i] = found->second.value;
         }
         *report.mutable_place() = place_over_ground(position, *latitude, *longitude, *radius);
+        const auto doubt = then.find(std::string{velocity_doubt_channel});
+        report.mutable_place()->set_rests_on(
+            place_rests_on(doubt == then.end() ? std::nullopt : std::optional{doubt->second.value}));
         const auto text = reader_.scenario_text(run_);
         if (!text) return;  // of another mission, or of an older dictionary
         const auto scenario = scenario_from_text(*text, fmt::format("the scenario of run {}", run_.value));
@@ -274,6 +279,16 @@ v1::TouchdownPlace place_over_ground(const std::array<double, 3>& p_MoB_M, doubl
     return place;
 }
 
+std::string place_rests_on(std::optional<double> velocity_doubt_mps) {
+    std::string words =
+        "the entry solution from ground, carried on by the IMU; radar corrects height and velocity, not "
+        "the place. Its uncertainty is not known: no channel and no solution holds it";
+    if (velocity_doubt_mps && *velocity_doubt_mps > 0.0)
+        words +=
+            fmt::format("; for a silence of the IMU velocity may have been off by {:.2f} m/s", *velocity_doubt_mps);
+    return words;
+}
+
 bool is_inside(const v1::TouchdownPlace& place, const v1::TargetEllipse& ellipse) {
     const double sin = std::sin(radians(ellipse.azimuth_deg())), cos = std::cos(radians(ellipse.azimuth_deg()));
     const double along_m = place.east_m() * sin + place.north_m() * cos,
@@ -292,8 +307,8 @@ Result<v1::TouchdownReport> touchdown(archive::Reader& reader, archive::RunId ru
     if (auto done = of.add_event(facts); !done) return done.error();
     if (auto done = of.add_samples(facts); !done) return done.error();
     if (facts.told.empty()) return v1::TouchdownReport{};
-    if (auto done = of.add_silences(*state, facts); !done) return done.error();
     facts.entry = Sclk{state->entry_sclk()};
+    if (auto done = of.add_silences(facts); !done) return done.error();
     const auto newest = now ? Result<Ert>{*now} : reader.newest_ert(run);
     if (!newest) return newest.error();
     facts.now = at ? *at : archive::sclk_at_ert(*state, *newest);

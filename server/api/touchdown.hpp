@@ -24,6 +24,8 @@ inline constexpr std::array<std::string_view, 3> position_channels{"nav_position
 /// The target in ground's solution: latitude, longitude, radius.
 inline constexpr std::array<std::string_view, 3> target_arguments{"target_latitude_deg", "target_longitude_deg",
                                                                   "target_radius_m"};
+/// What the vehicle holds of the error of its velocity: for a silence of its IMU alone.
+inline constexpr std::string_view velocity_doubt_channel = "velocity_uncertainty_mps";
 struct TouchdownChannel {
     std::string_view figure, channel;
 };
@@ -65,6 +67,10 @@ v1::TouchdownReport judge_touchdown(const TouchdownFacts& facts);
 /// Converts a position from Mars's centre to east and north of the target, over ground. @param radius_m  of the target
 v1::TouchdownPlace place_over_ground(const std::array<double, 3>& p_MoB_M, double latitude_deg, double longitude_deg,
                                      double radius_m);
+/// What a place by navigation on board rests on. Nothing on board or on the ground holds its uncertainty, so none is
+/// given.
+/// @param velocity_doubt_mps  by the vehicle: for a silence of its IMU, 0 for none
+std::string place_rests_on(std::optional<double> velocity_doubt_mps);
 bool is_inside(const v1::TouchdownPlace& place, const v1::TargetEllipse& ellipse);
 
 /// The touchdown of a run.

@@ -183,6 +183,7 @@ v1::Item to_item(const StalenessRecord& record, const dictionary::Dictionary* di
     auto& staleness = *item.mutable_staleness();
     if (dictionary != nullptr) staleness.set_packet(dictionary->packets[record.packet].name);
     staleness.set_stale(record.stale);
+    staleness.set_missing(record.expected_s > 0.0);
     staleness.set_silent_s(record.silent_s);
     staleness.set_expected_s(record.expected_s);
     staleness.set_reason(record.reason);

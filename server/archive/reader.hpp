@@ -291,6 +291,8 @@ class Reader {
     /// The as-flown report that a review of the landing starts from, with the first page of commands and of notes.
     /// Takes as long as proof().
     Result<v1::AsFlownReport> as_flown(RunId run);
+    /// The silences of each link and their reported reasons, by their beginning.
+    Result<std::vector<v1::Silence>> silences(RunId run);
 
     Result<std::vector<AuditEntry>> audit(std::uint64_t after, std::size_t limit, Order order = {});
     /// The layouts of the owner, the one saved longest ago first.

@@ -26,7 +26,7 @@ void apply(const v1::Item& item, const dictionary::Dictionary& dictionary, telem
         const auto& alarms = dictionary.channels[item.alarm().channel()].type.alarms;
         entries.change(name, static_cast<Severity>(item.alarm().severity()), telemetry::latches(alarms));
     } else if (item.has_staleness()) {
-        entries.change(name, item.staleness().stale() ? telemetry::stale_severity : Severity::none, false);
+        entries.change(name, item.staleness().missing() ? telemetry::stale_severity : Severity::none, false);
     } else if (item.has_link()) {
         entries.change(name, item.link().lost() ? telemetry::lost_severity : Severity::none, false);
     } else {
@@ -53,6 +53,19 @@ void describe(const v1::Item& item, v1::AlarmState& state) {
     } else {
         state.set_by(item.alarm_action().by());
         state.set_note(item.alarm_action().note());
+    }
+}
+
+/// Names for each missing packet the lost link for which it is missing.
+void name_causes(std::vector<v1::AlarmState>& states) {
+    const auto stands = [](const v1::AlarmState& state) { return state.severity() != v1::Alarm::none; };
+    for (auto& packet : states) {
+        if (packet.kind() != v1::StandingAlarm::staleness || !stands(packet)) continue;
+        const auto link = std::ranges::find_if(states, [&](const v1::AlarmState& state) {
+            return state.kind() == v1::StandingAlarm::link && stands(state) &&
+                   telemetry::names_lost_link(packet.reason(), state.reason());
+        });
+        if (link != states.end()) packet.set_cause(link->name());
     }
 }
 
@@ -106,6 +119,7 @@ Result<v1::AlarmList> Reader::alarm_states(RunId run, std::optional<Ert> now) {
         if (state.shelved_until && at < *state.shelved_until)
             written.set_shelved_until_us(state.shelved_until->microseconds);
     }
+    name_causes(states);
     std::ranges::stable_sort(states, std::ranges::greater{},
                              [](const v1::AlarmState& state) { return state.severity(); });
     v1::AlarmList list;

@@ -91,12 +91,6 @@ void add_timepoints(const v1::TimepointList& timeline, const v1::ToneList& tones
     }
 }
 
-Result<std::vector<v1::Silence>> silences_of(Reader::State& reader, RunId run) {
-    const auto snapshot = sqlite::Transaction::begin_read(reader.database);
-    if (!snapshot) return snapshot.error();
-    return reader.silences(run);
-}
-
 /// All rows of a list, page by page.
 template <typename List, typename Query>
 Result<List> all_of(Reader& reader, RunId run, Result<List> (Reader::*list)(RunId, const Query&), Query query) {
@@ -181,9 +175,9 @@ Result<v1::AsFlownReport> Reader::as_flown(RunId run) {
         std::ranges::count_if(heard->tones(), [](const v1::Item& item) { return item.tone().has_tone(); });
     report.set_tones_decoded(static_cast<std::uint64_t>(decoded));
     report.set_tones_erased(static_cast<std::uint64_t>(heard->tones_size() - decoded));
-    auto silences = silences_of(*state_, run);
-    if (!silences) return silences.error();
-    report.mutable_silences()->Assign(silences->begin(), silences->end());
+    auto silent = silences(run);
+    if (!silent) return silent.error();
+    report.mutable_silences()->Assign(silent->begin(), silent->end());
     NoteQuery all;
     all.limit = rows_page_max;
     auto written = notes(run, all);
@@ -195,6 +189,12 @@ Result<v1::AsFlownReport> Reader::as_flown(RunId run) {
     *report.mutable_commands() = std::move(*sent->mutable_commands());
     *report.mutable_proof() = std::move(*proven);
     return report;
+}
+
+Result<std::vector<v1::Silence>> Reader::silences(RunId run) {
+    const auto snapshot = sqlite::Transaction::begin_read(state_->database);
+    if (!snapshot) return snapshot.error();
+    return state_->silences(run);
 }
 
 Result<std::vector<v1::Silence>> Reader::State::silences(RunId run) {

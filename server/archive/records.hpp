@@ -168,11 +168,12 @@ struct AlarmRecord : ItemRecord {
     std::string limit;
 };
 
-/// A packet that became stale (expected in real time, not received), or is received again.
+/// A packet of which nothing comes in real time any more, or that is received again.
 struct StalenessRecord : ItemRecord {
     std::uint16_t packet = 0;  ///< index in the dictionary's packets
     bool stale = false;
-    double silent_s = 0.0, expected_s = 0.0;
+    double silent_s = 0.0;
+    double expected_s = 0.0;  ///< above 0: it is due, and missing; else its absence is explained
     std::string reason;
 };
 

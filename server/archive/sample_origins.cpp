@@ -77,18 +77,15 @@ Result<std::map<std::int64_t, std::string>> link_names(Reader::State& reader) {
     }
 }
 
-/// The longest expected time between two packets with the channel.
+/// How long a gap between two packets with the channel may be.
 double longest_interval_s(const dictionary::Dictionary& dictionary, const std::vector<PacketColumns::Place>& places) {
     double longest_s = 0.0;
     for (const auto place : places) {
-        const auto& packet = dictionary.packets[place.packet];
-        if (!packet.expected_rate_hz || *packet.expected_rate_hz <= 0.0) return std::numeric_limits<double>::infinity();
-        std::uint32_t every = 1;
-        for (const auto& row : dictionary.telemetry_plan)
-            if (row.packet == packet.name) every = std::max(every, std::ranges::max(row.every));
-        longest_s = std::max(longest_s, every / *packet.expected_rate_hz);
+        const auto after_s = telemetry::stale_after_s(dictionary, place.packet);
+        if (!after_s) return std::numeric_limits<double>::infinity();
+        longest_s = std::max(longest_s, *after_s);
     }
-    return std::max(telemetry::stale_intervals * longest_s, telemetry::stale_least_s);
+    return longest_s;
 }
 
 /// A link's silence in SCLK.

@@ -63,7 +63,7 @@ struct Pipeline::State {
     void take(const telemetry::ReceivedOctets& piece);
     void take(const telemetry::ReceivedPacket& packet);
     /// Notes that the newest packet of the batch was received.
-    void heard();
+    void heard(bool of_ground);
     void add(std::span<const telemetry::StalenessChange> changes, Ert ert);
     template <typename Received>
     Result<void> accept(const Received& received) {
@@ -323,16 +323,19 @@ void Pipeline::State::take(const telemetry::ReceivedPacket& packet) {
         note.written = server::wall_clock_text();
         run->pending.notes.push_back(std::move(note));
     }
-    if (!packet.link.recorded && packet.link != telemetry::station_link) heard();
+    if (!packet.link.recorded) heard(packet.link == telemetry::station_link);
     run->situation.follow(run->pending);
 }
 
-void Pipeline::State::heard() {
+void Pipeline::State::heard(bool of_ground) {
     const auto& record = run->pending.packets.back();
     if (!record.packet) return;
     const Ert ert = record.ert;
     std::vector<telemetry::StalenessChange> changes;
-    run->staleness.heard(*record.packet, ert, changes);
+    if (of_ground)
+        run->staleness.made_on_ground(*record.packet, ert, changes);
+    else
+        run->staleness.heard(*record.packet, ert, changes);
     if (!run->intake.phase().empty()) run->staleness.phase(run->intake.phase(), ert, changes);
     add(changes, ert);
 }
@@ -341,7 +344,7 @@ void Pipeline::State::add(std::span<const telemetry::StalenessChange> changes, E
     for (const auto& change : changes)
         run->pending.staleness.push_back({{run->numbering.next(run->pending), ert},
                                           static_cast<std::uint16_t>(change.packet),
-                                          change.stale,
+                                          change.is != telemetry::Staleness::current,
                                           change.silent_s,
                                           change.expected_s,
                                           change.reason});

@@ -52,7 +52,7 @@ test('whoever only does what the guide says lands it, and once put away the guid
     (count) => count === 0,
   );
   await page.reload();
-  await shows('waiting', /Touchdown reported/);
+  await shows('waiting', /Touchdown (reported|confirmed)/);
   assert.equal(await page.getByTestId('guide').count(), 0);
   assert.deepEqual(problems, []);
   await page.close();

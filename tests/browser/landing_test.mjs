@@ -59,7 +59,7 @@ test('two commands by keyboard land it; a reload has all of it; a range can be a
     () => page.locator('[data-event="TOUCHDOWN"]').count(),
     (count) => count === 1,
   );
-  await shows('waiting', /Touchdown reported/);
+  await shows('waiting', /Touchdown (reported|confirmed)/);
   await shows('badge', /ENDED RUN.*touchdown/s);
   // The end of the run may be reported before its last items: the page is complete once it has all items of the server
   // and neither count grows.
@@ -83,7 +83,7 @@ test('two commands by keyboard land it; a reload has all of it; a range can be a
   };
 
   await page.reload();
-  await shows('waiting', /Touchdown reported/);
+  await shows('waiting', /Touchdown (reported|confirmed)/);
   await waitFor(
     () => text('timepoints-fired'),
     (value) => value === seen.fired,

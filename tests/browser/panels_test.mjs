@@ -57,7 +57,7 @@ test('each panel shows what it is for, and says that it is of an ended rehearsal
     await waitFor(() => what.innerText(), SHOWN[panel]);
   }
   await page.goto(server.address);
-  await shows('waiting', /Touchdown reported/);
+  await shows('waiting', /Touchdown (reported|confirmed)/);
   assert.deepEqual(await findings(page, 'dark'), []);
   assert.deepEqual(problems, []);
   await page.close();
@@ -112,7 +112,7 @@ test('the console, its timeline and plots, its channels and its command line com
   }
   await page.setViewportSize({ width: 1600, height: 900 });
   await page.goto(server.address);
-  await shows('waiting', /Touchdown reported/);
+  await shows('waiting', /Touchdown (reported|confirmed)/);
   await shows('touchdown-figures', /from the target\s+\d/);
   different.push(...(await comesToLook(page, 'console_dark', page)));
   assert.deepEqual(different, []);

@@ -115,7 +115,7 @@ try {
     (count) => count === 1,
     180_000,
   );
-  await shows('waiting', /Touchdown reported/, 180_000);
+  await shows('waiting', /Touchdown (reported|confirmed)/, 180_000);
   await page.keyboard.press('v');
   await shows('verdict-sentence', /bit for bit/, 30_000);
   await shows('verdict-count', /^none$/);

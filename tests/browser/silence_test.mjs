@@ -11,7 +11,7 @@ test('a replay shows what had been heard then; with the recording it shows what 
   const way = await breakable(server.port);
   t.after(() => way.close());
   const { page, text, shows } = await open(way.address);
-  await shows('waiting', /Touchdown reported/);
+  await shows('waiting', /Touchdown (reported|confirmed)/);
   await shows('stream-state', /connected/);
   await page.keyboard.press('y');
   await shows('reading-of-past', /As it was heard then/); // and 0.3 s, or two letters are a word

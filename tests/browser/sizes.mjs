@@ -52,7 +52,7 @@ export const STATES = {
   landed: async (serve, t) => ({
     server: await landed(serve, t),
     reach: async ({ page, shows }) => {
-      await shows('waiting', /Touchdown reported/);
+      await shows('waiting', /Touchdown (reported|confirmed)/);
       await shows('reading-altitude', /\d/);
       await waitFor(
         () => page.locator('[data-event]').count(),

@@ -29,12 +29,4 @@ TEST_CASE("a time from entry with tenths is rounded to them", "[time]") {
     CHECK(from_entry_tenths_text(3723.25) == "E+1:02:03.3");
 }
 
-TEST_CASE("a span of time has tenths up to a minute, seconds up to an hour, then minutes", "[time]") {
-    CHECK(span_text(9.0) == "9.0 s");
-    CHECK(span_text(90.0) == "1 m 30 s");
-    CHECK(span_text(3599.9) == "59 m 59 s");
-    CHECK(span_text(7500.0) == "2 h 05 m");
-    CHECK(span_text(-5.0) == "−5.0 s");
-}
-
 }  // namespace common_entry_time_test

@@ -123,7 +123,7 @@ TEST_CASE("an alarm counts to its first acknowledgement: growing worse is not an
     CHECK(texts(score(facts), "alarm") == Texts{"speed mps > 90 m/s; acknowledged 20.0 s later by Ann"});
     auto silent = item_at(5.0);
     silent.mutable_staleness()->set_packet("Navigation");
-    silent.mutable_staleness()->set_stale(true);
+    silent.mutable_staleness()->set_missing(true);
     facts.alarms = {silent, acknowledged(8.0, "Navigation")};
     CHECK(texts(score(facts), "alarm") == Texts{"navigation silent; acknowledged 3.0 s later by Ann"});
 }
@@ -146,7 +146,7 @@ TEST_CASE("the reaction to a fault is the first thing that people did from then 
         fault.set_duration_s(10.0);
     }
     const auto judged = score(facts);
-    CHECK(texts(judged, "fault") == Texts{"radar A silent, for 10 s; 1 m 30 s later: Bob wrote “radar?”",
+    CHECK(texts(judged, "fault") == Texts{"radar A silent, for 10 s; 90 s later: Bob wrote “radar?”",
                                           "radar A silent, for 10 s; nobody did anything afterwards"});
     REQUIRE(term(judged, "faults") != nullptr);
     CHECK(term(judged, "faults")->points() == Approx(20.0 * server::promptness(90.0) / 2.0));

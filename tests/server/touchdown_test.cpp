@@ -102,6 +102,14 @@ TEST_CASE("without UHF its step is not known, with the reason of the silence whe
     CHECK(step.words() == "not known: no UHF since E+7:15.0; 4.0 s had come without a break");
 }
 
+TEST_CASE("a place says what it rests on; its uncertainty is not known, and none is made up", "[touchdown]") {
+    CHECK(server::place_rests_on(0.0) ==
+          "the entry solution from ground, carried on by the IMU; radar corrects height and velocity, not the place. "
+          "Its uncertainty is not known: no channel and no solution holds it");
+    CHECK(server::place_rests_on({}) == server::place_rests_on(0.0));
+    CHECK(server::place_rests_on(1.25).ends_with("; for a silence of the IMU velocity may have been off by 1.25 m/s"));
+}
+
 TEST_CASE("a place over ground is east and north of the target, and in the ellipse or not by its axes", "[touchdown]") {
     constexpr double radius_m = 3'390'000.0;
     const auto at = [&](double x, double y, double z) {

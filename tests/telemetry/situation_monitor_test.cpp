@@ -228,6 +228,7 @@ TEST_CASE(
     ground.fired("entry_guidance", 43.0);
     ground.tone("sc_taken_over", 105.0);
     CHECK(ground.sentence(116.0) == "Flying on backup computer B, by tone at E+1:45");
+    CHECK(ground.first(116.0).evidence.starts_with("heard by tone: "));
     ground.event("SECOND_CHANCE_TAKES_OVER", 100.3);
     const auto all = ground.monitor.at(at(120.0));
     CHECK(all.front().rank == Rank::danger);
@@ -254,7 +255,7 @@ TEST_CASE("a touchdown is reported by its own evidence alone; until then landing
           "Not heard since E+4:43; landing was predicted at E+7:11; next word when Odyssey rises at E+2:00:00");
     CHECK(later.rank == Rank::silence);
     CHECK(later.at == at(7200.0));
-    CHECK(later.evidence == "last heard: heatshield separation, by tone");
+    CHECK(later.evidence == "last heard by tone: heatshield separation, posterior 0.999");
     CHECK(ground.first(7201.0).overdue);
     CHECK_FALSE(ground.about("landed", 7201.0));
     ground.up(relay_link, 7210.0);
@@ -343,6 +344,9 @@ TEST_CASE("a tone that is not sure enough says nothing, and what went wrong is t
     CHECK_FALSE(ground.about("landed", 450.0));
     ground.tone("pyro_not_fired", 260.0);
     CHECK(ground.sentence(271.0) == "E+4:20, by tone: A pyro did not fire");
+    CHECK(ground.first(271.0).evidence.ends_with(" pyro not fired, posterior 0.999"));
+    ground.tone("pyro_not_fired", 280.0, 0.99999);
+    CHECK(ground.first(291.0).evidence.ends_with(", posterior above 0.999"));  // nothing is certain
     Ground with_uhf;
     with_uhf.up(uhf_live_link, -900.0);
     with_uhf.tone("pyro_not_fired", 260.0);

@@ -49,27 +49,42 @@ TEST_CASE("a packet is stale when four of its intervals bring nothing, and not b
     CHECK(ground.after(9.0) == 0);
     REQUIRE(ground.after(9.5) == 1);
     CHECK(ground.changes[0].packet == status);
-    CHECK(ground.changes[0].stale);
+    CHECK(ground.changes[0].is == Staleness::missing);
     CHECK(ground.changes[0].silent_s == 8.5);
     CHECK(ground.changes[0].expected_s == 2.0);
     CHECK(ground.after(30.0) == 1);  // said once
     ground.hear(31.0);
     REQUIRE(ground.changes.size() == 2);
-    CHECK_FALSE(ground.changes[1].stale);
+    CHECK(ground.changes[1].is == Staleness::current);
     CHECK(ground.changes[1].reason == "heard again");
 }
 
-TEST_CASE("silence while the link is down is the link's, and nothing is stale", "[alarms][staleness]") {
+TEST_CASE("silence while the link is down is the link's: all is stale with that reason, and nothing is missing",
+          "[alarms][staleness]") {
     Ground ground;
     ground.hear(1.0);
+    ground.monitor.heard(held, at_s(1.0), ground.changes);
     ground.monitor.link("uhf_live", LinkIs::down, "plasma blackout", at_s(3.0), ground.changes);
-    CHECK(ground.after(90.0) == 0);
+    CHECK(ground.after(3.9) == 0);  // another link may take over
+    REQUIRE(ground.after(4.0) == 2);
+    for (const auto& change : ground.changes) {
+        CHECK(change.is == Staleness::explained);
+        CHECK(change.silent_s == 3.0);
+        CHECK(change.expected_s == 0.0);
+        CHECK(change.reason == "the link is down: plasma blackout");
+    }
+    CHECK(ground.after(90.0) == 2);  // said once
     ground.monitor.link("uhf_live", LinkIs::up, "nominal", at_s(90.0), ground.changes);
-    CHECK(ground.after(98.0) == 0);
-    CHECK(ground.after(98.5) == 1);
+    CHECK(ground.after(98.0) == 2);
+    REQUIRE(ground.after(98.5) == 3);
+    CHECK(ground.changes[2].is == Staleness::missing);
     ground.monitor.link("uhf_live", LinkIs::down, "Earth set", at_s(99.0), ground.changes);
-    REQUIRE(ground.changes.size() == 2);
-    CHECK(ground.changes[1].reason == "the link is down: Earth set");
+    REQUIRE(ground.changes.size() == 4);
+    CHECK(ground.changes[3].is == Staleness::explained);
+    CHECK(ground.changes[3].reason == "the link is down: Earth set");
+    ground.monitor.heard(held, at_s(100.0), ground.changes);
+    REQUIRE(ground.changes.size() == 5);
+    CHECK(ground.changes[4].is == Staleness::current);
 }
 
 TEST_CASE("one of two links is enough to be heard over, and one that brings no packets is none",
@@ -81,7 +96,8 @@ TEST_CASE("one of two links is enough to be heard over, and one that brings no p
     ground.monitor.link("x_band", LinkIs::up, "nominal", at_s(3.0), ground.changes);
     CHECK(ground.after(9.5) == 1);
     ground.monitor.link("uhf_mro", LinkIs::down, "no orbiter in view", at_s(10.0), ground.changes);
-    CHECK(ground.changes.size() == 2);
+    REQUIRE(ground.changes.size() == 2);
+    CHECK(ground.changes[1].reason == "the link is down: no orbiter in view");
     CHECK(ground.after(60.0) == 2);
 }
 
@@ -93,7 +109,7 @@ TEST_CASE("a link that is lost takes no alarm away, and what it does not bring b
                         ground.changes);
     CHECK(ground.after(9.0) == 0);
     REQUIRE(ground.after(9.5) == 1);  // four intervals after it was last heard, not after the link went
-    CHECK(ground.changes[0].stale);
+    CHECK(ground.changes[0].is == Staleness::missing);
     CHECK(ground.changes[0].silent_s == 8.5);
     CHECK(ground.changes[0].reason == "the link is lost: unexplained: nothing is predicted to silence it now");
     ground.monitor.link("uhf_live", LinkIs::up, "nominal", at_s(20.0), ground.changes);
@@ -107,7 +123,7 @@ TEST_CASE("a link that is lost takes no alarm away, and what it does not bring b
     CHECK(ground.after(60.0) == 3);  // that stands
     ground.monitor.link("uhf_live", LinkIs::down, "Earth set", at_s(61.0), ground.changes);
     REQUIRE(ground.after(900.0) == 4);
-    CHECK_FALSE(ground.changes[3].stale);
+    CHECK(ground.changes[3].is == Staleness::explained);
     CHECK(ground.changes[3].reason == "the link is down: Earth set");
 }
 
@@ -116,23 +132,24 @@ TEST_CASE("a silence that is not explained any more is waited for from then, wit
     Ground ground;
     ground.hear(1.0);
     ground.monitor.link("uhf_live", LinkIs::down, "plasma blackout", at_s(3.0), ground.changes);
-    CHECK(ground.after(79.0) == 0);
+    CHECK(ground.after(79.0) == 1);  // explained
     ground.monitor.link("uhf_live", LinkIs::lost, "unexplained", at_s(80.0), ground.changes);
-    CHECK(ground.after(88.0) == 0);
-    SECTION("nothing comes: it is stale") {
-        REQUIRE(ground.after(88.5) == 1);
-        CHECK(ground.changes[0].silent_s == 87.5);
+    CHECK(ground.after(88.0) == 1);
+    SECTION("nothing comes: it is missing") {
+        REQUIRE(ground.after(88.5) == 2);
+        CHECK(ground.changes[1].is == Staleness::missing);
+        CHECK(ground.changes[1].silent_s == 87.5);
     }
     SECTION("the link is there again: its packets have as long to come as after any silence") {
         ground.monitor.link("uhf_live", LinkIs::up, "nominal", at_s(88.0), ground.changes);
-        CHECK(ground.after(96.0) == 0);
-        CHECK(ground.after(96.5) == 1);
+        CHECK(ground.after(96.0) == 1);
+        CHECK(ground.after(96.5) == 2);
     }
     SECTION("another link is up: it brings them") {
         ground.monitor.link("uhf_mro", LinkIs::up, "nominal", at_s(88.0), ground.changes);
-        CHECK(ground.after(96.0) == 0);
-        REQUIRE(ground.after(96.5) == 1);
-        CHECK(ground.changes[0].reason.empty());
+        CHECK(ground.after(96.0) == 1);
+        REQUIRE(ground.after(96.5) == 2);
+        CHECK(ground.changes[1].reason.empty());
     }
 }
 
@@ -144,8 +161,67 @@ TEST_CASE("what is expected goes by the phase: less often in entry, not at all o
     CHECK(ground.after(18.5) == 1);
     ground.monitor.phase("landed", at_s(20.0), ground.changes);
     REQUIRE(ground.changes.size() == 2);
+    CHECK(ground.changes[1].is == Staleness::explained);
     CHECK(ground.changes[1].reason == "not expected in landed");
     CHECK(ground.after(500.0) == 2);
+}
+
+TEST_CASE("a packet that the phase does not promise is stale five seconds after its last, and no alarm",
+          "[alarms][staleness]") {
+    Ground ground;
+    ground.monitor.phase("landed", at_s(0.5), ground.changes);
+    ground.hear(1.0);  // was under way
+    CHECK(ground.after(6.0) == 0);
+    REQUIRE(ground.after(6.1) == 1);
+    CHECK(ground.changes[0].is == Staleness::explained);
+    CHECK(ground.changes[0].reason == "not expected in landed");
+}
+
+TEST_CASE("a packet without a promise is stale once the links are lost, and no alarm", "[alarms][staleness]") {
+    Ground ground;
+    ground.monitor.heard(held, at_s(1.0), ground.changes);
+    CHECK(ground.after(1000.0) == 0);  // it comes when something changes
+    ground.monitor.link("uhf_live", LinkIs::lost, "unexplained", at_s(1001.0), ground.changes);
+    REQUIRE(ground.after(1001.0) == 1);
+    CHECK(ground.changes[0].is == Staleness::explained);
+    CHECK(ground.changes[0].reason == "the link is lost: unexplained");
+    ground.monitor.link("uhf_live", LinkIs::up, "nominal", at_s(1010.0), ground.changes);
+    CHECK(ground.after(1100.0) == 1);
+}
+
+TEST_CASE("a packet that the ground makes is stale when it makes none, whatever the links do", "[staleness]") {
+    Ground ground;
+    ground.monitor.made_on_ground(status, at_s(1.0), ground.changes);
+    ground.monitor.link("uhf_live", LinkIs::down, "plasma blackout", at_s(1.5), ground.changes);
+    CHECK(ground.after(6.0) == 0);
+    REQUIRE(ground.after(6.1) == 1);
+    CHECK(ground.changes[0].is == Staleness::explained);
+    CHECK(ground.changes[0].reason == "the ground makes none");
+}
+
+TEST_CASE("without a plan a packet without a rate is stale after four of the intervals at which it came lately",
+          "[staleness][downlink]") {
+    auto dictionary = Ground::make();
+    dictionary.telemetry_plan.clear();
+    StalenessMonitor monitor{dictionary};
+    std::vector<StalenessChange> changes;
+    monitor.link("downlink", LinkIs::up, "connected", at_s(0.0), changes);
+    for (const double s : {1.0, 11.0, 21.0}) monitor.heard(held, at_s(s), changes);
+    monitor.pass(at_s(61.0), changes);
+    CHECK(changes.empty());
+    monitor.pass(at_s(61.5), changes);
+    REQUIRE(changes.size() == 1);
+    CHECK(changes[0].is == Staleness::explained);  // nobody promised it
+}
+
+TEST_CASE("what the recording may leave out before a value is old follows from the slowest promise, five seconds at "
+          "least",
+          "[staleness]") {
+    auto dictionary = Ground::make();
+    CHECK(stale_after_s(dictionary, status) == 16.0);  // every 4th second in entry
+    CHECK_FALSE(stale_after_s(dictionary, held));
+    dictionary.telemetry_plan.clear();
+    CHECK(stale_after_s(dictionary, status) == stale_least_s);
 }
 
 TEST_CASE("what never came, has no rate, or is of a plan that may not be flown is not missed", "[alarms][staleness]") {

@@ -39,6 +39,14 @@ TEST_CASE("the ending of a name gives the unit", "[text]") {
     CHECK(named_value_text("mach", 1.698765) == "1.70");
 }
 
+TEST_CASE("a span of time has tenths, and hours and minutes from an hour on", "[text]") {
+    CHECK(span_text(9.04) == "9 s");
+    CHECK(span_text(9.46875) == "9.5 s");
+    CHECK(span_text(90.0) == "90 s");
+    CHECK(span_text(7500.0) == "2 h 5 min");
+    CHECK(span_text(-5.25) == "-5.3 s");
+}
+
 TEST_CASE("names, distances and times read as people say them", "[text][R38]") {
     CHECK(in_words("parachute_deploy") == "parachute deploy");
     CHECK(in_words("gnc_mode") == "GNC mode");

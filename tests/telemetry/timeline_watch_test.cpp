@@ -31,13 +31,13 @@ TEST_CASE("a firing by packet moves the prediction of what follows, a tone does 
     CHECK(foreseen_s == Approx(431.47));
     CHECK_FALSE(watch.last());
 
-    const auto told = watch.tone(tone_named("parachute_deploy"), 262.0, 7);
+    const auto told = watch.tone(tone_named("parachute_deploy"), 0.999, 262.0, 7);
     REQUIRE(told);
     CHECK(told->value == parachute);
     CHECK(watch.known(parachute)->by_tone);
     CHECK(watch.last() == parachute);
     CHECK(*watch.predicted_e_s(touchdown) == foreseen_s);
-    CHECK_FALSE(watch.tone(tone_named("parachute_deploy"), 272.0, 8));  // its second symbol
+    CHECK_FALSE(watch.tone(tone_named("parachute_deploy"), 0.999, 272.0, 8));  // its second symbol
 
     watch.fired(id_of(parachute), 258.0, 258.0, false, 9);
     CHECK_FALSE(watch.known(parachute)->by_tone);
@@ -48,7 +48,7 @@ TEST_CASE("a firing by packet moves the prediction of what follows, a tone does 
 
 TEST_CASE("a tone of Second Chance tells what its twin of prime tells", "[situation][R35]") {
     TimelineWatch watch{tests::shipped_dictionary()};
-    const auto told = watch.tone(tone_named("sc_touchdown"), 440.0, 3);
+    const auto told = watch.tone(tone_named("sc_touchdown"), 0.999, 440.0, 3);
     REQUIRE(told);
     CHECK(told->value == *watch.row_of("touchdown"));
 }

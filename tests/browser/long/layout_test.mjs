@@ -104,7 +104,7 @@ test('now at Mars and now as seen on Earth stand a light time apart on the timel
 
 test('after landing height and speed say whose they are, and no word of the descent picture lies over another', async () => {
   const { page, problems, shows } = await open(server.address, undefined, keepWhatIsWritten);
-  await shows('waiting', /Touchdown reported/);
+  await shows('waiting', /Touchdown (reported|confirmed)/);
   for (const whose of ['whose-altitude', 'whose-speed']) {
     await shows(whose, /^(descent )?stage/); // a narrow head has one word of it, and all under the mouse
     assert.equal(await page.getByTestId(whose).getAttribute('title'), 'descent stage');

@@ -15,7 +15,7 @@ before(async () => {
 
 test('a replay shows nothing of what came later, in every panel, and the way back is one key', async () => {
   const { page, problems, text, shows } = await open(server.address);
-  await shows('waiting', /Touchdown reported/);
+  await shows('waiting', /Touchdown (reported|confirmed)/);
   await page.keyboard.press('y');
   await shows('badge', /REPLAY, NOT LIVE/);
   await page.keyboard.press('p');
@@ -35,7 +35,7 @@ test('a replay shows nothing of what came later, in every panel, and the way bac
 
 test('in a fixed range every panel says that it is the past, and none shows what came later', async () => {
   const { page, problems, shows } = await open(server.address);
-  await shows('waiting', /Touchdown reported/);
+  await shows('waiting', /Touchdown (reported|confirmed)/);
   await page.keyboard.press('r');
   await page.getByTestId('range-from').fill('E+0:30');
   await page.getByTestId('range-to').fill('E+4:30');
@@ -76,7 +76,7 @@ test('in a fixed range every panel says that it is the past, and none shows what
 
 test('a fixed range is zoomed and panned within itself by key and by button, each time with the archive’s detail', async () => {
   const { page, problems, shows } = await open(server.address);
-  await shows('waiting', /Touchdown reported/);
+  await shows('waiting', /Touchdown (reported|confirmed)/);
   const asked = [];
   page.on('request', (request) => {
     const query = new URL(request.url()).searchParams;
@@ -114,7 +114,7 @@ test('an export tells how much has come, is cancelled where it was asked for and
   const { page, problems, shows } = await open(server.address);
   const files = [];
   page.on('download', (file) => files.push(file));
-  await shows('waiting', /Touchdown reported/);
+  await shows('waiting', /Touchdown (reported|confirmed)/);
   await page.keyboard.press('r');
   await page.getByTestId('range-from').fill('E-1:00');
   await page.getByTestId('range-to').fill('E+7:00');
@@ -167,7 +167,7 @@ test('an export tells how much has come, is cancelled where it was asked for and
 
 test('all packets of a range are come to page by page, and one packet is looked for in all of the range', async () => {
   const { page, problems, shows } = await open(server.address);
-  await shows('waiting', /Touchdown reported/);
+  await shows('waiting', /Touchdown (reported|confirmed)/);
   const { entry_sclk: entry } = (await server.get('/runs')).runs[0];
   const all = (await server.get(`/runs/1/packets?from=${entry + 290}&to=${entry + 292}&limit=1000`)).packets;
   assert.ok(all.length > 100 && all.length < 1000, `${all.length} packets`);

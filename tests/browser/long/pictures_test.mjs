@@ -91,7 +91,7 @@ test('each panel comes to look as its stored picture does, within a tolerance, a
   for (const theme of ['dark', 'light']) {
     await page.evaluate((wanted) => localStorage.setItem('aeolis-theme', wanted), theme);
     await page.goto(server.address);
-    await shows('waiting', /Touchdown reported/);
+    await shows('waiting', /Touchdown (reported|confirmed)/);
     await shows('stream-state', /connected/);
     await shows('touchdown-figures', /from the target\s+\d/);
     await compare(`console_${theme}`, page);
@@ -103,7 +103,7 @@ test('each panel comes to look as its stored picture does, within a tolerance, a
   t.after(() => way.close());
   await page.goto(way.address);
   await page.evaluate(() => localStorage.setItem('aeolis-theme', 'dark'));
-  await shows('waiting', /Touchdown reported/);
+  await shows('waiting', /Touchdown (reported|confirmed)/);
   await shows('complete-through', /[1-9]/);
   await page.keyboard.press('y');
   await shows('badge', /REPLAY/); // two letters in a row are a word

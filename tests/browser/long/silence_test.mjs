@@ -33,7 +33,10 @@ test('with tones alone the next moment, the phase, the count and the details go 
     const before = now;
     now = await waitFor(opened, (title) => title !== before);
   }
-  await shows('timepoint-detail', /^parachute deploy\s+fired, ■ by tone[^]*its tone began\s+E\+4:\d\d/);
+  await shows(
+    'timepoint-detail',
+    /^parachute deploy\s+fired, ■ by tone[^]*heard by tone\s+its beginning E\+4:\d\d[^]*posterior/,
+  );
   assert.deepEqual(await findings(page, 'dark'), []);
   await page.keyboard.press('Escape');
   if (process.env.AEOLIS_SHOTS) await page.screenshot({ path: `${process.env.AEOLIS_SHOTS}/tones_only.png` });

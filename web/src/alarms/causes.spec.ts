@@ -12,7 +12,8 @@ const an = (name: string, fields: Partial<AlarmState> = {}): AlarmState => ({
   sclk: 1100,
   ...fields,
 });
-const stale = (name: string, reason: string) => an(name, { kind: 'staleness', reason, severity: 'watch' });
+const stale = (name: string, reason: string, cause = '') =>
+  an(name, { kind: 'staleness', reason, cause, severity: 'watch' });
 const lines = (...all: AlarmState[]) =>
   grouped(all, (name) => /^([a-z]+)_/.exec(name)?.[1], 1000).map(({ words, alarms }) => [
     words,
@@ -23,11 +24,11 @@ describe('alarms of one cause', () => {
   it('are one line where the ground names the cause: a lost link and the packets that are stale for it', () => {
     const link = an('uhf_live', { kind: 'link', severity: 'distress', reason: 'unexplained: nothing is predicted' });
     const lost = 'the link is lost: unexplained: nothing is predicted';
-    expect(lines(an('gnc_a'), stale('Status', lost), link, stale('Navigation', lost))).toEqual([
+    expect(lines(an('gnc_a'), stale('Status', lost, 'uhf_live'), link, stale('Navigation', lost, 'uhf_live'))).toEqual([
       [undefined, 'gnc_a'],
       ['uhf_live is lost; 2 packets stale for it', 'uhf_live Status Navigation'],
     ]);
-    const [group] = grouped([stale('Status', lost), link], () => undefined, 1000);
+    const [group] = grouped([stale('Status', lost, 'uhf_live'), link], () => undefined, 1000);
     expect([group?.cause?.name, group && worstOf(group).name]).toEqual(['uhf_live', 'uhf_live']);
   });
   it('without that alarm say what the ground says of them, and no cause', () => {

@@ -14,7 +14,6 @@ export interface Group {
   alarms: AlarmState[];
 }
 
-const LOST = 'the link is lost: '; // as telemetry/staleness.cpp says it
 const SAME_MOMENT_S = 2; // chosen: samples of one packet are judged together, at most two intervals apart
 
 const stands = (alarm: AlarmState) => alarm.severity !== 'none' && alarm.severity !== '';
@@ -37,9 +36,7 @@ export function grouped(
   const stale = open.filter(({ kind }) => kind === 'staleness');
   for (const reason of new Set(stale.map((alarm) => alarm.reason ?? ''))) {
     const packets = stale.filter((alarm) => (alarm.reason ?? '') === reason);
-    const cause = reason.startsWith(LOST)
-      ? open.find((alarm) => alarm.kind === 'link' && alarm.reason === reason.slice(LOST.length))
-      : undefined;
+    const cause = open.find((alarm) => alarm.kind === 'link' && alarm.name === packets[0]?.cause);
     const count = named(packets.length, 'packet');
     if (cause) group(`link ${cause.name}`, `${cause.name} is lost; ${count} stale for it`, [cause, ...packets], cause);
     else group(`stale ${reason}`, `${count} stale: ${reason || 'no reason is known'}`, packets);

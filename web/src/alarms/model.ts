@@ -25,6 +25,7 @@ export interface AlarmState {
   by?: string;
   note?: string;
   reason?: string; // for staleness and links
+  cause?: string; // for staleness: the lost link for which the packet is missing
 }
 type Action = 'acknowledge' | 'shelve' | 'unshelve' | 'reset';
 

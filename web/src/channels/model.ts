@@ -32,8 +32,6 @@ interface ChannelRow {
   recorded: boolean;
 }
 
-const STALE_PERIODS = 3; // chosen: three missed samples
-const STALE_LEAST_S = 3;
 const ROWS_SHOWN = 300;
 
 /**
@@ -76,7 +74,7 @@ export function channelRow(
     value: valueText(channel, sample?.value, sample?.text),
     age: age === undefined ? '' : age < 0.05 ? 'now' : duration(age),
     timed: sample?.byReception ? 'its packets hold no time: samples stand at their reception' : '',
-    look: lookOf(store, channel, sample?.value, age, cutoff, lost),
+    look: lookOf(store, channel, sample, cutoff, lost),
     limits: limits ? limitsText(limits) : 'not known yet',
     allLimits: allLimitsText(channel),
     recorded: sample?.recorded ?? false,
@@ -86,15 +84,14 @@ export function channelRow(
 function lookOf(
   store: RunStore | undefined,
   channel: DictionaryChannel,
-  value: number | undefined,
-  age: number | undefined,
+  sample: Sample | undefined,
   cutoff: number,
   lost: boolean,
 ): ChannelLook {
-  if (value === undefined || age === undefined) return store && !store.askedFor.has(channel.name) ? 'unasked' : 'never';
-  const severity = store?.alarmAt(channel.id, cutoff)?.severity;
+  if (!sample || !store) return store && !store.askedFor.has(channel.name) ? 'unasked' : 'never';
+  const severity = store.alarmAt(channel.id, cutoff)?.severity;
   if (severity !== undefined) return isWorst(severity) ? 'alarm' : 'caution';
-  return isStale(store, channel, age, cutoff, lost) ? 'stale' : 'good';
+  return isStale(store, channel, sample, cutoff, lost) ? 'stale' : 'good';
 }
 
 /** By the vehicle's clock, or where that is not known to Earth by reception. */
@@ -104,21 +101,18 @@ const ageOf = (store: RunStore, sample: Sample, cutoff: number): number =>
     sample.ert_s === undefined ? Math.min(store.seenSclk, cutoff) - sample.sclk : store.ertNow_s - sample.ert_s,
   );
 
-function isStale(
-  store: RunStore | undefined,
-  channel: DictionaryChannel,
-  age: number,
-  cutoff: number,
-  lost: boolean,
-): boolean {
-  if (lost && cutoff === Infinity) return true;
-  const period = channel.expectedRateHz > 0 ? 1 / channel.expectedRateHz : 1;
-  // The history held is thinned: nothing is known between two of its samples.
-  const held_s = cutoff === Infinity ? (store?.rhythm(channel.id) ?? 0) : (store?.spacing(channel.id) ?? 0);
-  return age > Math.max(STALE_LEAST_S, STALE_PERIODS * Math.max(period, held_s));
+/**
+ * Of a live value the ground has said so, packet by packet; of a recorded one it gives the time in which another should
+ * be there. The history held is thinned: nothing is known between two of its samples. Nothing is of now without a
+ * connection, nor after the end of a run.
+ */
+function isStale(store: RunStore, channel: DictionaryChannel, sample: Sample, cutoff: number, lost: boolean): boolean {
+  if (cutoff === Infinity && (lost || !store.going)) return true;
+  if (!sample.recorded) return store.isStale(channel.packet, cutoff);
+  return ageOf(store, sample, cutoff) - store.spacing(channel.id) > (channel.staleAfterS ?? Infinity);
 }
 
-/** "◌ 41 s": the age of a channel's last sample if it is stale. All figures use this rule of the table. */
+/** "◌ 41 s": the age of a channel's last sample if it is stale. All figures use this, as the table does. */
 export function staleWords(
   store: RunStore | undefined,
   channel: DictionaryChannel | undefined,
@@ -128,7 +122,7 @@ export function staleWords(
   const sample = channel && store?.latest(channel.id, cutoff);
   if (!sample || !store) return undefined;
   const age = ageOf(store, sample, cutoff);
-  return isStale(store, channel, age, cutoff, lost)
+  return isStale(store, channel, sample, cutoff, lost)
     ? `${STATUS.stale.shape} ${age < 60 ? `${age.toFixed(0)} s` : duration(age)}`
     : undefined;
 }

@@ -2,7 +2,7 @@
 import { describe, expect, it } from 'vitest';
 import { limitsAnswer } from '../run/limits';
 import { store } from '../run/shown';
-import { aDictionary, aRun, aStore, alarm, samples, speedLimits } from '../testing/fixtures';
+import { aDictionary, aRun, aStore, alarm, samples, speedLimits, staleness } from '../testing/fixtures';
 import { channelRow, channelsShown, staleWords } from './model';
 
 function row(store: ReturnType<typeof aStore>, name: string, cutoff = Infinity, lost = false) {
@@ -15,30 +15,45 @@ describe('channels', () => {
     const store = aStore([samples(899, { 1: 4, 2: 5, 5: 1 })]);
     expect(row(store, 'edl_phase')).toMatchObject({ value: 'range control', age: '1.0 s', look: 'good' });
   });
-  it('are stale when they should have come', () => {
-    expect(row(aStore([samples(880, { 3: 1, 4: 1 })]), 'altitude_m')?.look).toBe('stale');
+  // SCLK 900 is 05:00:00 on Earth.
+  const silent = staleness({ packet: 'Navigation', stale: true, ert: '2012-219T04:59:00.0' });
+  const heardAgain = staleness({ packet: 'Navigation', ert: '2012-219T04:59:30.0' });
+
+  it('are stale when the ground says so of their packet, however old they are, and until it says otherwise', () => {
+    expect(row(aStore([samples(500, { 3: 1, 4: 1 })]), 'altitude_m')?.look).toBe('good');
+    expect(row(aStore([samples(839, { 3: 1, 4: 1 }), silent]), 'altitude_m')?.look).toBe('stale');
+    const again = aStore([samples(839, { 1: 4, 3: 1 }), silent, heardAgain]);
+    expect([839, 840, 869, 870].map((cutoff) => row(again, 'altitude_m', cutoff)?.look)).toEqual([
+      'good',
+      'stale',
+      'stale',
+      'good',
+    ]);
+    expect(row(again, 'edl_phase', 840)?.look).toBe('good'); // of another packet
   });
-  it('are stale at the instant that is shown, after the run as well, and all of them while nothing comes', () => {
-    const [old, going] = [
-      [samples(500, { 3: 1, 4: 1 }), samples(501, { 3: 1, 4: 1 })],
-      aStore([samples(899, { 3: 1, 4: 1 })]),
-    ];
-    expect([row(aStore(old), 'altitude_m', 502)?.look, row(aStore(old), 'altitude_m', 520)?.look]).toEqual([
+  it('are all stale after the run, and while there is no connection; a past view still knows what was said then', () => {
+    const fresh = samples(899, { 3: 1, 4: 1 });
+    expect(row(aStore([fresh], aRun({ state: 'finished' })), 'altitude_m')?.look).toBe('stale');
+    expect(row(aStore([fresh], aRun({ state: 'finished' })), 'altitude_m', 899)?.look).toBe('good');
+    expect([false, true].map((lost) => row(aStore([fresh]), 'altitude_m', Infinity, lost)?.look)).toEqual([
       'good',
       'stale',
     ]);
-    expect(row(aStore(old, aRun({ state: 'finished' })), 'altitude_m')?.look).toBe('stale');
-    expect([false, true].map((lost) => row(going, 'altitude_m', Infinity, lost)?.look)).toEqual(['good', 'stale']);
+    expect(row(aStore([fresh]), 'altitude_m', 899, true)?.look).toBe('good');
+  });
+  it('known by the recording are of their instant for as long as the server says, whatever was heard live', () => {
+    const store = aStore([samples(830, { 3: 1 }), silent]);
+    store.addHistory([{ id: 3, sclk: new Float64Array([848, 849]), value: new Float64Array([2, 2]), recorded: true }]);
+    expect([849, 854, 856].map((cutoff) => row(store, 'altitude_m', cutoff)?.look)).toEqual(['good', 'good', 'stale']);
   });
   it('give every figure the same judgement, with its age in words', () => {
     const words = (store: ReturnType<typeof aStore>, cutoff = Infinity, lost = false) =>
       staleWords(store, aDictionary.pick(['altitude_m']), cutoff, lost);
-    expect([896, 898].map((sclk) => words(aStore([samples(sclk, { 3: 1 })])))).toEqual(['◌ 4 s', undefined]);
-    const old = aStore([samples(500, { 3: 1 }), samples(501, { 3: 1 })]);
-    expect([words(old), words(old, 502), words(old, 520), words(old, 502, true)]).toEqual([
-      '◌ 6 m 39 s',
+    const old = aStore([samples(838, { 3: 1 }), silent]);
+    expect([words(old), words(old, 839), words(old, 858), words(old, 839, true)]).toEqual([
+      '◌ 1 m 02 s',
       undefined,
-      '◌ 19 s',
+      '◌ 20 s',
       undefined,
     ]);
     expect([words(aStore([samples(900, { 3: 1 })]), Infinity, true), words(aStore())]).toEqual(['◌ 0 s', undefined]);

@@ -7,6 +7,7 @@ import { shortReason } from '../timeline/model';
 import { MODES, isReal, modeOf } from '../mode/model';
 import type { RunStore } from '../run/store';
 import type { StreamState } from '../stream/messages';
+import type { NamedLink } from '../stream/names';
 
 interface Clock {
   label: string;
@@ -68,6 +69,7 @@ export interface LinkLine {
   /** Its state and why, whole; `short`: as far as the header has room. */
   detail: string;
   short: string;
+  silence?: NamedLink['silence'];
 }
 
 const STATES = { up: 'received', down: 'silent', lost: 'lost', unknown: 'not known' } as const;
@@ -79,9 +81,8 @@ function lineOf(name: string, look: LinkLook, reason: string): LinkLine {
 }
 
 /** A link that the plan has off: it stands in the header once it is due, and X-band's telemetry until tones follow it. */
-const isOff = (link: string, { look, short }: LinkLine): boolean =>
-  look === 'down' &&
-  (short === 'silent: not begun' || (link === 'x_band_telemetry' && short === 'silent: switched off'));
+const isOff = (link: string, { look, silence }: LinkLine): boolean =>
+  look === 'down' && (silence === 'not_begun' || (link === 'x_band_telemetry' && silence === 'switched_off'));
 
 /** Without a connection the present state of a link is unknown; a past view still knows it. */
 export function linksOf(store: RunStore, cutoff: number, lost = false): LinkLine[] {
@@ -90,7 +91,7 @@ export function linksOf(store: RunStore, cutoff: number, lost = false): LinkLine
     const until = changes.filter((change) => !(store.sclkSeenAt(change.ert_s) > cutoff));
     const last = until[until.length - 1]?.fact;
     return last
-      ? lineOf(linkTitle(link), linkLook(last.up, last.reason), last.reason)
+      ? { ...lineOf(linkTitle(link), linkLook(last), last.reason), silence: last.silence }
       : lineOf(linkTitle(link), 'unknown', 'not heard of yet');
   });
 }

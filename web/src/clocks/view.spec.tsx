@@ -124,6 +124,7 @@ describe('the header', () => {
           link: name,
           up: name === 'uhf_mex',
           reason: name === 'relay' ? 'ground fault: the station is silent' : '',
+          lost: name === 'relay',
           ert,
         }),
       ),

@@ -27,12 +27,12 @@ export const LINK_STATUS = { up: 'good', down: 'quiet', lost: 'failed', unknown:
   Status
 >;
 export type LinkLook = keyof typeof LINK_STATUS;
-/** The ground's class of a silence begins its reason. These two classes have no predicted cause. */
-export const linkLook = (up: boolean, reason: string): LinkLook =>
-  up ? 'up' : /^(unexplained|ground fault)\b/.test(reason) ? 'lost' : 'down';
+/** By the ground's word on a link: whether it is up, and whether a silence is one that nothing explains. */
+export const linkLook = ({ up, lost }: { up: boolean; lost: boolean }): LinkLook =>
+  up ? 'up' : lost ? 'lost' : 'down';
 
-/** Look of a silence by its reason: that of its link at the time. */
-export const silenceStatus = (reason: string) => STATUS[LINK_STATUS[linkLook(false, reason)]];
+/** Look of a silence: that of its link at the time. */
+export const silenceStatus = ({ lost }: { lost: boolean }) => STATUS[LINK_STATUS[linkLook({ up: false, lost })]];
 
 /** Look of a stage of a command. A stage without evidence has no shape, and none is green by default. */
 export const STAGE_LOOKS = {

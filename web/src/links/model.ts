@@ -50,7 +50,7 @@ export function linkViews(store: RunStore, proof: ProofReport | undefined, cutof
     const judged = proof?.links.find((row) => row.name === link);
     return {
       link,
-      state: last === undefined || silent ? 'unknown' : linkLook(last.up, last.reason),
+      state: last === undefined || silent ? 'unknown' : linkLook(last),
       reason: silent ? 'no connection' : (last?.reason ?? ''),
       since_e_s: known && store.sclkSeenAt(known.ert_s) - store.entrySclk,
       silences: outages(store, link, now, cutoff),

@@ -17,6 +17,7 @@ describe('the links', () => {
         link: 'uhf_live',
         up: false,
         reason: 'unexplained: nothing is predicted to silence it now',
+        lost: true,
         ert: '2012-219T04:59:00.0',
       }),
       link({ link: 'x_band', up: false, reason: 'Earth set: predicted at E+297 s', ert: '2012-219T04:59:00.0' }),

@@ -10,7 +10,7 @@ import { predictForTest } from '../prediction/model';
 import { backToLive, useForTest } from '../run/session';
 import { lookAtPast } from '../run/shown';
 import { difference } from './model';
-import { aDictionary, aStore, samples, unit } from '../testing/fixtures';
+import { aDictionary, aStore, samples, silent, unit } from '../testing/fixtures';
 import { Plots, toggleDifference } from './view';
 
 const { looks, sizes } = vi.hoisted(() => ({ looks: [] as (() => (() => void) | undefined)[], sizes: [] as number[] }));
@@ -78,7 +78,7 @@ it('the figure beside a plot goes stale as the channel does, and not under the c
   };
   useForTest(aStore([samples(899, { 3: 65100 })]), aDictionary);
   expect(shown()).toEqual([undefined, undefined, '65.10']);
-  act(() => useForTest(aStore([samples(859, { 3: 65100 })]), aDictionary));
+  act(() => useForTest(aStore([samples(859, { 3: 65100 }), silent('Navigation')]), aDictionary));
   expect(shown()).toEqual(['◌ 41 s', '65.10', '65.10']);
   expect(shown(-141)).toEqual([undefined, undefined, '65.10']);
   cursor.value = undefined;

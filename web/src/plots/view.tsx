@@ -165,7 +165,7 @@ function shadeSilence(plot: uPlot): void {
     const from = Math.max(left, plot.valToPos(outage.from, 'x', true));
     const to = Math.min(left + width, plot.valToPos(outage.to, 'x', true));
     if (to <= from) continue;
-    const { shape, token } = silenceStatus(outage.words);
+    const { shape, token } = silenceStatus(outage);
     plot.ctx.fillStyle = palette()[token];
     plot.ctx.globalAlpha = 0.1;
     plot.ctx.fillRect(from, top, to - from, height);

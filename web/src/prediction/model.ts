@@ -4,7 +4,7 @@
 import { signal } from '@preact/signals';
 import type { PredictedWindow, Prediction } from '../gen/aeolis/v1/prediction_pb';
 import type { DictionaryChannel } from '../gen/aeolis/v1/run_pb';
-import { silenceStatus } from '../design/status';
+import { STATUS } from '../design/status';
 import { ask } from '../run/connection';
 import { Series } from '../run/series';
 import { signalOfRun, store } from '../run/shown';
@@ -149,8 +149,8 @@ export const passes = (): PredictedWindow[] => prediction.value?.windows.filter(
 
 /** The words for a predicted silence, the longest first. */
 export function windowWords({ words, fromES, toES }: Pick<PredictedWindow, 'words' | 'fromES' | 'toES'>): string[] {
-  const silent = `${silenceStatus(words).shape} ${words}`;
-  const short = `${silenceStatus(words).shape} ${shortestReason(words)}`;
+  const silent = `${STATUS.quiet.shape} ${words}`;
+  const short = `${STATUS.quiet.shape} ${shortestReason(words)}`;
   if (toES !== undefined && fromEntry(toES) === fromEntry(fromES))
     return [`${silent} ${fromEntry(fromES)}`, fromEntry(fromES)];
   const times = toES === undefined ? `from ${fromEntry(fromES)}` : `${fromEntry(fromES)} to ${fromEntry(toES)}`;

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // All data that the page holds of one run, filled by the stream and read by every panel. Each run has its own store, so
 // that no data of one run appear in another.
-import type { Clocks, Explanation, LinkChange, Packet } from '../gen/aeolis/v1/items_pb';
+import type { Clocks, Explanation, Staleness, Packet } from '../gen/aeolis/v1/items_pb';
 import { SOURCE_RECORDED } from '../stream/columns';
 import type { BatchOfFacts, Column, Fact, Newest } from '../stream/messages';
 import type {
   NamedAlarm,
   NamedEvent,
   NamedFiring,
+  NamedLink,
   NamedRun,
   NamedSituation,
   NamedStage,
@@ -21,6 +22,7 @@ const EVENT_LIMIT = 20000;
 const PACKET_LIMIT = 400;
 const LINK_LIMIT = 5000;
 const ALARM_LIMIT = 1000; // per channel
+const STALENESS_LIMIT = 1000; // per packet
 const SITUATION_LIMIT = 5000; // chosen: a landing has a hundred or two
 // chosen: a packet heard this much later than light time was kept by an orbiter or by a queue on board
 const LATE_S = 2;
@@ -120,10 +122,12 @@ export class RunStore {
   tones: ToneRow[] = [];
   firings = new Map<number, FiringPair>();
   commands = new Map<number, CommandRow>();
-  links = new Map<string, Known<LinkChange>[]>();
+  links = new Map<string, Known<NamedLink>[]>();
   /** Alarms in force, by channel. */
   alarms = new Map<number, NamedAlarm>();
   private readonly alarmChanges = new Map<number, NamedAlarm[]>();
+  /** By packet: when the ground found that its live values are no longer of now, and that they are again. */
+  private readonly staleness = new Map<string, Known<Staleness>[]>();
   /** What mattered, each from its item to the next. */
   situations: Known<NamedSituation>[] = [];
   packets: Known<Packet>[] = [];
@@ -316,6 +320,11 @@ export class RunStore {
     return last?.severity === 'none' ? undefined : last;
   }
 
+  /** Whether the ground had found by `cutoff` that the live values of a packet are no longer of now. */
+  isStale(packet: string, cutoff: number): boolean {
+    return this.staleness.get(packet)?.findLast(({ ert_s }) => this.knownBy(ert_s, cutoff))?.fact.stale ?? false;
+  }
+
   /** Mean interval in seconds between the held samples of a channel, in the denser of its two series. */
   spacing(id: number): number {
     const spacings = [this.live.get(id), this.recorded.get(id)].flatMap((series) =>
@@ -447,6 +456,12 @@ export class RunStore {
         this.links.set(item.fact.link, changes);
         break;
       }
+      case 'staleness':
+        this.staleness.set(item.fact.packet, [
+          ...(this.staleness.get(item.fact.packet) ?? []).slice(-STALENESS_LIMIT),
+          item,
+        ]);
+        break;
       case 'alarm':
         this.alarmChanges.set(item.fact.channel, [
           ...(this.alarmChanges.get(item.fact.channel) ?? []).slice(-ALARM_LIMIT),

@@ -1,9 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // Messages between the page and its worker, as plain data. Sequence and run numbers are JavaScript numbers, exact up to
 // 2^53.
-import type { Clocks, Explanation, LinkChange, Packet } from '../gen/aeolis/v1/items_pb';
+import type { Clocks, Explanation, Staleness, Packet } from '../gen/aeolis/v1/items_pb';
 import type { CommandReply } from '../gen/aeolis/v1/run_pb';
-import type { NamedAlarm, NamedEvent, NamedFiring, NamedRun, NamedSituation, NamedStage, NamedTone } from './names';
+import type {
+  NamedAlarm,
+  NamedEvent,
+  NamedFiring,
+  NamedLink,
+  NamedRun,
+  NamedSituation,
+  NamedStage,
+  NamedTone,
+} from './names';
 
 /** Samples of one channel as two columns. A value that is undefined on board is NaN. */
 export interface Column {
@@ -34,7 +43,8 @@ export type Fact = { seq: number; ert_s: number } & (
   | { kind: 'commandStage'; fact: NamedStage }
   | { kind: 'timepoint'; fact: NamedFiring }
   | { kind: 'explanation'; fact: Explanation }
-  | { kind: 'link'; fact: LinkChange }
+  | { kind: 'link'; fact: NamedLink }
+  | { kind: 'staleness'; fact: Staleness }
   | { kind: 'alarm'; fact: NamedAlarm }
   | { kind: 'unit'; fact: Packet }
   | { kind: 'situation'; fact: NamedSituation }

@@ -7,6 +7,7 @@ import {
   CommandStage_Stage,
   CommandStage_Status,
   Event_Level,
+  LinkChange_Silence,
   SituationEntry_Rank,
   TimepointFiring_Verdict,
 } from '../gen/aeolis/v1/items_pb';
@@ -15,6 +16,7 @@ import type {
   CommandStage,
   Event,
   Item,
+  LinkChange,
   SituationEntry,
   TimepointFiring,
   Tone,
@@ -25,6 +27,8 @@ import type { RunState } from '../gen/aeolis/v1/run_pb';
 type Named<Message, Names> = Omit<Message, keyof Names> & Names;
 export type NamedEvent = Named<Event, { level: keyof typeof Event_Level }>;
 export type NamedTone = Named<Tone, { lock: keyof typeof Carrier_Lock }>;
+/** `silence`: the ground's class of it; undefined while the link is up, or before the ground has one. */
+export type NamedLink = Named<LinkChange, { silence: keyof typeof LinkChange_Silence | undefined }>;
 export type NamedAlarm = Named<Alarm, { severity: keyof typeof Alarm_Severity }>;
 export type NamedStage = Named<
   CommandStage,
@@ -64,6 +68,10 @@ export function named(item: Item['item']) {
         stage: nameOf(CommandStage_Stage, item.value.stage),
         status: nameOf(CommandStage_Status, item.value.status),
       };
+    case 'link': {
+      const { silence } = item.value;
+      return { ...item.value, silence: silence === undefined ? undefined : nameOf(LinkChange_Silence, silence) };
+    }
     case 'timepoint':
       return { ...item.value, verdict: nameOf(TimepointFiring_Verdict, item.value.verdict) };
     case 'situation':

@@ -19,6 +19,7 @@ import {
   SituationEntrySchema,
   SituationEntry_Rank,
   SituationSchema,
+  StalenessSchema,
   TimepointFiringSchema,
   TimepointFiring_Verdict,
   ToneSchema,
@@ -93,6 +94,7 @@ export const aDictionary = new Dictionary(
         unit: 'm',
         limits: [{ severity: 'warning', above: 200000 }],
         expectedRateHz: 8,
+        staleAfterS: 5,
       },
       {
         id: 4,
@@ -236,6 +238,10 @@ export const explanation = (fields: MessageInitShape<typeof ExplanationSchema>) 
   item({ case: 'explanation', value: create(ExplanationSchema, { source: 1, ...fields }) });
 export const link = ({ ert, ...fields }: Fields<typeof LinkChangeSchema>) =>
   item({ case: 'link', value: create(LinkChangeSchema, fields) }, ert);
+export const staleness = ({ ert, ...fields }: Fields<typeof StalenessSchema>) =>
+  item({ case: 'staleness', value: create(StalenessSchema, fields) }, ert);
+/** The ground's word, a second before the clocks of `aRun`, that nothing of a packet comes any more. */
+export const silent = (packet: string) => staleness({ packet, stale: true, ert: '2012-219T04:59:59.0' });
 /** Times of entries as day-of-year texts. */
 export const situation = (
   ert: string,

@@ -40,7 +40,7 @@ export const vehicleDictionary = new Dictionary(
     channels: names.map((name, i) => ({
       id: i + 1,
       name,
-      packet: '',
+      packet: 'Vehicle',
       expectedRateHz: 1,
       labels: pyros.includes(name) ? pyroLabels.map((label, value) => ({ value: BigInt(value), label })) : [],
     })),

@@ -12,6 +12,8 @@ export interface Heard {
   /** For a tone: its beginning, since it is requested when the timepoint is triggered. */
   triggered_sclk: number;
   fired_sclk: number;
+  /** Of the tone, where it is known by one. */
+  posterior?: number;
   /** Flight's verdict; '' for a tone, which reports only the triggering. */
   verdict: NamedFiring['verdict'] | '';
 }
@@ -44,10 +46,9 @@ function hear(store: RunStore, plan: readonly TimepointRow[], cutoff: number): M
   const heard = new Map<number, Heard>();
   const asked = new Map<string, number>();
   for (const row of plan) asked.set(row.tone, (asked.get(row.tone) ?? 0) + 1);
-  const first = new Map<string, number>();
+  const first = new Map<string, { sclk: number; likelihood: number }>();
   for (const { fact } of store.tonesBy(cutoff))
-    if (fact.tone !== undefined && fact.likelihood >= BELIEVED && !first.has(fact.name))
-      first.set(fact.name, fact.sclk);
+    if (fact.tone !== undefined && fact.likelihood >= BELIEVED && !first.has(fact.name)) first.set(fact.name, fact);
   for (const row of plan) {
     const pair = store.firings.get(row.id);
     for (const [by, firing] of [
@@ -63,8 +64,14 @@ function hear(store: RunStore, plan: readonly TimepointRow[], cutoff: number): M
       });
     }
     const began = row.tone !== '' && asked.get(row.tone) === 1 ? first.get(row.tone) : undefined;
-    if (began !== undefined && !heard.has(row.id))
-      heard.set(row.id, { by: 'tone', triggered_sclk: began, fired_sclk: began, verdict: '' });
+    if (began && !heard.has(row.id))
+      heard.set(row.id, {
+        by: 'tone',
+        triggered_sclk: began.sclk,
+        fired_sclk: began.sclk,
+        posterior: began.likelihood,
+        verdict: '',
+      });
   }
   return heard;
 }

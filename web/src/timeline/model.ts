@@ -6,6 +6,7 @@ import type { RunStore } from '../run/store';
 import type { Dictionary } from '../run/dictionary';
 import type { Explanation } from '../gen/aeolis/v1/items_pb';
 import type { TimepointRow } from '../gen/aeolis/v1/run_pb';
+import type { NamedLink } from '../stream/names';
 import { heardOf, lastHeard, speaksOf } from './heard';
 import type { Heard } from './heard';
 
@@ -39,6 +40,9 @@ export interface Outage {
   from: number;
   to: number;
   words: string;
+  /** The ground's class of it, and whether it is one that nothing explains. */
+  silence: NamedLink['silence'];
+  lost: boolean;
 }
 export interface Lanes {
   plan: Mark[];
@@ -129,15 +133,22 @@ function markOf(id: number, name: string, e_s: number, verdict: string): Mark {
 export function outages(store: RunStore, link: string, now_e_s: number, cutoff: number): Outage[] {
   const all: Outage[] = [];
   let open: Outage | undefined;
+  const begun = (e_s: number, { reason, silence, lost }: NamedLink): Outage => ({
+    from: e_s,
+    to: now_e_s,
+    words: reason || 'silent',
+    silence,
+    lost,
+  });
   for (const { fact, ert_s } of store.links.get(link) ?? []) {
     const sclk = store.sclkSeenAt(ert_s);
     if (!Number.isFinite(sclk) || sclk > cutoff) continue;
     const e_s = sclk - store.entrySclk;
-    if (!fact.up && !open) open = { from: e_s, to: now_e_s, words: fact.reason || 'silent' };
+    if (!fact.up && !open) open = begun(e_s, fact);
     else if (!fact.up && open) {
       open.to = e_s;
       all.push(open);
-      open = { from: e_s, to: now_e_s, words: fact.reason || 'silent' };
+      open = begun(e_s, fact);
     } else if (fact.up && open) {
       open.to = e_s;
       all.push(open);
@@ -160,16 +171,13 @@ export function liveOutages(store: RunStore, now_e_s: number, cutoff: number): O
   return uhf.flatMap((one) =>
     xBand
       .map((other) => ({
+        ...(one.silence === 'not_begun' ? other : one),
         from: Math.max(one.from, other.from),
         to: Math.min(one.to, other.to),
-        words: notBegun(one.words) ? other.words : one.words,
       }))
       .filter((both) => both.to > both.from),
   );
 }
-
-/** Whether a link is silent because the plan has yet to switch it on. */
-export const notBegun = (reason: string): boolean => shortReason(reason) === 'not begun';
 
 /** "plasma outage, as predicted" → "plasma outage": the reason without its details. */
 export function shortReason(words: string): string {
@@ -218,6 +226,7 @@ interface PointDetail {
   firedLive_e_s: number | undefined;
   firedRecorded_e_s: number | undefined;
   tone_e_s: number | undefined;
+  posterior: number | undefined;
   triggered_e_s: number | undefined;
   /** Flight's newest explanation of it: why it fired, or what holds it. */
   why: Explanation | undefined;
@@ -247,6 +256,7 @@ export function pointDetail(
     firedLive_e_s: e_s(live?.firedSclk),
     firedRecorded_e_s: e_s(recorded?.firedSclk),
     tone_e_s: known?.by === 'tone' ? e_s(known.triggered_sclk) : undefined,
+    posterior: known?.posterior,
     triggered_e_s: known?.by === 'tone' ? undefined : e_s(known?.triggered_sclk),
     why: store.explanations.findLast(
       ({ fact }) => fact.sclk <= cutoff && fact.conditions.length > 0 && speaksOf(fact, row),

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+import { LinkChange_Silence } from '../gen/aeolis/v1/items_pb';
 import { describe, expect, it } from 'vitest';
 import { aDictionary, aPlan, aStore, event, explanation, firing, link, samples, tone } from '../testing/fixtures';
 import { create } from '@bufbuild/protobuf';
@@ -8,6 +9,8 @@ import { Dictionary } from '../run/dictionary';
 import { silenceStatus } from '../design/status';
 import { firedCount, lanesOf, nextTimepoint, liveOutages, outages, pointDetail, shortTitle } from './model';
 import { momentsOf } from './moments';
+
+const FAULT = LinkChange_Silence.ground_fault;
 
 describe('the timeline', () => {
   it('has no plan for a timepoint whose anchor is undefined', () => {
@@ -40,34 +43,38 @@ describe('the timeline', () => {
       link({ link: 'uhf_live', up: true, ert: '2012-219T04:59:30.0' }),
     ]);
     expect(outages(store, 'uhf_live', -100, Infinity)).toEqual([
-      { from: expect.closeTo(-160), to: expect.closeTo(-130), words: 'plasma' },
+      { from: expect.closeTo(-160), to: expect.closeTo(-130), words: 'plasma', lost: false },
     ]);
   });
   it('has live telemetry silent where the link that the plan has on is, with its reason', () => {
-    const change = (name: string, up: boolean, at: string, reason = '') =>
-      link({ link: name, up, reason, ert: `2012-219T04:${at}.0` });
+    const change = (name: string, up: boolean, at: string, reason = '', silence?: LinkChange_Silence) =>
+      link({ link: name, up, reason, lost: silence === FAULT, silence, ert: `2012-219T04:${at}.0` });
     const store = aStore([
-      change('uhf_live', false, '50:00', 'not begun: planned at E−13:20'),
+      change('uhf_live', false, '50:00', 'not begun: planned at E−13:20', LinkChange_Silence.not_begun),
       change('x_band_telemetry', true, '50:00'),
-      change('x_band_telemetry', false, '51:00', 'ground fault: nothing comes from the station'),
+      change('x_band_telemetry', false, '51:00', 'ground fault: nothing comes from the station', FAULT),
       change('x_band_telemetry', true, '52:00'),
       change('uhf_live', true, '54:00'),
       change('x_band_telemetry', false, '55:00', 'switched off: X-band sends tones from E−12:30'),
-      change('uhf_live', false, '59:00', 'plasma blackout'),
+      change('uhf_live', false, '59:00', 'plasma blackout', LinkChange_Silence.blackout),
     ]);
     expect(liveOutages(store, -100, Infinity)).toEqual([
-      { from: -640, to: -580, words: 'ground fault: nothing comes from the station' },
-      { from: -160, to: -100, words: 'plasma blackout' },
+      {
+        from: -640,
+        to: -580,
+        words: 'ground fault: nothing comes from the station',
+        silence: 'ground_fault',
+        lost: true,
+      },
+      { from: -160, to: -100, words: 'plasma blackout', silence: 'blackout', lost: false },
     ]);
     const older = aStore([change('uhf_live', false, '59:00', 'plasma blackout')]);
-    expect(liveOutages(older, -100, Infinity)).toEqual([{ from: -160, to: -100, words: 'plasma blackout' }]);
+    expect(liveOutages(older, -100, Infinity)).toEqual([
+      { from: -160, to: -100, words: 'plasma blackout', lost: false },
+    ]);
   });
   it('shows a silence that nothing predicted as an alarm, as its link does', () => {
-    expect(
-      ['unexplained: no pass ends now', 'ground fault: the station is silent', 'plasma'].map(
-        (reason) => silenceStatus(reason).token,
-      ),
-    ).toEqual(['alarm', 'alarm', 'caution']);
+    expect([true, false].map((lost) => silenceStatus({ lost }).token)).toEqual(['alarm', 'caution']);
   });
   it('shows nothing later than the past view', () => {
     const store = aStore([

@@ -15,6 +15,7 @@ import { fromEntry } from '../run/time';
 import { choice, pan, spanNow, zoom } from '../run/window';
 import type { Choice } from '../run/window';
 import { isPredicted, passes, windowWords, windowsOf } from '../prediction/model';
+import { posteriorText } from '../tones/model';
 import { timelineKnown } from './asked';
 import { anchorLines, moved, predicted, predictedAsOf } from './now';
 import { STATUS, SOURCES, held, silenceStatus } from '../design/status';
@@ -261,7 +262,7 @@ function drawOutages(
       const left = Math.max(GUTTER, x(outage.from));
       const right = Math.min(width - 14, x(outage.to));
       if (right < GUTTER || left > width || right - left < 2) continue;
-      const { shape, token } = silenceStatus(outage.words);
+      const { shape, token } = silenceStatus(outage);
       const colour = colours[token];
       c.fillStyle = colours.panel;
       c.fillRect(left, y(lane) - 8, right - left, 16);
@@ -589,8 +590,10 @@ function Detail() {
         )}
         {detail.tone_e_s !== undefined && (
           <>
-            <dt>its tone began</dt>
-            <dd>{at(detail.tone_e_s)}</dd>
+            <dt>heard by tone</dt>
+            <dd>
+              its beginning {at(detail.tone_e_s)}, posterior {posteriorText(detail.posterior ?? NaN)}
+            </dd>
           </>
         )}
         {detail.firedLive_e_s !== undefined && (

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { RunStore } from '../run/store';
 import { fromEntry, secondsOfErt } from '../run/time';
-import type { NamedTone } from '../stream/names';
-import { notBegun } from '../timeline/model';
+import type { NamedLink, NamedTone } from '../stream/names';
 
 interface ToneBar {
   from_e_s: number;
@@ -28,9 +27,9 @@ export function toneBars(store: RunStore, cutoff: number): ToneBar[] {
   return bars;
 }
 
-/** Why X-band sends no tones, by the last report of its link; empty: it does, or nothing is known. */
-export const toneSilence = (store: RunStore, cutoff: number): string =>
-  store.links.get('x_band')?.findLast((change) => !(store.sclkSeenAt(change.ert_s) > cutoff))?.fact.reason ?? '';
+/** The ground's last word on X-band, which sends the tones. */
+export const toneSilence = (store: RunStore, cutoff: number): NamedLink | undefined =>
+  store.links.get('x_band')?.findLast((change) => !(store.sclkSeenAt(change.ert_s) > cutoff))?.fact;
 
 export function latestTone(store: RunStore, cutoff: number): NamedTone | undefined {
   return store.tonesBy(cutoff).at(-1)?.fact;
@@ -97,9 +96,14 @@ export function toneSpectrum(tone: NamedTone | undefined): SpectrumLine[] {
   return Array.from(tone?.spectrum ?? [], (octet, index) => ({ tone: 2 * index, level_db: octet / 2 - 30 }));
 }
 
-/** `reason`: of the silence of X-band's tones, as ground gives it. */
-export function toneEvidence(tone: NamedTone | undefined, reason = ''): string {
-  if (!tone && notBegun(reason)) return `tones have not begun${reason.slice(reason.indexOf(':'))}`;
+/** A posterior probability; what rounds to one is not certain. */
+export const posteriorText = (probability: number): string =>
+  probability >= 0.9995 ? 'above 0.999' : probability.toFixed(3);
+
+/** `link`: what the ground says last of X-band's tones. */
+export function toneEvidence(tone: NamedTone | undefined, link?: NamedLink): string {
+  if (!tone && link?.silence === 'not_begun')
+    return `tones have not begun${link.reason.slice(link.reason.indexOf(':'))}`;
   if (!tone) return 'one of 256, each for 10 s';
   const parts: string[] = [];
   if (tone.tone !== undefined) parts.push(`likelihood ${tone.likelihood.toFixed(3)}`);

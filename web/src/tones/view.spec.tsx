@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // @vitest-environment happy-dom
 import { describe, expect, it } from 'vitest';
+import { LinkChange_Silence } from '../gen/aeolis/v1/items_pb';
 import { aStore, link, tone } from '../testing/fixtures';
 import type { Palette } from '../draw/palette';
 import { named } from '../stream/names';
@@ -28,11 +29,13 @@ describe('tones', () => {
   });
   it('are not lost before X-band goes over to them: they have not begun', () => {
     const reason = 'not begun: X-band sends telemetry until E−12:30';
-    const store = aStore([link({ link: 'x_band', up: false, reason, ert: '2012-219T04:40:00.0' })]);
+    const store = aStore([
+      link({ link: 'x_band', up: false, reason, silence: LinkChange_Silence.not_begun, ert: '2012-219T04:40:00.0' }),
+    ]);
     expect(toneEvidence(latestTone(store, Infinity), toneSilence(store, Infinity))).toBe(
       'tones have not begun: X-band sends telemetry until E−12:30',
     );
-    expect(toneEvidence(undefined, '')).toBe('one of 256, each for 10 s');
+    expect(toneEvidence(undefined)).toBe('one of 256, each for 10 s');
   });
   it('give the evidence with the meaning', () => {
     const store = aStore([
@@ -95,13 +98,18 @@ describe('tones', () => {
     };
     const spectrum = new Uint8Array(128).fill(60);
     [spectrum[21], spectrum[61]] = [110, 100];
-    drawSpectrum(
-      { context: context as unknown as CanvasRenderingContext2D, width: 600, colours: {} as Palette },
-      named(tone({ sclk: 700, tone: 42, runnerUp: 123, spectrum }).item) as NamedTone,
-      200,
-    );
+    const drawn = (runnerUp: number, bottom: number) =>
+      drawSpectrum(
+        { context: context as unknown as CanvasRenderingContext2D, width: 600, colours: {} as Palette },
+        named(tone({ sclk: 700, tone: 42, runnerUp, spectrum }).item) as NamedTone,
+        bottom,
+      );
+    drawn(123, 200);
     expect([bars.length, Math.min(...bars) > 20, Math.max(...bars) < 200]).toEqual([128, true, true]);
-    expect(words).toEqual(expect.arrayContaining(['0', '255', '42', '123']));
+    expect(words).toEqual(expect.arrayContaining(['0', '64', '255', '42', '123']));
+    words.length = 0;
+    drawn(44, 50); // as low as on a laptop in a past view: no number lies over another
+    expect(words).toEqual(['0', '255', '30 dB', '42']);
   });
   it('can be looked at one by one, and move on with the newest where none is chosen', () => {
     const store = aStore([700, 710, 720].map((sclk) => tone({ sclk, tone: sclk / 10 })));

@@ -85,7 +85,9 @@ export function drawSpectrum(
   c.fillStyle = colours.dim;
   c.fillRect(left - 2, y(TONES), 1, bottom - y(TONES));
   c.textAlign = 'right';
-  for (const each of [0, 64, 128, 192, TONES - 1]) c.fillText(String(each), left - 6, y(each));
+  const apart = (bottom - y(TONES)) / 4;
+  for (const [i, each] of [0, 64, 128, 192, TONES - 1].entries())
+    if ((i % 4 === 0 ? 4 : 1) * apart >= LABEL_PX) c.fillText(String(each), left - 6, y(each));
   c.fillText(`${LOUDEST_DB} dB`, right, 10);
   for (const { tone: low, level_db } of toneSpectrum(tone)) {
     const long = (Math.max(0, Math.min(LOUDEST_DB, level_db)) / LOUDEST_DB) * (right - left);
@@ -93,7 +95,9 @@ export function drawSpectrum(
     const thick = which === undefined ? 1 : 2;
     c.fillStyle = which === undefined ? colours.dim : which === tone?.tone ? colours.tone : colours.text;
     c.fillRect(left, y(low + 0.5) - thick / 2, Math.max(1, long), thick);
-    if (which === undefined) continue;
+    const isCrowded =
+      which !== undefined && tone?.tone !== undefined && Math.abs(y(which) - y(tone.tone)) < LABEL_PX;
+    if (which === undefined || (which !== tone?.tone && isCrowded)) continue;
     const room = right - left - long > 24;
     c.textAlign = room ? 'left' : 'right';
     c.fillText(String(which), room ? left + long + 4 : right, y(low + 0.5) + (room ? 0 : -8));

@@ -1,39 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // The touchdown as the server judges it, its figures in words, and what still comes.
-import { computed } from '@preact/signals';
 import { LAYOUT } from '../layout';
 import { predictedEvent, prediction } from '../prediction/model';
-import { asHeard, cutoff, runNow, signalOfRun } from '../run/shown';
+import { asHeard, cutoff, runNow } from '../run/shown';
 import { read } from '../run/connection';
 import { fromEntry } from '../run/time';
 import { RECORDING_LINK } from '../vehicle/layout';
 import type { Look } from '../vehicle/model';
-
-/** In the API's words (schema/aeolis/v1/touchdown.proto). */
-export interface TouchdownStep {
-  name: string;
-  state: 'done' | 'waiting' | 'unknown' | 'never' | 'contradicted';
-  words: string;
-}
-export interface TouchdownReport {
-  verdict: 'untold' | 'reported' | 'confirmed' | 'contradicted';
-  sclk?: number;
-  steps: readonly TouchdownStep[];
-  figures: readonly { name: string; channel: string; unit: string; value?: number; before_s: number }[];
-  place?: { east_m: number; north_m: number; inside_ellipse?: boolean };
-  place_unknown: string;
-}
-
-/** `at`: SCLK, Infinity for now. `live`: without what only the recording brought. */
-export const touchdownAnswer = signalOfRun<{ at: number; live: boolean; report: TouchdownReport } | undefined>(
-  undefined,
-);
-/** The newest answer, unless it belongs to another view of the run or knows later data than the instant shown. */
-export const touchdownKnown = computed(() => {
-  const answer = touchdownAnswer.value;
-  const fits = answer?.live === asHeard.value && answer.at <= cutoff.value;
-  return fits && (cutoff.value !== Infinity || answer.at === Infinity) ? answer.report : undefined;
-});
+import { touchdownAnswer, touchdownKnown } from './shown';
+import type { TouchdownReport } from './shown';
 
 const EVERY_MS = 1000; // chosen: while the run or a replay goes on, so do its steps
 let underWay = false;
@@ -66,6 +41,8 @@ export interface Result {
   value: string;
   unit: string;
   note: string;
+  /** What the note has no room for. */
+  more?: string;
 }
 
 const POINTS = ['north', 'north-east', 'east', 'south-east', 'south', 'south-west', 'west', 'north-west'];
@@ -98,8 +75,9 @@ export function resultsOf(
       ? {
           name: 'from the target',
           value: Math.hypot(place.east_m, place.north_m).toFixed(0),
-          unit: 'm',
-          note: `to the ${compass(place)}, by navigation on board; its uncertainty is not told`,
+          unit: 'm ± ?',
+          note: `to the ${compass(place)}, by navigation on board, uncertainty not known`,
+          more: `It rests on ${place.rests_on}.`,
         }
       : { name: 'from the target', value: '—', unit: '', note: `not known: ${place_unknown}` },
     ...told.slice(2),

@@ -8,8 +8,9 @@ import { pastRange, timepoints } from '../run/shown';
 import { ENTRY_SCLK } from '../testing/fixtures';
 import { aServer } from '../testing/server';
 import { lookAt, vehicleDictionary, vehiclePlan } from '../testing/vehicle';
-import { compass, refreshTouchdown, restOf, resultsOf, touchdownAnswer, touchdownKnown } from './model';
-import type { TouchdownReport } from './model';
+import { compass, refreshTouchdown, restOf, resultsOf } from './model';
+import { touchdownAnswer, touchdownKnown } from './shown';
+import type { TouchdownReport } from './shown';
 import { Touchdown } from './view';
 
 const server = aServer();
@@ -27,7 +28,7 @@ const REPORT: TouchdownReport = {
     { name: 'across', channel: 'horizontal_speed_mps', unit: 'm/s', value: -0.02, before_s: 0 },
     { name: 'propellant left', channel: 'propellant_kg', unit: 'kg', before_s: 0 },
   ],
-  place: { east_m: 400, north_m: 300, inside_ellipse: true },
+  place: { east_m: 400, north_m: 300, inside_ellipse: true, rests_on: 'the entry solution' },
   place_unknown: '',
 };
 
@@ -44,7 +45,7 @@ describe('the figures of a touchdown', () => {
     expect(results.map(({ note }) => note).slice(0, 4)).toEqual([
       'descent_rate_mps, 0.5 s before',
       'horizontal_speed_mps, at touchdown',
-      'to the north-east, by navigation on board; its uncertainty is not told',
+      'to the north-east, by navigation on board, uncertainty not known',
       'not known: propellant_kg did not come near it',
     ]);
   });

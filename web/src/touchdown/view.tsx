@@ -10,8 +10,9 @@ import { focusPanel } from '../shortcuts/model';
 import type { Tab } from '../places/model';
 import { fromEntry } from '../run/time';
 import { ellipseWords, Path } from '../vehicle/path';
-import { refreshTouchdown, restOf, resultsOf, touchdownKnown } from './model';
-import type { TouchdownStep } from './model';
+import { refreshTouchdown, restOf, resultsOf } from './model';
+import { touchdownKnown } from './shown';
+import type { TouchdownStep } from './shown';
 import './style.css';
 
 const LOOKS = {
@@ -82,8 +83,8 @@ export function Touchdown() {
           </span>
         </h3>
         <dl class="touchdown-figures" data-testid="touchdown-figures">
-          {resultsOf(look, of).map(({ name, value, unit, note }) => (
-            <div key={name} title={note}>
+          {resultsOf(look, of).map(({ name, value, unit, note, more }) => (
+            <div key={name} title={more ? `${note}. ${more}` : note}>
               <dt>{name}</dt>
               <dd>
                 <output>{value}</output> {unit}
@@ -123,6 +124,7 @@ export function Touchdown() {
               {miss.inside_ellipse ? 'inside' : '▲ outside'} {ellipseWords(ellipse)}
             </small>
           )}
+          {miss && <small data-testid="place-rests-on">{`The place rests on ${miss.rests_on}.`}</small>}
         </div>
         <div class="touchdown-next" data-testid="touchdown-next">
           {restOf(look, pastRange.value === undefined).map((rest) => (

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+import { silent } from '../testing/fixtures';
 import { describe, expect, it } from 'vitest';
 import dictionary from '../../../dictionaries/msl/msl.xml?raw';
 import timeline from '../../../dictionaries/msl/timeline.csv?raw';
@@ -166,7 +167,8 @@ describe('how it lies and moves', () => {
 
 describe('the same as text', () => {
   it('gives every old value its age, and says of each missing one that it was not received', () => {
-    const rows = rowsOf(...lookAndMotion(lookAt(60, [told(9, { ...flags({}), ...upright, ...place, bank_deg: -40 })])));
+    const heard = told(9, { ...flags({}), ...upright, ...place, bank_deg: -40 });
+    const rows = rowsOf(...lookAndMotion(lookAt(60, [heard, silent('Vehicle')])));
     const of = (name: string) => rows.find((row) => row.name === name);
     expect(of('bank')).toEqual({ name: 'bank', text: '−40.0°, lift up to the left', age: '◌ 51 s' });
     expect(of('mode')?.text).toBe('not received yet');

@@ -3,6 +3,7 @@
 import type { Explanation, Condition } from '../gen/aeolis/v1/items_pb';
 import type { TimepointRow } from '../gen/aeolis/v1/run_pb';
 import { staleWords } from '../channels/model';
+import { touchdownKnown } from '../touchdown/shown';
 import { outcomeWords } from '../clocks/model';
 import { compare } from '../commands/model';
 import { LAYOUT } from '../layout';
@@ -272,11 +273,17 @@ function ended(store: RunStore): Waiting {
     .join('');
   return {
     kind: 'ended',
-    title: run.outcome === 'touchdown' ? 'Touchdown reported' : run.state === 'interrupted' ? 'Interrupted' : 'Ended',
+    title: run.outcome === 'touchdown' ? landedTitle() : run.state === 'interrupted' ? 'Interrupted' : 'Ended',
     words: `${lost}This run: ${outcomeWords(run.outcome, run.state)}. ${run.state !== 'interrupted' ? complete : canContinue(run) ? 'The server stopped in mid-run; the panel Runs continues it from here.' : 'It cannot be continued: what is followed after it is another run.'}`,
     lines: [],
   };
 }
+
+/** As the card of the touchdown says it, once the server has judged it. */
+const landedTitle = (): string => {
+  const verdict = touchdownKnown.value?.verdict ?? 'untold';
+  return `Touchdown ${verdict === 'untold' ? 'reported' : verdict}`;
+};
 
 type FirstStep = (typeof LAYOUT.firstSteps)[number];
 

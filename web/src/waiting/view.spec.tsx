@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // @vitest-environment happy-dom
+import type { Item } from '../gen/aeolis/v1/items_pb';
 import { create } from '@bufbuild/protobuf';
 import { render } from 'preact';
 import { act } from 'preact/test-utils';
@@ -17,10 +18,12 @@ import {
   explanation,
   firing,
   samples,
+  silent,
   situation,
   stage,
   tone,
 } from '../testing/fixtures';
+import { touchdownAnswer } from '../touchdown/shown';
 import type { NamedStage } from '../stream/names';
 import { PredictionSchema } from '../gen/aeolis/v1/prediction_pb';
 import { predictForTest } from '../prediction/model';
@@ -202,15 +205,17 @@ describe('waiting for', () => {
       ...aDictionary.reply,
       channels: [...aDictionary.channels, create(DictionaryChannelSchema, { id: 9, name: 'parachute_speed_mps' })],
     });
-    const store = (sclk: number) =>
+    const store = (sclk: number, ...more: Item[]) =>
       aStore([
         ...commanded,
         firing({ timepoint: 1, name: 'entry_interface', firedSclk: 850 }),
         samples(850, { 9: 405 }),
         samples(sclk, { 4: 400 }),
+        ...more,
       ]);
-    const watched = (sclk: number) => waitingFor(store(sclk), words, aPlan, Infinity).lines.at(-1);
-    expect([watched(899), watched(859)]).toEqual([
+    const watched = (sclk: number, ...more: Item[]) =>
+      waitingFor(store(sclk, ...more), words, aPlan, Infinity).lines.at(-1);
+    expect([watched(899), watched(859, silent('Navigation'))]).toEqual([
       { words: 'speed ≤ 405 m/s', value: '400 m/s', holds: true, quantity: 'speed_mps' },
       { words: 'speed ≤ 405 m/s', value: '400 m/s, ◌ 41 s', holds: undefined, quantity: 'speed_mps' },
     ]);
@@ -477,6 +482,11 @@ describe('waiting for', () => {
         Infinity,
       ).title,
     ).toBe('Touchdown reported');
+    const report = { verdict: 'confirmed' as const, steps: [], figures: [], place_unknown: '' };
+    touchdownAnswer.value = { at: Infinity, live: false, report };
+    const landed = aStore([], aRun({ state: 'finished', outcome: 'touchdown', relayProgress: 1 }));
+    expect(waitingFor(landed, aDictionary, aPlan, Infinity).title).toBe('Touchdown confirmed');
+    touchdownAnswer.value = undefined;
     const lost = situation(
       '2012-219T04:59:55.0',
       {
