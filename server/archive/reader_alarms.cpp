@@ -147,7 +147,7 @@ Result<void> Reader::may(RunId run, const std::string& alarm, telemetry::AlarmAc
 }
 
 Result<Ert> Reader::newest_ert(RunId run) {
-    auto rows = state_->query("SELECT ert_us FROM units WHERE key BETWEEN ?1 AND ?2 ORDER BY key DESC LIMIT 1");
+    auto rows = state_->query("SELECT ert_us FROM packets WHERE key BETWEEN ?1 AND ?2 ORDER BY key DESC LIMIT 1");
     if (!rows) return rows.error();
     (*rows)->bind(1, item_key(run, 0)).bind(2, item_key(run, sequence_max));
     auto found = (*rows)->step();

@@ -95,8 +95,7 @@ export function drawSpectrum(
     const thick = which === undefined ? 1 : 2;
     c.fillStyle = which === undefined ? colours.dim : which === tone?.tone ? colours.tone : colours.text;
     c.fillRect(left, y(low + 0.5) - thick / 2, Math.max(1, long), thick);
-    const isCrowded =
-      which !== undefined && tone?.tone !== undefined && Math.abs(y(which) - y(tone.tone)) < LABEL_PX;
+    const isCrowded = which !== undefined && tone?.tone !== undefined && Math.abs(y(which) - y(tone.tone)) < LABEL_PX;
     if (which === undefined || (which !== tone?.tone && isCrowded)) continue;
     const room = right - left - long > 24;
     c.textAlign = room ? 'left' : 'right';
