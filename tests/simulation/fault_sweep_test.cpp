@@ -64,7 +64,7 @@ std::vector<Drawn> drawn_faults(std::uint64_t seed, std::size_t count) {
     std::vector<Drawn> all;
     while (all.size() < count) {
         Drawn one;
-        one.device = static_cast<Device>(random.bits() % flight::device_count);
+        one.device = static_cast<Device>(random.bits() % flight::redundant_device_count);
         one.kind = static_cast<Kind>(random.bits() % kind_names.size());
         one.both = random.bits() % 2 == 0;
         const double part = random.uniform();
@@ -134,7 +134,8 @@ bool may_be_lost(const Drawn& drawn, const Sound& sound) {
         return does_not_act && drawn.length_s > thrusters_rest_survived_s &&
                Sound::overlaps(drawn, sound.at(point::detumble), sound.at(point::backshell_separation));
     case Device::uhf:
-    case Device::x_band: return false;
+    case Device::x_band:
+    case Device::rover_imu: return false;
     }
     return false;
 }
