@@ -28,7 +28,7 @@ EphemerisTime time_of(Sclk at, const ClockCorrelation& clock) {
 }
 
 Eigen::Matrix3d matrix_of(EphemerisTime time) {
-    const Matrix3 rows = mars_from_j2000(time);
+    const aeolis::Matrix3 rows = mars_from_j2000(time);
     Eigen::Matrix3d matrix;
     for (int row = 0; row < 3; ++row)
         for (int column = 0; column < 3; ++column)
