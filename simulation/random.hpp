@@ -38,6 +38,7 @@ enum class Stream : std::uint64_t {
     uplink,
     relay,
     carrier,
+    rover_imu,
 };
 
 /// Random numbers of one stream of one case of one seed: SplitMix64, and Box–Muller for the normal distribution.

@@ -267,7 +267,7 @@ void check_commands(const Scenario& scenario, std::vector<std::string>& found) {
 /// Whether a device can have the fault: only commanded devices can refuse or be late, only data sources can lose data.
 bool is_possible(flight::Device device, DeviceFault::Kind kind) {
     using flight::Device;
-    const bool sensor = device == Device::radar || device == Device::imu;
+    const bool sensor = device == Device::radar || device == Device::imu || device == Device::rover_imu;
     switch (kind) {
     case DeviceFault::Kind::silent: return true;
     case DeviceFault::Kind::refuses: return !sensor;
@@ -287,6 +287,8 @@ void check_device_faults(const Scenario& scenario, std::vector<std::string>& fou
         if (!is_possible(fault.device, fault.kind))
             found.push_back(name + ".kind: is not possible for this device (sensors: silent, dropout; uhf: all; "
                                    "descent_engines: silent, refuses; others: all but dropout)");
+        if (fault.device == flight::Device::rover_imu && fault.unit != flight::Unit::a)
+            found.push_back(name + ".unit: the rover has one IMU, unit A");
         if (!(fault.begin_before_entry_s <= scenario.start_before_entry_s &&
               fault.begin_before_entry_s >= -scenario.timeout_after_entry_s))
             found.push_back(name + ".begin_before_entry_s: " + number(fault.begin_before_entry_s) +

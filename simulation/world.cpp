@@ -8,11 +8,13 @@
 #include "simulation/moments.hpp"
 #include "simulation/sensors/imu.hpp"
 #include "simulation/sensors/radar.hpp"
+#include "simulation/sensors/rover_imu.hpp"
 #include "simulation/sensors/star_scanner.hpp"
 #include "simulation/vehicle/vehicle.hpp"
 
 #include <algorithm>
 #include <cstdio>
+#include <limits>
 
 namespace aeolis::simulation {
 namespace {
@@ -57,6 +59,7 @@ struct World::State {
     std::array<Imu, 2> imus;  ///< units A and B
     std::array<Radar, 2> radars;
     StarScanner star_scanner;
+    RoverImu rover_imu;
 
     std::int64_t ticks = 0;                   ///< since the start
     flight::Unit imu_unit = flight::Unit::a;  ///< the unit whose link the computer listens to
@@ -83,7 +86,8 @@ struct World::State {
           buses(s, seed, case_number),
           imus{imu(s, seed, case_number, flight::Unit::a), imu(s, seed, case_number, flight::Unit::b)},
           radars{radar(s, seed, case_number, flight::Unit::a), radar(s, seed, case_number, flight::Unit::b)},
-          star_scanner(s.dispersions, Random{seed, case_number, Stream::star_scanner}) {
+          star_scanner(s.dispersions, Random{seed, case_number, Stream::star_scanner}),
+          rover_imu(s.dispersions, Random{seed, case_number, Stream::rover_imu}) {
         events.reserve(8);
     }
 
@@ -102,6 +106,15 @@ struct World::State {
         if (!is_over && !(present && sclk().ticks() % 64 == 0)) return {};
         system_fault_told = present;
         return flight::SystemFaultReport{present};
+    }
+
+    std::optional<flight::RoverImuReading> rover_imu_reading() {
+        if (!buses.rover_imu_was_read()) return {};
+        const Vehicle::RoverMotion motion = vehicle.rover_motion();
+        const flight::RoverImuReading reading = rover_imu.measure(motion.force_mps2, motion.rate_rps);
+        if (!buses.faults().has(DeviceFault::Kind::dropout, flight::Device::rover_imu, flight::Unit::a)) return reading;
+        constexpr double fails = std::numeric_limits<double>::quiet_NaN();
+        return flight::RoverImuReading{{fails, fails, fails}, {fails, fails, fails}};
     }
 
     TruthState truth() const {
@@ -330,6 +343,7 @@ flight::NavigationShift World::disperse(std::uint64_t seed, std::uint64_t case_n
     s.radars = {radar(s.scenario, seed, case_number, flight::Unit::a),
                 radar(s.scenario, seed, case_number, flight::Unit::b)};
     s.star_scanner = {errors, {seed, case_number, Stream::star_scanner}};
+    s.rover_imu = {errors, {seed, case_number, Stream::rover_imu}};
     s.buses.disperse(seed, case_number);
     return {array3(learnt.p_MoB_M), array3(learnt.v_MB_M), array4(s.star_scanner.error()),
             array3(s.imus[static_cast<std::size_t>(s.imu_unit)].accelerometer_bias_mps2())};
@@ -342,6 +356,7 @@ flight::DeviceInputs& World::sense() {
     in.imu = s.imu_samples;
     in.cruise_attitude.reset();
     in.radar.clear();
+    in.rover_imu = s.rover_imu_reading();
     in.pyro_replies.clear();
     in.switch_replies.clear();
     in.engines.reset();

@@ -24,12 +24,13 @@ namespace aeolis::flight {
 
 /// One of the two units of a redundant device. The choice is commanded before EDL and then fixed. R2
 enum class Unit : std::uint8_t { a, b };
-/// Devices with two units; the list is our assumption. Both units of a device act on the same hardware.
+/// The devices; which of them have two units is our assumption. Both units of a device act on the same hardware.
 /// They are cross-coupled to the same pyros, thrusters, engines and antennas; each unit of a sensor has its own errors.
-enum class Device : std::uint8_t { radar, imu, pyro, descent_engines, thrusters, power, uhf, x_band };
-inline constexpr std::size_t device_count = 8;
+enum class Device : std::uint8_t { radar, imu, pyro, descent_engines, thrusters, power, uhf, x_band, rover_imu };
+inline constexpr std::size_t device_count = 9;
+inline constexpr std::size_t redundant_device_count = 8;  ///< with two units: all before the rover's own IMU
 
-/// The addressed unit of each device.
+/// The addressed unit of each device that has two.
 class UnitSelection {
   public:
     Unit operator[](Device device) const { return units_[static_cast<std::size_t>(device)]; }
@@ -42,7 +43,7 @@ class UnitSelection {
     }
 
   private:
-    std::array<Unit, device_count> units_{};
+    std::array<Unit, redundant_device_count> units_{};
 };
 
 // ---- to the computer -------------------------------------------------------------------------------------------
@@ -52,6 +53,13 @@ struct ImuSample {
     std::uint32_t count = 0;                  ///< 200 Hz count since the unit was started
     std::array<double, 3> delta_v_mps{};      ///< specific force × time
     std::array<double, 3> delta_angle_rad{};  ///< rate relative to inertial space × time
+};
+
+/// The newest reading of the rover's own IMU, means over 5 ms along axes fixed to the rover.
+/// NaN: the unit says that its data fail.
+struct RoverImuReading {
+    std::array<double, 3> force_mps2{};  ///< specific force
+    std::array<double, 3> rate_rps{};    ///< relative to inertial space
 };
 
 /// Initial attitude from cruise attitude determination (star scanner), once a second until separation.
@@ -164,6 +172,7 @@ struct DeviceInputs {
     FixedVector<ImuSample, 4> imu;  ///< 3 or 4 per cycle
     std::optional<CruiseAttitude> cruise_attitude;
     FixedVector<RadarBeam, radar_beam_count> radar;  ///< each beam at 20 Hz
+    std::optional<RoverImuReading> rover_imu;        ///< with each frame of the 8 Hz bus
     FixedVector<PyroReply, 16> pyro_replies;
     FixedVector<SwitchReply, 8> switch_replies;
     std::optional<EngineReply> engines;             ///< each cycle once the valves are open

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "flight/devices/imu.hpp"
 
+#include <cmath>
+
 namespace aeolis::flight {
 namespace {
 
@@ -10,6 +12,15 @@ constexpr std::uint16_t samples_per_second = 200;  // [facts] IMU
 
 void ImuManager::on(const ImuReadings& readings, Outbox&) {
     latest_ = readings;
+}
+
+void ImuManager::on(const RoverImuReading& reading, Outbox& out) {
+    const Sclk second = at_resolution(out.now(), 1);
+    if (rover_told_ == second) return;
+    rover_told_ = second;
+    const auto magnitude = [](const std::array<double, 3>& v) { return single(std::hypot(v[0], v[1], v[2])); };
+    out.record(packet::RoverImu{.rover_imu_rate_rps = magnitude(reading.rate_rps),
+                                .rover_imu_force_mps2 = magnitude(reading.force_mps2)});
 }
 
 void ImuManager::on(const UnitsSelected& selected, Outbox&) {

@@ -6,7 +6,7 @@ namespace aeolis::flight {
 // The dictionary numbers devices as they are numbered here.
 static_assert(static_cast<Device>(DeviceName::radar) == Device::radar);
 static_assert(static_cast<Device>(DeviceName::x_band) == Device::x_band &&
-              device_count == static_cast<std::size_t>(DeviceName::x_band) + 1);
+              redundant_device_count == static_cast<std::size_t>(DeviceName::x_band) + 1);
 
 void SwitchReplies::command(const SetSwitch& command, SwitchCommands& bus, Outbox& out) {
     const auto number = static_cast<std::size_t>(command.id);

@@ -10,7 +10,7 @@ constexpr std::int64_t report_period_s = 10;  // chosen: constant values need no
 
 static_assert(static_cast<Unit>(SelectedUnit::a) == Unit::a && static_cast<Unit>(SelectedUnit::b) == Unit::b);
 static_assert(static_cast<Unit>(RedundantUnit::a) == Unit::a && static_cast<Unit>(RedundantUnit::b) == Unit::b);
-static_assert(device_count == 8, "each has its argument below and its channel");
+static_assert(redundant_device_count == 8, "each has its argument below and its channel");
 
 UnitSelection selection_of(const command::EDL_SELECT_UNITS& c) {
     UnitSelection units;

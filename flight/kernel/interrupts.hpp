@@ -17,6 +17,7 @@ inline constexpr std::array clock_subscribers{ModuleId::sync,   ModuleId::units,
 template <typename Deliver>
 void post_interrupts(const DeviceInputs& in, Deliver&& deliver) {
     if (!in.imu.empty()) deliver(ModuleId::imu, ImuReadings{in.now, in.imu});
+    if (in.rover_imu) deliver(ModuleId::imu, *in.rover_imu);
     if (!in.radar.empty()) deliver(ModuleId::radar, RadarReturns{in.now, in.radar});
     for (const auto& reply : in.pyro_replies) deliver(ModuleId::pyro, reply);
     for (const auto& reply : in.switch_replies)

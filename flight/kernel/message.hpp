@@ -258,8 +258,8 @@ struct ToneStatus {     ///< from MFSK to EdlComm, for its status channels
 };
 
 using Message =
-    std::variant<ClockTick, Tick, Confirm, ImuReadings, RadarReturns, StatePart, StoredStatePart, Resume,
-                 UplinkReceived, NvmStatus, PyroReply, SwitchReply, EngineReply, ThrusterReply, BridleReply,
+    std::variant<ClockTick, Tick, Confirm, ImuReadings, RoverImuReading, RadarReturns, StatePart, StoredStatePart,
+                 Resume, UplinkReceived, NvmStatus, PyroReply, SwitchReply, EngineReply, ThrusterReply, BridleReply,
                  CruiseAttitude, gnc::RadarSolution, ActionReply, FirePyro, ArmPyros, SetSwitch, EnableThrusters,
                  FireThrusters, RunEngines, PayOutBridle, UnitsSelected, EdlBegun, NavigatedAttitude, SystemFaultReport,
                  InhibitEdl, SetParametersCommand, ParametersUpdate, StageParameterCommand, ActivateParametersCommand,

@@ -44,10 +44,64 @@ void add_told_step(const TouchdownFacts& facts, std::vector<TouchdownFacts::Told
     add_step(report, name, Step::done, fmt::format("{}: {}", when(first.sclk), words), first.sclk);
 }
 
-void add_still_step(Report& report) {
-    add_step(report, "rover's own IMU is still: this vehicle never tells", Step::never,
-             "flight sends no channel of it; after touchdown the IMU told of is the descent stage's: so this touchdown "
-             "stays reported");
+/// The silence of UHF that goes on now.
+const TouchdownFacts::Silence* silent_now(const TouchdownFacts& facts) {
+    const auto found = std::ranges::find_if(facts.silences, [&](const auto& each) {
+        return each.from <= facts.now && (!each.to || *each.to >= facts.now);
+    });
+    return found == facts.silences.end() ? nullptr : &*found;
+}
+
+bool is_still(const TouchdownFacts::RoverImu& told) {
+    return told.rate_rps <= still_rate_max_rps &&
+           std::abs(told.force_mps2 - still_weight_mps2) <= still_weight_within_mps2;
+}
+
+void add_still_step(const TouchdownFacts& facts, Sclk since, Report& report) {
+    const auto name = fmt::format("rover's own IMU still for {:.0f} s", still_s);
+    if (!facts.rover_imu_known)
+        return add_step(report, name, Step::never,
+                        fmt::format("this mission sends no {} and {}", rover_rate_channel, rover_force_channel));
+    const auto when = [&](Sclk sclk) { return from_entry_tenths_text(sclk - facts.entry); };
+    const auto values = [](const TouchdownFacts::RoverImu& told) {
+        return fmt::format("{} {:.4f}, {} {:.2f}", rover_rate_channel, told.rate_rps, rover_force_channel,
+                           told.force_mps2);
+    };
+    std::optional<Sclk> from;
+    const TouchdownFacts::RoverImu* last = nullptr;
+    for (const auto& told : facts.rover_imu) {
+        if (told.sclk <= since) continue;
+        if (!is_still(told))
+            from.reset();
+        else if (!from || told.sclk - last->sclk > touchdown_gap_s)
+            from = told.sclk;
+        last = &told;
+        if (from && told.sclk - *from >= still_s)
+            return add_step(report, name, Step::done,
+                            fmt::format("{}: still since {}, now {}", when(told.sclk), when(*from), values(told)),
+                            told.sclk);
+    }
+    const auto* silent = silent_now(facts);
+    const auto because = [&] {
+        return silent != nullptr ? fmt::format(": no UHF since {}: {}", when(silent->from), silent->words) : "";
+    };
+    if (last == nullptr)
+        return add_step(
+            report, name, Step::unknown,
+            fmt::format("not known: {} has told nothing since touchdown at {}", rover_rate_channel, when(since)) +
+                because());
+    if (facts.now - last->sclk > touchdown_gap_s)
+        return add_step(report, name, Step::unknown,
+                        fmt::format("not known: {} has told nothing since {}; it had been still for {}",
+                                    rover_rate_channel, when(last->sclk),
+                                    telemetry::span_text(from ? last->sclk - *from : 0.0)) +
+                            because());
+    if (!from)
+        return add_step(report, name, Step::waiting,
+                        fmt::format("moves at {}: {}; still is at most {} rad/s and {} ± {} m/s2", when(last->sclk),
+                                    values(*last), still_rate_max_rps, still_weight_mps2, still_weight_within_mps2));
+    add_step(report, name, Step::waiting,
+             fmt::format("{} of {:.0f} s since {}", telemetry::span_text(last->sclk - *from), still_s, when(*from)));
 }
 
 void add_uhf_step(const TouchdownFacts& facts, Sclk since, Report& report) {
@@ -68,17 +122,14 @@ void add_uhf_step(const TouchdownFacts& facts, Sclk since, Report& report) {
                                         telemetry::uhf_live_link.name, when(*from)),
                             sclk);
     }
-    const auto silent = std::ranges::find_if(facts.silences, [&](const auto& each) {
-        return each.from <= facts.now && (!each.to || *each.to >= facts.now);
-    });
-    const bool is_silent = silent != facts.silences.end();
+    const auto* silent = silent_now(facts);
     const auto since_words = [&](std::string_view otherwise, Sclk at) {
-        return is_silent ? fmt::format("{}: {}", when(silent->from), silent->words)
-                         : fmt::format("{}{}", otherwise, when(at));
+        return silent != nullptr ? fmt::format("{}: {}", when(silent->from), silent->words)
+                                 : fmt::format("{}{}", otherwise, when(at));
     };
     if (!before)
         return add_step(report, name, Step::unknown, "not known: no UHF since " + since_words("touchdown at ", since));
-    if (is_silent || facts.now - *before > touchdown_gap_s)
+    if (silent != nullptr || facts.now - *before > touchdown_gap_s)
         return add_step(report, name, Step::unknown,
                         fmt::format("not known: no UHF since {}; {} had come without a break", since_words("", *before),
                                     telemetry::span_text(*before - *from)));
@@ -143,6 +194,25 @@ class FactsReader {
             facts.flag = TouchdownFacts::Flag{sample.sclk, sample.value};
         });
         if (raised) facts.told.push_back({*raised, fmt::format("{} is {:.0f}", touchdown_flag, facts.flag->value)});
+        return done;
+    }
+
+    /// One value of a pair is no sample: both are in one packet.
+    Result<void> add_rover_imu(Sclk since, TouchdownFacts& facts) {
+        facts.rover_imu_known =
+            dictionary_.channel(rover_rate_channel) != nullptr && dictionary_.channel(rover_force_channel) != nullptr;
+        if (!facts.rover_imu_known) return {};
+        struct Pair {
+            std::optional<double> rate, force;
+        };
+        std::map<Sclk, Pair> told;
+        const auto done = each({rover_rate_channel, rover_force_channel}, {since.seconds, range().to_s},
+                               [&](const auto& name, const auto& sample) {
+                                   auto& pair = told[sample.sclk];
+                                   (name == rover_rate_channel ? pair.rate : pair.force) = sample.value;
+                               });
+        for (const auto& [sclk, pair] : told)
+            if (pair.rate && pair.force) facts.rover_imu.push_back({sclk, *pair.rate, *pair.force});
         return done;
     }
 
@@ -257,7 +327,7 @@ v1::TouchdownReport judge_touchdown(const TouchdownFacts& facts) {
     add_told_step(facts, facts.told, report);
     const Sclk since{report.steps(0).sclk()};
     report.set_sclk(since.seconds);
-    add_still_step(report);
+    add_still_step(facts, since, report);
     add_uhf_step(facts, since, report);
     report.set_verdict(verdict_of(report));
     return report;
@@ -307,6 +377,8 @@ Result<v1::TouchdownReport> touchdown(archive::Reader& reader, archive::RunId ru
     if (auto done = of.add_event(facts); !done) return done.error();
     if (auto done = of.add_samples(facts); !done) return done.error();
     if (facts.told.empty()) return v1::TouchdownReport{};
+    const Sclk first = std::ranges::min(facts.told, {}, &TouchdownFacts::Told::sclk).sclk;
+    if (auto done = of.add_rover_imu(first, facts); !done) return done.error();
     facts.entry = Sclk{state->entry_sclk()};
     if (auto done = of.add_silences(facts); !done) return done.error();
     const auto newest = now ? Result<Ert>{*now} : reader.newest_ert(run);

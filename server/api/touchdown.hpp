@@ -33,6 +33,16 @@ inline constexpr std::array touchdown_channels{TouchdownChannel{"down", "descent
                                                TouchdownChannel{"across", "horizontal_speed_mps"},
                                                TouchdownChannel{"propellant left", "propellant_kg"}};
 
+/// Of the rover's own IMU, in one packet.
+inline constexpr std::string_view rover_rate_channel = "rover_imu_rate_rps",
+                                  rover_force_channel = "rover_imu_force_mps2";
+
+/// What counts as still: a rate and a specific force within these bounds, for so long without a gap.
+inline constexpr double still_s = 10.0;  ///< chosen: longer than a swing on the bridle, 9 s, which rests at its ends
+inline constexpr double still_rate_max_rps = 0.005;  ///< chosen: the unit's noise stays below; a swing of 0.5° does not
+inline constexpr double still_weight_mps2 = 3.71;    ///< [facts] Mars
+inline constexpr double still_weight_within_mps2 = 0.1;  ///< chosen: its noise is 0.02, sites differ by as much
+
 inline constexpr double touchdown_uhf_s = 10.0;   ///< chosen: half of what is planned
 inline constexpr double touchdown_gap_s = 3.0;    ///< chosen: the channel that is looked at comes each second
 inline constexpr double touchdown_close_s = 2.0;  ///< chosen: an older sample is not the value at the touchdown
@@ -47,18 +57,24 @@ struct TouchdownFacts {
         Sclk sclk;
         double value = 0.0;
     };
+    struct RoverImu {
+        Sclk sclk;
+        double rate_rps = 0.0, force_mps2 = 0.0;
+    };
     struct Silence {
         Sclk from;
         std::optional<Sclk> to;  ///< none: it goes on
         std::string words;
     };
     Sclk entry, now;
-    std::vector<Told> told;         ///< in any order
-    std::string flag_name;          ///< of the channel that tells it
-    std::optional<Flag> flag;       ///< its newest sample
-    std::string live_name;          ///< of the channel whose samples show that UHF comes
-    std::vector<Sclk> live;         ///< its samples over UHF, by time
-    std::vector<Silence> silences;  ///< of UHF, by time
+    std::vector<Told> told;           ///< in any order
+    std::string flag_name;            ///< of the channel that tells it
+    std::optional<Flag> flag;         ///< its newest sample
+    bool rover_imu_known = false;     ///< the dictionary has its channels
+    std::vector<RoverImu> rover_imu;  ///< what it told, by time
+    std::string live_name;            ///< of the channel whose samples show that UHF comes
+    std::vector<Sclk> live;           ///< its samples over UHF, by time
+    std::vector<Silence> silences;    ///< of UHF, by time
 };
 
 /// Verdict, time and steps. Untold without `told`.

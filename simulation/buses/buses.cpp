@@ -5,6 +5,7 @@ namespace aeolis::simulation {
 namespace {
 
 using flight::Device;
+using flight::Unit;
 using Kind = DeviceFault::Kind;
 
 constexpr std::int64_t hold_ticks = 128;          // 2 s [facts] Second Chance
@@ -76,12 +77,15 @@ void Buses::frame(Sclk now) {
     faults_.at(now);
     fired_.clear();
     fetched_.clear();
-    radar_was_read_ = engines_were_read_ = false;
+    radar_was_read_ = engines_were_read_ = rover_imu_was_read_ = false;
     thrusters_ = {};  // pulses are commanded anew each tick
     if (commanded_) {
         run(bus_64_hz_, tick);
         run_cyclic(tick);
-        if (bus_8_hz_.frame_begins(tick)) run(bus_8_hz_, tick);
+        if (bus_8_hz_.frame_begins(tick)) {
+            run(bus_8_hz_, tick);
+            rover_imu_was_read_ = bus_8_hz_.exchange() && faults_.answers(Device::rover_imu, Unit::a);
+        }
     }
     if (tick - engines_tick_ > hold_ticks) engines_ = {};
 }

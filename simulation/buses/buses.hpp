@@ -11,15 +11,16 @@ namespace aeolis::simulation {
 /// The vehicle's two 1553 buses, run by the computer in command, with the devices behind their remote terminals. R2
 ///
 /// 64 Hz   radar, pyro controllers, descent engines with the bridle, thrusters
-/// 8 Hz   power switches and heaters, UHF, X-band with the antennas
+/// 8 Hz   power switches and heaters, UHF, X-band with the antennas, the rover's own IMU
 ///
-/// The IMU is on neither: its samples come over a link of its own.
+/// The descent stage's IMU is on neither: its samples come over a link of its own.
 ///
 /// In       a cycle's commands, each to the unit that it addresses
 /// Out      the devices' actions, and replies for the computer
 /// Timing   the commands of cycle n go out with the first frame after it: at 64 Hz with tick n + 1, at 8 Hz with the
 ///          next multiple of 1/8 s. A reply is fetched by the first frame in which the device has it ready
-/// Cyclic   on-times, throttles and pay-out go out in every 64 Hz frame, which also reads radar and engines. Thrusters
+/// Cyclic   on-times, throttles and pay-out go out in every 64 Hz frame, which also reads radar and engines; every
+///          8 Hz frame reads the rover's IMU. Thrusters
 ///          without a command close at once; engines keep their last throttles for 2 s and then go safe. [facts]
 class Buses {
   public:
@@ -45,6 +46,7 @@ class Buses {
     /// Adds the replies fetched by the frames of this tick.
     void reply(flight::DeviceInputs& in) const;
     bool radar_was_read() const { return radar_was_read_; }
+    bool rover_imu_was_read() const { return rover_imu_was_read_; }
     bool engines_were_read() const { return engines_were_read_; }
     bool uhf_radiates() const;
     bool parachute_antenna_on() const { return devices_.on(flight::SwitchId::parachute_antenna); }
@@ -94,6 +96,7 @@ class Buses {
     FixedVector<Avionics::Reply, 16> fetched_;
     bool radar_was_read_ = false;
     bool engines_were_read_ = false;
+    bool rover_imu_was_read_ = false;
 };
 
 }  // namespace aeolis::simulation

@@ -16,8 +16,8 @@ namespace aeolis::simulation {
 /// doubled  each reply comes twice, a tick apart
 /// claims   the device does not act, and replies that it did
 /// denies   the device acts, and replies that it refuses
-/// dropout  the device's data fail: the radar has no valid measurement, the IMU loses every other sample, UHF radiates
-///          nothing
+/// dropout  the device's data fail: the radar has no valid measurement, the IMU loses every other sample, the rover's
+///          own says that its data fail, UHF radiates nothing
 class DeviceFaults {
   public:
     DeviceFaults(std::vector<DeviceFault> faults, Sclk entry) : faults_(std::move(faults)), entry_(entry) {}

@@ -37,7 +37,7 @@ Vehicle::Vehicle(const Scenario& scenario, const PointMass& start, const Quatern
       wind_(scenario.steady_wind_east_mps, scenario.steady_wind_north_mps, scenario.dispersions.wind_mps,
             Random{seed, case_number, Stream::wind},
             Gusts{scenario.dispersions.gust_mps, Random{seed, case_number, Stream::gust}}),
-      body_{start.p_MoB_M, start.v_MB_M, q_MB, {0.0, 0.0, spin_rps}}, configuration_(scenario),
+      body_{start.p_MoB_M, start.v_MB_M, q_MB, {0.0, 0.0, spin_rps}}, q_MRover_(q_MB), configuration_(scenario),
       thrusters_from_B_m_(on_axis(Configuration::at_entry(scenario).centre_B_m())),
       engines_from_B_m_(on_axis(Configuration::at_powered_descent(scenario).centre_B_m())) {
     configuration_.weigh(scenario.masses,
@@ -163,6 +163,8 @@ void Vehicle::step(double now_s, double step_s) {
         const StageAndRover both = runge_kutta_step(
             StageAndRover{body_, rover_}, step_s, mass_kg, configuration_.inertia(), configuration_.rover_kg(),
             [&](double fraction, const StageAndRover& at) { return loads(step, fraction, at); }, &force_M);
+        rover_specific_force_M_ =
+            (both.rover.v_MB_M - rover_.v_MB_M) / step_s - free_fall(rover_.p_MoB_M, rover_.v_MB_M);
         body_ = both.stage;
         rover_ = both.rover;
     } else {
@@ -170,6 +172,7 @@ void Vehicle::step(double now_s, double step_s) {
             body_, step_s, mass_kg, configuration_.inertia(),
             [&](double fraction, const RigidBody& body) { return wrench(step, fraction, body); }, &force_M);
     }
+    if (configuration_.bridle) q_MRover_ = body_.q_MB;
     specific_force_M_ = force_M / mass_kg;
     configuration_.burn(0.5 * burnt_kg);
 }
@@ -272,6 +275,18 @@ Vehicle::Flow Vehicle::flow() const {
     const Vector3 right = forward.cross(body_.p_MoB_M).normalized();
     flow.bank_rad = std::atan2(-z_M.dot(right), -z_M.dot(right.cross(forward)));
     return flow;
+}
+
+Vehicle::RoverMotion Vehicle::rover_motion() const {
+    if (configuration_.rover_on_stage) return {q_MB().conjugate() * specific_force_M_, body_.rate_B_rps};
+    Vector3 rate_M{0.0, 0.0, mars_spin_rps};
+    if (rover_hangs() && wheels_height_m() > 0.0) {
+        const PointMass along = on_bridle(body_, rover_);
+        rate_M += along.p_MoB_M.cross(along.v_MB_M) / along.p_MoB_M.squaredNorm();
+    }
+    const Vector3 force_M =
+        rover_hangs() ? rover_specific_force_M_ : Vector3{-free_fall(rover_.p_MoB_M, Vector3::Zero())};
+    return {q_MRover_.conjugate() * force_M, q_MRover_.conjugate() * rate_M};
 }
 
 double Vehicle::wheels_height_m() const {

@@ -68,6 +68,15 @@ class Vehicle {
 
     /// State of the rover's centre of mass while it hangs below the stage on the bridle.
     std::optional<PointMass> rover() const { return rover_hangs() ? std::optional{rover_} : std::nullopt; }
+    /// What the rover's own IMU is exposed to, along axes that turn with the rover: mean specific force over the last
+    /// step, and rate relative to inertial space.
+    ///
+    /// Our assumptions: on the stage it feels what the centre of mass does; on the bridle it turns with it, without
+    /// twist; on its wheels it turns with the ground.
+    struct RoverMotion {
+        Vector3 force_mps2, rate_rps;
+    };
+    RoverMotion rover_motion() const;
     /// Height of the rover's wheels above ground. [m]
     double wheels_height_m() const;
     /// Angle of the bridle from the vertical. [rad]
@@ -103,8 +112,9 @@ class Vehicle {
     Wind wind_;
 
     RigidBody body_;
-    PointMass rover_;  ///< while it hangs
-    Vector3 specific_force_M_ = Vector3::Zero();
+    PointMass rover_;      ///< while it hangs
+    Quaternion q_MRover_;  ///< that of the stage, until the bridle is cut
+    Vector3 specific_force_M_ = Vector3::Zero(), rover_specific_force_M_ = Vector3::Zero();
     Thrusters thrusters_;
     Configuration configuration_;
     std::bitset<32> fired_;  ///< by PyroId

@@ -61,6 +61,37 @@ TEST_CASE("the second in which the IMU is changed over is not judged", "[devices
     CHECK(imu.recorder.bus->units[Device::imu] == Unit::b);
 }
 
+TEST_CASE("the rover's own IMU is told of once a second, by magnitude, and to nobody but ground", "[devices][R5]") {
+    test::Spoken<ImuManager> imu{ModuleId::imu};
+    std::vector<packet::RoverImu> told;
+    for (int eighth = 0; eighth < 24; ++eighth) {
+        auto& recorder =
+            imu.on(RoverImuReading{{2.0, -3.0, 6.0}, {0.2 + eighth, 0.0, 0.0}}, Sclk{1000.0 + eighth / 8.0});
+        CHECK(recorder.sent<ImuReadings>().empty());
+        for (const auto& record : recorder.sent<Record>()) {
+            CHECK(record.apid == packet::RoverImu::apid);
+            BitReader in{record.data};
+            told.push_back({.rover_imu_rate_rps = in.get_float(), .rover_imu_force_mps2 = in.get_float()});
+        }
+    }
+    REQUIRE(told.size() == 3);
+    for (std::size_t second = 0; second < told.size(); ++second) {
+        CHECK(told[second].rover_imu_force_mps2 == 7.0F);
+        CHECK(told[second].rover_imu_rate_rps == Approx(0.2 + 8.0 * static_cast<double>(second)));
+    }
+}
+
+TEST_CASE("a second that begins without a reading of the rover's IMU is told of by its next one", "[devices][R5]") {
+    test::Spoken<ImuManager> imu{ModuleId::imu};
+    const auto records = [&](double sclk_s) {
+        return imu.on(RoverImuReading{}, Sclk{sclk_s}).template sent<Record>().size();
+    };
+    CHECK(records(1000.0) == 1);
+    CHECK(records(1001.25) == 1);
+    CHECK(records(1001.875) == 0);
+    CHECK(records(1002.0) == 1);
+}
+
 TEST_CASE("the IMU's manager confirms each tick and addresses the selected unit", "[devices][R2][R22]") {
     CHECK(test::confirms_and_addresses<ImuManager>(ModuleId::imu, Device::imu));
 }

@@ -48,7 +48,7 @@ TEST_CASE("the channels of the selection name each device's unit", "[devices][R2
     units.on(select_pyro_and_uhf_b());
     for (const auto& record : units.recorder.sent<Record>()) {
         if (record.apid != packet::UnitsHeld::apid) continue;
-        for (std::size_t device = 0; device < device_count; ++device)
+        for (std::size_t device = 0; device < redundant_device_count; ++device)
             CHECK(
                 read_bits(record.data, device * 8, 8) ==
                 (static_cast<Device>(device) == Device::pyro || static_cast<Device>(device) == Device::uhf ? 1U : 0U));

@@ -2,11 +2,14 @@
 #include "server/api/touchdown.hpp"
 
 #include "server/pipeline/pipeline.hpp"
+#include "server/rehearsal/rehearsal.hpp"
+#include "tests/server/running_server.hpp"
 #include "tests/server/small_mission.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/shipped_dictionary.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace server_touchdown_test {
 
@@ -20,7 +23,7 @@ namespace {
 
 constexpr double down_s = 1430.0, entry_s = 1000.0;
 
-/// Told by the timepoint, with UHF each second from the touchdown to `to_s`.
+/// Told by the timepoint, with UHF and a rover at rest each second from the touchdown to `to_s`.
 TouchdownFacts heard_until(double to_s) {
     TouchdownFacts facts;
     facts.entry = Sclk{entry_s};
@@ -28,8 +31,16 @@ TouchdownFacts heard_until(double to_s) {
     facts.told = {{Sclk{down_s}, "timepoint touchdown by UHF"}};
     facts.flag_name = "touchdown_declared";
     facts.live_name = "edl_phase";
-    for (double sclk_s = down_s - 5.0; sclk_s <= to_s; sclk_s += 1.0) facts.live.push_back(Sclk{sclk_s});
+    facts.rover_imu_known = true;
+    for (double sclk_s = down_s - 5.0; sclk_s <= to_s; sclk_s += 1.0) {
+        facts.live.push_back(Sclk{sclk_s});
+        facts.rover_imu.push_back({Sclk{sclk_s}, 0.0007, server::still_weight_mps2});
+    }
     return facts;
+}
+
+v1::TouchdownStep still_step(const TouchdownFacts& facts) {
+    return server::judge_touchdown(facts).steps(1);
 }
 
 }  // namespace
@@ -44,13 +55,75 @@ TEST_CASE("nothing is said of a touchdown that nothing has told of", "[touchdown
     CHECK_FALSE(report.has_sclk());
 }
 
-TEST_CASE("a touchdown stays reported while the rover's own IMU is not told, however long UHF comes", "[touchdown]") {
-    const auto report = server::judge_touchdown(heard_until(down_s + 60.0));
-    CHECK(report.verdict() == Report::reported);
+TEST_CASE("a touchdown is confirmed once all three signals are there, and not a second before", "[touchdown]") {
+    // The first samples after the touchdown are a second after it.
+    CHECK(server::judge_touchdown(heard_until(down_s + 10.0)).verdict() == Report::reported);
+    const auto report = server::judge_touchdown(heard_until(down_s + 11.0));
+    CHECK(report.verdict() == Report::confirmed);
     REQUIRE(report.steps_size() == 3);
-    CHECK(report.steps(0).state() == Step::done);
+    for (const auto& step : report.steps()) CHECK(step.state() == Step::done);
+    CHECK(report.steps(1).sclk() == down_s + 11.0);
+    CHECK(report.steps(1).words() ==
+          "E+7:21.0: still since E+7:11.0, now rover_imu_rate_rps 0.0007, rover_imu_force_mps2 3.71");
+}
+
+TEST_CASE("a touchdown of a mission without the rover's own IMU stays reported, however long UHF comes",
+          "[touchdown]") {
+    auto facts = heard_until(down_s + 60.0);
+    facts.rover_imu_known = false;
+    facts.rover_imu.clear();
+    const auto report = server::judge_touchdown(facts);
+    CHECK(report.verdict() == Report::reported);
     CHECK(report.steps(1).state() == Step::never);
     CHECK(report.steps(2).state() == Step::done);
+}
+
+TEST_CASE("a rover that moves by either measure begins the count of its rest anew", "[touchdown]") {
+    CHECK(still_step(heard_until(down_s + 5.0)).words() == "4.0 s of 10 s since E+7:11.0");
+    const auto moved = [](double rate_rps, double force_mps2, double by_s) {
+        auto facts = heard_until(down_s + 15.0);
+        for (auto& told : facts.rover_imu)
+            if (told.sclk.seconds == down_s + by_s) told = {told.sclk, rate_rps, force_mps2};
+        return still_step(facts);
+    };
+    const double weight = server::still_weight_mps2, within = server::still_weight_within_mps2;
+    CHECK(moved(server::still_rate_max_rps, weight, 5.0).state() == Step::done);  // either bound is still
+    CHECK(moved(0.0007, weight + 0.999 * within, 5.0).state() == Step::done);
+    CHECK(moved(1.001 * server::still_rate_max_rps, weight, 5.0).words() == "9.0 s of 10 s since E+7:16.0");
+    CHECK(moved(0.0007, weight + 1.001 * within, 5.0).words() == "9.0 s of 10 s since E+7:16.0");
+    CHECK(moved(0.0007, weight - 1.001 * within, 5.0).words() == "9.0 s of 10 s since E+7:16.0");
+    CHECK(moved(0.02, 3.9, 15.0).state() == Step::done);  // it had been still for its time before
+    auto swings = heard_until(down_s + 30.0);
+    for (auto& told : swings.rover_imu) told.rate_rps = 0.0122 * std::abs(std::cos(0.7 * told.sclk.seconds));  // 1°
+    CHECK(server::judge_touchdown(swings).verdict() == Report::reported);
+    auto now = heard_until(down_s + 8.0);
+    now.rover_imu.back() = {now.rover_imu.back().sclk, 0.02, 3.9};
+    CHECK(still_step(now).state() == Step::waiting);
+    CHECK(still_step(now).words() ==
+          "moves at E+7:18.0: rover_imu_rate_rps 0.0200, rover_imu_force_mps2 3.90; still is "
+          "at most 0.005 rad/s and 3.71 ± 0.1 m/s2");
+}
+
+TEST_CASE("a rover's IMU that is silent leaves the touchdown reported, with the reason", "[touchdown]") {
+    auto silent = heard_until(down_s + 30.0);
+    silent.rover_imu.clear();
+    CHECK(server::judge_touchdown(silent).verdict() == Report::reported);
+    CHECK(still_step(silent).state() == Step::unknown);
+    CHECK(still_step(silent).words() == "not known: rover_imu_rate_rps has told nothing since touchdown at E+7:10.0");
+    silent.silences = {{Sclk{down_s + 2.0}, {}, "fault: the station is out"}};
+    CHECK(still_step(silent).words() ==
+          "not known: rover_imu_rate_rps has told nothing since touchdown at E+7:10.0: no "
+          "UHF since E+7:12.0: fault: the station is out");
+    auto stops = heard_until(down_s + 30.0);
+    std::erase_if(stops.rover_imu, [](const auto& told) { return told.sclk.seconds > down_s + 5.0; });
+    CHECK(still_step(stops).state() == Step::unknown);
+    CHECK(still_step(stops).words() ==
+          "not known: rover_imu_rate_rps has told nothing since E+7:15.0; it had been still for 4.0 s");
+    auto gap = heard_until(down_s + 15.0);
+    std::erase_if(gap.rover_imu, [](const auto& told) {
+        return told.sclk.seconds > down_s + 4.0 && told.sclk.seconds < down_s + 8.0;
+    });
+    CHECK(still_step(gap).words() == "7.0 s of 10 s since E+7:18.0");
 }
 
 TEST_CASE("all that tells of a touchdown is said, and it was when the first of it says", "[touchdown]") {
@@ -64,7 +137,7 @@ TEST_CASE("all that tells of a touchdown is said, and it was when the first of i
 TEST_CASE("a newer flag that says no contradicts a touchdown; one as old as the touchdown does not", "[touchdown]") {
     auto facts = heard_until(down_s + 20.0);
     facts.flag = TouchdownFacts::Flag{Sclk{down_s + server::touchdown_gap_s}, 0.0};
-    CHECK(server::judge_touchdown(facts).verdict() == Report::reported);
+    CHECK(server::judge_touchdown(facts).verdict() == Report::confirmed);
     facts.flag->sclk = Sclk{down_s + server::touchdown_gap_s + 0.5};
     const auto report = server::judge_touchdown(facts);
     CHECK(report.verdict() == Report::contradicted);
@@ -140,7 +213,8 @@ TEST_CASE("a place over ground is east and north of the target, and in the ellip
 
 TEST_CASE("the names by which a touchdown is told are words of the shipped dictionary", "[touchdown]") {
     const auto& shipped = tests::shipped_dictionary();
-    std::vector<std::string_view> channels{server::touchdown_flag, server::touchdown_live};
+    std::vector<std::string_view> channels{server::touchdown_flag, server::touchdown_live, server::rover_rate_channel,
+                                           server::rover_force_channel};
     channels.insert(channels.end(), server::position_channels.begin(), server::position_channels.end());
     for (const auto& each : server::touchdown_channels) channels.push_back(each.channel);
     for (const auto name : channels) {
@@ -194,6 +268,60 @@ TEST_CASE("the touchdown of a past is what was received by then, and its figures
     CHECK_FALSE(report.figures(1).has_value());
     CHECK_FALSE(report.has_place());
     CHECK(report.place_unknown() == "no target in the ground's solution");
+}
+
+namespace {
+
+/// What a landing of `scenario` brought to ground says of its touchdown, without and with the recording.
+struct Landed {
+    explicit Landed(const simulation::Scenario& scenario) {
+        const TemporaryFolder folder;
+        const auto& dictionary = tests::shipped_dictionary();
+        auto archive = std::move(archive::Archive::open(folder / "a.db")).value();
+        pipeline::Pipeline pipeline{archive, dictionary};
+        server::Rehearsal rehearsal{scenario, 1, 0, dictionary};
+        REQUIRE(pipeline.begin(rehearsal.run_start(0.0)).ok());
+        bool taken = true;
+        while (!rehearsal.finished()) {
+            taken = taken && pipeline.accept(rehearsal.step()).ok();
+            for (auto& stage : rehearsal.take_stages()) taken = taken && pipeline.accept(std::move(stage)).ok();
+            taken = taken && pipeline.commit_if_full().ok();
+        }
+        REQUIRE((taken && pipeline.finish({}).ok()));
+        const auto reader = archive::Reader::open(folder / "a.db", dictionary);
+        for (const bool recorded : {false, true}) {
+            auto report = server::touchdown(*reader, archive::RunId{1}, dictionary, {}, {}, recorded);
+            REQUIRE(report);
+            (recorded ? with_recording : live) = std::move(*report);
+        }
+    }
+    Report live, with_recording;
+};
+
+}  // namespace
+
+TEST_CASE("a nominal landing is confirmed, live and with its recording", "[touchdown][simulation]") {
+    const Landed landed{test::shipped_scenario("nominal_auto")};
+    for (const auto* report : {&landed.live, &landed.with_recording}) {
+        INFO(report->steps(1).words() << "; " << report->steps(2).words());
+        CHECK(report->verdict() == Report::confirmed);
+        CHECK(report->steps(1).sclk() - report->sclk() < server::still_s + 2.0);
+    }
+}
+
+TEST_CASE("a landing whose rover's IMU is silent, or says that its data fail, stays reported and says why",
+          "[touchdown][simulation]") {
+    for (const auto kind : {simulation::DeviceFault::Kind::silent, simulation::DeviceFault::Kind::dropout}) {
+        auto scenario = test::shipped_scenario("nominal_auto");
+        scenario.device_faults = {{flight::Device::rover_imu, flight::Unit::a, kind, -300.0, 1000.0}};
+        const Landed landed{scenario};
+        CHECK(landed.live.verdict() == Report::reported);
+        CHECK(landed.with_recording.verdict() == Report::reported);
+        CHECK(landed.live.steps(1).state() == Step::unknown);
+        CHECK(
+            landed.live.steps(1).words().starts_with("not known: rover_imu_rate_rps has told nothing since touchdown"));
+        CHECK(landed.live.steps(2).state() == Step::done);
+    }
 }
 
 }  // namespace server_touchdown_test

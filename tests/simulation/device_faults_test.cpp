@@ -23,7 +23,7 @@ using Kind = DeviceFault::Kind;
 // Landings with broken devices: what the vehicle makes of them is told by its own recording.
 namespace {
 
-using Selection = std::array<std::uint8_t, flight::device_count>;
+using Selection = std::array<std::uint8_t, flight::redundant_device_count>;
 constexpr Selection all_a{};
 constexpr Selection all_b{1, 1, 1, 1, 1, 1, 1, 1};
 
@@ -143,7 +143,7 @@ TEST_CASE("a UHF unit that refuses ends uhf_start as refused; one that answers w
 TEST_CASE("faults of units that are not selected change nothing, to the last bit", "[simulation][faults][R2][R50]") {
     const Landed sound = land({});
     std::vector<DeviceFault> faults;
-    for (std::size_t device = 0; device < flight::device_count; ++device)
+    for (std::size_t device = 0; device < flight::redundant_device_count; ++device)
         if (static_cast<Device>(device) != Device::pyro)
             faults.push_back(all_the_time(static_cast<Device>(device), Kind::silent, Unit::b));
     CHECK(land(faults).recording == sound.recording);
@@ -151,7 +151,7 @@ TEST_CASE("faults of units that are not selected change nothing, to the last bit
 
 TEST_CASE("with all B units selected the vehicle lands as well, by other sensors", "[simulation][faults][R2]") {
     std::vector<DeviceFault> faults;
-    for (std::size_t device = 0; device < flight::device_count; ++device)
+    for (std::size_t device = 0; device < flight::redundant_device_count; ++device)
         faults.push_back(all_the_time(static_cast<Device>(device), Kind::silent, Unit::a));
     const Landed landed = land(faults, all_b);
     INFO(landed.reason);

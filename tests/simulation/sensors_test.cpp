@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulation/sensors/imu.hpp"
 #include "simulation/sensors/radar.hpp"
+#include "simulation/sensors/rover_imu.hpp"
 #include "tests/simulation/gale.hpp"
 #include "tests/simulation/truth_pilot.hpp"
 #include "tests/support/catch.hpp"
@@ -208,6 +209,27 @@ TEST_CASE("each radar beam measures twenty times a second", "[simulation][radar]
         for (std::int64_t tick = 1000; tick < 1640; ++tick) count += Radar::due(beam, (tick - 1) * 25, tick * 25);
         CHECK(count == 200);
     }
+}
+
+TEST_CASE("the rover's IMU measures what the rover feels, with errors of the scenario that its seed draws",
+          "[simulation][imu]") {
+    const Vector3 force{1.0, -2.0, 3.0}, rate{0.1, 0.2, -0.3};
+    const auto force_error = [&](const Dispersions& dispersions, std::uint64_t seed) {
+        RoverImu imu{dispersions, Random{seed, 0, Stream::rover_imu}};
+        return Vector3{vector3(imu.measure(force, rate).force_mps2) - force};
+    };
+    RoverImu perfect{tests::undisturbed_scenario().dispersions, Random{1, 0, Stream::rover_imu}};
+    const auto reading = perfect.measure(force, rate);
+    CHECK((vector3(reading.force_mps2) - force).norm() == 0.0);
+    CHECK((vector3(reading.rate_rps) - rate).norm() == 0.0);
+    const Dispersions shipped{};
+    CHECK(force_error(shipped, 1) == force_error(shipped, 1));
+    CHECK(force_error(shipped, 1) != force_error(shipped, 2));
+    double sum = 0.0;
+    constexpr int seeds = 400;
+    for (int seed = 1; seed <= seeds; ++seed) sum += force_error(shipped, seed).squaredNorm();
+    const double noise_mps2 = shipped.imu_noise_mps * 200.0;  // by far the largest of its errors
+    CHECK(std::sqrt(sum / (3.0 * seeds)) == Approx(noise_mps2).epsilon(0.1));
 }
 
 }  // namespace simulation_sensors_test

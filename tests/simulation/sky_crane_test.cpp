@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace simulation_sky_crane_test {
 
@@ -64,6 +65,46 @@ Vehicle hanging_above_the_air() {
         vehicle.fire(pyro, 0.0);
     return vehicle;
 }
+
+struct Seen {
+    double least = 1e9, most = 0.0, sum = 0.0;
+    int count = 0;
+    void add(double value) {
+        least = std::min(least, value);
+        most = std::max(most, value);
+        sum += value;
+        ++count;
+    }
+    double mean() const { return sum / count; }
+};
+
+/// Magnitudes that the rover's own IMU tells in a landing.
+struct RoverFelt {
+    double on_stage_apart_mps2 = 0.0;  ///< from what the stage feels
+    Seen hanging_mps2, hanging_rps, standing_mps2, standing_rps;
+
+    void add(const tests::GncVenue& venue) {
+        const World& world = venue.world();
+        const auto& told = venue.last_inputs().rover_imu;
+        const double felt_mps2 = std::exchange(sensed_mps2_, world.truth().sensed_mps2);
+        if (!told) return;
+        const double force_mps2 = vector3(told->force_mps2).norm(), rate_rps = vector3(told->rate_rps).norm();
+        const double e_s = world.truth().e_s;
+        if (e_s > 0.0 && e_s < 300.0)
+            on_stage_apart_mps2 = std::max(on_stage_apart_mps2, std::abs(force_mps2 - felt_mps2));
+        if (!world.contact() && world.inspect().bridle_m > 7.49) {
+            hanging_mps2.add(force_mps2);
+            hanging_rps.add(rate_rps);
+        }
+        if (world.contact() && world.sclk() - *world.contact() > 1.0) {
+            standing_mps2.add(force_mps2);
+            standing_rps.add(rate_rps);
+        }
+    }
+
+  private:
+    double sensed_mps2_ = 0.0;  // when the inputs were taken
+};
 
 }  // namespace
 
@@ -171,8 +212,10 @@ TEST_CASE(
     "[simulation][sky_crane][gnc]") {
     tests::GncVenue venue(tests::undisturbed_scenario(620.0), 1);
     double most_swing_deg = 0.0, thrust_before_N = 0.0, thrust_after_N = 0.0;
+    RoverFelt felt;
     while (venue.running()) {
         venue.step();
+        felt.add(venue);
         const auto seen = venue.world().inspect();
         most_swing_deg = std::max(most_swing_deg, seen.swing_deg);
         const auto contact = venue.world().contact();
@@ -185,6 +228,14 @@ TEST_CASE(
     CHECK(thrust_before_N - thrust_after_N == Approx(rover_kg * weight_mps2).epsilon(0.1));
     CHECK(venue.world().touchdown()->vertical_mps == Approx(0.75).margin(0.05));
     CHECK(venue.world().touchdown()->horizontal_mps < 0.2);
+    // What the rover's own IMU tells of it, without errors.
+    CHECK(felt.on_stage_apart_mps2 < 1e-9);
+    CHECK(felt.hanging_mps2.mean() == Approx(weight_mps2).epsilon(0.02));
+    CHECK(felt.hanging_rps.most > 0.002);
+    CHECK(felt.hanging_rps.most < 0.2);
+    CHECK(felt.standing_mps2.most == Approx(weight_mps2).margin(0.02));
+    CHECK(felt.standing_mps2.least == Approx(felt.standing_mps2.most).epsilon(1e-3));
+    CHECK(felt.standing_rps.most == Approx(mars_spin_rps));
 }
 
 TEST_CASE("GNC damps a swing that something has started, by nulling the stage's drift",

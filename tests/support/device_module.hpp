@@ -22,7 +22,7 @@ struct Spoken {
 
 inline flight::UnitsSelected all_b() {
     flight::UnitsSelected selected;
-    for (std::size_t i = 0; i < flight::device_count; ++i)
+    for (std::size_t i = 0; i < flight::redundant_device_count; ++i)
         selected.units[static_cast<flight::Device>(i)] = flight::Unit::b;
     return selected;
 }
