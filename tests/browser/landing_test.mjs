@@ -52,6 +52,15 @@ test('two commands by keyboard land it; a reload has all of it; a range can be a
   await shows('phases', /Parachute/);
   assert.match(await text('tone-title'), /Tone \d+ · \S/);
   assert.match(await text('reading-altitude'), /\d/);
+  // Reported by the vehicle's word; confirmed once the rover's own IMU is still and UHF has come for ten seconds.
+  await flyTo(server, 441);
+  const verdict = () => page.getByTestId('touchdown').getAttribute('data-verdict');
+  await waitFor(verdict, /^reported$/);
+  await shows('touchdown', /Touchdown reported\s+E\+7:1\d\.\d, 1 of 3 signals/);
+  await flyTo(server, 455);
+  await waitFor(verdict, /^confirmed$/);
+  await shows('touchdown', /Touchdown confirmed\s+E\+7:1\d\.\d, 3 of 3 signals/);
+  await shows('touchdown-steps', /rover's own IMU still for 10 s/);
   await page.keyboard.press('p');
   await pace(page, 100);
 

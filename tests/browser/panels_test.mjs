@@ -15,7 +15,7 @@ const TYPE_KB = 120;
 /** A text in each panel that only this landing could produce. */
 const SHOWN = {
   timeline: /(\d+) of \1 timepoints fired/,
-  descent: /Touchdown reported[^]*2 of 3 signals/,
+  descent: /Touchdown confirmed[^]*3 of 3 signals/,
   phases: /✓ Cruise[^]*▶ Touchdown/,
   tones: /Last tone, E\+\d+:\d\d/,
   plots: /Altitude[^]*\d km[^]*Deceleration[^]*\d g/,
@@ -32,7 +32,7 @@ const SHOWN = {
   recorded: /A range of this run/,
   rehearsal: /Review of run 1/,
   campaigns: /No campaign lies beside this archive/,
-  vehicle: /Touchdown reported[^]*from the target[^]*✓\s+touchdown told[^]*The recording is complete/,
+  vehicle: /Touchdown confirmed[^]*from the target[^]*✓\s+touchdown told[^]*The recording is complete/,
   users: /This server runs without accounts/,
 };
 

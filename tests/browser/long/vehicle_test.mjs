@@ -93,13 +93,13 @@ test('at four moments of a landing the picture and its text show what was told, 
   await page.evaluate(() => (document.documentElement.dataset.theme = 'light'));
   await looks(page, 'crane_light');
   assert.deepEqual(await findings(page, 'light'), []);
-  await flyTo(server, 452);
-  await shows('touchdown', /Touchdown reported[^]*E\+7:18[^]*2 of 3 signals/);
-  await shows('touchdown-steps', /rover's own IMU is still: this vehicle never tells/);
+  await flyTo(server, 455);
+  await shows('touchdown', /Touchdown confirmed[^]*E\+7:18[^]*3 of 3 signals/);
+  await shows('touchdown-steps', /rover's own IMU still for 10 s[^]*still since E\+7:[^]*rover_imu_rate_rps/);
   await shows('touchdown-figures', /0\.\d\d m\/s[^]*from the target[^]*\d+ m[^]*kg/);
   await page.screenshot({ path: path.join(pictures, 'touchdown_light.png') });
   await page.goto(server.address);
-  await shows('touchdown', /Touchdown reported/);
+  await shows('touchdown', /Touchdown confirmed/);
   await page.getByTestId('descent-result').click();
   await page.getByTestId('descent-canvas').waitFor();
   await page.keyboard.press('b'); // the picture as a tab, of its result
