@@ -43,7 +43,30 @@ struct IngestOptions {
     std::optional<double> bits_per_second;  ///< at which the octets came
     double pace = 0.0;                      ///< seconds of reception a second; 0: at once
     IngestTonesOptions tones;               ///< of a file of samples
+    CLI::App* command = nullptr;
 };
+
+// Sections of --help: options that only one kind of recording has.
+constexpr const char *packets_section = "Of packets and frames", *samples_section = "Of samples";
+
+/// Refuses what is said of the other kind of recording.
+Result<void> check_section(const CLI::App& command, std::string_view other, std::string_view why) {
+    std::string given;
+    for (const CLI::Option* option : command.get_options())
+        if (option->get_group() == other && option->count() > 0)
+            given += (given.empty() ? "" : ", ") + option->get_name();
+    if (given.empty()) return {};
+    return Error{fmt::format("{}: {}", given, why)};
+}
+
+/// Puts the options that `add` adds into a section.
+template <typename Add>
+void in_section(CLI::App& command, const char* section, Add add) {
+    const auto before = command.get_options();
+    add();
+    for (CLI::Option* option : command.get_options())
+        if (std::ranges::find(before, option) == before.end()) option->group(section);
+}
 
 /// A file that is read as its octets are needed. One that grows shorter meanwhile has an end there.
 class RecordedFile {
@@ -302,9 +325,16 @@ class Ingest {
 
 /// A recording of X-band's samples, which is a run by itself.
 int ingest_samples(const IngestOptions& options) {
+<<<<<<< HEAD
     if (options.files.size() > 1) return failed("samples: a recording is one run; give one file", 2);
     if (!options.xtce.empty())
         return failed("--xtce: not for samples, which hold tones of our own mission and no packets", 2);
+=======
+    if (options.files.size() > 1) return failed("samples: one recording is a run, given by one file", 2);
+    const auto checked = check_section(*options.command, packets_section,
+                                       "samples hold tones of our own mission, no packets and no frames");
+    if (!checked) return failed(checked.error().message, 2);
+>>>>>>> b21825bda5f709be88f283af44ed4f74a02d12a3
     IngestTonesOptions tones = options.tones;
     tones.samples = options.files.front();
     tones.archive = options.archive;
@@ -315,6 +345,9 @@ int ingest_samples(const IngestOptions& options) {
 
 int ingest(const IngestOptions& options) {
     if (holds_samples(options.files.front())) return ingest_samples(options);
+    const auto section = check_section(*options.command, samples_section,
+                                       options.files.front().string() + " holds no samples (SigMF, or WAV)");
+    if (!section) return failed(section.error().message, 2);
     if (options.xtce.empty()) return failed("--xtce is required: the mission's XTCE file", 2);
     if (!telemetry::downlink_format(options.format.name))
         return failed(packet_source(options.format, {}, true).error().message, 2);
@@ -388,6 +421,7 @@ void add_ingest_command(CLI::App& program, int& exit_code) {
         "when anything was lost or not used");
     command.add_option("files", options->files, "recorded files, in the order of reception: one stream")->required();
     command.add_option("--archive", options->archive, "SQLite file that keeps everything")->required();
+<<<<<<< HEAD
     add_mission_xtce(command, options->xtce, "the mission's XTCE file; may be given several times; not for samples");
     add_stream_format(command, options->format);
     command.add_option("--udp-port", options->port, "for a capture: datagrams to this port only; all if left out");
@@ -410,6 +444,34 @@ void add_ingest_command(CLI::App& program, int& exit_code) {
         ->capture_default_str();
     command.add_option("--exclude", tones.excluded_hz, "for samples: lines to remove, in Hz; 0 is a DC block")
         ->delimiter(',');
+=======
+    command.add_option(
+        "--start", options->start,
+        "of a plain file: when its first octet was received, UTC; now if left out. Of samples: the first one, as the "
+        "file says if left out");
+    command.add_option("--pace", options->pace, "seconds of reception a second; 0: as fast as it goes")
+        ->check(CLI::Range(0.0, 1.0e6))
+        ->capture_default_str();
+    options->command = &command;
+    in_section(command, packets_section, [&] {
+        add_mission_xtce(command, options->xtce, "the mission's XTCE file; may be given several times");
+        add_stream_format(command, options->format);
+        command.add_option("--udp-port", options->port, "of a capture: datagrams to this port only; all if left out");
+        command.add_option("--bits-per-second", options->bits_per_second,
+                           "of a plain file: the rate at which it was received; all at once if left out");
+    });
+    in_section(command, samples_section, [&] {
+        auto& tones = options->tones;
+        command.add_option("--dictionary", tones.dictionary, "directory of the dictionary that names the tones")
+            ->capture_default_str();
+        command.add_option("--predict", tones.predict, "CSV of the Doppler that was removed before sampling");
+        command.add_option("--expected", tones.expected, "CSV of a Doppler that is still in them");
+        command.add_option("--at", tones.at_s, "the first sample's time on the scale of those files, in seconds")
+            ->capture_default_str();
+        command.add_option("--exclude", tones.excluded_hz, "lines to leave out, in Hz; 0 is a DC block")
+            ->delimiter(',');
+    });
+>>>>>>> b21825bda5f709be88f283af44ed4f74a02d12a3
     command.callback([options, &exit_code] { exit_code = ingest(*options); });
 }
 

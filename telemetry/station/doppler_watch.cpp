@@ -10,6 +10,8 @@
 namespace aeolis::telemetry {
 namespace {
 
+using Feature = SeenByDoppler::Feature;
+
 constexpr double line_before_s = 1.5, line_before_most_s = 4.0;  // chosen: longest from a line's end to the newest
 constexpr double past_most_s = 6.0;                              // chosen: two seconds of departures, and a gap
 constexpr double line_s = 1.0;                                   // eight estimates without a gap take less
@@ -23,20 +25,28 @@ constexpr double rounding_s = 0.01;
 /// 100 s before; a heatshield 14 to 32 Hz. A reversal: parts of its predicted step. Of the first, in thinner air, 0.6
 /// are just reached in 1 landing of 60, and 0.5 where it was taken out; of the others 0.9 are, and 0.3.
 struct Limits {
+    Feature feature;
     double least, most, within_s;
 };
 constexpr double least_first_step = 0.58, least_step = 0.6, most_step = 1.6;
-constexpr std::array<Limits, 7> limits{{{20.0, 100.0, 10.0},
-                                        {250.0, std::numeric_limits<double>::infinity(), 40.0},
-                                        {12.0, 100.0, 40.0},
-                                        {least_first_step, most_step, 4.0},
-                                        {least_step, most_step, 6.0},
-                                        {least_step, most_step, 12.0},
-                                        {least_step, most_step, 12.0}}};
-constexpr std::size_t entry_feature = static_cast<std::size_t>(SeenByDoppler::Feature::entry);
-constexpr std::size_t parachute = static_cast<std::size_t>(SeenByDoppler::Feature::parachute);
-constexpr std::size_t heatshield = static_cast<std::size_t>(SeenByDoppler::Feature::heatshield);
-constexpr std::size_t first_reversal = static_cast<std::size_t>(SeenByDoppler::Feature::first_reversal);
+constexpr std::array<Limits, 7> limits{{{Feature::entry, 20.0, 100.0, 10.0},
+                                        {Feature::parachute, 250.0, std::numeric_limits<double>::infinity(), 40.0},
+                                        {Feature::heatshield, 12.0, 100.0, 40.0},
+                                        {Feature::first_reversal, least_first_step, most_step, 4.0},
+                                        {Feature::second_reversal, least_step, most_step, 6.0},
+                                        {Feature::third_reversal, least_step, most_step, 12.0},
+                                        {Feature::fourth_reversal, least_step, most_step, 12.0}}};
+/// Whether the limits of each feature stand at the place of its number.
+consteval bool limits_in_order() {
+    for (std::size_t i = 0; i < limits.size(); ++i)
+        if (limits[i].feature != static_cast<Feature>(i)) return false;
+    return true;
+}
+static_assert(limits_in_order());
+constexpr auto entry_feature = static_cast<std::size_t>(Feature::entry);
+constexpr auto parachute = static_cast<std::size_t>(Feature::parachute);
+constexpr auto heatshield = static_cast<std::size_t>(Feature::heatshield);
+constexpr auto first_reversal = static_cast<std::size_t>(Feature::first_reversal);
 constexpr double opening_s = 14.0;  // chosen: until the parachute has opened and the carrier runs smoothly again
 constexpr double deviations = 4.0;  // chosen: before drag 2.6 were the most
 constexpr int needed_in_row = 3;    // chosen: a single wrong estimate proves nothing
@@ -287,7 +297,7 @@ std::optional<SeenByDoppler> DopplerWatch::hear(const ReceivedCarrier& carrier) 
             *departs = {departs->hz * hz, departs->sigma_hz * std::abs(hz)};
         }
         const Ert at{entry_.microseconds + std::llround(*watched_[i].seen_s * 1.0e6)};
-        return SeenByDoppler{static_cast<SeenByDoppler::Feature>(i), carrier.ert, at, departs->hz, departs->sigma_hz};
+        return SeenByDoppler{static_cast<Feature>(i), carrier.ert, at, departs->hz, departs->sigma_hz};
     }
     return {};
 }

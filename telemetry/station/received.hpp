@@ -42,7 +42,8 @@ struct SeenByDoppler {
     double evidence_hz = 0.0, sigma_hz = 0.0;  ///< departure from its earlier course, and its standard deviation
 };
 
-/// The spectrum of X-band's samples over a second, less the predict; frequency 0 is the predicted carrier.
+/// The spectrum of X-band's samples over a second, less the predict and what Doppler was told to be still in them:
+/// frequency 0 is the predicted carrier.
 struct ReceivedSpectrum {
     Ert ert;     ///< when the receiver had it
     Ert middle;  ///< of the second

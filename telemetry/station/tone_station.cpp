@@ -27,7 +27,8 @@ void ToneStation::receive(const Downlink& downlink, Received& out) {
                                            {predict_hz_, start_s, recorded_.expected_hz, recorded_.excluded_hz, {}});
             AEOLIS_CHECK(made.ok());
             receiver_.emplace(std::move(*made));
-            if (recorded_.expected_hz.empty()) spectrum_.emplace(recorded_.rate_hz, start_s);
+            spectrum_.emplace(recorded_.rate_hz, start_s);
+            if (!recorded_.expected_hz.empty()) remover_.emplace(recorded_.expected_hz, recorded_.rate_hz, start_s);
         }
         samples_.insert(samples_.end(), piece.samples.begin(), piece.samples.end());
     }
@@ -41,10 +42,10 @@ void ToneStation::receive(const Downlink& downlink, Received& out) {
 
 void ToneStation::push(Ert now, Received& out) {
     receiver_->push(samples_);
-    if (spectrum_) spectrum_->push(samples_);
+    if (remover_) remover_->remove(samples_);
+    spectrum_->push(samples_);
     samples_.clear();
-    if (spectrum_)
-        for (ThinnedRow& row : spectrum_->take()) out.spectra.push_back({now, ert_of(row.time_s), std::move(row)});
+    for (ThinnedRow& row : spectrum_->take()) out.spectra.push_back({now, ert_of(row.time_s), std::move(row)});
     if (ended_) receiver_->finish();
     for (const CarrierReport& report : receiver_->take_carrier()) {
         const bool follows = report.lock != CarrierLock::searching;

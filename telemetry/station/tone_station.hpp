@@ -3,6 +3,7 @@
 
 #include "common/mfsk_waveform.hpp"
 #include "common/time_table.hpp"
+#include "telemetry/mfsk/doppler_remover.hpp"
 #include "telemetry/mfsk/thinned_spectrum.hpp"
 #include "telemetry/mfsk/tone_receiver.hpp"
 #include "telemetry/port.hpp"
@@ -30,7 +31,7 @@ class ToneStation {
     /// Properties of samples that were recorded elsewhere.
     struct Samples {
         double rate_hz = x_band_rate_hz;  ///< as ToneReceiver takes it
-        TimeTable expected_hz{};          ///< Doppler still in them, beyond the predict; then there are no spectra
+        TimeTable expected_hz{};          ///< Doppler still in them, beyond the predict
         std::vector<double> excluded_hz{};
     };
 
@@ -60,6 +61,7 @@ class ToneStation {
     Samples recorded_;
     std::optional<ToneReceiver> receiver_;  ///< from the first sample on
     std::optional<ThinnedSpectrum> spectrum_;
+    std::optional<DopplerRemover> remover_;  ///< of the Doppler that is still in the samples, for the spectrum
     std::vector<std::complex<float>> samples_;
     bool ended_ = false;
     bool follows_ = false;    ///< a carrier, as reported

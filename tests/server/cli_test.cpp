@@ -1051,8 +1051,16 @@ TEST_CASE("a pass recorded elsewhere becomes a run with its tones, carrier, spec
     CHECK(std::ranges::count(carrier.text, '\n') > 250);
     // What ground measured was not received.
     CHECK(run(program(), "export " + archive + " --run 1 --packets --link station --format bin").code == 1);
-    CHECK_THAT(run(program(), "ingest " + archive + " --xtce x.xml" + path("s.sigmf-data")).text,
-               Catch::Contains("no packets"));
+    // Each kind of recording refuses the other's options by their names.
+    const auto of_packets = run(program(), "ingest " + archive + " --xtce x.xml --format tm --fecf yes --udp-port 5" +
+                                               path("s.sigmf-data"));
+    CHECK(of_packets.code == 2);
+    CHECK_THAT(of_packets.text, Catch::Contains("--xtce, --format, --fecf, --udp-port: samples hold tones of our own "
+                                                "mission, no packets and no frames"));
+    const auto of_samples =
+        run(program(), "ingest " + archive + " --xtce x.xml --at 3 --predict p.csv --exclude 0" + path("tones.csv"));
+    CHECK(of_samples.code == 2);
+    CHECK_THAT(of_samples.text, Catch::Contains("--predict, --at, --exclude:") && Catch::Contains("holds no samples"));
     CHECK(run(program(), "ingest " + archive + path("s.sigmf-data") + path("s.sigmf-data")).code == 2);
     CHECK(run(program(), "ingest " + archive + " --start yesterday" + path("s.sigmf-data")).code == 2);
     // These are no samples, and of packets the mission is missing.

@@ -93,6 +93,9 @@ TEST_CASE("the state at an instant is what had happened by then, on board and as
     CHECK(at(1003.1).alarms().empty());
     CHECK(now.commands(0).command_stage().stage() == v1::CommandStage::radiated);
 
+    // Beyond what was received stands what was received last, however far.
+    for (const double beyond_s : {1004.0, 1004.5, 1010.0, 100'000.0})
+        CHECK(at(beyond_s).SerializeAsString() == now.SerializeAsString());
     // Times that no date can have are after everything, or before it.
     for (const double far_s : {1.0e13, 1.0e300}) {
         INFO(far_s);

@@ -45,7 +45,7 @@ v1::TouchdownStep still_step(const TouchdownFacts& facts) {
 
 }  // namespace
 
-TEST_CASE("nothing is said of a touchdown that nothing has told of", "[touchdown]") {
+TEST_CASE("nothing is said of a touchdown that nothing has told of", "[touchdown][R53]") {
     auto facts = heard_until(down_s + 20.0);
     facts.told.clear();
     facts.flag = TouchdownFacts::Flag{Sclk{down_s}, 0.0};
@@ -237,6 +237,7 @@ TEST_CASE("the touchdown of a past is what was received by then, and its figures
     dictionary.channels[speed.value].name = "descent_rate_mps";
     for (auto& field : dictionary.packets[0].fields)
         if (field.channel == speed) field.name = "descent_rate_mps";
+    dictionary.model = tests::packet_model_of(dictionary);
     auto archive = archive::Archive::open(folder / "a.db");
     REQUIRE(archive);
     pipeline::Pipeline pipeline{*archive, dictionary};
@@ -270,6 +271,7 @@ TEST_CASE("the touchdown of a past is what was received by then, and its figures
     CHECK(report.place_unknown() == "no target in the ground's solution");
 }
 
+<<<<<<< HEAD
 namespace {
 
 /// What a landing of `scenario` brought to ground says of its touchdown, without and with the recording.
@@ -321,6 +323,51 @@ TEST_CASE("a landing whose rover's IMU is silent, or says that its data fail, st
         CHECK(
             landed.live.steps(1).words().starts_with("not known: rover_imu_rate_rps has told nothing since touchdown"));
         CHECK(landed.live.steps(2).state() == Step::done);
+=======
+TEST_CASE("a flag of the archive that falls after the touchdown contradicts it, when it was received and is defined",
+          "[touchdown][archive][R53]") {
+    const TemporaryFolder folder;
+    auto dictionary = small_dictionary();
+    dictionary.timeline[2].name = "touchdown";
+    dictionary.channels[altitude.value].name = server::touchdown_flag;
+    for (auto& field : dictionary.packets[0].fields)
+        if (field.channel == altitude) field.name = server::touchdown_flag;
+    dictionary.model = tests::packet_model_of(dictionary);
+    auto archive = archive::Archive::open(folder / "a.db");
+    REQUIRE(archive);
+    pipeline::Pipeline pipeline{*archive, dictionary};
+    archive::RunStart start;
+    start.entry = Sclk{entry_s};
+    REQUIRE(pipeline.begin(start));
+    const auto accept = [&](auto&& what) { REQUIRE(pipeline.accept(std::forward<decltype(what)>(what)).ok()); };
+    accept(live(fired_packet(0, down_s, 2)));
+    accept(live(navigation_packet(0, down_s + 1.0, 1.0F, 0.5F)));
+    accept(live(navigation_packet(1, down_s + 10.0, 1.0F, 0.5F)));
+    accept(live(navigation_packet(2, down_s + 20.0, {}, 0.5F)));  // undefined says nothing
+    accept(recorded(navigation_packet(3, down_s + 30.0, 0.0F, 0.5F)));
+    accept(live(navigation_packet(4, down_s + 40.0, 0.0F, 0.5F)));
+    REQUIRE(pipeline.commit().ok());
+    auto reader = archive::Reader::open(folder / "a.db", dictionary);
+    REQUIRE(reader);
+    const auto told_at = [&](double sclk_s, bool with_recording) {
+        auto report = server::touchdown(*reader, archive::RunId{1}, dictionary, Sclk{sclk_s}, {}, with_recording);
+        REQUIRE(report);
+        return std::move(*report);
+    };
+    CHECK(told_at(down_s + 25.0, true).verdict() == Report::reported);
+    CHECK(told_at(down_s + 25.0, true).steps(0).words() ==
+          "E+7:10.0: timepoint touchdown by UHF, touchdown_declared is 1");
+    CHECK(told_at(down_s + 35.0, false).verdict() == Report::reported);
+    const auto by_recording = told_at(down_s + 35.0, true);
+    CHECK(by_recording.verdict() == Report::contradicted);
+    CHECK(by_recording.steps(0).words() ==
+          "timepoint touchdown by UHF at E+7:10.0, but touchdown_declared is 0 at E+7:40.0");
+    // Beyond what was received holds what was received last.
+    for (const double beyond_s : {down_s + 45.0, down_s + 1.0e6}) {
+        CHECK(told_at(beyond_s, false).verdict() == Report::contradicted);
+        CHECK(told_at(beyond_s, false).steps(0).words() ==
+              "timepoint touchdown by UHF at E+7:10.0, but touchdown_declared is 0 at E+7:50.0");
+>>>>>>> b21825bda5f709be88f283af44ed4f74a02d12a3
     }
 }
 

@@ -3,6 +3,9 @@
 
 #include "tests/support/catch.hpp"
 
+#include <set>
+#include <string>
+
 namespace telemetry_silence_class_test {
 
 using namespace aeolis::telemetry;
@@ -12,6 +15,16 @@ TEST_CASE("the reason of a silence is its class in words, then what ground knows
           "plasma blackout: predicted from E+0:45 to E+1:38");
     CHECK(reason_text(SilenceClass::recording_complete, "") == "recording complete");
     CHECK(reason_text({}, "nominal") == "nominal");
+}
+
+TEST_CASE("each class of silence has its own name, and the API's names are those of the classes",
+          "[station][silence]") {
+    CHECK(std::string{name_of(SilenceClass::light_time)} == "light_time");
+    CHECK(std::string{name_of(SilenceClass::earth_set)} == "earth_set");
+    CHECK(std::string{name_of(SilenceClass::unexplained)} == "unexplained");
+    std::set<std::string> names;
+    for (std::size_t i = 0; i < silence_classes; ++i) names.insert(name_of(static_cast<SilenceClass>(i)));
+    CHECK(names.size() == silence_classes);
 }
 
 TEST_CASE("a silence that is over awaits nothing, and one that should not be is lost", "[station][silence]") {

@@ -304,6 +304,11 @@ TEST_CASE("news stays until something follows it: a command that failed, until o
     CHECK(ground.sentence(-399.0) == "E−6:40: Timepoint 3: no reply in time, unverified");
     ground.event("TIMEPOINT_VERIFIED_LATE", -390.0);
     CHECK(ground.first(-389.0).rank == Rank::waiting);
+    // A mortar that is said to have refused, and whose parachute the IMU feels, has fired.
+    ground.event("TIMEPOINT_REFUSED", -380.0, "Timepoint 3: refused, it was not done");
+    CHECK(ground.sentence(-379.0) == "E−6:20: Timepoint 3: refused, it was not done");
+    ground.event("TIMEPOINT_FELT", -378.0);
+    CHECK(ground.first(-377.0).rank == Rank::waiting);
 }
 
 TEST_CASE("danger is above all news: a failed check on board, a limit that is critical", "[situation]") {

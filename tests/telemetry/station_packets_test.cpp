@@ -6,6 +6,8 @@
 #include "tests/support/shipped_dictionary.hpp"
 
 #include <algorithm>
+#include <array>
+#include <utility>
 
 namespace telemetry_station_packets_test {
 
@@ -82,6 +84,36 @@ TEST_CASE("the labels of the receiver's lock are those of the dictionary", "[sta
     REQUIRE(channel->type.enumeration.size() == 4);
     for (const auto& [number, label, last] : channel->type.enumeration)
         CHECK(label == to_text(static_cast<CarrierLock>(number)));
+}
+
+TEST_CASE("the features seen by Doppler have in the dictionary the labels of their names", "[station][R54]") {
+    using Feature = SeenByDoppler::Feature;
+    constexpr std::array<std::pair<Feature, const char*>, 7> features{{{Feature::entry, "entry"},
+                                                                       {Feature::parachute, "parachute"},
+                                                                       {Feature::heatshield, "heatshield"},
+                                                                       {Feature::first_reversal, "first_reversal"},
+                                                                       {Feature::second_reversal, "second_reversal"},
+                                                                       {Feature::third_reversal, "third_reversal"},
+                                                                       {Feature::fourth_reversal, "fourth_reversal"}}};
+    const auto& dictionary = tests::shipped_dictionary();
+    const auto* event = dictionary.event("SEEN_BY_DOPPLER");
+    REQUIRE(event != nullptr);
+    const auto& fields = dictionary.packets[event->packet].fields;
+    const auto labels = std::ranges::find(fields, "DopplerFeature", [](const auto& field) { return field.type.name; });
+    REQUIRE(labels != fields.end());
+    REQUIRE(labels->type.enumeration.size() == features.size());
+    const Decommutator decommutator{dictionary};
+    for (const auto& [feature, name] : features) {
+        const auto packet = seen_by_doppler_packet({feature, Ert{1}, Ert{0}, 12.0, 1.0}, event->id, Sclk{1.0},
+                                                   Sclk{0.0}, 1, dictionary.id);
+        Decoded decoded;
+        REQUIRE_FALSE(decommutator.decode(packet, decoded));
+        const double sent = decoded.value[static_cast<std::size_t>(labels - fields.begin())].value_or(-1.0);
+        const auto label =
+            std::ranges::find_if(labels->type.enumeration, [&](const auto& each) { return each.holds(sent); });
+        REQUIRE(label != labels->type.enumeration.end());
+        CHECK(label->label == name);
+    }
 }
 
 }  // namespace telemetry_station_packets_test

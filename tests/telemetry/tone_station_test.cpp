@@ -142,6 +142,42 @@ TEST_CASE("what the antenna gives away is missing in what is received", "[tones]
     CHECK(sky.received.tones.front().c_n0_dbhz == Approx(24.0).margin(1.0));
 }
 
+TEST_CASE("samples of a fixed oscillator give spectra whose carrier stands at the predicted frequency",
+          "[tones][station][R54][R56]") {
+    constexpr double rate_hzps = 30.0, offset_hz = 640.0;
+    const auto spectra_of = [&](ToneStation station) {
+        simulation::XBandFrontEnd antenna{tests::shipped_dictionary().mfsk, 35.0, {}, 1, 0};
+        Received received;
+        for (int tick = 0; tick < 20 * 64; ++tick) {
+            simulation::XBandField field;
+            field.ert = Ert{1'000'000 + tick * 15625};
+            field.e_s = start_e_s + tick / 64.0;
+            field.doppler_hz = offset_hz + rate_hzps * tick / 64.0;
+            field.up = true;
+            Downlink downlink;
+            downlink.now = field.ert;
+            downlink.x_band.push_back(antenna.sample(field));
+            station.receive(downlink, received);
+        }
+        return received.spectra;
+    };
+    const auto middle_of = [](const ReceivedSpectrum& spectrum) {
+        const auto& levels = spectrum.row.levels;
+        const auto loudest = std::ranges::max_element(levels) - levels.begin();
+        return spectrum.row.first_hz + spectrum.row.bin_hz * static_cast<double>(loudest);
+    };
+    const auto& mfsk = tests::shipped_dictionary().mfsk;
+    const TimeTable expected =
+        TimeTable::make({start_e_s, start_e_s + 30.0}, {offset_hz, offset_hz + 30.0 * rate_hzps}).value();
+    const auto told = spectra_of({mfsk, {}, entry, {.expected_hz = expected}});
+    REQUIRE(told.size() >= 18);
+    for (const auto& spectrum : told) CHECK(std::abs(middle_of(spectrum)) <= spectrum.row.bin_hz);
+    const auto not_told = spectra_of({mfsk, {}, entry});
+    REQUIRE(not_told.size() == told.size());
+    CHECK(middle_of(not_told.front()) == Approx(offset_hz).margin(2.0 * 32.0));
+    CHECK(middle_of(not_told.back()) > offset_hz + 15.0 * rate_hzps);
+}
+
 TEST_CASE("when the transmitter goes off what waits is decided at once", "[tones][station]") {
     Sky sky{25.0};
     sky.fly(25.25, true);
