@@ -33,19 +33,14 @@ constexpr std::array<std::string_view, 2> change_events{"TIMEPOINT_OFFSET_CHANGE
 struct Follower {
     std::string_view news, by;
 };
-<<<<<<< HEAD:telemetry/situation_monitor.cpp
-constexpr std::array<Follower, 12> followers{{{"FAULT_PROTECTION_INHIBITS_EDL", "FAULT_PROTECTION_RELEASES_EDL"},
+constexpr std::array<Follower, 14> followers{{{"FAULT_PROTECTION_INHIBITS_EDL", "FAULT_PROTECTION_RELEASES_EDL"},
                                               {"TIMEPOINT_UNVERIFIED", "TIMEPOINT_VERIFIED_LATE"},
                                               {"TIMEPOINT_UNVERIFIED", "TIMEPOINT_FELT"},
                                               {"TIMEPOINT_UNVERIFIED", "TIMEPOINT_WITNESSED"},
+                                              {"TIMEPOINT_REFUSED", "TIMEPOINT_FELT"},
+                                              {"TIMEPOINT_REFUSED", "TIMEPOINT_WITNESSED"},
                                               {"THRUSTERS_NOT_FELT", "THRUSTERS_FELT_AGAIN"},
                                               {"ENGINES_SILENT", "ENGINES_HEARD_AGAIN"},
-=======
-constexpr std::array<Follower, 10> followers{{{"FAULT_PROTECTION_INHIBITS_EDL", "FAULT_PROTECTION_RELEASES_EDL"},
-                                              {"TIMEPOINT_UNVERIFIED", "TIMEPOINT_VERIFIED_LATE"},
-                                              {"TIMEPOINT_UNVERIFIED", "TIMEPOINT_FELT"},
-                                              {"TIMEPOINT_REFUSED", "TIMEPOINT_FELT"},
->>>>>>> b21825bda5f709be88f283af44ed4f74a02d12a3:telemetry/situation_monitor.cpp
                                               {"TIMEPOINT_HELD", "TIMEPOINT_VERIFIED"},
                                               {"IMU_SILENT", "IMU_HEARD_AGAIN"},
                                               {"RADAR_LOST", "RADAR_LOCK"},

@@ -325,16 +325,10 @@ class Ingest {
 
 /// A recording of X-band's samples, which is a run by itself.
 int ingest_samples(const IngestOptions& options) {
-<<<<<<< HEAD
-    if (options.files.size() > 1) return failed("samples: a recording is one run; give one file", 2);
-    if (!options.xtce.empty())
-        return failed("--xtce: not for samples, which hold tones of our own mission and no packets", 2);
-=======
     if (options.files.size() > 1) return failed("samples: one recording is a run, given by one file", 2);
     const auto checked = check_section(*options.command, packets_section,
                                        "samples hold tones of our own mission, no packets and no frames");
     if (!checked) return failed(checked.error().message, 2);
->>>>>>> b21825bda5f709be88f283af44ed4f74a02d12a3
     IngestTonesOptions tones = options.tones;
     tones.samples = options.files.front();
     tones.archive = options.archive;
@@ -421,30 +415,6 @@ void add_ingest_command(CLI::App& program, int& exit_code) {
         "when anything was lost or not used");
     command.add_option("files", options->files, "recorded files, in the order of reception: one stream")->required();
     command.add_option("--archive", options->archive, "SQLite file that keeps everything")->required();
-<<<<<<< HEAD
-    add_mission_xtce(command, options->xtce, "the mission's XTCE file; may be given several times; not for samples");
-    add_stream_format(command, options->format);
-    command.add_option("--udp-port", options->port, "for a capture: datagrams to this port only; all if left out");
-    command.add_option(
-        "--start", options->start,
-        "for a plain file: UTC at which its first octet was received; now if left out. For samples: UTC of the first "
-        "one; as the file says if left out");
-    command.add_option("--bits-per-second", options->bits_per_second,
-                       "for a plain file: the rate at which it was received; all at once if left out");
-    command.add_option("--pace", options->pace, "seconds of reception per second; 0: as fast as it goes")
-        ->check(CLI::Range(0.0, 1.0e6))
-        ->capture_default_str();
-    auto& tones = options->tones;
-    command
-        .add_option("--dictionary", tones.dictionary, "for samples: directory of the dictionary that names the tones")
-        ->capture_default_str();
-    command.add_option("--predict", tones.predict, "for samples: CSV of the Doppler that was removed before sampling");
-    command.add_option("--expected", tones.expected, "for samples: CSV of a Doppler that is still in them");
-    command.add_option("--at", tones.at_s, "for samples: the first one's time on the scale of those files, in seconds")
-        ->capture_default_str();
-    command.add_option("--exclude", tones.excluded_hz, "for samples: lines to remove, in Hz; 0 is a DC block")
-        ->delimiter(',');
-=======
     command.add_option(
         "--start", options->start,
         "of a plain file: when its first octet was received, UTC; now if left out. Of samples: the first one, as the "
@@ -471,7 +441,6 @@ void add_ingest_command(CLI::App& program, int& exit_code) {
         command.add_option("--exclude", tones.excluded_hz, "lines to leave out, in Hz; 0 is a DC block")
             ->delimiter(',');
     });
->>>>>>> b21825bda5f709be88f283af44ed4f74a02d12a3
     command.callback([options, &exit_code] { exit_code = ingest(*options); });
 }
 

@@ -271,7 +271,6 @@ TEST_CASE("the touchdown of a past is what was received by then, and its figures
     CHECK(report.place_unknown() == "no target in the ground's solution");
 }
 
-<<<<<<< HEAD
 namespace {
 
 /// What a landing of `scenario` brought to ground says of its touchdown, without and with the recording.
@@ -323,7 +322,9 @@ TEST_CASE("a landing whose rover's IMU is silent, or says that its data fail, st
         CHECK(
             landed.live.steps(1).words().starts_with("not known: rover_imu_rate_rps has told nothing since touchdown"));
         CHECK(landed.live.steps(2).state() == Step::done);
-=======
+    }
+}
+
 TEST_CASE("a flag of the archive that falls after the touchdown contradicts it, when it was received and is defined",
           "[touchdown][archive][R53]") {
     const TemporaryFolder folder;
@@ -367,7 +368,6 @@ TEST_CASE("a flag of the archive that falls after the touchdown contradicts it, 
         CHECK(told_at(beyond_s, false).verdict() == Report::contradicted);
         CHECK(told_at(beyond_s, false).steps(0).words() ==
               "timepoint touchdown by UHF at E+7:10.0, but touchdown_declared is 0 at E+7:50.0");
->>>>>>> b21825bda5f709be88f283af44ed4f74a02d12a3
     }
 }
 
