@@ -22,7 +22,9 @@ const Inertia inertia{4500.0, 5000.0};
 /// A vehicle whose thrusters give `obeyed` of what is commanded, two cycles later; what else turns it, and how its gyros
 /// err, is given as a rate.
 struct Turning {
-    double obeyed = 1.0;
+    explicit Turning(double obeyed_part = 1.0) : obeyed(obeyed_part) {}
+
+    double obeyed;
     Vector3 rate = Vector3::Zero();
     std::deque<Vector3> coming{Vector3::Zero()};
     ThrusterAnswer answer;
@@ -62,7 +64,7 @@ struct Turning {
 TEST_CASE("of thrusters that obey about all is felt, of those that do not nothing, and of some what they give",
           "[gnc][attitude]") {
     for (const double obeyed : {1.0, 0.0, 0.5}) {
-        Turning vehicle{.obeyed = obeyed};
+        Turning vehicle{obeyed};
         const auto said = vehicle.pulse(200);
         REQUIRE(said.size() >= 2);
         for (const double part : said) CHECK(part == Approx(obeyed).margin(0.01));
@@ -71,7 +73,7 @@ TEST_CASE("of thrusters that obey about all is felt, of those that do not nothin
 
 TEST_CASE("what turns the vehicle slowly is not taken for thrusters", "[gnc][attitude]") {
     for (const double obeyed : {1.0, 0.0}) {
-        Turning vehicle{.obeyed = obeyed};
+        Turning vehicle{obeyed};
         // It swings by 30°/s in two seconds, about an axis that the thrusters push about too.
         const auto said = vehicle.pulse(
             200, [](int i) -> Vector3 { return 0.5 * std::sin(3.14 * i * seconds_per_tick) * Vector3{0.6, 0.8, 0.0}; });
@@ -80,17 +82,30 @@ TEST_CASE("what turns the vehicle slowly is not taken for thrusters", "[gnc][att
     }
 }
 
+TEST_CASE("a torque that is commanded on and on is judged about the axis of symmetry, which nothing else turns",
+          "[gnc][attitude]") {
+    for (const double obeyed : {1.0, 0.0}) {
+        Turning vehicle{obeyed};
+        std::vector<double> said;
+        for (int i = 0; i < 640; ++i)
+            if (const auto part = vehicle.cycle(0, seconds_per_tick)) said.push_back(*part);
+        REQUIRE(said.size() >= 2);
+        for (const double part : said) CHECK(part == Approx(obeyed).margin(0.05));
+    }
+}
+
 TEST_CASE("nothing is said before enough is commanded, or while the IMU is silent", "[gnc][attitude]") {
     Turning still;
     for (int i = 0; i < 6400; ++i) CHECK_FALSE(still.cycle(0, 0.0, Vector3{0.001 * (i % 2), 0.0, 0.0}));
     Turning deaf;
-    for (int i = 0; i < 6400; ++i) CHECK_FALSE(deaf.cycle(0, i % 4 == 0 ? seconds_per_tick : 0.0, {}, false));
+    for (int i = 0; i < 6400; ++i)
+        CHECK_FALSE(deaf.cycle(0, i % 4 == 0 ? seconds_per_tick : 0.0, Vector3::Zero(), false));
     Turning gaps;  // two cycles after each silent one have no changes of the rate either
-    for (int i = 0; i < 6400; ++i) CHECK_FALSE(gaps.cycle(0, seconds_per_tick, {}, i % 3 != 0));
+    for (int i = 0; i < 6400; ++i) CHECK_FALSE(gaps.cycle(0, seconds_per_tick, Vector3::Zero(), i % 3 != 0));
 }
 
 TEST_CASE("what was commanded before a new beginning need not be felt", "[gnc][attitude]") {
-    Turning vehicle{.obeyed = 0.0};
+    Turning vehicle{0.0};
     vehicle.pulse(10);
     vehicle.answer.forget();
     vehicle.obeyed = 1.0;

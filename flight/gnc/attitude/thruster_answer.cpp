@@ -12,9 +12,12 @@ std::optional<double> ThrusterAnswer::feel(const Parameters& parameters, const s
     const auto [last, before] = rates_B_rps_;
     rates_B_rps_ = {rate_B_rps, last};
     if (!rate_B_rps || !last || !before) return std::nullopt;
-    const Vector3 expected = 0.5 * (turns_[1] - turns_[3]);
+    Vector3 expected = 0.5 * (turns_[1] - turns_[3]);
+    Vector3 changed = *rate_B_rps - 2.0 * *last + *before;
+    expected.z() = 0.5 * (turns_[1].z() + turns_[2].z());
+    changed.z() = rate_B_rps->z() - last->z();
     commanded_ += expected.squaredNorm();
-    felt_ += expected.dot(*rate_B_rps - 2.0 * *last + *before);
+    felt_ += expected.dot(changed);
     const double enough_rps = parameters.thrusters_judged_by_dps * degree;
     if (commanded_ < enough_rps * enough_rps) return std::nullopt;
     return std::exchange(felt_, 0.0) / std::exchange(commanded_, 0.0);

@@ -12,11 +12,12 @@
 // The part of the commanded thruster pulses that the IMU feels: 1 of thrusters that obey, 0 of those that do not.
 //
 //   felt part = Σ x·y / Σ x·x
-//   x   change from cycle to cycle of the rate that the pulses should have changed by
-//   y   change from cycle to cycle of the rate that did change, as measured
+//   about z        x: the change of the rate that pulses should have made in a cycle; y: the measured one. Neither air nor
+//                  parachute pushes about the axis of symmetry
+//   about x and y  the changes of both from one cycle to the next, because air and parachute swing the vehicle, but
+//                  slowly: a pulse begins and ends within a cycle or two
 //
-// Changes of it, because what else turns the vehicle (air, its swing, its products of inertia) does so slowly, and a
-// pulse begins and ends within a cycle or two. Nothing is said until Σ x·x is large enough to stand out of the noise.
+// Nothing is said until Σ x·x is large enough to stand out of the gyros' noise.
 //
 // Frame    B          Units   rad/s          Rate   64 Hz: each cycle, in order
 // Delay    A pulse commanded in cycle n acts from tick n + 1 and the valve's delay on, and is in the rates of ticks
