@@ -90,18 +90,17 @@ void add_still_step(const TouchdownFacts& facts, Sclk since, Report& report) {
             report, name, Step::unknown,
             fmt::format("not known: {} has told nothing since touchdown at {}", rover_rate_channel, when(since)) +
                 because());
+    const std::string still_for = telemetry::span_text(last->sclk - from.value_or(last->sclk));
     if (facts.now - last->sclk > touchdown_gap_s)
         return add_step(report, name, Step::unknown,
                         fmt::format("not known: {} has told nothing since {}; it had been still for {}",
-                                    rover_rate_channel, when(last->sclk),
-                                    telemetry::span_text(from ? last->sclk - *from : 0.0)) +
+                                    rover_rate_channel, when(last->sclk), still_for) +
                             because());
     if (!from)
         return add_step(report, name, Step::waiting,
                         fmt::format("moves at {}: {}; still is at most {} rad/s and {} ± {} m/s2", when(last->sclk),
                                     values(*last), still_rate_max_rps, still_weight_mps2, still_weight_within_mps2));
-    add_step(report, name, Step::waiting,
-             fmt::format("{} of {:.0f} s since {}", telemetry::span_text(last->sclk - *from), still_s, when(*from)));
+    add_step(report, name, Step::waiting, fmt::format("{} of {:.0f} s since {}", still_for, still_s, when(*from)));
 }
 
 void add_uhf_step(const TouchdownFacts& facts, Sclk since, Report& report) {
