@@ -119,8 +119,8 @@ std::optional<RadarDecision> EdlGnc::on(const RadarSolution& solution) {
     return RadarDecision{believed, judged.conditions};
 }
 
-// A tilt of the attitude subtracts gravity in a wrong direction, and velocity drifts sideways by tilt × g, which the radar
-// shows. Used only after a silence of the IMU: otherwise the attitude is better than the noise of the radar can tell.
+// A tilt of the attitude subtracts gravity in a wrong direction, and velocity drifts sideways by tilt × g, which the
+// radar shows. Used only after a silence of the IMU: otherwise the attitude is better than the noise of the radar can tell.
 void EdlGnc::level_by(const RadarCorrection& correction) {
     if (belief_.attitude_rad() > 0.0 && correction.gain < 1.0) {
         const Vector3 residual_mps = correction.v_M_mps / correction.gain;
