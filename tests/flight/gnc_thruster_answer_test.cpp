@@ -19,8 +19,8 @@ namespace {
 
 const Inertia inertia{4500.0, 5000.0};
 
-/// A vehicle whose thrusters give `obeyed` of what is commanded, two cycles later; what else turns it, and how its gyros
-/// err, is given as a rate.
+/// A vehicle whose thrusters give `obeyed` of what is commanded, two cycles later; what else turns it is given as a
+/// rate.
 struct Turning {
     explicit Turning(double obeyed_part = 1.0) : obeyed(obeyed_part) {}
 
