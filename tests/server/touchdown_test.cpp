@@ -237,7 +237,6 @@ TEST_CASE("the touchdown of a past is what was received by then, and its figures
     dictionary.channels[speed.value].name = "descent_rate_mps";
     for (auto& field : dictionary.packets[0].fields)
         if (field.channel == speed) field.name = "descent_rate_mps";
-    dictionary.model = tests::packet_model_of(dictionary);
     auto archive = archive::Archive::open(folder / "a.db");
     REQUIRE(archive);
     pipeline::Pipeline pipeline{*archive, dictionary};
@@ -289,7 +288,7 @@ struct Landed {
             taken = taken && pipeline.commit_if_full().ok();
         }
         REQUIRE((taken && pipeline.finish({}).ok()));
-        const auto reader = archive::Reader::open(folder / "a.db", dictionary);
+        auto reader = archive::Reader::open(folder / "a.db", dictionary);
         for (const bool recorded : {false, true}) {
             auto report = server::touchdown(*reader, archive::RunId{1}, dictionary, {}, {}, recorded);
             REQUIRE(report);
@@ -333,7 +332,6 @@ TEST_CASE("a flag of the archive that falls after the touchdown contradicts it, 
     dictionary.channels[altitude.value].name = server::touchdown_flag;
     for (auto& field : dictionary.packets[0].fields)
         if (field.channel == altitude) field.name = server::touchdown_flag;
-    dictionary.model = tests::packet_model_of(dictionary);
     auto archive = archive::Archive::open(folder / "a.db");
     REQUIRE(archive);
     pipeline::Pipeline pipeline{*archive, dictionary};
