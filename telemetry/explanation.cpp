@@ -79,6 +79,7 @@ std::string subject_of(const dictionary::Dictionary& dictionary, std::string_vie
     if (decision == "tone") return name_in(dictionary.tones, number);
     if (decision == "sub_constraint") return reference_text(dictionary, "constraint", number);
     if (decision == "command") return reference_text(dictionary, "opcode", number);
+    if (decision == "device_lost") return label_in(dictionary, "device", number).value_or("");
     if (decision == "bank_reversal") return named_value_text("number", number);
     // "edl_phase", "gnc_mode": the subject is the new value of the field of that name.
     return label_in(dictionary, decision, number).value_or("");
@@ -158,6 +159,7 @@ std::string opening_of(const Explanation& explanation) {
     const std::string subject = mnemonic                         ? explanation.subject
                                 : explanation.decision == "tone" ? quoted(explanation.subject)
                                                                  : in_words(explanation.subject);
+    if (explanation.decision == "device_lost") return subject + " taken as lost";
     if (explanation.verdict == "changed") return decision + " changed to " + subject;
     return decision + " " + subject + " " + explanation.verdict;
 }

@@ -1,12 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "flight/edl/gnc_health.hpp"
 
+#include "flight/explanation/explanation.hpp"
+
+#include <array>
 #include <utility>
 
 namespace aeolis::flight {
+namespace {
+
+void explain_lost(Device device, std::span<const gnc::Condition> conditions, Outbox& out) {
+    out.record(explanation(Decision::device_lost, ExplanationVerdict::decided, static_cast<std::uint16_t>(device),
+                           conditions));
+}
+
+}  // namespace
 
 void GncHealth::watch(const Parameters& parameters, const gnc::Output& gnc, Outbox& out) {
     watch_imu(parameters, gnc, out);
+    watch_thrusters(parameters, gnc, out);
+    watch_engines(parameters, gnc, out);
     if (const bool was = std::exchange(attitude_lost_, gnc.attitude_uncertainty_deg >= parameters.attitude_lost_deg);
         attitude_lost_ && !was) {
         out.event(evr::ATTITUDE_LOST{.attitude_uncertainty_deg = single(gnc.attitude_uncertainty_deg)});
@@ -33,6 +46,35 @@ void GncHealth::watch_imu(const Parameters& parameters, const gnc::Output& gnc, 
         out.event(evr::IMU_SILENT{.dead_reckoned_s = silent_s_});
         out.send(ModuleId::mfsk, ToneRequest{tone::imu_silent, out.now()});
     }
+}
+
+void GncHealth::watch_thrusters(const Parameters& parameters, const gnc::Output& gnc, Outbox& out) {
+    if (!gnc.thrusters_felt) return;
+    const auto in_a_row = static_cast<std::uint8_t>(parameters.thrusters_unfelt_windows);
+    const double felt = *gnc.thrusters_felt;
+    if (felt >= parameters.thrusters_felt_min) {
+        if (std::exchange(thrusters_unfelt_, 0) >= in_a_row)
+            out.event(evr::THRUSTERS_FELT_AGAIN{.thrusters_felt = single(felt)});
+        return;
+    }
+    if (thrusters_unfelt_ >= in_a_row || ++thrusters_unfelt_ < in_a_row) return;
+    out.event(evr::THRUSTERS_NOT_FELT{.thrusters_felt = single(felt)});
+    out.send(ModuleId::mfsk, ToneRequest{tone::thrusters_not_felt, out.now()});
+    explain_lost(Device::thrusters,
+                 std::array{below(Quantity::thrusters_felt, felt, parameters.thrusters_felt_min),
+                            at_least(Quantity::cycles_true, thrusters_unfelt_, in_a_row)},
+                 out);
+}
+
+void GncHealth::watch_engines(const Parameters& parameters, const gnc::Output& gnc, Outbox& out) {
+    const double before_s = engines_silent_s_;
+    const auto silent = at_least(Quantity::engines_silent_s, gnc.engines_silent_s, parameters.engines_silent_told_s);
+    engines_silent_s_ = silent.holds ? gnc.engines_silent_s : 0.0;
+    if (before_s > 0.0 && gnc.engines_heard) out.event(evr::ENGINES_HEARD_AGAIN{.engines_silent_s = before_s});
+    if (before_s > 0.0 || !silent.holds) return;
+    out.event(evr::ENGINES_SILENT{.engines_silent_s = gnc.engines_silent_s});
+    out.send(ModuleId::mfsk, ToneRequest{tone::engines_silent, out.now()});
+    explain_lost(Device::descent_engines, {&silent, 1}, out);
 }
 
 }  // namespace aeolis::flight

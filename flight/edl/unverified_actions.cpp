@@ -5,7 +5,9 @@
 #include "flight/timeline/actions.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 namespace aeolis::flight {
 namespace {
@@ -65,12 +67,31 @@ void tell_reply(const Firing& firing, const TimepointSpec& row, Outbox& out) {
     }
 }
 
+UnverifiedActions::By UnverifiedActions::witness_of(const Firing& firing) {
+    switch (firing.fact) {
+    case gnc::Fact::parachute_out: return By::imu_load;
+    case gnc::Fact::heatshield_gone: return By::radar;
+    case gnc::Fact::engines_primed: return By::engines;
+    case gnc::Fact::backshell_gone: return By::imu_free_fall;
+    case gnc::Fact::rover_separated: return By::bridle;
+    case gnc::Fact::none:
+    case gnc::Fact::pyros_armed:
+    case gnc::Fact::pyros_safe:
+    case gnc::Fact::cruise_stage_gone:
+    case gnc::Fact::bridle_cut: return By::nothing;
+    }
+    return By::nothing;
+}
+
 void UnverifiedActions::add(const Firing& firing) {
-    const bool awaited = firing.verdict != FiringVerdict::completed && firing.verdict != FiringVerdict::no_operation;
-    const bool by_imu = awaited && row_of(firing).if_unverified == IfUnverified::done_unless_imu;
-    if (!by_imu && firing.verdict != FiringVerdict::unverified) return;
+    if (firing.verdict == FiringVerdict::completed || firing.verdict == FiringVerdict::no_operation) return;
+    By by = witness_of(firing);
+    // What was verified only the IMU may contradict, and only where the sheet says so.
+    if (firing.verdict == FiringVerdict::verified && row_of(firing).if_unverified != IfUnverified::done_unless_imu)
+        by = By::nothing;
+    if (by == By::nothing && firing.verdict != FiringVerdict::unverified) return;
     if (kept_.full()) kept_.erase_at(0);
-    kept_.push_back({firing, by_imu, false, 0.0});
+    kept_.push_back({.firing = firing, .by = by, .before_mps2 = felt_before_mps2_});
 }
 
 bool UnverifiedActions::on(const ActionReply& reply, ActionContext& context) {
@@ -79,33 +100,69 @@ bool UnverifiedActions::on(const ActionReply& reply, ActionContext& context) {
         return followed.firing.verdict == FiringVerdict::unverified && reply.answers(followed.firing.asked);
     });
     if (found == kept_.end()) return false;
-    const Firing firing = found->firing;
-    kept_.erase_at(static_cast<std::size_t>(found - kept_.begin()));
+    const Firing& firing = found->firing;
+    const auto end = [&] { kept_.erase_at(static_cast<std::size_t>(found - kept_.begin())); };
     if (reply.evidence == Evidence::verified) {
         context.out().event(evr::TIMEPOINT_VERIFIED_LATE{.timepoint = firing.timepoint.value,
                                                          .reply_wait_s = context.now() - firing.triggered});
         context.configuration().learn(firing.fact, firing.triggered);
         context.announce(row_of(firing));
+        end();
+    } else if (found->borne_out) {
+        context.out().event(evr::REPLY_CONTRADICTS{.device = static_cast<DeviceName>(Device::pyro)});
+        end();
     } else {
         tell_refused(firing, context.out());
         explain_late_refusal(firing, context.out());
         context.configuration().forget(firing.fact);
+        if (found->by == By::nothing) return end(), true;
+        found->firing.verdict = FiringVerdict::refused;  // a witness may still know better
     }
     return true;
 }
 
-void UnverifiedActions::tell_felt(const Followed& followed, gnc::Configuration& configuration, Outbox& out) {
+/// What the witness says in this cycle; none: nothing yet.
+std::optional<gnc::Condition> UnverifiedActions::said(const Followed& followed, const Parameters& parameters,
+                                                      const gnc::Output& gnc, double bridle_m) {
+    switch (followed.by) {
+    case By::radar: return is(Quantity::radar_locked, gnc.radar_locked);
+    case By::engines: return is(Quantity::engines_heard, gnc.engines_heard);
+    case By::bridle: return at_least(Quantity::bridle_m, bridle_m, parameters.bridle_felt_m);
+    case By::imu_free_fall:
+        if (!gnc.imu_heard) return std::nullopt;
+        return at_most(Quantity::sensed_mps2, magnitude(gnc.acceleration_B_mps2), parameters.free_fall_felt_mps2);
+    case By::imu_load:
+        if (!gnc.imu_heard) return std::nullopt;
+        return at_least(Quantity::sensed_mps2, magnitude(gnc.acceleration_B_mps2), parameters.parachute_felt_mps2);
+    case By::nothing: return std::nullopt;
+    }
+    return std::nullopt;
+}
+
+void UnverifiedActions::bear_out(Followed& followed, std::span<const gnc::Condition> conditions,
+                                 gnc::Configuration& configuration, Outbox& out) {
     const Firing& firing = followed.firing;
+    const By by = std::exchange(followed.by, By::nothing);
+    followed.borne_out = true;
     if (firing.verdict == FiringVerdict::verified) return;
-    out.event(evr::TIMEPOINT_FELT{.timepoint = firing.timepoint.value, .felt_mps2 = single(followed.felt_mps2)});
+    if (by == By::imu_load)
+        out.event(evr::TIMEPOINT_FELT{.timepoint = firing.timepoint.value, .felt_mps2 = single(followed.felt_mps2)});
+    else
+        out.event(evr::TIMEPOINT_WITNESSED{.timepoint = firing.timepoint.value,
+                                           .witness = by == By::radar     ? Witness::radar
+                                                      : by == By::engines ? Witness::engines
+                                                      : by == By::bridle  ? Witness::bridle
+                                                                          : Witness::imu});
+    out.record(explanation(Decision::timepoint, ExplanationVerdict::decided, firing.timepoint.value, conditions));
     if (firing.verdict != FiringVerdict::refused) return;
     configuration.learn(firing.fact, firing.triggered);
     ActionContext{out, configuration}.announce(row_of(firing));
 }
 
-void UnverifiedActions::tell_not_felt(const Followed& followed, std::span<const gnc::Condition> conditions,
-                                      gnc::Configuration& configuration, Outbox& out) {
+void UnverifiedActions::contradict(Followed& followed, std::span<const gnc::Condition> conditions,
+                                   gnc::Configuration& configuration, Outbox& out) {
     const Firing& firing = followed.firing;
+    followed.by = By::nothing;
     if (followed.unheard || firing.verdict == FiringVerdict::refused) return;
     if (firing.verdict == FiringVerdict::unverified) configuration.forget(firing.fact);
     out.event(
@@ -114,23 +171,30 @@ void UnverifiedActions::tell_not_felt(const Followed& followed, std::span<const 
     out.record(explanation(Decision::timepoint, ExplanationVerdict::contradicted, firing.timepoint.value, conditions));
 }
 
-void UnverifiedActions::watch(const Parameters& parameters, const gnc::Output& gnc, gnc::Configuration& configuration,
-                              Outbox& out) {
+void UnverifiedActions::watch(const Parameters& parameters, const gnc::Output& gnc, double bridle_m,
+                              gnc::Configuration& configuration, Outbox& out) {
     for (Followed& followed : kept_) {
-        if (!followed.by_imu) continue;
+        if (followed.by == By::nothing) continue;
+        const bool by_imu = followed.by == By::imu_load || followed.by == By::imu_free_fall;
+        if (followed.by == By::imu_load && followed.before_mps2 >= parameters.parachute_felt_mps2) {
+            followed.by = By::nothing;
+            continue;
+        }
         followed.unheard = followed.unheard || gnc.dead_reckoned_s >= parameters.imu_silence_told_s;
-        if (gnc.dead_reckoned_s > 0.0) continue;
-        followed.felt_mps2 = std::max(followed.felt_mps2, magnitude(gnc.acceleration_B_mps2));
-        const auto felt = at_least(Quantity::sensed_mps2, followed.felt_mps2, parameters.parachute_felt_mps2);
+        const auto told = said(followed, parameters, gnc, bridle_m);
+        if (!told) continue;
+        if (by_imu) followed.felt_mps2 = std::max(followed.felt_mps2, told->value);
+        followed.cycles = told->holds ? static_cast<std::uint16_t>(followed.cycles + 1) : std::uint16_t{0};
+        const auto lasts =
+            at_least(Quantity::cycles_true, followed.cycles, by_imu ? std::floor(parameters.action_felt_cycles) : 1.0);
         const auto waited =
             at_least(Quantity::elapsed_s, out.now() - followed.firing.triggered, parameters.parachute_felt_within_s);
-        if (!felt.holds && !waited.holds) continue;
-        followed.by_imu = false;
-        if (felt.holds)
-            tell_felt(followed, configuration, out);
-        else
-            tell_not_felt(followed, std::array{felt, waited}, configuration, out);
+        if (lasts.holds)
+            bear_out(followed, std::array{*told, lasts}, configuration, out);
+        else if (followed.by == By::imu_load && waited.holds && followed.cycles == 0)
+            contradict(followed, std::array{*told, lasts, waited}, configuration, out);
     }
+    if (gnc.imu_heard) felt_before_mps2_ = magnitude(gnc.acceleration_B_mps2);
 }
 
 }  // namespace aeolis::flight

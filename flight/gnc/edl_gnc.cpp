@@ -119,8 +119,8 @@ std::optional<RadarDecision> EdlGnc::on(const RadarSolution& solution) {
     return RadarDecision{believed, judged.conditions};
 }
 
-// A tilt of the attitude subtracts gravity in a wrong direction, and velocity drifts sideways by tilt × g, which the radar
-// shows. Used only after a silence of the IMU: otherwise the attitude is better than the noise of the radar can tell.
+// A tilt of the attitude subtracts gravity in a wrong direction, and velocity drifts sideways by tilt × g, which the
+// radar shows. Used only after a silence of the IMU: otherwise the attitude is better than the radar's noise can tell.
 void EdlGnc::level_by(const RadarCorrection& correction) {
     if (belief_.attitude_rad() > 0.0 && correction.gain < 1.0) {
         const Vector3 residual_mps = correction.v_M_mps / correction.gain;
@@ -244,6 +244,7 @@ void EdlGnc::cycle(const DeviceInputs& in, const Configuration& configuration, O
     guide_descent(in.now, configuration, out);
     steer(configuration, out);
     burn(in, configuration);
+    watch_devices(in, configuration, out);
     report(out);
 }
 
@@ -504,6 +505,22 @@ void EdlGnc::burn(const DeviceInputs& in, const Configuration& configuration) {
     // Thrust reported by the engines; until they report any, the commanded thrust.
     thrust_felt_N_ = in.engines ? in.engines->thrust_N : thrust_command_N_;
     mass_kg_ -= thrust_felt_N_ / (load_.engine_isp_s * standard_gravity_mps2) * cycle_s;
+}
+
+void EdlGnc::watch_devices(const DeviceInputs& in, const Configuration& configuration, Output& out) {
+    out.imu_heard = !in.imu.empty();
+    out.engines_heard = in.engines.has_value();
+    const bool awaited = configuration.engines_primed && !configuration.engines_off && !out.engines_heard;
+    engines_silent_s_ = awaited ? engines_silent_s_ + cycle_s : 0.0;
+    out.engines_silent_s = engines_silent_s_;
+    // Under the parachute they rest until the heatshield is gone, and are enabled a moment later.
+    const bool obey = mode() < Mode::parachute_descent ||
+                      (mode() == Mode::parachute_descent && configuration.heatshield_time &&
+                       since(*configuration.heatshield_time) >= parameters().thrusters_enabled_after_s);
+    if (!obey) return thruster_answer_.forget();
+    out.thrusters_felt =
+        thruster_answer_.feel(parameters(), out.imu_heard ? std::optional{strapdown_.rate_B_rps()} : std::nullopt);
+    thruster_answer_.command(out.thrusters, surroundings_.inertia);
 }
 
 void EdlGnc::report(Output& out) const {

@@ -5,6 +5,7 @@
 #include "flight/devices/device_messages.hpp"
 #include "flight/gnc/attitude/attitude_control.hpp"
 #include "flight/gnc/attitude/steering.hpp"
+#include "flight/gnc/attitude/thruster_answer.hpp"
 #include "flight/gnc/entry/lateral_logic.hpp"
 #include "flight/gnc/entry/target_geometry.hpp"
 #include "flight/gnc/navigation/dead_reckoning.hpp"
@@ -196,8 +197,12 @@ struct Output {
     double mass_kg = 0.0;
     double propellant_kg = 0.0;
     bool radar_locked = false;
-    std::uint16_t radar_beams = 0;  ///< of the last radar solution
-    double dead_reckoned_s = 0.0;   ///< the IMU has been silent for so long; 0 while it speaks
+    std::uint16_t radar_beams = 0;         ///< of the last radar solution
+    bool imu_heard = true;                 ///< it measured in this cycle: force and rates above are not reckoned
+    bool engines_heard = false;            ///< their controllers reported in this cycle
+    double engines_silent_s = 0.0;         ///< they have not for so long, though the valves are open
+    std::optional<double> thrusters_felt;  ///< part of the pulses that the IMU feels, when it has just been judged
+    double dead_reckoned_s = 0.0;          ///< the IMU has been silent for so long; 0 while it speaks
     double attitude_uncertainty_deg = 0.0, velocity_uncertainty_mps = 0.0, altitude_uncertainty_m = 0.0;
     bool propellant_low = false;  ///< before fly-away
 };
@@ -281,6 +286,7 @@ class EdlGnc {
     void push(const Vector3& acceleration_M, int engines, Output& out);
     void steer(const Configuration& configuration, Output& out);
     void burn(const DeviceInputs& in, const Configuration& configuration);
+    void watch_devices(const DeviceInputs& in, const Configuration& configuration, Output& out);
     void report(Output& out) const;
     double since(Sclk then) const { return measured_at_ - then; }
     const Parameters& parameters() const { return load_.parameters; }
@@ -319,7 +325,9 @@ class EdlGnc {
     double mass_kg_ = 0.0;  ///< estimate, while on engines
     double thrust_command_N_ = 0.0;
     double thrust_felt_N_ = 0.0;  ///< as engines told last; what was asked for until they do
+    double engines_silent_s_ = 0.0;
     Steering steering_;
+    ThrusterAnswer thruster_answer_;
     powered_descent::ApproachProfile approach_;
     powered_descent::Divert divert_;
     Vector3 divert_from_M_ = Vector3::Zero();

@@ -59,4 +59,56 @@ TEST_CASE("attitude that is lost is told, and propellant that is low, each once"
     CHECK(asked_for(recorder, tone::propellant_low));
 }
 
+TEST_CASE("thrusters that are not felt are told once, after some judgements in a row, explained, and again when felt",
+          "[edl][R27][R38]") {
+    test::OutboxRecorder recorder;
+    GncHealth health;
+    gnc::Output gnc;
+    const auto judged = [&](double felt) {
+        recorder.begin(ModuleId::edl, Sclk{1000.0});
+        gnc.thrusters_felt = felt;
+        health.watch(parameters, gnc, recorder.out);
+        return recorder.events<evr::THRUSTERS_NOT_FELT>();
+    };
+    const double least = parameters.thrusters_felt_min;
+    CHECK(judged(least) == 0);
+    for (int i = 1; i < static_cast<int>(parameters.thrusters_unfelt_windows); ++i) CHECK(judged(0.99 * least) == 0);
+    CHECK(judged(1.0) == 0);  // the row is broken
+    for (int i = 1; i < static_cast<int>(parameters.thrusters_unfelt_windows); ++i) CHECK(judged(0.0) == 0);
+    CHECK(judged(0.0) == 1);
+    CHECK(asked_for(recorder, tone::thrusters_not_felt));
+    CHECK(recorder.packets<packet::Explanation>() == 1);
+    CHECK(judged(0.0) == 0);
+    gnc.thrusters_felt.reset();
+    health.watch(parameters, gnc, recorder.out);
+    CHECK(recorder.events<evr::THRUSTERS_FELT_AGAIN>() == 0);
+    judged(0.9);
+    CHECK(recorder.events<evr::THRUSTERS_FELT_AGAIN>() == 1);
+    judged(0.9);
+    CHECK(recorder.events<evr::THRUSTERS_FELT_AGAIN>() == 0);
+}
+
+TEST_CASE("engine controllers that are silent are told once, explained, and again when they are heard",
+          "[edl][R27][R38]") {
+    test::OutboxRecorder recorder;
+    GncHealth health;
+    gnc::Output gnc;
+    const auto silent = [&](double for_s) {
+        recorder.begin(ModuleId::edl, Sclk{1000.0});
+        gnc.engines_silent_s = for_s;
+        gnc.engines_heard = for_s == 0.0;
+        health.watch(parameters, gnc, recorder.out);
+        return recorder.events<evr::ENGINES_SILENT>();
+    };
+    CHECK(silent(parameters.engines_silent_told_s - seconds_per_tick) == 0);
+    CHECK(silent(parameters.engines_silent_told_s) == 1);
+    CHECK(asked_for(recorder, tone::engines_silent));
+    CHECK(recorder.packets<packet::Explanation>() == 1);
+    CHECK(silent(2.0) == 0);
+    silent(0.0);
+    CHECK(recorder.events<evr::ENGINES_HEARD_AGAIN>() == 1);
+    silent(0.0);
+    CHECK(recorder.events<evr::ENGINES_HEARD_AGAIN>() == 0);
+}
+
 }  // namespace flight_gnc_health_test

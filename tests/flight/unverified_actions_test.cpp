@@ -13,7 +13,11 @@ constexpr aeolis::flight::Parameters parameters;
 
 namespace {
 
-constexpr ActionReply mortar{ReplyKind::pyro, static_cast<std::uint8_t>(PyroId::parachute_mortar)};
+constexpr ActionReply pyro(PyroId id) {
+    return {ReplyKind::pyro, static_cast<std::uint8_t>(id)};
+}
+constexpr ActionReply mortar = pyro(PyroId::parachute_mortar);
+const int cycles_needed = static_cast<int>(parameters.action_felt_cycles);
 
 /// The mortar was commanded at 1000 s, and nothing answered within its second: taken as done. Or it was refused, or
 /// verified.
@@ -22,7 +26,8 @@ struct Fixture {
     gnc::Configuration configuration;
     test::OutboxRecorder recorder;
 
-    explicit Fixture(FiringVerdict verdict = FiringVerdict::unverified) {
+    explicit Fixture(FiringVerdict verdict = FiringVerdict::unverified, double before_mps2 = 6.0) {
+        feel(before_mps2, 1000.9);
         if (verdict != FiringVerdict::refused) configuration.learn(gnc::Fact::parachute_out, Sclk{1000.0});
         actions.add(
             {timepoint::parachute_deploy, Sclk{1000.0}, Sclk{1001.0}, verdict, mortar, gnc::Fact::parachute_out});
@@ -34,14 +39,32 @@ struct Fixture {
         reply.evidence = evidence;
         return actions.on(reply, context);
     }
-    void feel(double force_mps2, double at_s, double imu_silent_s = 0.0) {
+    void hear(const gnc::Output& told, double at_s, double bridle_m = 0.0) {
         recorder.begin(ModuleId::edl, Sclk{at_s});
+        actions.watch(parameters, told, bridle_m, configuration, recorder.out);
+    }
+    static gnc::Output felt(double force_mps2, double imu_silent_s = 0.0) {
         gnc::Output told;
         told.acceleration_B_mps2 = {0.0, 0.0, -force_mps2};
         told.dead_reckoned_s = imu_silent_s;
-        actions.watch(parameters, told, configuration, recorder.out);
+        told.imu_heard = imu_silent_s == 0.0;
+        return told;
+    }
+    void feel(double force_mps2, double at_s, double imu_silent_s = 0.0) { hear(felt(force_mps2, imu_silent_s), at_s); }
+    /// For as long as it takes to be evidence; the recorder holds the last cycle.
+    void feel_on(double force_mps2, double from_s, double imu_silent_s = 0.0) {
+        for (int cycle = 0; cycle < cycles_needed; ++cycle)
+            feel(force_mps2, from_s + cycle * seconds_per_tick, imu_silent_s);
     }
 };
+
+/// An action of another row that was refused at 1001 s.
+Fixture refused(TimepointId timepoint, PyroId id, gnc::Fact fact) {
+    Fixture f{FiringVerdict::refused};
+    f.actions = {};
+    f.actions.add({timepoint, Sclk{1000.0}, Sclk{1001.0}, FiringVerdict::refused, pyro(id), fact});
+    return f;
+}
 
 }  // namespace
 
@@ -82,8 +105,9 @@ TEST_CASE("a snatch that the IMU feels bears out a mortar that did not answer", 
     Fixture f;
     f.feel(6.0, 1001.5);
     CHECK(f.recorder.out.sent().empty());
-    f.feel(40.0, 1001.8);
+    f.feel_on(40.0, 1001.8);
     CHECK(f.recorder.events<evr::TIMEPOINT_FELT>() == 1);
+    CHECK(f.recorder.packets<packet::Explanation>() == 1);
     for (const double at_s : {1002.0, 1003.0, 1004.0}) f.feel(4.0, at_s);
     CHECK(f.recorder.out.sent().empty());
     CHECK(f.configuration.parachute_out);
@@ -110,7 +134,7 @@ TEST_CASE("a mortar that was refused and that the IMU feels has fired, and that 
     f.feel(6.0, 1001.5);
     CHECK(f.recorder.out.sent().empty());
     CHECK_FALSE(f.configuration.parachute_out);
-    f.feel(40.0, 1001.8);
+    f.feel_on(40.0, 1001.8);
     CHECK(f.recorder.events<evr::TIMEPOINT_FELT>() == 1);
     REQUIRE(f.recorder.sent<ToneRequest>().size() == 1);
     CHECK(f.recorder.sent<ToneRequest>()[0].tone == tone::parachute_deploy);
@@ -139,7 +163,7 @@ TEST_CASE("a mortar that is said to have fired and that the IMU does not feel is
     CHECK(f.configuration.parachute_out);
 
     Fixture felt{FiringVerdict::verified};
-    felt.feel(40.0, 1001.8);
+    felt.feel_on(40.0, 1001.8);
     felt.feel(6.0, 1004.0);
     CHECK(felt.recorder.out.sent().empty());
     CHECK_FALSE(felt.reply(Evidence::verified, 1004.0));  // of nothing that is awaited
@@ -148,13 +172,151 @@ TEST_CASE("a mortar that is said to have fired and that the IMU does not feel is
 TEST_CASE("an IMU that was silent neither bears out a mortar nor contradicts it: the mortar stays unverified",
           "[edl][R50]") {
     Fixture f;
-    f.feel(40.0, 1001.5, 0.5);  // reckoned by the model of a parachute
+    f.feel_on(40.0, 1001.5, 0.5);  // reckoned by the model of a parachute
     CHECK(f.recorder.out.sent().empty());
     f.feel(4.0, 1000.0 + parameters.parachute_felt_within_s);
     CHECK(f.recorder.events<evr::TIMEPOINT_FELT>() == 0);
     CHECK(f.recorder.events<evr::TIMEPOINT_CONTRADICTED>() == 0);
     CHECK(f.recorder.out.sent().empty());
     CHECK(f.configuration.parachute_out);
+}
+
+TEST_CASE("a single increment is no evidence: the IMU must feel the parachute for some cycles in a row", "[edl][R50]") {
+    Fixture f;
+    for (int cycle = 0; cycle < 3 * cycles_needed; ++cycle)
+        f.feel(cycle % cycles_needed == 0 ? 6.0 : 40.0, 1001.0 + cycle * seconds_per_tick);
+    CHECK(f.recorder.events<evr::TIMEPOINT_FELT>() == 0);
+    f.feel(6.0, 1000.0 + parameters.parachute_felt_within_s);
+    CHECK(f.recorder.events<evr::TIMEPOINT_CONTRADICTED>() == 1);
+
+    Fixture spike;
+    spike.feel(40.0, 1000.0 + parameters.parachute_felt_within_s);  // the parachute may be opening just now
+    CHECK(spike.recorder.out.sent().empty());
+    spike.feel(6.0, 1000.0 + parameters.parachute_felt_within_s + seconds_per_tick);
+    CHECK(spike.recorder.events<evr::TIMEPOINT_CONTRADICTED>() == 1);
+}
+
+TEST_CASE("a tick without increments neither is evidence nor breaks it", "[edl][R50]") {
+    Fixture f;
+    for (int cycle = 0; cycle + 1 < cycles_needed; ++cycle) f.feel(40.0, 1001.8 + cycle * seconds_per_tick);
+    f.feel(40.0, 1001.95, seconds_per_tick);  // a garbled message: GNC reckons
+    CHECK(f.recorder.events<evr::TIMEPOINT_FELT>() == 0);
+    f.feel(40.0, 1001.97);
+    CHECK(f.recorder.events<evr::TIMEPOINT_FELT>() == 1);
+}
+
+TEST_CASE("where as much was felt before the mortar could act, the IMU neither bears it out nor contradicts it",
+          "[edl][R50]") {
+    for (const double before_mps2 : {parameters.parachute_felt_mps2, 100.0}) {
+        Fixture f{FiringVerdict::unverified, before_mps2};
+        f.feel_on(before_mps2, 1001.0);
+        CHECK(f.recorder.events<evr::TIMEPOINT_FELT>() == 0);
+        f.feel(4.0, 1000.0 + parameters.parachute_felt_within_s);
+        CHECK(f.recorder.out.sent().empty());
+        CHECK(f.configuration.parachute_out);
+    }
+    Fixture below{FiringVerdict::unverified, 0.99 * parameters.parachute_felt_mps2};
+    below.feel_on(40.0, 1001.8);
+    CHECK(below.recorder.events<evr::TIMEPOINT_FELT>() == 1);
+}
+
+TEST_CASE("a refusal that comes late takes nothing back that the IMU has borne out, and is told", "[edl][R50]") {
+    Fixture f;
+    f.feel_on(40.0, 1001.8);
+    CHECK(f.reply(Evidence::refused, 1002.5));
+    CHECK(f.recorder.events<evr::REPLY_CONTRADICTS>() == 1);
+    CHECK(f.recorder.events<evr::TIMEPOINT_REFUSED>() == 0);
+    CHECK(f.configuration.parachute_out);
+
+    Fixture before;  // it comes before the parachute opens
+    CHECK(before.reply(Evidence::refused, 1001.5));
+    CHECK_FALSE(before.configuration.parachute_out);
+    before.feel_on(40.0, 1001.8);
+    CHECK(before.recorder.events<evr::TIMEPOINT_FELT>() == 1);
+    CHECK(before.configuration.parachute_time == Sclk{1000.0});
+}
+
+TEST_CASE("after a reset nothing is judged: the other computer keeps the assumptions of the configuration",
+          "[edl][R33][R50]") {
+    Fixture f;
+    UnverifiedActions after_reset;
+    f.actions = after_reset;
+    f.feel_on(40.0, 1001.8);
+    f.feel(4.0, 1004.0);
+    CHECK(f.recorder.out.sent().empty());
+    CHECK(f.configuration.parachute_out);
+}
+
+TEST_CASE("a refused separation of the heatshield has happened once the radar sees the ground", "[edl][R50]") {
+    Fixture f = refused(timepoint::heatshield_separation, PyroId::heatshield_separation, gnc::Fact::heatshield_gone);
+    gnc::Output told = Fixture::felt(4.0);
+    f.hear(told, 1005.0);
+    CHECK(f.recorder.out.sent().empty());
+    told.radar_locked = true;
+    f.hear(told, 1006.0);
+    CHECK(f.recorder.events<evr::TIMEPOINT_WITNESSED>() == 1);
+    CHECK(f.recorder.packets<packet::Explanation>() == 1);
+    REQUIRE(f.recorder.sent<ToneRequest>().size() == 1);
+    CHECK(f.recorder.sent<ToneRequest>()[0].tone == tone::heatshield_separation);
+    CHECK(f.configuration.heatshield_time == Sclk{1000.0});
+    f.hear(told, 1007.0);
+    CHECK(f.recorder.out.sent().empty());
+}
+
+TEST_CASE("refused valves of the engines are open once their controllers report", "[edl][R50]") {
+    Fixture f = refused(timepoint::engine_priming, PyroId::engine_valves, gnc::Fact::engines_primed);
+    gnc::Output told;
+    f.hear(told, 1001.5);
+    CHECK_FALSE(f.configuration.engines_primed);
+    told.engines_heard = true;
+    f.hear(told, 1002.0);
+    CHECK(f.recorder.events<evr::TIMEPOINT_WITNESSED>() == 1);
+    CHECK(f.configuration.engines_primed);
+}
+
+TEST_CASE("a refused separation of the backshell has happened once the IMU feels a free fall, while it measures",
+          "[edl][R50]") {
+    const auto fixture = [] {
+        return refused(timepoint::backshell_separation, PyroId::backshell_separation, gnc::Fact::backshell_gone);
+    };
+    Fixture f = fixture();
+    f.feel_on(3.7, 1001.0);
+    CHECK(f.recorder.out.sent().empty());
+    f.feel_on(1.01 * parameters.free_fall_felt_mps2, 1001.2);
+    CHECK_FALSE(f.configuration.backshell_gone);
+    f.feel_on(parameters.free_fall_felt_mps2, 1001.4);
+    CHECK(f.recorder.events<evr::TIMEPOINT_WITNESSED>() == 1);
+    CHECK(f.configuration.backshell_time == Sclk{1000.0});
+
+    Fixture reckoned = fixture();
+    reckoned.feel_on(0.0, 1001.0, 0.5);
+    CHECK_FALSE(reckoned.configuration.backshell_gone);
+    Fixture single_one = fixture();
+    single_one.feel(0.0, 1001.0);
+    single_one.feel(3.7, 1001.1);
+    CHECK_FALSE(single_one.configuration.backshell_gone);
+}
+
+TEST_CASE("a rover that is refused to have separated has once the bridle is paid out", "[edl][R50]") {
+    Fixture f = refused(timepoint::rover_separation, PyroId::rover_separation, gnc::Fact::rover_separated);
+    f.hear({}, 1001.5, parameters.bridle_felt_m - 0.01);
+    CHECK_FALSE(f.configuration.rover_separated);
+    f.hear({}, 1001.6, parameters.bridle_felt_m);
+    CHECK(f.recorder.events<evr::TIMEPOINT_WITNESSED>() == 1);
+    CHECK(f.configuration.rover_separation_time == Sclk{1000.0});
+}
+
+TEST_CASE("a witness of an action that was taken as done is told, and announces nothing twice", "[edl][R50]") {
+    Fixture f{FiringVerdict::refused};
+    f.actions = {};
+    f.configuration.learn(gnc::Fact::engines_primed, Sclk{1000.0});
+    f.actions.add({timepoint::engine_priming, Sclk{1000.0}, Sclk{1002.0}, FiringVerdict::unverified,
+                   pyro(PyroId::engine_valves), gnc::Fact::engines_primed});
+    gnc::Output told;
+    told.engines_heard = true;
+    f.hear(told, 1002.5);
+    CHECK(f.recorder.events<evr::TIMEPOINT_WITNESSED>() == 1);
+    CHECK(f.recorder.sent<ToneRequest>().empty());
 }
 
 TEST_CASE("each way in which an action ends has an event of its own; what was not done has a tone and an explanation",

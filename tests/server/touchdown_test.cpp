@@ -280,7 +280,7 @@ struct Landed {
             taken = taken && pipeline.commit_if_full().ok();
         }
         REQUIRE((taken && pipeline.finish({}).ok()));
-        const auto reader = archive::Reader::open(folder / "a.db", dictionary);
+        auto reader = archive::Reader::open(folder / "a.db", dictionary);
         for (const bool recorded : {false, true}) {
             auto report = server::touchdown(*reader, archive::RunId{1}, dictionary, {}, {}, recorded);
             REQUIRE(report);

@@ -34,15 +34,14 @@ constexpr Verdict lost = Verdict::lost;
 constexpr std::array kinds{Kind::refuses, Kind::silent, Kind::late, Kind::doubled, Kind::claims, Kind::denies};
 
 /// An action of the timeline, the device that carries it out, and the ends that were written before the runs. Of a
-/// reply that is late or doubled the action is done: it lands. Where the device says that it is done and it is not, it
-/// ends as where it refuses; where it says that it is not and it is, GNC has for true what the device says.
+/// reply that is late, doubled or denies it the action is done: it lands, since what GNC waits for has a witness. Where
+/// the device says that it is done and it is not, it ends as where it refuses.
 struct Row {
     TimepointId timepoint;
     Device device{};
     Verdict refused = lands;  ///< also when it claims that it is done
     Verdict silent = lands;
     bool commanded_again = false;  ///< each cycle, or by a later action, whose reply verifies it
-    Verdict denied = lands;
 };
 
 namespace point = flight::timepoint;
@@ -70,12 +69,12 @@ const std::vector<Row> rows{
     {point::parachute_deploy, Device::pyro, lost, lost},
     {point::thrusters_off, Device::thrusters},
     {point::radar_power, Device::power, lost, lost},
-    {point::heatshield_separation, Device::pyro, lost, lost, false, lost},
+    {point::heatshield_separation, Device::pyro, lost, lost},
     {point::thrusters_on, Device::thrusters},
-    {point::engine_priming, Device::pyro, lost, lost, false, lost},
-    {point::backshell_separation, Device::pyro, lost, lost, false, lost},
+    {point::engine_priming, Device::pyro, lost, lost},
+    {point::backshell_separation, Device::pyro, lost, lost},
     {point::engine_ignition, Device::descent_engines, lands, lands, true},
-    {point::rover_separation, Device::pyro, lost, lost, false, lost},
+    {point::rover_separation, Device::pyro, lost, lost},
     {point::bridle_release, Device::descent_engines, lands, lands, true},
     {point::bridle_cut, Device::pyro, lost, lost},
     {point::engines_off, Device::descent_engines, lands, lands, true},
@@ -105,7 +104,6 @@ Verdict expected(const Row& row, Kind kind) {
     case Kind::refuses:
     case Kind::claims: return row.refused;
     case Kind::silent: return row.silent;
-    case Kind::denies: return row.denied;
     default: return lands;
     }
 }
@@ -233,13 +231,17 @@ void check(const Row& row, Kind kind, const Flown& flown) {
     CHECK(told.count<flight::evr::TIMEPOINT_VERIFIED_LATE>() == verified_late);
     if (kind == Kind::doubled) CHECK(told.told<flight::evr::REPLY_UNEXPECTED>());
     // The tone of what was done is asked for only when it was, as far as anything on board can tell: the device of a
-    // claim says so, and the IMU feels a mortar that is denied.
+    // claim says so, and a witness bears out what is denied.
     const bool mortar = row.timepoint == point::parachute_deploy;
+    const bool witnessed = row.timepoint == point::heatshield_separation || row.timepoint == point::engine_priming ||
+                           row.timepoint == point::backshell_separation || row.timepoint == point::rover_separation;
     CHECK(told.count<flight::evr::TIMEPOINT_CONTRADICTED>() ==
           (mortar && (kind == Kind::claims || (kind == Kind::silent))));
     CHECK(told.count<flight::evr::TIMEPOINT_FELT>() == (mortar && (kind == Kind::late || kind == Kind::denies)));
+    if (kind != Kind::late)  // there the reply may come first
+        CHECK(told.count<flight::evr::TIMEPOINT_WITNESSED>() == (witnessed && kind == Kind::denies));
     const bool done = kind == Kind::late || verified_late || kind == Kind::doubled || kind == Kind::claims ||
-                      (mortar && kind == Kind::denies);
+                      ((mortar || witnessed) && kind == Kind::denies);
     if (spec.tone && !done) CHECK_FALSE(told.tones.contains(spec.tone->value));
     if ((kind != Kind::refuses && kind != Kind::denies) || row.device == Device::descent_engines) return;
     if (row.device == Device::pyro)

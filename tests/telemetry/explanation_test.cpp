@@ -228,4 +228,18 @@ TEST_CASE("the shipped dictionary's explanations have what is told of them", "[e
     CHECK(explanation->text.find("speed 2.00 m/s <= 3.00 m/s") != std::string::npos);
 }
 
+TEST_CASE("a device that is taken as lost is named", "[explanation][R38]") {
+    const auto& dictionary = tests::shipped_dictionary();
+    const Decommutator decommutator{dictionary};
+    Decoded decoded;
+    auto packet = PacketFiller{dictionary, "Explanation"};
+    packet.raw("decision", number_of(dictionary, "decision", "device_lost"))
+        .raw("subject", 4)
+        .raw("condition_count", 1);
+    packet.raw("condition_1", number_of(dictionary, "condition_1", "thrusters_felt")).real("value_1", 0.02);
+    packet.real("bound_1", 0.3).raw("comparison_1", number_of(dictionary, "comparison_1", "lt")).raw("holds_1", 1);
+    REQUIRE_FALSE(decommutator.decode(packet.seal(), decoded));
+    CHECK(explain(dictionary, decoded)->text == "thrusters taken as lost: thrusters felt 0.020 < 0.300");
+}
+
 }  // namespace telemetry_explanation_test
