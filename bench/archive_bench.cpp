@@ -14,6 +14,7 @@
 #include "server/archive/sqlite.hpp"
 #include "server/pipeline/pipeline.hpp"
 #include "server/pipeline/segment_builder.hpp"
+#include "tests/support/packet_model_of.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 #include <algorithm>
@@ -83,6 +84,7 @@ dictionary::Dictionary wideband(std::size_t channels = fields) {
             {name, type, id, static_cast<unsigned>((tm_data_offset_octets + 4 * i) * 8), std::nullopt});
     }
     d.packets = {packet};
+    d.model = tests::packet_model_of(d);
     return d;
 }
 

@@ -17,6 +17,7 @@
 #include "server/net/web_server.hpp"
 #include "server/pipeline/pipeline_thread.hpp"
 #include "tests/server/run_writer.hpp"
+#include "tests/support/packet_model_of.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 #include <algorithm>
@@ -101,6 +102,7 @@ dictionary::Dictionary load() {
     d.packets.push_back(event);
     d.events = {
         {EvrId{1}, "LOAD_EVENT", dictionary::EventLevel::activity_hi, "at {seconds}.{nanoseconds}", packet_kinds}};
+    d.model = tests::packet_model_of(d);
     return d;
 }
 

@@ -16,8 +16,8 @@ namespace aeolis::dictionary {
 struct Decoded {
     std::size_t packet = 0;  ///< index in Dictionary::packets
     TmHeader header;
-    std::vector<std::uint64_t> raw;            ///< one per field: the bits as received, zero-extended
-    std::vector<std::optional<double>> value;  ///< one per field: calibrated; none for text, or when undefined
+    std::vector<std::uint64_t> raw;            ///< one per field: an unsigned number; of others the bits, zero-extended
+    std::vector<std::optional<double>> value;  ///< one per field: calibrated; none when undefined, and of text
     /// Exact values of fields whose type needs_text(): field and text. A field without one here is undefined.
     std::vector<std::pair<std::size_t, std::string>> texts;
     std::string problem;  ///< why the rest of another mission's packet is not decoded; empty: all of it is

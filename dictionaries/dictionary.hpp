@@ -10,6 +10,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -19,6 +20,10 @@
 // XTCE: commands, channels, packets and events. CSV: timeline, anchors, tones and parameters. Plain values, shared by
 // the autocoder and every part of the ground.
 namespace aeolis::dictionary {
+
+namespace xtce {
+struct PacketModel;
+}
 
 // ---- types -----------------------------------------------------------------------------------------------------
 
@@ -328,6 +333,7 @@ struct Dictionary {
     MfskWaveform mfsk;                                        ///< how tones are sent: mfsk.csv
     std::vector<ClockRow> clock;                              ///< by valid_from. Used by ground only, like the next
     std::vector<std::optional<double>> predicted_anchor_e_s;  ///< by anchor: seconds from entry; none: not predicted
+    std::shared_ptr<const xtce::PacketModel> model;           ///< what `packets` were made of, and are decoded by
 
     const Channel* channel(std::string_view name_or_alias) const;
     const Command* command(std::string_view name) const;

@@ -140,6 +140,7 @@ Loaded load(const std::filesystem::path& path) {
     dictionary.timeline_version = content_hash({&timeline_csv, &anchors_csv});
     dictionary.channels = std::move(system->channels);
     dictionary.packets = std::move(system->packets);
+    dictionary.model = std::move(system->model);
     dictionary.events = std::move(system->events);
     dictionary.commands = std::move(system->commands);
     dictionary.timeline = std::move(*timeline);

@@ -13,6 +13,7 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <ranges>
 #include <unordered_map>
 #include <utility>
@@ -69,30 +70,46 @@ class Reading {
         return !container.bits || end_container(container, start_bits);
     }
 
-    bool holds(const xtce::Condition& condition) const {
-        const auto part_holds = [&](const xtce::Condition& part) { return holds(part); };
+    /// None: whether it holds is not known.
+    std::optional<bool> judge(const xtce::Condition& condition) const {
         switch (condition.form) {
         case xtce::Condition::Form::always: return true;
-        case xtce::Condition::Form::all: return std::ranges::all_of(condition.parts, part_holds);
-        case xtce::Condition::Form::any: return std::ranges::any_of(condition.parts, part_holds);
         case xtce::Condition::Form::compare: return compare(condition);
-        case xtce::Condition::Form::unknown: break;
+        case xtce::Condition::Form::unknown: return std::nullopt;
+        case xtce::Condition::Form::all:
+        case xtce::Condition::Form::any: break;
         }
-        return false;
+        const bool decisive = condition.form == xtce::Condition::Form::any;  // of one part
+        std::optional<bool> result = !decisive;
+        for (const xtce::Condition& part : condition.parts) {
+            const auto one = judge(part);
+            if (one == decisive) return decisive;
+            if (!one) result.reset();
+        }
+        return result;
     }
+    bool holds(const xtce::Condition& condition) const { return judge(condition).value_or(false); }
 
     /// The derived container that describes the packet further. None where none does, or where several do.
     std::optional<std::size_t> next_of(const std::vector<std::size_t>& derived) {
-        std::optional<std::size_t> restricted, any;
+        std::optional<std::size_t> restricted, any, not_known;
         for (const std::size_t each : derived) {
             const PacketContainer& container = model_.containers[each];
-            if (!holds(container.when)) continue;
+            const auto describes = judge(container.when);
+            if (!describes) not_known = each;
+            if (!describes.value_or(false)) continue;
             auto& found = container.when.form == xtce::Condition::Form::always ? any : restricted;
             if (found) {
                 stop(model_.containers[*found].name + " and " + container.name + " both describe it", container.line);
                 return std::nullopt;
             }
             found = each;
+        }
+        if (!restricted && not_known) {
+            const PacketContainer& container = model_.containers[*not_known];
+            stop("whether " + container.name + " describes it is not known: its condition is not understood",
+                 container.line);
+            return std::nullopt;
         }
         return restricted ? restricted : any;
     }
@@ -150,13 +167,15 @@ class Reading {
         return nullptr;
     }
 
-    /// A whole number from `least` to 2^40; none when it is unknown, less, or not a number. A calibrated count is whole
-    /// within the digits of its coefficients.
+    /// A whole number from `least`, of 2^40 at most in size; none when it is unknown, less, or not a number. A
+    /// calibrated count is whole within the digits of its coefficients.
     std::optional<std::int64_t> evaluate_from(std::int64_t least, const Amount& amount) const {
         double value = amount.intercept;
         if (!amount.cases.empty()) {
-            const auto found = std::ranges::find_if(amount.cases, [&](const auto& each) { return holds(each.when); });
-            if (found == amount.cases.end()) return std::nullopt;
+            const auto found = std::ranges::find_if(amount.cases, [&](const auto& each) {
+                return judge(each.when).value_or(true);  // behind one that is not known none is
+            });
+            if (found == amount.cases.end() || !holds(found->when)) return std::nullopt;
             value = found->value;
         } else if (amount.parameter || !amount.sibling.empty()) {
             const DecodedValue* known =
@@ -170,7 +189,7 @@ class Reading {
         constexpr double most = 1099511627776.0, digits = 1e-9;
         const double whole = std::round(value);
         if (!amount.known || !(std::abs(value - whole) <= digits * std::max(1.0, std::abs(whole))) ||
-            whole < static_cast<double>(least) || whole > most)
+            whole < static_cast<double>(least) || std::abs(whole) > most)
             return std::nullopt;
         return static_cast<std::int64_t>(whole);
     }
@@ -196,15 +215,20 @@ class Reading {
                     unsigned depth) {
         if (++steps_ > steps_max) return stop("it has more entries than a packet may", entry.line);
         furthest_ = std::max(furthest_, position_);  // the entry may stand before it
-        if (!holds(entry.when)) return true;
         const std::string where = "an entry of " + container.name;
+        const auto included = judge(entry.when);
+        if (!included) return stop(where + " has a condition that is not understood", entry.line);
+        if (!*included) return true;
         if (entry.what == PacketEntry::What::unknown) return stop(where + " is not supported", entry.line);
-        const auto offset = evaluate(entry.offset_bits);
+        const auto offset = evaluate_from(std::numeric_limits<std::int64_t>::min(), entry.offset_bits);
         const auto count = evaluate(entry.count);
         const auto gap = evaluate(entry.gap_bits);
         if (!offset || !count || !gap)
             return stop(where + " has a location or a count that cannot be known", entry.line);
-        position_ = (entry.from == PacketEntry::From::container_start ? start_bits : position_) + *offset;
+        const bool from_start = entry.from == PacketEntry::From::container_start;
+        const std::int64_t position = static_cast<std::int64_t>(from_start ? start_bits : position_) + *offset;
+        if (position < 0) return stop(where + " begins before the packet", entry.line);
+        position_ = static_cast<std::size_t>(position);
         const bool repeated = entry.count.parameter || !entry.count.cases.empty() || entry.count.intercept != 1.0;
         for (std::size_t i = 0; i < *count; ++i) {
             if (i > 0) position_ += *gap;
@@ -347,8 +371,9 @@ class Reading {
                 type.labels, [&](const auto& label) { return number >= label.first && number <= label.last; });
             return found == type.labels.end() ? raw : Datum{found->label};
         }
-        const auto context =
-            std::ranges::find_if(type.coding.contexts, [&](const auto& each) { return holds(each.when); });
+        const auto context = std::ranges::find_if(type.coding.contexts,
+                                                  [&](const auto& each) { return judge(each.when).value_or(true); });
+        if (context != type.coding.contexts.end() && !holds(context->when)) return {};  // which one holds is not known
         const Calibration& calibration =
             context == type.coding.contexts.end() ? type.coding.calibration : context->calibration;
         Datum value = raw;

@@ -64,7 +64,7 @@ bool are_coarse_and_fine(const NamedPlace& coarse, const NamedPlace& fine);
 ///          primary header, with ...coarse... and ...fine... in their names, in any case, are the spacecraft's clock as
 ///          in CUC: counts and their binary fraction. [ccsds-301.0-b-4]
 /// Limits   `values_max` values a packet; containers and types nested `depth_max` deep
-/// Our own packets have a faster decoder: telemetry/decommutator.hpp
+/// Containers of simple layout have a faster decoder: telemetry/container_plan.hpp
 class ContainerDecoder {
   public:
     static constexpr std::size_t values_max = 65536;  ///< chosen: as many as the longest packet has octets

@@ -25,6 +25,12 @@ constexpr std::size_t packet_bits_max = 8 * 65542;  // the longest space packet
 constexpr double repetitions_max = packet_bits_max;
 constexpr double exact_max = 9007199254740992.0;  // whole numbers up to here are exact as doubles
 
+std::optional<std::int64_t> fixed_offset(const Amount& amount) {
+    const double value = amount.intercept;
+    if (!amount.is_fixed() || !(std::abs(value) <= packet_bits_max) || value != std::floor(value)) return std::nullopt;
+    return static_cast<std::int64_t>(value);
+}
+
 std::optional<std::uint32_t> fixed_bits(const Amount& amount) {
     const double value = amount.intercept;
     if (!amount.is_fixed() || !(value >= 0.0) || value > packet_bits_max || value != std::floor(value))
@@ -60,6 +66,19 @@ bool meets(double left, xtce::Condition::Operator op, double right) {
 
 std::optional<double> finite(double value) {
     return std::isfinite(value) ? std::optional{value} : std::nullopt;
+}
+
+/// The value with which a type's number is compared; none: not as a whole number.
+std::optional<std::int64_t> compared_whole(const PacketType& type, const xtce::Condition& when) {
+    const bool labelled = type.kind == PacketType::Kind::enumerated || type.kind == PacketType::Kind::boolean;
+    const bool plain = type.kind == PacketType::Kind::integer && type.coding.calibration.empty();
+    // A label that reads as a number would be compared as text.
+    const bool is_label = type.zero == when.value || type.one == when.value ||
+                          std::ranges::find(type.labels, when.value, &PacketType::Label::label) != type.labels.end();
+    if (!plain && !(labelled && (!when.calibrated || !is_label))) return std::nullopt;
+    const auto wanted = dictionary::to_integer(when.value);
+    if (!wanted || std::abs(static_cast<double>(*wanted)) > exact_max) return std::nullopt;
+    return wanted;
 }
 
 /// A whole number from octets, the most significant first.
@@ -100,6 +119,7 @@ class ContainerPlan::Compiler {
         const PacketType* type = nullptr;
         bool moves = false;
         const Amount* repeated = nullptr;
+        const xtce::Condition* valid = nullptr;  ///< null: always
     };
     /// The numbers of a container and its bases, in the order of the packet. Behind a repetition, positions count from
     /// the end of the number before.
@@ -121,7 +141,7 @@ class ContainerPlan::Compiler {
         node.abstract = model_.containers[index].abstract;
         node.fields = fields_[index];
         for (const Place& place : chain.places)
-            if (!add_step(index, place, chain, node)) return;
+            if (!add_step(index, place, chain, node) || !add_validity(index, place, chain, node)) return;
         std::vector<bool> filled(node.fields, false);
         for (const Step& step : node.steps)
             if (step.count == once && !step.skipped) std::fill_n(filled.begin() + step.field, step.times, true);
@@ -133,7 +153,55 @@ class ContainerPlan::Compiler {
             if (!add_tests(model_.containers[derived].when, chain, tests)) return;
         }
         node.compiled = true;
+        find_choice(node);
         for (const std::size_t derived : node.derived) compile_from(derived, chain, depth + 1);
+    }
+
+    /// Whether each derived container asks for a number of one and the same field, so that it can be looked up.
+    void find_choice(Node& node) const {
+        if (node.derived.size() < 2) return;
+        const auto asks = [&](std::size_t derived, const Test& of) -> const Test* {
+            const auto& tests = plan_.nodes_[derived].tests;
+            const auto found = std::ranges::find_if(tests, [&](const Test& test) {
+                return test.plain && test.op == xtce::Condition::Operator::equal &&
+                       test.position_bits == of.position_bits && test.bits == of.bits && test.wanted >= 0.0;
+            });
+            return found == tests.end() ? nullptr : &*found;
+        };
+        for (const Test& of : plan_.nodes_[node.derived.front()].tests) {
+            Choice choice{of.position_bits, of.bits, {}};
+            for (const std::size_t derived : node.derived)
+                if (const Test* test = asks(derived, of))
+                    choice.each.push_back(
+                        {static_cast<std::uint64_t>(test->wanted), derived, plan_.nodes_[derived].tests.size() == 1});
+            if (choice.each.size() != node.derived.size()) continue;
+            std::ranges::stable_sort(choice.each, {}, &Choice::Each::wanted);
+            constexpr std::uint64_t table_most = 4096;  // chosen: every APID
+            if (choice.each.back().wanted < table_most && choice.each.size() < table_most)
+                for (std::uint64_t wanted = 0; wanted <= choice.each.back().wanted; ++wanted) {
+                    const auto found = std::ranges::lower_bound(choice.each, wanted, {}, &Choice::Each::wanted);
+                    choice.first.push_back(static_cast<std::uint16_t>(found - choice.each.begin()));
+                }
+            node.choice = std::move(choice);
+            return;
+        }
+    }
+
+    /// False: validity is by more than whole numbers that stand before the value.
+    bool add_validity(std::size_t container, const Place& place, const Chain& chain, Node& node) const {
+        const auto field = place.valid == nullptr ? std::nullopt : field_of_(container, place.parameter, place.name);
+        if (!field) return true;
+        Validity validity{{}, static_cast<std::uint32_t>(*field)};
+        Chain before;
+        for (const Place& each : chain.places) {
+            if (each.parameter == place.parameter) break;
+            before.places.push_back(each);
+        }
+        if (place.repeated != nullptr || needs_text_(container, *field) ||
+            !add_tests(*place.valid, before, validity.tests))
+            return false;
+        node.valid.push_back(std::move(validity));
+        return true;
     }
 
     bool add_step(std::size_t container, const Place& place, const Chain& chain, Node& node) const {
@@ -164,6 +232,7 @@ class ContainerPlan::Compiler {
             step.field = static_cast<std::uint16_t>(field.value_or(0));
             step.text = field && needs_text_(container, *field);
         }
+        if (step.skipped && !chain.moves) return true;  // no other step's place depends on it
         step.load = load_of(place, step);
         if (node.steps.empty() || !goes_on(node.steps.back(), step))
             node.steps.push_back(step);
@@ -218,7 +287,7 @@ class ContainerPlan::Compiler {
             if (&place == &repeated) break;
             if (place.parameter != *amount.parameter || place.name != name) continue;
             const bool plain = place.type->kind == PacketType::Kind::integer && place.type->coding.calibration.empty();
-            if (found != nullptr || !plain || place.repeated != nullptr) return std::nullopt;
+            if (found != nullptr || !plain || place.repeated != nullptr || place.valid != nullptr) return std::nullopt;
             found = &place;
         }
         const auto field = found != nullptr ? field_of_(container, found->parameter, found->name) : std::nullopt;
@@ -228,20 +297,25 @@ class ContainerPlan::Compiler {
 
     bool add_entries(const PacketContainer& container, Chain& chain) {
         for (const PacketEntry& entry : container.entries) {
-            const auto offset = fixed_bits(entry.offset_bits), count = fixed_bits(entry.count);
+            const auto offset = fixed_offset(entry.offset_bits);
+            const auto count = fixed_bits(entry.count);
             const bool repeated = entry.count.parameter.has_value();
             if (entry.what != PacketEntry::What::parameter || !offset || (!repeated && count != 1U) ||
                 fixed_bits(entry.gap_bits) != 0U || entry.when.form != xtce::Condition::Form::always ||
                 !entry.last_indices.empty())
                 return false;
             const PacketParameter& parameter = model_.parameters[entry.index];
-            if (parameter.valid.form != xtce::Condition::Form::always) return false;
             const bool from_start = entry.from == PacketEntry::From::container_start;
             if (from_start && (chain.moves || repeated)) return false;
-            chain.position_bits = (from_start ? 0 : chain.position_bits) + *offset;
+            const std::int64_t position = (from_start ? 0 : std::int64_t{chain.position_bits}) + *offset;
+            if (position < 0 || position > std::int64_t{packet_bits_max}) return false;
+            chain.position_bits = static_cast<std::uint32_t>(position);
             if (repeated && !add_repeated(entry, parameter, chain)) return false;
             if (repeated) continue;
+            const std::size_t before = chain.places.size();
             if (!add_type(entry.index, parameter.name, model_.types[parameter.type], chain, 0)) return false;
+            if (parameter.valid.form == xtce::Condition::Form::always) continue;
+            for (Place& place : std::span{chain.places}.subspan(before)) place.valid = &parameter.valid;
         }
         return true;
     }
@@ -249,9 +323,11 @@ class ContainerPlan::Compiler {
     bool add_repeated(const PacketEntry& entry, const PacketParameter& parameter, Chain& chain) const {
         const PacketType& type = model_.types[parameter.type];
         const auto bits = fixed_bits(type.coding.bits);
-        if (!is_number(type) || !bits || *bits == 0 || *bits > 64) return false;
+        if (!is_number(type) || !bits || *bits == 0 || *bits > 64 ||
+            parameter.valid.form != xtce::Condition::Form::always)
+            return false;
         chain.places.push_back(
-            {entry.index, parameter.name, chain.position_bits, *bits, &type, chain.moves, &entry.count});
+            {entry.index, parameter.name, chain.position_bits, *bits, &type, chain.moves, &entry.count, nullptr});
         chain.position_bits = 0;  // from its end
         chain.moves = true;
         return true;
@@ -265,9 +341,14 @@ class ContainerPlan::Compiler {
                 return add_type(parameter, name + "." + member.name, model_.types[member.type], chain, depth + 1);
             });
         const auto bits = fixed_bits(type.coding.bits);
-        if (!is_number(type) || !bits || *bits == 0 || *bits > 64 || chain.position_bits > packet_bits_max)
-            return false;
-        chain.places.push_back({parameter, name, chain.position_bits, *bits, &type, chain.moves, nullptr});
+        if (!bits || chain.position_bits > packet_bits_max) return false;
+        if (type.kind == PacketType::Kind::octets && type.coding.form == Coding::Form::octets && !chain.moves) {
+            chain.position_bits += *bits;  // no field
+            chain.furthest_bits = std::max(chain.furthest_bits, chain.position_bits);
+            return true;
+        }
+        if (!is_number(type) || *bits == 0 || *bits > 64) return false;
+        chain.places.push_back({parameter, name, chain.position_bits, *bits, &type, chain.moves, nullptr, nullptr});
         chain.position_bits = chain.moves ? 0 : chain.position_bits + *bits;
         chain.furthest_bits = std::max(chain.furthest_bits, chain.moves ? 0 : chain.position_bits);
         return true;
@@ -287,11 +368,9 @@ class ContainerPlan::Compiler {
             if (found != nullptr || place.moves || place.repeated != nullptr) return false;
             found = &place;
         }
-        const auto wanted = dictionary::to_integer(when.value);
-        if (found == nullptr || found->type->kind != PacketType::Kind::integer ||
-            !found->type->coding.calibration.empty() || found->bits > 53 || !wanted ||
-            std::abs(static_cast<double>(*wanted)) > exact_max)
-            return false;
+        if (found == nullptr || found->bits > 53 || found->valid != nullptr) return false;
+        const auto wanted = compared_whole(*found->type, when);
+        if (!wanted) return false;
         tests.push_back({found->position_bits, found->bits, is_plain(found->type->coding), &found->type->coding,
                          when.op, static_cast<double>(*wanted)});
         return true;
@@ -341,35 +420,75 @@ std::size_t ContainerPlan::compiled() const {
         std::ranges::count_if(nodes_, [](const Node& node) { return node.compiled && !node.abstract; }));
 }
 
-/// The container that describes the whole packet; null: none that is compiled, or more than one.
-const ContainerPlan::Node* ContainerPlan::node_of(std::span<const std::uint8_t> packet) const {
-    const std::size_t packet_bits = packet.size() * 8;
-    const auto holds = [&](const Test& test) {
-        const std::uint64_t field = read_bits(packet, test.position_bits, test.bits);
-        const double number =
-            test.plain ? static_cast<double>(field) : as_double(number_in(field, test.bits, *test.coding));
-        return meets(number, test.op, test.wanted);
+namespace {
+
+/// As read_bits(), for fields of few octets in fewer steps.
+std::uint64_t bits_at(std::span<const std::uint8_t> packet, std::size_t position_bits, unsigned bits) {
+    const auto before = static_cast<unsigned>(position_bits % 8);
+    const unsigned octets = (before + bits + 7) / 8;
+    if (octets > 4) return read_bits(packet, position_bits, bits);
+    std::uint64_t value = 0;
+    for (const std::uint8_t octet : packet.subspan(position_bits / 8, octets)) value = value << 8U | octet;
+    return (value >> (octets * 8 - before - bits)) & ((std::uint64_t{1} << bits) - 1);
+}
+
+}  // namespace
+
+bool ContainerPlan::holds(const Test& test, std::span<const std::uint8_t> packet) {
+    const std::uint64_t field = bits_at(packet, test.position_bits, test.bits);
+    const double number =
+        test.plain ? static_cast<double>(field) : as_double(number_in(field, test.bits, *test.coding));
+    return meets(number, test.op, test.wanted);
+}
+
+bool ContainerPlan::next_of(const Node& node, std::span<const std::uint8_t> packet, const Node*& next) const {
+    const Node *restricted = nullptr, *any = nullptr;
+    const auto take = [&](const Node& derived) {
+        const Node*& found = derived.tests.empty() ? any : restricted;
+        const bool first = found == nullptr;
+        found = &derived;
+        return first;
     };
+    const auto is_one = [&](std::size_t index) {
+        const Node& derived = nodes_[index];
+        return !std::ranges::all_of(derived.tests, [&](const Test& test) { return holds(test, packet); }) ||
+               take(derived);
+    };
+    bool one = true;
+    if (const auto& choice = node.choice) {
+        const std::uint64_t field = bits_at(packet, choice->position_bits, choice->bits);
+        auto each = choice->each.begin();
+        if (choice->first.empty())
+            each = std::ranges::lower_bound(choice->each, field, {}, &Choice::Each::wanted);
+        else
+            each += field < choice->first.size() ? choice->first[field] : std::ssize(choice->each);
+        for (; one && each != choice->each.end() && each->wanted == field; ++each)
+            one = each->alone ? take(nodes_[each->container]) : is_one(each->container);
+    } else {
+        one = std::ranges::all_of(node.derived, is_one);
+    }
+    next = restricted != nullptr ? restricted : any;
+    return one;
+}
+
+std::optional<ContainerPlan::Reached> ContainerPlan::reach(std::span<const std::uint8_t> packet) const {
     const Node* node = root_ ? &nodes_[*root_] : nullptr;
-    while (node != nullptr && node->compiled && node->bits <= packet_bits) {
-        const Node *restricted = nullptr, *any = nullptr;
-        for (const std::size_t index : node->derived) {
-            const Node& derived = nodes_[index];
-            if (!std::ranges::all_of(derived.tests, holds)) continue;
-            const Node*& found = derived.tests.empty() ? any : restricted;
-            if (found != nullptr) return nullptr;
-            found = &derived;
-        }
-        const Node* next = restricted != nullptr ? restricted : any;
-        if (next == nullptr) return node->abstract ? nullptr : node;
+    while (node != nullptr && node->compiled) {
+        const auto reached = [&](bool cut) {
+            return Reached{static_cast<std::size_t>(node - nodes_.data()), node->abstract, cut};
+        };
+        if (node->bits > packet.size() * 8) return reached(true);
+        const Node* next = nullptr;
+        if (!next_of(*node, packet, next)) return std::nullopt;
+        if (next == nullptr) return reached(false);
         node = next;
     }
-    return nullptr;
+    return std::nullopt;
 }
 
 namespace {
 
-/// A number, and the octets that stand for it where they say more than it.
+/// A number, and what Decoded::raw says of it.
 struct Loaded {
     double number = 0.0;
     std::uint64_t raw = 0;
@@ -377,11 +496,9 @@ struct Loaded {
 Loaded whole(std::uint64_t number) {
     return {static_cast<double>(number), number};
 }
-Loaded signed_whole(std::int64_t number) {
-    return {static_cast<double>(number), 0};
-}
-Loaded real(double number, std::uint64_t bits) {
-    return {number, std::isfinite(number) ? 0 : bits};
+template <typename Signed>
+Loaded signed_whole(std::uint64_t bits) {
+    return {static_cast<double>(static_cast<Signed>(bits)), bits};
 }
 
 }  // namespace
@@ -404,8 +521,8 @@ void ContainerPlan::read_each(const Step& step, std::size_t times, const Into& i
         each([&](double number) { return calibrated_by(*step.calibration, number); });
 }
 
-void ContainerPlan::read(const Step& step, std::span<const std::uint8_t> packet, std::size_t position_bits,
-                         std::size_t times, const Into& into) {
+void ContainerPlan::read_step(const Step& step, std::span<const std::uint8_t> packet, std::size_t position_bits,
+                              std::size_t times, const Into& into) {
     const std::uint8_t* const at = packet.data() + position_bits / 8;
     const auto each = [&](auto load) { read_each(step, times, into, load); };
     switch (step.load) {
@@ -413,25 +530,22 @@ void ContainerPlan::read(const Step& step, std::span<const std::uint8_t> packet,
     case Load::u16: return each([at](std::size_t i) { return whole(big_endian<2>(at + 2 * i)); });
     case Load::u32: return each([at](std::size_t i) { return whole(big_endian<4>(at + 4 * i)); });
     case Load::u64: return each([at](std::size_t i) { return whole(big_endian<8>(at + 8 * i)); });
-    case Load::i8: return each([at](std::size_t i) { return signed_whole(static_cast<std::int8_t>(at[i])); });
-    case Load::i16:
-        return each([at](std::size_t i) { return signed_whole(static_cast<std::int16_t>(big_endian<2>(at + 2 * i))); });
-    case Load::i32:
-        return each([at](std::size_t i) { return signed_whole(static_cast<std::int32_t>(big_endian<4>(at + 4 * i))); });
-    case Load::i64:
-        return each([at](std::size_t i) { return signed_whole(static_cast<std::int64_t>(big_endian<8>(at + 8 * i))); });
+    case Load::i8: return each([at](std::size_t i) { return signed_whole<std::int8_t>(at[i]); });
+    case Load::i16: return each([at](std::size_t i) { return signed_whole<std::int16_t>(big_endian<2>(at + 2 * i)); });
+    case Load::i32: return each([at](std::size_t i) { return signed_whole<std::int32_t>(big_endian<4>(at + 4 * i)); });
+    case Load::i64: return each([at](std::size_t i) { return signed_whole<std::int64_t>(big_endian<8>(at + 8 * i)); });
     case Load::f32:
         return each([at](std::size_t i) {
             const auto bits = static_cast<std::uint32_t>(big_endian<4>(at + 4 * i));
-            return real(static_cast<double>(std::bit_cast<float>(bits)), bits);
+            return Loaded{static_cast<double>(std::bit_cast<float>(bits)), bits};
         });
     case Load::f64:
         return each([at](std::size_t i) {
             const auto bits = big_endian<8>(at + 8 * i);
-            return real(std::bit_cast<double>(bits), bits);
+            return Loaded{std::bit_cast<double>(bits), bits};
         });
     case Load::bits:
-        return each([&](std::size_t i) { return whole(read_bits(packet, position_bits + i * step.bits, step.bits)); });
+        return each([&](std::size_t i) { return whole(bits_at(packet, position_bits + i * step.bits, step.bits)); });
     case Load::any: break;
     }
     each([&](std::size_t i) {
@@ -441,7 +555,7 @@ void ContainerPlan::read(const Step& step, std::span<const std::uint8_t> packet,
         if (!std::isfinite(value)) return Loaded{value, bits};
         if (step.text) into.texts->emplace_back(step.field + i, exact_text(number));
         const auto* raw = std::get_if<std::uint64_t>(&number);
-        return Loaded{value, raw != nullptr ? *raw : 0};
+        return Loaded{value, raw != nullptr ? *raw : bits};
     });
 }
 
@@ -454,18 +568,17 @@ bool ContainerPlan::read_repeated(const Step& step, std::span<const std::uint8_t
     if (!(times >= 0.0) || times > repetitions_max || times != std::floor(times)) return false;
     const auto repetitions = static_cast<std::size_t>(times);
     if (repetitions * step.bits > packet.size() * 8 - position_bits) return false;
-    read(step, packet, position_bits, std::min<std::size_t>(repetitions, step.times), into);
+    read_step(step, packet, position_bits, std::min<std::size_t>(repetitions, step.times), into);
     position_bits += repetitions * step.bits;
     return true;
 }
 
-bool ContainerPlan::decode(std::span<const std::uint8_t> packet, dictionary::Decoded& into) const {
-    const Node* node = node_of(packet);
-    if (node == nullptr) return false;
-    into.packet = static_cast<std::size_t>(node - nodes_.data());
-    into.raw.resize(node->fields);
-    into.value.resize(node->fields);
-    if (!node->fills) {
+std::optional<std::size_t> ContainerPlan::read(std::size_t container, std::span<const std::uint8_t> packet,
+                                               dictionary::Decoded& into) const {
+    const Node& node = nodes_[container];
+    into.raw.resize(node.fields);
+    into.value.resize(node.fields);
+    if (!node.fills) {
         std::ranges::fill(into.raw, 0);
         std::ranges::fill(into.value, std::nullopt);
     }
@@ -473,32 +586,44 @@ bool ContainerPlan::decode(std::span<const std::uint8_t> packet, dictionary::Dec
     into.problem.clear();
     const Into fields{into.raw.data(), into.value.data(), &into.texts};
     const std::size_t packet_bits = packet.size() * 8;
-    std::size_t end_bits = node->bits;
-    if (node->fixed) {
-        for (const Step& step : node->steps)
-            if (!step.skipped) read(step, packet, step.position_bits, step.times, fields);
+    std::size_t end_bits = node.bits;
+    if (node.fixed) {
+        for (const Step& step : node.steps) read_step(step, packet, step.position_bits, step.times, fields);
     } else {
         std::size_t at = 0;
-        for (const Step& step : node->steps) {
+        for (const Step& step : node.steps) {
             at = step.moves ? at + step.position_bits : step.position_bits;
-            if (at > packet_bits) return false;
+            if (at > packet_bits) return std::nullopt;
             if (step.count != once) {
-                if (!read_repeated(step, packet, at, fields)) return false;
+                if (!read_repeated(step, packet, at, fields)) return std::nullopt;
             } else {
                 const std::size_t bits = std::size_t{step.times} * step.bits;
-                if (bits > packet_bits - at) return false;
-                if (!step.skipped) read(step, packet, at, step.times, fields);
+                if (bits > packet_bits - at) return std::nullopt;
+                if (!step.skipped) read_step(step, packet, at, step.times, fields);
                 at += bits;
             }
             end_bits = std::max(end_bits, at);
         }
     }
-    const std::size_t behind_bits = packet_bits - end_bits;
+    for (const Validity& validity : node.valid)
+        if (!std::ranges::all_of(validity.tests, [&](const Test& test) { return holds(test, packet); }))
+            into.value[validity.field].reset();
+    return end_bits;
+}
+
+bool ContainerPlan::decode(std::span<const std::uint8_t> packet, dictionary::Decoded& into) const {
+    const auto reached = reach(packet);
+    if (!reached || reached->abstract || reached->cut) return false;
+    const auto end_bits = read(reached->container, packet, into);
+    if (!end_bits) return false;
+    const std::size_t behind_bits = packet.size() * 8 - *end_bits;
     if (behind_bits != 0 && (behind_bits != 8 * packet_crc_octets || crc16(packet) != 0)) return false;
-    into.timed = node->clock.has_value();
+    const auto& clock = nodes_[reached->container].clock;
+    into.packet = reached->container;
+    into.timed = clock.has_value();
     into.header.time = {};
-    if (node->clock) {
-        const auto& [fine_bit, coarse_bits, fine_bits] = *node->clock;
+    if (clock) {
+        const auto& [fine_bit, coarse_bits, fine_bits] = *clock;
         into.header.time.seconds = static_cast<double>(read_bits(packet, primary_header_octets * 8, coarse_bits)) +
                                    static_cast<double>(read_bits(packet, fine_bit, fine_bits)) /
                                        static_cast<double>(std::uint64_t{1} << fine_bits);

@@ -1,40 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "telemetry/decommutator.hpp"
 
-#include "common/bytes.hpp"
+#include "common/check.hpp"
 
 #include <algorithm>
-#include <bit>
-#include <cmath>
-#include <limits>
 
 namespace aeolis::telemetry {
-namespace {
-
-constexpr unsigned event_id_position_bits = tm_data_offset_octets * 8;
-constexpr unsigned event_id_bits = 16;
-constexpr std::size_t apid_count = 2048;
-
-// Written out so that the compiler makes one load and one swap of each.
-std::uint64_t word32(const std::uint8_t* octet) {
-    return static_cast<std::uint32_t>(octet[0]) << 24 | static_cast<std::uint32_t>(octet[1]) << 16 |
-           static_cast<std::uint32_t>(octet[2]) << 8 | static_cast<std::uint32_t>(octet[3]);
-}
-
-/// Reads a field. Most fields begin and end at octets: those are read as words.
-std::uint64_t read_field(std::span<const std::uint8_t> packet, std::uint32_t position_bits, unsigned bits) {
-    if (position_bits % 8 != 0) return read_bits(packet, position_bits, bits);
-    const std::uint8_t* octet = packet.data() + position_bits / 8;
-    switch (bits) {
-    case 8: return octet[0];
-    case 16: return static_cast<std::uint64_t>(octet[0]) << 8 | octet[1];
-    case 32: return word32(octet);
-    case 64: return word32(octet) << 32 | word32(octet + 4);
-    default: return read_bits(packet, position_bits, bits);
-    }
-}
-
-}  // namespace
 
 const char* name_of(Refusal refusal) {
     switch (refusal) {
@@ -49,55 +20,33 @@ const char* name_of(Refusal refusal) {
 }
 
 Decommutator::Decommutator(const dictionary::Dictionary& dictionary)
-    : dictionary_id_(dictionary.id), by_apid_(apid_count, no_packet), holds_events_(apid_count, false) {
-    AEOLIS_CHECK(dictionary.packets.size() < no_packet);
-    for (std::size_t index = 0; index < dictionary.packets.size(); ++index) {
-        const dictionary::Packet& packet = dictionary.packets[index];
-        AEOLIS_CHECK(packet.apid.value < apid_count);
-        AEOLIS_CHECK(packet.octets >= tm_overhead_octets);
-        if (packet.event) {
-            AEOLIS_CHECK(packet.octets * 8 >= event_id_position_bits + event_id_bits);
-            holds_events_[packet.apid.value] = true;
-            events_.push_back({packet.apid.value, packet.event->value, static_cast<std::uint32_t>(index)});
-        } else {
-            by_apid_[packet.apid.value] = static_cast<std::uint16_t>(index);
-        }
-        plans_.push_back({static_cast<std::uint32_t>(steps_.size()), static_cast<std::uint32_t>(packet.fields.size()),
-                          packet.octets});
-        for (const dictionary::Field& field : packet.fields) steps_.push_back(compile(field, packet));
+    : dictionary_id_(dictionary.id), model_(dictionary.model) {
+    AEOLIS_CHECK(model_ || dictionary.packets.empty());
+    if (!model_) return;
+    std::vector<std::size_t> fields;
+    for (const auto& container : model_->containers) {
+        Described& described = described_.emplace_back();
+        const auto packet = std::ranges::find(dictionary.packets, container.name, &dictionary::Packet::name);
+        const bool is_packet = !container.abstract && packet != dictionary.packets.end();
+        fields.push_back(is_packet ? packet->fields.size() : 0);
+        if (!is_packet) continue;
+        described.packet = static_cast<std::size_t>(packet - dictionary.packets.begin());
+        described.octets = packet->octets;
     }
-    std::sort(events_.begin(), events_.end());
-}
-
-Decommutator::Step Decommutator::compile(const dictionary::Field& field, const dictionary::Packet& packet) {
-    const dictionary::Type& type = field.type;
-    // The only check of bounds: decode() then just compares the packet's length with the plan's.
-    AEOLIS_CHECK(type.bits >= 1 && type.bits <= 64);
-    AEOLIS_CHECK(field.position_bits + type.bits <= packet.octets * 8);
-    AEOLIS_CHECK(!field.validity_bit || *field.validity_bit < packet.octets * 8);
-    Step step;
-    step.position_bits = field.position_bits;
-    step.validity_bit = field.validity_bit ? *field.validity_bit : no_validity_bit;
-    step.bits = static_cast<std::uint8_t>(type.bits);
-    switch (type.encoding) {
-    case dictionary::Encoding::unsigned_integer: step.form = Form::unsigned_integer; break;
-    case dictionary::Encoding::twos_complement: step.form = Form::signed_integer; break;
-    case dictionary::Encoding::ieee754:
-        AEOLIS_CHECK(type.bits == 32 || type.bits == 64);
-        step.form = type.bits == 32 ? Form::float32 : Form::float64;
-        break;
-    }
-    step.first_coefficient = static_cast<std::uint32_t>(coefficients_.size());
-    step.coefficients = static_cast<std::uint16_t>(type.calibrator.size());
-    coefficients_.insert(coefficients_.end(), type.calibrator.begin(), type.calibrator.end());
-    return step;
-}
-
-std::optional<std::size_t> Decommutator::event_packet(Apid apid, std::span<const std::uint8_t> packet) const {
-    const auto id = static_cast<std::uint16_t>(read_bits(packet, event_id_position_bits, event_id_bits));
-    const auto found = std::lower_bound(events_.begin(), events_.end(), EventPlan{apid.value, id, 0});
-    if (found == events_.end() || found->apid != apid.value || found->event != id) return std::nullopt;
-    return found->packet;
+    for (const auto& packet : dictionary.packets)
+        if (packet.event && std::ranges::find(event_apids_, packet.apid) == event_apids_.end())
+            event_apids_.push_back(packet.apid);
+    const auto field_of = [&](std::size_t container, std::size_t,
+                              const std::string& name) -> std::optional<std::size_t> {
+        const std::size_t packet = described_[container].packet;
+        return packet == no_packet ? std::nullopt : field_index(dictionary.packets[packet], name);
+    };
+    const auto needs_text_at = [&](std::size_t container, std::size_t field) {
+        return needs_text(dictionary.packets[described_[container].packet].fields[field].type);
+    };
+    plan_.emplace(*model_, fields, field_of, needs_text_at);
+    for (std::size_t i = 0; i < described_.size(); ++i)
+        AEOLIS_CHECK(described_[i].packet == no_packet || plan_->is_compiled(i));
 }
 
 std::optional<Refusal> Decommutator::decode(std::span<const std::uint8_t> packet, Decoded& into) const {
@@ -109,52 +58,21 @@ std::optional<Refusal> Decommutator::decode(std::span<const std::uint8_t> packet
         return whole ? Refusal::bad_crc : Refusal::not_a_packet;
     }
     if (header->dictionary_id != dictionary_id_) return Refusal::other_dictionary;
+    if (!plan_) return Refusal::unknown_apid;
 
-    const Apid apid = header->primary.apid;
-    std::size_t index = by_apid_[apid.value];
-    if (holds_events_[apid.value]) {
-        if (packet.size() * 8 < event_id_position_bits + event_id_bits + packet_crc_octets * 8)
-            return Refusal::wrong_length;
-        const auto event = event_packet(apid, packet);
-        if (!event) return Refusal::unknown_event;
-        index = *event;
-    } else if (index == no_packet) {
-        return Refusal::unknown_apid;
+    const auto contents = packet.first(packet.size() - packet_crc_octets);
+    const auto reached = plan_->reach(contents);
+    if (reached && reached->cut) return Refusal::wrong_length;
+    const Described described = reached ? described_[reached->container] : Described{};
+    if (described.packet == no_packet) {
+        const bool is_event = std::ranges::find(event_apids_, header->primary.apid) != event_apids_.end();
+        return is_event ? Refusal::unknown_event : Refusal::unknown_apid;
     }
-    const Plan& plan = plans_[index];
-    if (packet.size() != plan.octets) return Refusal::wrong_length;
-
-    into.packet = index;
+    if (packet.size() != described.octets) return Refusal::wrong_length;
+    plan_->read(reached->container, contents, into);
+    into.packet = described.packet;
     into.header = *header;
-    into.raw.resize(plan.steps);
-    into.value.resize(plan.steps);
-    for (std::size_t i = 0; i < plan.steps; ++i) {
-        const Step& step = steps_[plan.first_step + i];
-        const std::uint64_t raw = read_field(packet, step.position_bits, step.bits);
-        into.raw[i] = raw;
-        into.value[i] = step.validity_bit != no_validity_bit && read_bits(packet, step.validity_bit, 1) == 0
-                            ? std::nullopt
-                            : calibrated(step, raw);
-    }
     return std::nullopt;
-}
-
-std::optional<double> Decommutator::calibrated(const Step& step, std::uint64_t raw) const {
-    double value = 0.0;
-    switch (step.form) {
-    case Form::unsigned_integer: value = static_cast<double>(raw); break;
-    case Form::signed_integer: value = static_cast<double>(sign_extend(raw, step.bits)); break;
-    case Form::float32: value = static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(raw))); break;
-    case Form::float64: value = std::bit_cast<double>(raw); break;
-    }
-    if (step.coefficients > 0) {
-        const double* coefficient = coefficients_.data() + step.first_coefficient;
-        double sum = 0.0;
-        for (int k = step.coefficients - 1; k >= 0; --k) sum = sum * value + coefficient[k];
-        value = sum;
-    }
-    if (!std::isfinite(value)) return std::nullopt;
-    return value;
 }
 
 }  // namespace aeolis::telemetry

@@ -4,9 +4,11 @@
 #include "common/space_packet.hpp"
 #include "dictionaries/decoded.hpp"
 #include "dictionaries/dictionary.hpp"
+#include "telemetry/container_plan.hpp"
 
-#include <compare>
+#include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -28,56 +30,35 @@ const char* name_of(Refusal refusal);
 
 using dictionary::Decoded;
 
-/// Decodes packets into calibrated values by a flat plan, compiled once from the dictionary's containers.
+/// Decodes packets of our own mission into calibrated values: checks what they carry beyond their containers (CRC, id
+/// of the dictionary, whole length) and has them decoded by the plan that is compiled for every mission.
 ///
 /// In       the octets of one space packet, any octets          Out   Decoded, or the reason for refusal
 /// Values   enumerated: the raw number; boolean: 0 or 1; a float that is not finite is undefined
 /// Rate     over a million packets a second on one core (bench/decommutate_bench.cpp)
-/// Memory   a plan of some 32 octets a field; decode() allocates nothing once `into` has held the largest packet
+/// Memory   the plan's; decode() allocates nothing once `into` has held the largest packet
 /// Faults   none: reads nothing outside the octets, whatever they are. Many threads may share one.
 class Decommutator {
   public:
-    /// `dictionary` must have passed the loader's rules. Its plan is copied, so it need not outlive this.
+    /// `dictionary` must have passed the loader's rules. It need not outlive this.
     explicit Decommutator(const dictionary::Dictionary& dictionary);
 
     /// Decodes a packet. Returns none on success; after a refusal `into` is unspecified.
     std::optional<Refusal> decode(std::span<const std::uint8_t> packet, Decoded& into) const;
 
   private:
-    enum class Form : std::uint8_t { unsigned_integer, signed_integer, float32, float64 };
-    struct Step {
-        std::uint32_t position_bits = 0;
-        std::uint32_t validity_bit = 0;  ///< no_validity_bit: always defined
-        std::uint32_t first_coefficient = 0;
-        std::uint16_t coefficients = 0;  ///< 0: calibrated is raw
-        std::uint8_t bits = 0;
-        Form form{};
+    /// What a container is of Dictionary::packets.
+    struct Described {
+        std::size_t packet = no_packet;
+        std::size_t octets = 0;
     };
-    struct Plan {
-        std::uint32_t first_step = 0;
-        std::uint32_t steps = 0;
-        std::uint32_t octets = 0;
-    };
-    struct EventPlan {
-        std::uint16_t apid = 0;
-        std::uint16_t event = 0;
-        std::uint32_t packet = 0;
-        auto operator<=>(const EventPlan&) const = default;
-    };
-    static constexpr std::uint32_t no_validity_bit = 0xFFFFFFFF;
-    static constexpr std::uint16_t no_packet = 0xFFFF;
-
-    Step compile(const dictionary::Field& field, const dictionary::Packet& packet);
-    std::optional<std::size_t> event_packet(Apid apid, std::span<const std::uint8_t> packet) const;
-    std::optional<double> calibrated(const Step& step, std::uint64_t raw) const;
+    static constexpr std::size_t no_packet = static_cast<std::size_t>(-1);
 
     std::uint16_t dictionary_id_ = 0;
-    std::vector<Plan> plans_;  ///< by index in Dictionary::packets
-    std::vector<Step> steps_;
-    std::vector<double> coefficients_;
-    std::vector<std::uint16_t> by_apid_;  ///< 2048: index of the packet, or no_packet
-    std::vector<bool> holds_events_;      ///< 2048
-    std::vector<EventPlan> events_;       ///< sorted by APID, then event id
+    std::shared_ptr<const dictionary::xtce::PacketModel> model_;  ///< the plan refers to it
+    std::vector<Described> described_;                            ///< by container
+    std::vector<Apid> event_apids_;
+    std::optional<ContainerPlan> plan_;  ///< none: there are no packets
 };
 
 using dictionary::field_index;

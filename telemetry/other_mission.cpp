@@ -20,12 +20,6 @@ constexpr unsigned number_bits_max = 64;
 constexpr double time_max_s =
     1e12;  // chosen, 30 000 years: a time beyond is none, and an axis to it would show nothing
 
-std::optional<std::size_t> fixed_amount(const Amount& amount) {
-    const double value = amount.intercept;
-    if (!amount.is_fixed() || !(value >= 0.0) || value > 1.0e6) return std::nullopt;
-    return static_cast<std::size_t>(value);
-}
-
 /// The number of a list's elements that become fields: all of a short list of known length.
 std::size_t elements_of(const std::vector<Amount>& last_indices) {
     std::size_t elements = 1;
@@ -49,29 +43,10 @@ bool is_channel(const PacketType& type) {
 }
 
 dictionary::Type type_of(const PacketType& type) {
-    dictionary::Type words;
-    words.name = type.name;
-    words.unit = type.kind == PacketType::Kind::time ? "s" : type.unit;
-    words.bits = static_cast<unsigned>(fixed_amount(type.coding.bits).value_or(0));
-    if (type.kind == PacketType::Kind::boolean) {
-        words.kind = dictionary::ValueKind::boolean;
-    } else if (type.kind == PacketType::Kind::enumerated) {
-        words.kind = dictionary::ValueKind::enumerated;
-        for (const auto& [first, last, label] : type.labels)
-            words.enumeration.push_back({first, label, last == first ? std::nullopt : std::optional{last}});
-    } else if (type.kind == PacketType::Kind::text) {
-        words.kind = dictionary::ValueKind::text;
-    } else if (type.kind != PacketType::Kind::integer || !type.coding.calibration.empty() ||
-               !type.coding.contexts.empty()) {
-        words.kind = dictionary::ValueKind::real;
-    }
+    dictionary::Type words = field_type(type);
+    const bool calibrated = !type.coding.calibration.empty() || !type.coding.contexts.empty();
+    if (words.kind == dictionary::ValueKind::integer && calibrated) words.kind = dictionary::ValueKind::real;
     if (words.bits == 0 && words.kind == dictionary::ValueKind::integer) words.bits = number_bits_max;
-    words.alarms = type.alarms;
-    const auto form = type.coding.form;
-    if (form == Coding::Form::ieee754 || form == Coding::Form::mil1750a)
-        words.encoding = dictionary::Encoding::ieee754;
-    else if (form != Coding::Form::unsigned_integer && form != Coding::Form::bcd)
-        words.encoding = dictionary::Encoding::twos_complement;
     return words;
 }
 
@@ -340,7 +315,10 @@ std::optional<std::string> OtherMission::decode(std::span<const std::uint8_t> pa
         into.value[field->second] = channel_value(value);
         if (needs_text(known[field->second].type) && !std::holds_alternative<std::monostate>(value.calibrated))
             into.texts.emplace_back(field->second, datum_text(value.calibrated));
-        if (const auto* raw = std::get_if<std::uint64_t>(&value.raw)) into.raw[field->second] = *raw;
+        if (const auto* raw = std::get_if<std::uint64_t>(&value.raw))
+            into.raw[field->second] = *raw;
+        else if (value.bits <= number_bits_max)
+            into.raw[field->second] = read_bits(packet, value.position_bits, static_cast<unsigned>(value.bits));
     }
     return std::nullopt;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "dictionaries/xtce/packet_model_reader.hpp"
 #include "dictionaries/xtce/parameters.hpp"
 
 #include <array>
@@ -19,13 +20,12 @@ inline constexpr std::array alarm_levels{
     AlarmLevel{"DistressRange", "distress", Severity::distress},
     AlarmLevel{"CriticalRange", "critical", Severity::critical}, AlarmLevel{"SevereRange", "severe", Severity::severe}};
 
-/// Reads the DefaultAlarm of a type; an absent element gives no alarms.
-/// It has static ranges, each outside all less severe ones, or labels of an enumeration. minViolations and
-/// minConformance count consecutive samples. AncillaryData "latch" with the content "true" makes the alarm stay until
-/// it is reset.
-Alarms read_alarms(pugi::xml_node default_alarm, const Type& type, Reporter& report);
+/// Rules for the DefaultAlarm of a type of ours: no context, nothing unknown, and each static range lies outside all
+/// less severe ones.
+void check_default_alarm(pugi::xml_node default_alarm, const Alarms& alarms, Reporter& report);
 
-/// Reads the ContextAlarmList of each channel's type into the channel. Contexts compare other channels.
-void read_context_alarms(const Symbols& symbols, Parameters& parameters, Reporter& report);
+/// Reads the ContextAlarmList of each channel's type into the channel, by the same rules. Contexts compare other
+/// channels.
+void read_context_alarms(const Symbols& symbols, ModelTypes& types, Parameters& parameters, Reporter& report);
 
 }  // namespace aeolis::dictionary::xtce

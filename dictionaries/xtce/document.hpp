@@ -42,6 +42,9 @@ class Reporter {
         file.findings->add(file.document->line(element), message);
     }
 
+    /// Reports a fault at a line of the first file.
+    void fault(unsigned line, const std::string& message) { files_.front().findings->add(line, message); }
+
     /// Reports each child and attribute not named here: unread content is never ignored silently.
     void expect(pugi::xml_node element, std::initializer_list<std::string_view> children,
                 std::initializer_list<std::string_view> attributes);

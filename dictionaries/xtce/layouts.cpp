@@ -7,7 +7,6 @@
 namespace aeolis::dictionary::xtce {
 namespace {
 
-constexpr unsigned base_depth_max = 16;  // of base containers; chosen: a longer chain can only be a cycle
 constexpr unsigned bits_max = static_cast<unsigned>(packet_octets_max - packet_crc_octets) * 8;
 
 }  // namespace

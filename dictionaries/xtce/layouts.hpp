@@ -9,6 +9,8 @@
 
 namespace aeolis::dictionary::xtce {
 
+inline constexpr unsigned base_depth_max = 16;  ///< of base containers; chosen: a longer chain can only be a cycle
+
 /// A parameter at its place in a packet.
 struct Placed {
     const Parameter* parameter = nullptr;

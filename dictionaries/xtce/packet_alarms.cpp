@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Alarms of any mission's types. What is not judged is a finding. The rules of our own are stricter (alarms.cpp).
+// Alarms of any mission's types. What is not judged is a finding. The rules for our own are in alarms.cpp.
 #include "dictionaries/xtce/alarms.hpp"
 #include "dictionaries/xtce/packet_model_reader.hpp"
 
@@ -9,89 +9,123 @@
 namespace aeolis::dictionary::xtce {
 namespace {
 
-constexpr unsigned samples_max = 1'000'000;  // chosen: violations in a row
+constexpr std::int64_t samples_max = 1'000'000;  // chosen: violations in a row
 
-std::uint32_t samples_of(pugi::xml_node alarm, const char* attribute) {
-    return std::clamp(alarm.attribute(attribute).as_uint(1), 1U, samples_max);
-}
+class AlarmReader {
+  public:
+    AlarmReader(const PacketType& type, Reporter& report) : type_(type), report_(report) {}
+
+    Alarms read(pugi::xml_node alarm) {
+        const auto samples = [&](const char* attribute) {
+            return static_cast<std::uint32_t>(report_.integer(alarm, attribute, 1, samples_max).value_or(1));
+        };
+        alarms_.min_violations = samples("minViolations");
+        alarms_.min_conformance = samples("minConformance");
+        for (const pugi::xml_node child : alarm.children()) {
+            const std::string_view name = child.name();
+            if (child.type() != pugi::node_element || name == "ContextMatch" || name == "LongDescription") continue;
+            if (name == "StaticAlarmRanges")
+                read_ranges(child);
+            else if (name == "EnumerationAlarmList")
+                read_labels(child);
+            else if (name == "AncillaryDataSet")
+                read_latch(child);
+            else
+                report_.fault(child, std::string{name} + " of type " + in_quotes(type_.name) + " is not judged");
+        }
+        std::ranges::stable_sort(alarms_.ranges, {}, &AlarmRange::severity);
+        return std::move(alarms_);
+    }
+
+  private:
+    void read_ranges(pugi::xml_node ranges) {
+        for (const pugi::xml_node element : ranges.children()) {
+            if (element.type() != pugi::node_element) continue;
+            const auto level = std::ranges::find_if(
+                alarm_levels, [&](const AlarmLevel& each) { return std::string_view{each.range} == element.name(); });
+            const std::string_view form =
+                element.attribute("rangeForm").as_string(ranges.attribute("rangeForm").as_string("outside"));
+            if (level == alarm_levels.end() || form != "outside") {
+                report_.fault(element, std::string{element.name()} + " " + std::string{form} + " is not judged");
+                continue;
+            }
+            AlarmRange range{.severity = level->severity, .below = {}, .above = {}};
+            read_end(element, "min", range.below, range.at_below);
+            read_end(element, "max", range.above, range.at_above);
+            if (range.below && range.above && *range.below > *range.above)
+                report_.fault(element, std::string{element.name()} +
+                                           (range.at_below ? ": minExclusive" : ": minInclusive") + " is above " +
+                                           (range.at_above ? "maxExclusive" : "maxInclusive"));
+            else if (range.below || range.above)
+                alarms_.ranges.push_back(range);
+        }
+    }
+
+    /// The end "min" or "max"; an exclusive one belongs to the alarm.
+    void read_end(pugi::xml_node element, const std::string& end, std::optional<double>& at, bool& included) {
+        at = report_.number(element, (end + "Inclusive").c_str());
+        if (at) return;
+        at = report_.number(element, (end + "Exclusive").c_str());
+        included = at.has_value();
+    }
+
+    void read_labels(pugi::xml_node list) {
+        const std::string_view otherwise = list.attribute("defaultAlarmLevel").as_string("normal");
+        if (otherwise != "normal") report_.fault(list, "the level of labels that are not named is not judged");
+        for (const pugi::xml_node element : list.children("EnumerationAlarm")) {
+            const char* attribute = element.attribute("enumerationLabel") ? "enumerationLabel" : "enumerationValue";
+            const std::string label = element.attribute(attribute).value();
+            const std::string_view word = element.attribute("alarmLevel").value();
+            const auto level = std::ranges::find(alarm_levels, word, &AlarmLevel::word);
+            const auto before = alarms_.values.size();
+            for (const PacketType::Label& each : type_.labels)
+                if (each.label == label && level != alarm_levels.end())
+                    alarms_.values.push_back({level->severity, each.first,
+                                              each.last == each.first ? std::nullopt : std::optional{each.last}});
+            if (word == "normal") continue;
+            if (level == alarm_levels.end())
+                report_.fault(element, "alarm level " + in_quotes(std::string{word}) + " is unknown: it is not judged");
+            else if (alarms_.values.size() == before)
+                report_.fault(element, "the alarm names " + in_quotes(label) +
+                                           ", which the enumeration lacks: it is not judged");
+        }
+    }
+
+    /// An agreement of ours: AncillaryData "latch" with the content "true" makes the alarm stay until it is reset.
+    void read_latch(pugi::xml_node set) {
+        for (const pugi::xml_node data : set.children("AncillaryData")) {
+            if (name_of(data) != "latch") continue;
+            const std::string word = data.text().as_string();
+            if (word != "true" && word != "false")
+                report_.fault(data, "alarm: latch " + in_quotes(word) + " is neither true nor false");
+            alarms_.latches = word == "true";
+        }
+    }
+
+    const PacketType& type_;
+    Reporter& report_;
+    Alarms alarms_;
+};
 
 }  // namespace
 
+Alarms read_alarm(pugi::xml_node alarm, const PacketType& type, Reporter& report) {
+    return AlarmReader{type, report}.read(alarm);
+}
+
 void ModelTypes::read_alarms(const Symbol& symbol, PacketType& type) {
-    if (const pugi::xml_node alarm = symbol.element.child("DefaultAlarm")) type.alarms = read_alarm(alarm, type);
+    if (const pugi::xml_node alarm = symbol.element.child("DefaultAlarm"))
+        type.alarms = read_alarm(alarm, type, parts_.report);
     const pugi::xml_node list = symbol.element.child("ContextAlarmList");
     if (list) type.context_alarms.clear();
     for (const pugi::xml_node alarm : list.children("ContextAlarm")) {
-        auto when = parts_.condition(symbol.scope, alarm.child("ContextMatch"));
-        auto alarms = read_alarm(alarm, type);
+        const pugi::xml_node match = alarm.child("ContextMatch");
+        auto when = parts_.condition(symbol.scope, match);
+        auto alarms = read_alarm(alarm, type, parts_.report);
         if (when.form == Condition::Form::always)
-            parts_.report.fault(alarm, "a ContextAlarm without a context is not judged");
+            parts_.report.fault(match ? match : alarm, "a ContextAlarm without a context is not judged");
         else
             type.context_alarms.push_back({std::move(when), std::move(alarms)});
-    }
-}
-
-Alarms ModelTypes::read_alarm(pugi::xml_node alarm, const PacketType& type) {
-    Alarms alarms;
-    alarms.min_violations = samples_of(alarm, "minViolations");
-    alarms.min_conformance = samples_of(alarm, "minConformance");
-    for (const pugi::xml_node child : alarm.children()) {
-        const std::string_view name = child.name();
-        if (child.type() != pugi::node_element || name == "ContextMatch" || name == "AncillaryDataSet" ||
-            name == "LongDescription")
-            continue;
-        if (name == "StaticAlarmRanges")
-            read_ranges(child, alarms);
-        else if (name == "EnumerationAlarmList")
-            read_label_alarms(child, type, alarms);
-        else
-            parts_.report.fault(child, std::string{name} + " of type " + in_quotes(type.name) + " is not judged");
-    }
-    return alarms;
-}
-
-void ModelTypes::read_ranges(pugi::xml_node ranges, Alarms& alarms) {
-    for (const pugi::xml_node element : ranges.children()) {
-        if (element.type() != pugi::node_element) continue;
-        const auto level = std::ranges::find_if(
-            alarm_levels, [&](const AlarmLevel& each) { return std::string_view{each.range} == element.name(); });
-        const std::string_view form =
-            element.attribute("rangeForm").as_string(ranges.attribute("rangeForm").as_string("outside"));
-        if (level == alarm_levels.end() || form != "outside") {
-            parts_.report.fault(element, std::string{element.name()} + " " + std::string{form} + " is not judged");
-            continue;
-        }
-        AlarmRange range{.severity = level->severity, .below = {}, .above = {}};
-        const auto end = [&](const char* inclusive, const char* exclusive, std::optional<double>& at, bool& included) {
-            at = parts_.report.number(element, inclusive);
-            if (at) return;
-            at = parts_.report.number(element, exclusive);
-            included = at.has_value();
-        };
-        end("minInclusive", "minExclusive", range.below, range.at_below);
-        end("maxInclusive", "maxExclusive", range.above, range.at_above);
-        if (range.below && range.above && *range.below > *range.above)
-            parts_.report.fault(element, std::string{element.name()} + ": its least is above its largest");
-        else if (range.below || range.above)
-            alarms.ranges.push_back(range);
-    }
-}
-
-void ModelTypes::read_label_alarms(pugi::xml_node list, const PacketType& type, Alarms& alarms) {
-    const std::string_view otherwise = list.attribute("defaultAlarmLevel").as_string("normal");
-    if (otherwise != "normal") parts_.report.fault(list, "the level of labels that are not named is not judged");
-    for (const pugi::xml_node element : list.children("EnumerationAlarm")) {
-        const char* attribute = element.attribute("enumerationLabel") ? "enumerationLabel" : "enumerationValue";
-        const std::string label = element.attribute(attribute).value();
-        const std::string_view word = element.attribute("alarmLevel").value();
-        const auto level = std::ranges::find(alarm_levels, word, &AlarmLevel::word);
-        const auto before = alarms.values.size();
-        if (level != alarm_levels.end())
-            for (const PacketType::Label& each : type.labels)
-                if (each.label == label) alarms.values.push_back({level->severity, each.first, each.last});
-        if (word != "normal" && alarms.values.size() == before)
-            parts_.report.fault(element, "the alarm of label " + in_quotes(label) + ", level " +
-                                             in_quotes(std::string{word}) + ", is not judged");
     }
 }
 

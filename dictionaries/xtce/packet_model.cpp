@@ -130,7 +130,7 @@ Condition ModelParts::part(const std::string& scope, pugi::xml_node element, uns
     if (name == "Condition") return condition_element(scope, element);
     const bool any = name == "ORedConditions";
     if (!any && name != "ANDedConditions" && name != "ComparisonList" && name != "BooleanExpression") {
-        report.fault(element, std::string{name} + " is not supported as a condition: it is taken as false");
+        report.fault(element, std::string{name} + " is not supported as a condition: whether it holds is not known");
         return {.form = Condition::Form::unknown};
     }
     if (depth == condition_depth_max) {
@@ -156,7 +156,7 @@ Condition ModelParts::condition(const std::string& scope, pugi::xml_node parent)
         }
         if (std::exchange(one, true)) {
             report.fault(child, std::string{child.name()} +
-                                    " beside another condition is not supported: both are taken as false");
+                                    " beside another condition is not supported: whether they hold is not known");
             return {.form = Condition::Form::unknown};
         }
         found = part(scope, child, 0);
@@ -215,6 +215,20 @@ std::vector<Amount> read_last_indices(const ModelParts& parts, const std::string
     return last;
 }
 
+PacketModel read_model(const std::string& name, const ModelParts& parts, ModelTypes& types) {
+    PacketModel model;
+    model.name = name;
+    for (const Symbol& symbol : parts.symbols.all())
+        if (symbol.kind == Kind::parameter)
+            model.parameters.push_back(
+                {name_of(symbol.element), symbol.path, types.of(symbol.scope, symbol.element, "parameterTypeRef"),
+                 parts.condition(symbol.scope, symbol.element.child("ParameterProperties").child("ValidityCondition")),
+                 parts.report.line(symbol.element)});
+    model.containers = read_model_containers(parts);
+    model.types = std::move(types.types);
+    return model;
+}
+
 namespace {
 
 /// @param findings  of each document
@@ -225,17 +239,7 @@ PacketModel model_of(const std::vector<const Document*>& documents, const std::v
     const Symbols symbols{documents, report, Symbols::Names::any};
     const ModelParts parts{symbols, report, agreement};
     ModelTypes types{parts};
-    PacketModel model;
-    model.name = name_of(documents.front()->space_system());
-    for (const Symbol& symbol : symbols.all())
-        if (symbol.kind == Kind::parameter)
-            model.parameters.push_back(
-                {name_of(symbol.element), symbol.path, types.of(symbol.scope, symbol.element, "parameterTypeRef"),
-                 parts.condition(symbol.scope, symbol.element.child("ParameterProperties").child("ValidityCondition")),
-                 report.line(symbol.element)});
-    model.containers = read_model_containers(parts);
-    model.types = std::move(types.types);
-    return model;
+    return read_model(name_of(documents.front()->space_system()), parts, types);
 }
 
 }  // namespace

@@ -12,8 +12,9 @@
 #include <vector>
 
 /// Packets of any mission, as its XTCE file describes them.
-/// Used by telemetry/container_decoder.hpp to decode. Our own dictionary is read through space_system.hpp, whose rules
-/// are strict. Here, unreadable content is a finding, and everything else is kept. [xtce-1.2], and files of 1.0 and 1.1
+/// Packets are decoded by it: telemetry/container_plan.hpp, telemetry/container_decoder.hpp. Here, unreadable content
+/// is a finding, and everything else is kept. Rules for our own dictionary, which flight's code is made from, stand
+/// beside it: space_system.hpp. [xtce-1.2], and files of 1.0 and 1.1
 namespace aeolis::dictionary::xtce {
 
 /// A comparison, or a combination of several.
@@ -23,7 +24,7 @@ struct Condition {
         compare,
         all,      ///< of `parts`: all must hold
         any,      ///< of `parts`: one must hold
-        unknown,  ///< not supported: treated as false
+        unknown,  ///< not supported: whether it holds is not known
     };
     enum class Operator : std::uint8_t { equal, not_equal, less, less_or_equal, greater, greater_or_equal };
 
@@ -113,6 +114,7 @@ struct PacketType {
         std::int64_t first = 0;
         std::int64_t last = 0;
         std::string label;
+        unsigned line = 0;
     };
     struct Member {
         std::string name;
@@ -129,6 +131,7 @@ struct PacketType {
     std::string unit{};         ///< the first one; empty: the file gives none
     Coding coding{};
     std::vector<Label> labels{};
+    std::optional<double> valid_min{}, valid_max{};
     Alarms alarms{};                             ///< without contexts
     std::vector<ContextAlarm> context_alarms{};  ///< the first that holds replaces `alarms`
     std::string zero = "False", one = "True";    ///< of a boolean
@@ -187,6 +190,11 @@ struct PacketModel {
 struct ReadAgreement {
     unsigned leading_size_unit_bits = 1;  ///< LeadingSize counts bits (1, by [xtce-1.2]) or octets (8)
 };
+
+/// The bits of a number, octets or repetitions where they are fixed: a whole number up to a million.
+std::optional<std::size_t> fixed_amount(const Amount& amount);
+/// A type of numbers, labels, text or octets in the words of the dictionary.
+Type field_type(const PacketType& type);
 
 struct XtceText {
     std::string file;  ///< for findings

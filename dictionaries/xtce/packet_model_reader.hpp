@@ -46,7 +46,9 @@ class ModelTypes {
     explicit ModelTypes(const ModelParts& parts) : parts_(parts) {}
 
     /// Index of the type; index of an unknown type when no type has that name.
-    std::size_t of(const std::string& scope, pugi::xml_node at, const char* reference);
+    std::size_t of(const std::string& scope, pugi::xml_node at, const char* reference,
+                   Kind kind = Kind::parameter_type);
+    std::size_t of(const Symbol& symbol);
 
     std::vector<PacketType> types;
 
@@ -62,17 +64,22 @@ class ModelTypes {
     void read_time(const Symbol& symbol, PacketType& type);
     void read_reference_time(const Symbol& symbol, PacketType& type);
     void read_members(const Symbol& symbol, PacketType& type);
+    void read_valid_range(pugi::xml_node element, PacketType& type);
     void read_alarms(const Symbol& symbol, PacketType& type);
-    Alarms read_alarm(pugi::xml_node alarm, const PacketType& type);
-    void read_ranges(pugi::xml_node ranges, Alarms& alarms);
-    void read_label_alarms(pugi::xml_node list, const PacketType& type, Alarms& alarms);
 
     const ModelParts& parts_;
-    std::map<std::string, std::size_t> by_path_;
+    std::map<std::pair<Kind, std::string>, std::size_t> by_path_;
     unsigned depth_ = 0;
 };
 
 std::vector<PacketContainer> read_model_containers(const ModelParts& parts);
+
+/// Reads one alarm: static ranges, labels, numbers of violations and conformances, AncillaryData "latch". What is not
+/// judged is a finding.
+Alarms read_alarm(pugi::xml_node alarm, const PacketType& type, Reporter& report);
+
+/// The model of documents whose names, and perhaps some types, are known. Takes the types.
+PacketModel read_model(const std::string& name, const ModelParts& parts, ModelTypes& types);
 
 /// Reads at most one last index per dimension: from a DimensionList, or as many as the type has.
 std::vector<Amount> read_last_indices(const ModelParts& parts, const std::string& scope, pugi::xml_node list);

@@ -14,17 +14,25 @@ constexpr unsigned type_depth_max = 16;    // chosen: types within types, and ty
 constexpr std::int64_t exponent_max = 32;  // chosen: of a polynomial
 constexpr std::size_t label_values_max = 1U << 20U;
 
+/// Kind of a ParameterType or an ArgumentType.
 PacketType::Kind model_kind_of(std::string_view element) {
     using enum PacketType::Kind;
-    if (element == "IntegerParameterType") return integer;
-    if (element == "FloatParameterType") return real;
-    if (element == "EnumeratedParameterType") return enumerated;
-    if (element == "BooleanParameterType") return boolean;
-    if (element == "StringParameterType") return text;
-    if (element == "BinaryParameterType") return octets;
-    if (element == "AbsoluteTimeParameterType" || element == "RelativeTimeParameterType") return time;
-    if (element == "AggregateParameterType") return aggregate;
-    if (element == "ArrayParameterType") return array;
+    constexpr std::array<std::pair<std::string_view, PacketType::Kind>, 10> kinds{{{"Integer", integer},
+                                                                                   {"Float", real},
+                                                                                   {"Enumerated", enumerated},
+                                                                                   {"Boolean", boolean},
+                                                                                   {"String", text},
+                                                                                   {"Binary", octets},
+                                                                                   {"AbsoluteTime", time},
+                                                                                   {"RelativeTime", time},
+                                                                                   {"Aggregate", aggregate},
+                                                                                   {"Array", array}}};
+    for (const std::string_view suffix : {"ParameterType", "ArgumentType"})
+        if (element.ends_with(suffix)) {
+            element.remove_suffix(suffix.size());
+            const auto found = std::ranges::find(kinds, element, &std::pair<std::string_view, PacketType::Kind>::first);
+            return found == kinds.end() ? unknown : found->second;
+        }
     return unknown;
 }
 
@@ -57,24 +65,26 @@ std::optional<Coding::Form> real_form(std::string_view word, std::int64_t bits) 
 
 }  // namespace
 
-std::size_t ModelTypes::of(const std::string& scope, pugi::xml_node at, const char* reference) {
+std::size_t ModelTypes::of(const std::string& scope, pugi::xml_node at, const char* reference, Kind kind) {
     const std::string word = at.attribute(reference).value();
-    const Symbol* symbol = parts_.symbols.find(Kind::parameter_type, scope, word);
-    if (symbol == nullptr) {
-        parts_.report.fault(at, "there is no type " + in_quotes(word));
-        types.push_back({.name = word, .line = parts_.report.line(at)});
-        return types.size() - 1;
-    }
-    if (const auto found = by_path_.find(symbol->path); found != by_path_.end()) return found->second;
+    if (const Symbol* symbol = parts_.symbols.find(kind, scope, word)) return of(*symbol);
+    parts_.report.fault(at, "there is no type " + in_quotes(word));
+    types.push_back({.name = word, .line = parts_.report.line(at)});
+    return types.size() - 1;
+}
+
+std::size_t ModelTypes::of(const Symbol& symbol) {
+    const std::pair key{symbol.kind, symbol.path};
+    if (const auto found = by_path_.find(key); found != by_path_.end()) return found->second;
     const std::size_t index = types.size();
-    types.push_back({.name = name_of(symbol->element), .line = parts_.report.line(symbol->element)});
-    by_path_.emplace(symbol->path, index);
+    types.push_back({.name = name_of(symbol.element), .line = parts_.report.line(symbol.element)});
+    by_path_.emplace(key, index);
     if (depth_ == type_depth_max) {
-        parts_.report.fault(symbol->element, "types are nested deeper than " + std::to_string(type_depth_max));
+        parts_.report.fault(symbol.element, "types are nested deeper than " + std::to_string(type_depth_max));
         return index;
     }
     ++depth_;
-    PacketType type = read(*symbol);
+    PacketType type = read(symbol);
     --depth_;
     types[index] = std::move(type);
     return index;
@@ -83,7 +93,7 @@ std::size_t ModelTypes::of(const std::string& scope, pugi::xml_node at, const ch
 PacketType ModelTypes::read(const Symbol& symbol) {
     const pugi::xml_node element = symbol.element;
     PacketType type;
-    if (element.attribute("baseType")) type = types[of(symbol.scope, element, "baseType")];
+    if (element.attribute("baseType")) type = types[of(symbol.scope, element, "baseType", symbol.kind)];
     type.name = name_of(element);
     type.line = parts_.report.line(element);
     type.kind = model_kind_of(element.name());
@@ -94,7 +104,7 @@ PacketType ModelTypes::read(const Symbol& symbol) {
         return type;
     case PacketType::Kind::aggregate: read_members(symbol, type); return type;
     case PacketType::Kind::array:
-        type.element = of(symbol.scope, element, "arrayTypeRef");
+        type.element = of(symbol.scope, element, "arrayTypeRef", symbol.kind);
         type.last_indices = read_last_indices(parts_, symbol.scope, element.child("DimensionList"));
         return type;
     case PacketType::Kind::time: read_time(symbol, type); return type;
@@ -106,8 +116,17 @@ PacketType ModelTypes::read(const Symbol& symbol) {
     default: break;
     }
     read_coding(symbol, element, type);
+    read_valid_range(element, type);
     read_alarms(symbol, type);
     return type;
+}
+
+void ModelTypes::read_valid_range(pugi::xml_node element, PacketType& type) {
+    pugi::xml_node range = element.child("ValidRange");
+    if (!range) range = element.child("ValidRangeSet").child("ValidRange");
+    if (!range) return;
+    type.valid_min = parts_.report.number(range, "minInclusive");
+    type.valid_max = parts_.report.number(range, "maxInclusive");
 }
 
 void ModelTypes::read_coding(const Symbol& symbol, pugi::xml_node holder, PacketType& type) {
@@ -278,7 +297,7 @@ void ModelTypes::read_labels(pugi::xml_node element, PacketType& type) {
             continue;
         }
         if (type.labels.size() < label_values_max)
-            type.labels.push_back({*first, *last, entry.attribute("label").value()});
+            type.labels.push_back({*first, *last, entry.attribute("label").value(), parts_.report.line(entry)});
     }
 }
 
@@ -325,7 +344,43 @@ void ModelTypes::read_reference_time(const Symbol& symbol, PacketType& type) {
 void ModelTypes::read_members(const Symbol& symbol, PacketType& type) {
     for (const pugi::xml_node member : symbol.element.child("MemberList").children("Member"))
         type.members.push_back(
-            {name_of(member), of(symbol.scope, member, member.attribute("typeRef") ? "typeRef" : "parameterTypeRef")});
+            {name_of(member),
+             of(symbol.scope, member, member.attribute("typeRef") ? "typeRef" : "parameterTypeRef", symbol.kind)});
+}
+
+std::optional<std::size_t> fixed_amount(const Amount& amount) {
+    const double value = amount.intercept;
+    if (!amount.is_fixed() || !(value >= 0.0) || value > 1.0e6) return std::nullopt;
+    return static_cast<std::size_t>(value);
+}
+
+Type field_type(const PacketType& type) {
+    Type words;
+    words.name = type.name;
+    words.unit = type.kind == PacketType::Kind::time ? "s" : type.unit;
+    words.bits = static_cast<unsigned>(fixed_amount(type.coding.bits).value_or(0));
+    switch (type.kind) {
+    case PacketType::Kind::integer: words.kind = ValueKind::integer; break;
+    case PacketType::Kind::enumerated: words.kind = ValueKind::enumerated; break;
+    case PacketType::Kind::boolean: words.kind = ValueKind::boolean; break;
+    case PacketType::Kind::text: words.kind = ValueKind::text; break;
+    case PacketType::Kind::octets: words.binary = true; break;
+    default: words.kind = ValueKind::real; break;
+    }
+    for (const auto& label : type.labels)
+        words.enumeration.push_back(
+            {label.first, label.label, label.last == label.first ? std::nullopt : std::optional{label.last}});
+    words.calibrator = type.coding.calibration.polynomial;
+    words.valid_min = type.valid_min;
+    words.valid_max = type.valid_max;
+    words.alarms = type.alarms;
+    const auto form = type.coding.form;
+    if (form == Coding::Form::ieee754 || form == Coding::Form::mil1750a)
+        words.encoding = Encoding::ieee754;
+    else if (form == Coding::Form::twos_complement || form == Coding::Form::ones_complement ||
+             form == Coding::Form::sign_and_magnitude)
+        words.encoding = Encoding::twos_complement;
+    return words;
 }
 
 }  // namespace aeolis::dictionary::xtce

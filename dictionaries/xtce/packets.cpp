@@ -123,6 +123,9 @@ class PacketReader {
         if (entry == layout.entries.end())
             report_.fault(placed.element, in_quotes(placed.parameter->name) + " is valid by " + in_quotes(flag.name) +
                                               ", which is not in this packet");
+        else if (&*entry > &placed)  // decoders go from front to back
+            report_.fault(placed.element, in_quotes(placed.parameter->name) + " is valid by " + in_quotes(flag.name) +
+                                              ", which stands behind it");
         else if (flag.type->bits != 1)
             report_.fault(placed.element, in_quotes(placed.parameter->name) + " is valid by " + in_quotes(flag.name) +
                                               ", which is not one bit");

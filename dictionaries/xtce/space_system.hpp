@@ -3,6 +3,7 @@
 
 #include "dictionaries/findings.hpp"
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,6 +23,7 @@ struct SpaceSystem {
     std::vector<Event> events;
     std::vector<Command> commands;
     std::vector<DeclaredEvent> declared_events;  ///< including those with findings
+    std::shared_ptr<const PacketModel> model;
 };
 
 /// Reads the subset of [xtce-1.2] that docs/decisions/0002 names.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "dictionaries/xtce/packet_model_reader.hpp"
 #include "dictionaries/xtce/symbols.hpp"
 
 #include <map>
@@ -9,10 +10,11 @@
 
 namespace aeolis::dictionary::xtce {
 
-/// The types of parameters and arguments, each checked once, at its definition.
+/// The types of parameters and arguments, read into the model, and each checked once, at its definition, by the rules
+/// for our own: whole and real numbers that flight's code can encode, with units, labels that are identifiers, ranges.
 class Types {
   public:
-    Types(const Symbols& symbols, Reporter& report);
+    Types(const Symbols& symbols, ModelTypes& model, Reporter& report);
 
     /// The referenced type; none when the type has findings.
     /// None, with a finding at `element`, when the reference is dangling.

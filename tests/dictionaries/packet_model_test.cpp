@@ -105,8 +105,8 @@ TEST_CASE("a condition of a kind that is not supported is named with its line, w
         REQUIRE(read.findings.size() == 1);
         CHECK(read.has(2, words));
     };
-    found("<CustomAlgorithm/>", "", "CustomAlgorithm is not supported as a condition: it is taken as false");
-    found("", "<CustomAlgorithm/>", "CustomAlgorithm is not supported as a condition: it is taken as false");
+    found("<CustomAlgorithm/>", "", "CustomAlgorithm is not supported as a condition: whether it holds is not known");
+    found("", "<CustomAlgorithm/>", "CustomAlgorithm is not supported as a condition: whether it holds is not known");
     found("", "<NextContainer containerRef='A'/>", "NextContainer is not supported as a condition");
     found("", "<Comparison parameterRef='p' value='1'/><NextContainer containerRef='A'/>",
           "NextContainer beside another condition is not supported: it is left out");

@@ -199,6 +199,35 @@ TEST_CASE("a reference is looked for in its own SpaceSystem, then outwards", "[d
     CHECK(packet.octets == 20);
 }
 
+TEST_CASE("a flag that stands behind the value that it makes defined is refused: packets are read front to back",
+          "[dictionary][xtce]") {
+    const auto findings_of = [](const char* entries) {
+        const std::string text = std::string{R"(<SpaceSystem name="S"><TelemetryMetaData><ParameterTypeSet>
+<IntegerParameterType name="u128"><UnitSet><Unit>1</Unit></UnitSet><IntegerDataEncoding sizeInBits="64"/></IntegerParameterType>
+<IntegerParameterType name="u8"><UnitSet><Unit>1</Unit></UnitSet><IntegerDataEncoding sizeInBits="8"/></IntegerParameterType>
+<IntegerParameterType name="u1"><UnitSet><Unit>1</Unit></UnitSet><IntegerDataEncoding sizeInBits="1"/></IntegerParameterType>
+</ParameterTypeSet><ParameterSet><Parameter name="apid" parameterTypeRef="u128"/><Parameter name="rest" parameterTypeRef="u128"/>
+<Parameter name="known" parameterTypeRef="u1"/><Parameter name="x" parameterTypeRef="u8"><ParameterProperties><ValidityCondition>
+<Comparison parameterRef="known" value="1"/></ValidityCondition></ParameterProperties></Parameter></ParameterSet><ContainerSet>
+<SequenceContainer name="Base" abstract="true"><EntryList><ParameterRefEntry parameterRef="apid"/><ParameterRefEntry parameterRef="rest"/></EntryList></SequenceContainer>
+<SequenceContainer name="P"><EntryList>)"} +
+                                 entries +
+                                 R"(</EntryList><BaseContainer containerRef="Base"><RestrictionCriteria>
+<Comparison parameterRef="apid" value="7"/></RestrictionCriteria></BaseContainer></SequenceContainer>
+</ContainerSet></TelemetryMetaData></SpaceSystem>)";
+        std::vector<dictionary::Finding> all;
+        dictionary::Findings findings{"f.xml", all};
+        dictionary::xtce::read_space_system(text, findings);
+        return all;
+    };
+    constexpr const char *flag = R"(<ParameterRefEntry parameterRef="known"/>)",
+                         *value = R"(<ParameterRefEntry parameterRef="x"/>)";
+    CHECK(findings_of((std::string{flag} + value).c_str()).empty());
+    const auto found = findings_of((std::string{value} + flag).c_str());
+    REQUIRE(found.size() == 1);
+    CHECK(found.front().text() == "f.xml:9: 'x' is valid by 'known', which stands behind it");
+}
+
 TEST_CASE("containers based on each other, and SpaceSystems without end, are found and end", "[dictionary][xtce]") {
     std::vector<dictionary::Finding> all;
     dictionary::Findings findings{"f.xml", all};

@@ -5,6 +5,7 @@
 #include "common/space_packet.hpp"
 #include "dictionaries/dictionary.hpp"
 #include "telemetry/station/received.hpp"
+#include "tests/support/packet_model_of.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 #include <cstdint>
@@ -75,6 +76,7 @@ inline dictionary::Dictionary small_dictionary() {
     Packet mortar{"PARACHUTE_DEPLOY", "", event_apid, mortar_event, tm_overhead_octets + 6, {}, {}, {}};
     mortar.fields = {{"event_id", whole(16), {}, data, {}}, {"speed_mps", real32("m/s"), {}, data + 16, {}}};
     d.packets = {navigation, status, fired, mortar};
+    d.model = tests::packet_model_of(d);
     d.events = {{mortar_event, "PARACHUTE_DEPLOY", EventLevel::activity_hi, "mortar fired at {speed_mps} m/s", 3}};
     d.anchors = {{AnchorId{0}, "root", {}, {}, ""}, {AnchorId{1}, "entry", AnchorId{0}, {}, ""}};
     TimelineRow vent;

@@ -332,6 +332,7 @@ TEST_CASE("a flag of the archive that falls after the touchdown contradicts it, 
     dictionary.channels[altitude.value].name = server::touchdown_flag;
     for (auto& field : dictionary.packets[0].fields)
         if (field.channel == altitude) field.name = server::touchdown_flag;
+    dictionary.model = tests::packet_model_of(dictionary);
     auto archive = archive::Archive::open(folder / "a.db");
     REQUIRE(archive);
     pipeline::Pipeline pipeline{*archive, dictionary};

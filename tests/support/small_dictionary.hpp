@@ -4,6 +4,7 @@
 #include "common/bytes.hpp"
 #include "common/space_packet.hpp"
 #include "dictionaries/dictionary.hpp"
+#include "tests/support/packet_model_of.hpp"
 
 #include <bit>
 #include <cstdint>
@@ -209,6 +210,7 @@ inline dictionary::Dictionary small_dictionary() {
     dictionary.mission = "small";
     dictionary.id = 0x1234;
     add_packets(dictionary);
+    dictionary.model = packet_model_of(dictionary);
     add_commands(dictionary);
     dictionary.timeline.resize(3);
     dictionary.timeline[2].name = "coolant_vent";

@@ -177,6 +177,67 @@ TEST_CASE("what no container describes, or more than one, is not decoded further
     CHECK_THAT(contents.problem, Catch::StartsWith("16 bits are behind the last entry of Root"));
 }
 
+TEST_CASE("nothing is decided by a condition that is not understood: no entry, no container, no calibration, no size",
+          "[telemetry][xtce][R54]") {
+    const std::string two_parameters = "<BooleanExpression><Condition><ParameterInstanceRef parameterRef='a'/>"
+                                       "<ComparisonOperator>==</ComparisonOperator><ParameterInstanceRef "
+                                       "parameterRef='b'/></Condition></BooleanExpression>";
+    const auto with = [&](const std::string& first, const char* joined) {
+        const std::string name = joined;
+        return "<BooleanExpression><" + name + ">" + first + two_parameters.substr(19, two_parameters.size() - 39) +
+               "</" + name + "></BooleanExpression>";
+    };
+    const auto is = [](const char* value) {
+        return "<Condition><ParameterInstanceRef parameterRef='a'/><ComparisonOperator>==</ComparisonOperator><Value>" +
+               std::string{value} + "</Value></Condition>";
+    };
+    const std::vector<std::pair<std::string, std::string>> parameters{{"a", "u8"}, {"b", "u8"},      {"c", "u8"},
+                                                                      {"d", "u8"}, {"k", "doubled"}, {"n", "sized"}};
+    const std::string types =
+        "<FloatParameterType name='doubled'><IntegerDataEncoding "
+        "sizeInBits='8'><DefaultCalibrator><PolynomialCalibrator>"
+        "<Term coefficient='2' exponent='1'/></PolynomialCalibrator></DefaultCalibrator><ContextCalibratorList>"
+        "<ContextCalibrator><ContextMatch>" +
+        with(is("9"), "ORedConditions") +
+        "</ContextMatch><Calibrator><PolynomialCalibrator><Term coefficient='100' exponent='0'/></PolynomialCalibrator>"
+        "</Calibrator></ContextCalibrator></ContextCalibratorList></IntegerDataEncoding></FloatParameterType>"
+        "<BinaryParameterType name='sized'><BinaryDataEncoding><SizeInBits><DiscreteLookupList><DiscreteLookup "
+        "value='8'>" +
+        two_parameters +
+        "</DiscreteLookup><DiscreteLookup value='16'><Comparison parameterRef='a' value='1'/></DiscreteLookup>"
+        "</DiscreteLookupList></SizeInBits></BinaryDataEncoding></BinaryParameterType>";
+    const auto included = [&](const std::string& condition) {
+        return Mission{types, parameters,
+                       container("P", entry("a") + entry("b") +
+                                          entry("c", "<IncludeCondition>" + condition + "</IncludeCondition>") +
+                                          entry("d"))};
+    };
+    const auto entries = included(two_parameters).decode("07 07 08 09");
+    CHECK(text(entries) == "a=7|7 b=7|7");
+    CHECK_THAT(entries.problem, Catch::StartsWith("an entry of P has a condition that is not understood"));
+    // What the other parts decide is decided.
+    CHECK(text(included(with(is("7"), "ORedConditions")).decode("07 07 08 09")) == "a=7|7 b=7|7 c=8|8 d=9|9");
+    CHECK(text(included(with(is("6"), "ANDedConditions")).decode("07 07 09")) == "a=7|7 b=7|7 d=9|9");
+    CHECK_FALSE(included(with(is("6"), "ORedConditions")).decode("07 07 09").problem.empty());
+
+    const Mission calibrated{types, parameters, container("P", entry("a") + entry("b") + entry("k"))};
+    CHECK(text(calibrated.decode("07 07 05")) == "a=7|7 b=7|7 k=5|undefined");
+    CHECK(text(calibrated.decode("09 07 05")) == "a=9|9 b=7|7 k=5|100");
+
+    const Mission sized{types, parameters, container("P", entry("a") + entry("b") + entry("n"))};
+    CHECK_THAT(sized.decode("01 07 05 05").problem, Catch::StartsWith("the size of n cannot be known"));
+
+    const Mission derived{types, parameters,
+                          container("Root", entry("a") + entry("b")) +
+                              container("Strange", entry("c"), base("Root", two_parameters)) +
+                              container("One", entry("d"), base("Root", when("a", "==", "1"))) +
+                              container("Rest", entry("c"), "<BaseContainer containerRef='Root'/>")};
+    CHECK(text(derived.decode("01 07 08")) == "a=1|1 b=7|7 d=8|8");
+    const auto rest = derived.decode("02 02 08");
+    CHECK(text(rest) == "a=2|2 b=2|2");
+    CHECK_THAT(rest.problem, Catch::StartsWith("whether Strange describes it is not known"));
+}
+
 TEST_CASE("where several containers can begin a packet, the user says which", "[telemetry][R55]") {
     Mission mission{"", {{"a", "u8"}, {"b", "u16"}}, container("P", entry("a")) + container("Q", entry("b"))};
     CHECK(mission.decode("0102").problem ==

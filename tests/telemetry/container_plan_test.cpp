@@ -148,4 +148,84 @@ TEST_CASE(
     CHECK(seen["left"] > 500);
 }
 
+TEST_CASE(
+    "flags that make values defined, octets, entries that step back, and many containers told apart by one number are "
+    "compiled and read alike",
+    "[telemetry][xtce][R54]") {
+    std::string containers;
+    constexpr int kinds = 40;
+    for (int i = 0; i < kinds; ++i)
+        containers += "<SequenceContainer name='K" + std::to_string(i) +
+                      "'><EntryList><ParameterRefEntry parameterRef='known'/><ParameterRefEntry parameterRef='mode'/>"
+                      "<ParameterRefEntry parameterRef='x'/><ParameterRefEntry parameterRef='blob'/><ParameterRefEntry "
+                      "parameterRef='y'/><ParameterRefEntry parameterRef='back'><LocationInContainerInBits><FixedValue>"
+                      "-40</FixedValue></LocationInContainerInBits></ParameterRefEntry></EntryList><BaseContainer "
+                      "containerRef='Header'><RestrictionCriteria><ComparisonList><Comparison parameterRef='mark' "
+                      "comparisonOperator='&lt;' value='200'/><Comparison parameterRef='apid' value='" +
+                      std::to_string(3 * i) +
+                      "'/></ComparisonList></RestrictionCriteria></BaseContainer></SequenceContainer>";
+    const std::string text =
+        "<SpaceSystem name='S'><TelemetryMetaData><ParameterTypeSet>"
+        "<IntegerParameterType name='u8'><IntegerDataEncoding sizeInBits='8'/></IntegerParameterType>"
+        "<BooleanParameterType name='flag'><IntegerDataEncoding sizeInBits='1'/></BooleanParameterType>"
+        "<EnumeratedParameterType name='mode'><IntegerDataEncoding sizeInBits='7'/><EnumerationList><Enumeration "
+        "value='2' label='ON'/></EnumerationList></EnumeratedParameterType>"
+        "<FloatParameterType name='f32'><FloatDataEncoding sizeInBits='32'/></FloatParameterType>"
+        "<BinaryParameterType name='blob'><BinaryDataEncoding><SizeInBits><FixedValue>24</FixedValue></SizeInBits>"
+        "</BinaryDataEncoding></BinaryParameterType></ParameterTypeSet><ParameterSet>"
+        "<Parameter name='mark' parameterTypeRef='u8'/><Parameter name='apid' parameterTypeRef='u8'/><Parameter "
+        "name='known' parameterTypeRef='flag'/><Parameter name='mode' parameterTypeRef='mode'/><Parameter name='blob' "
+        "parameterTypeRef='blob'/><Parameter name='x' parameterTypeRef='f32'><ParameterProperties><ValidityCondition>"
+        "<ComparisonList><Comparison parameterRef='known' value='1' useCalibratedValue='false'/><Comparison "
+        "parameterRef='mode' comparisonOperator='!=' value='2'/></ComparisonList></ValidityCondition>"
+        "</ParameterProperties></Parameter><Parameter name='y' parameterTypeRef='u8'/><Parameter name='back' "
+        "parameterTypeRef='u8'/></ParameterSet><ContainerSet>"
+        "<SequenceContainer name='Header' abstract='true'><EntryList><ParameterRefEntry parameterRef='mark'/>"
+        "<ParameterRefEntry parameterRef='apid'/></EntryList></SequenceContainer>" +
+        containers + "</ContainerSet></TelemetryMetaData></SpaceSystem>";
+    std::vector<dictionary::Finding> findings;
+    dictionary::Findings into{"m.xml", findings};
+    auto model = dictionary::xtce::read_packet_model(text, into);
+    REQUIRE(model);
+    REQUIRE(findings.empty());
+    model->root = 0;
+    const std::vector<std::string> names{"mark", "apid", "known", "mode", "x", "y", "back"};
+    const ContainerPlan plan{*model, std::vector<std::size_t>(model->containers.size(), names.size()),
+                             [&](std::size_t, std::size_t, const std::string& name) {
+                                 const auto found = std::ranges::find(names, name);
+                                 return std::optional{static_cast<std::size_t>(found - names.begin())};
+                             },
+                             [](std::size_t, std::size_t) { return false; }};
+    CHECK(plan.compiled() == kinds);
+    const ContainerDecoder decoder{*model};
+    std::mt19937 random{41};
+    int decoded_packets = 0, defined = 0, left = 0;
+    for (int round = 0; round < 20'000; ++round) {
+        auto packet = test::random_octets(random, random() % 8 == 0 ? random() % 12 : 11);
+        if (packet.size() > 2 && random() % 4 != 0) packet[1] = static_cast<std::uint8_t>(random() % 3 == 0 ? 130 : 30);
+        if (packet.size() > 2 && random() % 2 != 0) packet[2] = random() % 2 == 0 ? 0x82 : 0x83;
+        dictionary::Decoded decoded;
+        const auto contents = decoder.decode(packet);
+        if (!plan.decode(packet, decoded)) {
+            CHECK_FALSE(contents.problem.empty());
+            ++left;
+            continue;
+        }
+        ++decoded_packets;
+        REQUIRE(contents.problem.empty());
+        REQUIRE(decoded.packet == contents.container_index);
+        for (const DecodedValue& value : contents.values) {
+            if (value.name == "blob") continue;
+            INFO(value.name);
+            const auto field = static_cast<std::size_t>(std::ranges::find(names, value.name) - names.begin());
+            REQUIRE(decoded.value[field] == number_of(value));
+            defined += value.name == "x" && decoded.value[field] ? 1 : 0;
+        }
+    }
+    CHECK(decoded_packets > 2'000);
+    CHECK(defined > 200);
+    CHECK(decoded_packets - defined > 200);
+    CHECK(left > 2'000);
+}
+
 }  // namespace telemetry_container_plan_test

@@ -63,6 +63,7 @@ TEST_CASE("a tone on a carrier that drifts is decoded from its samples and dated
     CHECK(std::ranges::max_element(*tone.spectrum) - tone.spectrum->begin() == 42 / 2);
     CHECK(tone.likelihood > 0.9);
     CHECK(static_cast<double>(tone.start.microseconds) == Approx(16.0e6).margin(0.3e6));
+    CHECK(tone.end.microseconds - tone.start.microseconds == 10'000'000);
     CHECK(tone.c_n0_dbhz == Approx(25.0).margin(1.5));
     CHECK(tone.doppler_hz == Approx(30.0 * 20.0).margin(10.0));  // in the middle of the symbol
 }
@@ -186,6 +187,22 @@ TEST_CASE("when the transmitter goes off what waits is decided at once", "[tones
     REQUIRE(sky.received.tones.size() == 1);
     CHECK(sky.received.tones.front().tone == ToneId{42});
     CHECK_FALSE(sky.received.links.back().up);
+}
+
+TEST_CASE("a symbol ends ten seconds after it began, whether the carrier was cut short or went on",
+          "[tones][station]") {
+    for (const double off_s : {21.0, 25.25, 45.0}) {
+        CAPTURE(off_s);
+        Sky sky{28.0};
+        sky.fly(off_s, true);
+        sky.fly(off_s + 30.0, false);
+        sky.station.receive({}, sky.received);
+        REQUIRE(sky.received.tones.size() == 1);
+        const ReceivedTone& tone = sky.received.tones.front();
+        CHECK(tone.tone == ToneId{42});
+        CHECK(static_cast<double>(tone.start.microseconds) == Approx(16.0e6).margin(0.5e6));
+        CHECK(tone.end.microseconds - tone.start.microseconds == 10'000'000);
+    }
 }
 
 }  // namespace telemetry_tone_station_test

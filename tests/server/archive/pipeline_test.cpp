@@ -476,6 +476,7 @@ TEST_CASE("an event that tells the phase is believed at once: what the new phase
     dictionary::Packet changed{"EDL_PHASE_CHANGED", "", event_apid, EvrId{8}, tm_overhead_octets + 3, {}, {}, {}};
     changed.fields = {{"event_id", whole(16), {}, data, {}}, {"phase", of_phase, {}, data + 16, {}}};
     dictionary.packets.push_back(changed);
+    dictionary.model = tests::packet_model_of(dictionary);
     auto& row = dictionary.telemetry_plan.emplace_back();
     row.plan = "all";
     row.packet = "Navigation";
