@@ -237,6 +237,7 @@ TEST_CASE("the touchdown of a past is what was received by then, and its figures
     dictionary.channels[speed.value].name = "descent_rate_mps";
     for (auto& field : dictionary.packets[0].fields)
         if (field.channel == speed) field.name = "descent_rate_mps";
+    dictionary.model = tests::packet_model_of(dictionary);
     auto archive = archive::Archive::open(folder / "a.db");
     REQUIRE(archive);
     pipeline::Pipeline pipeline{*archive, dictionary};
