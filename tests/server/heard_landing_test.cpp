@@ -129,21 +129,27 @@ struct Features {
     std::map<std::string, double> true_s;
     std::size_t told = 0;
 };
-Features features_of(const simulation::Scenario& scenario, std::uint64_t seed) {
-    Rehearsal rehearsal{scenario, seed, 0, tests::shipped_dictionary()};
+constexpr double drag_mps2 = 0.02 * 9.80665;  ///< from there on drag is there
+
+/// @param until_e_s  what comes later is not flown
+Features features_of(const simulation::Scenario& scenario, std::uint64_t seed, std::uint64_t case_number = 0,
+                     double until_e_s = 1e9) {
+    Rehearsal rehearsal{scenario, seed, case_number, tests::shipped_dictionary()};
     const auto& landing = rehearsal.landing();
     const double to_entry_s =
         static_cast<double>(landing.correlation().scet_of(scenario.entry_sclk).microseconds) * 1e-6 +
         landing.light_time_s();
     const auto e_s = [&](Ert ert) { return static_cast<double>(ert.microseconds) * 1e-6 - to_entry_s; };
     Features found;
-    while (!rehearsal.finished()) {
+    while (!rehearsal.finished() && rehearsal.clocks().e_s() < until_e_s) {
         for (const auto& seen : rehearsal.step().seen) {
             found.told_seen_s[seen.feature] = {e_s(seen.ert), e_s(seen.at)};
             ++found.told;
             CHECK(std::abs(seen.evidence_hz) > 4.0 * seen.sigma_hz);
         }
         for (const auto& event : landing.report().events) found.true_s[event.name] = event.e_s;
+        if (const auto truth = landing.truth(); truth.e_s > 0.0 && truth.sensed_mps2 > drag_mps2)
+            found.true_s.try_emplace("drag", truth.e_s);
     }
     return found;
 }
@@ -182,7 +188,7 @@ void check_features(const Features& found, double within_s = 3.5) {
 }  // namespace
 
 TEST_CASE("over landings that differ ground names each silence as the simulation has it, without being told",
-          "[station][silence]") {
+          "[station][silence][R53]") {
     check_silences("nominal_auto", 1);
     check_silences("relay_passes", 3);
     check_silences("od137", 1);
@@ -200,7 +206,7 @@ TEST_CASE("over more landings, with a reset and with other seeds, ground names e
 // figures are those of docs/tones.md.
 TEST_CASE("over 500 dispersed landings each feature of the flight is seen by Doppler, in time and never too early",
           "[.long][station][R53]") {
-    constexpr double c_n0_dbhz = 22.0, earth_sets_s = 296.0, light_mps = 299'792'458.0, drag_mps2 = 0.02 * 9.80665;
+    constexpr double c_n0_dbhz = 22.0, earth_sets_s = 296.0, light_mps = 299'792'458.0;
     constexpr double in_time_s = 3.0, braking_from_s = 60.0, braking_to_s = 145.0;
     constexpr std::uint64_t seed = 7;
     constexpr std::size_t count = 6, first_reversal = 3;
@@ -442,6 +448,70 @@ TEST_CASE("features are seen by Doppler over landings that differ, and by the re
     auto scenario = test::shipped_scenario("nominal_auto");
     scenario.radio.tones_from_samples = true;
     check_features(features_of(scenario, 1), 10.0);  // after the hand-over its windows are 5 s
+}
+
+// The whole landing with its antennas and their hand-over, its blackout and Earth's set, tones from samples. The
+// figures are those of docs/tones.md.
+TEST_CASE("over twenty dispersed landings from samples at 24 dB-Hz features are seen by Doppler, and none that is not "
+          "there",
+          "[.long][station][tones][R54]") {
+    constexpr std::uint64_t seed = 7, landings = 20;
+    constexpr double in_time_s = 3.0, end_e_s = 310.0;
+    auto scenario = test::shipped_scenario("nominal_auto");
+    scenario.start_before_entry_s = 900.0;
+    scenario.commands[0].send_before_entry_s = 895.0;
+    scenario.commands[1].send_before_entry_s = 885.0;
+    scenario.radio.tones_from_samples = true;
+    scenario.radio.x_band_c_n0_dbhz = 24.0;
+    using enum telemetry::SeenByDoppler::Feature;
+    // When the parachute opens the antennas have just been handed over, and the receiver may be on its longest window.
+    struct Expected {
+        telemetry::SeenByDoppler::Feature feature;
+        const char* event;
+        int missed_most;
+        double latest_s;
+    };
+    constexpr std::array<Expected, 6> names{{{entry, "drag", 0, in_time_s},
+                                             {first_reversal, "bank_reversal_1", 0, in_time_s},
+                                             {second_reversal, "bank_reversal_2", 0, in_time_s},
+                                             {third_reversal, "bank_reversal_3", 0, in_time_s},
+                                             {parachute, "parachute_deploy", 2, 10.0},
+                                             {heatshield, "heatshield_separation", 6, in_time_s}}};
+    std::array<std::vector<double>, names.size()> late_s;
+    std::array<int, names.size()> there{};
+    int untrue = 0, too_early = 0;
+    for (std::uint64_t landing = 1; landing <= landings; ++landing) {
+        CAPTURE(landing);
+        const Features found = features_of(scenario, seed, landing, end_e_s);
+        CHECK(found.told == found.told_seen_s.size());
+        for (std::size_t i = 0; i < names.size(); ++i) {
+            CAPTURE(names[i].event);
+            const auto true_s = found.true_s.find(names[i].event);
+            const auto told = found.told_seen_s.find(names[i].feature);
+            there[i] += true_s != found.true_s.end() ? 1 : 0;
+            if (told == found.told_seen_s.end()) continue;
+            if (true_s == found.true_s.end()) {
+                ++untrue;
+                continue;
+            }
+            const bool reversal = i >= 1 && i <= 3;
+            too_early += told->second.second <= true_s->second - (reversal ? turning_s : 0.0) ? 1 : 0;
+            late_s[i].push_back(told->second.first - true_s->second);
+        }
+    }
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        std::ranges::sort(late_s[i]);
+        const auto within = [&](double most_s) {
+            return std::ranges::count_if(late_s[i], [&](double each) { return each <= most_s; });
+        };
+        std::printf("%s: %zu told of %d; %.1f to %.1f s after it was there, %td within 3 s\n", names[i].event,
+                    late_s[i].size(), there[i], late_s[i].empty() ? 0.0 : late_s[i].front(),
+                    late_s[i].empty() ? 0.0 : late_s[i].back(), within(in_time_s));
+        CHECK(there[i] - static_cast<int>(late_s[i].size()) <= names[i].missed_most);
+        CHECK(within(names[i].latest_s) == std::ssize(late_s[i]));
+    }
+    std::printf("%d told that were not there, %d too early\n", untrue, too_early);
+    CHECK(untrue + too_early == 0);
 }
 
 }  // namespace server_heard_landing_test

@@ -107,7 +107,8 @@ TEST_CASE("a carrier that sinks to 13 dB-Hz is up, and its tones are decided or 
                                   [&](const auto& tone) { return std::abs(s_of(tone.start) - start_s) < 0.1; }));
 }
 
-TEST_CASE("a symbol heard for less than a quarter is erased, one heard for half is decided", "[simulation][tones]") {
+TEST_CASE("a symbol heard for less than a quarter is erased, one heard for half is decided",
+          "[simulation][tones][R53]") {
     const auto erased = hear({.until_s = 21.0, .up = [](double e_s) { return e_s < 12.0; }});
     REQUIRE(erased.tones.size() == 1);
     CHECK_FALSE(erased.tones[0].tone);

@@ -245,7 +245,7 @@ std::string ways_to_the_simulator(const std::vector<Include>& includes) {
 
 }  // namespace
 
-TEST_CASE("ground code reaches no header of the simulator, by whatever it includes", "[structure][invariant8]") {
+TEST_CASE("ground code reaches no header of the simulator, by whatever it includes", "[structure][invariant8][R53]") {
     auto includes = all_includes();
     CHECK(ways_to_the_simulator(includes) == "");
     for (const Include& include : includes) {
