@@ -11,9 +11,11 @@
 #include "tests/server/web_client.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <fmt/format.h>
 #include <fstream>
 #include <google/protobuf/descriptor.pb.h>
+#include <thread>
 
 namespace server_http_test {
 
@@ -186,7 +188,13 @@ TEST_CASE("every route answers what it can and refuses the rest by name", "[http
         {"POST", "/api/v1/runs/latest/commands", R"({"command":"NO_OP"})", 202, "\"accepted\":true"},
     };
     for (const auto& asked : table) {
-        const auto reply = web_request(port, asked.method, asked.target, asked.body);
+        auto reply = web_request(port, asked.method, asked.target, asked.body);
+        // A rehearsal at full pace fills the queue of a busy machine: the answer says to try again, and so it is done.
+        for (int again = 0; again < 100 && reply.status == 503 && reply.body.find("try again") != std::string::npos;
+             ++again) {
+            std::this_thread::sleep_for(std::chrono::milliseconds{100});
+            reply = web_request(port, asked.method, asked.target, asked.body);
+        }
         INFO(asked.method << ' ' << asked.target << ' ' << asked.body << " -> " << reply.body.substr(0, 300));
         CHECK(reply.status == asked.status);
         CHECK_THAT(reply.body, Catch::Contains(asked.says));
