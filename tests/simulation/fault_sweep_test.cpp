@@ -5,6 +5,7 @@
 #include "simulation/random.hpp"
 #include "telemetry/packet_stream.hpp"
 #include "tests/simulation/gale.hpp"
+#include "tests/simulation/judged.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/telecommands.hpp"
 
@@ -200,7 +201,7 @@ Flown with(Landing landing, Watch watch, const Drawn& drawn) {
         if (unit == Unit::a || drawn.both)
             landing.inject(DeviceFault{drawn.device, unit, drawn.kind, 0.0, drawn.length_s});
     while (landing.outcome() == Outcome::running) watch.step(landing, flown);
-    flown.judgement = judge(tests::gale_scenario().limits, figures_of(landing));
+    flown.judgement = tests::judged(landing);
     flown.reason = reason_of(landing, flown.judgement);
     return flown;
 }
@@ -234,7 +235,7 @@ bool is_told(const Flown& flown) {
                                evr::REPLY_CONTRADICTS::id,
                                evr::PYRO_CONTROLLER_REFUSED::id,
                                evr::PYRO_CONTROLLER_SILENT::id,
-                               evr::PYRO_NOT_FIRED::id,
+                               evr::PYRO_REFUSED::id,
                                evr::TIMEPOINT_REFUSED::id,
                                evr::TIMEPOINT_UNVERIFIED::id,
                                evr::TIMEPOINT_CONTRADICTED::id,

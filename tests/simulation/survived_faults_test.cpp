@@ -3,6 +3,7 @@
 #include "simulation/limits.hpp"
 #include "simulation/random.hpp"
 #include "tests/simulation/gale.hpp"
+#include "tests/simulation/judged.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/recorded_events.hpp"
 #include "tests/support/telecommands.hpp"
@@ -28,7 +29,7 @@ void command(Landing& landing) {
 
 Judgement flown_to_its_end(Landing& landing) {
     while (landing.outcome() == Outcome::running) landing.step();
-    return judge(tests::gale_scenario().limits, figures_of(landing));
+    return tests::judged(landing);
 }
 
 struct Silence {
@@ -116,7 +117,7 @@ void check_short_entry(double short_km, std::uint64_t seed) {
     while (landing.outcome() == Outcome::running)
         for (const TruthEvent& event : landing.step().events)
             if (event.name == "parachute_deploy") mortar_m = event.altitude_m;
-    const Judgement judgement = judge(tests::gale_scenario().limits, figures_of(landing));
+    const Judgement judgement = tests::judged(landing);
     INFO(reason_of(landing, judgement));
     REQUIRE(landing.parachute());
     INFO("mortar at " << mortar_m.value_or(0.0) << " m, Mach " << landing.parachute()->mach << ", "
