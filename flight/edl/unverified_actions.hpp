@@ -45,9 +45,9 @@ class UnverifiedActions {
     /// Takes a reply. True: it was that of an unverified action.
     bool on(const ActionReply& reply, ActionContext& context);
 
-    /// Hears the witnesses, once a cycle. The IMU is one only while it measures: what GNC reckons is no evidence, and of
-    /// a mortar in whose time it was silent nothing is said; nor of one before which as much was felt. A single
-    /// increment is no evidence either.
+    /// Hears the witnesses, once a cycle. The IMU is one only while it measures: what GNC reckons is no evidence. Of a
+    /// mortar in whose time it was silent, or before which as much was felt, nothing is said. A single increment is no
+    /// evidence either.
     void watch(const Parameters& parameters, const gnc::Output& gnc, double bridle_m, gnc::Configuration& configuration,
                Outbox& out);
 

@@ -42,8 +42,8 @@ class ForeignTrajectory {
     struct State {
         std::array<double, 3> p_MoB_M_m{}, v_MB_M_mps{};
     };
-    /// Reads an OEM or an SPK, told apart by their beginning. Fails when it is neither, or when none of its segments is of
-    /// a spacecraft about Mars in J2000 (EME2000, ICRF) or Mars's own frame; the message says which there are.
+    /// Reads an OEM or an SPK, told apart by their beginning. Fails when it is neither, or when none of its segments is
+    /// of a spacecraft about Mars in J2000 (EME2000, ICRF) or Mars's own frame; the message says which there are.
     static Result<ForeignTrajectory> read(std::span<const std::uint8_t> octets);
 
     /// None where no segment covers the instant.

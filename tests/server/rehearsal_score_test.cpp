@@ -116,16 +116,16 @@ TEST_CASE("an alarm counts to its first acknowledgement: growing worse is not an
                     limit(60.0, v1::Alarm::watch),
                     limit(61.0, v1::Alarm::none)};
     CHECK(texts(score(facts), "alarm") ==
-          Texts{"speed mps > 90 m/s; acknowledged 15.0 s later by Ann", "speed mps > 90 m/s; never acknowledged"});
+          Texts{"speed mps > 90 m/s; acknowledged 15 s later by Ann", "speed mps > 90 m/s; never acknowledged"});
     // One that nobody has looked at and that comes again is the same one still.
     facts.alarms = {limit(10.0, v1::Alarm::watch), limit(11.0, v1::Alarm::none), limit(20.0, v1::Alarm::watch),
                     acknowledged(30.0)};
-    CHECK(texts(score(facts), "alarm") == Texts{"speed mps > 90 m/s; acknowledged 20.0 s later by Ann"});
+    CHECK(texts(score(facts), "alarm") == Texts{"speed mps > 90 m/s; acknowledged 20 s later by Ann"});
     auto silent = item_at(5.0);
     silent.mutable_staleness()->set_packet("Navigation");
     silent.mutable_staleness()->set_missing(true);
     facts.alarms = {silent, acknowledged(8.0, "Navigation")};
-    CHECK(texts(score(facts), "alarm") == Texts{"navigation silent; acknowledged 3.0 s later by Ann"});
+    CHECK(texts(score(facts), "alarm") == Texts{"navigation silent; acknowledged 3 s later by Ann"});
 }
 
 TEST_CASE("the reaction to a fault is the first thing that people did from then on, never what they did before",
@@ -159,7 +159,7 @@ TEST_CASE("an outage of the station is felt at once, not a light time later", "[
     intervention.mutable_fault()->mutable_station_outage()->set_duration_s(20.0);
     facts.alarms = {acknowledged(15.0)};
     CHECK(texts(score(facts), "fault") ==
-          Texts{"the ground station brings nothing, for 20 s; 5.0 s later: Ann: acknowledge speed_mps"});
+          Texts{"the ground station brings nothing, for 20 s; 5 s later: Ann: acknowledge speed_mps"});
 }
 
 TEST_CASE("the score judges commands of people that were not cancelled, and not those of the scenario's script",

@@ -79,7 +79,7 @@ TEST_CASE("a touchdown of a mission without the rover's own IMU stays reported, 
 }
 
 TEST_CASE("a rover that moves by either measure begins the count of its rest anew", "[touchdown]") {
-    CHECK(still_step(heard_until(down_s + 5.0)).words() == "4.0 s of 10 s since E+7:11.0");
+    CHECK(still_step(heard_until(down_s + 5.0)).words() == "4 s of 10 s since E+7:11.0");
     const auto moved = [](double rate_rps, double force_mps2, double by_s) {
         auto facts = heard_until(down_s + 15.0);
         for (auto& told : facts.rover_imu)
@@ -89,9 +89,9 @@ TEST_CASE("a rover that moves by either measure begins the count of its rest ane
     const double weight = server::still_weight_mps2, within = server::still_weight_within_mps2;
     CHECK(moved(server::still_rate_max_rps, weight, 5.0).state() == Step::done);  // either bound is still
     CHECK(moved(0.0007, weight + 0.999 * within, 5.0).state() == Step::done);
-    CHECK(moved(1.001 * server::still_rate_max_rps, weight, 5.0).words() == "9.0 s of 10 s since E+7:16.0");
-    CHECK(moved(0.0007, weight + 1.001 * within, 5.0).words() == "9.0 s of 10 s since E+7:16.0");
-    CHECK(moved(0.0007, weight - 1.001 * within, 5.0).words() == "9.0 s of 10 s since E+7:16.0");
+    CHECK(moved(1.001 * server::still_rate_max_rps, weight, 5.0).words() == "9 s of 10 s since E+7:16.0");
+    CHECK(moved(0.0007, weight + 1.001 * within, 5.0).words() == "9 s of 10 s since E+7:16.0");
+    CHECK(moved(0.0007, weight - 1.001 * within, 5.0).words() == "9 s of 10 s since E+7:16.0");
     CHECK(moved(0.02, 3.9, 15.0).state() == Step::done);  // it had been still for its time before
     auto swings = heard_until(down_s + 30.0);
     for (auto& told : swings.rover_imu) told.rate_rps = 0.0122 * std::abs(std::cos(0.7 * told.sclk.seconds));  // 1°
@@ -148,17 +148,17 @@ TEST_CASE("UHF must come without a break: a gap or a silence begins the count an
     const auto uhf = [](const TouchdownFacts& facts) { return server::judge_touchdown(facts).steps(2); };
     // The first sample after the touchdown is a second after it.
     CHECK(uhf(heard_until(down_s + 10.0)).state() == Step::waiting);
-    CHECK(uhf(heard_until(down_s + 10.0)).words() == "9.0 s of 10 s since E+7:11.0");
+    CHECK(uhf(heard_until(down_s + 10.0)).words() == "9 s of 10 s since E+7:11.0");
     const auto done = uhf(heard_until(down_s + 11.0));
     CHECK(done.state() == Step::done);
     CHECK(done.sclk() == down_s + 11.0);
 
     auto gap = heard_until(down_s + 11.0);
     std::erase_if(gap.live, [](Sclk sclk) { return sclk.seconds > down_s + 4.0 && sclk.seconds < down_s + 8.0; });
-    CHECK(uhf(gap).words() == "3.0 s of 10 s since E+7:18.0");
+    CHECK(uhf(gap).words() == "3 s of 10 s since E+7:18.0");
     auto silent = heard_until(down_s + 11.0);
     silent.silences = {{Sclk{down_s + 4.2}, Sclk{down_s + 4.8}, "plasma blackout"}};
-    CHECK(uhf(silent).words() == "6.0 s of 10 s since E+7:15.0");
+    CHECK(uhf(silent).words() == "6 s of 10 s since E+7:15.0");
 }
 
 TEST_CASE("without UHF its step is not known, with the reason of the silence where there is one", "[touchdown]") {
@@ -237,7 +237,6 @@ TEST_CASE("the touchdown of a past is what was received by then, and its figures
     dictionary.channels[speed.value].name = "descent_rate_mps";
     for (auto& field : dictionary.packets[0].fields)
         if (field.channel == speed) field.name = "descent_rate_mps";
-    dictionary.model = tests::packet_model_of(dictionary);
     auto archive = archive::Archive::open(folder / "a.db");
     REQUIRE(archive);
     pipeline::Pipeline pipeline{*archive, dictionary};
@@ -289,7 +288,7 @@ struct Landed {
             taken = taken && pipeline.commit_if_full().ok();
         }
         REQUIRE((taken && pipeline.finish({}).ok()));
-        const auto reader = archive::Reader::open(folder / "a.db", dictionary);
+        auto reader = archive::Reader::open(folder / "a.db", dictionary);
         for (const bool recorded : {false, true}) {
             auto report = server::touchdown(*reader, archive::RunId{1}, dictionary, {}, {}, recorded);
             REQUIRE(report);
@@ -333,7 +332,6 @@ TEST_CASE("a flag of the archive that falls after the touchdown contradicts it, 
     dictionary.channels[altitude.value].name = server::touchdown_flag;
     for (auto& field : dictionary.packets[0].fields)
         if (field.channel == altitude) field.name = server::touchdown_flag;
-    dictionary.model = tests::packet_model_of(dictionary);
     auto archive = archive::Archive::open(folder / "a.db");
     REQUIRE(archive);
     pipeline::Pipeline pipeline{*archive, dictionary};

@@ -231,7 +231,7 @@ TEST_CASE(
     // What the rover's own IMU tells of it, without errors.
     CHECK(felt.on_stage_apart_mps2 < 1e-9);
     CHECK(felt.hanging_mps2.mean() == Approx(weight_mps2).epsilon(0.02));
-    CHECK(felt.hanging_rps.most > 0.002);
+    CHECK(felt.hanging_rps.most > 5.0 * mars_spin_rps);  // it swings a little
     CHECK(felt.hanging_rps.most < 0.2);
     CHECK(felt.standing_mps2.most == Approx(weight_mps2).margin(0.02));
     CHECK(felt.standing_mps2.least == Approx(felt.standing_mps2.most).epsilon(1e-3));

@@ -12,8 +12,8 @@
 // The part of the commanded thruster pulses that the IMU feels: 1 of thrusters that obey, 0 of those that do not.
 //
 //   felt part = Σ x·y / Σ x·x
-//   about z        x: the change of the rate that pulses should have made in a cycle; y: the measured one. Neither air nor
-//                  parachute pushes about the axis of symmetry
+//   about z        x: the change of the rate that pulses should have made in a cycle; y: the measured one. Neither
+//                  air nor parachute pushes about the axis of symmetry
 //   about x and y  the changes of both from one cycle to the next, because air and parachute swing the vehicle, but
 //                  slowly: a pulse begins and ends within a cycle or two
 //
