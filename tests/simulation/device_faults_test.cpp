@@ -106,11 +106,27 @@ TEST_CASE("a landing without faults has every reply in time, and no device modul
     const Landed landed = land({});
     CHECK(landed.judgement.verdict == Verdict::landed);
     CHECK(landed.not_verified().empty());
-    for (const EvrId id :
-         {flight::evr::REPLY_UNEXPECTED::id, flight::evr::DEVICE_REFUSED::id, flight::evr::PYRO_REFUSED::id,
-          flight::evr::PYRO_NOT_ARMED::id, flight::evr::PYRO_CONTROLLER_REFUSED::id,
-          flight::evr::PYRO_CONTROLLER_SILENT::id, flight::evr::REPLY_CONTRADICTS::id, flight::evr::TIMEPOINT_HELD::id,
-          flight::evr::IMU_SAMPLES_MISSING::id, flight::evr::RADAR_LOST::id, flight::evr::CRUISE_ATTITUDE_UNUSABLE::id})
+    for (const EvrId id : {flight::evr::REPLY_UNEXPECTED::id,
+                           flight::evr::DEVICE_REFUSED::id,
+                           flight::evr::PYRO_REFUSED::id,
+                           flight::evr::PYRO_NOT_ARMED::id,
+                           flight::evr::PYRO_CONTROLLER_REFUSED::id,
+                           flight::evr::PYRO_CONTROLLER_SILENT::id,
+                           flight::evr::REPLY_CONTRADICTS::id,
+                           flight::evr::TIMEPOINT_HELD::id,
+                           flight::evr::IMU_SAMPLES_MISSING::id,
+                           flight::evr::RADAR_LOST::id,
+                           flight::evr::CRUISE_ATTITUDE_UNUSABLE::id,
+                           flight::evr::IMU_SILENT::id,
+                           flight::evr::ATTITUDE_LOST::id,
+                           flight::evr::TIMEPOINT_CONTRADICTED::id,
+                           flight::evr::TIMEPOINT_WITNESSED::id,
+                           flight::evr::TIMEPOINT_FELT::id,
+                           flight::evr::PROPELLANT_LOW::id,
+                           flight::evr::THRUSTERS_NOT_FELT::id,
+                           flight::evr::THRUSTERS_FELT_AGAIN::id,
+                           flight::evr::ENGINES_SILENT::id,
+                           flight::evr::ENGINES_HEARD_AGAIN::id})
         CHECK(landed.count(id) == 0);
 }
 
