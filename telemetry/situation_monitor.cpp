@@ -33,10 +33,11 @@ constexpr std::array<std::string_view, 2> change_events{"TIMEPOINT_OFFSET_CHANGE
 struct Follower {
     std::string_view news, by;
 };
-constexpr std::array<Follower, 14> followers{{{"FAULT_PROTECTION_INHIBITS_EDL", "FAULT_PROTECTION_RELEASES_EDL"},
+constexpr std::array<Follower, 15> followers{{{"FAULT_PROTECTION_INHIBITS_EDL", "FAULT_PROTECTION_RELEASES_EDL"},
                                               {"TIMEPOINT_UNVERIFIED", "TIMEPOINT_VERIFIED_LATE"},
                                               {"TIMEPOINT_UNVERIFIED", "TIMEPOINT_FELT"},
                                               {"TIMEPOINT_UNVERIFIED", "TIMEPOINT_WITNESSED"},
+                                              {"TIMEPOINT_REFUSED", "TIMEPOINT_VERIFIED_LATE"},
                                               {"TIMEPOINT_REFUSED", "TIMEPOINT_FELT"},
                                               {"TIMEPOINT_REFUSED", "TIMEPOINT_WITNESSED"},
                                               {"THRUSTERS_NOT_FELT", "THRUSTERS_FELT_AGAIN"},
@@ -48,10 +49,11 @@ constexpr std::array<Follower, 14> followers{{{"FAULT_PROTECTION_INHIBITS_EDL", 
                                               {"fault_inhibit", "fault_inhibit_over"},
                                               {"check_failed", "computer_started"}}};
 /// Tones of what went wrong. They are news where telemetry does not tell the same with more words.
-constexpr std::array<std::string_view, 16> bad_tones{
-    "check_failed",    "fault_inhibit",  "command_refused",     "action_unverified", "action_refused", "action_held",
-    "recording_fault", "overrun",        "constraint_violated", "radar_lost",        "imu_silent",     "attitude_lost",
-    "propellant_low",  "pyro_not_fired", "thrusters_not_felt",  "engines_silent"};
+constexpr std::array<std::string_view, 17> bad_tones{
+    "check_failed",   "fault_inhibit",      "command_refused", "action_unverified",   "action_refused",
+    "action_held",    "recording_fault",    "overrun",         "constraint_violated", "radar_lost",
+    "imu_silent",     "attitude_lost",      "propellant_low",  "pyro_refused",        "thrusters_not_felt",
+    "engines_silent", "action_contradicted"};
 constexpr std::string_view fatal_tone = "check_failed";
 // Subjects.
 constexpr std::string_view landing = "landed", computer = "computer", station_fault = "station",

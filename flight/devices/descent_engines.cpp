@@ -2,11 +2,6 @@
 #include "flight/devices/descent_engines.hpp"
 
 namespace aeolis::flight {
-namespace {
-
-constexpr double bridle_runs_m = 0.05;  // chosen: well above sensor noise, 0.2 s of pay-out
-
-}  // namespace
 
 void DescentEngines::on(const RunEngines& command, Outbox&) {
     command_ = command.engines;
@@ -27,7 +22,7 @@ void DescentEngines::on(const EngineReply& reply, Outbox& out) {
 }
 
 void DescentEngines::on(const BridleReply& reply, Outbox& out) {
-    if (reply_due_ && reply.payed_out_m >= bridle_runs_m) {
+    if (reply_due_ && reply.payed_out_m >= build_parameters.bridle_runs_m) {
         reply_due_ = false;
         out.send(ModuleId::edl, ActionReply{ReplyKind::bridle, 0});
     }

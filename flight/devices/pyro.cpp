@@ -147,7 +147,7 @@ void PyroManager::end(PyroId pyro, Shot& shot, Outbox& out) {
             out.event(evr::PYRO_CONTROLLER_SILENT{.pyro = reported(pyro), .controller = reported(unit)});
     }
     if (!shot.fired && std::ranges::all_of(shot.controllers, &Controller::refuses))
-        out.event(evr::PYRO_NOT_FIRED{.pyro = reported(pyro)});
+        out.event(evr::PYRO_REFUSED{.pyro = reported(pyro)});
 }
 
 }  // namespace aeolis::flight

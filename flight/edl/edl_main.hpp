@@ -79,8 +79,8 @@ class EdlMain {
     /// State for another computer. Left out: a present fault, which is reported again, and the monitor.
     template <typename Exchange>
     void carry(Exchange& exchange) {
-        exchange(parameters_, table_, timeline_, change_guard_, configuration_, gnc_, peak_deceleration_, gnc_health_,
-                 mode_, phase_, bridle_m_, was_pre_edl_, was_late_cruise_);
+        exchange(parameters_, table_, timeline_, change_guard_, configuration_, unverified_, gnc_, peak_deceleration_,
+                 gnc_health_, mode_, phase_, bridle_m_, was_pre_edl_, was_late_cruise_);
     }
 
     const Timeline& timeline() const { return timeline_; }

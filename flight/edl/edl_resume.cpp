@@ -36,6 +36,7 @@ void EdlMain::on(const Resume& resume, Outbox& out) {
     const bool fits = StateFrame::of(state->header(), *this).octets().size() == state->octets().size();
     if (!fits || !state->restore(*this)) return out.event(evr::STATE_UNREADABLE{});
     revision_ = state->header().revision + 1;
+    unverified_.miss_some();
     fly_by_table(out);
     if (timeline_.begun()) out.send(ModuleId::units, EdlBegun{});
     if (resume.reason == ResumeReason::restart)

@@ -62,7 +62,7 @@ void GncHealth::watch_thrusters(const Parameters& parameters, const gnc::Output&
     out.send(ModuleId::mfsk, ToneRequest{tone::thrusters_not_felt, out.now()});
     explain_lost(Device::thrusters,
                  std::array{below(Quantity::thrusters_felt, felt, parameters.thrusters_felt_min),
-                            at_least(Quantity::cycles_true, thrusters_unfelt_, in_a_row)},
+                            at_least(Quantity::judgements_in_a_row, thrusters_unfelt_, in_a_row)},
                  out);
 }
 

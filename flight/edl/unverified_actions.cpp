@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 #include <utility>
 
 namespace aeolis::flight {
@@ -22,7 +23,7 @@ bool is_pyro(const Firing& firing) {
 
 void tell_refused(const Firing& firing, Outbox& out) {
     out.event(evr::TIMEPOINT_REFUSED{.timepoint = firing.timepoint.value});
-    out.send(ModuleId::mfsk, ToneRequest{is_pyro(firing) ? tone::pyro_not_fired : tone::action_refused, out.now()});
+    out.send(ModuleId::mfsk, ToneRequest{is_pyro(firing) ? tone::pyro_refused : tone::action_refused, out.now()});
 }
 
 /// What was taken as done after the time-out no longer is.
@@ -77,10 +78,18 @@ UnverifiedActions::By UnverifiedActions::witness_of(const Firing& firing) {
     case gnc::Fact::none:
     case gnc::Fact::pyros_armed:
     case gnc::Fact::pyros_safe:
+    case gnc::Fact::thrusters_on:
     case gnc::Fact::cruise_stage_gone:
     case gnc::Fact::bridle_cut: return By::nothing;
     }
     return By::nothing;
+}
+
+void UnverifiedActions::miss_some() {
+    for (Followed& followed : kept_) {
+        followed.unheard = true;
+        followed.cycles = 0;
+    }
 }
 
 void UnverifiedActions::add(const Firing& firing) {
@@ -89,34 +98,38 @@ void UnverifiedActions::add(const Firing& firing) {
     // What was verified only the IMU may contradict, and only where the sheet says so.
     if (firing.verdict == FiringVerdict::verified && row_of(firing).if_unverified != IfUnverified::done_unless_imu)
         by = By::nothing;
-    if (by == By::nothing && firing.verdict != FiringVerdict::unverified) return;
+    if (by == By::nothing && firing.verdict == FiringVerdict::verified) return;
     if (kept_.full()) kept_.erase_at(0);
     kept_.push_back({.firing = firing, .by = by, .before_mps2 = felt_before_mps2_});
 }
 
 bool UnverifiedActions::on(const ActionReply& reply, ActionContext& context) {
     if (reply.evidence == Evidence::none) return false;
-    const auto found = std::ranges::find_if(kept_, [&](const Followed& followed) {
-        return followed.firing.verdict == FiringVerdict::unverified && reply.answers(followed.firing.asked);
-    });
-    if (found == kept_.end()) return false;
-    const Firing& firing = found->firing;
-    const auto end = [&] { kept_.erase_at(static_cast<std::size_t>(found - kept_.begin())); };
+    // Of actions that asked for the same, it answers the newest.
+    std::size_t behind = kept_.size();
+    const auto is_answered = [&](const Firing& firing) {
+        return firing.verdict != FiringVerdict::verified && reply.answers(firing.asked);
+    };
+    while (behind > 0 && !is_answered(kept_[behind - 1].firing)) --behind;
+    if (behind == 0) return false;
+    Followed& followed = kept_[behind - 1];
+    const Firing& firing = followed.firing;
+    if (reply.evidence == Evidence::refused && firing.verdict == FiringVerdict::refused && !followed.borne_out)
+        return false;  // told already
     if (reply.evidence == Evidence::verified) {
         context.out().event(evr::TIMEPOINT_VERIFIED_LATE{.timepoint = firing.timepoint.value,
                                                          .reply_wait_s = context.now() - firing.triggered});
         context.configuration().learn(firing.fact, firing.triggered);
-        context.announce(row_of(firing));
-        end();
-    } else if (found->borne_out) {
+        if (!followed.borne_out) context.announce(row_of(firing));
+        kept_.erase_at(behind - 1);
+    } else if (followed.borne_out) {
         context.out().event(evr::REPLY_CONTRADICTS{.device = static_cast<DeviceName>(Device::pyro)});
-        end();
+        kept_.erase_at(behind - 1);
     } else {
         tell_refused(firing, context.out());
         explain_late_refusal(firing, context.out());
         context.configuration().forget(firing.fact);
-        if (found->by == By::nothing) return end(), true;
-        found->firing.verdict = FiringVerdict::refused;  // a witness may still know better
+        followed.firing.verdict = FiringVerdict::refused;  // a witness or a later reply may still know better
     }
     return true;
 }
@@ -153,8 +166,7 @@ void UnverifiedActions::bear_out(Followed& followed, std::span<const gnc::Condit
                                                       : by == By::engines ? Witness::engines
                                                       : by == By::bridle  ? Witness::bridle
                                                                           : Witness::imu});
-    out.record(explanation(Decision::timepoint, ExplanationVerdict::decided, firing.timepoint.value, conditions));
-    if (firing.verdict != FiringVerdict::refused) return;
+    out.record(explanation(Decision::timepoint, ExplanationVerdict::borne_out, firing.timepoint.value, conditions));
     configuration.learn(firing.fact, firing.triggered);
     ActionContext{out, configuration}.announce(row_of(firing));
 }
@@ -167,7 +179,7 @@ void UnverifiedActions::contradict(Followed& followed, std::span<const gnc::Cond
     if (firing.verdict == FiringVerdict::unverified) configuration.forget(firing.fact);
     out.event(
         evr::TIMEPOINT_CONTRADICTED{.timepoint = firing.timepoint.value, .felt_mps2 = single(followed.felt_mps2)});
-    out.send(ModuleId::mfsk, ToneRequest{tone::pyro_not_fired, out.now()});
+    out.send(ModuleId::mfsk, ToneRequest{tone::action_contradicted, out.now()});
     out.record(explanation(Decision::timepoint, ExplanationVerdict::contradicted, firing.timepoint.value, conditions));
 }
 
@@ -189,8 +201,9 @@ void UnverifiedActions::watch(const Parameters& parameters, const gnc::Output& g
             at_least(Quantity::cycles_true, followed.cycles, by_imu ? std::floor(parameters.action_felt_cycles) : 1.0);
         const auto waited =
             at_least(Quantity::elapsed_s, out.now() - followed.firing.triggered, parameters.parachute_felt_within_s);
-        if (lasts.holds)
-            bear_out(followed, std::array{*told, lasts}, configuration, out);
+        const std::array conditions{*told, lasts};
+        if (lasts.holds)  // a witness that is believed at once has no cycles to count
+            bear_out(followed, std::span{conditions}.first(by_imu ? 2 : 1), configuration, out);
         else if (followed.by == By::imu_load && waited.holds && followed.cycles == 0)
             contradict(followed, std::array{*told, lasts, waited}, configuration, out);
     }

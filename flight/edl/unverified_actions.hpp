@@ -6,6 +6,8 @@
 #include "flight/kernel/outbox.hpp"
 #include "flight/timeline/timeline.hpp"
 
+#include <algorithm>
+#include <array>
 #include <optional>
 #include <span>
 
@@ -15,14 +17,16 @@ namespace aeolis::flight {
 /// reply. R50
 ///
 /// In       firings, replies that no timepoint awaits, GNC's output, the bridle's length
-/// Out      a late reply verifies the action and announces it (TIMEPOINT_VERIFIED_LATE), or refuses it
+/// Out      a late reply verifies the action (TIMEPOINT_VERIFIED_LATE), also one that was refused, or refuses it
 ///          (TIMEPOINT_REFUSED). A witness bears out an action that was not verified, also one that was refused: the
-///          IMU a mortar (TIMEPOINT_FELT), others as below (TIMEPOINT_WITNESSED). The IMU contradicts a mortar that was
+///          IMU a mortar (TIMEPOINT_FELT), others as below (TIMEPOINT_WITNESSED). Whichever comes first announces the
+///          action; the other announces nothing more. The IMU contradicts a mortar that was
 ///          not refused (TIMEPOINT_CONTRADICTED). The configuration follows, but for a verified action that the IMU
 ///          contradicts: were it not done, nothing would be lost by flying on. A refusal after a witness has borne the
 ///          action out changes nothing (REPLY_CONTRADICTS)
 /// Memory   the last 16 actions
-/// Reset    not handed over: the other computer keeps the assumptions of the configuration
+/// Reset    handed over. What a witness said between the last state of the one computer and the first cycle of the
+///          other is not known: then the IMU still bears out, but contradicts nothing
 ///
 ///   action                 witness    bears it out by
 ///   parachute mortar       IMU        its load, which the air alone does not give
@@ -30,6 +34,9 @@ namespace aeolis::flight {
 ///   engine valves          engines    their controllers' report, which comes with open valves
 ///   backshell separation   IMU        free fall: the parachute carries no more
 ///   rover separation       bridle     being paid out
+///
+/// Source   ours: which devices tell of another's deed. Radar, engine controllers and bridle are assumed to be right;
+///          in the simulation they tell its truth, so that no landing has a wrong one
 class UnverifiedActions {
   public:
     /// Keeps a firing that something may still be learnt about.
@@ -44,6 +51,19 @@ class UnverifiedActions {
     void watch(const Parameters& parameters, const gnc::Output& gnc, double bridle_m, gnc::Configuration& configuration,
                Outbox& out);
 
+    /// Takes note that cycles were missed, by a computer that takes over.
+    void miss_some();
+
+    template <typename Exchange>
+    void carry(Exchange& exchange) {
+        auto count = static_cast<std::uint8_t>(kept_.size());
+        std::array<Followed, kept_max> all{};
+        std::ranges::copy(kept_, all.begin());
+        exchange(count, all, felt_before_mps2_);
+        kept_.clear();
+        for (std::size_t i = 0; i < std::min<std::size_t>(count, kept_max); ++i) kept_.push_back(all[i]);
+    }
+
   private:
     enum class By : std::uint8_t { nothing, imu_load, imu_free_fall, radar, engines, bridle };
     struct Followed {
@@ -53,7 +73,12 @@ class UnverifiedActions {
         double felt_mps2 = 0.0;    // most since
         std::uint16_t cycles = 0;  // in a row, in which the witness bore it out
         bool borne_out = false;
-        bool unheard = false;  // the IMU was silent meanwhile
+        bool unheard = false;  // the IMU was silent meanwhile, or nobody listened
+
+        template <typename Exchange>
+        void carry(Exchange& exchange) {
+            exchange(firing, by, before_mps2, felt_mps2, cycles, borne_out, unheard);
+        }
     };
     static By witness_of(const Firing& firing);
     static std::optional<gnc::Condition> said(const Followed& followed, const Parameters& parameters,

@@ -38,6 +38,7 @@ void Configuration::learn(Fact fact, Sclk since) {
     case Fact::none: return;
     case Fact::pyros_armed: pyros_armed = true; return;
     case Fact::pyros_safe: pyros_armed = false; return;
+    case Fact::thrusters_on: thrusters_on_time = thrusters_on_time.value_or(since); return;
     case Fact::cruise_stage_gone: cruise_stage_gone = true; return;
     case Fact::parachute_out: return set(parachute_out, parachute_time, since);
     case Fact::heatshield_gone: return set(heatshield_gone, heatshield_time, since);
@@ -53,6 +54,7 @@ void Configuration::forget(Fact fact) {
     case Fact::none: return;
     case Fact::pyros_armed: pyros_armed = false; return;
     case Fact::pyros_safe: pyros_armed = true; return;
+    case Fact::thrusters_on: thrusters_on_time.reset(); return;
     case Fact::cruise_stage_gone: cruise_stage_gone = false; return;
     case Fact::parachute_out: return clear(parachute_out, parachute_time);
     case Fact::heatshield_gone: return clear(heatshield_gone, heatshield_time);
@@ -514,11 +516,9 @@ void EdlGnc::watch_devices(const DeviceInputs& in, const Configuration& configur
     const bool awaited = configuration.engines_primed && !configuration.engines_off && !out.engines_heard;
     engines_silent_s_ = awaited ? engines_silent_s_ + cycle_s : 0.0;
     out.engines_silent_s = engines_silent_s_;
-    // Under the parachute they rest until the heatshield is gone, and are enabled a moment later.
-    const bool obey = mode() < Mode::parachute_descent ||
-                      (mode() == Mode::parachute_descent && configuration.heatshield_time &&
-                       since(*configuration.heatshield_time) >= parameters().thrusters_enabled_after_s);
-    if (!obey) return thruster_answer_.forget();
+    const bool should_obey = mode() <= Mode::parachute_descent && configuration.thrusters_on_time &&
+                             since(*configuration.thrusters_on_time) >= parameters().thrusters_judged_after_s;
+    if (!should_obey) return thruster_answer_.forget();
     out.thrusters_felt =
         thruster_answer_.feel(parameters(), out.imu_heard ? std::optional{strapdown_.rate_B_rps()} : std::nullopt);
     thruster_answer_.command(out.thrusters, surroundings_.inertia);

@@ -71,6 +71,7 @@ enum class Fact : std::uint8_t {
     backshell_gone,
     rover_separated,
     bridle_cut,
+    thrusters_on,
 };
 
 /// Configuration that GNC must fly: the timeline's progress, read by GNC each cycle. R26, R50
@@ -86,6 +87,7 @@ struct Configuration {
     std::optional<Sclk> parachute_time;
     bool heatshield_gone = false;
     std::optional<Sclk> heatshield_time;
+    std::optional<Sclk> thrusters_on_time;  ///< commanded on then, which was not refused, and not off since
     bool radar_on = false;
     bool engines_primed = false;
     bool backshell_gone = false;
@@ -109,9 +111,10 @@ struct Configuration {
     template <typename Exchange>
     void carry(Exchange& exchange) {
         exchange(enabled, pyros_armed, cruise_stage_gone, turning_to_entry, guidance_armed, sufr_allowed, parachute_out,
-                 parachute_time, heatshield_gone, heatshield_time, radar_on, engines_primed, backshell_gone,
-                 backshell_time, engines_ignited, sky_crane_started, rover_separated, rover_separation_time,
-                 touchdown_logic_ready, touchdown_declared, bridle_cut, flyaway_started, engines_off);
+                 parachute_time, heatshield_gone, heatshield_time, thrusters_on_time, radar_on, engines_primed,
+                 backshell_gone, backshell_time, engines_ignited, sky_crane_started, rover_separated,
+                 rover_separation_time, touchdown_logic_ready, touchdown_declared, bridle_cut, flyaway_started,
+                 engines_off);
     }
 };
 
@@ -249,7 +252,7 @@ class EdlGnc {
                  fired_, due_for_parachute_, low_for_backshell_, radar_first_, lateral_, bank_command_rad_,
                  bank_at_sufr_rad_, bank_allowed_rad_, predicted_range_m_, lift_to_drag_command_, mass_kg_,
                  thrust_command_N_, approach_, divert_, divert_from_M_, deceleration_, rate_control_, touchdown_logic_,
-                 last_radar_beams_, last_radar_altitude_m_);
+                 last_radar_beams_, last_radar_altitude_m_, engines_silent_s_);
     }
 
     Mode mode() const { return mode_machine_.state(); }

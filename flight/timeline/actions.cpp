@@ -23,6 +23,7 @@ void ActionContext::set_switch(SwitchId id, bool on) {
 void ActionContext::enable_thrusters(bool enabled) {
     command(ModuleId::thrusters, EnableThrusters{enabled});
     await({ReplyKind::thrusters, 0, Evidence::none, enabled});
+    if (enabled) fact_ = gnc::Fact::thrusters_on;
 }
 
 void ActionContext::pay_out_bridle() {

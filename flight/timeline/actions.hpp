@@ -120,7 +120,11 @@ inline constexpr std::array actions{
     // parachute
     Action{"fire_parachute_mortar", ModuleId::pyro,
            [](ActionContext& on) { on.fire(PyroId::parachute_mortar, gnc::Fact::parachute_out); }},
-    Action{"disable_thrusters", ModuleId::thrusters, [](ActionContext& on) { on.enable_thrusters(false); }},
+    Action{"disable_thrusters", ModuleId::thrusters,
+           [](ActionContext& on) {
+               on.configuration().thrusters_on_time.reset();  // from now on they need not obey, whatever is answered
+               on.enable_thrusters(false);
+           }},
     Action{"enable_thrusters", ModuleId::thrusters, [](ActionContext& on) { on.enable_thrusters(true); }},
     Action{"fire_heatshield_separation", ModuleId::pyro,
            [](ActionContext& on) { on.fire(PyroId::heatshield_separation, gnc::Fact::heatshield_gone); }},

@@ -23,6 +23,11 @@ struct Firing {
     FiringVerdict verdict{};
     ActionReply asked;  ///< the awaited reply
     gnc::Fact fact{};   ///< the action's change of the configuration
+
+    template <typename Exchange>
+    void carry(Exchange& exchange) {
+        exchange(timepoint, triggered, fired, verdict, asked, fact);
+    }
 };
 
 /// Firings of one pass: the timepoint whose reply was awaited, and those that fire after it.

@@ -35,7 +35,7 @@ struct Armed {
         for (const ActionReply& reply : recorder.sent<ActionReply>())
             if (reply.kind == ReplyKind::pyro) answers.push_back(reply);
         for (const Record& record : recorder.sent<Record>()) {
-            if (record.apid == evr::PYRO_NOT_FIRED::apid)
+            if (record.apid == evr::PYRO_REFUSED::apid)
                 ++events[static_cast<std::uint16_t>(read_bits(record.data, 0, 16))];
             if (record.apid == packet::PyroStatus::apid)
                 mortar_states.push_back(static_cast<PyroState>(record.data[static_cast<std::size_t>(mortar)]));
@@ -158,7 +158,7 @@ TEST_CASE("a controller that refuses costs nothing and is told once", "[devices]
     CHECK(f.turns_that_fire(2.0) == 0);
     CHECK(f.count<evr::PYRO_CONTROLLER_REFUSED>() == 1);
     CHECK(f.count<evr::PYRO_CONTROLLER_SILENT>() == 0);
-    CHECK(f.count<evr::PYRO_NOT_FIRED>() == 0);
+    CHECK(f.count<evr::PYRO_REFUSED>() == 0);
 }
 
 TEST_CASE("a controller that is silent costs nothing and is told once, at the time-out", "[devices][R50]") {
@@ -186,7 +186,7 @@ TEST_CASE("both controllers refuse: refused, tried again each eighth of a second
     }
     CHECK(tries == 8);  // at 0, 1/8 … 7/8 s
     CHECK(f.count<evr::PYRO_CONTROLLER_REFUSED>() == 2);
-    CHECK(f.count<evr::PYRO_NOT_FIRED>() == 1);
+    CHECK(f.count<evr::PYRO_REFUSED>() == 1);
     CHECK(f.count<evr::PYRO_CONTROLLER_SILENT>() == 0);
 }
 
@@ -198,7 +198,7 @@ TEST_CASE("commanded anew after a refusal it is open again, until the reply", "[
     f.say(PyroReply{mortar, false, Unit::b});
     CHECK(f.turns_that_fire(0.5) == 1);
     CHECK(f.answers == std::vector{answer(Evidence::refused), answer(Evidence::none)});
-    CHECK(f.count<evr::PYRO_NOT_FIRED>() == 0);  // nobody knows
+    CHECK(f.count<evr::PYRO_REFUSED>() == 0);  // nobody knows
 }
 
 TEST_CASE("one refuses and the other is silent: nobody knows, and no answer goes to the timeline", "[devices][R50]") {
@@ -210,7 +210,7 @@ TEST_CASE("one refuses and the other is silent: nobody knows, and no answer goes
     for (const ActionReply& reply : f.answers) CHECK(reply.evidence == Evidence::none);
     CHECK(f.count<evr::PYRO_CONTROLLER_REFUSED>() == 1);
     CHECK(f.count<evr::PYRO_CONTROLLER_SILENT>() == 1);
-    CHECK(f.count<evr::PYRO_NOT_FIRED>() == 0);
+    CHECK(f.count<evr::PYRO_REFUSED>() == 0);
 }
 
 TEST_CASE("a reply that comes after the time-out still says that it fired", "[devices][R50]") {

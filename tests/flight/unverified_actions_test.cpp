@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "flight/edl/unverified_actions.hpp"
 
+#include "flight/cross_string/state_exchange.hpp"
 #include "flight/timeline/actions.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/outbox.hpp"
+
+#include <array>
+#include <utility>
 
 namespace flight_unverified_actions_test {
 
@@ -97,17 +101,21 @@ TEST_CASE("a refusal that comes after the time-out takes back what was taken as 
     CHECK(f.reply(Evidence::refused, 1003.0));
     CHECK(f.recorder.events<evr::TIMEPOINT_REFUSED>() == 1);
     CHECK(f.recorder.packets<packet::Explanation>() == 1);
-    CHECK(f.recorder.sent<ToneRequest>()[0].tone == tone::pyro_not_fired);
+    CHECK(f.recorder.sent<ToneRequest>()[0].tone == tone::pyro_refused);
     CHECK_FALSE(f.configuration.parachute_out);
 }
 
-TEST_CASE("a snatch that the IMU feels bears out a mortar that did not answer", "[edl][R50]") {
+TEST_CASE("a snatch that the IMU feels bears out a mortar that did not answer, and it is announced as done",
+          "[edl][R38][R50]") {
     Fixture f;
     f.feel(6.0, 1001.5);
     CHECK(f.recorder.out.sent().empty());
     f.feel_on(40.0, 1001.8);
     CHECK(f.recorder.events<evr::TIMEPOINT_FELT>() == 1);
-    CHECK(f.recorder.packets<packet::Explanation>() == 1);
+    REQUIRE(f.recorder.explanations().size() == 1);
+    CHECK(f.recorder.explanations()[0].verdict == ExplanationVerdict::borne_out);
+    REQUIRE(f.recorder.sent<ToneRequest>().size() == 1);
+    CHECK(f.recorder.sent<ToneRequest>()[0].tone == tone::parachute_deploy);
     for (const double at_s : {1002.0, 1003.0, 1004.0}) f.feel(4.0, at_s);
     CHECK(f.recorder.out.sent().empty());
     CHECK(f.configuration.parachute_out);
@@ -121,7 +129,7 @@ TEST_CASE("without a snatch in time the IMU contradicts, GNC has no parachute, a
     f.feel(6.0, 1000.0 + parameters.parachute_felt_within_s);
     CHECK(f.recorder.events<evr::TIMEPOINT_CONTRADICTED>() == 1);
     CHECK(f.recorder.packets<packet::Explanation>() == 1);
-    CHECK(f.recorder.sent<ToneRequest>()[0].tone == tone::pyro_not_fired);
+    CHECK(f.recorder.sent<ToneRequest>()[0].tone == tone::action_contradicted);
     CHECK_FALSE(f.configuration.parachute_out);
     f.feel(6.0, 1004.0);
     CHECK(f.recorder.out.sent().empty());
@@ -159,7 +167,7 @@ TEST_CASE("a mortar that is said to have fired and that the IMU does not feel is
     f.feel(6.0, 1000.0 + parameters.parachute_felt_within_s);
     CHECK(f.recorder.events<evr::TIMEPOINT_CONTRADICTED>() == 1);
     CHECK(f.recorder.packets<packet::Explanation>() == 1);
-    CHECK(f.recorder.sent<ToneRequest>()[0].tone == tone::pyro_not_fired);
+    CHECK(f.recorder.sent<ToneRequest>()[0].tone == tone::action_contradicted);
     CHECK(f.configuration.parachute_out);
 
     Fixture felt{FiringVerdict::verified};
@@ -236,15 +244,72 @@ TEST_CASE("a refusal that comes late takes nothing back that the IMU has borne o
     CHECK(before.configuration.parachute_time == Sclk{1000.0});
 }
 
-TEST_CASE("after a reset nothing is judged: the other computer keeps the assumptions of the configuration",
+TEST_CASE("a computer that takes over hears the witnesses further, and contradicts nothing that it may have missed",
           "[edl][R33][R50]") {
-    Fixture f;
-    UnverifiedActions after_reset;
-    f.actions = after_reset;
-    f.feel_on(40.0, 1001.8);
-    f.feel(4.0, 1004.0);
+    const auto taken_over = [](Fixture f) {
+        std::array<std::uint8_t, 1024> octets{};
+        StateExchange<std::uint8_t> to{octets};
+        to(f.actions);
+        REQUIRE(to.ok());
+        UnverifiedActions other;
+        StateExchange<const std::uint8_t> from{octets};
+        from(other);
+        REQUIRE(from.size() == to.size());
+        other.miss_some();
+        f.actions = other;
+        return f;
+    };
+    Fixture mortar = taken_over(Fixture{FiringVerdict::refused});
+    mortar.feel_on(40.0, 1001.8);
+    CHECK(mortar.recorder.events<evr::TIMEPOINT_FELT>() == 1);
+    CHECK(mortar.configuration.parachute_time == Sclk{1000.0});
+
+    Fixture heatshield = taken_over(
+        refused(timepoint::heatshield_separation, PyroId::heatshield_separation, gnc::Fact::heatshield_gone));
+    gnc::Output told = Fixture::felt(4.0);
+    told.radar_locked = true;
+    heatshield.hear(told, 1006.0);
+    CHECK(heatshield.recorder.events<evr::TIMEPOINT_WITNESSED>() == 1);
+    CHECK(heatshield.configuration.heatshield_gone);
+
+    Fixture missed = taken_over(Fixture{});  // the snatch may have come while nobody listened
+    missed.feel(6.0, 1000.0 + parameters.parachute_felt_within_s);
+    CHECK(missed.recorder.out.sent().empty());
+    CHECK(missed.configuration.parachute_out);
+}
+
+TEST_CASE("a verification that comes after a refusal was final is told, learnt and announced, once", "[edl][R50]") {
+    Fixture f = refused(timepoint::cruise_stage_separation, PyroId::cruise_stage_separation,
+                        gnc::Fact::cruise_stage_gone);  // no witness
+    const auto reply = [&](Evidence evidence) {
+        ActionReply said = pyro(PyroId::cruise_stage_separation);
+        said.evidence = evidence;
+        f.recorder.begin(ModuleId::edl, Sclk{1001.5});
+        ActionContext context{f.recorder.out, f.configuration};
+        return f.actions.on(said, context);
+    };
+    CHECK_FALSE(reply(Evidence::refused));  // told already
     CHECK(f.recorder.out.sent().empty());
-    CHECK(f.configuration.parachute_out);
+    CHECK_FALSE(f.configuration.cruise_stage_gone);
+    CHECK(reply(Evidence::verified));
+    CHECK(f.recorder.events<evr::TIMEPOINT_VERIFIED_LATE>() == 1);
+    CHECK(f.recorder.events<evr::CRUISE_STAGE_SEPARATION>() == 1);
+    CHECK(f.recorder.sent<ToneRequest>()[0].tone == tone::cruise_stage_separation);
+    CHECK(f.configuration.cruise_stage_gone);
+    CHECK_FALSE(reply(Evidence::verified));
+    CHECK(f.recorder.out.sent().empty());
+}
+
+TEST_CASE("a reply that comes late is that of the newest action that asked for it", "[edl][R50]") {
+    Fixture f;
+    f.actions = {};
+    const ActionReply on{ReplyKind::thrusters, 0, Evidence::none, true};
+    for (const auto& [timepoint, at_s] : {std::pair{timepoint::thrusters_enable, 500.0}, {timepoint::detumble, 510.0}})
+        f.actions.add({timepoint, Sclk{at_s}, Sclk{at_s + 1.0}, FiringVerdict::refused, on, gnc::Fact::thrusters_on});
+    f.recorder.begin(ModuleId::edl, Sclk{512.0});
+    ActionContext context{f.recorder.out, f.configuration};
+    CHECK(f.actions.on({ReplyKind::thrusters, 0, Evidence::verified, true}, context));
+    CHECK(f.configuration.thrusters_on_time == Sclk{510.0});
 }
 
 TEST_CASE("a refused separation of the heatshield has happened once the radar sees the ground", "[edl][R50]") {
@@ -306,7 +371,8 @@ TEST_CASE("a rover that is refused to have separated has once the bridle is paid
     CHECK(f.configuration.rover_separation_time == Sclk{1000.0});
 }
 
-TEST_CASE("a witness of an action that was taken as done is told, and announces nothing twice", "[edl][R50]") {
+TEST_CASE("an action that was taken as done is announced once: by its witness, and not again by a reply that follows",
+          "[edl][R38][R50]") {
     Fixture f{FiringVerdict::refused};
     f.actions = {};
     f.configuration.learn(gnc::Fact::engines_primed, Sclk{1000.0});
@@ -316,7 +382,20 @@ TEST_CASE("a witness of an action that was taken as done is told, and announces 
     told.engines_heard = true;
     f.hear(told, 1002.5);
     CHECK(f.recorder.events<evr::TIMEPOINT_WITNESSED>() == 1);
+    REQUIRE(f.recorder.sent<ToneRequest>().size() == 1);
+    CHECK(f.recorder.sent<ToneRequest>()[0].tone == tone::engine_priming);
+    const auto explanations = f.recorder.explanations();
+    REQUIRE(explanations.size() == 1);
+    CHECK(explanations[0].verdict == ExplanationVerdict::borne_out);
+    CHECK(explanations[0].conditions.size() == 1);  // believed at once: there is no count
+    f.hear(told, 1002.6);
+    CHECK(f.recorder.out.sent().empty());
+    f.recorder.begin(ModuleId::edl, Sclk{1003.0});
+    ActionContext context{f.recorder.out, f.configuration};
+    CHECK(f.actions.on(pyro(PyroId::engine_valves), context));
+    CHECK(f.recorder.events<evr::TIMEPOINT_VERIFIED_LATE>() == 1);
     CHECK(f.recorder.sent<ToneRequest>().empty());
+    CHECK(f.configuration.engines_primed);
 }
 
 TEST_CASE("each way in which an action ends has an event of its own; what was not done has a tone and an explanation",
@@ -341,7 +420,7 @@ TEST_CASE("each way in which an action ends has an event of its own; what was no
     const auto refused = told(FiringVerdict::refused);
     CHECK(refused->events<evr::TIMEPOINT_REFUSED>() == 1);
     CHECK(refused->packets<packet::Explanation>() == 1);
-    CHECK(tone_of(refused) == tone::pyro_not_fired);
+    CHECK(tone_of(refused) == tone::pyro_refused);
     CHECK(tone_of(told(FiringVerdict::refused, {ReplyKind::device_switch, 0})) == tone::action_refused);
 
     const auto unverified = told(FiringVerdict::unverified);

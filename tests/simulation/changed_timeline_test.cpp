@@ -4,6 +4,7 @@
 #include "simulation/limits.hpp"
 #include "telemetry/packet_stream.hpp"
 #include "tests/simulation/gale.hpp"
+#include "tests/simulation/judged.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/shipped_dictionary.hpp"
 #include "tests/support/telecommands.hpp"
@@ -56,7 +57,7 @@ struct Trunk {
 
 /// Why a landing was unsafe, by the limits of its scenario; empty: it was safe.
 std::string unsafe(const Landing& landing) {
-    const auto judgement = judge(commanded().limits, figures_of(landing));
+    const auto judgement = tests::judged(landing, commanded().limits);
     return judgement.verdict == Verdict::landed ? "" : reason_of(landing, judgement);
 }
 

@@ -6,6 +6,7 @@
 #include "simulation/devices/recorder.hpp"
 #include "simulation/limits.hpp"
 #include "tests/simulation/gale.hpp"
+#include "tests/simulation/judged.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/telecommands.hpp"
 
@@ -82,7 +83,7 @@ Landed land(const std::vector<DeviceFault>& faults, const Selection& units = all
     landing.uplink(test::do_edl());
     while (landing.outcome() == Outcome::running) landing.step();
     Landed landed;
-    landed.judgement = judge(scenario.limits, figures_of(landing));
+    landed.judgement = tests::judged(landing, scenario.limits);
     landed.reason = reason_of(landing, landed.judgement);
     landed.recording.assign(landing.recording().begin(), landing.recording().end());
     read(landed);
@@ -105,11 +106,27 @@ TEST_CASE("a landing without faults has every reply in time, and no device modul
     const Landed landed = land({});
     CHECK(landed.judgement.verdict == Verdict::landed);
     CHECK(landed.not_verified().empty());
-    for (const EvrId id :
-         {flight::evr::REPLY_UNEXPECTED::id, flight::evr::DEVICE_REFUSED::id, flight::evr::PYRO_NOT_FIRED::id,
-          flight::evr::PYRO_NOT_ARMED::id, flight::evr::PYRO_CONTROLLER_REFUSED::id,
-          flight::evr::PYRO_CONTROLLER_SILENT::id, flight::evr::REPLY_CONTRADICTS::id, flight::evr::TIMEPOINT_HELD::id,
-          flight::evr::IMU_SAMPLES_MISSING::id, flight::evr::RADAR_LOST::id, flight::evr::CRUISE_ATTITUDE_UNUSABLE::id})
+    for (const EvrId id : {flight::evr::REPLY_UNEXPECTED::id,
+                           flight::evr::DEVICE_REFUSED::id,
+                           flight::evr::PYRO_REFUSED::id,
+                           flight::evr::PYRO_NOT_ARMED::id,
+                           flight::evr::PYRO_CONTROLLER_REFUSED::id,
+                           flight::evr::PYRO_CONTROLLER_SILENT::id,
+                           flight::evr::REPLY_CONTRADICTS::id,
+                           flight::evr::TIMEPOINT_HELD::id,
+                           flight::evr::IMU_SAMPLES_MISSING::id,
+                           flight::evr::RADAR_LOST::id,
+                           flight::evr::CRUISE_ATTITUDE_UNUSABLE::id,
+                           flight::evr::IMU_SILENT::id,
+                           flight::evr::ATTITUDE_LOST::id,
+                           flight::evr::TIMEPOINT_CONTRADICTED::id,
+                           flight::evr::TIMEPOINT_WITNESSED::id,
+                           flight::evr::TIMEPOINT_FELT::id,
+                           flight::evr::PROPELLANT_LOW::id,
+                           flight::evr::THRUSTERS_NOT_FELT::id,
+                           flight::evr::THRUSTERS_FELT_AGAIN::id,
+                           flight::evr::ENGINES_SILENT::id,
+                           flight::evr::ENGINES_HEARD_AGAIN::id})
         CHECK(landed.count(id) == 0);
 }
 
@@ -172,7 +189,7 @@ TEST_CASE("a pyro controller that is silent or refuses costs nothing and is told
             CHECK(landed.judgement.verdict == Verdict::landed);
             CHECK(landed.verdicts == sound.verdicts);
             CHECK(landed.count(told) == flight::pyro_count);
-            CHECK(landed.count(flight::evr::PYRO_NOT_FIRED::id) == 0);
+            CHECK(landed.count(flight::evr::PYRO_REFUSED::id) == 0);
         }
 }
 

@@ -6,6 +6,7 @@
 #include "simulation/limits.hpp"
 #include "telemetry/proximity_packets.hpp"
 #include "tests/simulation/gale.hpp"
+#include "tests/simulation/judged.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/recorded_events.hpp"
 #include "tests/support/telecommands.hpp"
@@ -124,7 +125,7 @@ TEST_CASE(
         landing.uplink(set_parameters(tracked(landing, ++solution_id)));
     }
     while (!landing.flown()) landing.step();
-    const Judgement judgement = judge(scenario.limits, figures_of(landing));
+    const Judgement judgement = tests::judged(landing, scenario.limits);
     INFO(reason_of(landing, judgement));
     CHECK(judgement.verdict == Verdict::landed);
     CHECK(tests::count_recorded<evr::EDL_PARAMETERS_ACCEPTED>(landing.recording()) == 3);

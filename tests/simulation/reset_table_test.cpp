@@ -5,6 +5,7 @@
 #include "flight/timeline/timepoint.hpp"
 #include "telemetry/packet_stream.hpp"
 #include "tests/simulation/gale.hpp"
+#include "tests/simulation/judged.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/telecommands.hpp"
 
@@ -98,7 +99,7 @@ class Resets {
         if (flyaway_) reset.at.since_flyaway_s = trunk_.sclk() - *flyaway_;
         fork.reset_prime();
         while (fork.outcome() == Outcome::running) fork.step();
-        reset.judgement = judge(tests::gale_scenario().limits, figures_of(fork));
+        reset.judgement = tests::judged(fork);
         reset.reason = reason_of(fork, reset.judgement);
         return reset;
     }

@@ -6,6 +6,7 @@
 #include "generated/dictionary_flight.hpp"
 #include "telemetry/packet_stream.hpp"
 #include "tests/simulation/gale.hpp"
+#include "tests/simulation/judged.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/shipped_dictionary.hpp"
 #include "tests/support/telecommands.hpp"
@@ -92,7 +93,7 @@ void fly_on(Landing& landing, double for_s) {
 /// By the scenario's limits: what lands outside of them has not passed.
 Verdict verdict_on(Landing& landing) {
     while (landing.outcome() == Outcome::running) landing.step();
-    const Judgement judgement = judge(tests::gale_scenario().limits, figures_of(landing));
+    const Judgement judgement = tests::judged(landing);
     UNSCOPED_INFO(reason_of(landing, judgement));
     return judgement.verdict;
 }

@@ -2,13 +2,14 @@
 #include "generated/dictionary_flight.hpp"
 #include "simulation/limits.hpp"
 #include "simulation/random.hpp"
+#include "tests/simulation/calm.hpp"
 #include "tests/simulation/gale.hpp"
+#include "tests/simulation/judged.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/recorded_events.hpp"
 #include "tests/support/telecommands.hpp"
 
 #include <cmath>
-#include <deque>
 #include <string>
 #include <vector>
 
@@ -28,46 +29,10 @@ void command(Landing& landing) {
 
 Judgement flown_to_its_end(Landing& landing) {
     while (landing.outcome() == Outcome::running) landing.step();
-    return judge(tests::gale_scenario().limits, figures_of(landing));
+    return tests::judged(landing);
 }
 
-struct Silence {
-    double e_s, length_s;
-};
-
-/// Whether navigation can know what turns the vehicle, tick by tick of one landing: not in a turn (a reversal, the
-/// swing under the parachute), not while the parachute opens, not on engines.
-class Calm {
-  public:
-    explicit Calm(Landing landing) {
-        begin_s_ = landing.truth().e_s;
-        double mortar_s = 1.0e9;
-        bool on_engines = false;
-        while (landing.outcome() == Outcome::running) {
-            for (const TruthEvent& event : landing.step().events) {
-                if (event.name == "parachute_deploy") mortar_s = event.e_s;
-                on_engines |= event.name == "backshell_separation";
-            }
-            const auto& rate = landing.inspect().rate_B_rps;
-            const bool turns = std::hypot(rate[0], rate[1], rate[2]) > turning_rps;
-            const double since_mortar_s = landing.truth().e_s - mortar_s;
-            calm_.push_back(!turns && !on_engines && !(since_mortar_s >= 0.0 && since_mortar_s < opens_within_s));
-        }
-    }
-    bool during(const Silence& silence) const {
-        const auto first = static_cast<std::size_t>((silence.e_s - begin_s_) * 64.0);
-        const auto ticks = static_cast<std::size_t>(silence.length_s * 64.0) + 2;
-        for (std::size_t i = first; i < first + ticks; ++i)
-            if (i >= calm_.size() || !calm_[i]) return false;
-        return true;
-    }
-    double end_s() const { return begin_s_ + static_cast<double>(calm_.size()) / 64.0; }
-
-  private:
-    static constexpr double turning_rps = 0.05, opens_within_s = 5.0;
-    double begin_s_ = 0.0;
-    std::deque<bool> calm_;
-};
+using tests::Calm, tests::Silence;
 
 void check_silences(std::uint64_t seed, int short_ones, int long_ones) {
     Landing common{tests::gale_scenario(900.0), seed};
@@ -116,7 +81,7 @@ void check_short_entry(double short_km, std::uint64_t seed) {
     while (landing.outcome() == Outcome::running)
         for (const TruthEvent& event : landing.step().events)
             if (event.name == "parachute_deploy") mortar_m = event.altitude_m;
-    const Judgement judgement = judge(tests::gale_scenario().limits, figures_of(landing));
+    const Judgement judgement = tests::judged(landing);
     INFO(reason_of(landing, judgement));
     REQUIRE(landing.parachute());
     INFO("mortar at " << mortar_m.value_or(0.0) << " m, Mach " << landing.parachute()->mach << ", "

@@ -161,8 +161,8 @@ TEST_CASE("of a transmitter that a timeline which does not run has not switched 
 TEST_CASE("what X-band's telemetry tells is not told again by tone, and its loss is news", "[situation]") {
     Ground ground;
     ground.up(x_band_telemetry_link, -900.0);
-    ground.tone("pyro_not_fired", -890.0);
-    CHECK_FALSE(ground.about("tone pyro_not_fired", -880.0));
+    ground.tone("pyro_refused", -890.0);
+    CHECK_FALSE(ground.about("tone pyro_refused", -880.0));
     ground.down(x_band_telemetry_link, -870.0, "unexplained: nothing is predicted to silence it now", true);
     CHECK(ground.about("x_band_telemetry", -869.0)->sentence ==
           "X-band telemetry lost since E−14:30: nothing predicted it");
@@ -305,10 +305,14 @@ TEST_CASE("news stays until something follows it: a command that failed, until o
     ground.event("TIMEPOINT_VERIFIED_LATE", -390.0);
     CHECK(ground.first(-389.0).rank == Rank::waiting);
     // A mortar that is said to have refused, and whose parachute the IMU feels, has fired.
-    ground.event("TIMEPOINT_REFUSED", -380.0, "Timepoint 3: refused, it was not done");
-    CHECK(ground.sentence(-379.0) == "E−6:20: Timepoint 3: refused, it was not done");
+    ground.event("TIMEPOINT_REFUSED", -380.0, "Timepoint 3: refused, not taken as done");
+    CHECK(ground.sentence(-379.0) == "E−6:20: Timepoint 3: refused, not taken as done");
     ground.event("TIMEPOINT_FELT", -378.0);
     CHECK(ground.first(-377.0).rank == Rank::waiting);
+    // So has a pyro whose controllers say so after all.
+    ground.event("TIMEPOINT_REFUSED", -370.0, "Timepoint 3: refused, not taken as done");
+    ground.event("TIMEPOINT_VERIFIED_LATE", -368.0);
+    CHECK(ground.first(-367.0).rank == Rank::waiting);
 }
 
 TEST_CASE("danger is above all news: a failed check on board, a limit that is critical", "[situation]") {
@@ -347,15 +351,15 @@ TEST_CASE("a tone that is not sure enough says nothing, and what went wrong is t
     ground.up(x_band_link, -900.0);
     ground.tone("touchdown", 431.0, 0.6);
     CHECK_FALSE(ground.about("landed", 450.0));
-    ground.tone("pyro_not_fired", 260.0);
-    CHECK(ground.sentence(271.0) == "E+4:20, by tone: A pyro did not fire");
-    CHECK(ground.first(271.0).evidence.ends_with(" pyro not fired, posterior 0.999"));
-    ground.tone("pyro_not_fired", 280.0, 0.99999);
+    ground.tone("pyro_refused", 260.0);
+    CHECK(ground.sentence(271.0) == "E+4:20, by tone: A pyro was refused");
+    CHECK(ground.first(271.0).evidence.ends_with(" pyro refused, posterior 0.999"));
+    ground.tone("pyro_refused", 280.0, 0.99999);
     CHECK(ground.first(291.0).evidence.ends_with(", posterior above 0.999"));  // nothing is certain
     Ground with_uhf;
     with_uhf.up(uhf_live_link, -900.0);
-    with_uhf.tone("pyro_not_fired", 260.0);
-    CHECK_FALSE(with_uhf.about("tone pyro_not_fired", 271.0));
+    with_uhf.tone("pyro_refused", 260.0);
+    CHECK_FALSE(with_uhf.about("tone pyro_refused", 271.0));
 }
 
 TEST_CASE("it is too late for planned steps when nothing sent now can precede a planned step, a light time each way "
