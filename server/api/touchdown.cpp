@@ -67,18 +67,18 @@ void add_still_step(const TouchdownFacts& facts, Sclk since, Report& report) {
         return fmt::format("{} {:.4f}, {} {:.2f}", rover_rate_channel, told.rate_rps, rover_force_channel,
                            told.force_mps2);
     };
-    std::optional<Sclk> from;
+    bool still = false;
+    Sclk from = since;  // of stillness
     const TouchdownFacts::RoverImu* last = nullptr;
     for (const auto& told : facts.rover_imu) {
         if (told.sclk <= since) continue;
-        if (!is_still(told))
-            from.reset();
-        else if (!from || told.sclk - last->sclk > touchdown_gap_s)
-            from = told.sclk;
+        const bool goes_on = still && told.sclk - last->sclk <= touchdown_gap_s;
+        still = is_still(told);
+        if (!still || !goes_on) from = told.sclk;
         last = &told;
-        if (from && told.sclk - *from >= still_s)
+        if (still && told.sclk - from >= still_s)
             return add_step(report, name, Step::done,
-                            fmt::format("{}: still since {}, now {}", when(told.sclk), when(*from), values(told)),
+                            fmt::format("{}: still since {}, now {}", when(told.sclk), when(from), values(told)),
                             told.sclk);
     }
     const auto* silent = silent_now(facts);
@@ -90,17 +90,17 @@ void add_still_step(const TouchdownFacts& facts, Sclk since, Report& report) {
             report, name, Step::unknown,
             fmt::format("not known: {} has told nothing since touchdown at {}", rover_rate_channel, when(since)) +
                 because());
-    const std::string still_for = telemetry::span_text(last->sclk - from.value_or(last->sclk));
+    const std::string still_for = telemetry::span_text(last->sclk - from);
     if (facts.now - last->sclk > touchdown_gap_s)
         return add_step(report, name, Step::unknown,
                         fmt::format("not known: {} has told nothing since {}; it had been still for {}",
                                     rover_rate_channel, when(last->sclk), still_for) +
                             because());
-    if (!from)
+    if (!still)
         return add_step(report, name, Step::waiting,
                         fmt::format("moves at {}: {}; still is at most {} rad/s and {} ± {} m/s2", when(last->sclk),
                                     values(*last), still_rate_max_rps, still_weight_mps2, still_weight_within_mps2));
-    add_step(report, name, Step::waiting, fmt::format("{} of {:.0f} s since {}", still_for, still_s, when(*from)));
+    add_step(report, name, Step::waiting, fmt::format("{} of {:.0f} s since {}", still_for, still_s, when(from)));
 }
 
 void add_uhf_step(const TouchdownFacts& facts, Sclk since, Report& report) {
