@@ -52,7 +52,7 @@ struct StalenessChange {
 /// Detects real-time packets that no longer arrive.
 ///
 /// In       packets, links and phase of EDL as they reach Earth, and the time on Earth, in that order
-/// Out      changes, appended to `out`. A packet that was never received has none, nor has one without channels, such as
+/// Out      changes, appended to `out`. A packet that was never received has none, nor has one without channels, as
 ///          an event: it has no value that could be of now
 /// Missing  A packet is expected at its rate (DefaultRateInStream), thinned by the rows of telemetry_plan.csv that hold
 ///          in every plan, once it has been received at all. It is missing when it was absent for `stale_intervals` of
