@@ -27,6 +27,8 @@ StalenessMonitor::StalenessMonitor(const dictionary::Dictionary& dictionary)
     for (std::size_t i = 0; i < dictionary.packets.size(); ++i) {
         Row& row = rows_.emplace_back(Row{.packet = i});
         const auto& packet = dictionary.packets[i];
+        row.has_channels =
+            std::ranges::any_of(packet.fields, [](const auto& field) { return field.channel.has_value(); });
         if (!packet.expected_rate_hz || *packet.expected_rate_hz <= 0.0) continue;
         if (by_rhythm_) {
             row.interval_s = {1.0 / *packet.expected_rate_hz};
@@ -75,6 +77,7 @@ std::string StalenessMonitor::silent_for() const {
 
 void StalenessMonitor::heard(std::size_t packet, Ert ert, std::vector<StalenessChange>& out) {
     Row& row = rows_.at(packet);
+    if (!row.has_channels) return;
     row.intervals = reckon(row, ert);
     if (row.last) row.rhythm_s = std::max(seconds_between(*row.last, ert), rhythm_fades * row.rhythm_s);
     change(row, Staleness::current, "heard again", ert, out);
@@ -83,6 +86,7 @@ void StalenessMonitor::heard(std::size_t packet, Ert ert, std::vector<StalenessC
 
 void StalenessMonitor::made_on_ground(std::size_t packet, Ert ert, std::vector<StalenessChange>& out) {
     Row& row = rows_.at(packet);
+    if (!row.has_channels) return;
     row.of_ground = true;
     change(row, Staleness::current, "made again", ert, out);
     row.last = row.since = ert;

@@ -52,7 +52,8 @@ struct StalenessChange {
 /// Detects real-time packets that no longer arrive.
 ///
 /// In       packets, links and phase of EDL as they reach Earth, and the time on Earth, in that order
-/// Out      changes, appended to `out`. A packet that was never received has none
+/// Out      changes, appended to `out`. A packet that was never received has none, nor has one without channels, as
+///          an event: it has no value that could be of now
 /// Missing  A packet is expected at its rate (DefaultRateInStream), thinned by the rows of telemetry_plan.csv that hold
 ///          in every plan, once it has been received at all. It is missing when it was absent for `stale_intervals` of
 ///          its intervals, and for `stale_least_s`, while a link was up or lost and the phase unchanged. A link with
@@ -91,6 +92,7 @@ class StalenessMonitor {
         double intervals = stale_intervals;  ///< absent until it is missing, by the losses before its last reception
         double rhythm_s = 0.0;               ///< the longest interval between its receptions lately
         bool of_ground = false;
+        bool has_channels = false;
         Staleness is = Staleness::current;
     };
     struct Link {

@@ -199,6 +199,17 @@ TEST_CASE("a packet that the ground makes is stale when it makes none, whatever 
     CHECK(ground.changes[0].reason == "the ground makes none");
 }
 
+TEST_CASE("a packet without channels has no value that could be stale", "[staleness]") {
+    Ground ground;
+    for (auto& field : ground.dictionary.packets[held].fields) field.channel.reset();
+    StalenessMonitor monitor{ground.dictionary};
+    monitor.link("uhf_live", LinkIs::up, "nominal", at_s(0.0), ground.changes);
+    monitor.heard(held, at_s(1.0), ground.changes);
+    monitor.link("uhf_live", LinkIs::down, "plasma blackout", at_s(3.0), ground.changes);
+    monitor.pass(at_s(100.0), ground.changes);
+    CHECK(ground.changes.empty());
+}
+
 TEST_CASE("without a plan a packet without a rate is stale after four of the intervals at which it came lately",
           "[staleness][downlink]") {
     auto dictionary = Ground::make();
