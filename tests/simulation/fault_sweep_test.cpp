@@ -302,7 +302,8 @@ void sweep(std::uint64_t seed, std::size_t count, const Check& check) {
     CHECK(sound.not_so.empty());
 }
 
-void check_sweep(std::uint64_t seed, std::size_t count) {
+/// Returns the number of faults that an event had to tell.
+std::size_t check_sweep(std::uint64_t seed, std::size_t count) {
     namespace evr = flight::evr;
     std::size_t flown_ones = 0, excused = 0, demanded = 0;
     sweep(seed, count,
@@ -328,7 +329,7 @@ void check_sweep(std::uint64_t seed, std::size_t count) {
                   CHECK_FALSE(told(evr::ENGINES_SILENT::id));
           });
     CHECK(2 * excused <= flown_ones);
-    CHECK(demanded > 0);
+    return demanded;
 }
 
 }  // namespace
@@ -342,7 +343,9 @@ TEST_CASE(
 
 TEST_CASE("three hundred faults of any unit and kind, at any moment and for any time, end as docs/faults.md says",
           "[.long][simulation][faults][R27][R50]") {
-    for (std::uint64_t seed = 2; seed <= 4; ++seed) check_sweep(seed, 100);
+    std::size_t demanded = 0;
+    for (std::uint64_t seed = 2; seed <= 4; ++seed) demanded += check_sweep(seed, 100);
+    CHECK(demanded > 10);
 }
 
 }  // namespace simulation_fault_sweep_test
