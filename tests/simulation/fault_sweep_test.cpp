@@ -208,8 +208,8 @@ std::optional<EvrId> must_be_told(const Drawn& drawn, const Sound& sound) {
     case Device::thrusters:
         if (const auto told = by_reply({point::thrusters_enable, point::detumble, point::thrusters_off})) return told;
         // The vehicle is rolled to lift up, which takes the thrusters.
-        if ((drawn.kind == Kind::silent || drawn.kind == Kind::refuses) && drawn.e_s < sound.at(point::sufr_start) &&
-            Sound::within_s(drawn, sound.at(point::sufr_start), sound.at(point::parachute_deploy)) > 10.0)
+        if ((drawn.kind == Kind::silent || drawn.kind == Kind::refuses) && drawn.e_s < sound.at(point::sufr) &&
+            Sound::within_s(drawn, sound.at(point::sufr), sound.at(point::parachute_deploy)) > 10.0)
             return evr::THRUSTERS_NOT_FELT::id;
         break;
     case Device::power: return by_reply({point::thruster_warm_up, point::radar_power});
