@@ -4,6 +4,8 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/outbox.hpp"
 
+#include <cmath>
+
 namespace flight_gnc_health_test {
 
 using namespace aeolis;
@@ -77,7 +79,15 @@ TEST_CASE("thrusters that are not felt are told once, after some judgements in a
     for (int i = 1; i < static_cast<int>(parameters.thrusters_unfelt_windows); ++i) CHECK(judged(0.0) == 0);
     CHECK(judged(0.0) == 1);
     CHECK(asked_for(recorder, tone::thrusters_not_felt));
-    CHECK(recorder.packets<packet::Explanation>() == 1);
+    const auto told = recorder.explanations();
+    REQUIRE(told.size() == 1);
+    CHECK(told[0].decision == Decision::device_lost);
+    CHECK(told[0].subject == static_cast<std::uint16_t>(Device::thrusters));
+    REQUIRE(told[0].conditions.size() == 2);
+    CHECK(told[0].conditions[0].quantity == Quantity::thrusters_felt);
+    CHECK(told[0].conditions[1].quantity == Quantity::judgements_in_a_row);
+    CHECK(told[0].conditions[1].bound == std::floor(parameters.thrusters_unfelt_windows));
+    for (const gnc::Condition& condition : told[0].conditions) CHECK(condition.holds);
     CHECK(judged(0.0) == 0);
     gnc.thrusters_felt.reset();
     health.watch(parameters, gnc, recorder.out);
@@ -103,7 +113,12 @@ TEST_CASE("engine controllers that are silent are told once, explained, and agai
     CHECK(silent(parameters.engines_silent_told_s - seconds_per_tick) == 0);
     CHECK(silent(parameters.engines_silent_told_s) == 1);
     CHECK(asked_for(recorder, tone::engines_silent));
-    CHECK(recorder.packets<packet::Explanation>() == 1);
+    const auto told = recorder.explanations();
+    REQUIRE(told.size() == 1);
+    CHECK(told[0].decision == Decision::device_lost);
+    CHECK(told[0].subject == static_cast<std::uint16_t>(Device::descent_engines));
+    REQUIRE(told[0].conditions.size() == 1);
+    CHECK(told[0].conditions[0].quantity == Quantity::engines_silent_s);
     CHECK(silent(2.0) == 0);
     silent(0.0);
     CHECK(recorder.events<evr::ENGINES_HEARD_AGAIN>() == 1);

@@ -398,6 +398,24 @@ TEST_CASE("an action that was taken as done is announced once: by its witness, a
     CHECK(f.configuration.engines_primed);
 }
 
+TEST_CASE("thrusters should obey from their command on, once it is not refused, until they are commanded off",
+          "[edl][timeline][R50]") {
+    Fixture f;
+    f.recorder.begin(ModuleId::edl, Sclk{1000.0});
+    ActionContext context{f.recorder.out, f.configuration};
+    action_named<"enable_thrusters">().run(context);
+    CHECK(context.fact() == gnc::Fact::thrusters_on);
+    CHECK_FALSE(f.configuration.thrusters_on_time);  // its reply is due
+    f.configuration.learn(gnc::Fact::thrusters_on, Sclk{1000.0});
+    f.configuration.learn(gnc::Fact::thrusters_on, Sclk{1010.0});  // commanded once more
+    CHECK(f.configuration.thrusters_on_time == Sclk{1000.0});
+    action_named<"disable_thrusters">().run(context);
+    CHECK_FALSE(f.configuration.thrusters_on_time);  // whatever is answered
+    f.configuration.learn(gnc::Fact::thrusters_on, Sclk{1020.0});
+    f.configuration.forget(gnc::Fact::thrusters_on);
+    CHECK_FALSE(f.configuration.thrusters_on_time);
+}
+
 TEST_CASE("each way in which an action ends has an event of its own; what was not done has a tone and an explanation",
           "[edl][R38][R50]") {
     const TimepointSpec& row = timeline_specs[timepoint::parachute_deploy.value];

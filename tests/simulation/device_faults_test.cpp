@@ -102,7 +102,7 @@ DeviceFault at_its_start(Kind kind) {
 }  // namespace
 
 TEST_CASE("a landing without faults has every reply in time, and no device module has anything to report",
-          "[simulation][faults][R2][R14]") {
+          "[simulation][faults][R2][R14][R50]") {
     const Landed landed = land({});
     CHECK(landed.judgement.verdict == Verdict::landed);
     CHECK(landed.not_verified().empty());

@@ -39,7 +39,7 @@ constexpr std::array kind_names{"silent", "refuses", "late", "dropout", "doubled
 // Bounds of docs/faults.md.
 constexpr double imu_silence_survived_s = 0.5, imu_silence_in_calm_survived_s = 2.0, radar_silence_survived_s = 20.0,
                  radar_silence_on_parachute_survived_s = 40.0, radar_heard_before_priming_s = 15.0,
-                 thrusters_rest_survived_s = 10.0, engines_silence_survived_s = 1.5;
+                 thrusters_rest_survived_s = 10.0, engines_silence_survived_s = 0.25;
 
 struct Drawn {
     Device device{};
@@ -208,8 +208,8 @@ std::optional<EvrId> must_be_told(const Drawn& drawn, const Sound& sound) {
     case Device::thrusters:
         if (const auto told = by_reply({point::thrusters_enable, point::detumble, point::thrusters_off})) return told;
         // The vehicle is rolled to lift up, which takes the thrusters.
-        if ((drawn.kind == Kind::silent || drawn.kind == Kind::refuses) && drawn.e_s < sound.at(point::sufr_start) &&
-            Sound::within_s(drawn, sound.at(point::sufr_start), sound.at(point::parachute_deploy)) > 10.0)
+        if ((drawn.kind == Kind::silent || drawn.kind == Kind::refuses) && drawn.e_s < sound.at(point::sufr) &&
+            Sound::within_s(drawn, sound.at(point::sufr), sound.at(point::parachute_deploy)) > 10.0)
             return evr::THRUSTERS_NOT_FELT::id;
         break;
     case Device::power: return by_reply({point::thruster_warm_up, point::radar_power});
@@ -302,7 +302,8 @@ void sweep(std::uint64_t seed, std::size_t count, const Check& check) {
     CHECK(sound.not_so.empty());
 }
 
-void check_sweep(std::uint64_t seed, std::size_t count) {
+/// Returns the number of faults that an event had to tell.
+std::size_t check_sweep(std::uint64_t seed, std::size_t count) {
     namespace evr = flight::evr;
     std::size_t flown_ones = 0, excused = 0, demanded = 0;
     sweep(seed, count,
@@ -328,7 +329,7 @@ void check_sweep(std::uint64_t seed, std::size_t count) {
                   CHECK_FALSE(told(evr::ENGINES_SILENT::id));
           });
     CHECK(2 * excused <= flown_ones);
-    CHECK(demanded > 0);
+    return demanded;
 }
 
 }  // namespace
@@ -342,7 +343,9 @@ TEST_CASE(
 
 TEST_CASE("three hundred faults of any unit and kind, at any moment and for any time, end as docs/faults.md says",
           "[.long][simulation][faults][R27][R50]") {
-    for (std::uint64_t seed = 2; seed <= 4; ++seed) check_sweep(seed, 100);
+    std::size_t demanded = 0;
+    for (std::uint64_t seed = 2; seed <= 4; ++seed) demanded += check_sweep(seed, 100);
+    CHECK(demanded > 10);
 }
 
 }  // namespace simulation_fault_sweep_test

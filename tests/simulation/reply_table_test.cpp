@@ -244,8 +244,10 @@ void check(const Row& row, Kind kind, const Flown& flown) {
     const bool done = kind == Kind::late || verified_late || kind == Kind::doubled || kind == Kind::claims ||
                       ((mortar || witnessed) && kind == Kind::denies);
     // Thrusters that the timeline has switched off need not obey, whatever follows.
-    if (row.device != Device::thrusters) CHECK_FALSE(told.told<flight::evr::THRUSTERS_NOT_FELT>());
-    if (flown.judgement.verdict == lands && row.device != Device::descent_engines)
+    const bool landed = flown.judgement.verdict == lands;
+    if (row.device != Device::thrusters && (landed || mortar))
+        CHECK_FALSE(told.told<flight::evr::THRUSTERS_NOT_FELT>());
+    if (landed && row.device != Device::descent_engines && row.timepoint != point::engine_priming)
         CHECK_FALSE(told.told<flight::evr::ENGINES_SILENT>());
     if (spec.tone && !done) CHECK_FALSE(told.tones.contains(spec.tone->value));
     if ((kind != Kind::refuses && kind != Kind::denies) || row.device == Device::descent_engines) return;

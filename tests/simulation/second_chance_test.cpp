@@ -166,6 +166,24 @@ TEST_CASE("a channel is of one computer at any time: both speak at once, one tak
     CHECK(packets["SyncStatusB"] == packets["SyncStatus"] + silent_s);
 }
 
+TEST_CASE(
+    "a heatshield that both controllers deny is borne out to the computer that has taken over meanwhile, and it lands",
+    "[second_chance][faults][R33][R50]") {
+    Commanded run{900.0};
+    run.fly_to(255.0);  // the mortar is fired; the heatshield goes twenty seconds later
+    while (Recorded{run.landing}.fired(flight::timepoint::radar_power) == 0) run.fly(light);
+    for (const auto unit : {flight::Unit::a, flight::Unit::b})
+        run.landing.inject(DeviceFault{flight::Device::pyro, unit, DeviceFault::Kind::denies, 0.0, 30.0});
+    while (Recorded{run.landing}.fired(flight::timepoint::heatshield_separation) == 0) run.fly(light);
+    REQUIRE(Recorded{run.landing}.times<flight::evr::TIMEPOINT_WITNESSED>().empty());
+    run.landing.reset_prime();
+    CHECK(run.verdict() == Verdict::landed);
+    const Recorded recorded{run.landing};
+    CHECK(recorded.times<flight::evr::SECOND_CHANCE_TAKES_OVER>().size() == 1);
+    CHECK(recorded.times<flight::evr::TIMEPOINT_REFUSED>().size() == 1);
+    CHECK(recorded.times<flight::evr::TIMEPOINT_WITNESSED>().size() == 1);
+}
+
 TEST_CASE("after a take-over only essential timepoints act", "[second_chance][R33]") {
     Commanded run{900.0};
     run.fly_to(120.0);  // before the antenna of the parachute phase is selected, which is not essential
