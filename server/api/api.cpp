@@ -260,6 +260,8 @@ void Api::answer(const Route& route, ApiRequest call) {
     if (refused.status == 200 && changes && !parts_.pipeline.audit_has_room())
         return call.respond(
             error_response(503, "nothing is done that the audit cannot take: " + parts_.pipeline.fault()));
+    const bool of_origin = changes && (route.right == Right::command || route.right == Right::rehearse);
+    if (refused.status == 200 && of_origin && !parts_.follows.empty()) refused = error_response(409, parts_.follows);
     const bool refuses = refused.status != 200;
     if (of_run && call.parts[0] == "latest") name_latest(call);
     if (!route.audit.empty() && (refuses || route.audited == Audited::all)) call.respond = audited(call, route.audit);
@@ -268,7 +270,7 @@ void Api::answer(const Route& route, ApiRequest call) {
 }
 
 void Api::name_latest(ApiRequest& call) const {
-    const auto run = parts_.rehearsals.current().run();
+    const auto run = parts_.follows.empty() ? parts_.rehearsals.current().run() : parts_.hub.current_run();
     if (run == 0) return;
     call.parts[0] = std::to_string(run);
     const std::string_view latest = "latest";
@@ -413,7 +415,9 @@ void Api::health(const ApiRequest& call) {
     const std::string text = fault.empty()                 ? "ok"
                              : may(call.who, Right::watch) ? fault
                                                            : "the archive cannot be written";
-    call.respond({fault.empty() ? 200U : 503U, "text/plain; charset=utf-8", "no-store", text + "\n"});
+    const auto others = parts_.replication && may(call.who, Right::watch) ? parts_.replication().line : "";
+    call.respond({fault.empty() ? 200U : 503U, "text/plain; charset=utf-8", "no-store",
+                  text + (others.empty() ? "\n" : "\n" + others + "\n")});
 }
 
 void Api::remove_run(const ApiRequest& call) {
@@ -430,6 +434,7 @@ void Api::remove_run(const ApiRequest& call) {
 }
 
 v1::RunState Api::current_run() const {
+    if (!parts_.follows.empty()) return parts_.hub.state();
     auto state = parts_.rehearsals.current();
     if (state.run() != 0) {
         state.set_last_seq(parts_.hub.last_seq());

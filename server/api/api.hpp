@@ -25,6 +25,7 @@
 #include <span>
 #include <string>
 #include <variant>
+#include <vector>
 
 namespace aeolis::server {
 
@@ -36,6 +37,18 @@ struct ApiRequest {
     Operator who;
     std::vector<std::string> parts;
     Respond respond;
+};
+
+/// How this server stands with others, for /healthz and /metrics (docs/scale.md).
+struct Replication {
+    struct Figure {
+        const char* name;
+        const char* help;
+        double value = 0.0;
+        bool counter = false;
+    };
+    std::string line;  ///< of /healthz, for those who may watch; empty: it is alone
+    std::vector<Figure> figures{};
 };
 
 /// Every HTTP route (server/api/openapi.yaml describes them): turns requests into queries and answers into JSON.
@@ -59,6 +72,8 @@ class Api {
         bool secure;  ///< over TLS: cookies are marked Secure
         std::function<std::size_t()> connections;
         const ClockWatch& clock_watch;
+        std::function<Replication()> replication{};  ///< null: this server is alone
+        std::string follows{};  ///< why this server changes no run, in a sentence; empty: it is the origin of its runs
     };
     explicit Api(Parts parts);
 

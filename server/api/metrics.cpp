@@ -211,6 +211,11 @@ void Api::metrics(const ApiRequest& call) {
     text.gauge("run_attained_pace", "seconds of the vehicle a second, as attained", of_run(run.attained_pace()));
     text.counter("process_cpu_seconds_total", "CPU time of the process", cpu_s());
     text.gauge("resident_memory_bytes", "resident memory of the process", resident_octets());
+    const auto others = parts_.replication ? parts_.replication() : Replication{};
+    for (const auto& [name, help, value, counter] : others.figures) {
+        text.begin(name, counter ? "counter" : "gauge", help);
+        text.line(name, "", value);
+    }
     call.respond({200, "text/plain; version=0.0.4; charset=utf-8", "no-store", std::move(text.text)});
 }
 

@@ -228,14 +228,30 @@ void StreamHub::run_state(v1::RunState state) {
     }
     state_ = std::move(state);
     state_.set_last_seq(last_seq_);
-    state_.set_archive_fault(archive_fault_);
+    add_own(state_);
     ++state_version_;
     wake_all();
 }
 
+/// What this server knows of itself.
+void StreamHub::add_own(v1::RunState& state) const {
+    state.set_archive_fault(archive_fault_);
+    state.set_follows(standing_.follows);
+    state.set_origin_lost(standing_.origin_lost);
+    state.set_unpublished(standing_.unpublished);
+}
+
 void StreamHub::archive_fault(std::string fault) {
     archive_fault_ = std::move(fault);
-    state_.set_archive_fault(archive_fault_);
+    add_own(state_);
+    ++state_version_;
+    wake_all();
+}
+
+void StreamHub::standing(Standing standing) {
+    if (standing == standing_) return;
+    standing_ = std::move(standing);
+    add_own(state_);
     ++state_version_;
     wake_all();
 }

@@ -130,6 +130,13 @@ class StreamHub {
     void clocks(v1::Clocks clocks);
     /// Sets why nothing can be stored now; empty when storing works. Sent with the run state.
     void archive_fault(std::string fault);
+    /// How this server stands with others; sent with the run state (docs/scale.md).
+    struct Standing {
+        std::string follows, unpublished;  ///< as in RunState
+        bool origin_lost = false;
+        bool operator==(const Standing&) const = default;
+    };
+    void standing(Standing standing);
 
     void add(StreamSession& session);
     void remove(StreamSession& session);
@@ -193,6 +200,7 @@ class StreamHub {
         std::vector<RatedItem> items;
     };
     void wake_all();
+    void add_own(v1::RunState& state) const;
     const Range& range_after(archive::Sequence after, double interval_s, bool packets);
     EncodedRange encode_range(const StreamSelection& selection, const Range& range, std::span<const RatedItem> items,
                               archive::Sequence sent_through, std::uint64_t left_out);
@@ -212,6 +220,7 @@ class StreamHub {
     std::optional<Range> range_;  ///< of the held items; none: not yet computed
     std::deque<Cached> cache_;
     std::string archive_fault_;
+    Standing standing_;
     std::array<Encoded, 2> state_encoded_;
     std::uint64_t state_encoded_version_ = 0;
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/archive/archive.hpp"
 
+#include "server/archive/cluster_facts.hpp"
 #include "server/archive/fingerprint.hpp"
 #include "server/archive/pruning.hpp"
 #include "server/archive/row_writer.hpp"
@@ -146,6 +147,9 @@ Result<void> Archive::State::put_back() {
 }
 
 Result<void> Archive::State::mark_interrupted() {
+    const auto follows = cluster_fact(database, fact_origin);
+    if (!follows) return follows.error();
+    if (!follows->empty()) return {};  // its runs go on elsewhere
     auto cut_off = database.prepare("SELECT run FROM runs WHERE state = 'running' ORDER BY run");
     if (!cut_off) return cut_off.error();
     for (;;) {

@@ -222,6 +222,12 @@ Result<AuditRecord> fingerprint(sqlite::Database& database, RunId run, Sequence 
     return record;
 }
 
+std::optional<ItemRange> fingerprint_range(const std::string& detail) {
+    const auto print = fingerprint_of(detail);
+    if (!print) return std::nullopt;
+    return ItemRange{print->first, print->last};
+}
+
 Result<FingerprintCheck> check_fingerprints(sqlite::Database& database, std::optional<RunId> only) {
     const auto kept = audited(database);
     if (!kept) return kept.error();

@@ -18,6 +18,12 @@ namespace aeolis::archive {
 /// from item 1 on also for the tables without items.
 Result<AuditRecord> fingerprint(sqlite::Database& database, RunId run, Sequence first, Sequence last);
 
+/// The items that a fingerprint is of, by the audit entry's detail; none: it is no fingerprint.
+struct ItemRange {
+    Sequence first = 0, last = 0;
+};
+std::optional<ItemRange> fingerprint_range(const std::string& detail);
+
 struct FingerprintCheck {
     std::vector<std::string> faults;  ///< each names run and table
     std::vector<std::string> notes;   ///< runs that have no fingerprint yet, and why

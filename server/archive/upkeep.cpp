@@ -2,7 +2,7 @@
 #include "server/archive/upkeep.hpp"
 
 #include "server/archive/archive.hpp"
-#include "server/archive/item_tables.hpp"
+#include "server/archive/item_keys.hpp"
 #include "server/archive/pruning.hpp"
 #include "server/archive/schema.hpp"
 
@@ -12,19 +12,6 @@
 #include <unistd.h>
 
 namespace aeolis::archive {
-
-namespace {
-
-/// SQL for every sequence number used by an item of the run.
-std::string item_keys_sql(const std::string& schema) {
-    std::string sql = "SELECT key + 1 AS key FROM " + schema + "packets WHERE key BETWEEN ?1 AND ?2 AND sampled = 1";
-    for_item_kinds([&]<typename Record>(ItemKind<Record>) {
-        sql += " UNION ALL SELECT key FROM " + schema + ItemTable<Record>::name + " WHERE key BETWEEN ?1 AND ?2";
-    });
-    return sql;
-}
-
-}  // namespace
 
 std::optional<std::string> open_to_others(const std::filesystem::path& file) {
     using std::filesystem::perms;

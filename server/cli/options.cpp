@@ -101,16 +101,24 @@ CLI::Option* add_mission_xtce(CLI::App& command, MissionXtce& xtce, const std::s
 
 CLI::Option* add_engine(CLI::App& command, cluster::EngineAddress& address, const std::string& description) {
     auto& url = *command.add_option("--nats", address.url, description)->envname("AEOLIS_NATS");
-    const auto file = [&](const char* option, std::filesystem::path& path, const char* words) {
-        return command.add_option(option, path, words)->check(CLI::ExistingFile)->needs(&url);
-    };
-    file("--nats-credentials", address.credentials, "a .creds file, for an engine that knows users by JWT");
-    auto& nkey = *command.add_option("--nats-nkey", address.nkey, "a public nkey, with --nats-nkey-seed")->needs(&url);
-    nkey.needs(file("--nats-nkey-seed", address.nkey_seed, "the file of its seed")->needs(&nkey));
-    file("--nats-ca", address.ca, "certificates that sign the engine's; the system's if left out");
-    auto& key = *file("--nats-key", address.key, "the key of --nats-certificate");
-    key.needs(file("--nats-certificate", address.certificate, "this client's certificate")->needs(&key));
+    for (auto* option : add_engine_credentials(command, address)) option->needs(&url);
     return &url;
+}
+
+std::vector<CLI::Option*> add_engine_credentials(CLI::App& command, cluster::EngineAddress& address) {
+    const auto file = [&](const char* option, std::filesystem::path& path, const char* words) {
+        return command.add_option(option, path, words)->check(CLI::ExistingFile);
+    };
+    auto* credentials =
+        file("--nats-credentials", address.credentials, "a .creds file, for an engine that knows users by JWT");
+    auto* nkey = command.add_option("--nats-nkey", address.nkey, "a public nkey, with --nats-nkey-seed");
+    auto* seed = file("--nats-nkey-seed", address.nkey_seed, "the file of its seed")->needs(nkey);
+    nkey->needs(seed);
+    auto* ca = file("--nats-ca", address.ca, "certificates that sign the engine's; the system's if left out");
+    auto* key = file("--nats-key", address.key, "the key of --nats-certificate");
+    auto* certificate = file("--nats-certificate", address.certificate, "this client's certificate")->needs(key);
+    key->needs(certificate);
+    return {credentials, nkey, seed, ca, key, certificate};
 }
 
 void add_archive_file(CLI::App& command, std::filesystem::path& archive) {

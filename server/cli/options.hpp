@@ -30,6 +30,8 @@ CLI::Option* add_mission_xtce(CLI::App& command, MissionXtce& xtce, const std::s
 
 /// Adds --nats and the options that go with it. @return --nats
 CLI::Option* add_engine(CLI::App& command, cluster::EngineAddress& address, const std::string& description);
+/// Adds how a program shows an engine who it is.
+std::vector<CLI::Option*> add_engine_credentials(CLI::App& command, cluster::EngineAddress& address);
 
 inline constexpr const char* default_archive = "run-data/aeolis.db";
 

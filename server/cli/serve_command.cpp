@@ -41,6 +41,10 @@ struct ServeOptions {
     std::optional<std::string> downlink;  ///< "tcp://HOST:PORT", "udp://HOST:PORT": follow another mission
     MissionXtce xtce;                     ///< of the followed mission
     PacketStreamFormat format{};
+    cluster::EngineAddress nats;  ///< how a NATS engine is reached, for the two below; its URL stays empty
+    std::string publish_to;       ///< URL; empty: nowhere
+    std::string follow;           ///< URL; empty: no other server is followed
+    std::string follow_archive;   ///< of which archive, where the engine has several
     std::uint64_t keep_raw_mb = archive::raw_octets_kept >> 20U;  ///< of each link of a run
     std::string log_level{default_log_level}, log_format = "text";
     bool log_level_given = false;  ///< by command line or environment, before which the file gives way
@@ -193,6 +197,11 @@ void run_until_signal(ConsoleBackend& backend, const Signals& signals, const Ser
     waiter.join();
 }
 
+cluster::EngineAddress engine_at(cluster::EngineAddress credentials, const std::string& url) {
+    credentials.url = url;
+    return credentials;
+}
+
 int serve(const ServeOptions& options) {
     set_log(options);
     allow_open_files();
@@ -224,7 +233,10 @@ int serve(const ServeOptions& options) {
                                         .scenarios = options.shared.scenarios,
                                         .web = options.web,
                                         .other = followed.model.get(),
-                                        .raw_octets_kept = options.keep_raw_mb << 20U},
+                                        .raw_octets_kept = options.keep_raw_mb << 20U,
+                                        .publish_to = engine_at(options.nats, options.publish_to),
+                                        .follow_by = engine_at(options.nats, options.follow),
+                                        .follow_archive = options.follow_archive},
                                        *dictionary);
     if (!opened) return failed(opened.error().message);
     auto& backend = **opened;
@@ -234,8 +246,9 @@ int serve(const ServeOptions& options) {
             return failed("--downlink " + following.error().message);
     if (scenario) backend.start({*scenario, options.seed, options.pace});
     print_address(backend, *listen,
-                  options.downlink ? "Open it in a browser: it follows " + followed.link.address.text() + "."
-                                   : what_to_do(scenario),
+                  !options.follow.empty() ? "Open it in a browser: it follows another server."
+                  : options.downlink      ? "Open it in a browser: it follows " + followed.link.address.text() + "."
+                                          : what_to_do(scenario),
                   options);
     run_until_signal(backend, signals, options);
     return 0;
@@ -278,6 +291,24 @@ void add_backend_options(CLI::App& command, ServeOptions& options) {
     command.add_option("--log-format", options.log_format, "text for people, or json: an object per line")
         ->check(CLI::IsMember({"text", "json"}))
         ->capture_default_str();
+}
+
+/// Adds what is shared with servers on other machines (docs/scale.md).
+void add_cluster_options(CLI::App& command, ServeOptions& options) {
+    auto* publish = command.add_option("--nats", options.publish_to,
+                                       "publish what is committed to this NATS engine, nats://HOST:PORT, for servers "
+                                       "that follow this one");
+    auto* follow = command
+                       .add_option("--follow", options.follow,
+                                   "follow the server that publishes to this NATS engine: an archive of the same runs, "
+                                   "for browsers and programs that only watch")
+                       ->excludes(publish);
+    command
+        .add_option("--follow-archive", options.follow_archive,
+                    "identity of that server's archive, or its beginning, where the engine has several")
+        ->needs(follow);
+    for (const char* other : {"--scenario", "--downlink"}) follow->excludes(command.get_option(other));
+    add_engine_credentials(command, options.nats);
 }
 
 CLI::Validator pace() {
@@ -326,6 +357,7 @@ void add_serve_command(CLI::App& program, int& exit_code) {
                                                      "variable named beside an option, and that over the file.");
     add_backend_options(command, *options);
     add_run_options(command, *options);
+    add_cluster_options(command, *options);
     add_shared(command, options->shared);
     name_environment(command);
     command.callback([options, &exit_code, level = command.get_option("--log-level")] {

@@ -154,6 +154,17 @@ class Collector {
             return;
         }
         heard_ = Clock::now();
+        if (answer.given_back()) {
+            given_back_.insert(answer.number());
+            done_.push_back(std::move(given));
+            return;
+        }
+        if (answer.answer_case() == v1::CaseAnswer::kSetAside && given_back_.erase(answer.number()) > 0) {
+            // Not all of its tries were tries: it is queued anew, and counted from one.
+            if (waiting_.contains(answer.number())) chosen_.insert(answer.number());
+            done_.push_back(std::move(given));
+            return;
+        }
         chosen_.erase(answer.number());
         if (waiting_.erase(answer.number()) == 0 && !(answer.has_flown() && no_longer_aside(answer.number()))) {
             done_.push_back(std::move(given));  // stored already: a case that was given twice
@@ -235,6 +246,7 @@ class Collector {
     std::uint64_t next_ = 1;                   // the first number that was not looked at
     std::set<std::uint64_t> waiting_;          // chosen and not answered
     std::set<std::uint64_t> chosen_;           // of these, not queued
+    std::set<std::uint64_t> given_back_;       // of these, by workers that ended
     std::vector<campaign::CaseResult> fresh_;  // answered, not stored
     std::vector<Given> done_;                  // to be taken once `fresh_` is stored
     Progress progress_;

@@ -80,7 +80,7 @@ class Worker {
             const auto octets = engine_.newest(campaign_stream, subject);
             if (!octets) return octets.error();
             if (!*octets) continue;
-            auto made = campaign_of_order(subject, **octets);
+            auto made = campaign_of_order(subject, (*octets)->octets);
             if (made)
                 now.emplace(subject, std::move(*made));
             else
@@ -169,7 +169,7 @@ class Worker {
             hold(&given);
             const auto result = flown(campaign, order.number());
             release(&given);
-            if (!result) return given.give_back();
+            if (!result) return give_back(campaign, std::move(answer), given);
             *answer.mutable_flown() = message_of(*result);
         }
         // The answer first: a case that is taken without one would be lost.
@@ -178,6 +178,13 @@ class Worker {
         if (!published) return;
         ++(answer.has_flown() ? flown_ : set_aside_);
         (void)given.take();
+    }
+
+    /// Somebody else may have it. A worker that ends says so: else three that end have the case set aside.
+    void give_back(const CampaignAtWork& campaign, v1::CaseAnswer answer, Given& given) {
+        answer.set_given_back(true);
+        if (stop_) told(engine_.publish(campaign.subjects.answers, answer.SerializeAsString()));
+        given.give_back();
     }
 
     /// None: it was abandoned, or could not begin.

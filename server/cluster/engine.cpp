@@ -24,6 +24,7 @@ using Subscription = Owned<natsSubscription, natsSubscription_Destroy>;
 using Message = Owned<natsMsg, natsMsg_Destroy>;
 using StreamInfo = Owned<jsStreamInfo, jsStreamInfo_Destroy>;
 using ConsumerInfo = Owned<jsConsumerInfo, jsConsumerInfo_Destroy>;
+using PubAck = Owned<jsPubAck, jsPubAck_Destroy>;
 using MetaData = Owned<jsMsgMetaData, jsMsgMetaData_Destroy>;
 
 }  // namespace handles
@@ -33,23 +34,17 @@ using namespace handles;
 
 constexpr std::int64_t second_ns = 1'000'000'000;
 constexpr std::int64_t forgotten_after_s = 30 * 24 * 3600;  // chosen: what nobody took for a month, nobody will
+constexpr std::int64_t reader_forgotten_after_s = 300;      // chosen: it is made again where it was
 constexpr std::int64_t reconnect_wait_ms = 250;
 constexpr std::int64_t pending_max = 2048;  // published and not yet confirmed: as in the figure of the limits
 
-/// Text before '@' of each URL is a secret.
+/// What stands before an '@' may be a secret, and hold commas and slashes: all of it is left out, though it be of
+/// several URLs.
 std::string without_secrets(const std::string& urls) {
-    std::string shown;
-    for (std::size_t begin = 0; begin <= urls.size();) {
-        const auto end = std::min(urls.find(',', begin), urls.size());
-        const auto url = urls.substr(begin, end - begin);
-        const auto scheme = url.find("://");
-        const auto host = scheme == std::string::npos ? 0 : scheme + 3;
-        const auto at = url.rfind('@');
-        shown += (shown.empty() ? "" : ",") + url.substr(0, host) +
-                 url.substr(at == std::string::npos || at < host ? host : at + 1);
-        begin = end + 1;
-    }
-    return shown;
+    const auto at = urls.rfind('@');
+    if (at == std::string::npos) return urls;
+    const auto scheme = urls.find("://");
+    return (scheme < at ? urls.substr(0, scheme + 3) : "") + urls.substr(at + 1);
 }
 
 std::string text_of(natsStatus status, jsErrCode code) {
@@ -73,7 +68,7 @@ std::string shown(const EngineAddress& address) {
 
 struct Given::State {
     Message message;
-    std::uint64_t times = 1;
+    std::uint64_t times = 1, place = 0, count = 0;
     std::string engine;
 };
 
@@ -88,6 +83,12 @@ std::string_view Given::octets() const {
 }
 std::uint64_t Given::times() const {
     return state_->times;
+}
+std::uint64_t Given::place() const {
+    return state_->place;
+}
+std::uint64_t Given::count() const {
+    return state_->count;
 }
 Result<void> Given::take() {
     jsOptions options;
@@ -127,10 +128,13 @@ Result<std::vector<Given>> Consumer::next(std::size_t count, std::chrono::millis
         auto state = std::make_unique<Given::State>();
         state->message.reset(std::exchange(list.Msgs[i], nullptr));
         state->engine = state_->engine;
-        jsMsgMetaData* data = nullptr;
-        if (natsMsg_GetMetaData(&data, state->message.get()) == NATS_OK) state->times = MetaData {
-                data
-            } -> NumDelivered;
+        jsMsgMetaData* read = nullptr;
+        if (natsMsg_GetMetaData(&read, state->message.get()) == NATS_OK) {
+            const MetaData data{read};
+            state->times = data->NumDelivered;
+            state->place = data->Sequence.Stream;
+            state->count = data->Sequence.Consumer;
+        }
         given.push_back(Given{std::move(state)});
     }
     natsMsgList_Destroy(&list);
@@ -290,15 +294,40 @@ Result<std::vector<std::string>> Engine::subjects(const std::string& stream, con
     return found;
 }
 
-Result<std::optional<std::string>> Engine::newest(const std::string& stream, const std::string& subject) {
+Result<std::optional<Stored>> Engine::newest(const std::string& stream, const std::string& subject) {
     natsMsg* message = nullptr;
     jsErrCode code{};
     const auto status = js_GetLastMsg(&message, state_->streams.get(), stream.c_str(), subject.c_str(), nullptr, &code);
     const Message owned{message};
-    if (status == NATS_NOT_FOUND) return std::optional<std::string>{};
+    if (status == NATS_NOT_FOUND) return std::optional<Stored>{};
     if (status != NATS_OK) return state_->refused(subject, status, code);
-    return std::optional{
-        std::string{natsMsg_GetData(message), static_cast<std::size_t>(natsMsg_GetDataLength(message))}};
+    return std::optional{Stored{{natsMsg_GetData(message), static_cast<std::size_t>(natsMsg_GetDataLength(message))},
+                                natsMsg_GetSequence(message)}};
+}
+
+Result<std::uint64_t> Engine::publish_after(const std::string& subject, std::string_view octets, std::uint64_t after) {
+    jsPubOptions options;
+    jsPubOptions_Init(&options);
+    options.MaxWait = patience.count();
+    options.ExpectLastSubjectSeq = after;
+    options.ExpectNoMessage = after == 0;
+    jsErrCode code{};
+    jsPubAck* confirmed = nullptr;
+    const auto status = js_Publish(&confirmed, state_->streams.get(), subject.c_str(), octets.data(),
+                                   static_cast<int>(octets.size()), &options, &code);
+    const PubAck owned{confirmed};
+    if (status != NATS_OK) return state_->refused("publishing to " + subject, status, code);
+    return owned->Sequence;
+}
+
+Result<Engine::StreamFacts> Engine::facts(const std::string& stream) {
+    jsErrCode code{};
+    jsStreamInfo* info = nullptr;
+    const auto status = js_GetStreamInfo(&info, state_->streams.get(), stream.c_str(), nullptr, &code);
+    const StreamInfo there{info};
+    if (status == NATS_NOT_FOUND) return StreamFacts{};
+    if (status != NATS_OK) return state_->refused("stream " + stream, status, code);
+    return StreamFacts{fmt::format("{}", there->Created), there->State.FirstSeq, there->State.LastSeq};
 }
 
 Result<void> Engine::clear(const std::string& stream, const std::string& subject) {
@@ -328,6 +357,25 @@ Result<void> Engine::make_consumer(const std::string& stream, const std::string&
     const ConsumerInfo made{info};
     if (status != NATS_OK) return state_->refused("consumer " + name, status, code);
     return {};
+}
+
+Result<Consumer> Engine::read(const std::string& stream, const std::string& name, const std::string& subjects,
+                              std::uint64_t from) {
+    if (const auto removed = remove_consumer(stream, name); !removed) return removed.error();
+    jsConsumerConfig config;
+    jsConsumerConfig_Init(&config);
+    config.Durable = name.c_str();
+    config.FilterSubject = subjects.c_str();
+    config.DeliverPolicy = from > 1 ? js_DeliverByStartSequence : js_DeliverAll;
+    config.OptStartSeq = from > 1 ? from : 0;
+    config.AckPolicy = js_AckNone;
+    config.InactiveThreshold = reader_forgotten_after_s * second_ns;
+    jsErrCode code{};
+    jsConsumerInfo* info = nullptr;
+    const auto status = js_AddConsumer(&info, state_->streams.get(), stream.c_str(), &config, nullptr, &code);
+    const ConsumerInfo made{info};
+    if (status != NATS_OK) return state_->refused("reading " + subjects, status, code);
+    return consumer(stream, name, subjects);
 }
 
 Result<void> Engine::remove_consumer(const std::string& stream, const std::string& name) {

@@ -35,8 +35,15 @@ std::string shown(const EngineAddress& address);
 
 /// How long a stream keeps its messages.
 enum class Keep : std::uint8_t {
-    newest,      ///< the newest of each subject
-    until_taken  ///< each until its one consumer has taken it
+    newest,       ///< the newest of each subject
+    until_taken,  ///< each until its one consumer has taken it
+    all           ///< every message, unless an administrator has set limits
+};
+
+/// A message in a stream, and its place there.
+struct Stored {
+    std::string octets;
+    std::uint64_t place = 0;
 };
 
 /// A message that a consumer was given. Unless it is taken, it is given again: after the consumer's time, or at once
@@ -49,7 +56,9 @@ class Given {
 
     std::string_view octets() const;
     std::uint64_t times() const;  ///< how often it was given, this time included
-    /// Marks the message as done; returns once the engine has confirmed that. After an Error it may be given again.
+    std::uint64_t place() const;  ///< in its stream
+    std::uint64_t count() const;  ///< of what its consumer was given, from 1
+    /// It is done, once the engine has confirmed that. The Error: it may be given again.
     Result<void> take();
     void keep_waiting();  ///< starts the consumer's time anew
     void give_back();     ///< somebody else may have it at once
@@ -105,13 +114,26 @@ class Engine {
     /// The subjects of a stream that have messages, among those that `filter` matches; none where there is no stream.
     Result<std::vector<std::string>> subjects(const std::string& stream, const std::string& filter);
     /// The newest message of a subject; none: it has none.
-    Result<std::optional<std::string>> newest(const std::string& stream, const std::string& subject);
+    Result<std::optional<Stored>> newest(const std::string& stream, const std::string& subject);
+    /// Stored when it returns, behind the subject's newest message, which must be at `after`; 0: it has none. After an
+    /// Error it may be stored. @return its place
+    Result<std::uint64_t> publish_after(const std::string& subject, std::string_view octets, std::uint64_t after);
+    /// What tells a stream from another one of its name; empty: there is none.
+    struct StreamFacts {
+        std::string made;
+        std::uint64_t first = 0, last = 0;  ///< places of its messages
+    };
+    Result<StreamFacts> facts(const std::string& stream);
     /// Removes a subject's messages.
     Result<void> clear(const std::string& stream, const std::string& subject);
 
     /// Makes the consumer of a subject unless there is one of this name. It gives a message again after `again_after`.
     Result<void> make_consumer(const std::string& stream, const std::string& name, const std::string& subject,
                                std::chrono::seconds again_after);
+    /// Makes the consumer of subjects, in place of one of this name, from a place of the stream on. Each message is
+    /// given once, and need not be taken.
+    Result<Consumer> read(const std::string& stream, const std::string& name, const std::string& subjects,
+                          std::uint64_t from);
     Result<void> remove_consumer(const std::string& stream, const std::string& name);
     Result<Consumer> consumer(const std::string& stream, const std::string& name, const std::string& subject);
     /// Messages that its consumer has not taken: waiting, or given and not yet taken.

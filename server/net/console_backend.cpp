@@ -2,6 +2,7 @@
 #include "server/net/console_backend.hpp"
 
 #include "server/access/this_user.hpp"
+#include "server/archive/shared_archive.hpp"
 #include "server/archive/upkeep.hpp"
 #include "server/base/json.hpp"
 #include "server/base/wall_clock.hpp"
@@ -15,6 +16,7 @@
 namespace aeolis::server {
 namespace {
 
+constexpr unsigned standing_ms = 1'000;      // chosen: as often as lags are told
 constexpr unsigned stream_check_ms = 1'000;  // chosen: longest time that a client follows after its session ended
 
 /// The identity of the user who started the program.
@@ -72,6 +74,7 @@ Result<std::unique_ptr<ConsoleBackend>> ConsoleBackend::open(Settings settings,
     auto archive = archive::Archive::open(chosen.archive);
     if (!archive) return archive.error();
     if (const auto wide = archive::open_to_others(chosen.archive)) spdlog::warn("{}", *wide);
+    if (auto chosen_origin = self->choose_origin(*archive); !chosen_origin) return chosen_origin.error();
     for (const auto run : archive->interrupted())
         spdlog::warn("run {} was cut off: it can be continued in the console, or by POST /api/v1/rehearsals "
                      "{{\"continue_run\":{}}}",
@@ -100,22 +103,170 @@ Result<std::unique_ptr<ConsoleBackend>> ConsoleBackend::open(Settings settings,
             if (!taken) done(Error{QueryThreads::busy});
         },
         self->timeline_questions(),
-        RehearsalManager::Callbacks{[self](v1::RunState state) { self->hub_->run_state(std::move(state)); },
-                                    [self](v1::Clocks clocks) { self->hub_->clocks(std::move(clocks)); }});
+        RehearsalManager::Callbacks{[self](v1::RunState state) { self->run_state(std::move(state)); },
+                                 [self](v1::Clocks clocks) { self->clocks(std::move(clocks)); }});
     // The last step that can fail: the first password is shown once, and only by a server that starts.
     auto access = Access::open({.file = chosen.accounts, .secure = backend->server_->secure()});
     if (!access) return access.error();
     backend->access_ = std::move(*access);
     backend->campaigns_ =
         std::make_unique<campaign::CampaignManager>(chosen.archive.parent_path(), backend->scenarios_, dictionary);
-    backend->api_ = std::make_unique<Api>(
-        Api::Parts{dictionary, backend->scenarios_, *backend->queries_, *backend->rehearsals_, backend->predictions_,
-                   *backend->campaigns_, *backend->hub_, *backend->pipeline_, backend->console_, *backend->access_,
-                   backend->server_->secure(), [self] { return self->server_->connections(); }, backend->clock_watch_});
+    backend->api_ = std::make_unique<Api>(Api::Parts{
+        dictionary, backend->scenarios_, *backend->queries_, *backend->rehearsals_, backend->predictions_,
+        *backend->campaigns_, *backend->hub_, *backend->pipeline_, backend->console_, *backend->access_,
+        backend->server_->secure(), [self] { return self->server_->connections(); }, backend->clock_watch_,
+        chosen.publish_to.url.empty() && chosen.follow_by.url.empty() ? std::function<Replication()>{}
+                                                                      : [self] { return self->replication(); },
+        backend->follows_});
     backend->check_audit_head();
     backend->adopt_newest_run();
     backend->note_resets();
+    if (auto begun = backend->publish_and_follow(); !begun) return begun.error();
     return backend;
+}
+
+/// On the network thread: for the browsers here, and for followers.
+void ConsoleBackend::run_state(v1::RunState state) {
+    if (publisher_) publisher_->run_state(state);
+    hub_->run_state(std::move(state));
+}
+void ConsoleBackend::clocks(v1::Clocks clocks) {
+    if (publisher_) publisher_->clocks(clocks);
+    hub_->clocks(std::move(clocks));
+}
+
+/// Whether this archive follows another, from now on. Its writer is open, and is opened anew where runs that went on
+/// elsewhere are now cut off.
+Result<void> ConsoleBackend::choose_origin(archive::Archive& archive) {
+    auto shared = archive::SharedArchive::open(settings_.archive);
+    if (!shared) return shared.error();
+    if (!settings_.publish_to.url.empty())  // drawn before the writer's thread would wait for it
+        if (const auto identity = shared->identity(); !identity) return identity.error();
+    if (!settings_.follow_by.url.empty()) {
+        const auto begun =
+            cluster::begin_following(*shared, settings_.follow_by, settings_.follow_archive, dictionary_.id);
+        if (!begun) return Error{"--follow: " + begun.error().message};
+    }
+    const auto origin = shared->followed();
+    if (!origin || origin->empty()) return origin ? Result<void>{} : origin.error();
+    if (!settings_.follow_by.url.empty()) {
+        follows_ = fmt::format(
+            "this server follows another (archive {:.8}): runs are begun, commanded and annotated there", *origin);
+        return {};
+    }
+    spdlog::warn("{} followed the archive {} until now: from here on it is its own", settings_.archive.string(),
+                 *origin);
+    if (auto done = shared->stop_following(); !done) return done;
+    shared = Error{"closed"};
+    {
+        const auto closed = std::move(archive);
+    }
+    auto again = archive::Archive::open(settings_.archive);
+    if (!again) return again.error();
+    archive = std::move(*again);
+    return {};
+}
+
+Result<void> ConsoleBackend::publish_and_follow() {
+    if (!follows_.empty()) {
+        rehearsals_->close(follows_);
+        campaigns_->close(follows_);
+        cluster::Follower::Parts parts;
+        parts.taken = [this](archive::RunId run, archive::Sequence first, archive::Sequence last) {
+            publish_copy(run, first, last);
+        };
+        parts.run_state = [this](v1::RunState state) {
+            followed_run_ = static_cast<std::uint32_t>(state.run());
+            server_->post([this, state = std::move(state)]() mutable { hub_->run_state(std::move(state)); });
+        };
+        parts.clocks = [this](v1::Clocks clocks) {
+            server_->post([this, clocks = std::move(clocks)]() mutable { hub_->clocks(std::move(clocks)); });
+        };
+        followed_run_ = static_cast<std::uint32_t>(hub_->current_run());
+        cluster::Follower::Settings settings;
+        settings.engine = settings_.follow_by;
+        settings.archive = settings_.archive;
+        settings.dictionary = dictionary_.id;
+        auto started = cluster::Follower::start(std::move(settings), std::move(parts));
+        if (!started) return started.error();
+        follower_ = std::move(*started);
+    } else if (!settings_.publish_to.url.empty()) {
+        cluster::Publisher::Settings settings;
+        settings.engine = settings_.publish_to;
+        settings.archive = settings_.archive;
+        settings.dictionary = dictionary_.id;
+        publisher_ = std::make_unique<cluster::Publisher>(std::move(settings));
+        publisher_->run_state(hub_->state());
+    }
+    if (publisher_ || follower_) server_->every(standing_ms, [this] { tell_standing(); });
+    return {};
+}
+
+/// Gives items of a followed run on to the browsers. On the follower's thread.
+void ConsoleBackend::publish_copy(archive::RunId run, archive::Sequence first, archive::Sequence last) {
+    auto batch = std::make_shared<pipeline::PublishedBatch>();
+    batch->run = run;
+    batch->first_seq = first;
+    batch->last_seq = last;
+    batch->built = false;  // then sessions read it from the archive
+    const std::size_t count = last - first + 1;
+    if (items_wanted_ && run.value == followed_run_ && count <= archive::items_page_max) {
+        if (!copied_ || copied_->outdated()) {
+            auto reader = archive::Reader::open(settings_.archive, dictionary_, settings_.other);
+            if (reader) copied_.emplace(std::move(*reader));
+        }
+        auto page = copied_ ? copied_->items(run, first - 1, count) : Result<archive::ItemPage>{archive::ItemPage{}};
+        batch->built = page && page->items.size() == count;
+        if (batch->built) batch->items = std::move(page->items);
+    }
+    server_->post([this, batch] { hub_->published(batch); });
+}
+
+/// Once a second, for the consoles.
+void ConsoleBackend::tell_standing() {
+    constexpr double told_after_s = 2.0;  // chosen: an engine that answers is faster
+    StreamHub::Standing standing;
+    if (follower_) {
+        const auto now = follower_->status();
+        standing.follows = cluster::text_of(now);
+        standing.origin_lost = now.lost;
+    }
+    if (publisher_) {
+        const auto now = publisher_->status();
+        if (!now.fault.empty() || now.waiting_s > told_after_s) standing.unpublished = cluster::text_of(now);
+    }
+    hub_->standing(std::move(standing));
+}
+
+Replication ConsoleBackend::replication() const {
+    Replication told;
+    if (publisher_) {
+        const auto now = publisher_->status();
+        told.line = cluster::text_of(now);
+        told.figures = {
+            {"publishing_waiting_items", "items that are committed and not acknowledged by the engine",
+             static_cast<double>(now.waiting_items)},
+            {"publishing_waiting_seconds", "time since none waited", now.waiting_s},
+            {"publishing_fault", "1 while nothing is published; /healthz says why", now.fault.empty() ? 0.0 : 1.0},
+            {"publishing_left_out", "runs that are not published", static_cast<double>(now.left_out.size())},
+            {"published_steps_total", "steps that the engine has acknowledged", static_cast<double>(now.steps), true},
+            {"published_items_total", "items in them", static_cast<double>(now.items), true},
+            {"published_octets_total", "octets of them", static_cast<double>(now.octets), true}};
+    }
+    if (follower_) {
+        const auto now = follower_->status();
+        told.line = cluster::text_of(now);
+        told.figures = {
+            {"following_behind_items", "items of the origin that are not here", static_cast<double>(now.behind_items)},
+            {"following_behind_seconds", "time since none was missing", now.behind_s},
+            {"following_silent_seconds", "time since the origin was heard", now.silent_s},
+            {"following_lost", "1 while the origin is silent", now.lost ? 1.0 : 0.0},
+            {"following_left_out", "runs that are not taken further", static_cast<double>(now.left_out.size())},
+            {"followed_steps_total", "steps that were taken", static_cast<double>(now.steps), true},
+            {"followed_items_total", "items in them", static_cast<double>(now.items), true},
+            {"followed_refused_total", "messages that were refused", static_cast<double>(now.refused), true}};
+    }
+    return told;
 }
 
 WebServer::Handlers ConsoleBackend::web_handlers() {
@@ -148,6 +299,7 @@ StreamSession::Client ConsoleBackend::stream_client(const Credentials& credentia
     };
     const auto full = [this] { return !pipeline_->audit_has_room(); };
     const auto allowed = [this, full](const Operator& who, Right right) -> Result<void> {
+        if (!follows_.empty()) return Error{follows_};
         if (!who.role) return Error{"the log-in has ended: log in again"};
         if (!may(who, right))
             return Error{
@@ -207,6 +359,8 @@ ConsoleBackend::~ConsoleBackend() {
     // An explicit order: each of these may call those below until it is destroyed.
     if (queries_) queries_->end();  // waiting jobs may still add notes through api and pipeline; new ones are refused
     api_.reset();
+    follower_.reset();
+    publisher_.reset();
     campaigns_.reset();  // abandons cases in flight
     downlink_.reset();
     rehearsals_.reset();
@@ -271,6 +425,7 @@ StreamHub::Services ConsoleBackend::stream_services() {
         if (!taken) server_->post([done] { done(Error{.message = QueryThreads::busy, .internal = true}); });
     };
     services.want_items = [this](bool wanted) {
+        items_wanted_ = wanted;
         if (pipeline_) pipeline_->want_items(wanted);
     };
     return services;
@@ -384,10 +539,10 @@ Result<void> ConsoleBackend::follow(DownlinkFollower::Settings settings) {
     auto follower = DownlinkFollower::start(
         std::move(settings), *pipeline_,
         [this](v1::RunState state) {
-            server_->post([this, state = std::move(state)]() mutable { hub_->run_state(std::move(state)); });
+            server_->post([this, state = std::move(state)]() mutable { run_state(std::move(state)); });
         },
         [this](v1::Clocks clocks) {
-            server_->post([this, clocks = std::move(clocks)]() mutable { hub_->clocks(std::move(clocks)); });
+            server_->post([this, clocks = std::move(clocks)]() mutable { this->clocks(std::move(clocks)); });
         });
     pipeline_->audit(audit_record(command_line_operator(), "downlink", detail,
                                   follower ? "done" : "refused: " + follower.error().message));

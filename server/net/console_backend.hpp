@@ -7,12 +7,16 @@
 #include "server/api/hub_feed.hpp"
 #include "server/archive/records.hpp"
 #include "server/base/clock_watch.hpp"
+#include "server/cluster/follower.hpp"
+#include "server/cluster/publisher.hpp"
 #include "server/links/downlink_follower.hpp"
 #include "server/net/web_server.hpp"
 #include "server/rehearsal/timeline_check.hpp"
 
+#include <atomic>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace aeolis::server {
@@ -31,6 +35,9 @@ class ConsoleBackend {
         const telemetry::OtherMission* other = nullptr;
         ReadClocks clocks = read_clocks;
         std::uint64_t raw_octets_kept = archive::raw_octets_kept;  ///< of each link of a run, as they came
+        cluster::EngineAddress publish_to{};                       ///< no URL: nowhere
+        cluster::EngineAddress follow_by{};                        ///< no URL: this server follows none
+        std::string follow_archive{};                              ///< identity, or its beginning; empty: the only one
     };
     /// Memory blocks of this size or more are mapped separately and returned to the system when freed; chosen. So the
     /// memory of each thread's longest answer does not stay with the process.
@@ -62,6 +69,13 @@ class ConsoleBackend {
     void adopt_newest_run();
     void note_resets();
     void watch_clock();
+    Result<void> choose_origin(archive::Archive& archive);
+    Result<void> publish_and_follow();
+    void publish_copy(archive::RunId run, archive::Sequence first, archive::Sequence last);
+    void run_state(v1::RunState state);
+    void clocks(v1::Clocks clocks);
+    Replication replication() const;
+    void tell_standing();
     void check_audit_head();
     void keep_audit_head(const archive::AuditHead& head) const;
 
@@ -82,6 +96,14 @@ class ConsoleBackend {
     std::unique_ptr<campaign::CampaignManager> campaigns_;
     std::unique_ptr<DownlinkFollower> downlink_;
     std::unique_ptr<Api> api_;
+
+    // With other machines; docs/decisions/0042.
+    std::string follows_;                    ///< why no run is changed here; empty: this is an origin
+    std::optional<archive::Reader> copied_;  ///< of the follower's thread
+    std::atomic<std::uint32_t> followed_run_{0};
+    std::atomic<bool> items_wanted_{false};
+    std::unique_ptr<cluster::Publisher> publisher_;
+    std::unique_ptr<cluster::Follower> follower_;
 };
 
 }  // namespace aeolis::server

@@ -157,7 +157,7 @@ const std::vector<std::pair<std::string, std::vector<std::string>>>& layers() {
         {"cluster", {"campaign"}},
         {"tones", {"rehearsal"}},
         {"api", {"campaign", "access"}},
-        {"net", {"api", "links"}},
+        {"net", {"api", "links", "cluster"}},
         {"cli", {"net", "cluster", "tones", "reconstruction"}},
     };
     return order;

@@ -212,6 +212,38 @@ TEST_CASE("a case that no worker answers is set aside after three tries, and the
     CHECK_THAT(progress.set_aside[0].reason, Catch::Contains("given 3 times"));
 }
 
+TEST_CASE("a case that workers give back because they end is not set aside, however many do",
+          "[cluster][campaign][R61]") {
+    if (!NatsServer::present()) return;
+    test::TemporaryFolder folder;
+    const NatsServer server;
+    std::unique_ptr<WorkerThread> worker;
+    int ended = 0;
+    std::atomic<bool> holds{false}, let_go{false};
+    const auto hold = [&](std::uint64_t number) -> std::optional<CaseResult> {
+        if (number != 7) return made_up(number);
+        holds = true;
+        while (!let_go) std::this_thread::sleep_for(1ms);
+        return std::nullopt;  // abandoned, as a landing is when its worker ends
+    };
+    worker = std::make_unique<WorkerThread>(server, "first", hold);
+    const auto progress = collected(server, folder / "workers.db", 10, [&](const Progress&) {
+        if (!holds || ended == 5) return;
+        holds = false;
+        std::thread ends{[&] { worker.reset(); }};
+        std::this_thread::sleep_for(20ms);  // it has been told to end
+        let_go = true;
+        ends.join();
+        let_go = false;
+        worker = ++ended < 5 ? std::make_unique<WorkerThread>(server, "next", hold)
+                             : std::make_unique<WorkerThread>(server, "last", made_up_in(1ms));
+    });
+    CHECK(ended == 5);
+    CHECK(progress.set_aside.empty());
+    CHECK(progress.done == 10);
+    CHECK(contents(folder / "workers.db") == alone(folder / "alone.db", 10));
+}
+
 TEST_CASE("a worker that says nothing loses its case to another", "[cluster][campaign][R61]") {
     if (!NatsServer::present()) return;
     test::TemporaryFolder folder;
@@ -317,6 +349,11 @@ TEST_CASE("an engine that is away, has no JetStream or is none is named in one l
     REQUIRE_FALSE(none);
     CHECK_THAT(none.error().message, Catch::StartsWith("nats://127.0.0.1:1: "));
     CHECK_THAT(none.error().message, !Catch::Contains("secret") && !Catch::Contains("\n"));
+    for (const std::string url : {"nats://someone:sec,ret@one:1", "nats://someone:sec://ret@one:1", "sec,ret@one:1",
+                                  "nats://a:secret@two:1,nats://b:secret@one:1", "nats://one:1"}) {
+        CHECK_THAT(cluster::shown(at(url)), !Catch::Contains("sec") && !Catch::Contains("ret"));
+        CHECK_THAT(cluster::shown(at(url)), Catch::EndsWith("one:1"));
+    }
     const auto nonsense = Engine::connect(at("nats://127.0.0.1:port"), "test");
     REQUIRE_FALSE(nonsense);
     CHECK(nonsense.error().message == "nats://127.0.0.1:port: invalid port 'port'");

@@ -103,9 +103,13 @@ const FEW = 3;
  * entry with the number that are up.
  */
 export function headerLinks(store: RunStore, cutoff: number, lost = false): LinkLine[] {
-  const fault = store.run.archiveFault;
+  const { archiveFault, follows, originLost, unpublished } = store.run;
+  const own = (name: string, look: LinkLook, detail: string, short = detail): LinkLine[] =>
+    detail ? [{ name, look, detail, short }] : [];
   return [
-    ...(fault ? [{ name: 'NOT STORED', look: 'lost', detail: fault, short: fault } as const] : []),
+    ...own('NOT STORED', 'lost', archiveFault),
+    ...own('FOLLOWER', originLost ? 'lost' : 'up', follows, originLost ? 'origin lost' : 'follows'),
+    ...own('NOT PUBLISHED', 'lost', unpublished),
     ...radioLinks(store, cutoff, lost),
   ];
 }

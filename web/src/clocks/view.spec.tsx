@@ -141,6 +141,18 @@ describe('the header', () => {
       { name: 'NOT STORED', look: 'lost', detail: 'a.db: the disk is full', short: 'a.db: the disk is full' },
     ]);
   });
+  it('says that this server follows another, whether that one is heard, and what followers do not have', () => {
+    const follows = 'follows the archive 01234567; 12 items behind';
+    expect(headerLinks(aStore([], aRun({ follows })), Infinity)).toEqual([
+      { name: 'FOLLOWER', look: 'up', detail: follows, short: 'follows' },
+    ]);
+    expect(headerLinks(aStore([], aRun({ follows, originLost: true })), Infinity)).toEqual([
+      { name: 'FOLLOWER', look: 'lost', detail: follows, short: 'origin lost' },
+    ]);
+    expect(headerLinks(aStore([], aRun({ unpublished: '12 items wait' })), Infinity)).toEqual([
+      { name: 'NOT PUBLISHED', look: 'lost', detail: '12 items wait', short: '12 items wait' },
+    ]);
+  });
   it('of a run of the day before, which has no clocks any more, go by what it holds', () => {
     const run = aRun({ state: 'finished', lightTimeS: 100 });
     delete (run as { clocks?: unknown }).clocks;

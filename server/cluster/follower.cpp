@@ -1,0 +1,459 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/cluster/follower.hpp"
+
+#include "server/base/version.hpp"
+#include "server/cluster/run_messages.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <condition_variable>
+#include <fmt/format.h>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <spdlog/spdlog.h>
+#include <thread>
+
+namespace aeolis::server::cluster {
+namespace {
+
+using archive::RunId;
+using Clock = std::chrono::steady_clock;
+
+constexpr std::size_t messages_at_once = 16;
+constexpr double far_behind_s = 2.0;  // chosen: a person would say so from here on
+
+double seconds(Clock::duration time) {
+    return std::chrono::duration<double>{time}.count();
+}
+
+/// "STREAM PLACE": the stream, and the message after which nothing was taken.
+struct Place {
+    std::string stream;
+    std::uint64_t last = 0;
+
+    static Place of(const std::string& text) {
+        const auto space = text.find(' ');
+        Place place;
+        if (space == std::string::npos) return place;
+        place.stream = text.substr(0, space);
+        (void)std::from_chars(text.data() + space + 1, text.data() + text.size(), place.last);
+        return place;
+    }
+    std::string text() const { return fmt::format("{} {}", stream, last); }
+};
+
+/// The pieces of a step, as far as they have come.
+struct Pieces {
+    v1::RunRows first;
+    std::string octets;
+    std::uint32_t next = 0;
+};
+
+}  // namespace
+
+std::string text_of(const Following& following) {
+    auto text = fmt::format("follows the archive {}", brief(following.origin));
+    if (following.lost)
+        text += fmt::format("; the origin has not been heard for {:.0f} s", following.silent_s);
+    else if (!following.fault.empty())
+        text += "; " + following.fault;
+    if (following.behind_items > 0)
+        text += following.behind_s < far_behind_s
+                    ? fmt::format("; {} items behind", following.behind_items)
+                    : fmt::format("; {} items behind, for {:.0f} s", following.behind_items, following.behind_s);
+    for (const auto& run : following.left_out) text += "; " + run;
+    return text;
+}
+
+namespace {
+
+Result<v1::OriginState> find_origin(Engine& engine, const std::string& wanted) {
+    const auto subjects = engine.subjects(origin_stream, all_origins);
+    if (!subjects) return subjects.error();
+    const auto prefix = subject_of_origin("");
+    std::vector<std::string> matching, all;
+    for (const auto& subject : *subjects) {
+        all.push_back(subject.substr(prefix.size()));
+        if (all.back().starts_with(wanted)) matching.push_back(subject);
+    }
+    if (matching.size() != 1) {
+        std::string there;
+        for (const auto& one : all) there += (there.empty() ? "" : ", ") + one;
+        if (all.empty()) return Error{"no archive is published there: start its server with --nats"};
+        if (matching.empty()) return Error{fmt::format("no archive {} is published there, but {}", wanted, there)};
+        return Error{fmt::format("several archives are published there: name one by --follow-archive: {}", there)};
+    }
+    const auto newest = engine.newest(origin_stream, matching[0]);
+    if (!newest) return newest.error();
+    v1::OriginState state;
+    if (!*newest || !state.ParseFromString((*newest)->octets) || subject_of_origin(state.archive()) != matching[0])
+        return Error{matching[0] + ": not what an origin says"};
+    return state;
+}
+
+}  // namespace
+
+Result<void> begin_following(archive::SharedArchive& shared, const EngineAddress& address, const std::string& wanted,
+                             std::uint16_t dictionary) {
+    const auto already = shared.followed();
+    if (!already) return already.error();
+    if (!already->empty() && already->starts_with(wanted)) return {};
+    if (!already->empty())
+        return Error{fmt::format("this archive follows the archive {}, not {}: name another file", *already, wanted)};
+    auto engine = Engine::connect(address, "aeolis follower");
+    if (!engine) return engine.error();
+    const auto origin = find_origin(*engine, wanted);
+    if (!origin) return Error{fmt::format("{}: {}", cluster::shown(address), origin.error().message)};
+    const auto tables = shared.tables();
+    if (!tables) return tables.error();
+    if (origin->tables() != *tables)
+        return Error{
+            fmt::format("the origin is aeolis {}, whose tables are not those of this one, {}: both must be of the "
+                        "same version",
+                        origin->version(), version)};
+    if (origin->dictionary() != dictionary)
+        return Error{fmt::format("the origin has the dictionary {}, this server {}", origin->dictionary(), dictionary)};
+    return shared.follow(origin->archive());
+}
+
+class Follower::Thread {
+  public:
+    /// What the archive knows of itself.
+    struct Own {
+        archive::SharedArchive shared;
+        std::string identity, origin, tables, place;
+    };
+    Thread(Settings settings, Parts parts, Own own)
+        : settings_(std::move(settings)), parts_(std::move(parts)), own_(std::move(own)),
+          place_(Place::of(own_.place)) {
+        status_.origin = own_.origin;
+        thread_ = std::thread{[this] { run(); }};
+    }
+    ~Thread() {
+        {
+            const std::scoped_lock lock{mutex_};
+            stop_ = true;
+        }
+        wake_.notify_all();
+        thread_.join();
+    }
+
+    Following status() const {
+        const std::scoped_lock lock{mutex_};
+        return as_of_now();
+    }
+
+  private:
+    void run() {
+        while (!stopped()) {
+            const auto done = work();
+            told(done);
+            if (done) continue;
+            steps_.reset();
+            wait(settings_.again_after);
+        }
+        steps_.reset();
+        if (engine_ && engine_->connected()) (void)engine_->remove_consumer(run_stream, reader_name());
+    }
+
+    Result<void> work() {
+        if (!engine_) {
+            auto engine = Engine::connect(settings_.engine, "aeolis follower " + brief(own_.identity));
+            if (!engine) return engine.error();
+            engine_.emplace(std::move(*engine));
+        }
+        if (!engine_->connected()) return Error{shown(settings_.engine) + ": the engine is away"};
+        if (!steps_)
+            if (auto begun = begin(); !begun) return begun;
+        auto given = steps_->next(messages_at_once, settings_.wait);
+        if (!given) return given.error();
+        for (const auto& one : *given) {
+            if (stopped()) return {};
+            if (one.count() != count_ + 1) return Error{"messages of the engine were lost: they are read again"};
+            count_ = one.count();
+            if (auto taken = take(one); !taken) return taken;
+            place_.last = one.place();
+        }
+        return look();
+    }
+
+    /// Reads the stream from where it was left; another stream, or one that is shorter, from its beginning.
+    Result<void> begin() {
+        const auto facts = engine_->facts(run_stream);
+        if (!facts) return facts.error();
+        if (facts->made.empty()) return Error{fmt::format("no stream {} yet: the origin makes it", run_stream)};
+        if (facts->made != place_.stream || facts->last < place_.last) place_ = {facts->made, 0};
+        if (std::exchange(read_again_, false)) place_.last = 0;
+        auto steps = engine_->read(run_stream, reader_name(), subject_of_runs(own_.origin), place_.last + 1);
+        if (!steps) return steps.error();
+        steps_.emplace(std::move(*steps));
+        pieces_.clear();
+        count_ = 0;
+        return {};
+    }
+
+    std::string reader_name() const { return "follower-" + own_.identity; }
+
+    /// The Error: the message is to be given again.
+    Result<void> take(const Given& given) {
+        v1::RunRows message;
+        const auto octets = given.octets();
+        if (!message.ParseFromArray(octets.data(), static_cast<int>(octets.size())) || message.run() == 0 ||
+            message.pieces() == 0 || message.piece() >= message.pieces())
+            return refuse("a message that is none of an origin");
+        if (message.archive() != own_.origin)
+            return refuse(fmt::format("a message of the archive {}", brief(message.archive())));
+        const RunId run{message.run()};
+        if (message.tables() != own_.tables)
+            return refuse(
+                "the origin's tables are not those of this program: the same version is needed on both sides");
+        if (message.dictionary() != settings_.dictionary)
+            return refuse(run, fmt::format("it has the dictionary {}, this server {}", message.dictionary(),
+                                           settings_.dictionary));
+        const auto here = position(run);
+        if (!here) return here.error();
+        if (archive::within(message.after(), **here) && !archive::within(**here, message.after())) {
+            ++repeated_;  // older than what is here
+            return {};
+        }
+        auto whole = join(std::move(message));
+        if (!whole) return refuse(whole.error().message);
+        if (!*whole) return {};  // more pieces are to come
+        return take_step(run, (*whole)->first, (*whole)->octets, **here, {place_.stream, given.place()});
+    }
+
+    /// A step of which all pieces are there; none: some are still to come.
+    Result<std::optional<Pieces>> join(v1::RunRows message) {
+        auto& pieces = pieces_[message.run()];
+        const bool fits =
+            message.piece() == 0 || (message.piece() == pieces.next && message.pieces() == pieces.first.pieces() &&
+                                     message.after().SerializeAsString() == pieces.first.after().SerializeAsString());
+        if (!fits) {
+            pieces = {};
+            return Error{fmt::format("run {}: a piece of a step without the one before", message.run())};
+        }
+        if (message.piece() == 0) pieces = {};
+        pieces.octets += message.octets();
+        pieces.next = message.piece() + 1;
+        const bool last = pieces.next == message.pieces();
+        if (pieces.octets.size() > archive::row_set_octets_max) {
+            pieces = {};
+            return Error{
+                fmt::format("run {}: a step of more than {} MB", message.run(), archive::row_set_octets_max >> 20U)};
+        }
+        message.clear_octets();
+        if (message.piece() == 0) pieces.first = std::move(message);
+        if (!last) return std::optional<Pieces>{};
+        return std::optional{std::exchange(pieces, {})};
+    }
+
+    Result<void> take_step(RunId run, const v1::RunRows& message, const std::string& octets,
+                           const v1::RunPosition& here, const Place& place) {
+        if (!archive::within(message.before(), here)) return gap(run, message.before(), here);
+        auto rows = archive::unpacked(octets);
+        if (!rows) return refuse(run, rows.error().message);
+        const archive::RunStep step{settings_.dictionary, message.before(), message.after(), std::move(*rows)};
+        for (;;) {
+            const auto taken = own_.shared.take(run, step, place.text());
+            if (taken) {
+                if (taken->last > 0) parts_.taken(run, taken->first, taken->last);
+                break;
+            }
+            if (!taken.error().internal) return refuse(run, taken.error().message);
+            told(taken.error());  // the disk's fault: the step waits here
+            wait(settings_.again_after);
+            if (stopped()) return {};
+        }
+        ++taken_;
+        items_ += step.after.seq() > here.seq() ? step.after.seq() - here.seq() : 0;
+        positions_[run.value] = archive::merged(here, step.after);
+        left_out_.erase(run.value);
+        return {};
+    }
+
+    /// Steps are missing: the stream may have them, before the place from which it was read.
+    Result<void> gap(RunId run, const v1::RunPosition& before, const v1::RunPosition& here) {
+        if (place_.last > 0 && sought_.insert(run.value).second) {
+            read_again_ = true;
+            return Error{fmt::format("run {}: what comes before item {} is missing: the stream is read again from its "
+                                     "beginning",
+                                     run.value, before.seq() + 1)};
+        }
+        return refuse(run, fmt::format("a step begins behind item {}, this archive ends at {}: if the engine no longer "
+                                       "has what is between, begin with a copy of the origin's (aeolis archive backup)",
+                                       before.seq(), here.seq()));
+    }
+
+    Result<const v1::RunPosition*> position(RunId run) {
+        auto known = positions_.find(run.value);
+        if (known == positions_.end()) {
+            auto here = own_.shared.position(run);
+            if (!here) return here.error();
+            known = positions_.emplace(run.value, std::move(*here)).first;
+        }
+        return &known->second;
+    }
+
+    /// Counted, and told in a line; what comes after it is looked at as if it had not come.
+    Result<void> refuse(const std::string& why) {
+        ++refused_;
+        if (told_.size() < lines_max && told_.insert(why).second) spdlog::warn("refused: {}", why);
+        return {};
+    }
+    Result<void> refuse(RunId run, const std::string& why) {
+        left_out_[run.value] = fmt::format("run {} is not taken further: {}", run.value, why);
+        return refuse(left_out_[run.value]);
+    }
+
+    /// What the origin says of itself.
+    Result<void> look() {
+        const auto now = Clock::now();
+        if (now - looked_ < settings_.look_every) return {};
+        looked_ = now;
+        const auto facts = engine_->facts(run_stream);
+        if (!facts) return facts.error();
+        if (facts->made != place_.stream) return Error{"the engine has another stream now"};
+        const auto newest = engine_->newest(origin_stream, subject_of_origin(own_.origin));
+        if (!newest) return newest.error();
+        v1::OriginState state;
+        if (!*newest || !state.ParseFromString((*newest)->octets) || state.archive() != own_.origin) return {};
+        if (state.publisher() != origin_.publisher() || state.count() != origin_.count()) {
+            // The first one that is read may be of an origin that is gone.
+            if (!origin_.publisher().empty()) {
+                const std::scoped_lock lock{mutex_};
+                heard_ = now;
+            }
+            origin_ = std::move(state);
+            if (auto given = give_on(); !given) return given;
+        }
+        return count_behind();
+    }
+
+    Result<void> give_on() {
+        const RunId run{static_cast<std::uint32_t>(origin_.run().run())};
+        if (run.value == 0) return {};
+        const auto here = position(run);
+        if (!here) return here.error();
+        if ((*here)->seq() == 0) return {};  // its beginning is not here yet
+        auto shown = origin_.run();
+        shown.clear_archive_fault();  // the origin's own
+        shown.clear_last_seq();
+        auto octets = shown.SerializeAsString();
+        shown.set_last_seq((*here)->seq());
+        if (octets != shown_) parts_.run_state(std::move(shown));
+        shown_ = std::move(octets);
+        parts_.clocks(origin_.clocks());
+        return {};
+    }
+
+    Result<void> count_behind() {
+        std::map<std::uint32_t, std::uint64_t> last;
+        for (const auto& [run, seq] : origin_.last_seq()) last[run] = seq;
+        std::uint64_t behind = 0;
+        for (const auto& [run, seq] : last) {
+            if (left_out_.contains(run)) continue;
+            const auto here = position(RunId{run});
+            if (!here) return here.error();
+            if (seq > (*here)->seq()) behind += seq - (*here)->seq();
+        }
+        const std::scoped_lock lock{mutex_};
+        status_.behind_items = behind;
+        if (behind == 0) even_ = Clock::now();
+        return {};
+    }
+
+    Following as_of_now() const {
+        auto now = status_;
+        now.silent_s = seconds(Clock::now() - heard_);
+        now.lost = now.silent_s > seconds(settings_.lost_after);
+        now.behind_s = now.behind_items == 0 ? 0.0 : seconds(Clock::now() - even_);
+        return now;
+    }
+
+    void told(const Result<void>& done) {
+        Following now;
+        std::string before;
+        {
+            const std::scoped_lock lock{mutex_};
+            before = std::exchange(status_.fault, done ? "" : done.error().message);
+            status_.steps = taken_;
+            status_.items = items_;
+            status_.repeated = repeated_;
+            status_.refused = refused_;
+            status_.left_out.clear();
+            for (const auto& [run, why] : left_out_) status_.left_out.push_back(why);
+            now = as_of_now();
+        }
+        if (done && !before.empty()) spdlog::info("following goes on");
+        if (!done && before != done.error().message) spdlog::warn("following: {}", done.error().message);
+        if (now.lost != std::exchange(lost_, now.lost)) {
+            if (lost_)
+                spdlog::warn("the origin {} is silent", brief(own_.origin));
+            else
+                spdlog::info("the origin {} is heard", brief(own_.origin));
+        }
+    }
+
+    bool stopped() const {
+        const std::scoped_lock lock{mutex_};
+        return stop_;
+    }
+    void wait(std::chrono::milliseconds time) {
+        std::unique_lock lock{mutex_};
+        wake_.wait_for(lock, time, [this] { return stop_; });
+    }
+
+    static constexpr std::size_t lines_max = 100;  // chosen: what is refused is counted anyway
+    const Settings settings_;
+    const Parts parts_;
+    Own own_;
+    std::optional<Engine> engine_;
+    std::optional<Consumer> steps_;  // before engine_
+    std::uint64_t count_ = 0;
+    Place place_;
+    bool read_again_ = false;
+    std::map<std::uint32_t, v1::RunPosition> positions_;
+    std::map<std::uint32_t, Pieces> pieces_;
+    std::map<std::uint32_t, std::string> left_out_;  // until a step of the run is taken
+    std::set<std::uint32_t> sought_;                 // runs for which the stream was read again
+    std::set<std::string> told_;
+    std::uint64_t taken_ = 0, items_ = 0, repeated_ = 0, refused_ = 0;
+    v1::OriginState origin_;
+    std::string shown_;
+    bool lost_ = false;
+    const Clock::time_point began_ = Clock::now();
+    Clock::time_point looked_{};
+    mutable std::mutex mutex_;  // of all below
+    Clock::time_point heard_ = began_;
+    std::condition_variable wake_;
+    bool stop_ = false;
+    Following status_;
+    Clock::time_point even_ = began_;
+    std::thread thread_;
+};
+
+Follower::Follower(std::unique_ptr<Thread> thread) : thread_(std::move(thread)) {}
+Follower::~Follower() = default;
+
+Result<std::unique_ptr<Follower>> Follower::start(Settings settings, Parts parts) {
+    auto shared = archive::SharedArchive::open(settings.archive);
+    if (!shared) return shared.error();
+    auto identity = shared->identity(), origin = shared->followed(), tables = shared->tables(),
+         place = shared->fact(archive::fact_taken);
+    for (const auto* known : {&identity, &origin, &tables, &place})
+        if (!*known) return known->error();
+    AEOLIS_CHECK(!origin->empty());
+    spdlog::info("following the archive {} by {}", *origin, cluster::shown(settings.engine));
+    Thread::Own own{std::move(*shared), std::move(*identity), std::move(*origin), std::move(*tables),
+                    std::move(*place)};
+    return std::unique_ptr<Follower>{
+        new Follower{std::make_unique<Thread>(std::move(settings), std::move(parts), std::move(own))}};
+}
+
+Following Follower::status() const {
+    return thread_->status();
+}
+
+}  // namespace aeolis::server::cluster
