@@ -381,15 +381,15 @@ Result<void> RunRowsReader::State::add_items(RunId run, RunStep& step, Sequence 
 
 /// Segments of packets that have been added. True: all that there are.
 Result<bool> RunRowsReader::State::add_segments(RunId run, RunStep& step, bool all_items) {
-    static const std::string next = "SELECT last_unit FROM segments WHERE segment = ?1";
+    static const std::string next = "SELECT last_packet FROM segments WHERE segment = ?1";
     static const std::string segment_sql = "SELECT * FROM segments WHERE segment = ?1";
     static const std::string columns_sql = "SELECT * FROM segment_columns WHERE key BETWEEN ?1 AND ?2 ORDER BY key";
     for (auto number = step.before.segments();; ++number) {
         const auto key = segment_key(run, static_cast<std::int64_t>(number));
-        const auto last_unit = integer(next, {key});
-        if (!last_unit) return last_unit.error();
-        if (!*last_unit) return true;
-        if (!all_items && static_cast<Sequence>(**last_unit) > step.after.seq()) return false;
+        const auto last_packet = integer(next, {key});
+        if (!last_packet) return last_packet.error();
+        if (!*last_packet) return true;
+        if (!all_items && static_cast<Sequence>(**last_packet) > step.after.seq()) return false;
         if (step.rows.ByteSizeLong() > octets_max) return false;
         if (auto added = add(segment_sql, "segments", {key}, step.rows); !added) return added.error();
         if (auto added = add(columns_sql, "segment_columns", {key * 65'536, key * 65'536 + 65'535}, step.rows); !added)
