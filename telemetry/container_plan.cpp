@@ -169,7 +169,7 @@ class ContainerPlan::Compiler {
             return found == tests.end() ? nullptr : &*found;
         };
         for (const Test& of : plan_.nodes_[node.derived.front()].tests) {
-            Choice choice{of.position_bits, of.bits, {}};
+            Choice choice{of.position_bits, of.bits, {}, {}};
             for (const std::size_t derived : node.derived)
                 if (const Test* test = asks(derived, of))
                     choice.each.push_back(
