@@ -475,7 +475,7 @@ TEST_CASE("over twenty dispersed landings from samples at 24 dB-Hz features are 
                                              {first_reversal, "bank_reversal_1", 0, in_time_s},
                                              {second_reversal, "bank_reversal_2", 0, in_time_s},
                                              {third_reversal, "bank_reversal_3", 0, in_time_s},
-                                             {parachute, "parachute_deploy", 2, 10.0},
+                                             {parachute, "parachute_deploy", 4, 10.0},
                                              {heatshield, "heatshield_separation", 6, in_time_s}}};
     std::array<std::vector<double>, names.size()> late_s;
     std::array<int, names.size()> there{};
