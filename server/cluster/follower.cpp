@@ -28,6 +28,8 @@ double seconds(Clock::duration time) {
     return std::chrono::duration<double>{time}.count();
 }
 
+}  // namespace
+
 /// "STREAM PLACE": the stream, and the message after which nothing was taken.
 struct Place {
     std::string stream;
@@ -50,8 +52,6 @@ struct Pieces {
     std::string octets;
     std::uint32_t next = 0;
 };
-
-}  // namespace
 
 std::string text_of(const Following& following) {
     auto text = fmt::format("follows the archive {}", brief(following.origin));

@@ -38,6 +38,8 @@ bool equal(const v1::RunPosition& one, const v1::RunPosition& other) {
     return archive::within(one, other) && archive::within(other, one);
 }
 
+}  // namespace
+
 /// A run that something is published of.
 struct OpenRun {
     archive::RunHead stored;
@@ -45,8 +47,6 @@ struct OpenRun {
     std::uint64_t place = 0;                  ///< of the newest message of its subject
     Clock::time_point counted{};
 };
-
-}  // namespace
 
 std::string text_of(const Publishing& publishing) {
     auto text = publishing.waiting_items == 0 ? std::string{"all is published"}
