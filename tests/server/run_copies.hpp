@@ -90,10 +90,15 @@ inline std::vector<std::string> faults_of(const std::filesystem::path& file) {
     auto database = archive::sqlite::Database::open(file.string(), archive::sqlite::Mode::read_only);
     must(database);
     auto faults = *archive::integrity_faults(*database);
-    for (const auto& fault : archive::check_audit(*database)->faults) faults.push_back(fault);
-    for (const auto& fault : archive::check_fingerprints(*database, std::nullopt)->faults) faults.push_back(fault);
-    for (const auto& run : *archive::run_lines(*database))
-        for (const auto& fault : *archive::sequence_faults(*database, run.run, "main.", 10)) faults.push_back(fault);
+    const auto audit = archive::check_audit(*database);
+    faults.insert(faults.end(), audit->faults.begin(), audit->faults.end());
+    const auto fingerprints = archive::check_fingerprints(*database, std::nullopt);
+    faults.insert(faults.end(), fingerprints->faults.begin(), fingerprints->faults.end());
+    const auto runs = archive::run_lines(*database);
+    for (const auto& run : *runs) {
+        const auto of_run = archive::sequence_faults(*database, run.run, "main.", 10);
+        faults.insert(faults.end(), of_run->begin(), of_run->end());
+    }
     return faults;
 }
 
