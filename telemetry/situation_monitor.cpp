@@ -206,9 +206,9 @@ Ert SituationMonitor::last_change() const {
 
 // ---- facts -------------------------------------------------------------------------------------------------------
 
-void SituationMonitor::heard(Sclk sclk) {
+void SituationMonitor::heard(Sclk sclk, std::optional<Ert> received) {
     if (!clocks_.entry) return;
-    const Ert at = seen(sclk);
+    const Ert at = received ? std::max(*received, seen(sclk)) : seen(sclk);
     if (!last_heard_ || at > *last_heard_) last_heard_ = at;
 }
 

@@ -66,7 +66,8 @@ class SituationMonitor {
         bool failed = false;  ///< the stage failed
         bool done = false;    ///< flight has executed it
     };
-    void heard(Sclk sclk);  ///< a packet in real time
+    /// A packet in real time. `received`: when it came, of a link that brings at once; waiting on board it may be older.
+    void heard(Sclk sclk, std::optional<Ert> received = {});
     void event(const EventFact& event, const Origin& origin);
     void fired(TimepointId timepoint, Sclk triggered, Sclk fired, const Origin& origin);
     void tone(ToneId tone, double likelihood, Sclk start, const Origin& origin);

@@ -38,8 +38,11 @@ void SituationFeed::follow(const archive::Batch& batch) {
                       origin_of(link));
     });
     each_new(batch.packets, followed_, [&](const archive::PacketRecord& packet) {
-        if (packet.packet && packet.source == archive::Source::realtime && packet.link != telemetry::station_link.name)
-            monitor_.heard(packet.sclk);
+        if (!packet.packet || packet.source != archive::Source::realtime || packet.link == telemetry::station_link.name)
+            return;
+        const bool at_once =
+            packet.link == telemetry::uhf_live_link.name || packet.link == telemetry::x_band_telemetry_link.name;
+        monitor_.heard(packet.sclk, at_once ? std::optional{packet.ert} : std::nullopt);
     });
     each_new(batch.events, followed_, [&](const archive::EventRecord& event) {
         monitor_.event({event.name, event.text, event.level, event.sclk}, origin_of(event, event.source));

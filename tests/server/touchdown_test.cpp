@@ -118,12 +118,12 @@ TEST_CASE("a rover's IMU that is silent leaves the touchdown reported, with the 
     std::erase_if(stops.rover_imu, [](const auto& told) { return told.sclk.seconds > down_s + 5.0; });
     CHECK(still_step(stops).state() == Step::unknown);
     CHECK(still_step(stops).words() ==
-          "not known: rover_imu_rate_rps has told nothing since E+7:15.0; it had been still for 4.0 s");
+          "not known: rover_imu_rate_rps has told nothing since E+7:15.0; it had been still for 4 s");
     auto gap = heard_until(down_s + 15.0);
     std::erase_if(gap.rover_imu, [](const auto& told) {
         return told.sclk.seconds > down_s + 4.0 && told.sclk.seconds < down_s + 8.0;
     });
-    CHECK(still_step(gap).words() == "7.0 s of 10 s since E+7:18.0");
+    CHECK(still_step(gap).words() == "7 s of 10 s since E+7:18.0");
 }
 
 TEST_CASE("all that tells of a touchdown is said, and it was when the first of it says", "[touchdown]") {

@@ -83,7 +83,7 @@ Landed land(const std::vector<DeviceFault>& faults, const Selection& units = all
     landing.uplink(test::do_edl());
     while (landing.outcome() == Outcome::running) landing.step();
     Landed landed;
-    landed.judgement = tests::judged(landing, scenario.limits);
+    landed.judgement = tests::judged_held_up(landing, scenario.limits);
     landed.reason = reason_of(landing, landed.judgement);
     landed.recording.assign(landing.recording().begin(), landing.recording().end());
     read(landed);

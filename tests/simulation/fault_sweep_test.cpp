@@ -280,7 +280,7 @@ Flown with(Landing landing, Watch watch, const Drawn& drawn) {
         if (unit == Unit::a || drawn.both)
             landing.inject(DeviceFault{drawn.device, unit, drawn.kind, 0.0, drawn.length_s});
     while (landing.outcome() == Outcome::running) watch.step(landing, flown);
-    flown.judgement = tests::judged(landing);
+    flown.judgement = tests::judged_held_up(landing);
     flown.reason = reason_of(landing, flown.judgement);
     return flown;
 }

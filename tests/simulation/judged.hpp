@@ -18,4 +18,11 @@ inline simulation::Judgement judged(const simulation::Landing& landing,
     return simulation::judge(limits, simulation::figures_of(landing, least_margin_s));
 }
 
+/// The same for a landing whose timeline a reset or a reply that is refused, late or absent holds up, as it must: the
+/// margin of the timeline is not judged, because overdue rows fire together then.
+inline simulation::Judgement judged_held_up(const simulation::Landing& landing,
+                                            const simulation::Limits& limits = gale_scenario().limits) {
+    return simulation::judge(limits, simulation::figures_of(landing));
+}
+
 }  // namespace aeolis::tests

@@ -175,7 +175,7 @@ class Trunk {
         const std::size_t before = fork.recording().size();
         for (const DeviceFault& fault : faults) fork.inject(fault);
         while (fork.outcome() == Outcome::running) fork.step();
-        const Judgement judgement = tests::judged(fork);
+        const Judgement judgement = tests::judged_held_up(fork);
         // What is told after the landing, as of the stop of UHF, is told too.
         for (int cycle = 0; cycle < 64 * 30; ++cycle) fork.step();
         Flown flown{judgement, reason_of(fork, judgement), {}};

@@ -99,7 +99,7 @@ class Resets {
         if (flyaway_) reset.at.since_flyaway_s = trunk_.sclk() - *flyaway_;
         fork.reset_prime();
         while (fork.outcome() == Outcome::running) fork.step();
-        reset.judgement = tests::judged(fork);
+        reset.judgement = tests::judged_held_up(fork);
         reset.reason = reason_of(fork, reset.judgement);
         return reset;
     }

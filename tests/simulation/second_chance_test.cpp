@@ -93,7 +93,7 @@ void fly_on(Landing& landing, double for_s) {
 /// By the scenario's limits: what lands outside of them has not passed.
 Verdict verdict_on(Landing& landing) {
     while (landing.outcome() == Outcome::running) landing.step();
-    const Judgement judgement = tests::judged(landing);
+    const Judgement judgement = tests::judged_held_up(landing);
     UNSCOPED_INFO(reason_of(landing, judgement));
     return judgement.verdict;
 }

@@ -29,7 +29,7 @@ void command(Landing& landing) {
 
 Judgement flown_to_its_end(Landing& landing) {
     while (landing.outcome() == Outcome::running) landing.step();
-    return tests::judged(landing);
+    return tests::judged_held_up(landing);
 }
 
 using tests::Calm, tests::Silence;
@@ -81,7 +81,7 @@ void check_short_entry(double short_km, std::uint64_t seed) {
     while (landing.outcome() == Outcome::running)
         for (const TruthEvent& event : landing.step().events)
             if (event.name == "parachute_deploy") mortar_m = event.altitude_m;
-    const Judgement judgement = tests::judged(landing);
+    const Judgement judgement = tests::judged_held_up(landing);
     INFO(reason_of(landing, judgement));
     REQUIRE(landing.parachute());
     INFO("mortar at " << mortar_m.value_or(0.0) << " m, Mach " << landing.parachute()->mach << ", "
