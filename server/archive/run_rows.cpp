@@ -617,9 +617,16 @@ Result<void> RunRowsWriter::check_items(RunId run, Sequence first, Sequence last
     const auto wanted = static_cast<std::int64_t>(last - first + 1);
     const bool whole = (*row)->integer(0) == wanted && (*row)->integer(1) == wanted && (*row)->integer(2) == 0;
     (*row)->reset();
-    if (whole) return {};
+    auto beyond = statement("SELECT count(*) FROM (" + item_keys_sql() + ")");
+    if (!beyond) return beyond.error();
+    (*beyond)->bind(1, item_key(run, last + 1)).bind(2, item_key(run, sequence_max));
+    found = (*beyond)->step();
+    if (!found) return found.error();
+    const bool none_beyond = (*beyond)->integer(0) == 0;
+    (*beyond)->reset();
+    if (whole && none_beyond) return {};
     return Error{"run " + std::to_string(run.value) + ": a step that should hold the items " + std::to_string(first) +
-                 " to " + std::to_string(last) + " leaves one out, or holds one twice"};
+                 " to " + std::to_string(last) + " leaves one out, holds one twice, or more than these"};
 }
 
 Result<RunRowsWriter::Taken> RunRowsWriter::take(RunId run, const RunStep& step) {
