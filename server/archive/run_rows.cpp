@@ -617,9 +617,10 @@ Result<void> RunRowsWriter::check_items(RunId run, Sequence first, Sequence last
     const auto wanted = static_cast<std::int64_t>(last - first + 1);
     const bool whole = (*row)->integer(0) == wanted && (*row)->integer(1) == wanted && (*row)->integer(2) == 0;
     (*row)->reset();
-    auto beyond = statement("SELECT count(*) FROM (" + item_keys_sql() + ")");
+    // From the last packet on, because its samples are the item behind it.
+    auto beyond = statement("SELECT count(*) FROM (" + item_keys_sql() + ") WHERE key > ?1");
     if (!beyond) return beyond.error();
-    (*beyond)->bind(1, item_key(run, last + 1)).bind(2, item_key(run, sequence_max));
+    (*beyond)->bind(1, item_key(run, last)).bind(2, item_key(run, sequence_max));
     found = (*beyond)->step();
     if (!found) return found.error();
     const bool none_beyond = (*beyond)->integer(0) == 0;

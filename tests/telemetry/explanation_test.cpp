@@ -239,7 +239,7 @@ TEST_CASE("a device that is taken as lost is named", "[explanation][R38]") {
     packet.raw("condition_1", number_of(dictionary, "condition_1", "thrusters_felt")).real("value_1", 0.02);
     packet.real("bound_1", 0.3).raw("comparison_1", number_of(dictionary, "comparison_1", "lt")).raw("holds_1", 1);
     REQUIRE_FALSE(decommutator.decode(packet.seal(), decoded));
-    CHECK(explain(dictionary, decoded)->text == "thrusters taken as lost: thrusters felt 0.020 < 0.300");
+    CHECK(explain(dictionary, decoded)->text == "thrusters taken as lost: thrusters felt 0.02 < 0.3");
 }
 
 }  // namespace telemetry_explanation_test
