@@ -172,7 +172,7 @@ TEST_CASE("without UHF its step is not known, with the reason of the silence whe
     lost.now = Sclk{down_s + 20.0};
     const auto step = server::judge_touchdown(lost).steps(2);
     CHECK(step.state() == Step::unknown);
-    CHECK(step.words() == "not known: no UHF since E+7:15.0; 4.0 s had come without a break");
+    CHECK(step.words() == "not known: no UHF since E+7:15.0; 4 s had come without a break");
 }
 
 TEST_CASE("a place says what it rests on; its uncertainty is not known, and none is made up", "[touchdown]") {

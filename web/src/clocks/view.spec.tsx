@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import { describe, expect, it } from 'vitest';
 import { aRun, aStore, ertUs, event, link, tone } from '../testing/fixtures';
+import { LinkChange_Silence } from '../gen/aeolis/v1/items_pb';
 import { readReleaseAt } from '../commands/model';
 import { badgeOf, clocksOf, headerLinks, latestSend, linksOf, streamLine } from './model';
 
@@ -86,12 +87,22 @@ describe('the header', () => {
     expect(streamLine('lost', 3, 0)).toMatchObject({ look: 'lost', detail: 'what is shown is old; attempt 3' });
   });
   it('keeps a link that the plan has off out of the header, until it is due or lost', () => {
+    const kindOf = (reason: string) =>
+      reason.startsWith('not begun')
+        ? LinkChange_Silence.not_begun
+        : reason.startsWith('switched off')
+          ? LinkChange_Silence.switched_off
+          : LinkChange_Silence.unexplained;
     const of = (uhf: string, telemetry: string) =>
       headerLinks(
-        aStore([
-          link({ link: 'uhf_live', up: uhf === '', reason: uhf, ert: '2012-219T04:59:00.0' }),
-          link({ link: 'x_band_telemetry', up: telemetry === '', reason: telemetry, ert: '2012-219T04:59:00.0' }),
-        ]),
+        aStore(
+          [
+            { name: 'uhf_live', reason: uhf },
+            { name: 'x_band_telemetry', reason: telemetry },
+          ].map(({ name, reason }) =>
+            link({ link: name, up: reason === '', reason, silence: kindOf(reason), ert: '2012-219T04:59:00.0' }),
+          ),
+        ),
         Infinity,
       ).map((line) => line.name);
     expect(of('not begun: planned at E−13:20', '')).toEqual(['X-band telemetry']);
