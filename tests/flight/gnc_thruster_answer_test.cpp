@@ -71,7 +71,7 @@ struct Turning {
 }  // namespace
 
 TEST_CASE("of thrusters that obey about all is felt, of those that do not nothing, and of some what they give",
-          "[gnc][attitude]") {
+          "[gnc][attitude][R27]") {
     for (const Comes comes : {Comes::at_once, Comes::in_halves})
         for (const double obeyed : {1.0, 0.0, 0.5}) {
             Turning vehicle{obeyed, comes};
@@ -93,7 +93,7 @@ TEST_CASE("what turns the vehicle slowly is not taken for thrusters", "[gnc][att
 }
 
 TEST_CASE("a torque that is commanded on and on is judged about the axis of symmetry, which nothing else turns",
-          "[gnc][attitude]") {
+          "[gnc][attitude][R27]") {
     for (const double obeyed : {1.0, 0.0}) {
         Turning vehicle{obeyed};
         std::vector<double> said;
