@@ -104,7 +104,7 @@ Result<std::unique_ptr<ConsoleBackend>> ConsoleBackend::open(Settings settings,
         },
         self->timeline_questions(),
         RehearsalManager::Callbacks{[self](v1::RunState state) { self->run_state(std::move(state)); },
-                                 [self](v1::Clocks clocks) { self->clocks(std::move(clocks)); }});
+                                    [self](v1::Clocks clocks) { self->clocks(std::move(clocks)); }});
     // The last step that can fail: the first password is shown once, and only by a server that starts.
     auto access = Access::open({.file = chosen.accounts, .secure = backend->server_->secure()});
     if (!access) return access.error();

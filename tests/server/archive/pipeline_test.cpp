@@ -498,7 +498,8 @@ TEST_CASE("an event that tells the phase is believed at once: what the new phase
     REQUIRE(pipeline.accept(telemetry::EarthTime{Ert{12'000'000}}).ok());
     REQUIRE(pipeline.commit().ok());
     auto database = archive::sqlite::Database::open((folder / "a.db").string(), archive::sqlite::Mode::read_only);
-    CHECK(database->integer_of("SELECT count(*) FROM staleness WHERE packet = 0 AND expected_s > 0").value() == (event_heard ? 0 : 1));
+    CHECK(database->integer_of("SELECT count(*) FROM staleness WHERE packet = 0 AND expected_s > 0").value() ==
+          (event_heard ? 0 : 1));
 }
 
 TEST_CASE("tones are found by words and come in pages", "[pipeline][reader]") {
