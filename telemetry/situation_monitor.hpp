@@ -66,7 +66,8 @@ class SituationMonitor {
         bool failed = false;  ///< the stage failed
         bool done = false;    ///< flight has executed it
     };
-    /// A packet in real time. `received`: when it came, of a link that brings at once; waiting on board it may be older.
+    /// A packet in real time. `received`: when it came over a link that keeps nothing back. The packet itself may be
+    /// older, because packets wait on board for their turn.
     void heard(Sclk sclk, std::optional<Ert> received = {});
     void event(const EventFact& event, const Origin& origin);
     void fired(TimepointId timepoint, Sclk triggered, Sclk fired, const Origin& origin);

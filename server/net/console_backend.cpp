@@ -219,7 +219,10 @@ void ConsoleBackend::publish_copy(archive::RunId run, archive::Sequence first, a
         batch->built = page && page->items.size() == count;
         if (batch->built) batch->items = std::move(page->items);
     }
-    server_->post([this, batch] { hub_->published(batch); });
+    server_->post([this, batch = hub_feed_.departs(std::move(batch))] {
+        hub_feed_.arrived(*batch);
+        hub_->published(batch);
+    });
 }
 
 /// Once a second, for the consoles.
