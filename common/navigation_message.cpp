@@ -258,9 +258,9 @@ Result<Ephemeris> ephemeris_of(const Segment& segment) {
     ephemeris.centre = value_of(segment.metadata, "CENTER_NAME");
     ephemeris.frame = value_of(segment.metadata, "REF_FRAME");
     const std::string method = value_of(segment.metadata, "INTERPOLATION");
-    if (method != "" && method != "HERMITE" && method != "LAGRANGE" && method != "LINEAR")
+    if (!method.empty() && method != "HERMITE" && method != "LAGRANGE" && method != "LINEAR")
         return at_line(segment.line, "INTERPOLATION " + method + " is not known");
-    ephemeris.interpolation = method == "" || method == "HERMITE" ? Interpolation::hermite : Interpolation::lagrange;
+    ephemeris.interpolation = method.empty() || method == "HERMITE" ? Interpolation::hermite : Interpolation::lagrange;
     constexpr std::size_t cubic = 3;  // where the message does not say: through two states and their velocities
     const auto degree = degree_of(segment, method == "LINEAR" ? 1 : cubic);
     if (!degree) return degree.error();
@@ -295,15 +295,16 @@ Result<AttitudeForm> form_of(const Segment& segment, const AttitudeHistory& hist
     if (type != "QUATERNION" && !form.with_rates)
         return wrong("ATTITUDE_TYPE " + type + " is not read (QUATERNION, QUATERNION/ANGVEL and QUATERNION/RATE are)");
     const std::string order = value_of(segment.metadata, "QUATERNION_TYPE");
-    if (order != "" && order != "FIRST" && order != "LAST") return wrong("QUATERNION_TYPE " + order + " is not known");
+    if (!order.empty() && order != "FIRST" && order != "LAST")
+        return wrong("QUATERNION_TYPE " + order + " is not known");
     form.scalar_first = order == "FIRST";
     const std::string direction = value_of(segment.metadata, "ATTITUDE_DIR");
-    if (direction != "" && direction != "A2B" && direction != "B2A")
+    if (!direction.empty() && direction != "A2B" && direction != "B2A")
         return wrong("ATTITUDE_DIR " + direction + " is not known");
     form.from_b_to_a = direction == "B2A";
     for (const std::string_view key : {"RATE_FRAME", "ANGVEL_FRAME"}) {
         const std::string frame = value_of(segment.metadata, key);
-        if (form.with_rates && frame != "" && frame != "REF_FRAME_B" && frame != history.frame_b)
+        if (form.with_rates && !frame.empty() && frame != "REF_FRAME_B" && frame != history.frame_b)
             return wrong(std::string(key) + " " + frame + " is not read: angular velocities are read in REF_FRAME_B");
     }
     return form;

@@ -43,6 +43,7 @@ Result<void> write_trajectory(const std::filesystem::path& file, reconstruction:
                               const Path& path, const ClockCorrelation& clock) {
     if (std::filesystem::exists(file)) return Error{file.string() + " is there already"};
     std::vector<reconstruction::TimedState> states;
+    states.reserve(path.points.size());
     for (const PathPoint& point : path.points) states.push_back({point.at, point.state});
     const auto created = std::chrono::duration_cast<std::chrono::microseconds>(
         std::chrono::system_clock::now() - std::chrono::sys_days{std::chrono::year{2000} / 1 / 1} -

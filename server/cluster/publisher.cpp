@@ -361,6 +361,7 @@ class Publisher::Thread {
         kept_ = Clock::now();
         if (unkept_.empty() || !shared_) return {};
         std::vector<archive::PublishedRun> runs;
+        runs.reserve(unkept_.size());
         for (const auto number : unkept_) runs.push_back(known_.at(number));
         auto kept = shared_->keep_published(runs, stream_);
         if (kept) unkept_.clear();
