@@ -34,6 +34,7 @@ struct SituationEntry {
     std::string awaited;             ///< what is counted down to; empty: nothing
     std::optional<Ert> at{};         ///< when that can be received, as predicted
     bool overdue = false;            ///< it should have been received by now
+    std::string timepoint{};         ///< the step that it is about; empty: about none
     bool operator==(const SituationEntry&) const = default;
 };
 

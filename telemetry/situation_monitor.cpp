@@ -20,7 +20,6 @@ using Entries = std::vector<SituationEntry>;
 
 // Names of the dictionary that the ground itself interprets.
 constexpr std::string_view begin_event = "EDL_BEGUN", begin_tone = "edl_enabled", begin_command = "EDL_DO_EDL";
-constexpr std::string_view touchdown_event = "TOUCHDOWN", touchdown_timepoint = "touchdown";
 constexpr std::string_view take_over_event = "SECOND_CHANCE_TAKES_OVER", take_over_tone = "taken_over";
 constexpr std::string_view resume_event = "PRIME_RESUMES", designate_event = "PRIME_DESIGNATED";
 constexpr std::string_view role_channel = "computer_role";  // its alarm says what the take-over says
@@ -33,7 +32,7 @@ constexpr std::array<std::string_view, 2> change_events{"TIMEPOINT_OFFSET_CHANGE
 struct Follower {
     std::string_view news, by;
 };
-constexpr std::array<Follower, 15> followers{{{"FAULT_PROTECTION_INHIBITS_EDL", "FAULT_PROTECTION_RELEASES_EDL"},
+constexpr std::array<Follower, 16> followers{{{"FAULT_PROTECTION_INHIBITS_EDL", "FAULT_PROTECTION_RELEASES_EDL"},
                                               {"TIMEPOINT_UNVERIFIED", "TIMEPOINT_VERIFIED_LATE"},
                                               {"TIMEPOINT_UNVERIFIED", "TIMEPOINT_FELT"},
                                               {"TIMEPOINT_UNVERIFIED", "TIMEPOINT_WITNESSED"},
@@ -41,6 +40,7 @@ constexpr std::array<Follower, 15> followers{{{"FAULT_PROTECTION_INHIBITS_EDL", 
                                               {"TIMEPOINT_REFUSED", "TIMEPOINT_FELT"},
                                               {"TIMEPOINT_REFUSED", "TIMEPOINT_WITNESSED"},
                                               {"THRUSTERS_NOT_FELT", "THRUSTERS_FELT_AGAIN"},
+                                              {"THRUSTERS_NOT_FELT", "THRUSTERS_NOT_JUDGED"},
                                               {"ENGINES_SILENT", "ENGINES_HEARD_AGAIN"},
                                               {"TIMEPOINT_HELD", "TIMEPOINT_VERIFIED"},
                                               {"IMU_SILENT", "IMU_HEARD_AGAIN"},
@@ -61,6 +61,7 @@ constexpr std::string_view landing = "landed", computer = "computer", station_fa
 
 constexpr std::size_t sentence_octets_max = 240;  ///< chosen: two lines of the console
 constexpr double orbiter_soon_s = 600.0;          ///< chosen: nobody looks at a countdown to a pass beyond it
+constexpr std::size_t touchdown_facts_max = 64;   ///< chosen: of each kind, over ten seconds even at 4 Hz
 constexpr double held_known_s = 5.0;              ///< flight tells a held decision again after 4 s
 
 std::string shortened(std::string text) {
@@ -155,6 +156,11 @@ std::vector<std::string_view> SituationMonitor::mission_names() {
 SituationMonitor::SituationMonitor(const dictionary::Dictionary& dictionary, const Clocks& clocks)
     : dictionary_(&dictionary), clocks_(clocks), timeline_(dictionary) {
     if (!clocks_.entry) return;
+    touchdown_facts_.entry = *clocks_.entry;
+    touchdown_facts_.flag_name = touchdown_flag;
+    touchdown_facts_.live_name = touchdown_live;
+    touchdown_facts_.rover_imu_known =
+        dictionary.channel(rover_rate_channel) != nullptr && dictionary.channel(rover_force_channel) != nullptr;
     std::optional<double> last_e_s;
     for (const auto& e_s : dictionary::planned_from_entry_s(dictionary))
         if (e_s) last_e_s = std::max(*e_s, last_e_s.value_or(*e_s));
@@ -229,9 +235,12 @@ void SituationMonitor::take_over(std::string_view how, Ert at, const Origin& ori
     backup_ = std::move(entry);
 }
 
-void SituationMonitor::touch_down(Ert at, std::string_view how, const Origin& origin, std::string evidence) {
+void SituationMonitor::touch_down(Sclk sclk, std::string_view how, const Origin& origin, std::string evidence) {
     begun_ = true;
-    if (landed_) return;
+    auto& told = touchdown_facts_.told;
+    if (told.size() < touchdown_facts_max) told.push_back({sclk, evidence});
+    if (landed_) return judge_touchdown(sclk, origin);
+    const Ert at = seen(sclk, origin);
     landed_ = SituationEntry{SituationRank::news,
                              std::string(landing),
                              fmt::format("Touchdown reported at {}{}{}", when(at), how.empty() ? "" : ", ", how),
@@ -241,13 +250,50 @@ void SituationMonitor::touch_down(Ert at, std::string_view how, const Origin& or
                              {}};
     for (auto& news : news_)
         if (news.subject == computer) news.rank = SituationRank::news;  // the landing is what matters now
+    judge_touchdown(sclk, origin);
+}
+
+void SituationMonitor::touchdown(const TouchdownSample& sample, const Origin& origin) {
+    TouchdownFacts& facts = touchdown_facts_;
+    const auto keep = [](auto& all, auto fact) {
+        if (all.size() == touchdown_facts_max) all.erase(all.begin());
+        all.push_back(std::move(fact));
+    };
+    if (sample.live) keep(facts.live, sample.sclk);
+    if (sample.rover_rate_rps && sample.rover_force_mps2)
+        keep(facts.rover_imu, TouchdownFacts::RoverImu{sample.sclk, *sample.rover_rate_rps, *sample.rover_force_mps2});
+    if (sample.flag) facts.flag = TouchdownFacts::Flag{sample.sclk, *sample.flag};
+    judge_touchdown(sample.sclk, origin);
+}
+
+// A confirmation stands, unless the vehicle itself takes the touchdown back.
+void SituationMonitor::judge_touchdown(Sclk now, const Origin& origin) {
+    if (!landed_ || !clocks_.entry) return;
+    touchdown_facts_.now = now;
+    const TouchdownJudgement judged = telemetry::judge_touchdown(touchdown_facts_);
+    const bool news = judged.verdict == TouchdownVerdict::confirmed ? touchdown_verdict_ == TouchdownVerdict::untold
+                                                                    : judged.verdict == TouchdownVerdict::contradicted;
+    if (!news || judged.verdict == touchdown_verdict_) return;
+    touchdown_verdict_ = judged.verdict;
+    landed_->evidence_seq = origin.seq;
+    if (judged.verdict == TouchdownVerdict::contradicted) {
+        landed_->rank = SituationRank::danger;
+        landed_->sentence = fmt::format("Touchdown contradicted: {}", judged.steps.front().words);
+        landed_->evidence = judged.steps.front().words;
+        return;
+    }
+    landed_->sentence = fmt::format("Touchdown confirmed, at {}", when(seen(judged.sclk, origin)));
+    landed_->evidence.clear();
+    for (const auto& step : judged.steps)
+        landed_->evidence += fmt::format("{}{}: {}", landed_->evidence.empty() ? "" : "; ", step.name, step.words);
 }
 
 void SituationMonitor::event(const EventFact& event, const Origin& origin) {
     const Ert at = seen(event.sclk, origin);
     const std::string evidence = fmt::format("event {}{}", event.name, origin.recorded ? ", by the recording" : "");
     if (event.name == begin_event) begun_ = true;
-    if (event.name == touchdown_event) touch_down(at, origin.recorded ? "by the recording" : "", origin, evidence);
+    if (event.name == touchdown_event)
+        touch_down(event.sclk, origin.recorded ? "by the recording" : "", origin, evidence);
     if (event.name == take_over_event && !origin.recorded) take_over("", at, origin, evidence);
     if (origin.recorded) return;  // the rest is of the present
     if (event.name == designate_event) designate(event.text);
@@ -290,7 +336,7 @@ void SituationMonitor::fired(TimepointId timepoint, Sclk triggered, Sclk fired, 
     begun_ = true;
     timeline_.fired(timepoint, triggered - *clocks_.entry, fired - *clocks_.entry, origin.recorded, origin.seq);
     if (dictionary_->timeline[timepoint.value].name == touchdown_timepoint)
-        touch_down(seen(fired), origin.recorded ? "by the recording" : "", origin, "timepoint touchdown");
+        touch_down(fired, origin.recorded ? "by the recording" : "", origin, "timepoint touchdown");
 }
 
 void SituationMonitor::tone(ToneId tone, double likelihood, Sclk start, const Origin& origin) {
@@ -308,7 +354,8 @@ void SituationMonitor::tone(ToneId tone, double likelihood, Sclk start, const Or
     if (name == take_over_tone && twin) take_over("by tone at", at, origin, evidence);
     if (const auto told = timeline_.tone(tone, likelihood, start - *clocks_.entry, origin.seq)) {
         begun_ = true;
-        if (dictionary_->timeline[told->value].name == touchdown_timepoint) touch_down(at, "by tone", origin, evidence);
+        if (dictionary_->timeline[told->value].name == touchdown_timepoint)
+            touch_down(start, "by tone", origin, evidence);
     }
     for (const auto& follower : followers)
         if (follower.by == name) follow(fmt::format("tone {}", follower.news));
@@ -324,6 +371,7 @@ void SituationMonitor::tone(ToneId tone, double likelihood, Sclk start, const Or
 
 void SituationMonitor::link(const LinkState& state, const Origin& origin) {
     LinkRow& row = links_[state.link.name];
+    if (state.link.name == uhf_live_link.name) note_touchdown_silence(state);
     if (state.up) {
         note_loss(state.link.name, row, state.ert, origin);
         row = LinkRow{};
@@ -352,6 +400,20 @@ void SituationMonitor::link(const LinkState& state, const Origin& origin) {
     row.until = state.until;
     row.seq = origin.seq;
     if (silence == SilenceClass::no_orbiter && state.until) pass_ = {*state.until, row.words};
+}
+
+void SituationMonitor::note_touchdown_silence(const LinkState& state) {
+    auto& silences = touchdown_facts_.silences;
+    const bool silent = !silences.empty() && !silences.back().to;
+    if (state.up == !silent || !clocks_.entry) return;
+    const Sclk at =
+        clocks_.correlation.sclk_of({state.ert.microseconds - static_cast<std::int64_t>(clocks_.light_time_s * 1e6)});
+    if (state.up) {
+        silences.back().to = at;
+        return;
+    }
+    if (silences.size() == touchdown_facts_max) silences.erase(silences.begin());
+    silences.push_back({at, {}, state.words});
 }
 
 void SituationMonitor::note_loss(const std::string& link, const LinkRow& row, Ert to, const Origin& origin) {
@@ -610,6 +672,7 @@ void SituationMonitor::add_step(Entries& all, std::size_t next, Ert now) const {
                          0,
                          last_change(),
                          {}};
+    entry.timepoint = row.name;
     const bool live = telemetry_comes();
     if (const auto e_s = timeline_.predicted_e_s(next); e_s && !offsets_changed_) {
         entry.awaited = in_words(row.name);

@@ -8,6 +8,7 @@
 #include "telemetry/situation.hpp"
 #include "telemetry/station/silence_classifier.hpp"
 #include "telemetry/timeline_watch.hpp"
+#include "telemetry/touchdown.hpp"
 
 #include <cstdint>
 #include <map>
@@ -24,7 +25,8 @@ namespace aeolis::telemetry {
 /// In       facts, each with the number of its item; the time on Earth
 /// Out      the ranked list for that time, the most important first
 /// Rules    News stays until something follows it. A prediction excuses neither a silence that began without one nor a
-///          fault that the station knows. A touchdown is reported by its own evidence alone. A predicted time that has
+///          fault that the station knows. A touchdown is reported by its own evidence
+///          alone, and confirmed or contradicted as touchdown.hpp has it. A predicted time that has
 ///          passed is overdue, and none is given where nothing is predicted
 /// Memory   bounded: entries_max entries; a row a link, a timepoint, a command under way
 class SituationMonitor {
@@ -35,7 +37,6 @@ class SituationMonitor {
     static constexpr double uhf_late_s = 5.0;       ///< chosen: over telemetry a step may be told this much after it
     static constexpr double tone_late_s = 25.0;     ///< a symbol under way, one of its own, and its decision
     static constexpr int tone_sure = 80;            ///< chosen: a tone of less priority may be dropped for others
-    static constexpr double tone_believed = 0.9;    ///< chosen: of a decision that a sentence rests on
 
     /// Clocks of the run.
     struct Clocks {
@@ -66,6 +67,13 @@ class SituationMonitor {
         bool failed = false;  ///< the stage failed
         bool done = false;    ///< flight has executed it
     };
+    /// What one packet in real time holds of the touchdown.
+    struct TouchdownSample {
+        Sclk sclk;
+        std::optional<double> flag;                              ///< of touchdown_flag
+        std::optional<double> rover_rate_rps, rover_force_mps2;  ///< of the rover's own IMU
+        bool live = false;                                       ///< holds touchdown_live
+    };
     /// A packet in real time. `received`: when it came over a link that keeps nothing back. The packet itself may be
     /// older, because packets wait on board for their turn.
     void heard(Sclk sclk, std::optional<Ert> received = {});
@@ -73,6 +81,7 @@ class SituationMonitor {
     void fired(TimepointId timepoint, Sclk triggered, Sclk fired, const Origin& origin);
     void tone(ToneId tone, double likelihood, Sclk start, const Origin& origin);
     void link(const LinkState& state, const Origin& origin);
+    void touchdown(const TouchdownSample& sample, const Origin& origin);
     void stage(const StageFact& stage, const Origin& origin);
     void alarm(ChannelId channel, dictionary::Severity severity, std::string_view limit, Sclk sclk,
                const Origin& origin);
@@ -118,7 +127,9 @@ class SituationMonitor {
     void designate(std::string_view text);
     void take_over(std::string_view how, Ert at, const Origin& origin, std::string evidence);
     void note_loss(const std::string& link, const LinkRow& row, Ert to, const Origin& origin);
-    void touch_down(Ert at, std::string_view how, const Origin& origin, std::string evidence);
+    void note_touchdown_silence(const LinkState& state);
+    void touch_down(Sclk sclk, std::string_view how, const Origin& origin, std::string evidence);
+    void judge_touchdown(Sclk now, const Origin& origin);
     bool up(std::string_view link) const;
     bool telemetry_comes() const;  ///< live, whichever link brings it
     bool anything_up() const;
@@ -143,6 +154,8 @@ class SituationMonitor {
     std::vector<Loss> losses_;          ///< that are over: one a link at most, and the station's
     std::vector<SituationEntry> news_;  ///< news and danger, the oldest first
     std::optional<SituationEntry> backup_, landed_;
+    TouchdownFacts touchdown_facts_;  ///< the newest of each kind
+    TouchdownVerdict touchdown_verdict_{};
     std::optional<Ert> last_heard_;
     struct Pass {
         Ert rises;

@@ -12,6 +12,9 @@
 
 namespace aeolis::telemetry {
 
+/// Chosen, as the tone receiver has it: the least likelihood of a tone that something is concluded from.
+inline constexpr double tone_believed = 0.9;
+
 /// Follows a timeline from Earth: which timepoints are known to have fired, which comes next, and when, as predicted.
 ///
 /// In       firings by packet; tones that only one timepoint requests

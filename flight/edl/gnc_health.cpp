@@ -49,15 +49,21 @@ void GncHealth::watch_imu(const Parameters& parameters, const gnc::Output& gnc, 
 }
 
 void GncHealth::watch_thrusters(const Parameters& parameters, const gnc::Output& gnc, Outbox& out) {
-    if (!gnc.thrusters_felt) return;
     const auto in_a_row = static_cast<std::uint8_t>(parameters.thrusters_unfelt_windows);
+    const bool told = thrusters_unfelt_ >= in_a_row;
+    const bool over = gnc.mode > gnc::Mode::parachute_descent;  // engines steer from then on
+    if (!gnc.thrusters_judged && (!told || over)) {
+        if (told) out.event(evr::THRUSTERS_NOT_JUDGED{});
+        thrusters_unfelt_ = 0;
+    }
+    if (!gnc.thrusters_felt) return;
     const double felt = *gnc.thrusters_felt;
     if (felt >= parameters.thrusters_felt_min) {
-        if (std::exchange(thrusters_unfelt_, 0) >= in_a_row)
-            out.event(evr::THRUSTERS_FELT_AGAIN{.thrusters_felt = single(felt)});
+        thrusters_unfelt_ = 0;
+        if (told) out.event(evr::THRUSTERS_FELT_AGAIN{.thrusters_felt = single(felt)});
         return;
     }
-    if (thrusters_unfelt_ >= in_a_row || ++thrusters_unfelt_ < in_a_row) return;
+    if (told || ++thrusters_unfelt_ < in_a_row) return;
     out.event(evr::THRUSTERS_NOT_FELT{.thrusters_felt = single(felt)});
     out.send(ModuleId::mfsk, ToneRequest{tone::thrusters_not_felt, out.now()});
     explain_lost(Device::thrusters,

@@ -13,7 +13,7 @@ namespace aeolis::flight {
 ///
 /// In      what GNC tells, each cycle
 /// Out     IMU_SILENT, IMU_HEARD_AGAIN, ATTITUDE_LOST, PROPELLANT_LOW, THRUSTERS_NOT_FELT, THRUSTERS_FELT_AGAIN,
-///         ENGINES_SILENT, ENGINES_HEARD_AGAIN; tones; explanations
+///         THRUSTERS_NOT_JUDGED, ENGINES_SILENT, ENGINES_HEARD_AGAIN; tones; explanations
 class GncHealth {
   public:
     void watch(const Parameters& parameters, const gnc::Output& gnc, Outbox& out);

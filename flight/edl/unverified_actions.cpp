@@ -142,7 +142,7 @@ std::optional<gnc::Condition> UnverifiedActions::said(const Followed& followed, 
     case By::engines: return is(Quantity::engines_heard, gnc.engines_heard);
     case By::bridle: return at_least(Quantity::bridle_m, bridle_m, parameters.bridle_felt_m);
     case By::imu_free_fall:
-        if (!gnc.imu_heard) return std::nullopt;
+        if (!gnc.imu_heard || gnc.mode > gnc::Mode::free_fall) return std::nullopt;  // engines push from then on
         return at_most(Quantity::sensed_mps2, magnitude(gnc.acceleration_B_mps2), parameters.free_fall_felt_mps2);
     case By::imu_load:
         if (!gnc.imu_heard) return std::nullopt;

@@ -32,7 +32,7 @@ namespace aeolis::flight {
 ///   parachute mortar       IMU        its load, which the air alone does not give
 ///   heatshield separation  radar      a solution: it sees nothing through the heatshield
 ///   engine valves          engines    their controllers' report, which comes with open valves
-///   backshell separation   IMU        free fall: the parachute carries no more
+///   backshell separation   IMU        free fall before the engines push: the parachute carries no more
 ///   rover separation       bridle     being paid out
 ///
 /// Source   ours: which devices tell of another's deed. Radar, engine controllers and bridle are assumed to be right;

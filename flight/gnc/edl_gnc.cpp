@@ -518,6 +518,7 @@ void EdlGnc::watch_devices(const DeviceInputs& in, const Configuration& configur
     out.engines_silent_s = engines_silent_s_;
     const bool should_obey = mode() <= Mode::parachute_descent && configuration.thrusters_on_time &&
                              since(*configuration.thrusters_on_time) >= parameters().thrusters_judged_after_s;
+    out.thrusters_judged = should_obey;
     if (!should_obey) return thruster_answer_.forget();
     out.thrusters_felt =
         thruster_answer_.feel(parameters(), out.imu_heard ? std::optional{strapdown_.rate_B_rps()} : std::nullopt);

@@ -205,6 +205,7 @@ struct Output {
     bool imu_heard = true;                 ///< it measured in this cycle: force and rates above are not reckoned
     bool engines_heard = false;            ///< their controllers reported in this cycle
     double engines_silent_s = 0.0;         ///< they have not for so long, though the valves are open
+    bool thrusters_judged = false;         ///< they are commanded on, and should obey
     std::optional<double> thrusters_felt;  ///< part of the pulses that the IMU feels, when it has just been judged
     double dead_reckoned_s = 0.0;          ///< the IMU has been silent for so long; 0 while it speaks
     double attitude_uncertainty_deg = 0.0, velocity_uncertainty_mps = 0.0, altitude_uncertainty_m = 0.0;

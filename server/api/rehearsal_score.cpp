@@ -399,10 +399,10 @@ Result<void> add_landed(archive::Reader& reader, archive::RunId run, const dicti
                         ScoreFacts& facts) {
     const auto report = touchdown(reader, run, dictionary, {}, {}, true);
     if (!report) return report.error();
-    const auto events = reader.events(run, {{}, {}, std::string{touchdown_event}});
+    const auto events = reader.events(run, {{}, {}, std::string{telemetry::touchdown_event}});
     if (!events) return events.error();
     for (const auto& item : events->events()) {
-        if (item.event().name() != touchdown_event) continue;
+        if (item.event().name() != telemetry::touchdown_event) continue;
         facts.landed =
             ScoreFacts::Landed{item.event().sclk() - facts.report.run().entry_sclk(), item.event().text(), {}};
         if (report->has_place()) facts.landed->miss_m = std::hypot(report->place().east_m(), report->place().north_m());

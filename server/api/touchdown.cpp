@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/api/touchdown.hpp"
 
-#include "common/entry_time.hpp"
 #include "server/archive/items.hpp"
 #include "server/rehearsal/nominal_flight.hpp"
 #include "server/scenario/scenario_text.hpp"
 #include "telemetry/port.hpp"
-#include "telemetry/text.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -17,130 +15,25 @@
 namespace aeolis::server {
 namespace {
 
-using Step = v1::TouchdownStep;
 using Report = v1::TouchdownReport;
+using telemetry::TouchdownFacts;
 
-void add_step(Report& report, std::string_view name, Step::State state, std::string words,
-              std::optional<Sclk> since = {}) {
-    auto& step = *report.add_steps();
-    step.set_name(std::string{name});
-    step.set_state(state);
-    step.set_words(std::move(words));
-    if (since) step.set_sclk(since->seconds);
-}
-
-void add_told_step(const TouchdownFacts& facts, std::vector<TouchdownFacts::Told> told, Report& report) {
-    constexpr std::string_view name = "touchdown told by the vehicle";
-    std::ranges::stable_sort(told, {}, &TouchdownFacts::Told::sclk);
-    const auto& first = told.front();
-    const auto when = [&](Sclk sclk) { return from_entry_tenths_text(sclk - facts.entry); };
-    if (facts.flag && facts.flag->value == 0.0 && facts.flag->sclk - first.sclk > touchdown_gap_s)
-        return add_step(report, name, Step::contradicted,
-                        fmt::format("{} at {}, but {} is 0 at {}", first.words, when(first.sclk), facts.flag_name,
-                                    when(facts.flag->sclk)),
-                        first.sclk);
-    std::string words;
-    for (const auto& each : told) words += (words.empty() ? "" : ", ") + each.words;
-    add_step(report, name, Step::done, fmt::format("{}: {}", when(first.sclk), words), first.sclk);
-}
-
-/// The silence of UHF that goes on now.
-const TouchdownFacts::Silence* silent_now(const TouchdownFacts& facts) {
-    const auto found = std::ranges::find_if(facts.silences, [&](const auto& each) {
-        return each.from <= facts.now && (!each.to || *each.to >= facts.now);
-    });
-    return found == facts.silences.end() ? nullptr : &*found;
-}
-
-bool is_still(const TouchdownFacts::RoverImu& told) {
-    return told.rate_rps <= still_rate_max_rps &&
-           std::abs(told.force_mps2 - still_weight_mps2) <= still_weight_within_mps2;
-}
-
-void add_still_step(const TouchdownFacts& facts, Sclk since, Report& report) {
-    const auto name = fmt::format("rover's own IMU still for {:.0f} s", still_s);
-    if (!facts.rover_imu_known)
-        return add_step(report, name, Step::never,
-                        fmt::format("this mission sends no {} and {}", rover_rate_channel, rover_force_channel));
-    const auto when = [&](Sclk sclk) { return from_entry_tenths_text(sclk - facts.entry); };
-    const auto values = [](const TouchdownFacts::RoverImu& told) {
-        return fmt::format("{} {:.4f}, {} {:.2f}", rover_rate_channel, told.rate_rps, rover_force_channel,
-                           told.force_mps2);
-    };
-    bool still = false;
-    Sclk from = since;  // of stillness
-    const TouchdownFacts::RoverImu* last = nullptr;
-    for (const auto& told : facts.rover_imu) {
-        if (told.sclk <= since) continue;
-        const bool goes_on = still && told.sclk - last->sclk <= touchdown_gap_s;
-        still = is_still(told);
-        if (!still || !goes_on) from = told.sclk;
-        last = &told;
-        if (still && told.sclk - from >= still_s)
-            return add_step(report, name, Step::done,
-                            fmt::format("{}: still since {}, now {}", when(told.sclk), when(from), values(told)),
-                            told.sclk);
+Report report_of(const telemetry::TouchdownJudgement& judged) {
+    using telemetry::TouchdownVerdict, telemetry::TouchdownStep;
+    static_assert(static_cast<int>(TouchdownVerdict::contradicted) == Report::contradicted &&
+                  static_cast<int>(TouchdownStep::State::contradicted) == v1::TouchdownStep::contradicted);
+    Report report;
+    if (judged.verdict == TouchdownVerdict::untold) return report;
+    report.set_verdict(static_cast<Report::Verdict>(judged.verdict));
+    report.set_sclk(judged.sclk.seconds);
+    for (const TouchdownStep& each : judged.steps) {
+        auto& step = *report.add_steps();
+        step.set_name(each.name);
+        step.set_state(static_cast<v1::TouchdownStep::State>(each.state));
+        step.set_words(each.words);
+        if (each.since) step.set_sclk(each.since->seconds);
     }
-    const auto* silent = silent_now(facts);
-    const auto because = [&] {
-        return silent != nullptr ? fmt::format(": no UHF since {}: {}", when(silent->from), silent->words) : "";
-    };
-    if (last == nullptr)
-        return add_step(
-            report, name, Step::unknown,
-            fmt::format("not known: {} has told nothing since touchdown at {}", rover_rate_channel, when(since)) +
-                because());
-    const std::string still_for = telemetry::span_text(last->sclk - from);
-    if (facts.now - last->sclk > touchdown_gap_s)
-        return add_step(report, name, Step::unknown,
-                        fmt::format("not known: {} has told nothing since {}; it had been still for {}",
-                                    rover_rate_channel, when(last->sclk), still_for) +
-                            because());
-    if (!still)
-        return add_step(report, name, Step::waiting,
-                        fmt::format("moves at {}: {}; still is at most {} rad/s and {} ± {} m/s2", when(last->sclk),
-                                    values(*last), still_rate_max_rps, still_weight_mps2, still_weight_within_mps2));
-    add_step(report, name, Step::waiting, fmt::format("{} of {:.0f} s since {}", still_for, still_s, when(from)));
-}
-
-void add_uhf_step(const TouchdownFacts& facts, Sclk since, Report& report) {
-    const auto name = fmt::format("UHF came for {:.0f} s without a break after it", touchdown_uhf_s);
-    const auto when = [&](Sclk sclk) { return from_entry_tenths_text(sclk - facts.entry); };
-    const auto silent_between = [&](Sclk from, Sclk to) {
-        return std::ranges::any_of(facts.silences,
-                                   [&](const auto& each) { return each.from < to && (!each.to || *each.to > from); });
-    };
-    std::optional<Sclk> from, before;
-    for (const Sclk sclk : facts.live) {
-        if (sclk <= since) continue;
-        if (!before || sclk - *before > touchdown_gap_s || silent_between(*before, sclk)) from = sclk;
-        before = sclk;
-        if (sclk - *from >= touchdown_uhf_s)
-            return add_step(report, name, Step::done,
-                            fmt::format("{}: {} came over {} without a break since {}", when(sclk), facts.live_name,
-                                        telemetry::uhf_live_link.name, when(*from)),
-                            sclk);
-    }
-    const auto* silent = silent_now(facts);
-    const auto since_words = [&](std::string_view otherwise, Sclk at) {
-        return silent != nullptr ? fmt::format("{}: {}", when(silent->from), silent->words)
-                                 : fmt::format("{}{}", otherwise, when(at));
-    };
-    if (!before)
-        return add_step(report, name, Step::unknown, "not known: no UHF since " + since_words("touchdown at ", since));
-    if (silent != nullptr || facts.now - *before > touchdown_gap_s)
-        return add_step(report, name, Step::unknown,
-                        fmt::format("not known: no UHF since {}; {} had come without a break", since_words("", *before),
-                                    telemetry::span_text(*before - *from)));
-    add_step(
-        report, name, Step::waiting,
-        fmt::format("{} of {:.0f} s since {}", telemetry::span_text(*before - *from), touchdown_uhf_s, when(*from)));
-}
-
-Report::Verdict verdict_of(const Report& report) {
-    if (report.steps(0).state() == Step::contradicted) return Report::contradicted;
-    const bool all = std::ranges::all_of(report.steps(), [](const Step& step) { return step.state() == Step::done; });
-    return all ? Report::confirmed : Report::reported;
+    return report;
 }
 
 /// Reads the facts of one run up to one instant.
@@ -154,7 +47,7 @@ class FactsReader {
         const auto list = reader_.timepoints(run_, {.at = at_, .now = now, .recorded = recorded_});
         if (!list) return list.error();
         for (const auto& row : list->timepoints()) {
-            if (row.name() != touchdown_timepoint || row.heard_by().empty()) continue;
+            if (row.name() != telemetry::touchdown_timepoint || row.heard_by().empty()) continue;
             const bool live = row.heard_by() == "uhf", tone = row.heard_by() == "tone";
             const double sclk_s = tone ? row.triggered_sclk() : live ? row.realtime_sclk() : row.recorded_sclk();
             facts.told.push_back({Sclk{sclk_s}, fmt::format("timepoint {} by {}", row.name(),
@@ -166,12 +59,12 @@ class FactsReader {
     }
 
     Result<void> add_event(TouchdownFacts& facts) {
-        const auto list = reader_.events(run_, {range(), {}, std::string{touchdown_event}});
+        const auto list = reader_.events(run_, {range(), {}, std::string{telemetry::touchdown_event}});
         if (!list) return list.error();
         for (const auto& item : list->events()) {
             const auto& event = item.event();
             const bool live = event.source() == v1::SOURCE_REALTIME;
-            if (event.name() != touchdown_event || (!live && !recorded_)) continue;
+            if (event.name() != telemetry::touchdown_event || (!live && !recorded_)) continue;
             facts.told.push_back(
                 {Sclk{event.sclk()}, fmt::format("event {} by {}", event.name(), live ? "UHF" : "the recording")});
             break;
@@ -180,35 +73,38 @@ class FactsReader {
     }
 
     Result<void> add_samples(TouchdownFacts& facts) {
-        facts.flag_name = touchdown_flag;
-        facts.live_name = touchdown_live;
+        facts.flag_name = telemetry::touchdown_flag;
+        facts.live_name = telemetry::touchdown_live;
         std::optional<Sclk> raised;
-        const auto done = each({touchdown_flag, touchdown_live}, range(), [&](const auto& name, const auto& sample) {
-            if (name == touchdown_live) {
-                if (sample.source == archive::Source::realtime) facts.live.push_back(sample.sclk);
-                return;
-            }
-            if (sample.value == 0.0) raised.reset();
-            if (sample.value != 0.0 && !raised) raised = sample.sclk;
-            facts.flag = TouchdownFacts::Flag{sample.sclk, sample.value};
-        });
-        if (raised) facts.told.push_back({*raised, fmt::format("{} is {:.0f}", touchdown_flag, facts.flag->value)});
+        const auto done = each({telemetry::touchdown_flag, telemetry::touchdown_live}, range(),
+                               [&](const auto& name, const auto& sample) {
+                                   if (name == telemetry::touchdown_live) {
+                                       if (sample.source == archive::Source::realtime)
+                                           facts.live.push_back(sample.sclk);
+                                       return;
+                                   }
+                                   if (sample.value == 0.0) raised.reset();
+                                   if (sample.value != 0.0 && !raised) raised = sample.sclk;
+                                   facts.flag = TouchdownFacts::Flag{sample.sclk, sample.value};
+                               });
+        if (raised)
+            facts.told.push_back({*raised, fmt::format("{} is {:.0f}", telemetry::touchdown_flag, facts.flag->value)});
         return done;
     }
 
     /// One value of a pair is no sample: both are in one packet.
     Result<void> add_rover_imu(Sclk since, TouchdownFacts& facts) {
-        facts.rover_imu_known =
-            dictionary_.channel(rover_rate_channel) != nullptr && dictionary_.channel(rover_force_channel) != nullptr;
+        facts.rover_imu_known = dictionary_.channel(telemetry::rover_rate_channel) != nullptr &&
+                                dictionary_.channel(telemetry::rover_force_channel) != nullptr;
         if (!facts.rover_imu_known) return {};
         struct Pair {
             std::optional<double> rate, force;
         };
         std::map<Sclk, Pair> told;
-        const auto done = each({rover_rate_channel, rover_force_channel}, {since.seconds, range().to_s},
-                               [&](const auto& name, const auto& sample) {
+        const auto done = each({telemetry::rover_rate_channel, telemetry::rover_force_channel},
+                               {since.seconds, range().to_s}, [&](const auto& name, const auto& sample) {
                                    auto& pair = told[sample.sclk];
-                                   (name == rover_rate_channel ? pair.rate : pair.force) = sample.value;
+                                   (name == telemetry::rover_rate_channel ? pair.rate : pair.force) = sample.value;
                                });
         for (const auto& [sclk, pair] : told)
             if (pair.rate && pair.force) facts.rover_imu.push_back({sclk, *pair.rate, *pair.force});
@@ -320,18 +216,6 @@ constexpr double radians(double degrees) {
 
 }  // namespace
 
-v1::TouchdownReport judge_touchdown(const TouchdownFacts& facts) {
-    Report report;
-    if (facts.told.empty()) return report;
-    add_told_step(facts, facts.told, report);
-    const Sclk since{report.steps(0).sclk()};
-    report.set_sclk(since.seconds);
-    add_still_step(facts, since, report);
-    add_uhf_step(facts, since, report);
-    report.set_verdict(verdict_of(report));
-    return report;
-}
-
 v1::TouchdownPlace place_over_ground(const std::array<double, 3>& p_MoB_M, double latitude_deg, double longitude_deg,
                                      double radius_m) {
     const double sin_lat = std::sin(radians(latitude_deg)), cos_lat = std::cos(radians(latitude_deg)),
@@ -383,7 +267,7 @@ Result<v1::TouchdownReport> touchdown(archive::Reader& reader, archive::RunId ru
     const auto newest = now ? Result<Ert>{*now} : reader.newest_ert(run);
     if (!newest) return newest.error();
     facts.now = at ? *at : archive::sclk_at_ert(*state, *newest);
-    auto report = judge_touchdown(facts);
+    auto report = report_of(telemetry::judge_touchdown(facts));
     if (auto done = of.add_figures(*state, report); !done) return done.error();
     return report;
 }

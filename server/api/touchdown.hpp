@@ -4,21 +4,17 @@
 #include "aeolis/v1/prediction.pb.h"
 #include "aeolis/v1/touchdown.pb.h"
 #include "server/archive/reader.hpp"
+#include "telemetry/touchdown.hpp"
 
 #include <array>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
-// The touchdown, by the three signals that flown landings used: the vehicle reports it, the rover's own IMU is at rest,
-// and UHF continues without a break [steltzner-2012]. It counts as reported until all three are there, then as
-// confirmed. The bounds are not published; they are chosen here.
+// The touchdown of a run: the verdict of telemetry/touchdown.hpp, with its figures and its place.
 namespace aeolis::server {
 
-// Names of the mission's dictionary that report a touchdown. A dictionary without them has no touchdown.
-inline constexpr std::string_view touchdown_timepoint = "touchdown", touchdown_event = "TOUCHDOWN",
-                                  touchdown_flag = "touchdown_declared", touchdown_live = "edl_phase";
+// Names of the mission's dictionary.
 inline constexpr std::array<std::string_view, 3> position_channels{"nav_position_x_m", "nav_position_y_m",
                                                                    "nav_position_z_m"};
 /// The target in ground's solution: latitude, longitude, radius.
@@ -33,52 +29,7 @@ inline constexpr std::array touchdown_channels{TouchdownChannel{"down", "descent
                                                TouchdownChannel{"across", "horizontal_speed_mps"},
                                                TouchdownChannel{"propellant left", "propellant_kg"}};
 
-/// Of the rover's own IMU, in one packet.
-inline constexpr std::string_view rover_rate_channel = "rover_imu_rate_rps",
-                                  rover_force_channel = "rover_imu_force_mps2";
-
-/// What counts as still: a rate and a specific force within these bounds, for so long without a gap.
-inline constexpr double still_s = 10.0;  ///< chosen: longer than a swing on the bridle, 9 s, which rests at its ends
-inline constexpr double still_rate_max_rps = 0.005;  ///< chosen: the unit's noise stays below; a swing of 0.5° does not
-inline constexpr double still_weight_mps2 = 3.71;    ///< [facts] Mars
-inline constexpr double still_weight_within_mps2 = 0.1;  ///< chosen: its noise is 0.02, sites differ by as much
-
-inline constexpr double touchdown_uhf_s = 10.0;   ///< chosen: half of what is planned
-inline constexpr double touchdown_gap_s = 3.0;    ///< chosen: the channel used here is sent each second
 inline constexpr double touchdown_close_s = 2.0;  ///< chosen: an older sample is not the value at the touchdown
-
-/// The facts received by an instant. Times are by the vehicle's clock.
-struct TouchdownFacts {
-    struct Told {
-        Sclk sclk;
-        std::string words;  ///< "timepoint touchdown by UHF"
-    };
-    struct Flag {
-        Sclk sclk;
-        double value = 0.0;
-    };
-    struct RoverImu {
-        Sclk sclk;
-        double rate_rps = 0.0, force_mps2 = 0.0;
-    };
-    struct Silence {
-        Sclk from;
-        std::optional<Sclk> to;  ///< none: it goes on
-        std::string words;
-    };
-    Sclk entry, now;
-    std::vector<Told> told;           ///< in any order
-    std::string flag_name;            ///< of the channel that tells it
-    std::optional<Flag> flag;         ///< its newest sample
-    bool rover_imu_known = false;     ///< the dictionary has its channels
-    std::vector<RoverImu> rover_imu;  ///< what it told, by time
-    std::string live_name;            ///< of the channel whose samples show that UHF comes
-    std::vector<Sclk> live;           ///< its samples over UHF, by time
-    std::vector<Silence> silences;    ///< of UHF, by time
-};
-
-/// Judges the touchdown: verdict, time and steps. Without `told` it is not reported.
-v1::TouchdownReport judge_touchdown(const TouchdownFacts& facts);
 
 /// Converts a position from Mars's centre to east and north of the target, over ground. @param radius_m  of the target
 v1::TouchdownPlace place_over_ground(const std::array<double, 3>& p_MoB_M, double latitude_deg, double longitude_deg,

@@ -292,6 +292,7 @@ struct PartTable<telemetry::SituationEntry> {
         visit("awaited", part.awaited);
         visit("at_us", part.at);
         visit("overdue", part.overdue);
+        visit("timepoint", part.timepoint);
     }
 };
 

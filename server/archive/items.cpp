@@ -203,6 +203,7 @@ v1::Item to_item(const SituationRecord& record) {
         written.set_awaited(entry.awaited);
         if (entry.at) written.set_at_us(entry.at->microseconds);
         written.set_overdue(entry.overdue);
+        written.set_timepoint(entry.timepoint);
     }
     return item;
 }

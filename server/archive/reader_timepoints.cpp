@@ -5,6 +5,7 @@
 #include "server/archive/items.hpp"
 #include "server/archive/reader_state.hpp"
 #include "server/archive/schema.hpp"
+#include "telemetry/timeline_watch.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,8 +15,7 @@
 namespace aeolis::archive {
 namespace {
 
-constexpr double believed_likelihood = 0.5;  // chosen: likelier than all other tones together
-// // Suffix of the channels in which flight reports anchors.
+// Suffix of the channels in which flight reports anchors.
 constexpr std::string_view anchor_report_end = "_anchor_sclk";
 
 // Parameter: how long before the start of EDL flight begins to refuse "do edl" [s].
@@ -124,7 +124,7 @@ Result<void> add_firings_by_tone(Reader::State& reader, RunId run, const Cut& cu
         if (const auto& tone = reader.dictionary.timeline[i].tone) askers[*tone].push_back(i);
     return each_row<ToneRecord>(reader, run, [&](const auto& row) -> Result<void> {
         const auto tone = read_row<ToneRecord>(row);
-        if (!tone.tone || tone.likelihood < believed_likelihood || tone.sclk.seconds > cut.on_board_s) return {};
+        if (!tone.tone || tone.likelihood < telemetry::tone_believed || tone.sclk.seconds > cut.on_board_s) return {};
         const auto asked = askers.find(*tone.tone);
         if (asked == askers.end() || asked->second.size() != 1 || firings[asked->second.front()]) return {};
         const auto decided = decided_at(reader, run, row.integer(0), tone.ert);

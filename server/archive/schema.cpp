@@ -165,7 +165,7 @@ CREATE VIEW situation_log AS
     SELECT p.key >> 40 AS run, p.key & 0xFFFFFFFFFF AS seq,
            strftime('%Y-%jT%H:%M:%f', s.ert_us / 1e6 + 946728000, 'unixepoch') AS ert, p.position, p.rank, p.subject,
            p.sentence, p.evidence, p.evidence_seq, p.awaited,
-           strftime('%Y-%jT%H:%M:%f', p.at_us / 1e6 + 946728000, 'unixepoch') AS at, p.overdue
+           strftime('%Y-%jT%H:%M:%f', p.at_us / 1e6 + 946728000, 'unixepoch') AS at, p.overdue, p.timepoint
     FROM situation_entries p JOIN situations s ON s.key = p.key;
 CREATE VIEW alarm_action_log AS
     SELECT a.key >> 40 AS run, a.key & 0xFFFFFFFFFF AS seq,

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/pipeline/situation_feed.hpp"
 
+#include "server/archive/packet_columns.hpp"
+
 #include <algorithm>
+#include <cmath>
 
 namespace aeolis::pipeline {
 namespace {
@@ -29,7 +32,36 @@ SituationMonitor::Origin origin_of(const archive::ItemRecord& record,
 }  // namespace
 
 SituationFeed::SituationFeed(const dictionary::Dictionary& dictionary, const archive::RunStart& start)
-    : monitor_(dictionary, clocks_of(start)) {}
+    : monitor_(dictionary, clocks_of(start)) {
+    const archive::PacketColumns columns{dictionary};
+    for (std::uint16_t packet = 0; packet < dictionary.packets.size(); ++packet) {
+        TouchdownColumns found;
+        const auto channels = columns.channels(packet);
+        for (std::size_t column = 0; column < channels.size(); ++column) {
+            const std::string_view name = dictionary.channels[channels[column].value].name;
+            if (name == telemetry::touchdown_flag) found.flag = column;
+            if (name == telemetry::rover_rate_channel) found.rover_rate = column;
+            if (name == telemetry::rover_force_channel) found.rover_force = column;
+            if (name == telemetry::touchdown_live) found.live = column;
+        }
+        if (found.flag || found.rover_rate || found.live) touchdown_columns_.emplace(packet, found);
+    }
+}
+
+void SituationFeed::give_touchdown(const archive::Batch& batch, const archive::SampleRecord& sample) {
+    if (sample.source != archive::Source::realtime) return;
+    const auto of_packet = touchdown_columns_.find(sample.packet);
+    if (of_packet == touchdown_columns_.end()) return;
+    const auto value = [&](std::optional<std::size_t> column) {
+        if (!column || *column >= sample.values.count) return std::optional<double>{};
+        const double told = batch.values[sample.values.first + *column];
+        return std::isnan(told) ? std::optional<double>{} : std::optional{told};
+    };
+    const TouchdownColumns& at = of_packet->second;
+    monitor_.touchdown(
+        {sample.sclk, value(at.flag), value(at.rover_rate), value(at.rover_force), value(at.live).has_value()},
+        origin_of(sample));
+}
 
 void SituationFeed::follow(const archive::Batch& batch) {
     if (batch.last_seq <= followed_) return;
@@ -50,6 +82,7 @@ void SituationFeed::follow(const archive::Batch& batch) {
     each_new(batch.firings, followed_, [&](const archive::FiringRecord& firing) {
         monitor_.fired(firing.timepoint, firing.triggered, firing.fired, origin_of(firing, firing.source));
     });
+    each_new(batch.samples, followed_, [&](const archive::SampleRecord& sample) { give_touchdown(batch, sample); });
     each_new(batch.explanations, followed_, [&](const archive::ExplanationRecord& explanation) {
         monitor_.explained(explanation.explanation, origin_of(explanation, explanation.source));
     });

@@ -5,6 +5,8 @@
 #include "server/archive/records.hpp"
 #include "telemetry/situation_monitor.hpp"
 
+#include <cstdint>
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -26,7 +28,14 @@ class SituationFeed {
     std::optional<archive::SituationRecord> changed() { return now_ ? changed(*now_) : std::nullopt; }
 
   private:
+    /// Columns of a packet whose channels tell of the touchdown.
+    struct TouchdownColumns {
+        std::optional<std::size_t> flag, rover_rate, rover_force, live;
+    };
+    void give_touchdown(const archive::Batch& batch, const archive::SampleRecord& sample);
+
     telemetry::SituationMonitor monitor_;
+    std::map<std::uint16_t, TouchdownColumns> touchdown_columns_;  ///< by packet; of others there is nothing to tell
     archive::Sequence followed_ = 0;
     std::optional<Ert> now_;
     std::vector<telemetry::SituationEntry> told_;

@@ -72,7 +72,7 @@ class Vehicle {
     /// step, and rate relative to inertial space.
     ///
     /// Our assumptions: on the stage it feels what the centre of mass does; on the bridle it turns with it, without
-    /// twist; on its wheels it turns with the ground.
+    /// twist; on its wheels it turns with the ground. Cut loose above ground it falls.
     struct RoverMotion {
         Vector3 force_mps2, rate_rps;
     };

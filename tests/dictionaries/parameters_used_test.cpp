@@ -46,7 +46,7 @@ TEST_CASE("each parameter of parameters.csv is used in flight", "[dictionary][R4
     CHECK_FALSE(used.contains("a_parameter_that_is_not_there"));
 }
 
-TEST_CASE("no module of EDL has a constant of its own that tunes it: they come from parameters.csv",
+TEST_CASE("no module of EDL or of a device has a constant of its own that tunes it: they come from parameters.csv",
           "[dictionary][R48]") {
     // constexpr TYPE NAME = a number. What remains are units, the world, the interface to a device, memory, and the
     // zero of a computation. Most numbers without a name are refused by clang-tidy (flight/.clang-tidy); the next test
@@ -73,12 +73,31 @@ TEST_CASE("no module of EDL has a constant of its own that tunes it: they come f
         "determinant_min",
         "past_max",
         "staged_changes_max",
+        // Of devices: how many there are, what they are, the rates and sizes of their interface.
+        "device_count",
+        "redundant_device_count",
+        "radar_beam_count",
+        "pyro_count",
+        "switch_count",
+        "thruster_count",
+        "engine_count",
+        "thruster_force_N",
+        "thruster_least_on_s",
+        "radius_m",
+        "samples_per_second",
+        "microseconds_per_second",
+        "retry_s",
+        "report_period_s",
+        "norm_tolerance",
+        "state_octets_max",
+        "nvm_octets_per_cycle",
     };
     std::string tuning;
     std::size_t seen = 0;
     for (const std::string& file : flight_sources()) {
         const bool of_edl = std::ranges::any_of(
-            std::array{"flight/gnc/", "flight/edl/", "flight/edl_bg/", "flight/mfsk/", "flight/fault_protection/"},
+            std::array{"flight/devices/", "flight/gnc/", "flight/edl/", "flight/edl_bg/", "flight/mfsk/",
+                       "flight/fault_protection/"},
             [&](const char* folder) { return file.starts_with(folder); });
         const auto lines = of_edl ? structure::lines_of(file) : std::vector<std::string>{};
         for (std::size_t i = 0; i < lines.size(); ++i) {

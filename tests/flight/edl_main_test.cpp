@@ -156,6 +156,9 @@ TEST_CASE("do edl is refused when timepoints are overdue, for they would fire in
     const double first_due_s = entry_s + *timeline_specs[0].desired_offset_s;
     CHECK(f.do_edl(first_due_s) == CommandRefusal::too_late);
     CHECK_FALSE(f.edl.timeline().begun());
+    const double last_s = f.edl.timeline().first_desired().get()->seconds - build_parameters.do_edl_margin_s;
+    CHECK(f.do_edl(last_s) == CommandRefusal::too_late);
+    CHECK_FALSE(f.do_edl(last_s - 1.0 / 64).has_value());
 }
 
 TEST_CASE("a second do edl is refused", "[edl][R23]") {

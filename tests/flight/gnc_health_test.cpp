@@ -68,6 +68,7 @@ TEST_CASE("thrusters that are not felt are told once, after some judgements in a
     gnc::Output gnc;
     const auto judged = [&](double felt) {
         recorder.begin(ModuleId::edl, Sclk{1000.0});
+        gnc.thrusters_judged = true;
         gnc.thrusters_felt = felt;
         health.watch(parameters, gnc, recorder.out);
         return recorder.events<evr::THRUSTERS_NOT_FELT>();
@@ -96,6 +97,36 @@ TEST_CASE("thrusters that are not felt are told once, after some judgements in a
     CHECK(recorder.events<evr::THRUSTERS_FELT_AGAIN>() == 1);
     judged(0.9);
     CHECK(recorder.events<evr::THRUSTERS_FELT_AGAIN>() == 0);
+}
+
+TEST_CASE("judgements of thrusters before and after a pause are not in a row, and what nobody judges any more is said",
+          "[edl][R27]") {
+    test::OutboxRecorder recorder;
+    GncHealth health;
+    gnc::Output gnc;
+    gnc.mode = gnc::Mode::range_control;
+    const auto watch = [&](bool judged, std::optional<double> felt) {
+        recorder.begin(ModuleId::edl, Sclk{1000.0});
+        gnc.thrusters_judged = judged;
+        gnc.thrusters_felt = felt;
+        health.watch(parameters, gnc, recorder.out);
+    };
+    const int in_a_row = static_cast<int>(parameters.thrusters_unfelt_windows);
+    const auto unfelt = [&](int times) {
+        for (int i = 0; i < times; ++i) watch(true, 0.0);
+        return recorder.events<evr::THRUSTERS_NOT_FELT>();
+    };
+    CHECK(unfelt(in_a_row - 1) == 0);
+    watch(false, {});
+    CHECK(unfelt(in_a_row - 1) == 0);
+    CHECK(unfelt(1) == 1);
+    watch(false, {});  // a pause: they may be felt again
+    CHECK(recorder.events<evr::THRUSTERS_NOT_JUDGED>() == 0);
+    gnc.mode = gnc::Mode::free_fall;
+    watch(false, {});
+    CHECK(recorder.events<evr::THRUSTERS_NOT_JUDGED>() == 1);
+    watch(false, {});
+    CHECK(recorder.events<evr::THRUSTERS_NOT_JUDGED>() == 0);
 }
 
 TEST_CASE("engine controllers that are silent are told once, explained, and again when they are heard",

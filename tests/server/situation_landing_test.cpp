@@ -298,7 +298,7 @@ TEST_CASE("nothing that the situation says over a landing is false, and a landin
             if (entry.rank() == SituationEntry::news) CHECK(known.contains(entry.subject()));
         }
     CHECK_THAT(find(told.seconds.back().situation, "landed")->sentence(),
-               Catch::StartsWith("Touchdown reported at E+7:"));
+               Catch::StartsWith("Touchdown confirmed, at E+7:"));
 }
 
 TEST_CASE("when the prime computer fails, the situation says which computer flies, and since when",

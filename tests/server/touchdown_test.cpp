@@ -15,7 +15,6 @@ namespace server_touchdown_test {
 
 using namespace aeolis;
 using namespace aeolis::test;
-using server::TouchdownFacts;
 using Step = v1::TouchdownStep;
 using Report = v1::TouchdownReport;
 
@@ -23,157 +22,7 @@ namespace {
 
 constexpr double down_s = 1430.0, entry_s = 1000.0;
 
-/// Told by the timepoint, with UHF and a rover at rest each second from the touchdown to `to_s`.
-TouchdownFacts heard_until(double to_s) {
-    TouchdownFacts facts;
-    facts.entry = Sclk{entry_s};
-    facts.now = Sclk{to_s};
-    facts.told = {{Sclk{down_s}, "timepoint touchdown by UHF"}};
-    facts.flag_name = "touchdown_declared";
-    facts.live_name = "edl_phase";
-    facts.rover_imu_known = true;
-    for (double sclk_s = down_s - 5.0; sclk_s <= to_s; sclk_s += 1.0) {
-        facts.live.push_back(Sclk{sclk_s});
-        facts.rover_imu.push_back({Sclk{sclk_s}, 0.0007, server::still_weight_mps2});
-    }
-    return facts;
-}
-
-v1::TouchdownStep still_step(const TouchdownFacts& facts) {
-    return server::judge_touchdown(facts).steps(1);
-}
-
 }  // namespace
-
-TEST_CASE("nothing is said of a touchdown that nothing has told of", "[touchdown][R53]") {
-    auto facts = heard_until(down_s + 20.0);
-    facts.told.clear();
-    facts.flag = TouchdownFacts::Flag{Sclk{down_s}, 0.0};
-    const auto report = server::judge_touchdown(facts);
-    CHECK(report.verdict() == Report::untold);
-    CHECK(report.steps().empty());
-    CHECK_FALSE(report.has_sclk());
-}
-
-TEST_CASE("a touchdown is confirmed once all three signals are there, and not a second before", "[touchdown]") {
-    // The first samples after the touchdown are a second after it.
-    CHECK(server::judge_touchdown(heard_until(down_s + 10.0)).verdict() == Report::reported);
-    const auto report = server::judge_touchdown(heard_until(down_s + 11.0));
-    CHECK(report.verdict() == Report::confirmed);
-    REQUIRE(report.steps_size() == 3);
-    for (const auto& step : report.steps()) CHECK(step.state() == Step::done);
-    CHECK(report.steps(1).sclk() == down_s + 11.0);
-    CHECK(report.steps(1).words() ==
-          "E+7:21.0: still since E+7:11.0, now rover_imu_rate_rps 0.0007, rover_imu_force_mps2 3.71");
-}
-
-TEST_CASE("a touchdown of a mission without the rover's own IMU stays reported, however long UHF comes",
-          "[touchdown]") {
-    auto facts = heard_until(down_s + 60.0);
-    facts.rover_imu_known = false;
-    facts.rover_imu.clear();
-    const auto report = server::judge_touchdown(facts);
-    CHECK(report.verdict() == Report::reported);
-    CHECK(report.steps(1).state() == Step::never);
-    CHECK(report.steps(2).state() == Step::done);
-}
-
-TEST_CASE("a rover that moves by either measure begins the count of its rest anew", "[touchdown]") {
-    CHECK(still_step(heard_until(down_s + 5.0)).words() == "4 s of 10 s since E+7:11.0");
-    const auto moved = [](double rate_rps, double force_mps2, double by_s) {
-        auto facts = heard_until(down_s + 15.0);
-        for (auto& told : facts.rover_imu)
-            if (told.sclk.seconds == down_s + by_s) told = {told.sclk, rate_rps, force_mps2};
-        return still_step(facts);
-    };
-    const double weight = server::still_weight_mps2, within = server::still_weight_within_mps2;
-    CHECK(moved(server::still_rate_max_rps, weight, 5.0).state() == Step::done);  // either bound is still
-    CHECK(moved(0.0007, weight + 0.999 * within, 5.0).state() == Step::done);
-    CHECK(moved(1.001 * server::still_rate_max_rps, weight, 5.0).words() == "9 s of 10 s since E+7:16.0");
-    CHECK(moved(0.0007, weight + 1.001 * within, 5.0).words() == "9 s of 10 s since E+7:16.0");
-    CHECK(moved(0.0007, weight - 1.001 * within, 5.0).words() == "9 s of 10 s since E+7:16.0");
-    CHECK(moved(0.02, 3.9, 15.0).state() == Step::done);  // it had been still for its time before
-    auto swings = heard_until(down_s + 30.0);
-    for (auto& told : swings.rover_imu) told.rate_rps = 0.0122 * std::abs(std::cos(0.7 * told.sclk.seconds));  // 1°
-    CHECK(server::judge_touchdown(swings).verdict() == Report::reported);
-    auto now = heard_until(down_s + 8.0);
-    now.rover_imu.back() = {now.rover_imu.back().sclk, 0.02, 3.9};
-    CHECK(still_step(now).state() == Step::waiting);
-    CHECK(still_step(now).words() ==
-          "moves at E+7:18.0: rover_imu_rate_rps 0.0200, rover_imu_force_mps2 3.90; still is "
-          "at most 0.005 rad/s and 3.71 ± 0.1 m/s2");
-}
-
-TEST_CASE("a rover's IMU that is silent leaves the touchdown reported, with the reason", "[touchdown]") {
-    auto silent = heard_until(down_s + 30.0);
-    silent.rover_imu.clear();
-    CHECK(server::judge_touchdown(silent).verdict() == Report::reported);
-    CHECK(still_step(silent).state() == Step::unknown);
-    CHECK(still_step(silent).words() == "not known: rover_imu_rate_rps has told nothing since touchdown at E+7:10.0");
-    silent.silences = {{Sclk{down_s + 2.0}, {}, "fault: the station is out"}};
-    CHECK(still_step(silent).words() ==
-          "not known: rover_imu_rate_rps has told nothing since touchdown at E+7:10.0: no "
-          "UHF since E+7:12.0: fault: the station is out");
-    auto stops = heard_until(down_s + 30.0);
-    std::erase_if(stops.rover_imu, [](const auto& told) { return told.sclk.seconds > down_s + 5.0; });
-    CHECK(still_step(stops).state() == Step::unknown);
-    CHECK(still_step(stops).words() ==
-          "not known: rover_imu_rate_rps has told nothing since E+7:15.0; it had been still for 4 s");
-    auto gap = heard_until(down_s + 15.0);
-    std::erase_if(gap.rover_imu, [](const auto& told) {
-        return told.sclk.seconds > down_s + 4.0 && told.sclk.seconds < down_s + 8.0;
-    });
-    CHECK(still_step(gap).words() == "7 s of 10 s since E+7:18.0");
-}
-
-TEST_CASE("all that tells of a touchdown is said, and it was when the first of it says", "[touchdown]") {
-    auto facts = heard_until(down_s + 1.0);
-    facts.told.push_back({Sclk{down_s - 0.5}, "event TOUCHDOWN by the recording"});
-    const auto report = server::judge_touchdown(facts);
-    CHECK(report.sclk() == down_s - 0.5);
-    CHECK(report.steps(0).words() == "E+7:09.5: event TOUCHDOWN by the recording, timepoint touchdown by UHF");
-}
-
-TEST_CASE("a newer flag that says no contradicts a touchdown; one as old as the touchdown does not", "[touchdown]") {
-    auto facts = heard_until(down_s + 20.0);
-    facts.flag = TouchdownFacts::Flag{Sclk{down_s + server::touchdown_gap_s}, 0.0};
-    CHECK(server::judge_touchdown(facts).verdict() == Report::confirmed);
-    facts.flag->sclk = Sclk{down_s + server::touchdown_gap_s + 0.5};
-    const auto report = server::judge_touchdown(facts);
-    CHECK(report.verdict() == Report::contradicted);
-    CHECK(report.steps(0).words() == "timepoint touchdown by UHF at E+7:10.0, but touchdown_declared is 0 at E+7:13.5");
-}
-
-TEST_CASE("UHF must come without a break: a gap or a silence begins the count anew", "[touchdown]") {
-    const auto uhf = [](const TouchdownFacts& facts) { return server::judge_touchdown(facts).steps(2); };
-    // The first sample after the touchdown is a second after it.
-    CHECK(uhf(heard_until(down_s + 10.0)).state() == Step::waiting);
-    CHECK(uhf(heard_until(down_s + 10.0)).words() == "9 s of 10 s since E+7:11.0");
-    const auto done = uhf(heard_until(down_s + 11.0));
-    CHECK(done.state() == Step::done);
-    CHECK(done.sclk() == down_s + 11.0);
-
-    auto gap = heard_until(down_s + 11.0);
-    std::erase_if(gap.live, [](Sclk sclk) { return sclk.seconds > down_s + 4.0 && sclk.seconds < down_s + 8.0; });
-    CHECK(uhf(gap).words() == "3 s of 10 s since E+7:18.0");
-    auto silent = heard_until(down_s + 11.0);
-    silent.silences = {{Sclk{down_s + 4.2}, Sclk{down_s + 4.8}, "plasma blackout"}};
-    CHECK(uhf(silent).words() == "6 s of 10 s since E+7:15.0");
-}
-
-TEST_CASE("without UHF its step is not known, with the reason of the silence where there is one", "[touchdown]") {
-    auto facts = heard_until(down_s - 1.0);
-    facts.now = Sclk{down_s + 20.0};
-    CHECK(server::judge_touchdown(facts).steps(2).words() == "not known: no UHF since touchdown at E+7:10.0");
-    facts.silences = {{Sclk{down_s - 1.0}, {}, "fault: the station is out"}};
-    CHECK(server::judge_touchdown(facts).steps(2).words() ==
-          "not known: no UHF since E+7:09.0: fault: the station is out");
-    auto lost = heard_until(down_s + 5.0);
-    lost.now = Sclk{down_s + 20.0};
-    const auto step = server::judge_touchdown(lost).steps(2);
-    CHECK(step.state() == Step::unknown);
-    CHECK(step.words() == "not known: no UHF since E+7:15.0; 4 s had come without a break");
-}
 
 TEST_CASE("a place says what it rests on; its uncertainty is not known, and none is made up", "[touchdown]") {
     CHECK(server::place_rests_on(0.0) ==
@@ -213,8 +62,8 @@ TEST_CASE("a place over ground is east and north of the target, and in the ellip
 
 TEST_CASE("the names by which a touchdown is told are words of the shipped dictionary", "[touchdown]") {
     const auto& shipped = tests::shipped_dictionary();
-    std::vector<std::string_view> channels{server::touchdown_flag, server::touchdown_live, server::rover_rate_channel,
-                                           server::rover_force_channel};
+    std::vector<std::string_view> channels{telemetry::touchdown_flag, telemetry::touchdown_live,
+                                           telemetry::rover_rate_channel, telemetry::rover_force_channel};
     channels.insert(channels.end(), server::position_channels.begin(), server::position_channels.end());
     for (const auto& each : server::touchdown_channels) channels.push_back(each.channel);
     for (const auto name : channels) {
@@ -224,8 +73,8 @@ TEST_CASE("the names by which a touchdown is told are words of the shipped dicti
     const auto has = [](const auto& all, std::string_view name) {
         return std::ranges::any_of(all, [&](const auto& each) { return each.name == name; });
     };
-    CHECK(has(shipped.events, server::touchdown_event));
-    CHECK(has(shipped.timeline, server::touchdown_timepoint));
+    CHECK(has(shipped.events, telemetry::touchdown_event));
+    CHECK(has(shipped.timeline, telemetry::touchdown_timepoint));
     for (const auto name : server::target_arguments) CHECK(has(shipped.command("EDL_SET_PARAMETERS")->arguments, name));
 }
 
@@ -306,7 +155,7 @@ TEST_CASE("a nominal landing is confirmed, live and with its recording", "[touch
     for (const auto* report : {&landed.live, &landed.with_recording}) {
         INFO(report->steps(1).words() << "; " << report->steps(2).words());
         CHECK(report->verdict() == Report::confirmed);
-        CHECK(report->steps(1).sclk() - report->sclk() < server::still_s + 2.0);
+        CHECK(report->steps(1).sclk() - report->sclk() < telemetry::still_s + 2.0);
     }
 }
 
@@ -330,9 +179,9 @@ TEST_CASE("a flag of the archive that falls after the touchdown contradicts it, 
     const TemporaryFolder folder;
     auto dictionary = small_dictionary();
     dictionary.timeline[2].name = "touchdown";
-    dictionary.channels[altitude.value].name = server::touchdown_flag;
+    dictionary.channels[altitude.value].name = telemetry::touchdown_flag;
     for (auto& field : dictionary.packets[0].fields)
-        if (field.channel == altitude) field.name = server::touchdown_flag;
+        if (field.channel == altitude) field.name = telemetry::touchdown_flag;
     dictionary.model = tests::packet_model_of(dictionary);
     auto archive = archive::Archive::open(folder / "a.db");
     REQUIRE(archive);

@@ -61,13 +61,15 @@ std::string unsafe(const Landing& landing) {
     return judgement.verdict == Verdict::landed ? "" : reason_of(landing, judgement);
 }
 
-/// The command sent past ground, and what the vehicle made of it.
+/// Commands sent past ground, and what the vehicle made of the last.
 struct OnBoard {
     Landing landing;
     bool executed = false, refused = false;
     int said_why = 0;  ///< events that name the reason
 
-    OnBoard(const Landing& fork, const commands::Request& request) : landing(fork) {
+    OnBoard(const Landing& fork, const commands::Request& request) : landing(fork) { send(request); }
+    void send(const commands::Request& request) {
+        executed = refused = false;
         const auto& command = *tests::shipped_dictionary().command(request.command);
         const auto packet = commands::encode(command, request.arguments, 7);
         REQUIRE(packet);
@@ -78,8 +80,12 @@ struct OnBoard {
         }
         REQUIRE(executed != refused);
     }
+    void fly(double for_s) {
+        for (int cycle = 0; cycle < static_cast<int>(64.0 * for_s) && flying(); ++cycle) landing.step();
+    }
+    bool flying() const { return landing.outcome() == Outcome::running; }
     void land() {
-        while (landing.outcome() == Outcome::running) landing.step();
+        while (flying()) landing.step();
     }
 
   private:
@@ -186,14 +192,15 @@ bool is_judged_by_flight_alone(const commands::Request& request) {
     return request.command != "EDL_SET_PARAMETERS";
 }
 
-/// Flies each of `count` changes that the board accepts, whatever ground says; parameters only if ground does too.
+/// Flies each of `count` changes that the board accepts, whatever ground says; parameters only if ground does too. On
+/// every other such flight a second change follows, within ten seconds or two minutes.
 void try_changes(std::uint32_t seed, std::size_t count) {
     Changes changes{seed};
     std::vector<double> moments(count);
     for (double& moment : moments) moment = changes.moment_e_s();
     std::sort(moments.begin(), moments.end());
     Trunk trunk{commanded()};
-    std::size_t by_both = 0, by_ground_alone = 0, parameters_flown = 0;
+    std::size_t by_both = 0, by_ground_alone = 0, parameters_flown = 0, second_changes = 0;
     for (const double moment : moments) {
         trunk.fly_until(moment);
         if (!trunk.flying()) continue;
@@ -212,14 +219,27 @@ void try_changes(std::uint32_t seed, std::size_t count) {
         parameters_flown += ground_accepts && board.executed && !is_judged_by_flight_alone(request);
         by_ground_alone += ground_accepts && !board.executed;
         if (!board.executed || (!ground_accepts && !is_judged_by_flight_alone(request))) continue;
+        std::string second;
+        if (changes.part() < 0.5) {
+            board.fly((changes.part() < 0.5 ? 10.0 : 120.0) * changes.part());
+            const auto follows = changes.draw(trunk);
+            const auto& of = *tests::shipped_dictionary().command(follows.command);
+            if (board.flying() && is_judged_by_flight_alone(follows) && commands::encode(of, follows.arguments, 7)) {
+                board.send(follows);
+                second = text_of(follows, trunk.e_s());
+                second_changes += board.executed;
+            }
+        }
         board.land();
+        INFO("then: " << second);
         CHECK(unsafe(board.landing) == "");
     }
     trunk.fly_until(1.0e6);
     CHECK(unsafe(trunk.landing.landing()) == "");
     INFO(by_both << " of " << count << " were accepted on ground and on board, " << by_ground_alone
-                 << " more on ground alone");
+                 << " more on ground alone; " << second_changes << " second changes");
     CHECK(by_both >= count / 4);
+    CHECK(second_changes >= count / 20);
     CHECK(parameters_flown > 0);
 }
 

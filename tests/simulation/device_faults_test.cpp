@@ -125,6 +125,7 @@ TEST_CASE("a landing without faults has every reply in time, and no device modul
                            flight::evr::PROPELLANT_LOW::id,
                            flight::evr::THRUSTERS_NOT_FELT::id,
                            flight::evr::THRUSTERS_FELT_AGAIN::id,
+                           flight::evr::THRUSTERS_NOT_JUDGED::id,
                            flight::evr::ENGINES_SILENT::id,
                            flight::evr::ENGINES_HEARD_AGAIN::id})
         CHECK(landed.count(id) == 0);

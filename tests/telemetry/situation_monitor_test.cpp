@@ -263,6 +263,49 @@ TEST_CASE("a touchdown is reported by its own evidence alone; until then landing
     CHECK(ground.sentence(7300.0) == "Touchdown reported at E+7:13, by the recording");
 }
 
+TEST_CASE("a touchdown is confirmed in the second in which all three signals are there, and a newer flag takes it back",
+          "[situation][touchdown][R53]") {
+    Ground ground;
+    ground.up(uhf_live_link, -100.0);
+    const auto sample = [&](double e_s, double declared) {
+        ground.monitor.touchdown({sclk(e_s), declared, 0.0007, still_weight_mps2, true}, ground.from(e_s));
+    };
+    for (double e_s = 428.0; e_s < 433.0; e_s += 1.0) sample(e_s, 0.0);
+    ground.event("TOUCHDOWN", 432.5, "Touchdown");
+    for (double e_s = 433.0; e_s < 443.0; e_s += 1.0) {
+        sample(e_s, 1.0);
+        CHECK(ground.sentence(e_s) == "Touchdown reported at E+7:12");
+    }
+    sample(443.0, 1.0);
+    const auto confirmed = ground.first(443.0);
+    CHECK(confirmed.sentence == "Touchdown confirmed, at E+7:12");
+    CHECK(confirmed.rank == Rank::news);
+    CHECK(confirmed.evidence_seq == ground.seq);
+    CHECK(confirmed.evidence.starts_with("touchdown told by the vehicle: E+7:12.5: event TOUCHDOWN; rover's own IMU"));
+    for (double e_s = 444.0; e_s < 600.0; e_s += 1.0) sample(e_s, 1.0);  // more than is kept
+    CHECK(ground.first(600.0) == confirmed);
+    sample(600.0, 0.0);
+    CHECK(ground.first(600.0).rank == Rank::danger);
+    CHECK(ground.sentence(600.0) ==
+          "Touchdown contradicted: event TOUCHDOWN at E+7:12.5, but touchdown_declared is 0 at E+10:00.0");
+}
+
+TEST_CASE("a touchdown that is heard by tones alone, or whose UHF stops, stays reported", "[situation][touchdown]") {
+    Ground ground;
+    ground.up(uhf_live_link, -100.0);
+    ground.event("TOUCHDOWN", 432.5, "Touchdown");
+    for (double e_s = 433.0; e_s < 440.0; e_s += 1.0)
+        ground.monitor.touchdown({sclk(e_s), 1.0, 0.0007, still_weight_mps2, true}, ground.from(e_s));
+    ground.down(uhf_live_link, 440.0, "unexplained: nothing is predicted to silence it now", true);
+    CHECK(ground.about("landed", 500.0)->sentence == "Touchdown reported at E+7:12");
+    Ground tones;
+    tones.up(x_band_link, -100.0);
+    tones.tone("touchdown", 431.0);
+    for (double e_s = 433.0; e_s < 460.0; e_s += 1.0)  // of a link that brings no EDL phase
+        tones.monitor.touchdown({sclk(e_s), {}, 0.0007, still_weight_mps2, false}, tones.from(e_s));
+    CHECK(tones.about("landed", 500.0)->sentence == "Touchdown reported at E+7:11, by tone");
+}
+
 TEST_CASE("what the ground awaits is the next step, with the condition that is missing, and overdue when it is late",
           "[situation]") {
     Ground ground;

@@ -18,8 +18,6 @@ export interface Heard {
   verdict: NamedFiring['verdict'] | '';
 }
 
-export const BELIEVED = 0.5; // chosen: a tone likelier than all others together
-
 let last:
   | {
       store: RunStore;
@@ -48,7 +46,7 @@ function hear(store: RunStore, plan: readonly TimepointRow[], cutoff: number): M
   for (const row of plan) asked.set(row.tone, (asked.get(row.tone) ?? 0) + 1);
   const first = new Map<string, { sclk: number; likelihood: number }>();
   for (const { fact } of store.tonesBy(cutoff))
-    if (fact.tone !== undefined && fact.likelihood >= BELIEVED && !first.has(fact.name)) first.set(fact.name, fact);
+    if (fact.tone !== undefined && !first.has(fact.name)) first.set(fact.name, fact);
   for (const row of plan) {
     const pair = store.firings.get(row.id);
     for (const [by, firing] of [

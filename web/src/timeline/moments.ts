@@ -4,7 +4,7 @@ import type { TimepointRow } from '../gen/aeolis/v1/run_pb';
 import { LAYOUT } from '../layout';
 import { predictedEvent } from '../prediction/model';
 import type { RunStore } from '../run/store';
-import { BELIEVED, heardOf, lastHeard } from './heard';
+import { heardOf, lastHeard } from './heard';
 
 export interface Moment {
   name: string;
@@ -23,7 +23,7 @@ export function momentsOf(store: RunStore, plan: readonly TimepointRow[], cutoff
     if (at < 0) return [];
     const told =
       store.events.find(({ fact }) => fact.name.toLowerCase() === name && fact.sclk <= cutoff)?.fact.sclk ??
-      store.tonesBy(cutoff).find(({ fact }) => fact.name === name && fact.likelihood >= BELIEVED)?.fact.sclk;
+      store.tonesBy(cutoff).find(({ fact }) => fact.tone !== undefined && fact.name === name)?.fact.sclk;
     const predicted = at > last ? predictedEvent(name) : undefined;
     return {
       name,

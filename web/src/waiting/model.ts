@@ -135,8 +135,7 @@ interface Said {
 export function saidOf(store: RunStore, plan: readonly TimepointRow[], cutoff: number): Said {
   const entries = entriesAt(store, cutoff);
   const step = entries.find(({ subject }) => subject === 'step');
-  const words = /^(?:Next: |Waiting for )([^,;]+)/.exec(step?.sentence ?? '')?.[1]?.replace('X-band', 'x band');
-  const row = plan.find(({ name }) => name.replaceAll('_', ' ').toLowerCase() === words?.toLowerCase());
+  const row = plan.find(({ name }) => name === step?.timepoint);
   const e_s = step?.atUs ? store.sclkSeenAt(secondsOfErt(step.atUs)) - store.entrySclk : NaN;
   return {
     step:
