@@ -195,7 +195,7 @@ bool is_judged_by_flight_alone(const commands::Request& request) {
 /// Flies each of `count` changes that the board accepts, whatever ground says; parameters only if ground does too. On
 /// every other such flight a second change follows, within ten seconds or two minutes.
 void try_changes(std::uint32_t seed, std::size_t count) {
-    Changes changes{seed};
+    Changes changes{seed}, seconds{seed + 1};
     std::vector<double> moments(count);
     for (double& moment : moments) moment = changes.moment_e_s();
     std::sort(moments.begin(), moments.end());
@@ -217,12 +217,13 @@ void try_changes(std::uint32_t seed, std::size_t count) {
         OnBoard board{trunk.landing.landing(), request};
         by_both += ground_accepts && board.executed;
         parameters_flown += ground_accepts && board.executed && !is_judged_by_flight_alone(request);
-        by_ground_alone += ground_accepts && !board.executed;
+        // Parameters that come after GNC was enabled are refused by the board alone.
+        by_ground_alone += ground_accepts && !board.executed && is_judged_by_flight_alone(request);
         if (!board.executed || (!ground_accepts && !is_judged_by_flight_alone(request))) continue;
         std::string second;
-        if (changes.part() < 0.5) {
-            board.fly((changes.part() < 0.5 ? 10.0 : 120.0) * changes.part());
-            const auto follows = changes.draw(trunk);
+        if (seconds.part() < 0.5) {
+            board.fly((seconds.part() < 0.5 ? 10.0 : 120.0) * seconds.part());
+            const auto follows = seconds.draw(trunk);
             const auto& of = *tests::shipped_dictionary().command(follows.command);
             if (board.flying() && is_judged_by_flight_alone(follows) && commands::encode(of, follows.arguments, 7)) {
                 board.send(follows);
@@ -240,6 +241,7 @@ void try_changes(std::uint32_t seed, std::size_t count) {
                  << " more on ground alone; " << second_changes << " second changes");
     CHECK(by_both >= count / 4);
     CHECK(second_changes >= count / 20);
+    CHECK(by_ground_alone <= count / 20);
     CHECK(parameters_flown > 0);
 }
 
