@@ -34,9 +34,9 @@ SituationMonitor::Origin origin_of(const archive::ItemRecord& record,
 SituationFeed::SituationFeed(const dictionary::Dictionary& dictionary, const archive::RunStart& start)
     : monitor_(dictionary, clocks_of(start)) {
     const archive::PacketColumns columns{dictionary};
-    for (std::uint16_t packet = 0; packet < dictionary.packets.size(); ++packet) {
+    for (std::size_t packet = 0; packet < columns.packets(); ++packet) {
         TouchdownColumns found;
-        const auto channels = columns.channels(packet);
+        const auto& channels = columns.channels(packet);
         for (std::size_t column = 0; column < channels.size(); ++column) {
             const std::string_view name = dictionary.channels[channels[column].value].name;
             if (name == telemetry::touchdown_flag) found.flag = column;
@@ -44,7 +44,7 @@ SituationFeed::SituationFeed(const dictionary::Dictionary& dictionary, const arc
             if (name == telemetry::rover_force_channel) found.rover_force = column;
             if (name == telemetry::touchdown_live) found.live = column;
         }
-        if (found.flag || found.rover_rate || found.live) touchdown_columns_.emplace(packet, found);
+        if (found.flag || found.rover_rate || found.live) touchdown_columns_.emplace(static_cast<std::uint16_t>(packet), found);
     }
 }
 
