@@ -44,7 +44,8 @@ SituationFeed::SituationFeed(const dictionary::Dictionary& dictionary, const arc
             if (name == telemetry::rover_force_channel) found.rover_force = column;
             if (name == telemetry::touchdown_live) found.live = column;
         }
-        if (found.flag || found.rover_rate || found.live) touchdown_columns_.emplace(static_cast<std::uint16_t>(packet), found);
+        if (found.flag || found.rover_rate || found.live)
+            touchdown_columns_.emplace(static_cast<std::uint16_t>(packet), found);
     }
 }
 
