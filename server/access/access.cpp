@@ -154,6 +154,7 @@ Operator Access::identify(const Credentials& credentials) {
     constexpr std::string_view bearer = "Bearer ";
     const std::scoped_lock lock{mutex_};
     refresh();
+    if (credentials.vouched) return vouched_for(*credentials.vouched, credentials.from);
     if (credentials.authorization.starts_with(bearer)) {
         const auto hash = secret_hash(credentials.authorization.substr(bearer.size()));
         const auto token = std::ranges::find(file_.tokens(), hash, &v1::AccessToken::secret_hash);
@@ -181,6 +182,41 @@ Operator Access::identify(const Credentials& credentials) {
     auto who = operator_of(*account, session->first, session->second);
     who.from = credentials.from;
     return who;
+}
+
+Operator Access::vouched_for(const Vouched& person, const std::string& from) {
+    Operator nobody;
+    nobody.from = from;
+    const auto follower = std::ranges::find(file_.followers(), person.key, &v1::FollowerKey::key);
+    if (follower == file_.followers().end()) return nobody;
+    nobody.from = fmt::format("follower {}, {}", follower->name(), from);
+    const auto* account = find_account(file_, person.owner.empty() ? person.user : person.owner);
+    const auto there = role_of(person.role);
+    if (account == nullptr || !there) return nobody;
+    auto who = nobody;
+    who.user = person.user;
+    who.owner = person.owner;
+    who.role = std::min({role_of(account->role()), role_of(follower->role()), there});
+    who.choose_password = account->choose_password();
+    if (!person.session.empty()) who.session = follower->name() + ' ' + person.session;
+    who.commands = person.commands;
+    if (account->commands().empty()) return who;
+    const auto not_here = [&](const std::string& command) {
+        return std::ranges::find(account->commands(), command) == account->commands().end();
+    };
+    if (who.commands.empty())
+        who.commands.assign(account->commands().begin(), account->commands().end());
+    else
+        std::erase_if(who.commands, not_here);
+    return who.commands.empty() ? nobody : who;  // an empty list would allow all
+}
+
+std::optional<std::string> Access::follower(const std::string& key) {
+    if (!accounts()) return std::nullopt;
+    const std::scoped_lock lock{mutex_};
+    refresh();
+    const auto found = std::ranges::find(file_.followers(), key, &v1::FollowerKey::key);
+    return found == file_.followers().end() ? std::nullopt : std::optional{found->name()};
 }
 
 std::chrono::seconds Access::lock_out_of(const std::string& user, const std::string& network) const {

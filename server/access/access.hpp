@@ -10,15 +10,26 @@
 #include <functional>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace aeolis::server {
 
+/// A person for whom a follower vouches by its signature, and what that person may do there.
+struct Vouched {
+    std::string key;                    ///< public, of the follower, in hexadecimal digits
+    std::string user, owner;            ///< as of an Operator
+    std::string role;                   ///< of the person at the follower
+    std::vector<std::string> commands;  ///< as of an Operator
+    std::string session;                ///< empty: a token
+};
+
 /// The credentials that a request carries.
 struct Credentials {
     std::string cookie, authorization;  ///< header fields, as received
     std::string from;                   ///< address of the peer
+    std::optional<Vouched> vouched{};   ///< of a request whose signature was checked; then the fields are empty
 };
 
 /// Users, tokens and log-in sessions: decides who may use the server.
@@ -60,7 +71,11 @@ class Access {
     /// Password resets by `aeolis accounts reset` that are not yet in an audit. Returns each once.
     std::vector<v1::PasswordReset> take_resets();
 
+    /// A person for whom a follower vouches has an account here: its role and commands, the follower's and those at the
+    /// follower all bound what that person may do.
     Operator identify(const Credentials& credentials);
+    /// The name of the follower with this public key (hexadecimal); none: it is not one, or no longer.
+    std::optional<std::string> follower(const std::string& key);
 
     struct LoggedIn {
         Operator who;
@@ -98,6 +113,7 @@ class Access {
     void end_sessions(const std::string& user, const std::string& but);  ///< call without mutex_
     // Call with mutex_ held:
     void refresh();
+    Operator vouched_for(const Vouched& person, const std::string& from);
     std::chrono::seconds lock_out_of(const std::string& user, const std::string& network) const;
     void count_failure(const std::string& key, unsigned allowed);
     Operator operator_of(const v1::Account& account, const std::string& session, const LiveSession& live) const;

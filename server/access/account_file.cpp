@@ -27,7 +27,7 @@ std::filesystem::path folder_of(const std::filesystem::path& file) {
 }
 
 Result<void> check_accounts(const v1::AccountFile& accounts) {
-    std::set<std::string> users, tokens;
+    std::set<std::string> users, tokens, followers, keys;
     const auto check = [](auto& names, const char* what, const std::string& name,
                           const std::string& role) -> Result<void> {
         if (auto named = check_name(name); !named) return named;
@@ -39,6 +39,13 @@ Result<void> check_accounts(const v1::AccountFile& accounts) {
         if (auto right = check(users, "user", account.user(), account.role()); !right) return right;
     for (const auto& token : accounts.tokens())
         if (auto right = check(tokens, "token", token.name(), token.role()); !right) return right;
+    for (const auto& follower : accounts.followers()) {
+        if (auto right = check(followers, "follower", follower.name(), follower.role()); !right) return right;
+        if (auto right = check_key(follower.key()); !right)
+            return Error{fmt::format("follower '{}': {}", follower.name(), right.error().message)};
+        if (!keys.insert(follower.key()).second)
+            return Error{fmt::format("follower '{}': another one has its key", follower.name())};
+    }
     return {};
 }
 
@@ -53,6 +60,13 @@ Result<void> check_name(const std::string& name) {
     if (begins && name.size() <= name_octets_max && std::ranges::all_of(name, allowed)) return {};
     return Error{
         fmt::format("a name has 1 to {} of a-z, 0-9, '-', '_' and '.', and begins with a letter", name_octets_max)};
+}
+
+Result<void> check_key(const std::string& digits) {
+    constexpr std::size_t key_octets = 32;  // Ed25519
+    const auto octets = octets_of_hexadecimal(digits);
+    if (octets.size() == key_octets && hexadecimal(octets) == digits) return {};
+    return Error{"a public key has 64 hexadecimal digits, in small letters, as aeolis accounts follower-key prints it"};
 }
 
 v1::Account* find_account(v1::AccountFile& accounts, const std::string& user) {

@@ -31,6 +31,9 @@ class AccountsLock {
 /// Checks the name of a user or token: 1 to 32 of a-z, 0-9, '-', '_', '.', beginning with a letter.
 Result<void> check_name(const std::string& name);
 
+/// Checks the public key of a follower.
+Result<void> check_key(const std::string& digits);
+
 /// Finds an account. Null when there is none.
 v1::Account* find_account(v1::AccountFile& accounts, const std::string& user);
 

@@ -15,6 +15,25 @@ void make_ready() {
     AEOLIS_CHECK(ready);
 }
 
+unsigned char* written(std::string& octets) {
+    return reinterpret_cast<unsigned char*>(octets.data());
+}
+const unsigned char* read(const std::string& octets) {
+    return reinterpret_cast<const unsigned char*>(octets.data());
+}
+
+struct KeyPair {
+    std::string open = std::string(crypto_sign_PUBLICKEYBYTES, '\0');
+    std::string secret = std::string(crypto_sign_SECRETKEYBYTES, '\0');
+};
+KeyPair keys_of(const std::string& seed) {
+    make_ready();
+    AEOLIS_CHECK(seed.size() == crypto_sign_SEEDBYTES);
+    KeyPair keys;
+    AEOLIS_CHECK(crypto_sign_seed_keypair(written(keys.open), written(keys.secret), read(seed)) == 0);
+    return keys;
+}
+
 }  // namespace
 
 Result<void> check_password(const std::string& password) {
@@ -67,6 +86,50 @@ std::string new_password() {
         password += letters[randombytes_uniform(letters.size())];
     }
     return password;
+}
+
+std::string drawn_octets(std::size_t octets) {
+    make_ready();
+    std::string drawn(octets, '\0');
+    randombytes_buf(drawn.data(), drawn.size());
+    return drawn;
+}
+
+std::string new_signing_seed() {
+    return drawn_octets(crypto_sign_SEEDBYTES);
+}
+
+std::string public_key_of(const std::string& seed) {
+    return keys_of(seed).open;
+}
+
+std::string signature_of(const std::string& seed, const std::string& octets) {
+    const auto keys = keys_of(seed);
+    std::string signature(crypto_sign_BYTES, '\0');
+    AEOLIS_CHECK(crypto_sign_detached(written(signature), nullptr, read(octets), octets.size(), read(keys.secret)) ==
+                 0);
+    return signature;
+}
+
+bool has_signed(const std::string& public_key, const std::string& octets, const std::string& signature) {
+    make_ready();
+    return public_key.size() == crypto_sign_PUBLICKEYBYTES && signature.size() == crypto_sign_BYTES &&
+           crypto_sign_verify_detached(read(signature), read(octets), octets.size(), read(public_key)) == 0;
+}
+
+std::string hexadecimal(const std::string& octets) {
+    std::string digits(2 * octets.size() + 1, '\0');
+    sodium_bin2hex(digits.data(), digits.size(), read(octets), octets.size());
+    digits.pop_back();
+    return digits;
+}
+
+std::string octets_of_hexadecimal(const std::string& digits) {
+    std::string octets(digits.size() / 2, '\0');
+    std::size_t size = 0;
+    const bool all = digits.size() % 2 == 0 && sodium_hex2bin(written(octets), octets.size(), digits.data(),
+                                                              digits.size(), nullptr, &size, nullptr) == 0;
+    return all && size == octets.size() ? octets : std::string{};
 }
 
 }  // namespace aeolis::server

@@ -261,12 +261,22 @@ void Api::answer(const Route& route, ApiRequest call) {
         return call.respond(
             error_response(503, "nothing is done that the audit cannot take: " + parts_.pipeline.fault()));
     const bool of_origin = changes && (route.right == Right::command || route.right == Right::rehearse);
-    if (refused.status == 200 && of_origin && !parts_.follows.empty()) refused = error_response(409, parts_.follows);
+    const bool asks_origin = of_origin && parts_.to_origin && route.right == Right::command;
+    if (refused.status == 200 && of_origin && !asks_origin && !parts_.follows.empty())
+        refused = error_response(409, parts_.follows);
     const bool refuses = refused.status != 200;
     if (of_run && call.parts[0] == "latest") name_latest(call);
+    if (!refuses && asks_origin) return parts_.to_origin(call);  // which audits it
     if (!route.audit.empty() && (refuses || route.audited == Audited::all)) call.respond = audited(call, route.audit);
     if (refuses) return call.respond(std::move(refused));
     (this->*route.answer)(call);
+}
+
+bool Api::is_for_origin(std::string_view method, std::string_view path) {
+    return method != "GET" && std::ranges::any_of(routes(), [&](const Route& route) {
+               return route.right == Right::command && route.method == method && path.starts_with('/') &&
+                      parts_of(route.path, path);
+           });
 }
 
 void Api::name_latest(ApiRequest& call) const {

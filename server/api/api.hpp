@@ -74,10 +74,14 @@ class Api {
         const ClockWatch& clock_watch;
         std::function<Replication()> replication{};  ///< null: this server is alone
         std::string follows{};  ///< why this server changes no run, in a sentence; empty: it is the origin of its runs
+        /// Gives a request that is for the origin to it; null: it is refused with `follows`.
+        std::function<void(const ApiRequest&)> to_origin{};
     };
     explicit Api(Parts parts);
 
     void handle(HttpRequest request, const Respond& respond_with);
+    /// Whether people at a follower may ask this of their origin: commands, notes, actions on alarms.
+    static bool is_for_origin(std::string_view method, std::string_view path);
     /// Why an operator must send no more commands now, and for how long.
     struct TooMany {
         std::string reason;

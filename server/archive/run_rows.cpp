@@ -110,6 +110,10 @@ bool within(const v1::RunPosition& part, const v1::RunPosition& whole) {
            });
 }
 
+bool equal(const v1::RunPosition& one, const v1::RunPosition& other) {
+    return within(one, other) && within(other, one);
+}
+
 v1::RunPosition merged(const v1::RunPosition& one, const v1::RunPosition& other) {
     v1::RunPosition both = one;
     both.set_seq(std::max(one.seq(), other.seq()));

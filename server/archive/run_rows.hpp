@@ -37,6 +37,8 @@ struct RunStep {
 Result<v1::RunPosition> position_of(sqlite::Database& database, RunId run);
 /// Whether all of `part` is in `whole`.
 bool within(const v1::RunPosition& part, const v1::RunPosition& whole);
+/// Whether both are the same. Their messages' octets may differ: a map has no order.
+bool equal(const v1::RunPosition& one, const v1::RunPosition& other);
 /// The farther of both, part by part.
 v1::RunPosition merged(const v1::RunPosition& one, const v1::RunPosition& other);
 /// Digest of the definitions of the tables of runs: archives with the same one take each other's rows.

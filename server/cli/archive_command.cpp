@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/access/this_user.hpp"
+#include "server/archive/archive_comparison.hpp"
 #include "server/archive/upkeep.hpp"
 #include "server/base/wall_clock.hpp"
 #include "server/cli/commands.hpp"
@@ -25,6 +26,10 @@ struct PruneOptions {
 
 struct BackupOptions {
     std::filesystem::path archive = default_archive, copy;
+};
+
+struct CompareOptions {
+    std::filesystem::path archive = default_archive, with;
 };
 
 int failed_at(const char* command, const Error& error) {
@@ -170,6 +175,17 @@ int archive_backup(const std::filesystem::path& file, const std::filesystem::pat
     return 0;
 }
 
+/// Returns 0 when both hold the same.
+int archive_compare(const CompareOptions& options) {
+    const auto found = archive::compare(options.archive, options.with);
+    if (!found) return failed_at("compare", found.error());
+    for (const auto& difference : found->differences) fmt::print("{}\n", difference);
+    fmt::print("{} and {}: {}\n", options.archive.string(), options.with.string(),
+               found->differences.empty() ? fmt::format("the same {} rows of {} runs", found->rows, found->runs)
+                                          : fmt::format("{} tables differ", found->differences.size()));
+    return found->differences.empty() ? 0 : 1;
+}
+
 void add_archive_verify(CLI::App& archive, int& exit_code) {
     const auto options = std::make_shared<VerifyOptions>();
     auto& command = *archive.add_subcommand(
@@ -226,6 +242,16 @@ void add_archive_backup(CLI::App& archive, int& exit_code) {
     command.callback([options, &exit_code] { exit_code = archive_backup(options->archive, options->copy); });
 }
 
+void add_archive_compare(CLI::App& archive, int& exit_code) {
+    const auto options = std::make_shared<CompareOptions>();
+    auto& command = *archive.add_subcommand(
+        "compare", "compares every row of every run with another archive, such as a follower's, also while other "
+                   "programs write; prints a line per table that differs; exit code 1 when there is one");
+    add_archive_file(command, options->archive);
+    command.add_option("--with", options->with, "the other file")->required()->check(CLI::ExistingFile);
+    command.callback([options, &exit_code] { exit_code = archive_compare(*options); });
+}
+
 }  // namespace
 
 void add_archive_command(CLI::App& program, int& exit_code) {
@@ -237,6 +263,7 @@ void add_archive_command(CLI::App& program, int& exit_code) {
     add_archive_prune(archive, exit_code);
     add_archive_vacuum(archive, exit_code);
     add_archive_backup(archive, exit_code);
+    add_archive_compare(archive, exit_code);
 }
 
 }  // namespace aeolis::server

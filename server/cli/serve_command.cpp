@@ -41,10 +41,11 @@ struct ServeOptions {
     std::optional<std::string> downlink;  ///< "tcp://HOST:PORT", "udp://HOST:PORT": follow another mission
     MissionXtce xtce;                     ///< of the followed mission
     PacketStreamFormat format{};
-    cluster::EngineAddress nats;  ///< how a NATS engine is reached, for the two below; its URL stays empty
-    std::string publish_to;       ///< URL; empty: nowhere
-    std::string follow;           ///< URL; empty: no other server is followed
-    std::string follow_archive;   ///< of which archive, where the engine has several
+    cluster::EngineAddress nats;         ///< how a NATS engine is reached, for the two below; its URL stays empty
+    std::string publish_to;              ///< URL; empty: nowhere
+    std::string follow;                  ///< URL; empty: no other server is followed
+    std::string follow_archive;          ///< of which archive, where the engine has several
+    std::filesystem::path follower_key;  ///< signs what people here ask of the origin
     std::uint64_t keep_raw_mb = archive::raw_octets_kept >> 20U;  ///< of each link of a run
     std::string log_level{default_log_level}, log_format = "text";
     bool log_level_given = false;  ///< by command line or environment, before which the file gives way
@@ -236,7 +237,8 @@ int serve(const ServeOptions& options) {
                                         .raw_octets_kept = options.keep_raw_mb << 20U,
                                         .publish_to = engine_at(options.nats, options.publish_to),
                                         .follow_by = engine_at(options.nats, options.follow),
-                                        .follow_archive = options.follow_archive},
+                                        .follow_archive = options.follow_archive,
+                                        .follower_key = options.follower_key},
                                        *dictionary);
     if (!opened) return failed(opened.error().message);
     auto& backend = **opened;
@@ -306,6 +308,11 @@ void add_cluster_options(CLI::App& command, ServeOptions& options) {
     command
         .add_option("--follow-archive", options.follow_archive,
                     "identity of that server's archive, or its beginning, where the engine has several")
+        ->needs(follow);
+    command
+        .add_option("--follower-key", options.follower_key,
+                    "key of this follower (aeolis accounts follower-key): people with accounts here may command, where "
+                    "the origin lists the key and has accounts of their names")
         ->needs(follow);
     for (const char* other : {"--scenario", "--downlink"}) follow->excludes(command.get_option(other));
     add_engine_credentials(command, options.nats);

@@ -141,6 +141,31 @@ Result<std::vector<Given>> Consumer::next(std::size_t count, std::chrono::millis
     return given;
 }
 
+struct Listening::State {
+    Subscription subscription;
+    std::string engine, subject;
+};
+
+Listening::Listening(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Listening::Listening(Listening&&) noexcept = default;
+Listening& Listening::operator=(Listening&&) noexcept = default;
+Listening::~Listening() = default;
+
+Result<std::optional<Heard>> Listening::next(std::chrono::milliseconds wait) {
+    natsMsg* came = nullptr;
+    const auto status = natsSubscription_NextMsg(&came, state_->subscription.get(), wait.count());
+    const Message message{came};
+    if (status == NATS_TIMEOUT) return std::optional<Heard>{};
+    if (status != NATS_OK && status != NATS_SLOW_CONSUMER)
+        return Error{fmt::format("{}: {}: {}", state_->engine, state_->subject, text_of(status, {}))};
+    if (came == nullptr) return std::optional<Heard>{};
+    const char* const answer_to = natsMsg_GetReply(came);
+    return std::optional{Heard{natsMsg_GetSubject(came),
+                               {natsMsg_GetData(came), static_cast<std::size_t>(natsMsg_GetDataLength(came))},
+                               answer_to != nullptr ? answer_to : "",
+                               natsMsg_IsNoResponders(came)}};
+}
+
 struct Engine::State {
     std::string shown;
     std::mutex mutex;     // of the one below, which a thread of the library writes
@@ -410,6 +435,34 @@ Result<std::uint64_t> Engine::untaken(const std::string& stream, const std::stri
     const ConsumerInfo there{info};
     if (status != NATS_OK) return state_->refused("consumer " + consumer, status, code);
     return there->NumPending + static_cast<std::uint64_t>(there->NumAckPending);
+}
+
+Result<void> Engine::send(const std::string& subject, std::string_view octets, const std::string& answer_to) {
+    auto* const connection = state_->connection.get();
+    const auto size = static_cast<int>(octets.size());
+    const auto status = answer_to.empty() ? natsConnection_Publish(connection, subject.c_str(), octets.data(), size)
+                                          : natsConnection_PublishRequest(connection, subject.c_str(),
+                                                                          answer_to.c_str(), octets.data(), size);
+    if (status != NATS_OK) return state_->refused(subject, status);
+    return {};
+}
+
+Result<Listening> Engine::listen(const std::string& subject) {
+    natsSubscription* subscription = nullptr;
+    const auto status = natsConnection_SubscribeSync(&subscription, state_->connection.get(), subject.c_str());
+    if (status != NATS_OK) return state_->refused(subject, status);
+    auto state = std::make_unique<Listening::State>();
+    state->subscription.reset(subscription);
+    state->engine = state_->shown;
+    state->subject = subject;
+    return Listening{std::move(state)};
+}
+
+std::string Engine::own_subject() {
+    natsInbox* drawn = nullptr;
+    if (natsInbox_Create(&drawn) != NATS_OK) return {};
+    const Owned<natsInbox, natsInbox_Destroy> inbox{drawn};
+    return inbox.get();
 }
 
 }  // namespace aeolis::server::cluster

@@ -88,6 +88,30 @@ class Consumer {
     std::unique_ptr<State> state_;
 };
 
+/// A message that no stream keeps.
+struct Heard {
+    std::string subject, octets;
+    std::string answer_to;      ///< subject of the answer; empty: none is wanted
+    bool nobody_there = false;  ///< the engine says that nobody listens to what was asked
+};
+
+/// A subject that is listened to, also after the connection was lost and opened again. One thread owns it.
+class Listening {
+  public:
+    Listening(Listening&&) noexcept;
+    Listening& operator=(Listening&&) noexcept;
+    ~Listening();
+
+    /// The next message, after `wait` at the latest; none: there was none.
+    Result<std::optional<Heard>> next(std::chrono::milliseconds wait);
+
+  private:
+    friend class Engine;
+    struct State;
+    explicit Listening(std::unique_ptr<State> state);
+    std::unique_ptr<State> state_;
+};
+
 /// A connection to an engine with JetStream.
 ///
 /// Faults   each Error names the engine and what it refused. A lost connection is opened again without end; meanwhile
@@ -138,6 +162,12 @@ class Engine {
     Result<Consumer> consumer(const std::string& stream, const std::string& name, const std::string& subject);
     /// Messages that its consumer has not taken: waiting, or given and not yet taken.
     Result<std::uint64_t> untaken(const std::string& stream, const std::string& consumer);
+
+    /// Sends a message that no stream keeps. Nobody is waited for.
+    Result<void> send(const std::string& subject, std::string_view octets, const std::string& answer_to = {});
+    Result<Listening> listen(const std::string& subject);
+    /// A subject that no other client has, for answers.
+    static std::string own_subject();
 
   private:
     struct State;

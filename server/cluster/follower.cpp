@@ -186,10 +186,10 @@ class Follower::Thread {
         if (facts->made.empty()) return Error{fmt::format("no stream {} yet: the origin makes it", run_stream)};
         if (facts->made != place_.stream || facts->last < place_.last) place_ = {facts->made, 0};
         if (std::exchange(read_again_, false)) place_.last = 0;
+        if (place_.last == 0) pieces_.clear();  // else the next piece of a step is still to come
         auto steps = engine_->read(run_stream, reader_name(), subject_of_runs(own_.origin), place_.last + 1);
         if (!steps) return steps.error();
         steps_.emplace(std::move(*steps));
-        pieces_.clear();
         count_ = 0;
         return {};
     }
@@ -229,7 +229,7 @@ class Follower::Thread {
         auto& pieces = pieces_[message.run()];
         const bool fits =
             message.piece() == 0 || (message.piece() == pieces.next && message.pieces() == pieces.first.pieces() &&
-                                     message.after().SerializeAsString() == pieces.first.after().SerializeAsString());
+                                     archive::equal(message.after(), pieces.first.after()));
         if (!fits) {
             pieces = {};
             return Error{fmt::format("run {}: a piece of a step without the one before", message.run())};
@@ -275,7 +275,9 @@ class Follower::Thread {
 
     /// Steps are missing: the stream may have them, before the place from which it was read.
     Result<void> gap(RunId run, const v1::RunPosition& before, const v1::RunPosition& here) {
-        if (place_.last > 0 && sought_.insert(run.value).second) {
+        const auto sought = sought_.find(run.value);
+        if (place_.last > 0 && (sought == sought_.end() || here.seq() > sought->second)) {
+            sought_[run.value] = here.seq();
             read_again_ = true;
             return Error{fmt::format("run {}: what comes before item {} is missing: the stream is read again from its "
                                      "beginning",
@@ -326,6 +328,11 @@ class Follower::Thread {
                 heard_ = now;
             }
             origin_ = std::move(state);
+            {
+                const std::scoped_lock lock{mutex_};
+                status_.publisher = origin_.publisher();
+                status_.heard = origin_.count();
+            }
             if (auto given = give_on(); !given) return given;
         }
         return count_behind();
@@ -417,7 +424,8 @@ class Follower::Thread {
     std::map<std::uint32_t, v1::RunPosition> positions_;
     std::map<std::uint32_t, Pieces> pieces_;
     std::map<std::uint32_t, std::string> left_out_;  // until a step of the run is taken
-    std::set<std::uint32_t> sought_;                 // runs for which the stream was read again
+    std::map<std::uint32_t, std::uint64_t>
+        sought_;  // runs for which the stream was read again, and their last item then
     std::set<std::string> told_;
     std::uint64_t taken_ = 0, items_ = 0, repeated_ = 0, refused_ = 0;
     v1::OriginState origin_;

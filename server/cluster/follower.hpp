@@ -20,6 +20,8 @@ namespace aeolis::server::cluster {
 struct Following {
     std::string origin;                                ///< identity of the archive that is followed
     std::string fault;                                 ///< of the engine; empty: all is well
+    std::string publisher;                             ///< the process of the origin that was heard last
+    std::uint64_t heard = 0;                           ///< count of what it said then
     double silent_s = 0.0;                             ///< since the origin was heard
     bool lost = false;                                 ///< it has been silent too long, or was never heard
     std::uint64_t behind_items = 0;                    ///< of the origin's runs, as it last told
@@ -42,7 +44,7 @@ Result<void> begin_following(archive::SharedArchive& shared, const EngineAddress
 /// Out      rows of its own archive, a step a transaction; then `taken`. `run_state`, `clocks`: of the origin's current
 ///          run, once its beginning is here
 /// Faults   an engine or an origin that is away is waited for. Where steps of a run are missing, the stream is read
-///          again from its beginning, once; what then still does not follow is refused
+///          again from its beginning, unless that brought nothing the last time; what still does not follow is refused
 /// Memory   one step and 16 messages
 /// Threads  one of its own, on which all is called. status() from any
 class Follower {

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <condition_variable>
+#include <deque>
 #include <fmt/format.h>
 #include <iterator>
 #include <mutex>
@@ -32,10 +33,6 @@ constexpr auto tell_at_most_every = std::chrono::milliseconds{200};  // chosen: 
 std::string drawn() {
     std::random_device random;
     return fmt::format("{:08x}{:08x}", random(), random());
-}
-
-bool equal(const v1::RunPosition& one, const v1::RunPosition& other) {
-    return archive::within(one, other) && archive::within(other, one);
 }
 
 }  // namespace
@@ -85,6 +82,14 @@ class Publisher::Thread {
         auto now = status_;
         now.waiting_s = now.waiting_items == 0 ? 0.0 : std::chrono::duration<double>{Clock::now() - even_}.count();
         return now;
+    }
+
+    std::optional<std::chrono::milliseconds> age_of(const std::string& publisher, std::uint64_t count) const {
+        const std::scoped_lock lock{mutex_};
+        if (publisher != name_ || count > count_told_ || count_told_ - count >= told_at_.size()) return std::nullopt;
+        const auto told = told_at_[told_at_.size() - 1 - (count_told_ - count)];
+        const auto age = std::chrono::duration_cast<std::chrono::milliseconds>(Clock::now() - told);
+        return age > told_kept ? std::nullopt : std::optional{age};
     }
 
   private:
@@ -229,7 +234,8 @@ class Publisher::Thread {
         const auto& there = message.piece() + 1 == message.pieces() ? message.after() : message.before();
         // In a subject that this process publishes to, any other step than its own is somebody's forgery.
         const auto sent = sent_.find(number);
-        const bool own = !mine || equal(there, acknowledged) || (sent != sent_.end() && equal(there, sent->second));
+        const bool own = !mine || archive::equal(there, acknowledged) ||
+                         (sent != sent_.end() && archive::equal(there, sent->second));
         run.position = own ? there : acknowledged;
         return {};
     }
@@ -351,6 +357,12 @@ class Publisher::Thread {
         state.set_tables(reader_->tables());
         state.set_version(version);
         state.set_count(++count_);
+        {
+            const std::scoped_lock lock{mutex_};
+            told_at_.push_back(now);
+            count_told_ = count_;
+            while (now - told_at_.front() > told_kept) told_at_.pop_front();
+        }
         for (const auto& [number, run] : open_) (*state.mutable_last_seq())[run.stored.run.value] = run.stored.last_seq;
         if (const auto newest = known_.find(newest_); newest != known_.end() && !open_.contains(-std::int64_t{newest_}))
             (*state.mutable_last_seq())[newest_] = newest->second.position.seq();
@@ -413,6 +425,8 @@ class Publisher::Thread {
     bool stop_ = false, told_anew_ = false;
     v1::RunState state_;
     v1::Clocks clocks_;
+    std::deque<Clock::time_point> told_at_;  // of the newest counts
+    std::uint64_t count_told_ = 0;
     Publishing status_;
     Clock::time_point even_ = Clock::now();
     std::thread thread_;
@@ -426,6 +440,9 @@ void Publisher::run_state(const v1::RunState& state) {
 }
 void Publisher::clocks(const v1::Clocks& clocks) {
     thread_->clocks(clocks);
+}
+std::optional<std::chrono::milliseconds> Publisher::age_of(const std::string& publisher, std::uint64_t count) const {
+    return thread_->age_of(publisher, count);
 }
 Publishing Publisher::status() const {
     return thread_->status();

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -53,6 +54,10 @@ class Publisher {
     void run_state(const v1::RunState& state);
     void clocks(const v1::Clocks& clocks);
     Publishing status() const;
+    /// How long ago this origin told of itself for the `count`-th time; none: another process did, or longer ago than
+    /// `told_kept`.
+    std::optional<std::chrono::milliseconds> age_of(const std::string& publisher, std::uint64_t count) const;
+    static constexpr std::chrono::seconds told_kept{30};
 
   private:
     class Thread;

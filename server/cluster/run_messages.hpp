@@ -26,6 +26,10 @@ inline std::string subject_of_runs(const std::string& archive) {
 inline std::string subject_of_run(const std::string& archive, archive::RunId run) {
     return "aeolis.runs." + archive + "." + std::to_string(run.value);
 }
+/// Where the people of followers ask; no stream keeps it.
+inline std::string subject_of_requests(const std::string& archive) {
+    return "aeolis.requests." + archive;
+}
 /// As much of an identity as a sentence needs.
 inline std::string brief(const std::string& archive) {
     constexpr std::size_t digits = 8;

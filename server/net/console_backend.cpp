@@ -8,6 +8,7 @@
 #include "server/base/wall_clock.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <fmt/format.h>
 #include <google/protobuf/stubs/logging.h>
 #include <malloc.h>
@@ -117,7 +118,9 @@ Result<std::unique_ptr<ConsoleBackend>> ConsoleBackend::open(Settings settings,
         backend->server_->secure(), [self] { return self->server_->connections(); }, backend->clock_watch_,
         chosen.publish_to.url.empty() && chosen.follow_by.url.empty() ? std::function<Replication()>{}
                                                                       : [self] { return self->replication(); },
-        backend->follows_});
+        backend->follows_,
+        backend->follower_seed_.empty() ? std::function<void(const ApiRequest&)>{}
+                                        : [self](const ApiRequest& call) { self->ask_origin(call); }});
     backend->check_audit_head();
     backend->adopt_newest_run();
     backend->note_resets();
@@ -140,8 +143,11 @@ void ConsoleBackend::clocks(v1::Clocks clocks) {
 Result<void> ConsoleBackend::choose_origin(archive::Archive& archive) {
     auto shared = archive::SharedArchive::open(settings_.archive);
     if (!shared) return shared.error();
-    if (!settings_.publish_to.url.empty())  // drawn before the writer's thread would wait for it
-        if (const auto identity = shared->identity(); !identity) return identity.error();
+    if (!settings_.publish_to.url.empty()) {  // drawn before the writer's thread would wait for it
+        auto identity = shared->identity();
+        if (!identity) return identity.error();
+        identity_ = std::move(*identity);
+    }
     if (!settings_.follow_by.url.empty()) {
         const auto begun =
             cluster::begin_following(*shared, settings_.follow_by, settings_.follow_archive, dictionary_.id);
@@ -150,8 +156,15 @@ Result<void> ConsoleBackend::choose_origin(archive::Archive& archive) {
     const auto origin = shared->followed();
     if (!origin || origin->empty()) return origin ? Result<void>{} : origin.error();
     if (!settings_.follow_by.url.empty()) {
-        follows_ = fmt::format(
-            "this server follows another (archive {:.8}): runs are begun, commanded and annotated there", *origin);
+        if (!settings_.follower_key.empty()) {
+            auto seed = cluster::read_seed(settings_.follower_key);
+            if (!seed) return Error{"--follower-key " + seed.error().message};
+            if (settings_.accounts.empty())
+                return Error{"--follower-key: the origin is asked in the name of accounts: give --accounts"};
+            follower_seed_ = std::move(*seed);
+        }
+        follows_ = fmt::format("this server follows another (archive {:.8}): {} there", *origin,
+                               follower_seed_.empty() ? "runs are begun, commanded and annotated" : "runs are begun");
         return {};
     }
     spdlog::warn("{} followed the archive {} until now: from here on it is its own", settings_.archive.string(),
@@ -190,6 +203,17 @@ Result<void> ConsoleBackend::publish_and_follow() {
         auto started = cluster::Follower::start(std::move(settings), std::move(parts));
         if (!started) return started.error();
         follower_ = std::move(*started);
+        if (!follower_seed_.empty()) {
+            cluster::RequestSender::Settings asked;
+            asked.engine = settings_.follow_by;
+            asked.origin = follower_->status().origin;
+            asked.seed = follower_seed_;
+            asked.heard = [this] {
+                const auto now = follower_->status();
+                return cluster::RequestSender::Origin{now.publisher, now.heard};
+            };
+            to_origin_ = std::make_unique<cluster::RequestSender>(std::move(asked));
+        }
     } else if (!settings_.publish_to.url.empty()) {
         cluster::Publisher::Settings settings;
         settings.engine = settings_.publish_to;
@@ -197,9 +221,110 @@ Result<void> ConsoleBackend::publish_and_follow() {
         settings.dictionary = dictionary_.id;
         publisher_ = std::make_unique<cluster::Publisher>(std::move(settings));
         publisher_->run_state(hub_->state());
+        if (access_->accounts()) take_requests();
     }
     if (publisher_ || follower_) server_->every(standing_ms, [this] { tell_standing(); });
     return {};
+}
+
+/// People at followers, as people here: their requests are those of the HTTP routes.
+void ConsoleBackend::take_requests() {
+    cluster::RequestGate::Settings settings;
+    settings.engine = settings_.publish_to;
+    settings.rules = {
+        identity_, [this](const std::string& key) { return access_->follower(key); },
+        [this](const std::string& publisher, std::uint64_t count) { return publisher_->age_of(publisher, count); }};
+    requests_ = std::make_unique<cluster::RequestGate>(
+        std::move(settings), [this](cluster::RequestCheck::Taken taken, const cluster::RequestGate::Answer& answer) {
+            server_->post(
+                [this, taken = std::move(taken), answer]() mutable { take_request(std::move(taken), answer); });
+        });
+}
+
+/// On the network thread.
+void ConsoleBackend::take_request(cluster::RequestCheck::Taken taken, const cluster::RequestGate::Answer& answer) {
+    auto& asked = taken.request;
+    HttpRequest request;
+    request.method = asked.method();
+    request.path = asked.path();
+    request.body = std::move(*asked.mutable_body());
+    request.credentials.from = asked.from();
+    request.credentials.vouched = Vouched{
+        taken.key,      asked.user(), asked.owner(), asked.role(), {asked.commands().begin(), asked.commands().end()},
+        asked.session()};
+    const Respond respond = [answer](const HttpResponse& response) {
+        v1::RequestAnswer given;
+        given.set_status(response.status);
+        given.set_content_type(response.content_type);
+        given.set_body(response.body);
+        const auto wait = response.field("Retry-After");
+        if (!wait.empty()) given.set_retry_after_s(static_cast<std::uint32_t>(std::strtoul(wait.c_str(), nullptr, 10)));
+        answer(std::move(given));
+    };
+    const auto who = access_->identify(request.credentials);
+    if (!who.role)
+        return respond(
+            error_response(403, fmt::format("follower {}: '{}' has no account here, or no command that it may "
+                                            "send both here and there",
+                                            taken.follower, asked.owner().empty() ? asked.user() : asked.owner())));
+    if (!Api::is_for_origin(request.method, request.path))
+        return respond(
+            error_response(403, fmt::format("{} {}: not for people at a follower", request.method, request.path)));
+    if (request.body.size() > api_->body_octets(request.credentials, request.method, request.path))
+        return respond(error_response(413, "the body is too long"));
+    api_->handle(std::move(request), respond);
+}
+
+namespace {
+
+v1::FollowerRequest request_of(const Operator& who, std::string method, std::string path, std::string body) {
+    v1::FollowerRequest request;
+    request.set_method(std::move(method));
+    request.set_path(std::move(path));
+    request.set_body(std::move(body));
+    request.set_user(who.user);
+    request.set_owner(who.owner);
+    request.set_role(std::string{name_of(*who.role)});
+    for (const auto& command : who.commands) request.add_commands(command);
+    request.set_session(who.session);
+    request.set_from(who.from);
+    return request;
+}
+
+}  // namespace
+
+void ConsoleBackend::ask_origin(const ApiRequest& call) {
+    to_origin_->ask(request_of(call.who, call.request.method, call.request.path, call.request.body),
+                    [respond = call.respond](v1::RequestAnswer answer) {
+                        if (answer.content_type().empty())
+                            return respond(error_response(answer.status(), answer.body()));
+                        HttpResponse response;
+                        response.status = answer.status();
+                        response.content_type = answer.content_type();
+                        response.body = std::move(*answer.mutable_body());
+                        if (answer.retry_after_s() > 0)
+                            response.fields.emplace_back("Retry-After", std::to_string(answer.retry_after_s()));
+                        respond(std::move(response));
+                    });
+}
+
+/// As POST /runs/N/commands there.
+void ConsoleBackend::command_at_origin(const Operator& who, const v1::CommandRequest& request,
+                                       const std::function<void(v1::CommandReply)>& reply) {
+    const auto run = request.run() != 0 ? request.run() : hub_->current_run();
+    to_origin_->ask(request_of(who, "POST", fmt::format("/api/v1/runs/{}/commands", run), to_json(request)),
+                    [this, number = request.request(), reply](const v1::RequestAnswer& answer) {
+                        v1::CommandReply told;
+                        if (answer.content_type().empty()) {
+                            told.set_reason(answer.body());
+                        } else if (!from_json(answer.body(), told)) {
+                            v1::ErrorReply error;
+                            told.Clear();
+                            told.set_reason(from_json(answer.body(), error) ? error.detail() : answer.body());
+                        }
+                        told.set_request(number);
+                        server_->post([reply, told = std::move(told)] { reply(told); });
+                    });
 }
 
 /// Gives items of a followed run on to the browsers. On the follower's thread.
@@ -255,6 +380,14 @@ Replication ConsoleBackend::replication() const {
             {"published_steps_total", "steps that the engine has acknowledged", static_cast<double>(now.steps), true},
             {"published_items_total", "items in them", static_cast<double>(now.items), true},
             {"published_octets_total", "octets of them", static_cast<double>(now.octets), true}};
+        if (requests_) {
+            const auto counts = requests_->counts();
+            told.figures.push_back({"follower_requests_total", "requests of people at followers that were genuine",
+                                    static_cast<double>(counts.taken), true});
+            told.figures.push_back({"follower_requests_refused_total",
+                                    "requests that were forged, repeated, too old, or of a key that is not known",
+                                    static_cast<double>(counts.refused), true});
+        }
     }
     if (follower_) {
         const auto now = follower_->status();
@@ -313,6 +446,7 @@ StreamSession::Client ConsoleBackend::stream_client(const Credentials& credentia
     client.command = [this, credentials, allowed, full](v1::CommandRequest request,
                                                         const std::function<void(v1::CommandReply)>& reply) {
         const auto who = access_->identify(credentials);
+        if (to_origin_ && may(who, Right::command)) return command_at_origin(who, request, reply);
         name_asker(who, request);
         auto right = allowed(who, Right::command);
         if (right) right = may_send(who, dictionary_, *rehearsals_, request);
@@ -361,6 +495,8 @@ ConsoleBackend::~ConsoleBackend() {
     if (pipeline_) pipeline_->closing();
     // An explicit order: each of these may call those below until it is destroyed.
     if (queries_) queries_->end();  // waiting jobs may still add notes through api and pipeline; new ones are refused
+    requests_.reset();
+    to_origin_.reset();
     api_.reset();
     follower_.reset();
     publisher_.reset();
@@ -449,9 +585,10 @@ void ConsoleBackend::note_resets() {
         Operator who;
         who.user = reset.by();
         who.from = command_line;
-        pipeline_->audit(audit_record(
-            who, "user", fmt::format("aeolis accounts reset: a new password for '{}', {}", reset.user(), reset.at()),
-            "done"));
+        const auto done = reset.change().empty() ? fmt::format("aeolis accounts reset: a new password for '{}', {}",
+                                                               reset.user(), reset.at())
+                                                 : fmt::format("{}, {}", reset.change(), reset.at());
+        pipeline_->audit(audit_record(who, "user", done, "done"));
     }
 }
 

@@ -9,6 +9,8 @@
 #include "server/base/clock_watch.hpp"
 #include "server/cluster/follower.hpp"
 #include "server/cluster/publisher.hpp"
+#include "server/cluster/request_gate.hpp"
+#include "server/cluster/request_sender.hpp"
 #include "server/links/downlink_follower.hpp"
 #include "server/net/web_server.hpp"
 #include "server/rehearsal/timeline_check.hpp"
@@ -38,6 +40,7 @@ class ConsoleBackend {
         cluster::EngineAddress publish_to{};                       ///< no URL: nowhere
         cluster::EngineAddress follow_by{};                        ///< no URL: this server follows none
         std::string follow_archive{};                              ///< identity, or its beginning; empty: the only one
+        std::filesystem::path follower_key{};  ///< signs what people here ask of the origin; empty: they only watch
     };
     /// Memory blocks of this size or more are mapped separately and returned to the system when freed; chosen. So the
     /// memory of each thread's longest answer does not stay with the process.
@@ -71,6 +74,11 @@ class ConsoleBackend {
     void watch_clock();
     Result<void> choose_origin(archive::Archive& archive);
     Result<void> publish_and_follow();
+    void take_requests();
+    void take_request(cluster::RequestCheck::Taken taken, const cluster::RequestGate::Answer& answer);
+    void ask_origin(const ApiRequest& call);
+    void command_at_origin(const Operator& who, const v1::CommandRequest& request,
+                           const std::function<void(v1::CommandReply)>& reply);
     void publish_copy(archive::RunId run, archive::Sequence first, archive::Sequence last);
     void run_state(v1::RunState state);
     void clocks(v1::Clocks clocks);
@@ -104,6 +112,10 @@ class ConsoleBackend {
     std::atomic<bool> items_wanted_{false};
     std::unique_ptr<cluster::Publisher> publisher_;
     std::unique_ptr<cluster::Follower> follower_;
+    std::string identity_;  ///< of the archive that is published
+    std::unique_ptr<cluster::RequestGate> requests_;
+    std::string follower_seed_;  ///< empty: no request goes to the origin
+    std::unique_ptr<cluster::RequestSender> to_origin_;
 };
 
 }  // namespace aeolis::server

@@ -370,6 +370,7 @@ TEST_CASE("a landing's archive is verified, exported, backed up, tabulated and p
     REQUIRE(run(program(), "rehearse --scenario nominal_auto --archive " + in("a.db")).code == 0);
     says("archive backup --archive " + in("a.db") + " --out " + in("b.db"), "all of ");
     says("archive verify --archive " + in("b.db"), "nothing wrong");
+    says("archive compare --archive " + in("a.db") + " --with " + in("b.db"), "the same ");
     const auto rows = says("export --run 1 --channel altitude_m speed_mps --csv --archive " + in("b.db"),
                            "sclk,e_s,channel,value,unit,source\n");
     const auto objects = says("export --run 1 --channel altitude_m speed_mps --format jsonl --archive " + in("b.db"),

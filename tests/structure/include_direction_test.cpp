@@ -154,7 +154,7 @@ const std::vector<std::pair<std::string, std::vector<std::string>>>& layers() {
         {"venue", {"base"}},
         {"rehearsal", {"pipeline", "scenario", "venue"}},
         {"campaign", {"rehearsal"}},
-        {"cluster", {"campaign"}},
+        {"cluster", {"campaign", "access"}},
         {"tones", {"rehearsal"}},
         {"api", {"campaign", "access"}},
         {"net", {"api", "links", "cluster"}},

@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/archive/shared_archive.hpp"
-#include "server/cluster/follower.hpp"
-#include "server/cluster/publisher.hpp"
 #include "server/cluster/run_messages.hpp"
-#include "tests/server/cluster/nats_server.hpp"
-#include "tests/server/run_copies.hpp"
+#include "tests/server/cluster/followed.hpp"
 #include "tests/support/catch.hpp"
 
 #include <atomic>
@@ -21,145 +17,11 @@
 namespace server_cluster_followers_test {
 
 using namespace aeolis;
-using namespace aeolis::server;
-using namespace std::chrono_literals;
-using archive::Archive;
-using archive::RunId;
-using archive::SharedArchive;
-using cluster::Engine;
-using tests::NatsServer;
+using namespace aeolis::tests;
 
 namespace {
 
-const dictionary::Dictionary dictionary = test::small_dictionary();
-
-cluster::EngineAddress at(const std::string& url) {
-    cluster::EngineAddress address;
-    address.url = url;
-    return address;
-}
-
-Engine connected(const NatsServer& server) {
-    auto engine = Engine::connect(at(server.url()), "test");
-    REQUIRE(engine);
-    return std::move(*engine);
-}
-
-/// Waits for something that must come; a machine that builds meanwhile is slow.
-template <typename Condition>
-bool comes(Condition condition) {
-    const auto until = std::chrono::steady_clock::now() + 60s;
-    while (!condition()) {
-        if (std::chrono::steady_clock::now() > until) return false;
-        std::this_thread::sleep_for(5ms);
-    }
-    return true;
-}
-
-/// An archive, its writer and its publisher.
-class Origin {
-  public:
-    Origin(std::filesystem::path file, const std::string& engine)
-        : file_(std::move(file)), archive(std::move(Archive::open(file_)).value()) {
-        publish(engine);
-    }
-    void publish(const std::string& engine) {
-        cluster::Publisher::Settings settings;
-        settings.engine = at(engine);
-        settings.archive = file_;
-        settings.dictionary = dictionary.id;
-        settings.tell_every = 100ms;
-        settings.again_after = 20ms;
-        publisher = std::make_unique<cluster::Publisher>(std::move(settings));
-    }
-    const std::filesystem::path& file() const { return file_; }
-    std::string identity() const { return *SharedArchive::open(file_)->identity(); }
-
-  private:
-    std::filesystem::path file_;
-
-  public:
-    Archive archive;
-    std::unique_ptr<cluster::Publisher> publisher;
-};
-
-/// An archive that follows, and what it gave on.
-class Copy {
-  public:
-    Copy(std::filesystem::path file, const std::string& engine, const std::string& origin = {},
-         std::uint16_t of_dictionary = dictionary.id)
-        : file_(std::move(file)), archive(std::move(Archive::open(file_)).value()) {
-        auto shared = SharedArchive::open(file_);
-        REQUIRE(shared);
-        Result<void> begun;
-        const bool followed = comes([&] {
-            begun = cluster::begin_following(*shared, at(engine), origin, of_dictionary);
-            return begun.ok();  // until the origin has said that it is there
-        });
-        INFO((begun ? "" : begun.error().message));
-        REQUIRE(followed);
-        cluster::Follower::Settings settings;
-        settings.engine = at(engine);
-        settings.archive = file_;
-        settings.dictionary = of_dictionary;
-        settings.wait = 20ms;
-        settings.look_every = 50ms;
-        settings.lost_after = 2s;
-        settings.again_after = 20ms;
-        cluster::Follower::Parts parts;
-        parts.taken = [this](RunId run, archive::Sequence first, archive::Sequence last) {
-            const std::scoped_lock lock{mutex_};
-            auto& through = through_[run.value];
-            if (through != 0 && first != through + 1) gaps_ = true;
-            through = last;
-        };
-        parts.run_state = [this](v1::RunState state) {
-            const std::scoped_lock lock{mutex_};
-            state_ = std::move(state);
-        };
-        parts.clocks = [](const v1::Clocks&) {};
-        auto started = cluster::Follower::start(std::move(settings), std::move(parts));
-        REQUIRE(started);
-        follower = std::move(*started);
-    }
-    const std::filesystem::path& file() const { return file_; }
-    bool gaps() {
-        const std::scoped_lock lock{mutex_};
-        return gaps_;
-    }
-    v1::RunState state() {
-        const std::scoped_lock lock{mutex_};
-        return state_;
-    }
-
-  private:
-    std::filesystem::path file_;
-    std::mutex mutex_;
-    std::map<std::uint32_t, archive::Sequence> through_;
-    bool gaps_ = false;
-    v1::RunState state_;
-
-  public:
-    Archive archive;
-    std::unique_ptr<cluster::Follower> follower;  // ends first
-};
-
-bool same(const std::filesystem::path& origin, const std::filesystem::path& copy) {
-    return test::rows_of_runs(copy) == test::rows_of_runs(origin);
-}
-
-/// A run in packets, with a pause after each commit.
-void record_slowly(Archive& archive, std::uint16_t packets, std::chrono::milliseconds pause) {
-    pipeline::Pipeline pipeline{archive, dictionary};
-    REQUIRE(pipeline.begin({}));
-    for (std::uint16_t count = 0; count < packets; ++count) {
-        REQUIRE(pipeline.accept(test::navigation(count)));
-        if (count % 20 != 19) continue;
-        REQUIRE(comes([&] { return pipeline.commit().ok(); }));  // tried again, as the pipeline's thread does
-        std::this_thread::sleep_for(pause);
-    }
-    REQUIRE(comes([&] { return pipeline.finish({archive::Outcome::touchdown, "", "", ""}).ok(); }));
-}
+const auto& dictionary = followed_dictionary;
 
 }  // namespace
 
@@ -296,6 +158,35 @@ TEST_CASE("what the engine no longer has is taken from a copy of the origin's ar
     CHECK(test::faults_of(backed_up.file()).empty());
     CHECK(comes([&] { return !late.follower->status().left_out.empty(); }));
     CHECK_THAT(cluster::text_of(late.follower->status()), Catch::Contains("aeolis archive backup"));
+}
+
+TEST_CASE("a step of many links in many messages arrives whole, also where the engine dies within it",
+          "[cluster][R61]") {
+    if (!NatsServer::present()) return;
+    test::TemporaryFolder folder;
+    NatsServer server;
+    Origin origin{folder / "origin.db", server.url()};
+    Copy copy{folder / "copy.db", server.url()};
+    pipeline::Pipeline pipeline{origin.archive, dictionary};
+    REQUIRE(pipeline.begin({}));
+    std::mt19937 random{20261127};
+    std::vector<std::uint8_t> octets(400'000);  // that are not packed into less
+    for (std::uint16_t count = 0; count < 24; ++count) {
+        REQUIRE(pipeline.accept(test::navigation(count)));
+        for (int link = 0; link < 6; ++link) {
+            for (auto& octet : octets) octet = static_cast<std::uint8_t>(random());
+            REQUIRE(pipeline.accept(
+                telemetry::ReceivedOctets{{fmt::format("link_{}", link), false}, Ert{1'000'000 + count}, octets}));
+        }
+        REQUIRE(pipeline.commit());
+        if (count % 8 != 7) continue;
+        server.kill();
+        server.start();
+    }
+    REQUIRE(pipeline.finish({archive::Outcome::touchdown, "", "", ""}));
+    CHECK(comes([&] { return same(origin.file(), copy.file()); }));
+    CHECK(copy.follower->status().refused == 0);
+    CHECK(origin.publisher->status().octets > 24 * 6 * octets.size());
 }
 
 TEST_CASE("a follower tells that its origin is silent, and that it is back", "[cluster][R61]") {

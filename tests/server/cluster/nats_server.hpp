@@ -23,6 +23,7 @@ class NatsServer {
     ~NatsServer();
 
     std::string url() const;
+    std::uint16_t port() const { return port_; }
     void kill();  ///< as by kill -9
     void start();
     /// Removes what its streams hold; only while it is killed.

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/archive/archive.hpp"
+#include "server/archive/archive_comparison.hpp"
 #include "server/archive/run_rows.hpp"
 #include "server/archive/shared_archive.hpp"
 #include "server/archive/upkeep.hpp"
 #include "tests/server/run_copies.hpp"
 #include "tests/support/catch.hpp"
+
+#include <fmt/ranges.h>
 
 namespace server_cluster_run_rows_test {
 
@@ -71,8 +74,19 @@ TEST_CASE("a run that is taken over step by step has every row of its origin, an
     CHECK(steps >= 4);  // no step holds a run
     CHECK(rows_of_runs(copy) == rows_of_runs(origin));
     CHECK(faults_of(copy).empty());
+    const auto compared = compare(origin, copy);
+    REQUIRE(compared);
+    CHECK(compared->differences.empty());
+    CHECK(compared->runs == 2);
+    CHECK(compared->rows > 10'000);
     SECTION("and what is added later is taken too") {
         add_note(*written, RunId{2}, "the day after");
+        const auto differ = compare(copy, origin);
+        REQUIRE(differ);
+        REQUIRE(differ->differences.size() == 3);  // the note, the run's last item, the search index
+        CHECK_THAT(fmt::format("{}", fmt::join(differ->differences, "; ")),
+                   Catch::Contains("notes: 0 rows only in") && Catch::Contains("1 only in") &&
+                       Catch::Contains("search: 0 rows only in"));
         copy_run(*reader, shared, RunId{2});
         CHECK(rows_of_runs(copy) == rows_of_runs(origin));
         CHECK(faults_of(copy).empty());
