@@ -26,7 +26,7 @@ Vector3 lift_direction(const Vector3& p, const Vector3& v, double bank_rad) {
 }
 
 EntryFlight::EntryFlight(const Scenario& scenario)
-    : atmosphere_(scenario.density_scale), landing_radius_m_(scenario.target.radius_m),
+    : atmosphere_(scenario.density_scale, scenario.air), landing_radius_m_(scenario.target.radius_m),
       mass_kg_(scenario.masses.entry_kg) {}
 
 Sensed EntryFlight::sensed(const PointMass& at) const {

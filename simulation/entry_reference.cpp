@@ -226,7 +226,7 @@ double reference_bank_rad(double velocity_mps, double held_rad) {
 
 flight::EntryReference make_entry_reference(const Scenario& scenario) {
     const EntryFlight flight(scenario);
-    const Atmosphere atmosphere(scenario.density_scale);
+    const Atmosphere atmosphere(scenario.density_scale, scenario.air);
     const Vector3 target = place(scenario.target.latitude_deg * degree_rad, scenario.target.longitude_deg * degree_rad,
                                  scenario.target.radius_m);
     const double wanted_m =

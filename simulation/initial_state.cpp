@@ -8,7 +8,7 @@
 namespace aeolis::simulation {
 namespace {
 
-PointMass delivered(const Scenario& scenario, Random random) {
+PointMass delivered(const Scenario& scenario, Random random, std::vector<Draw>& draws) {
     PointMass at = nominal_entry(scenario);
     const Horizon nominal = horizon(at.p_MoB_M);
     const double axis_m = scenario.dispersions.delivery_position_m / std::numbers::sqrt2;
@@ -17,6 +17,9 @@ PointMass delivered(const Scenario& scenario, Random random) {
     at.p_MoB_M = (at.p_MoB_M + east_m * nominal.east + north_m * nominal.north).normalized() * scenario.entry.radius_m;
     const Horizon local = horizon(at.p_MoB_M);
     const double turn_rad = scenario.dispersions.delivery_flight_path_deg * degree_rad * random.normal();
+    draws = {{"delivery_east_m", east_m},
+             {"delivery_north_m", north_m},
+             {"delivery_flight_path_deg", turn_rad / degree_rad}};
     const Vector3 sideways = at.v_MB_M.cross(local.up).normalized();
     at.v_MB_M = Eigen::AngleAxisd(turn_rad, sideways) * at.v_MB_M;
     return at;
@@ -44,9 +47,8 @@ InitialState initial_state(const Scenario& scenario, std::uint64_t seed, std::ui
 
 InitialState state_before_entry(const Scenario& scenario, double before_entry_s, std::uint64_t seed,
                                 std::uint64_t case_number) {
-    const PointMass entry = delivered(scenario, Random{seed, case_number, Stream::delivery});
-
     InitialState initial;
+    const PointMass entry = delivered(scenario, Random{seed, case_number, Stream::delivery}, initial.draws);
     initial.start = scenario.entry_sclk - before_entry_s;
     initial.truth = coast(entry, -before_entry_s);
 
@@ -55,6 +57,8 @@ InitialState state_before_entry(const Scenario& scenario, double before_entry_s,
     PointMass believed = entry;
     believed.p_MoB_M += scenario.dispersions.knowledge_position_m * by_axis * vector3(knowledge.normal3());
     believed.v_MB_M += scenario.dispersions.knowledge_velocity_mps * by_axis * vector3(knowledge.normal3());
+    add_axes(initial.draws, "knowledge_position", "m", believed.p_MoB_M - entry.p_MoB_M);
+    add_axes(initial.draws, "knowledge_velocity", "mps", believed.v_MB_M - entry.v_MB_M);
     const PointMass at_start = coast(believed, -before_entry_s);
 
     NavigationSolution& solution = initial.solution;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "simulation/draws.hpp"
 #include "simulation/landing.hpp"
 #include "simulation/mars/point_mass.hpp"
 #include "simulation/scenario.hpp"
@@ -19,6 +20,7 @@ struct InitialState {
     PointMass truth;
     NavigationSolution solution;
     Sclk start;
+    std::vector<Draw> draws;  ///< of delivery and knowledge; knowledge at entry, in M
 };
 InitialState initial_state(const Scenario& scenario, std::uint64_t seed, std::uint64_t case_number);
 /// The same at a time other than the start, a multiple of 1/64 s before entry.

@@ -634,6 +634,9 @@ std::optional<ParachuteReport> Landing::parachute() const {
 Inspection Landing::inspect() const {
     return state_->world.inspect();
 }
+std::vector<Draw> Landing::draws() const {
+    return state_->world.draws();
+}
 SeparationReport Landing::separation() const {
     return state_->world.separation();
 }

@@ -4,6 +4,7 @@
 #include "common/ids.hpp"
 #include "common/time.hpp"
 #include "flight/computer.hpp"
+#include "simulation/draws.hpp"
 #include "simulation/links/x_band_front_end.hpp"
 #include "simulation/links/x_band_receiver_model.hpp"
 #include "simulation/scenario.hpp"
@@ -55,6 +56,7 @@ struct TruthEvent {
     double e_s = 0.0;         ///< from the truth's entry interface
     double altitude_m = 0.0;  ///< descent stage's (before separation the vehicle's) above the landing radius
     double speed_mps = 0.0;   ///< planet-relative
+    std::array<double, 3> p_MoB_M_m{};
 };
 
 struct TruthState {
@@ -192,6 +194,7 @@ class Landing {
     std::optional<ParachuteReport> parachute() const;  ///< at deployment
     Inspection inspect() const;
     SeparationReport separation() const;
+    std::vector<Draw> draws() const;  ///< the seeded errors of this case, once they are drawn
     flight::Computer::Counters counters() const;
     std::span<const std::uint8_t> recording() const;  ///< NVM so far: whole packets, one after another
     bool relaying() const;                            ///< the recording is being, or was, relayed

@@ -15,7 +15,7 @@ constexpr double least_peak_mps2 = 20.0;  // our assumption: no entry is gentler
 }  // namespace
 
 TruthEvent moment(const char* name, const TruthState& truth) {
-    return {name, truth.sclk, truth.e_s, truth.altitude_m, truth.speed_mps};
+    return {name, truth.sclk, truth.e_s, truth.altitude_m, truth.speed_mps, truth.p_MoB_M_m};
 }
 
 std::optional<TruthEvent> BankReversals::observe(const TruthState& truth, double bank_rad) {

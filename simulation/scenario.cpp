@@ -101,6 +101,7 @@ std::vector<Bounded> bounded_fields(const Scenario& s) {
         {"limits.parachute_mach_max", s.limits.parachute_mach_max, 0.0, 5.0},
         {"limits.parachute_pressure_max_Pa", s.limits.parachute_pressure_max_Pa, 0.0, 5000.0},
         {"limits.timeline_margin_min_s", s.limits.timeline_margin_min_s, 0.0, 60.0},
+        {"limits.campaign_within_min_fraction", s.limits.campaign_within_min_fraction, 0.0, 1.0},
         {"ground.height_m", s.ground.height_m, -1000.0, 1000.0},
         {"ground.slope_deg", s.ground.slope_deg, 0.0, 20.0},
         {"ground.uphill_azimuth_deg", s.ground.uphill_azimuth_deg, -180.0, 360.0},
@@ -140,6 +141,8 @@ void check_list_sizes(const Scenario& s, std::vector<std::string>& found) {
     at_most(scenario_rows_max, "radio.delivery_restarts_after_touchdown_s",
             s.radio.delivery_restarts_after_touchdown_s.size());
     at_most(scenario_rows_max, "density_scale", s.density_scale.size());
+    at_most(scenario_rows_max, "air", s.air.size());
+    at_most(scenario_rows_max, "winds", s.winds.size());
     at_most(scenario_rows_max, "commands", s.commands.size());
     at_most(scenario_rows_max, "second_person", s.second_person.size());
     at_most(scenario_rows_max, "system_faults", s.system_faults.size());
@@ -176,6 +179,42 @@ void check_density_scale(const std::vector<DensityScale>& scales, std::vector<st
             found.push_back(name + ".altitude_m: " + number(scales[i].altitude_m) +
                             " does not lie above the one before");
     }
+}
+
+/// Rows over height: each above the one before, at least two.
+template <typename Row>
+void check_heights(const std::vector<Row>& rows, const char* list, std::vector<std::string>& found) {
+    if (rows.size() == 1) found.push_back(std::string{list} + ": one row is no table over height");
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        const std::string name = std::string{list} + "[" + std::to_string(i) + "].altitude_m: ";
+        if (!(rows[i].altitude_m >= -10000.0 && rows[i].altitude_m <= 1.0e6))
+            found.push_back(name + number(rows[i].altitude_m) + " is outside -10000 … 1000000");
+        if (i > 0 && !(rows[i].altitude_m > rows[i - 1].altitude_m))
+            found.push_back(name + number(rows[i].altitude_m) + " does not lie above the one before");
+    }
+}
+
+void check_air(const Scenario& s, std::vector<std::string>& found) {
+    check_heights(s.air, "air", found);
+    check_heights(s.winds, "winds", found);
+    const auto within = [&](const char* list, std::size_t i, const char* field, double value, double least,
+                            double most) {
+        if (!(value >= least && value <= most))
+            found.push_back(std::string{list} + "[" + std::to_string(i) + "]." + field + ": " + number(value) +
+                            " is outside " + number(least) + " … " + number(most));
+    };
+    for (std::size_t i = 0; i < s.air.size(); ++i) {
+        within("air", i, "temperature_K", s.air[i].temperature_K, 50.0, 500.0);
+        within("air", i, "density_kgm3", s.air[i].density_kgm3, 1.0e-20, 1.0);
+    }
+    for (std::size_t i = 0; i < s.winds.size(); ++i) {
+        within("winds", i, "east_mps", s.winds[i].east_mps, -300.0, 300.0);
+        within("winds", i, "north_mps", s.winds[i].north_mps, -300.0, 300.0);
+    }
+    constexpr double low_m = 1000.0, high_m = 100'000.0;  // our assumption: what an entry flies through
+    if (!s.air.empty() && (s.air.front().altitude_m > low_m || s.air.back().altitude_m < high_m))
+        found.push_back("air: covers " + number(s.air.front().altitude_m) + " … " + number(s.air.back().altitude_m) +
+                        " m above the landing radius, an entry needs " + number(low_m) + " … " + number(high_m));
 }
 
 bool is_word(const std::string& word) {
@@ -409,6 +448,7 @@ std::vector<std::string> impossible_values(const Scenario& scenario) {
     check_tracking_passes(scenario.radio.tracking_passes, found);
     check_tone_outages(scenario.radio.tone_outages, found);
     check_density_scale(scenario.density_scale, found);
+    check_air(scenario, found);
     check_dispersion_moment(scenario, found);
     check_commands(scenario, found);
     check_spells(scenario, scenario.system_faults, "system_faults", found);

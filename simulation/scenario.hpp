@@ -117,6 +117,20 @@ struct DensityScale {
     double scale = 1.0;
 };
 
+/// The air at a height above the landing radius. Between rows density is interpolated exponentially, temperature
+/// linearly; outside them the last layers continue.
+struct AirRow {
+    double altitude_m = 0.0;
+    double temperature_K = 0.0;
+    double density_kgm3 = 0.0;
+};
+
+/// The wind at a height above the landing radius, linear between rows, held outside them.
+struct WindRow {
+    double altitude_m = 0.0;
+    double east_mps = 0.0, north_mps = 0.0;
+};
+
 /// A pass of an orbiter: it hears the vehicle's UHF from rise to set, and relays it to Earth.
 struct RelayPass {
     /// From `after_rise_s` on, the rover sends its files at this rate.
@@ -223,6 +237,8 @@ struct Limits {
     double parachute_mach_max = 2.2;           ///< [sengupta-2009], at the mortar
     double parachute_pressure_max_Pa = 750.0;  ///< the same
     double timeline_margin_min_s = 0.5;        ///< from the timeline being ready to GNC's decision. Our assumption
+    /// Of a campaign's cases, those that land within the limits above. Our assumption: 3 sigma.
+    double campaign_within_min_fraction = 0.997;
 };
 
 /// The part of the flight software that flies, and what stands in for the rest. The software is the same in each. R36
@@ -255,6 +271,8 @@ struct Scenario {
     Dispersions dispersions;
     Limits limits;
     std::vector<DensityScale> density_scale;
+    std::vector<AirRow> air;                ///< none: Gale's, simulation/mars/atmosphere.cpp
+    std::vector<WindRow> winds;             ///< beside the steady wind
     double parachute_drag_area_m2 = 205.0;  ///< CD·S at terminal speed
     double steady_wind_east_mps = 0.0;
     double steady_wind_north_mps = 0.0;

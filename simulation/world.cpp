@@ -334,6 +334,7 @@ flight::NavigationShift World::disperse(std::uint64_t seed, std::uint64_t case_n
     s.vehicle.disperse(s.scenario, {drawn.truth.p_MoB_M + flown.p_MoB_M, drawn.truth.v_MB_M + flown.v_MB_M}, seed,
                        case_number);
     s.initial.solution = drawn.solution;
+    s.initial.draws = drawn.draws;
     s.initial.solution.p_MoB_M_m = array3(believed.p_MoB_M + flown.p_MoB_M);
     s.initial.solution.v_MB_M_mps = array3(believed.v_MB_M + flown.v_MB_M);
 
@@ -455,6 +456,16 @@ SeparationReport World::separation() const {
 }
 const NavigationSolution& World::solution() const {
     return state_->initial.solution;
+}
+
+std::vector<Draw> World::draws() const {
+    const State& s = *state_;
+    std::vector<Draw> all = s.initial.draws;
+    s.vehicle.add_draws(s.scenario, all);
+    add_axes(all, "attitude", "rad", rotation_vector(s.star_scanner.error()));
+    s.imus.front().add_draws(all);
+    s.radars.front().add_draws(all);
+    return all;
 }
 
 bool World::uhf_on() const {

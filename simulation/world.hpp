@@ -5,6 +5,7 @@
 #include "flight/devices/device_messages.hpp"
 #include "flight/load.hpp"
 #include "simulation/buses/bus.hpp"
+#include "simulation/draws.hpp"
 #include "simulation/landing.hpp"
 #include "simulation/scenario.hpp"
 
@@ -82,6 +83,7 @@ class World {
     double peak_deceleration_mps2() const;
     SeparationReport separation() const;
     const NavigationSolution& solution() const;
+    std::vector<Draw> draws() const;    ///< the errors of this case, of the units A where there are two
     bool uhf_on() const;                ///< the selected transmitter radiates through an antenna
     bool parachute_antenna_on() const;  ///< false: the entry antenna
     bool x_band_sends_tones() const;    ///< commanded to; false: to send telemetry, through the cruise stage's antenna

@@ -81,7 +81,7 @@ std::string failure_rows(const Summary& summary, const Call& call, const std::ve
 
 }  // namespace
 
-std::string campaign_json(const Summary& summary, const Call& call) {
+std::string campaign_json(const Summary& summary, const CampaignVerdict& verdict, const Call& call) {
     JsonObject outcomes;
     for (const auto& [outcome, count] : summary.outcomes) outcomes.count(outcome, count);
     const auto event_json = [](const EventSpread& event) {
@@ -147,6 +147,7 @@ std::string campaign_json(const Summary& summary, const Call& call) {
         .raw("failures", json_array(summary.failures, failure_json))
         .count("outside_limits", summary.outside_limits)
         .raw("outside", json_array(summary.outside, failure_json))
+        .raw("limits", verdict_json(verdict))
         .count("jobs", call.queue.empty() ? call.jobs : 0)
         .count("flown", call.progress.flown)
         .raw("workers", json_array(call.progress.workers, worker_json))
@@ -157,7 +158,7 @@ std::string campaign_json(const Summary& summary, const Call& call) {
         .str();
 }
 
-std::string campaign_table(const Summary& summary, const Call& call) {
+std::string campaign_table(const Summary& summary, const CampaignVerdict& verdict, const Call& call) {
     std::string text =
         fmt::format("{} (seed {}): {} of {} cases\n\n", summary.scenario, summary.seed, summary.kept, summary.cases);
     for (const auto& [outcome, count] : summary.outcomes)
@@ -193,6 +194,7 @@ std::string campaign_table(const Summary& summary, const Call& call) {
     text += failure_rows(summary, call, summary.failures, summary.failed);
     if (summary.outside_limits > 0) text += fmt::format("\n{} landed outside limits\n", summary.outside_limits);
     text += failure_rows(summary, call, summary.outside, summary.outside_limits);
+    text += '\n' + verdict_table(verdict) + '\n';
     const auto& progress = call.progress;
     const auto by =
         call.queue.empty() ? fmt::format("{} jobs", call.jobs) : fmt::format("{} workers", progress.workers.size());

@@ -18,8 +18,8 @@ struct Call {
 };
 
 /// A campaign as `aeolis campaign` prints it: one JSON object on one line, or a table for people.
-std::string campaign_json(const Summary& summary, const Call& call);
-std::string campaign_table(const Summary& summary, const Call& call);
+std::string campaign_json(const Summary& summary, const CampaignVerdict& verdict, const Call& call);
+std::string campaign_table(const Summary& summary, const CampaignVerdict& verdict, const Call& call);
 
 /// The progress line: "[=====>    ]  512/8001  4.2 cases/s, 29 min 43 s remain".
 std::string progress_line(const Progress& progress);

@@ -2,8 +2,13 @@
 #include "server/campaign/campaign_results.hpp"
 
 #include "server/campaign/campaign_store.hpp"
+#include "server/scenario/scenario_text.hpp"
 
+#include <algorithm>
+#include <array>
 #include <fmt/format.h>
+#include <limits>
+#include <map>
 
 namespace aeolis::server::campaign {
 namespace {
@@ -62,7 +67,8 @@ Result<CampaignResults> CampaignResults::open(const std::filesystem::path& file,
     if (!database) return database.error();
     const auto views = fmt::format("CREATE TEMP VIEW flown AS SELECT * FROM cases WHERE number <= {0};"
                                    "CREATE TEMP VIEW moments AS SELECT * FROM events WHERE case_number <= {0};"
-                                   "CREATE TEMP VIEW allowances AS SELECT * FROM margins WHERE case_number <= {0};",
+                                   "CREATE TEMP VIEW allowances AS SELECT * FROM margins WHERE case_number <= {0};"
+                                   "CREATE TEMP VIEW drawn AS SELECT * FROM draws WHERE case_number <= {0};",
                                    cases);
     if (const auto made = database->execute(views.c_str()); !made) return made.error();
     return CampaignResults{std::move(*database), cases};
@@ -227,6 +233,104 @@ Result<void> CampaignResults::read_recontacts(Summary& into) {
     if (!struck) return struck.error();
     return each_row(*struck,
                     [&](const Statement& row) { into.recontacts = static_cast<std::uint64_t>(row.integer(0)); });
+}
+
+/// The figures by which cases are judged, without events, margins of each timepoint and draws.
+Result<CaseTable> CampaignResults::figures() {
+    constexpr std::array columns{"vertical_mps",
+                                 "horizontal_mps",
+                                 "miss_m",
+                                 "latitude_deg",
+                                 "longitude_deg",
+                                 "east_m",
+                                 "north_m",
+                                 "tilt_deg",
+                                 "peak_deceleration_mps2",
+                                 "parachute_mach",
+                                 "parachute_pressure_Pa",
+                                 "propellant_kg",
+                                 "heatshield_least_m",
+                                 "backshell_least_m",
+                                 "limits_exceeded"};
+    CaseTable table;
+    auto numbers = database_.prepare("SELECT number, outcome FROM flown ORDER BY number");
+    if (!numbers) return numbers.error();
+    const auto numbered = each_row(*numbers, [&](const Statement& row) {
+        table.numbers.push_back(static_cast<std::uint64_t>(row.integer(0)));
+        table.outcomes.emplace_back(row.text(1));
+    });
+    if (!numbered) return numbered.error();
+    for (const char* column : columns)
+        if (const auto read =
+                read_cells(fmt::format("SELECT number, '{0}', {0} FROM flown ORDER BY number", column).c_str(), table);
+            !read)
+            return read.error();
+    const auto read = read_cells("SELECT case_number, 'least_margin_s', min(margin_s) FROM allowances"
+                                 " GROUP BY case_number ORDER BY case_number",
+                                 table);
+    if (!read) return read.error();
+    return table;
+}
+
+Result<CampaignVerdict> CampaignResults::verdict() {
+    const auto instant = archive::sqlite::Transaction::begin_read(database_);
+    if (!instant) return instant.error();
+    const auto limits = scenario();
+    if (!limits) return limits.error();
+    const auto table = figures();
+    if (!table) return table.error();
+    return verdict_of(*table, limits->limits);
+}
+
+Result<CaseTable> CampaignResults::table() {
+    const auto instant = archive::sqlite::Transaction::begin_read(database_);
+    if (!instant) return instant.error();
+    const auto count = database_.integer_of("SELECT count(*) FROM flown");
+    if (!count) return count.error();
+    if (static_cast<std::uint64_t>(*count) > table_cases_max)
+        return Error{fmt::format("{}: holds {} cases, a table at most {}", database_.file(), *count, table_cases_max)};
+    auto table = figures();
+    if (!table) return table;
+    std::vector<std::string> queries;
+    constexpr std::size_t queries_made = 7;
+    queries.reserve(queries_made);
+    for (const char* part : {"e_s", "altitude_m", "speed_mps", "east_m", "north_m"})
+        queries.push_back(fmt::format("SELECT case_number, 'event.' || name || '.{0}', {0} FROM moments"
+                                      " ORDER BY case_number, place",
+                                      part));
+    queries.emplace_back("SELECT case_number, 'margin.' || timepoint || '_s', margin_s FROM allowances"
+                         " ORDER BY case_number, place");
+    queries.emplace_back("SELECT case_number, 'draw.' || name, value FROM drawn ORDER BY case_number, name");
+    for (const std::string& query : queries)
+        if (const auto read = read_cells(query.c_str(), *table); !read) return read.error();
+    return table;
+}
+
+/// Rows of case, column's name and value.
+Result<void> CampaignResults::read_cells(const char* sql, CaseTable& into) {
+    auto cells = database_.prepare(sql);
+    if (!cells) return cells.error();
+    std::map<std::string, std::size_t, std::less<>> places;  // of this query's columns
+    return each_row(*cells, [&](const Statement& row) {
+        const auto number = static_cast<std::uint64_t>(row.integer(0));
+        const auto at = std::ranges::lower_bound(into.numbers, number);
+        if (at == into.numbers.end() || *at != number) return;
+        auto place = places.find(row.text(1));
+        if (place == places.end()) {
+            place = places.emplace(std::string{row.text(1)}, into.columns.size()).first;
+            into.columns.push_back(
+                {place->first, std::vector<double>(into.numbers.size(), std::numeric_limits<double>::quiet_NaN())});
+        }
+        if (!row.is_null(2))
+            into.columns[place->second].values[static_cast<std::size_t>(at - into.numbers.begin())] = row.real(2);
+    });
+}
+
+Result<simulation::Scenario> CampaignResults::scenario() {
+    auto select = database_.prepare("SELECT scenario_text FROM campaign");
+    if (!select) return select.error();
+    if (const auto row = select->step(); !row) return row.error();
+    return scenario_from_text(select->text(0), database_.file());
 }
 
 Result<std::vector<Touchdown>> CampaignResults::arrivals(std::uint64_t place, std::uint64_t limit) {

@@ -3,7 +3,10 @@
 
 #include "common/result.hpp"
 #include "server/archive/sqlite.hpp"
+#include "server/campaign/case_table.hpp"
+#include "server/campaign/limit_margins.hpp"
 #include "server/campaign/statistics.hpp"
+#include "simulation/scenario.hpp"
 
 #include <cstdint>
 #include <filesystem>
@@ -100,6 +103,12 @@ class CampaignResults {
     Result<Summary> summary();
     /// The summary without events, whose statistics take most of the time.
     Result<Summary> brief();
+    /// All numbers of all cases. Fails with more than table_cases_max.
+    Result<CaseTable> table();
+    /// Whether the campaign passes by its scenario's limits. Of any number of cases.
+    Result<CampaignVerdict> verdict();
+    /// The scenario that the file keeps.
+    Result<simulation::Scenario> scenario();
     /// At most `limit` touchdowns whose place is after `place`, in order.
     Result<std::vector<Touchdown>> arrivals(std::uint64_t place, std::uint64_t limit);
 
@@ -117,6 +126,8 @@ class CampaignResults {
     Result<Spread> spread(const char* column, const char* source, const std::string& name = {});
     Result<void> each(const char* sql, const std::function<void(Point)>& take);
     Result<Summary> read(bool with_events);
+    Result<CaseTable> figures();
+    Result<void> read_cells(const char* sql, CaseTable& into);
     Result<void> read_outcomes(Summary& into);
     Result<void> read_failures(const char* condition, std::vector<Failure>& into);
     Result<void> read_events(Summary& into);

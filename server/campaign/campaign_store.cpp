@@ -26,12 +26,14 @@ const char* const schema =
     " tilt_deg REAL, limits_exceeded INTEGER NOT NULL) STRICT;"
     "CREATE TABLE arrivals (place INTEGER PRIMARY KEY, case_number INTEGER NOT NULL REFERENCES cases(number)) STRICT;"
     "CREATE TABLE events (case_number INTEGER NOT NULL REFERENCES cases(number), place INTEGER NOT NULL,"
-    " name TEXT NOT NULL, e_s REAL, altitude_m REAL, speed_mps REAL,"
+    " name TEXT NOT NULL, e_s REAL, altitude_m REAL, speed_mps REAL, east_m REAL, north_m REAL,"
     " PRIMARY KEY (case_number, place)) STRICT, WITHOUT ROWID;"
     "CREATE INDEX events_by_name ON events (name);"
     "CREATE TABLE margins (case_number INTEGER NOT NULL REFERENCES cases(number), place INTEGER NOT NULL,"
     " timepoint TEXT NOT NULL, margin_s REAL NOT NULL, PRIMARY KEY (case_number, place)) STRICT, WITHOUT ROWID;"
-    "CREATE INDEX margins_by_timepoint ON margins (timepoint);";
+    "CREATE INDEX margins_by_timepoint ON margins (timepoint);"
+    "CREATE TABLE draws (case_number INTEGER NOT NULL REFERENCES cases(number), name TEXT NOT NULL,"
+    " value REAL NOT NULL, PRIMARY KEY (case_number, name)) STRICT, WITHOUT ROWID;";
 
 /// The first line in which two texts differ, in both versions.
 std::string difference(const std::string& before, const std::string& now) {
@@ -122,15 +124,18 @@ Result<void> CampaignStore::prepare() {
     if (!add_case) return add_case.error();
     auto add_arrival = database_.prepare("INSERT INTO arrivals (case_number) VALUES (?)");
     if (!add_arrival) return add_arrival.error();
-    auto add_event = database_.prepare("INSERT INTO events VALUES (?, ?, ?, ?, ?, ?)");
+    auto add_event = database_.prepare("INSERT INTO events VALUES (?, ?, ?, ?, ?, ?, ?, ?)");
     if (!add_event) return add_event.error();
     auto add_margin = database_.prepare("INSERT INTO margins VALUES (?, ?, ?, ?)");
     if (!add_margin) return add_margin.error();
+    auto add_draw = database_.prepare("INSERT INTO draws VALUES (?, ?, ?)");
+    if (!add_draw) return add_draw.error();
     has_ = std::move(*has);
     add_case_ = std::move(*add_case);
     add_arrival_ = std::move(*add_arrival);
     add_event_ = std::move(*add_event);
     add_margin_ = std::move(*add_margin);
+    add_draw_ = std::move(*add_draw);
     return {};
 }
 
@@ -190,7 +195,9 @@ Result<void> CampaignStore::add(std::span<const CaseResult> results) {
                 .bind(3, std::string_view{event.name})
                 .bind(4, event.e_s)
                 .bind(5, event.altitude_m)
-                .bind(6, event.speed_mps);
+                .bind(6, event.speed_mps)
+                .bind(7, event.east_m)
+                .bind(8, event.north_m);
             if (const auto added = add_event_.run(); !added) return added.error();
         }
         place = 0;
@@ -200,6 +207,10 @@ Result<void> CampaignStore::add(std::span<const CaseResult> results) {
                 .bind(3, std::string_view{margin.timepoint})
                 .bind(4, margin.margin_s);
             if (const auto added = add_margin_.run(); !added) return added.error();
+        }
+        for (const simulation::Draw& draw : result.draws) {
+            add_draw_.bind(1, number).bind(2, std::string_view{draw.name}).bind(3, draw.value);
+            if (const auto added = add_draw_.run(); !added) return added.error();
         }
     }
     return transaction->commit();

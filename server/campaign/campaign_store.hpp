@@ -13,7 +13,7 @@
 
 namespace aeolis::server::campaign {
 
-inline constexpr std::int64_t campaign_schema_version = 1;
+inline constexpr std::int64_t campaign_schema_version = 2;
 inline constexpr std::int64_t campaign_application_id = 0x4165436d;  ///< "AeCm" in the file's header
 
 /// The properties common to all cases of a file. Cases of two identities never share a file.
@@ -30,7 +30,9 @@ struct Identity {
 ///  campaign   one row: schema version, scenario, seed, dictionary, program, cases requested by the last call, queue
 ///  cases      number, outcome, reason, end_cycle, touchdown, parachute, …; NULL when there was none
 ///  arrivals   place (from 1, in the order in which cases were stored), case_number
-///  events     case_number, place (in the order of time), name, e_s, altitude_m, speed_mps
+///  events     case_number, place (in the order of time), name, e_s, altitude_m, speed_mps, east_m, north_m
+///  margins    case_number, place, timepoint, margin_s
+///  draws      case_number, name, value: the seeded errors
 ///
 /// One thread owns it, and one process at a time writes.
 class CampaignStore {
@@ -55,7 +57,7 @@ class CampaignStore {
 
     archive::WriterLock lock_;  // released last
     archive::sqlite::Database database_;
-    archive::sqlite::Statement has_, add_case_, add_arrival_, add_event_, add_margin_;
+    archive::sqlite::Statement has_, add_case_, add_arrival_, add_event_, add_margin_, add_draw_;
 };
 
 }  // namespace aeolis::server::campaign

@@ -21,6 +21,15 @@ double dispersion_sclk(const simulation::Scenario& scenario) {
     return scenario.entry_sclk.seconds - scenario.disperse_before_entry_s.value_or(scenario.start_before_entry_s);
 }
 
+struct Place {
+    double east_m = 0.0, north_m = 0.0;
+};
+Place place_of(double latitude_deg, double longitude_deg, const simulation::Target& target) {
+    const double east_deg = std::remainder(longitude_deg - target.longitude_deg, 360.0);
+    return {target.radius_m * std::cos(target.latitude_deg * degree_rad) * east_deg * degree_rad,
+            target.radius_m * (latitude_deg - target.latitude_deg) * degree_rad};
+}
+
 }  // namespace
 
 CaseFlights::CaseFlights(const simulation::Scenario& scenario, std::uint64_t seed,
@@ -49,8 +58,7 @@ void CaseFlights::Flight::step() {
     }
     const auto& report = landing.landing().report();
     firings.read(report.recorded);
-    for (const auto& event : report.events)
-        events.push_back({event.name, event.e_s, event.altitude_m, event.speed_mps});
+    events.insert(events.end(), report.events.begin(), report.events.end());
 }
 
 std::unique_ptr<CaseFlights::Flight> CaseFlights::begun(std::uint64_t case_number) const {
@@ -97,17 +105,22 @@ void CaseFlights::summarise(const Flight& flight, CaseResult& result) const {
     result.end_cycle = flight.cycles;
     result.touchdown = landing.touchdown();
     if (result.touchdown) {
-        const auto& target = scenario_.target;
-        const double east_deg = std::remainder(result.touchdown->longitude_deg - target.longitude_deg, 360.0);
-        result.east_m = target.radius_m * std::cos(target.latitude_deg * degree_rad) * east_deg * degree_rad;
-        result.north_m = target.radius_m * (result.touchdown->latitude_deg - target.latitude_deg) * degree_rad;
+        const Place at = place_of(result.touchdown->latitude_deg, result.touchdown->longitude_deg, scenario_.target);
+        result.east_m = at.east_m;
+        result.north_m = at.north_m;
     }
     result.parachute = landing.parachute();
     result.separation = landing.separation();
     result.peak_deceleration_mps2 = landing.peak_deceleration_mps2();
     result.propellant_kg = landing.inspect().propellant_kg;
     result.margins = timeline_margins(flight.firings.all(), dictionary_, dispersion_sclk(scenario_));
-    result.events = flight.events;
+    for (const simulation::TruthEvent& event : flight.events) {
+        const auto& [x, y, z] = event.p_MoB_M_m;
+        const Place at =
+            place_of(std::atan2(z, std::hypot(x, y)) / degree_rad, std::atan2(y, x) / degree_rad, scenario_.target);
+        result.events.push_back({event.name, event.e_s, event.altitude_m, event.speed_mps, at.east_m, at.north_m});
+    }
+    result.draws = landing.draws();
     std::ranges::sort(result.events, {}, [](const CaseEvent& event) { return std::tie(event.e_s, event.name); });
 }
 

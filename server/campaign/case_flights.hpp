@@ -38,7 +38,7 @@ class CaseFlights {
     struct Flight {
         ScriptedLanding landing;
         RecordedFirings firings;
-        std::vector<CaseEvent> events;
+        std::vector<simulation::TruthEvent> events;
         std::uint64_t cycles = 0;
 
         void step();

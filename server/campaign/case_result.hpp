@@ -14,6 +14,7 @@ namespace aeolis::server::campaign {
 struct CaseEvent {
     std::string name;
     double e_s = 0.0, altitude_m = 0.0, speed_mps = 0.0;
+    double east_m = 0.0, north_m = 0.0;  ///< relative to the target
 };
 
 /// The stored result of one case.
@@ -30,6 +31,7 @@ struct CaseResult {
     double propellant_kg = 0.0;           ///< left at the end, after fly-away
     std::vector<TimelineMargin> margins;  ///< in the order of the timeline
     std::vector<CaseEvent> events;
+    std::vector<simulation::Draw> draws;
 };
 
 }  // namespace aeolis::server::campaign

@@ -64,7 +64,7 @@ Result<campaign::Call> flown(const CampaignOptions& options, const campaign::Ord
     return campaign::Call{*progress, order.jobs, options.scenario, order.file.string(), cluster::shown(options.nats)};
 }
 
-/// Returns 0 when all cases are flown and each ended in touchdown.
+/// Returns 0 when all cases are flown and the campaign passes by the scenario's limits.
 int run_campaign(const CampaignOptions& options) {
     const auto ready = flight_inputs(options.shared, options.scenario);
     if (!ready) return failed(ready.error().message);
@@ -87,14 +87,16 @@ int run_campaign(const CampaignOptions& options) {
     if (!results) return failed(results.error().message);
     const auto summary = results->summary();
     if (!summary) return failed(summary.error().message);
+    const auto verdict = results->verdict();
+    if (!verdict) return failed(verdict.error().message);
     if (options.json)
-        fmt::print("{}\n", campaign::campaign_json(*summary, *call));
+        fmt::print("{}\n", campaign::campaign_json(*summary, *verdict, *call));
     else
-        fmt::print("{}", campaign::campaign_table(*summary, *call));
+        fmt::print("{}", campaign::campaign_table(*summary, *verdict, *call));
     if (options.plots)
         if (const auto drawn = campaign::write_plots(*results, *summary, *options.plots); !drawn)
             return failed(drawn.error().message);
-    return summary->kept == summary->cases && summary->failed == 0 ? 0 : 1;
+    return summary->kept == summary->cases && verdict->passes() ? 0 : 1;
 }
 
 }  // namespace
@@ -103,13 +105,13 @@ void add_campaign_command(CLI::App& program, int& exit_code) {
     const auto options = std::make_shared<CampaignOptions>();
     auto& command = *program.add_subcommand(
         "campaign",
-        "flies dispersed landings and prints statistics; continues where an earlier call ended; exit code 1 when a "
-        "case did not end in touchdown");
-    command.add_option("--scenario", options->scenario, "a file, or the name of a shipped one")->required();
-    command.add_option("--cases", options->cases, "cases 1 … N, each as rehearse --case flies it")
-        ->required()
-        ->check(whole_number())
-        ->check(CLI::Range(std::uint64_t{1}, campaign_cases_max));
+        "flies dispersed landings and prints statistics; continues where an earlier call ended; exit code 1 when fewer "
+        "cases than the scenario requires landed within its limits");
+    command.require_subcommand(0, 1);
+    auto& scenario = *command.add_option("--scenario", options->scenario, "a file, or the name of a shipped one");
+    auto& cases = *command.add_option("--cases", options->cases, "cases 1 … N, each as rehearse --case flies it")
+                       ->check(whole_number())
+                       ->check(CLI::Range(std::uint64_t{1}, campaign_cases_max));
     command.add_option("--seed", options->seed, "seed of the errors")->check(whole_number())->capture_default_str();
     auto& jobs = *command.add_option("--jobs", options->jobs, "cases flown at a time; one per processor if left out")
                       ->check(whole_number())
@@ -121,7 +123,13 @@ void add_campaign_command(CLI::App& program, int& exit_code) {
     command.add_option("--plots", options->plots, "write pictures (SVG) into this directory");
     command.add_flag("--json", options->json, "print one JSON object");
     add_shared(command, options->shared);
-    command.callback([options, &exit_code] { exit_code = run_campaign(*options); });
+    add_campaign_analysis(command, exit_code);
+    command.callback([options, &command, &scenario, &cases, &exit_code] {
+        if (!command.get_subcommands().empty()) return;
+        for (const CLI::Option* needed : {&scenario, &cases})
+            if (needed->empty()) throw CLI::RequiredError(needed->get_name());
+        exit_code = run_campaign(*options);
+    });
 }
 
 }  // namespace aeolis::server

@@ -29,6 +29,8 @@ void add_timeline_command(CLI::App& program, int& exit_code);
 void add_tones_command(CLI::App& program, int& exit_code);
 void add_worker_command(CLI::App& program, int& exit_code);
 
+/// Adds the subcommands of `campaign` that study what was flown.
+void add_campaign_analysis(CLI::App& campaign, int& exit_code);
 /// Adds `samples`, a subcommand of `archive` that shares its options with `export`.
 void add_archive_samples(CLI::App& archive, int& exit_code);
 

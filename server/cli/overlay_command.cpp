@@ -2,9 +2,11 @@
 #include "server/archive/items.hpp"
 #include "server/archive/reader.hpp"
 #include "server/cli/commands.hpp"
+#include "server/cli/new_file.hpp"
 #include "server/cli/options.hpp"
 #include "server/cli/recorded_dictionary.hpp"
 #include "server/cli/shipped_paths.hpp"
+#include "server/reconstruction/path.hpp"
 #include "server/reconstruction/recorded_landing.hpp"
 #include "server/reconstruction/trajectory_files.hpp"
 
@@ -35,6 +37,7 @@ struct OverlayOptions {
     ArchiveOptions of;
     std::filesystem::path with, out;
     bool by_entry = false;  ///< times count from each one's own entry
+    bool rebuilt = false;   ///< the path by reconstruction, not by flight's navigation
 };
 
 struct OverlaidPoint {
@@ -43,6 +46,9 @@ struct OverlaidPoint {
 };
 
 Result<ForeignTrajectory> read_trajectory(const std::filesystem::path& file) {
+    std::error_code ignored;
+    if (!std::filesystem::exists(file, ignored)) return Error{file.string() + " is not there"};
+    if (std::filesystem::is_directory(file, ignored)) return Error{file.string() + " is a folder, not a trajectory"};
     std::ifstream from{file, std::ios::binary};
     if (!from) return Error{file.string() + " cannot be read"};
     const std::vector<std::uint8_t> octets{std::istreambuf_iterator<char>{from}, {}};
@@ -62,16 +68,20 @@ std::optional<Sclk> flown_entry(const std::vector<Navigated>& path, double radiu
     return std::nullopt;
 }
 
-Result<void> write_residuals(const std::filesystem::path& file, const std::vector<OverlaidPoint>& points, Sclk entry) {
-    if (std::filesystem::exists(file)) return Error{file.string() + " is there already"};
-    std::ofstream to{file, std::ios::binary};
-    to << "e_s,sclk,up_m,along_m,right_m,speed_mps\n";
+std::string residuals_csv(const std::vector<OverlaidPoint>& points, Sclk entry) {
+    std::string text = "e_s,sclk,up_m,along_m,right_m,speed_mps\n";
     for (const auto& [at, off] : points)
-        to << fmt::format("{:.6f},{:.6f},{:.3f},{:.3f},{:.3f},{:.5f}\n", at - entry, at.seconds, off.up_m, off.along_m,
-                          off.right_m, off.speed_mps);
-    to.close();
-    if (to.fail()) return Error{file.string() + " cannot be written"};
-    return {};
+        text += fmt::format("{:.6f},{:.6f},{:.3f},{:.3f},{:.3f},{:.5f}\n", at - entry, at.seconds, off.up_m,
+                            off.along_m, off.right_m, off.speed_mps);
+    return text;
+}
+
+/// The point next to an instant; none within a second.
+const OverlaidPoint* point_at(const std::vector<OverlaidPoint>& points, Sclk at) {
+    constexpr double apart_max_s = 1.0;
+    const auto nearest =
+        std::ranges::min_element(points, {}, [&](const auto& point) { return std::abs(point.at - at); });
+    return nearest != points.end() && std::abs(nearest->at - at) <= apart_max_s ? &*nearest : nullptr;
 }
 
 void print_residuals(const std::vector<OverlaidPoint>& points, const RecordedLanding& recorded, Sclk entry) {
@@ -84,10 +94,7 @@ void print_residuals(const std::vector<OverlaidPoint>& points, const RecordedLan
     row("(first in both)", points.front());
     for (const char* name : overlay_moments) {
         const auto at = recorded.reported(name);
-        if (!at) continue;
-        const auto point = std::ranges::lower_bound(points, *at, {}, &OverlaidPoint::at);
-        constexpr double apart_max_s = 1.0;
-        if (point != points.end() && std::abs(point->at - *at) <= apart_max_s) row(name, *point);
+        if (const auto* point = at ? point_at(points, *at) : nullptr) row(name, *point);
     }
     row("(last in both)", points.back());
     const auto size_of = [](const Residual& off) { return std::hypot(off.up_m, off.along_m, off.right_m); };
@@ -102,6 +109,8 @@ void print_residuals(const std::vector<OverlaidPoint>& points, const RecordedLan
 int overlay(const OverlayOptions& options) {
     int exit_code = 0;
     const auto said = [](const Error& error) { return failed("overlay: " + error.message); };
+    if (!options.out.empty())
+        if (const auto possible = can_be_made(options.out); !possible) return said(possible.error());
     const auto other = read_trajectory(options.with);
     if (!other) return said(other.error());
     const auto with = recorded_dictionary(options.of.shared.dictionary, {}, exit_code);
@@ -115,7 +124,14 @@ int overlay(const OverlayOptions& options) {
     if (!recorded) return said(recorded.error());
     const auto read = reader->each_recorded_packet(run, [&](auto packet) { recorded->add(packet); });
     if (!read) return said(read.error());
-    const auto path = recorded->navigated();
+    auto path = recorded->navigated();
+    if (options.rebuilt) {
+        const auto rebuilt = reconstruction::reconstruct(*recorded);
+        if (!rebuilt) return said(rebuilt.error());
+        path.clear();
+        path.reserve(rebuilt->points.size());
+        for (const auto& point : rebuilt->points) path.push_back({point.at, point.state});
+    }
     if (path.empty()) return said({fmt::format("run {} has no recording of what was navigated yet", run.value)});
     const auto clock = archive::correlation_of(*state);
     const double radius_m = flight::build_parameters.entry_radius_m;
@@ -133,9 +149,6 @@ int overlay(const OverlayOptions& options) {
     for (const Navigated& point : path)
         if (const auto theirs = other->at(ephemeris_time_of(clock.scet_of(point.at)) + shift_s))
             points.push_back({point.at, reconstruction::residual_of(point.state, *theirs)});
-    fmt::print("Run {}: {}, seed {}, over {}{}\n", state->run(), state->scenario(), state->seed(),
-               options.with.string(),
-               options.by_entry ? fmt::format(", from entry to entry ({:+.3f} s)", shift_s) : "");
     if (points.empty())
         return said({fmt::format("the run is of {} to {}, the file of {} to {}: no instant is in both (--by-entry "
                                  "compares from entry to entry)",
@@ -143,9 +156,13 @@ int overlay(const OverlayOptions& options) {
                                  calendar_text(ephemeris_time_of(clock.scet_of(path.back().at)), TimeSystem::utc),
                                  calendar_text(other->start(), TimeSystem::utc),
                                  calendar_text(other->stop(), TimeSystem::utc))});
+    fmt::print("Run {}: {}, seed {}, over {}{}\n", state->run(), state->scenario(), state->seed(),
+               options.with.string(),
+               options.by_entry ? fmt::format(", from entry to entry ({:+.3f} s)", shift_s) : "");
     print_residuals(points, *recorded, from);
     if (options.out.empty()) return 0;
-    if (const auto written = write_residuals(options.out, points, from); !written) return said(written.error());
+    if (const auto written = make_file(options.out, residuals_csv(points, from)); !written)
+        return said(written.error());
     fmt::print("{} residuals are in {}\n", points.size(), options.out.string());
     return 0;
 }
@@ -154,10 +171,9 @@ int overlay(const OverlayOptions& options) {
 
 void add_overlay_command(CLI::App& program, int& exit_code) {
     const auto options = std::make_shared<OverlayOptions>();
-    auto& command = *program.add_subcommand(
-        "overlay",
-        "compares what a run navigated with a trajectory of someone else's: an orbit ephemeris of CCSDS or a "
-        "SPICE kernel of the types 9 and 13");
+    auto& command = *program.add_subcommand("overlay", "compares what a run navigated, or its rebuilt path, with a "
+                                                       "trajectory of someone else's: an orbit ephemeris of CCSDS or a "
+                                                       "SPICE kernel of the types 9 and 13");
     add_archive_file(command, options->of.archive);
     command.add_option("--dictionary", options->of.shared.dictionary, "directory of the mission's dictionary")
         ->capture_default_str();
@@ -166,6 +182,8 @@ void add_overlay_command(CLI::App& program, int& exit_code) {
     command.add_flag(
         "--by-entry", options->by_entry,
         "compare from entry interface to entry interface, not by the instant: for a rehearsal of another day");
+    command.add_flag("--rebuilt", options->rebuilt,
+                     "compare the path as reconstruct rebuilds it, not what flight navigated");
     command.add_option("--out", options->out, "write every residual to this new CSV file");
     command.callback([options, &exit_code] { exit_code = overlay(*options); });
 }

@@ -2,9 +2,11 @@
 #include "server/archive/items.hpp"
 #include "server/archive/reader.hpp"
 #include "server/cli/commands.hpp"
+#include "server/cli/new_file.hpp"
 #include "server/cli/options.hpp"
 #include "server/cli/recorded_dictionary.hpp"
 #include "server/cli/shipped_paths.hpp"
+#include "server/reconstruction/density.hpp"
 #include "server/reconstruction/path.hpp"
 #include "server/reconstruction/trajectory_files.hpp"
 
@@ -14,21 +16,24 @@
 #include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
-#include <fstream>
 #include <memory>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace aeolis::server {
 namespace {
 
+using reconstruction::DensityPoint;
 using reconstruction::Path;
 using reconstruction::PathPoint;
 using reconstruction::RecordedLanding;
 using reconstruction::Vector3;
 
 constexpr double degree_rad = std::numbers::pi / 180.0;
+constexpr double metres_per_km = 1000.0;
+constexpr double site_sigma_min_m = 0.1, site_sigma_max_m = 10'000.0;  // chosen
 /// The events by which the summary tells of the path.
 constexpr std::array moments{"GUIDANCE_START",       "PARACHUTE_DEPLOY", "HEATSHIELD_SEPARATION", "RADAR_LOCK",
                              "BACKSHELL_SEPARATION", "SKY_CRANE_START",  "ROVER_SEPARATION",      "TOUCHDOWN"};
@@ -36,45 +41,59 @@ constexpr std::array moments{"GUIDANCE_START",       "PARACHUTE_DEPLOY", "HEATSH
 struct ReconstructOptions {
     ArchiveOptions of;
     std::filesystem::path out;
+    std::vector<double> site;  ///< latitude, longitude, radius; empty: not known
+    double site_sigma_m = reconstruction::LandingSite{}.sigma_m;
 };
 
-/// Writes the rebuilt path as a trajectory or an attitude of the field's formats.
-Result<void> write_trajectory(const std::filesystem::path& file, reconstruction::TrajectoryFormat format,
-                              const Path& path, const ClockCorrelation& clock) {
-    if (std::filesystem::exists(file)) return Error{file.string() + " is there already"};
+CLI::Validator known_ending() {
+    return {[](const std::string& file) {
+                return file.ends_with(".csv") || reconstruction::trajectory_format_of(file)
+                           ? std::string{}
+                           : file + " ends neither in .csv nor in .oem, .aem, .bsp, .bc or .tsc";
+            },
+            "FILE"};
+}
+
+std::optional<reconstruction::LandingSite> site_of(const ReconstructOptions& options) {
+    if (options.site.empty()) return std::nullopt;
+    return reconstruction::LandingSite{options.site.at(0), options.site.at(1), options.site.at(2),
+                                       options.site_sigma_m};
+}
+
+/// The octets of the rebuilt path as a trajectory, an attitude or a clock of the field's formats.
+Result<std::string> trajectory_of(reconstruction::TrajectoryFormat format, const Path& path,
+                                  const ClockCorrelation& clock) {
     std::vector<reconstruction::TimedState> states;
     states.reserve(path.points.size());
     for (const PathPoint& point : path.points) states.push_back({point.at, point.state});
     const auto created = std::chrono::duration_cast<std::chrono::microseconds>(
         std::chrono::system_clock::now() - std::chrono::sys_days{std::chrono::year{2000} / 1 / 1} -
         std::chrono::hours{12});
-    const auto text = reconstruction::trajectory_file(format, states, clock, Scet{created.count()});
-    if (!text) return text.error();
-    std::ofstream to{file, std::ios::binary};
-    to << *text;
-    to.close();
-    if (to.fail()) return Error{file.string() + " cannot be written"};
-    return {};
+    return reconstruction::trajectory_file(format, states, clock, Scet{created.count()});
 }
 
-Result<void> write_csv(const std::filesystem::path& file, const Path& path) {
-    if (std::filesystem::exists(file)) return Error{file.string() + " is there already"};
-    std::ofstream to{file, std::ios::binary};
-    to << "e_s,sclk,p_x_m,p_y_m,p_z_m,v_x_mps,v_y_mps,v_z_mps,q_w,q_x,q_y,q_z,altitude_m,speed_mps,latitude_deg,"
-          "longitude_deg,sigma_p_m,sigma_v_mps,sigma_attitude_deg\n";
+std::string csv_of(const Path& path, const std::vector<DensityPoint>& density) {
+    std::string text =
+        "e_s,sclk,p_x_m,p_y_m,p_z_m,v_x_mps,v_y_mps,v_z_mps,q_w,q_x,q_y,q_z,altitude_m,speed_mps,latitude_deg,"
+        "longitude_deg,sigma_p_m,sigma_v_mps,sigma_attitude_deg,sigma_height_m,density_kgm3,sigma_density_kgm3\n";
+    auto air = density.begin();
     for (const PathPoint& point : path.points) {
         const auto& [p, v, q] = point.state;
         const double radius_m = p.norm();
-        to << fmt::format("{:.6f},{:.6f},{:.3f},{:.3f},{:.3f},{:.5f},{:.5f},{:.5f},{:.9f},{:.9f},{:.9f},{:.9f},{:.3f},"
-                          "{:.5f},{:.7f},{:.7f},{:.3f},{:.5f},{:.6f}\n",
-                          point.at - path.entry, point.at.seconds, p.x(), p.y(), p.z(), v.x(), v.y(), v.z(), q.w(),
-                          q.x(), q.y(), q.z(), radius_m - path.target_radius_m, v.norm(),
-                          std::asin(p.z() / radius_m) / degree_rad, std::atan2(p.y(), p.x()) / degree_rad,
-                          point.sigma_p_m.norm(), point.sigma_v_mps.norm(), point.sigma_angle_rad.norm() / degree_rad);
+        text += fmt::format(
+            "{:.6f},{:.6f},{:.3f},{:.3f},{:.3f},{:.5f},{:.5f},{:.5f},{:.9f},{:.9f},{:.9f},{:.9f},{:.3f},{:.5f},{:.7f},"
+            "{:.7f},{:.3f},{:.5f},{:.6f},{:.3f},",
+            point.at - path.entry, point.at.seconds, p.x(), p.y(), p.z(), v.x(), v.y(), v.z(), q.w(), q.x(), q.y(),
+            q.z(), radius_m - path.target_radius_m, v.norm(), std::asin(p.z() / radius_m) / degree_rad,
+            std::atan2(p.y(), p.x()) / degree_rad, point.sigma_p_m.norm(), point.sigma_v_mps.norm(),
+            point.sigma_angle_rad.norm() / degree_rad, point.sigma_height_m);
+        // The density of the step that ends with the point.
+        while (air != density.end() && air->at < point.at + -reconstruction::path_step_s) ++air;
+        text += air != density.end() && air->at < point.at
+                    ? fmt::format("{:.5e},{:.3e}\n", air->density_kgm3, air->sigma_kgm3)
+                    : std::string{",\n"};
     }
-    to.close();
-    if (to.fail()) return Error{file.string() + " cannot be written"};
-    return {};
+    return text;
 }
 
 void print_recorded(const RecordedLanding& recorded) {
@@ -117,9 +136,29 @@ void print_path(const Path& path, const RecordedLanding& recorded) {
         if (const auto at = recorded.reported(name)) row(name, *at);
 }
 
+void print_density(const std::vector<DensityPoint>& density) {
+    if (density.empty()) return;
+    fmt::print("\n{:<22}{:>14}{:>14}{:>8}{:>8}\n", "density by drag", "altitude km", "kg/m3", "+-%", "Mach");
+    constexpr double every_m = 10'000.0, percent = 100.0;
+    double next_m = std::floor(density.front().altitude_m / every_m) * every_m;
+    const auto row = [](const char* name, const DensityPoint& point) {
+        fmt::print("{:<22}{:>14.2f}{:>14.4e}{:>8.1f}{:>8.2f}\n", name, point.altitude_m / metres_per_km,
+                   point.density_kgm3, percent * point.sigma_kgm3 / point.density_kgm3, point.mach);
+    };
+    row("(first known)", density.front());
+    for (const DensityPoint& point : density) {
+        if (point.altitude_m > next_m) continue;
+        row("", point);
+        next_m -= every_m;
+    }
+    row("(last: the parachute)", density.back());
+}
+
 int reconstruct(const ReconstructOptions& options) {
     int exit_code = 0;
     const auto said = [](const Error& error) { return failed("reconstruct: " + error.message); };
+    if (!options.out.empty())
+        if (const auto possible = can_be_made(options.out); !possible) return said(possible.error());
     const auto with = recorded_dictionary(options.of.shared.dictionary, {}, exit_code);
     if (!with) return exit_code;
     auto reader = archive::Reader::open(options.of.archive, with->dictionary);
@@ -131,25 +170,37 @@ int reconstruct(const ReconstructOptions& options) {
     if (!recorded) return said(recorded.error());
     const auto read = reader->each_recorded_packet(run, [&](auto packet) { recorded->add(packet); });
     if (!read) return said(read.error());
-    const auto path = reconstruction::reconstruct(*recorded);
+    const auto path = reconstruction::reconstruct(*recorded, {}, site_of(options));
     if (!path) return said(path.error());
+    const auto density = reconstruction::density_along(*path, *recorded);
+    if (!options.out.empty()) {
+        const auto format = reconstruction::trajectory_format_of(options.out.string());
+        const auto octets = format ? trajectory_of(*format, *path, archive::correlation_of(*state))
+                                   : Result<std::string>{csv_of(*path, density)};
+        if (!octets) return said(octets.error());
+        if (const auto made = make_file(options.out, *octets); !made) return said(made.error());
+    }
     fmt::print("Run {}: {}, seed {}, {}\n", state->run(), state->scenario(), state->seed(),
                v1::Landing::Outcome_Name(state->outcome()));
     print_recorded(*recorded);
     print_path(*path, *recorded);
+    print_density(density);
     const Vector3& bias = path->accelerometer_bias_mps2;
     fmt::print(
         "\n{} readings of the IMU, {} missing and filled, {} gaps; {} readings of radar beams taken, {} refused. "
         "Accelerometers' bias {:.2e}, {:.2e}, {:.2e} m/s2.\n"
-        "+-: one standard deviation, of the three axes together. Times are those of the vehicle's clock.\n",
+        "+-: one standard deviation, of the three axes together. Times are those of the vehicle's clock, from the "
+        "entry "
+        "that ground's last parameters state.\n",
         path->readings, path->readings_filled, path->breaks, path->beams_taken, path->beams_refused, bias.x(), bias.y(),
         bias.z());
+    if (options.site.empty())
+        fmt::print("The place is known by navigation at entry only: --site says where the rover stands.\n");
     if (options.out.empty()) return 0;
-    const auto format = reconstruction::trajectory_format_of(options.out.string());
-    const auto written = format ? write_trajectory(options.out, *format, *path, archive::correlation_of(*state))
-                                : write_csv(options.out, *path);
-    if (!written) return said(written.error());
-    fmt::print("{} points are in {}\n", path->points.size(), options.out.string());
+    if (reconstruction::trajectory_format_of(options.out.string()) == reconstruction::TrajectoryFormat::sclk)
+        fmt::print("The run's clock is in {}\n", options.out.string());
+    else
+        fmt::print("{} points are in {}\n", path->points.size(), options.out.string());
     return 0;
 }
 
@@ -164,10 +215,22 @@ void add_reconstruct_command(CLI::App& program, int& exit_code) {
     command.add_option("--dictionary", options->of.shared.dictionary, "directory of the mission's dictionary")
         ->capture_default_str();
     command.add_option("--run", options->of.run, "number of the run")->required()->check(whole_number());
-    command.add_option(
-        "--out", options->out,
-        "write the path, eight states a second, to this new file: CSV, or by its ending .oem, .aem (CCSDS), .bsp, .bc, "
-        ".tsc (SPICE)");
+    command
+        .add_option("--out", options->out,
+                    "write the path, eight states a second, to this new file, by its ending: .csv, .oem, .aem (CCSDS), "
+                    ".bsp, .bc, .tsc (SPICE)")
+        ->check(known_ending());
+    auto& site =
+        *command
+             .add_option("--site", options->site,
+                         "where the rover stands: areocentric latitude and east longitude in degrees, radius of "
+                         "the ground in metres")
+             ->expected(3)
+             ->check(CLI::Number);
+    command.add_option("--site-sigma", options->site_sigma_m, "one standard deviation of that place, in metres")
+        ->check(CLI::Range(site_sigma_min_m, site_sigma_max_m))
+        ->needs(&site)
+        ->capture_default_str();
     command.callback([options, &exit_code] { exit_code = reconstruct(*options); });
 }
 

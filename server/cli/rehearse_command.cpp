@@ -49,7 +49,7 @@ class TruthFile {
         rows_.open(file, std::ios::binary);
         rows_ << "e_s,altitude_m,speed_mps,flight_path_deg,latitude_deg,longitude_deg,sensed_mps2,bank_deg,angle_of_"
                  "attack_deg,"
-                 "mach,dynamic_pressure_Pa,thrust_N,mass_kg\n";
+                 "mach,dynamic_pressure_Pa,thrust_N,mass_kg,density_kgm3\n";
         return state();
     }
     void add(const simulation::Landing& landing) {
@@ -63,10 +63,11 @@ class TruthFile {
         const double climb_mps = (v[0] * p[0] + v[1] * p[1] + v[2] * p[2]) / radius_m;
         constexpr double degree = std::numbers::pi / 180.0;
         rows_ << fmt::format(
-            "{:.6f},{:.3f},{:.4f},{:.4f},{:.6f},{:.6f},{:.4f},{:.3f},{:.3f},{:.4f},{:.3f},{:.1f},{:.3f}\n", truth.e_s,
-            truth.altitude_m, truth.speed_mps, std::asin(std::clamp(climb_mps / truth.speed_mps, -1.0, 1.0)) / degree,
-            std::asin(p[2] / radius_m) / degree, std::atan2(p[1], p[0]) / degree, truth.sensed_mps2, seen.bank_deg,
-            seen.angle_of_attack_deg, seen.mach, seen.dynamic_pressure_Pa, seen.thrust_N, seen.mass_kg);
+            "{:.6f},{:.3f},{:.4f},{:.4f},{:.6f},{:.6f},{:.4f},{:.3f},{:.3f},{:.4f},{:.3f},{:.1f},{:.3f},{:.6e}\n",
+            truth.e_s, truth.altitude_m, truth.speed_mps,
+            std::asin(std::clamp(climb_mps / truth.speed_mps, -1.0, 1.0)) / degree, std::asin(p[2] / radius_m) / degree,
+            std::atan2(p[1], p[0]) / degree, truth.sensed_mps2, seen.bank_deg, seen.angle_of_attack_deg, seen.mach,
+            seen.dynamic_pressure_Pa, seen.thrust_N, seen.mass_kg, seen.density_kgm3);
     }
     Result<void> close() {
         if (rows_.is_open()) rows_.close();

@@ -40,7 +40,7 @@ Result<dictionary::Dictionary> dictionary_of_flight(const std::filesystem::path&
 Result<simulation::Scenario> scenario_given(const std::string& given, const std::filesystem::path& scenarios) {
     std::error_code error;
     const bool is_name = given.find_first_of("/.") == std::string::npos && !std::filesystem::exists(given, error);
-    return is_name ? ScenarioLibrary{scenarios}.scenario(given) : scenario_from_file(given);
+    return is_name ? ScenarioLibrary{scenarios}.scenario(given) : scenario_from_file(given, scenarios);
 }
 
 Result<FlightInputs> flight_inputs(const SharedOptions& shared, const std::string& scenario) {

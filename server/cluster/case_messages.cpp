@@ -77,6 +77,13 @@ v1::FlownCase message_of(const campaign::CaseResult& result) {
         added.set_e_s(event.e_s);
         added.set_altitude_m(event.altitude_m);
         added.set_speed_mps(event.speed_mps);
+        added.set_east_m(event.east_m);
+        added.set_north_m(event.north_m);
+    }
+    for (const auto& draw : result.draws) {
+        auto& added = *message.add_draws();
+        added.set_name(draw.name);
+        added.set_value(draw.value);
     }
     return message;
 }
@@ -112,7 +119,9 @@ Result<campaign::CaseResult> result_of(const v1::CaseAnswer& answer) {
     result.propellant_kg = message.propellant_kg();
     for (const auto& margin : message.margins()) result.margins.push_back({margin.timepoint(), margin.margin_s()});
     for (const auto& event : message.events())
-        result.events.push_back({event.name(), event.e_s(), event.altitude_m(), event.speed_mps()});
+        result.events.push_back(
+            {event.name(), event.e_s(), event.altitude_m(), event.speed_mps(), event.east_m(), event.north_m()});
+    for (const auto& draw : message.draws()) result.draws.push_back({draw.name(), draw.value()});
     return result;
 }
 

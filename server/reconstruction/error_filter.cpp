@@ -11,7 +11,6 @@ namespace aeolis::reconstruction {
 namespace {
 
 constexpr double range_noise_min_m = 0.1;  // chosen: from the rounding of numbers and times
-constexpr double gate_sigmas = 6.0;        // chosen: none of a landing's good readings deviates as much
 
 Matrix3 cross(const Vector3& a) {
     Matrix3 m;
@@ -153,14 +152,33 @@ void ErrorFilter::take(const Sighting& sighting) {
             errors_.radar_range_fraction * distance_m + range_noise_min_m);
 }
 
+double ErrorFilter::end_at(const Vector3& off_M_m, double sigma_m) {
+    double worst_sigmas = 0.0;
+    for (int axis = 0; axis < 3; ++axis)
+        worst_sigmas = std::max(worst_sigmas, std::abs(off_M_m[axis] - error_[p + axis]) /
+                                                  std::sqrt(covariance_(p + axis, p + axis) + squared(sigma_m)));
+    if (worst_sigmas > gate_sigmas) return worst_sigmas;
+    for (int axis = 0; axis < 3; ++axis) {
+        State row = State::Zero();
+        row[p + axis] = 1.0;
+        correct(row, off_M_m[axis] - error_[p + axis], sigma_m);
+    }
+    return worst_sigmas;
+}
+
 void ErrorFilter::observe(const State& row, double residual, double sigma) {
-    const State seen = covariance_ * row;
-    const double variance = row.dot(seen) + squared(sigma);
+    const double variance = row.dot(covariance_ * row) + squared(sigma);
     if (squared(residual) > squared(gate_sigmas) * variance) {
         ++refused_;
         return;
     }
     ++taken_;
+    correct(row, residual, sigma);
+}
+
+void ErrorFilter::correct(const State& row, double residual, double sigma) {
+    const State seen = covariance_ * row;
+    const double variance = row.dot(seen) + squared(sigma);
     State gain = seen / variance;
     if (attitude_considered_) gain.segment<3>(angle).setZero();
     error_ += residual * gain;

@@ -40,6 +40,7 @@ struct SensorErrors {
     double radar_velocity_mps = 0.033;     ///< as bias of each beam, and as noise of each reading
     double ground_height_m = 10.0;         ///< of the map, where the radar first sees the ground (A)
     double ground_relief_m = 1.0;          ///< of the ground below, per √s: a slope of some degrees (A)
+    double over_site_m = 3.0;  ///< of the stage's place over the rover as touchdown is declared, on each axis (A)
 };
 
 /// What moved the vehicle over one step of the path.
@@ -84,6 +85,8 @@ struct PathError {
 class ErrorFilter {
   public:
     static constexpr int beams = 6;
+    /// Chosen: none of a landing's good readings deviates as much.
+    static constexpr double gate_sigmas = 6.0;
 
     ErrorFilter(const SensorErrors& errors, double accelerometer_bias_sigma_mps2, double target_radius_m);
 
@@ -94,11 +97,15 @@ class ErrorFilter {
     /// known no better than before, and less well by flight's own estimate.
     void pass(const Gap& gap);
 
+    /// Ends the path at a known place: `off_M_m` from where the path ends without its error. Returns how far that is
+    /// from the error as estimated so far, in standard deviations of the worst axis; beyond the gate nothing is taken in.
+    double end_at(const Vector3& off_M_m, double sigma_m);
+
     /// The smoothed error at the end of each whole step.
     std::vector<PathError> smoothed() const;
 
     std::uint64_t taken() const { return taken_; }
-    std::uint64_t refused() const { return refused_; }  ///< beyond six standard deviations
+    std::uint64_t refused() const { return refused_; }  ///< beyond the gate
 
   private:
     enum Place : int { p = 0, v = 3, angle = 6, bias = 9, scale = 12, range_scale = 15, ground = 16, beam_bias = 17 };
@@ -116,6 +123,7 @@ class ErrorFilter {
     void add_noise(const Motion& motion, bool sees_ground);
     void take(const Sighting& sighting);
     void observe(const State& row, double residual, double sigma);
+    void correct(const State& row, double residual, double sigma);
 
     SensorErrors errors_;
     double target_radius_m_;

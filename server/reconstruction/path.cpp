@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <fmt/format.h>
+#include <numbers>
 
 namespace aeolis::reconstruction {
 namespace {
@@ -113,6 +114,8 @@ class Integration {
         sightings_.clear();
     }
     const NavigatedState& state() const { return strapdown_.state(); }
+    /// Mean specific force over the step so far, by the path's attitude.
+    Vector3 felt_M_mps2() const { return motion_.sensed_M_mps / motion_.seconds; }
     std::uint32_t filled() const { return filled_; }
 
   private:
@@ -177,9 +180,21 @@ void correct(Path& path, std::span<const PathError> errors) {
     }
 }
 
+/// The stage as touchdown is declared: over the site by the bridle and what is below it. It has sunk by a metre since
+/// the wheels touched.
+Vector3 stage_over(const LandingSite& site) {
+    constexpr double degree = std::numbers::pi / 180.0, sunk_m = 1.0;
+    const flight::Parameters built;
+    const double radius_m = site.radius_m + built.bridle_length_m + built.stage_above_bridle_m - sunk_m;
+    const double latitude_rad = site.latitude_deg * degree, longitude_rad = site.longitude_deg * degree;
+    return radius_m * Vector3{std::cos(latitude_rad) * std::cos(longitude_rad),
+                              std::cos(latitude_rad) * std::sin(longitude_rad), std::sin(latitude_rad)};
+}
+
 }  // namespace
 
-Result<Path> reconstruct(const RecordedLanding& recorded, const SensorErrors& errors) {
+Result<Path> reconstruct(const RecordedLanding& recorded, const SensorErrors& errors,
+                         const std::optional<LandingSite>& site) {
     const std::vector<Reading> readings = readings_of(recorded);
     const std::vector<Navigated> navigated = recorded.navigated();
     if (!recorded.target_radius_m() || !recorded.entry()) return Error{"the recording holds no parameters"};
@@ -226,8 +241,9 @@ Result<Path> reconstruct(const RecordedLanding& recorded, const SensorErrors& er
         last_count = next->sample.count;
         for (; beam != beams.end() && beam->at <= next->end; ++beam) integration.see(*beam, next->end - beam->at);
         if (integration.step_is_full()) {
-            integration.end_step();
             PathPoint& point = path.points.emplace_back();
+            point.felt_M_mps2 = integration.felt_M_mps2();
+            integration.end_step();
             point.at = next->end;
             point.state = integration.state();
             point.navigated = navigated_at(navigated, next->end);
@@ -235,6 +251,16 @@ Result<Path> reconstruct(const RecordedLanding& recorded, const SensorErrors& er
         ++next;
     }
     if (path.points.empty()) return Error{"the recording holds too few readings of the IMU for a path"};
+    if (site) {
+        if (!recorded.reported("TOUCHDOWN"))
+            return Error{"no touchdown was reported: a landing site says nothing of this path"};
+        const Vector3 off_M_m = stage_over(*site) - path.points.back().state.p_MoB_M;
+        const double sigmas = filter.end_at(off_M_m, std::hypot(site->sigma_m, errors.over_site_m));
+        if (sigmas > ErrorFilter::gate_sigmas)
+            return Error{
+                fmt::format("the landing site is {:.1f} km from where the path ends, {:.0f} standard deviations",
+                            off_M_m.norm() / 1000.0, sigmas)};
+    }
     path.readings_filled = integration.filled();
     path.beams_taken = filter.taken();
     path.beams_refused = filter.refused();

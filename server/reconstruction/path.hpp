@@ -16,6 +16,7 @@ struct PathPoint {
     flight::gnc::NavigatedState state;
     Vector3 sigma_p_m = Vector3::Zero(), sigma_v_mps = Vector3::Zero(), sigma_angle_rad = Vector3::Zero();
     double sigma_height_m = 0.0;
+    Vector3 felt_M_mps2 = Vector3::Zero();                 ///< specific force, mean over the step that ends here
     std::optional<flight::gnc::NavigatedState> navigated;  ///< as flight recorded it within the 1/64 s before
 };
 
@@ -30,11 +31,20 @@ struct Path {
     std::uint64_t beams_taken = 0, beams_refused = 0;  ///< ranges and range rates
 };
 
+/// Where the rover stands, as orbiters' pictures show it the day after.
+struct LandingSite {
+    double latitude_deg = 0.0, longitude_deg = 0.0;  ///< areocentric, east
+    double radius_m = 0.0;                           ///< of the ground
+    double sigma_m = 10.0;                           ///< one standard deviation on each axis
+};
+
 /// Rebuilds the path of a landing from what it recorded: the IMU's readings from the navigated state before entry on,
-/// corrected by the radar's. R52
+/// corrected by the radar's, and by the place of the landing where that is known. R52
 ///
-/// Fails when the recording holds no readings of the IMU, no navigated state near entry or no parameters.
+/// Fails when the recording holds no readings of the IMU, no navigated state near entry or no parameters; with a site,
+/// when no touchdown was reported or the site is more than six standard deviations from where the path ends.
 /// Rate     a second of processor time for a landing       Memory   50 MB
-Result<Path> reconstruct(const RecordedLanding& recorded, const SensorErrors& errors = {});
+Result<Path> reconstruct(const RecordedLanding& recorded, const SensorErrors& errors = {},
+                         const std::optional<LandingSite>& site = {});
 
 }  // namespace aeolis::reconstruction

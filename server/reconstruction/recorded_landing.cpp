@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/reconstruction/recorded_landing.hpp"
 
+#include "generated/dictionary_flight.hpp"
 #include "telemetry/product_assembler.hpp"
 
 #include <algorithm>
@@ -41,6 +42,7 @@ Result<RecordedLanding> RecordedLanding::with(const dictionary::Dictionary& dict
           "nav_velocity_z_mps", "nav_attitude_w", "nav_attitude_x", "nav_attitude_y", "nav_attitude_z"});
     find(made.belief_, "GncBelief", {"attitude_uncertainty_deg", "velocity_uncertainty_mps", "altitude_uncertainty_m"});
     find(made.solution_, "ParametersHeld", {"entry_sclk", "target_radius_m"});
+    find(made.pyros_, "PyroStatus", {"pyro_entry_balance_1", "pyro_entry_balance_2", "pyro_entry_balance_3"});
     if (!missing.empty()) return Error{"the dictionary lacks what a path is made of: " + missing};
     return made;
 }
@@ -64,7 +66,22 @@ void RecordedLanding::add(std::span<const std::uint8_t> packet) {
     if (decoded_.packet == imu_table_.packet || decoded_.packet == radar_table_.packet) return add_rows(packet);
     if (decoded_.packet == navigation_.packet) return add_navigated();
     if (decoded_.packet == belief_.packet) return add_belief();
+    if (decoded_.packet == pyros_.packet) return add_balances(at);
     if (decoded_.packet == solution_.packet) add_solution();
+}
+
+void RecordedLanding::add_balances(Sclk at) {
+    const auto fired = static_cast<double>(flight::PyroState::fired);
+    for (std::size_t pair = 0; pair < balances_.size(); ++pair)
+        if (value(pyros_, pair) == fired) balances_.at(pair) = std::min(balances_.at(pair).value_or(at), at);
+}
+
+std::vector<Sclk> RecordedLanding::balance_pairs_gone() const {
+    std::vector<Sclk> gone;
+    for (const auto& pair : balances_)
+        if (pair) gone.push_back(*pair);
+    std::ranges::sort(gone);
+    return gone;
 }
 
 std::optional<Sclk> RecordedLanding::reported(const std::string& event) const {

@@ -7,6 +7,7 @@
 #include "flight/gnc/navigation/strapdown.hpp"
 #include "telemetry/decommutator.hpp"
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -62,6 +63,8 @@ class RecordedLanding {
     Sclk imu_began() const { return imu_began_; }
     std::optional<double> target_radius_m() const { return target_radius_m_; }
     std::optional<Sclk> entry() const { return entry_; }  ///< of the last parameters
+    /// When each pair of the entry balance masses that went was first reported gone, in order.
+    std::vector<Sclk> balance_pairs_gone() const;
     /// When flight first reported an event, by the name of its packet.
     std::optional<Sclk> reported(const std::string& event) const;
     std::uint64_t not_decoded() const { return not_decoded_; }
@@ -86,16 +89,18 @@ class RecordedLanding {
     void add_navigated();
     void add_belief();
     void add_solution();
+    void add_balances(Sclk at);
 
     const dictionary::Dictionary* dictionary_;
     telemetry::Decommutator decommutator_;
     telemetry::Decoded decoded_;
-    Fields imu_table_, radar_table_, imu_row_, beam_row_, navigation_, belief_, solution_;
+    Fields imu_table_, radar_table_, imu_row_, beam_row_, navigation_, belief_, solution_, pyros_;
     std::map<std::uint32_t, flight::ImuSample> imu_;
     std::map<std::int64_t, std::map<std::uint8_t, flight::RadarBeam>> beams_;  ///< by tick and beam
     std::map<std::int64_t, flight::gnc::NavigatedState> navigated_;            ///< by tick
     std::map<std::int64_t, Believed> beliefs_;                                 ///< by tick
     Sclk imu_began_;
+    std::array<std::optional<Sclk>, 3> balances_;
     std::optional<double> target_radius_m_;
     std::optional<Sclk> entry_;
     Sclk solution_at_;

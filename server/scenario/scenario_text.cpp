@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/scenario/scenario_text.hpp"
 
+#include "server/scenario/air_table.hpp"
+
 #include <chrono>
 #include <cmath>
 #include <fmt/format.h>
@@ -19,6 +21,7 @@ using simulation::Scenario;
 
 constexpr std::size_t scenario_octets_max = 1 << 20;  // chosen: shipped scenarios are under 2 KiB
 constexpr int like_chain_max = 8;                     // chosen
+constexpr const char* shipped_extension = ".textproto";
 
 /// Binds a field of the message to the member of the struct with the same name and number.
 template <typename Struct>
@@ -105,6 +108,7 @@ const Bindings<simulation::Limits> limit_fields = {
     AEOLIS_BIND(Limits, parachute_mach_max),
     AEOLIS_BIND(Limits, parachute_pressure_max_Pa),
     AEOLIS_BIND(Limits, timeline_margin_min_s),
+    AEOLIS_BIND(Limits, campaign_within_min_fraction),
 };
 const Bindings<simulation::Radio> radio_fields = {
     AEOLIS_BIND(Radio, light_time_s),
@@ -131,6 +135,16 @@ const Bindings<Scenario> trigger_fields = {
     AEOLIS_BIND(Scenario, parachute_speed_mps),
     AEOLIS_BIND(Scenario, heatshield_speed_mps),
     AEOLIS_BIND(Scenario, backshell_altitude_m),
+};
+const Bindings<simulation::AirRow> air_fields = {
+    AEOLIS_BIND(AirRow, altitude_m),
+    AEOLIS_BIND(AirRow, temperature_K),
+    AEOLIS_BIND(AirRow, density_kgm3),
+};
+const Bindings<simulation::WindRow> wind_fields = {
+    AEOLIS_BIND(WindRow, altitude_m),
+    AEOLIS_BIND(WindRow, east_mps),
+    AEOLIS_BIND(WindRow, north_mps),
 };
 const Bindings<simulation::DensityScale> density_fields = {
     AEOLIS_BIND(DensityScale, altitude_m),
@@ -360,6 +374,9 @@ Result<Scenario> scenario_from_message(const v1::Scenario& message) {
     if (!faults.empty()) return Error{joined(faults, "")};
     if (message.name().empty()) return Error{"name: missing"};
     if (!message.like().empty()) return Error{"like: only a file can be like another"};
+    if (!message.air_table().empty()) return Error{"air_table: only a file can name another"};
+    if (!message.wind_table().empty()) return Error{"wind_table: only a file can name another"};
+    if (message.air_table_landing_m() != 0.0) return Error{"air_table_landing_m: only a file can name a table"};
     if (message.entry_scet().empty()) return Error{"entry_scet: missing"};
     const auto entry_scet = scet_from_text(message.entry_scet());
     if (!entry_scet)
@@ -390,6 +407,8 @@ Result<Scenario> scenario_from_message(const v1::Scenario& message) {
         read(row, density_fields, scale);
         scenario.density_scale.push_back(scale);
     }
+    for (const auto& row : message.air()) read(row, air_fields, scenario.air.emplace_back());
+    for (const auto& row : message.winds()) read(row, wind_fields, scenario.winds.emplace_back());
     if (message.test_venue() != v1::TEST_VENUE_UNSPECIFIED) {
         const auto venue = named<simulation::TestVenue>(message.test_venue(),
                                                         v1::TestVenue_IsValid(message.test_venue()), "test_venue");
@@ -454,6 +473,8 @@ v1::Scenario scenario_to_message(const Scenario& scenario) {
     write_links(scenario.radio, *message.mutable_radio());
     write(scenario, trigger_fields, *message.mutable_triggers());
     for (const auto& scale : scenario.density_scale) write(scale, density_fields, *message.add_density_scale());
+    for (const auto& row : scenario.air) write(row, air_fields, *message.add_air());
+    for (const auto& row : scenario.winds) write(row, wind_fields, *message.add_winds());
     message.set_test_venue(static_cast<v1::TestVenue>(static_cast<int>(scenario.test_venue) + 1));
     message.set_telemetry_plan(scenario.telemetry_plan == flight::Plan::wideband ? v1::TELEMETRY_PLAN_WIDEBAND
                                                                                  : v1::TELEMETRY_PLAN_MISSION);
@@ -524,21 +545,51 @@ void clear_lists_of(const v1::Scenario& message, v1::Scenario& base) {
         if (field->is_repeated()) base.GetReflection()->ClearField(&base, field);
 }
 
+/// Replaces the names of tables by their rows.
+Result<void> fill_tables(v1::Scenario& message, const std::filesystem::path& folder) {
+    if (const std::string name = std::exchange(*message.mutable_air_table(), {}); !name.empty()) {
+        if (message.air_size() > 0) return Error{"air_table: the scenario has air of its own"};
+        const auto table = air_table_from_file(folder / name, message.air_table_landing_m());
+        if (!table) return Error{"air_table: " + table.error().message};
+        for (const auto& row : table->air) write(row, air_fields, *message.add_air());
+        if (message.winds_size() == 0 && message.wind_table().empty())
+            for (const auto& row : table->winds) write(row, wind_fields, *message.add_winds());
+    } else if (message.air_table_landing_m() != 0.0) {
+        return Error{"air_table_landing_m: there is no air_table"};
+    }
+    message.clear_air_table_landing_m();
+    if (const std::string name = std::exchange(*message.mutable_wind_table(), {}); !name.empty()) {
+        if (message.winds_size() > 0) return Error{"wind_table: the scenario has winds of its own"};
+        const auto winds = wind_table_from_file(folder / name);
+        if (!winds) return Error{"wind_table: " + winds.error().message};
+        for (const auto& row : *winds) write(row, wind_fields, *message.add_winds());
+    }
+    return {};
+}
+
 /// The message with its base merged in, recursively; `further` bases are allowed.
-Result<v1::Scenario> whole(const std::filesystem::path& file, int further) {
+Result<v1::Scenario> whole(const std::filesystem::path& file, const std::filesystem::path& shipped, int further) {
     const auto text = text_of(file);
     if (!text) return text.error();
     auto message = parsed(*text, file.string());
-    if (!message || message->like().empty()) return message;
+    if (!message) return message;
+    if (const auto filled = fill_tables(*message, file.parent_path()); !filled)
+        return Error{fmt::format("{}: {}", file.string(), filled.error().message)};
+    if (message->like().empty()) return message;
 
     const std::string like = std::exchange(*message->mutable_like(), {});
     const auto refused = [&](const std::string& why) { return Error{fmt::format("{}: like: {}", file.string(), why)}; };
     if (like.find('/') != std::string::npos) return refused('\'' + like + "' is a path, not a scenario beside it");
     if (further == 0) return refused("too many are like one another: is it a circle?");
-    auto base = whole(file.parent_path() / (like + file.extension().string()), further - 1);
+    // Beside it, else among those that ship.
+    std::filesystem::path other = file.parent_path() / (like + file.extension().string());
+    std::error_code ignored;
+    if (!shipped.empty() && !std::filesystem::exists(other, ignored)) other = shipped / (like + shipped_extension);
+    auto base = whole(other, shipped, further - 1);
     if (!base) return refused(base.error().message);
     base->clear_name();  // the name is not inherited
     clear_lists_of(*message, *base);
+    if (message->air_size() > 0) base->clear_density_scale();  // it belongs to the other's air
     base->MergeFrom(*message);
     return base;
 }
@@ -551,8 +602,8 @@ Result<Scenario> scenario_from_text(std::string_view text, const std::string& fi
     return checked(*message, file);
 }
 
-Result<Scenario> scenario_from_file(const std::filesystem::path& file) {
-    const auto message = whole(file, like_chain_max);
+Result<Scenario> scenario_from_file(const std::filesystem::path& file, const std::filesystem::path& shipped) {
+    const auto message = whole(file, shipped, like_chain_max);
     if (!message) return message.error();
     return checked(*message, file.string());
 }

@@ -8,15 +8,9 @@
 namespace aeolis::simulation {
 namespace {
 
-struct AtmosphereRow {
-    double altitude_m;  ///< above the landing radius
-    double temperature_K;
-    double density_kgm3;
-};
-
 // clang-format off
 /// Gale in the season of the landing, from a general circulation model. [gale-atmosphere]
-constexpr std::array<AtmosphereRow, 35> gale{{
+constexpr std::array<AirRow, 35> gale{{
     {0,        194.541, 0.0195581    },
     {7352.94,  218.893, 0.00938476   },
     {14705.9,  200.782, 0.00518105   },
@@ -79,14 +73,14 @@ double scale_at(std::span<const DensityScale> scales, double altitude_m) {
 
 }  // namespace
 
-Atmosphere::Atmosphere(std::span<const DensityScale> scales) {
-    static_assert(gale.size() == table_rows);
+Atmosphere::Atmosphere(std::span<const DensityScale> scales, std::span<const AirRow> air) {
+    const std::span<const AirRow> table = air.empty() ? std::span<const AirRow>{gale} : air;
     for (std::size_t i = 0; i < rows; ++i) {
         const double altitude_m = bottom_m + spacing_m * static_cast<double>(i);
         std::size_t above = 1;
-        while (above + 1 < gale.size() && altitude_m > gale[above].altitude_m) ++above;
-        const AtmosphereRow& low = gale[above - 1];
-        const AtmosphereRow& high = gale[above];
+        while (above + 1 < table.size() && altitude_m > table[above].altitude_m) ++above;
+        const AirRow& low = table[above - 1];
+        const AirRow& high = table[above];
         const double part = (altitude_m - low.altitude_m) / (high.altitude_m - low.altitude_m);
         const double log_low = std::log(low.density_kgm3);
         log_density_[i] =
@@ -96,8 +90,9 @@ Atmosphere::Atmosphere(std::span<const DensityScale> scales) {
     }
 }
 
-Atmosphere::Atmosphere(std::span<const DensityScale> scales, double density_fraction, Random random)
-    : Atmosphere(scales) {
+Atmosphere::Atmosphere(std::span<const DensityScale> scales, std::span<const AirRow> air, double density_fraction,
+                       Random random)
+    : Atmosphere(scales, air) {
     departure_fraction_ = 0.8 * density_fraction * random.normal();
     wave_fraction_ = 0.6 * std::numbers::sqrt2 * density_fraction;
     wave_phase_rad_ = 2.0 * std::numbers::pi * random.uniform();

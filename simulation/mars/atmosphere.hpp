@@ -15,21 +15,27 @@ struct Air {
     double speed_of_sound_mps = 0.0;
 };
 
-/// The air above Gale: a published table (see atmosphere.cpp), the scenario's scale by height, and a case's departure.
+/// The air above the landing site: the scenario's table or that of Gale (see atmosphere.cpp), its scale by height, and a
+/// case's departure.
 ///
+/// Tables are sampled every kilometre.
 /// Density is interpolated exponentially, temperature and scale linearly; outside the table its last layers continue.
 /// Range −1 … 250 km above the landing radius; above 250 km there is no air.
 /// The departure is our assumption: four fifths of the scenario's fraction at all heights alike, three fifths as a wave
 /// over height.
 class Atmosphere {
   public:
-    explicit Atmosphere(std::span<const DensityScale> scales);  ///< without departure
-    Atmosphere(std::span<const DensityScale> scales, double density_fraction, Random random);
+    /// Without departure. `air`: empty: Gale's.
+    explicit Atmosphere(std::span<const DensityScale> scales, std::span<const AirRow> air = {});
+    Atmosphere(std::span<const DensityScale> scales, std::span<const AirRow> air, double density_fraction,
+               Random random);
 
     Air at(double altitude_m) const;
+    /// The case's departure: at all heights alike, and the phase of its wave over height.
+    double departure_fraction() const { return departure_fraction_; }
+    double wave_phase_rad() const { return wave_phase_rad_; }
 
   private:
-    static constexpr std::size_t table_rows = 35;
     static constexpr std::size_t rows = 257;  ///< scale and table together, every kilometre from −2 km
     double departure(double altitude_m) const;
 

@@ -35,6 +35,9 @@ class Terrain {
     };
     Meeting meet(const Vector3& p_MoB_M, const Vector3& direction_M) const;
 
+    double height_at_target_m() const { return height_m_; }
+    const Vector3& rise_M() const { return rise_M_; }
+
   private:
     double landing_radius_m_;
     double height_m_;

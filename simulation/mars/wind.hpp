@@ -4,20 +4,30 @@
 #include "simulation/mars/gusts.hpp"
 #include "simulation/mars/mars.hpp"
 #include "simulation/random.hpp"
+#include "simulation/scenario.hpp"
+
+#include <span>
+#include <vector>
 
 namespace aeolis::simulation {
 
 /// Wind over Gale: steady wind, a case's own constant part, shear, and gusts.
 ///
-/// No measured winds are published for the landing, so all of it is our assumption. The steady wind is the scenario's.
+/// No measured winds are published for the landing, so all of it is our assumption. The steady wind and its table by
+/// height are the scenario's.
 /// Shear, below 5 km, is two waves over height, half as strong as the case's part. These are horizontal everywhere.
 /// Gusts change along the flight.
 class Wind {
   public:
-    Wind(double steady_east_mps, double steady_north_mps, double deviation_mps, Random random, const Gusts& gusts);
+    Wind(double steady_east_mps, double steady_north_mps, double deviation_mps, Random random, const Gusts& gusts,
+         std::span<const WindRow> by_height = {});
 
     /// Velocity of the air relative to rotating Mars [m/s] in M, at `p_MoB_M`, which has the height `altitude_m`.
     Vector3 at(const Vector3& p_MoB_M, double altitude_m) const;
+
+    /// Steady wind and the case's own part, at all heights.
+    double east_mps() const { return east_mps_; }
+    double north_mps() const { return north_mps_; }
 
     /// Advances the gusts by `step_s` of flight at this position and velocity.
     void advance(const Vector3& p_MoB_M, const Vector3& v_MB_M, double altitude_m, double step_s) {
@@ -27,6 +37,7 @@ class Wind {
   private:
     double east_mps_, north_mps_, wave_mps_;
     double east_phase_rad_, north_phase_rad_;
+    std::vector<WindRow> by_height_;
     Gusts gusts_;
 };
 

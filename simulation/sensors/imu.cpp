@@ -25,6 +25,14 @@ void Imu::disperse(const Dispersions& dispersions, Random random, Random mountin
     *this = other;
 }
 
+void Imu::add_draws(std::vector<Draw>& draws) const {
+    add_axes(draws, "imu_bias", "mps2", accelerometer_bias_mps2_);
+    add_axes(draws, "imu_scale", "fraction", accelerometer_scale_);
+    add_axes(draws, "imu_misalignment", "rad", rotation_vector(q_SensorsB_));
+    add_axes(draws, "gyro_bias", "rps", gyro_bias_rps_);
+    add_axes(draws, "gyro_scale", "fraction", gyro_scale_);
+}
+
 void Imu::integrate(const Vector3& specific_force_M, const Quaternion& q_MB_start, const Quaternion& q_MB_end,
                     double step_s) {
     Quaternion middle{q_MB_start.coeffs() + (q_MB_start.dot(q_MB_end) < 0.0 ? -1.0 : 1.0) * q_MB_end.coeffs()};

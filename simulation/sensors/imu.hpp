@@ -2,6 +2,7 @@
 #pragma once
 
 #include "flight/devices/device_messages.hpp"
+#include "simulation/draws.hpp"
 #include "simulation/random.hpp"
 #include "simulation/scenario.hpp"
 #include "simulation/vectors.hpp"
@@ -21,6 +22,7 @@ class Imu {
     /// Draws the errors anew; the reading under way is kept.
     void disperse(const Dispersions& dispersions, Random random, Random mounting);
     const Vector3& accelerometer_bias_mps2() const { return accelerometer_bias_mps2_; }
+    void add_draws(std::vector<Draw>& draws) const;
 
     /// Adds a step's motion: mean specific force in M, turned by the middle attitude, and attitudes at both ends.
     void integrate(const Vector3& specific_force_M_mps2, const Quaternion& q_MB_start, const Quaternion& q_MB_end,

@@ -42,6 +42,12 @@ bool Radar::hides(const Vector3& to_heatshield_M, const Vector3& direction_M) {
     return off_rad <= std::asin(heatshield_radius_m / distance_m) + half_beam_rad;
 }
 
+void Radar::add_draws(std::vector<Draw>& draws) const {
+    draws.push_back({"radar_range_fraction", range_scale_});
+    for (std::size_t beam = 0; beam < beams; ++beam)
+        draws.push_back({"radar_velocity_" + std::to_string(beam) + "_mps", velocity_bias_mps_.at(beam)});
+}
+
 flight::RadarBeam Radar::measure(std::uint32_t beam, const PointMass& at, const Quaternion& q_MB,
                                  const Terrain& terrain) {
     flight::RadarBeam reading;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "flight/devices/device_messages.hpp"
+#include "simulation/draws.hpp"
 #include "simulation/mars/point_mass.hpp"
 #include "simulation/mars/terrain.hpp"
 #include "simulation/random.hpp"
@@ -23,6 +24,8 @@ class Radar {
   public:
     /// `dropouts` draws the readings that fail.
     Radar(const Dispersions& dispersions, Random random, Random dropouts);
+
+    void add_draws(std::vector<Draw>& draws) const;
 
     static constexpr std::uint32_t beams = 6;
     static std::array<double, 3> direction_B(std::uint32_t beam);

@@ -32,11 +32,11 @@ Vehicle::Vehicle(const Scenario& scenario, const PointMass& start, const Quatern
       aeroshell_factors_{
           dispersed(scenario.dispersions.drag_fraction, Random{seed, case_number, Stream::drag}),
           dispersed(scenario.dispersions.slow_drag_fraction, Random{seed, case_number, Stream::slow_drag})},
-      atmosphere_(scenario.density_scale, scenario.dispersions.density_fraction,
+      atmosphere_(scenario.density_scale, scenario.air, scenario.dispersions.density_fraction,
                   Random{seed, case_number, Stream::density}),
       wind_(scenario.steady_wind_east_mps, scenario.steady_wind_north_mps, scenario.dispersions.wind_mps,
             Random{seed, case_number, Stream::wind},
-            Gusts{scenario.dispersions.gust_mps, Random{seed, case_number, Stream::gust}}),
+            Gusts{scenario.dispersions.gust_mps, Random{seed, case_number, Stream::gust}}, scenario.winds),
       body_{start.p_MoB_M, start.v_MB_M, q_MB, {0.0, 0.0, spin_rps}}, q_MRover_(q_MB), configuration_(scenario),
       thrusters_from_B_m_(on_axis(Configuration::at_entry(scenario).centre_B_m())),
       engines_from_B_m_(on_axis(Configuration::at_powered_descent(scenario).centre_B_m())) {
@@ -56,6 +56,20 @@ void Vehicle::disperse(const Scenario& scenario, const PointMass& at, std::uint6
     wind_ = drawn.wind_;
     body_.p_MoB_M = at.p_MoB_M;
     body_.v_MB_M = at.v_MB_M;
+}
+
+void Vehicle::add_draws(const Scenario& scenario, std::vector<Draw>& draws) const {
+    draws.push_back({"density_fraction", atmosphere_.departure_fraction()});
+    draws.push_back({"density_wave_phase_rad", atmosphere_.wave_phase_rad()});
+    draws.push_back({"drag_fraction", aeroshell_factors_[0] - 1.0});
+    draws.push_back({"slow_drag_fraction", aeroshell_factors_[1] - 1.0});
+    draws.push_back({"mass_fraction", configuration_.masses().entry_kg / scenario.masses.entry_kg - 1.0});
+    draws.push_back({"wind_east_mps", wind_.east_mps()});
+    draws.push_back({"wind_north_mps", wind_.north_mps()});
+    draws.push_back({"parachute_drag_fraction", parachute_area_m2_ / scenario.parachute_drag_area_m2 - 1.0});
+    draws.push_back({"parachute_plane_deg", parachute_plane_rad_ / degree_rad});
+    draws.push_back({"terrain_height_m", terrain_.height_at_target_m()});
+    draws.push_back({"terrain_slope_deg", std::atan(terrain_.rise_M().norm()) / degree_rad});
 }
 
 void Vehicle::fire(flight::PyroId pyro, double now_s) {

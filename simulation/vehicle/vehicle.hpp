@@ -2,6 +2,7 @@
 #pragma once
 
 #include "flight/devices/device_messages.hpp"
+#include "simulation/draws.hpp"
 #include "simulation/mars/atmosphere.hpp"
 #include "simulation/mars/point_mass.hpp"
 #include "simulation/mars/terrain.hpp"
@@ -57,6 +58,9 @@ class Vehicle {
     const Bridle& bridle() const { return bridle_; }
     const SeparatedBodies& separated() const { return separated_; }
     const Terrain& terrain() const { return terrain_; }
+
+    /// Errors of this case. `scenario` has the values without them.
+    void add_draws(const Scenario& scenario, std::vector<Draw>& draws) const;
 
     /// Present aerodynamic quantities.
     struct Flow {

@@ -191,7 +191,7 @@ TEST_CASE("a campaign that cannot be flown, or does not exist, is refused by nam
         {"GET", "/api/v1/campaigns/..%2Fa", "", 404, "campaign"},
         {"GET", "/api/v1/campaigns/moon-1/touchdowns", "", 404, "moon-1"},
         {"POST", "/api/v1/campaigns/moon-1/cancel", "", 404, "moon-1"},
-        {"GET", "/api/v1/campaigns/old-1", "", 409, "schema_version: 3 there, 1 here"},
+        {"GET", "/api/v1/campaigns/old-1", "", 409, "schema_version: 3 there, 2 here"},
         {"GET", "/api/v1/campaigns/old-1/touchdowns", "", 409, "schema_version"},
         {"GET", "/api/v1/campaigns/other-1", "", 409, "campaign-other-1.db"},
         {"GET", "/api/v1/campaigns/old-1/touchdowns?after=x", "", 400, "after"},

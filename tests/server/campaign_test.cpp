@@ -276,9 +276,9 @@ TEST_CASE("a case that throws is lost, with its reason, and the campaign goes on
     CHECK(summary.failures[0].outcome == "lost");
     CHECK_THAT(summary.failures[0].reason, Catch::Contains("number != 3"));
     CHECK(summary.failures[1].reason == "no room");
-    const auto text = campaign_table(summary, {.scenario = "made_up.textproto"});
+    const auto text = campaign_table(summary, {}, {.scenario = "made_up.textproto"});
     CHECK_THAT(text, Catch::Contains("aeolis rehearse --scenario made_up.textproto --seed 1 --case 3"));
-    const auto json = json_of(campaign_json(summary, {}));
+    const auto json = json_of(campaign_json(summary, {}, {}));
     CHECK(number_at(json, {"failed"}) == 2);
     CHECK(number_at(json, {"outcomes", "lost"}) == 2);
 }
@@ -299,10 +299,10 @@ TEST_CASE("a case that lands outside the limits is a touchdown, counted and name
     CHECK(summary.outside_limits == 1);
     REQUIRE(summary.outside.size() == 1);
     CHECK(summary.outside[0].number == 4);
-    const auto text = campaign_table(summary, {.scenario = "made_up.textproto"});
+    const auto text = campaign_table(summary, {}, {.scenario = "made_up.textproto"});
     CHECK_THAT(text, Catch::Contains("1 landed outside limits"));
     CHECK_THAT(text, Catch::Contains("propellant_left_min_kg 1.2 instead of at least 4"));
-    CHECK(number_at(json_of(campaign_json(summary, {})), {"outside_limits"}) == 1);
+    CHECK(number_at(json_of(campaign_json(summary, {}, {})), {"outside_limits"}) == 1);
 }
 
 TEST_CASE("a landing that diverges ends as lost with reason and cycle, or as what it came to", "[campaign]") {
@@ -451,6 +451,79 @@ TEST_CASE("five hundred dispersed cases land within the published bands", "[.lon
     check_bands(500);
 }
 
+TEST_CASE("a campaign is studied by the program: verdict, table of all numbers, correlations, ellipses, comparison",
+          "[campaign][analysis]") {
+    if (program() == nullptr) return;
+    const test::TemporaryFolder folder;
+    const auto scenario = light_scenario(folder);
+    const auto in = [&](const char* name) { return (folder / name).string(); };
+    const auto ran = [&](std::vector<std::string> arguments) {
+        return wait_for(start(program(), std::move(arguments), folder / "out"), folder / "out");
+    };
+    for (const char* seed : {"1", "2"}) {
+        const auto flown =
+            ran({"--scenario", scenario, "--cases", "12", "--seed", seed, "--json", "--results", in(seed) + ".db"});
+        const auto json = json_of(flown.out);
+        // The exit code is the verdict's.
+        const bool passed = json.fields().at("limits").struct_value().fields().at("verdict").string_value() == "passed";
+        CHECK(flown.code == (passed ? 0 : 1));
+        CHECK(number_at(json, {"limits", "within_limits"}) <= 12.0);
+        CHECK(json.fields().at("limits").struct_value().fields().at("limits").list_value().values_size() >= 5);
+    }
+    const auto table = ran({"export", in("1") + ".db", "--csv", in("cases.csv")});
+    INFO(table.out);
+    CHECK(table.code == 0);
+    std::ifstream csv{folder / "cases.csv"};
+    std::string heading, row;
+    int rows = 0;
+    std::getline(csv, heading);
+    while (std::getline(csv, row)) ++rows;
+    CHECK(rows == 12);
+    for (const char* column : {",miss_m", ",draw.density_fraction", ",draw.wind_east_mps",
+                               ",event.parachute_deploy.east_m", ",event.touchdown.e_s"})
+        CHECK_THAT(heading, Catch::Contains(column));
+
+    const auto correlated = ran({"correlate", in("1") + ".db", "--most", "3"});
+    INFO(correlated.out);
+    CHECK(correlated.code == 0);
+    CHECK_THAT(correlated.out, Catch::Contains("parachute_pressure_Pa") && Catch::Contains("density_fraction"));
+    const auto ellipses = ran({"footprints", in("1") + ".db"});
+    CHECK(ellipses.code == 0);
+    for (const char* at : {"parachute", "backshell separation", "touchdown"})
+        CHECK_THAT(ellipses.out, Catch::Contains(at));
+    const auto both = ran({"compare", in("1") + ".db", in("2") + ".db"});
+    CHECK(both.code == 0);
+    CHECK_THAT(both.out, Catch::Contains("propellant_kg") && Catch::Contains("quantities differ"));
+
+    const auto studied = ran({"sensitivity", "--scenario", scenario, "--cases", "2", "--folder", folder.path().string(),
+                              "--csv", in("tornado.csv")});
+    INFO(studied.out);
+    CHECK(studied.code == 0);
+    for (const char* group : {"delivery", "knowledge", "attitude", "imu", "density", "drag", "wind", "parachute",
+                              "radar", "all errors at once", "root of sum of squares"})
+        CHECK_THAT(studied.out, Catch::Contains(group));
+    CHECK(std::filesystem::exists(folder / "tornado.csv"));
+
+    // One line each.
+    const std::vector<std::pair<std::vector<std::string>, const char*>> refused{
+        {{"export", in("1") + ".db", "--csv", in("cases.csv")}, "cases.csv is there already"},
+        {{"export", in("none.db"), "--csv", in("new.csv")}, "none.db: "},
+        {{"compare", in("1") + ".db", in("cases.csv")}, "cases.csv: "},
+        {{"correlate", in("1") + ".db", "--figure", "luck"}, "has no quantity 'luck'"},
+        {{"footprints"}, "FILE is required"},
+        {{"sensitivity", "--scenario", scenario}, "--cases is required"},
+        {{"--scenario", scenario}, "--cases is required"},
+        {{"--cases", "3"}, "--scenario is required"},
+    };
+    for (const auto& [arguments, says] : refused) {
+        const auto ended = ran(arguments);
+        INFO(arguments.front() << " -> " << ended.code << ": " << ended.out);
+        CHECK(ended.code != 0);
+        CHECK_THAT(ended.out, Catch::Contains(says));
+        CHECK(std::ranges::count(ended.out, '\n') == 1);
+    }
+}
+
 TEST_CASE("the progress line tells cases, rate and what remains", "[campaign]") {
     CHECK(progress_line({.done = 0, .of = 10}) == "[>                             ] 0/10");
     CHECK(progress_line({.done = 15, .of = 30, .flown = 10, .wall_s = 5.0}) ==
@@ -511,10 +584,10 @@ TEST_CASE("a campaign counts the cases that were struck by what they had let go,
     CHECK(summary.heatshield_least_m.count == 0);
     CHECK(summary.backshell_least_m.count == 9);
     CHECK(summary.backshell_least_m.least == 7.5);
-    const auto json = json_of(campaign_json(summary, {}));
+    const auto json = json_of(campaign_json(summary, {}, {}));
     CHECK(number_at(json, {"recontacts"}) == 1);
     CHECK(number_at(json, {"backshell_least_m", "max"}) == 310.0);
-    CHECK_THAT(campaign_table(summary, {}), Catch::Contains("1 recontacts; backshell never nearer than 7.5 m"));
+    CHECK_THAT(campaign_table(summary, {}, {}), Catch::Contains("1 recontacts; backshell never nearer than 7.5 m"));
 }
 
 }  // namespace server_campaign_test

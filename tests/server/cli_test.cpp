@@ -416,10 +416,111 @@ TEST_CASE("the program rebuilds a landing's path from its archive", "[cli][archi
     while (std::getline(path, line)) ++rows;
     CHECK(rows > 8 * 440);
 
-    const auto again = run(program(), of + " --out " + in("path.csv"));
-    CHECK(again.code == 1);
-    CHECK_THAT(again.text, Catch::Contains("path.csv is there already"));
-    CHECK(run(program(), "reconstruct --run 2 --archive " + in("a.db")).code == 1);
+    CHECK_THAT(rebuilt.text, Catch::Contains("density by drag") && Catch::Contains("(last: the parachute)"));
+
+    // The place of the rover, as a rehearsal's score has it: the path is known better by it.
+    CHECK_THAT(rebuilt.text, Catch::Contains("--site says where the rover stands"));
+    const auto sited = run(program(), of + " --site -4.652140 137.471081 3391148");
+    INFO(sited.text);
+    CHECK(sited.code == 0);
+    CHECK_THAT(sited.text, !Catch::Contains("--site says"));
+
+    // One line each, and nothing is written.
+    const std::array<std::tuple<std::string, int, std::string>, 9> refused{{
+        {of + " --out " + in("path.csv"), 1, "path.csv is there already"},
+        {of + " --out " + in("no/path.oem"), 1, "cannot be written: there is no folder"},
+        {of + " --out " + in("path.txt"), 2, "ends neither in .csv nor in .oem, .aem, .bsp, .bc or .tsc"},
+        {of + " --site 4 5", 2, "--site"},
+        {of + " --site-sigma 3", 2, "--site-sigma requires --site"},
+        {of + " --site -4.6 12.0 3391148", 1, "the landing site is 6"},
+        {of + " --site -4.652140 137.471081 3391.148", 1, "km from where the path ends"},
+        {"reconstruct --run 2 --archive " + in("a.db"), 1, "reconstruct: no run 2"},
+        {"reconstruct --run 1 --archive " + in("b.db"), 1, "b.db: unable to open database file"},
+    }};
+    for (const auto& [arguments, code, says] : refused) {
+        const auto ended = run(program(), arguments);
+        INFO(arguments << " -> " << ended.code << ": " << ended.text);
+        CHECK(ended.code == code);
+        CHECK_THAT(ended.text, Catch::Contains(says));
+        CHECK(std::count(ended.text.begin(), ended.text.end(), '\n') == 1);
+    }
+}
+
+TEST_CASE("a rebuilt path leaves in each format of the field, and lies on itself when it is laid over its run",
+          "[cli][archive][spice][R52]") {
+    if (program() == nullptr) return;
+    const aeolis::test::TemporaryFolder folder;
+    const auto in = [&](const std::string& name) { return (folder.path() / name).string(); };
+    REQUIRE(run(program(), "rehearse --scenario nominal_auto --archive " + in("a.db")).code == 0);
+    const std::string of = " --run 1 --archive " + in("a.db");
+    const std::array<std::pair<const char*, const char*>, 5> formats{{{"oem", "CCSDS_OEM_VERS = 2.0"},
+                                                                      {"aem", "CCSDS_AEM_VERS = 2.0"},
+                                                                      {"bsp", "DAF/SPK"},
+                                                                      {"bc", "DAF/CK"},
+                                                                      {"tsc", "KPL/SCLK"}}};
+    const auto text_of = [](const std::string& file) {
+        std::ifstream from{file, std::ios::binary};
+        return std::string{std::istreambuf_iterator<char>{from}, {}};
+    };
+    for (const auto& [ending, begins] : formats) {
+        const std::string file = in(std::string{"path."} + ending);
+        const auto made = run(program(), "reconstruct" + of + " --out " + file);
+        INFO(made.text);
+        CHECK(made.code == 0);
+        CHECK_THAT(text_of(file), Catch::StartsWith(begins));
+    }
+    CHECK_THAT(run(program(), "reconstruct" + of + " --out " + in("clock.tsc")).text,
+               Catch::Contains("The run's clock is in "));
+
+    // The path over itself: what is left is a kernel's own interpolation. What flight navigated is off by its errors.
+    for (const char* file : {"path.oem", "path.bsp"}) {
+        const auto over = run(program(), "overlay --rebuilt" + of + " --with " + in(file));
+        INFO(over.text);
+        CHECK(over.code == 0);
+        CHECK_THAT(over.text, Catch::Contains("Apart: 0.0 m root mean square"));
+        CHECK_THAT(over.text, Catch::Contains("TOUCHDOWN"));
+        const auto flown = run(program(), "overlay" + of + " --with " + in(file) + " --out " + in(file) + ".csv");
+        INFO(flown.text);
+        CHECK(flown.code == 0);
+        CHECK_THAT(flown.text, !Catch::Contains("Apart: 0.0 m") && Catch::Contains("BACKSHELL_SEPARATION"));
+        CHECK_THAT(text_of(in(file) + ".csv"), Catch::StartsWith("e_s,sclk,up_m,along_m,right_m,speed_mps\n"));
+    }
+
+    const std::string oem = text_of(in("path.oem"));
+    const auto spoilt = [&](const char* name, const std::string& from, const std::string& to) {
+        std::string text = oem;
+        for (auto at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
+            text.replace(at, from.size(), to);
+        std::ofstream{in(name), std::ios::binary} << text;
+        return in(name);
+    };
+    std::ofstream{in("cut.bsp"), std::ios::binary} << text_of(in("path.bsp")).substr(0, 3000);
+    const std::array<std::tuple<std::string, int, std::string>, 12> refused{{
+        {spoilt("earth.oem", "= MARS", "= EARTH"), 1, "but: MSL about EARTH in EME2000"},
+        {spoilt("frame.oem", "= EME2000", "= ITRF97"), 1, "but: MSL about MARS in ITRF97"},
+        {spoilt("later.oem", "2012-08-06T", "2022-08-06T"), 1, "no instant is in both"},
+        {spoilt("text.oem", " -451.5", " nan451.5"), 1, "is no number"},
+        {spoilt("centre.oem", "CENTER_NAME", "COMMENT"), 1, "the segment has no CENTER_NAME"},
+        {in("cut.bsp"), 1, "cut.bsp: "},
+        {in("path.aem"), 1, "the message begins with CCSDS_AEM_VERS, not CCSDS_OEM_VERS"},
+        {in("path.bc"), 1, "is a kernel of the kind CK, not SPK"},
+        {in("path.tsc"), 1, "path.tsc: "},
+        {in("none.oem"), 1, "none.oem is not there"},
+        {folder.path().string(), 1, "is a folder, not a trajectory"},
+        {in("path.oem") + " --out " + in("path.bsp"), 1, "path.bsp is there already"},
+    }};
+    for (const auto& [with, code, says] : refused) {
+        const auto ended = run(program(), "overlay" + of + " --with " + with);
+        INFO(with << " -> " << ended.code << ": " << ended.text);
+        CHECK(ended.code == code);
+        CHECK_THAT(ended.text, Catch::Contains(says));
+        CHECK(std::count(ended.text.begin(), ended.text.end(), '\n') == 1);
+    }
+    // One of another day is laid over from entry to entry.
+    const auto later = run(program(), "overlay --rebuilt --by-entry" + of + " --with " + in("later.oem"));
+    INFO(later.text);
+    CHECK(later.code == 0);
+    CHECK_THAT(later.text, Catch::Contains("from entry to entry") && Catch::Contains("Apart: "));
 }
 
 TEST_CASE("each question in SQL of docs/archive.md is answered on a landing that was flown", "[cli][archive][R43]") {

@@ -13,13 +13,6 @@ namespace simulation_aeroshell_test {
 using namespace aeolis;
 using namespace aeolis::simulation;
 
-TEST_CASE("the aeroshell's coefficients are the table's where the table stands", "[simulation][aeroshell]") {
-    CHECK(aeroshell_coefficients(24.5, 16.0 * degree_rad).drag == Approx(1.4612));
-    CHECK(aeroshell_coefficients(24.5, 16.0 * degree_rad).lift == Approx(1.04 * 0.3621));
-    CHECK(aeroshell_coefficients(2.0, 0.0).lift == 0.0);
-    CHECK(aeroshell_coefficients(100.0, 0.0).drag == Approx(1.7026));
-}
-
 TEST_CASE("lift over drag at trim is what the published trajectory flew, within four percent",
           "[simulation][aeroshell]") {
     // Mach and lift over drag at E+60, 80, 90, 100, 120, 160 and 200 s. [od137]

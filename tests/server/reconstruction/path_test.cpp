@@ -2,87 +2,24 @@
 // Landings rebuilt from their recordings, and compared with the truth, which the reconstruction never sees.
 #include "server/reconstruction/path.hpp"
 
-#include "simulation/landing.hpp"
-#include "telemetry/packet_stream.hpp"
+#include "tests/server/reconstruction/flown_landing.hpp"
 #include "tests/simulation/gale.hpp"
-#include "tests/support/catch.hpp"
-#include "tests/support/shipped_dictionary.hpp"
-#include "tests/support/telecommands.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <map>
 #include <vector>
 
 namespace server_reconstruction_path_test {
 
 using namespace aeolis;
 using namespace aeolis::reconstruction;
-using flight::gnc::NavigatedState;
+using tests::Flown;
+using tests::NavigatedState;
+using tests::rebuilt;
 
 namespace {
 
 constexpr double degree = flight::gnc::degree;
-
-struct Truth {
-    Sclk at;
-    NavigatedState state;
-};
-
-struct Flown {
-    std::vector<std::vector<std::uint8_t>> packets;
-    std::vector<Truth> truth;  ///< of each tick from entry on
-    Sclk touchdown;
-
-    /// @param reset_e_s  when prime is reset; none: never
-    explicit Flown(const simulation::Scenario& scenario, std::uint64_t seed, std::optional<double> reset_e_s = {}) {
-        simulation::Landing landing{scenario, seed};
-        landing.uplink(test::set_parameters(landing.solution()));
-        for (int tick = 0; tick < 64; ++tick) landing.step();
-        if (reset_e_s) landing.uplink(test::enable_second_chance());
-        landing.uplink(test::do_edl());
-        while (!landing.flown()) {
-            landing.step();
-            if (reset_e_s && landing.truth().e_s >= *reset_e_s) {
-                landing.reset_prime();
-                reset_e_s.reset();
-            }
-            if (landing.truth().e_s < -60.0 || landing.outcome() != simulation::Outcome::running) continue;
-            note(landing.truth(), landing.inspect());
-        }
-        INFO(landing.outcome_reason());
-        REQUIRE(landing.outcome() == simulation::Outcome::touchdown);
-        telemetry::PacketStream stream{landing.recording()};
-        while (const auto packet = stream.next()) packets.emplace_back(packet->begin(), packet->end());
-    }
-    void note(const simulation::TruthState& state, const simulation::Inspection& seen) {
-        truth.push_back({state.sclk,
-                         {flight::gnc::to_vector(state.p_MoB_M_m), flight::gnc::to_vector(state.v_MB_M_mps),
-                          flight::gnc::to_quaternion(seen.q_MB)}});
-    }
-    /// Between ticks; none outside.
-    std::optional<NavigatedState> true_at(Sclk at) const {
-        const auto after = std::ranges::lower_bound(truth, at, {}, &Truth::at);
-        if (after == truth.begin() || after == truth.end()) return std::nullopt;
-        const auto before = std::prev(after);
-        const double part = (at - before->at) / (after->at - before->at);
-        return NavigatedState{before->state.p_MoB_M + part * (after->state.p_MoB_M - before->state.p_MoB_M),
-                              before->state.v_MB_M + part * (after->state.v_MB_M - before->state.v_MB_M),
-                              before->state.q_MB.slerp(part, after->state.q_MB)};
-    }
-};
-
-using Keep = std::function<bool(const std::vector<std::uint8_t>&)>;
-
-Result<Path> rebuilt(const Flown& flown, const SensorErrors& errors = {}, const Keep& keep = {}) {
-    auto recorded = RecordedLanding::with(tests::shipped_dictionary());
-    REQUIRE(recorded);
-    for (const auto& packet : flown.packets)
-        if (!keep || keep(packet)) recorded->add(packet);
-    CHECK(recorded->not_decoded() == 0);
-    return reconstruct(*recorded, errors);
-}
 
 /// Largest errors against the truth, as they are, and in standard deviations of the three axes together.
 struct Worst {
@@ -321,6 +258,37 @@ TEST_CASE("a recording without parameters, readings or navigated states makes no
     CHECK(inertial->beams_taken == 0);
     CHECK(inertial->points.back().sigma_v_mps.norm() > 5.0);
     CHECK(worst_of(*inertial, dispersed()).v_sigmas < sigmas_max);
+}
+
+TEST_CASE("where the rover stands makes the whole path known to tens of metres, and the truth lies within it",
+          "[reconstruction][R52]") {
+    const auto path = rebuilt(dispersed(), {}, {}, dispersed().site);
+    REQUIRE(path);
+    check_claims(*path, dispersed());
+    const Worst all = worst_of(*path, dispersed());
+    const Worst without = worst_of(*rebuilt(dispersed()), dispersed());
+    CHECK(all.p_m < without.p_m / 3.0);
+    CHECK(path->points.back().sigma_p_m.norm() < 2.0 * std::sqrt(3.0) * LandingSite{}.sigma_m);
+    for (const PathPoint& point : path->points)
+        if (point.at - path->entry > 200.0) CHECK(point.sigma_p_m.norm() < 60.0);
+}
+
+TEST_CASE("a landing site that the path cannot have come to is refused with how far it is", "[reconstruction][R52]") {
+    auto elsewhere = *dispersed().site;
+    elsewhere.longitude_deg += 1.0;
+    const auto path = rebuilt(dispersed(), {}, {}, elsewhere);
+    REQUIRE_FALSE(path);
+    CHECK_THAT(path.error().message,
+               Catch::Contains("the landing site is 59.") && Catch::Contains("km from where the path ends, "));
+    const auto flying = rebuilt(
+        dispersed(), {},
+        [&](const auto& packet) {
+            return Apid{static_cast<std::uint16_t>(read_bits(packet, 5, 11))} !=
+                   tests::shipped_dictionary().packet("TOUCHDOWN")->apid;
+        },
+        dispersed().site);
+    REQUIRE_FALSE(flying);
+    CHECK(flying.error().message == "no touchdown was reported: a landing site says nothing of this path");
 }
 
 }  // namespace server_reconstruction_path_test
