@@ -20,6 +20,7 @@ Result<std::string> cluster_identity(sqlite::Database& database);
 /// Facts by name; empty: not known.
 inline constexpr char fact_origin[] = "origin";        ///< identity of the archive that this one follows
 inline constexpr char fact_taken[] = "taken";          ///< where in the engine's stream the newest step was
+inline constexpr char fact_chosen[] = "chosen";        ///< which of its runs are taken; empty: all
 inline constexpr char fact_published[] = "published";  ///< which stream of the engine the acknowledged steps are in
 Result<std::string> cluster_fact(sqlite::Database& database, const std::string& name);
 Result<void> keep_cluster_fact(sqlite::Database& database, const std::string& name, const std::string& value);

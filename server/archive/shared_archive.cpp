@@ -47,6 +47,9 @@ Result<std::string> SharedArchive::identity() {
 Result<std::string> SharedArchive::fact(const std::string& name) {
     return cluster_fact(*database_, name);
 }
+Result<void> SharedArchive::keep_fact(const std::string& name, const std::string& value) {
+    return keep_cluster_fact(*database_, name, value);
+}
 Result<std::string> SharedArchive::followed() {
     return cluster_fact(*database_, fact_origin);
 }

@@ -37,6 +37,7 @@ class SharedArchive {
     /// off here.
     Result<void> stop_following();
     Result<std::string> fact(const std::string& name);
+    Result<void> keep_fact(const std::string& name, const std::string& value);
     Result<std::string> tables();  ///< tables_digest()
 
     Result<std::map<std::uint32_t, PublishedRun>> published();

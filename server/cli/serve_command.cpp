@@ -45,6 +45,7 @@ struct ServeOptions {
     std::string publish_to;              ///< URL; empty: nowhere
     std::string follow;                  ///< URL; empty: no other server is followed
     std::string follow_archive;          ///< of which archive, where the engine has several
+    std::string follow_runs;             ///< numbers and ranges; empty: all runs
     std::filesystem::path follower_key;  ///< signs what people here ask of the origin
     std::uint64_t keep_raw_mb = archive::raw_octets_kept >> 20U;  ///< of each link of a run
     std::string log_level{default_log_level}, log_format = "text";
@@ -206,6 +207,9 @@ cluster::EngineAddress engine_at(cluster::EngineAddress credentials, const std::
 int serve(const ServeOptions& options) {
     set_log(options);
     allow_open_files();
+    const auto runs = options.follow_runs.empty() ? Result<cluster::ChosenRuns>{cluster::ChosenRuns{}}
+                                                  : cluster::ChosenRuns::parse(options.follow_runs);
+    if (!runs) return failed("--follow-runs " + runs.error().message, 2);
     const auto listen = listen_of(options.listen);
     if (!listen)
         return failed(fmt::format("--listen {}: expected ADDRESS:PORT, such as 127.0.0.1:8080", options.listen), 2);
@@ -238,6 +242,7 @@ int serve(const ServeOptions& options) {
                                         .publish_to = engine_at(options.nats, options.publish_to),
                                         .follow_by = engine_at(options.nats, options.follow),
                                         .follow_archive = options.follow_archive,
+                                        .follow_runs = *runs,
                                         .follower_key = options.follower_key},
                                        *dictionary);
     if (!opened) return failed(opened.error().message);
@@ -308,6 +313,10 @@ void add_cluster_options(CLI::App& command, ServeOptions& options) {
     command
         .add_option("--follow-archive", options.follow_archive,
                     "identity of that server's archive, or its beginning, where the engine has several")
+        ->needs(follow);
+    command
+        .add_option("--follow-runs", options.follow_runs,
+                    "the runs to follow, such as 3,5-8,12- (12 and all later ones); all if left out")
         ->needs(follow);
     command
         .add_option("--follower-key", options.follower_key,

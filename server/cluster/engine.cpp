@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/cluster/engine.hpp"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <mutex>
 #include <nats/nats.h>
@@ -45,6 +46,17 @@ std::string without_secrets(const std::string& urls) {
     if (at == std::string::npos) return urls;
     const auto scheme = urls.find("://");
     return (scheme < at ? urls.substr(0, scheme + 3) : "") + urls.substr(at + 1);
+}
+
+/// The URLs between whose commas stands a scheme: a secret may hold commas too.
+std::vector<std::string> each_url(const std::string& urls) {
+    std::vector<std::string> all;
+    for (std::size_t begin = 0; begin != std::string::npos;) {
+        const auto next = std::min(urls.find(",nats://", begin), urls.find(",tls://", begin));
+        all.push_back(urls.substr(begin, next == std::string::npos ? next : next - begin));
+        begin = next == std::string::npos ? next : next + 1;
+    }
+    return all;
 }
 
 std::string text_of(natsStatus status, jsErrCode code) {
@@ -190,7 +202,11 @@ Result<Engine> Engine::connect(const EngineAddress& address, const std::string& 
     auto status = natsOptions_Create(&made);
     const Options options{made};
     const auto then = [&status](natsStatus next) { status = status == NATS_OK ? next : status; };
-    then(natsOptions_SetURL(made, address.url.c_str()));
+    const auto urls = each_url(address.url);
+    std::vector<const char*> servers;
+    servers.reserve(urls.size());
+    for (const auto& url : urls) servers.push_back(url.c_str());
+    then(natsOptions_SetServers(made, servers.data(), static_cast<int>(servers.size())));
     then(natsOptions_SetName(made, name.c_str()));
     then(natsOptions_SetTimeout(made, patience.count()));
     then(natsOptions_SetMaxReconnect(made, -1));
@@ -453,6 +469,8 @@ Result<Listening> Engine::listen(const std::string& subject) {
     if (status != NATS_OK) return state_->refused(subject, status);
     auto state = std::make_unique<Listening::State>();
     state->subscription.reset(subscription);
+    const auto known = natsConnection_FlushTimeout(state_->connection.get(), patience.count());
+    if (known != NATS_OK) return state_->refused(subject, known);
     state->engine = state_->shown;
     state->subject = subject;
     return Listening{std::move(state)};

@@ -21,7 +21,7 @@ namespace aeolis::server::cluster {
 /// credentials keeps them out of
 /// the list of processes.
 struct EngineAddress {
-    std::string url;                    ///< nats://HOST:PORT or tls://HOST:PORT, or several with commas between them
+    std::string url;  ///< nats://HOST:PORT or tls://HOST:PORT, or several such with commas between them
     std::filesystem::path credentials;  ///< a .creds file of a user's JWT and seed; empty: none
     std::string nkey;                   ///< a public nkey, with the file of its seed; empty: none
     std::filesystem::path nkey_seed;
@@ -165,7 +165,7 @@ class Engine {
 
     /// Sends a message that no stream keeps. Nobody is waited for.
     Result<void> send(const std::string& subject, std::string_view octets, const std::string& answer_to = {});
-    Result<Listening> listen(const std::string& subject);
+    Result<Listening> listen(const std::string& subject);  ///< hears what is sent from its return on
     /// A subject that no other client has, for answers.
     static std::string own_subject();
 

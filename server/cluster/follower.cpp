@@ -206,6 +206,7 @@ class Follower::Thread {
         if (message.archive() != own_.origin)
             return refuse(fmt::format("a message of the archive {}", brief(message.archive())));
         const RunId run{message.run()};
+        if (!settings_.runs.has(run)) return {};
         if (message.tables() != own_.tables)
             return refuse(
                 "the origin's tables are not those of this program: the same version is needed on both sides");
@@ -340,7 +341,7 @@ class Follower::Thread {
 
     Result<void> give_on() {
         const RunId run{static_cast<std::uint32_t>(origin_.run().run())};
-        if (run.value == 0) return {};
+        if (run.value == 0 || !settings_.runs.has(run)) return {};
         const auto here = position(run);
         if (!here) return here.error();
         if ((*here)->seq() == 0) return {};  // its beginning is not here yet
@@ -360,7 +361,7 @@ class Follower::Thread {
         for (const auto& [run, seq] : origin_.last_seq()) last[run] = seq;
         std::uint64_t behind = 0;
         for (const auto& [run, seq] : last) {
-            if (left_out_.contains(run)) continue;
+            if (left_out_.contains(run) || !settings_.runs.has(RunId{run})) continue;
             const auto here = position(RunId{run});
             if (!here) return here.error();
             if (seq > (*here)->seq()) behind += seq - (*here)->seq();
@@ -453,6 +454,14 @@ Result<std::unique_ptr<Follower>> Follower::start(Settings settings, Parts parts
     for (const auto* known : {&identity, &origin, &tables, &place})
         if (!*known) return known->error();
     AEOLIS_CHECK(!origin->empty());
+    const auto chosen = shared->fact(archive::fact_chosen);
+    if (!chosen) return chosen.error();
+    if (*chosen != settings.runs.text()) {
+        place->clear();  // what was passed over may be wanted now
+        for (const auto& [fact, text] :
+             {std::pair{archive::fact_taken, std::string{}}, std::pair{archive::fact_chosen, settings.runs.text()}})
+            if (auto kept = shared->keep_fact(fact, text); !kept) return kept.error();
+    }
     spdlog::info("following the archive {} by {}", *origin, cluster::shown(settings.engine));
     Thread::Own own{std::move(*shared), std::move(*identity), std::move(*origin), std::move(*tables),
                     std::move(*place)};

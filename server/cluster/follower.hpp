@@ -4,6 +4,7 @@
 #include "aeolis/v1/cluster.pb.h"
 #include "common/result.hpp"
 #include "server/archive/shared_archive.hpp"
+#include "server/cluster/chosen_runs.hpp"
 #include "server/cluster/engine.hpp"
 
 #include <chrono>
@@ -40,7 +41,7 @@ Result<void> begin_following(archive::SharedArchive& shared, const EngineAddress
 
 /// Follows another archive: takes its steps from the engine's stream, in the order of each run, and gives them on.
 ///
-/// In       steps of `origin`; what is none of its, or leaves something out, is refused, counted and told in a line
+/// In       steps of `origin`, of the chosen runs; what is none of its, or leaves something out, is refused, counted and told in a line
 /// Out      rows of its own archive, a step a transaction; then `taken`. `run_state`, `clocks`: of the origin's current
 ///          run, once its beginning is here
 /// Faults   an engine or an origin that is away is waited for. Where steps of a run are missing, the stream is read
@@ -53,6 +54,7 @@ class Follower {
         EngineAddress engine;
         std::filesystem::path archive;  ///< the follower's own, which follows another: begin_following()
         std::uint16_t dictionary = 0;
+        ChosenRuns runs{};
         std::chrono::milliseconds wait{100};         ///< for steps, until the origin's state is looked at
         std::chrono::milliseconds look_every{250};   ///< at the origin's state
         std::chrono::milliseconds lost_after{5000};  ///< chosen: five times what an origin is silent at most

@@ -200,6 +200,7 @@ Result<void> ConsoleBackend::publish_and_follow() {
         settings.engine = settings_.follow_by;
         settings.archive = settings_.archive;
         settings.dictionary = dictionary_.id;
+        settings.runs = settings_.follow_runs;
         auto started = cluster::Follower::start(std::move(settings), std::move(parts));
         if (!started) return started.error();
         follower_ = std::move(*started);

@@ -40,6 +40,7 @@ class ConsoleBackend {
         cluster::EngineAddress publish_to{};                       ///< no URL: nowhere
         cluster::EngineAddress follow_by{};                        ///< no URL: this server follows none
         std::string follow_archive{};                              ///< identity, or its beginning; empty: the only one
+        cluster::ChosenRuns follow_runs{};                         ///< that are followed
         std::filesystem::path follower_key{};  ///< signs what people here ask of the origin; empty: they only watch
     };
     /// Memory blocks of this size or more are mapped separately and returned to the system when freed; chosen. So the

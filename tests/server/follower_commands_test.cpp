@@ -114,10 +114,11 @@ struct Site {
     TemporaryFolder folder;
     NatsServer engine;
     std::string seed = new_signing_seed();
+    ConsoleBackend::Settings of_origin;
     std::optional<Server> origin, follower;
 
     explicit Site(const char* role = "controller") {
-        ConsoleBackend::Settings of_origin, of_follower;
+        ConsoleBackend::Settings of_follower;
         of_origin.archive = folder / "origin.db";
         of_origin.accounts = folder / "origin.json";
         of_origin.publish_to.url = engine.url();
@@ -171,7 +172,7 @@ TEST_CASE("a command from a follower is its person's at the origin, and its fate
           "[cluster][http][R61]") {
     if (!NatsServer::present()) return;
     Site site;
-    auto& [folder, engine, seed, origin, follower] = site;
+    auto &origin = site.origin, &follower = site.follower;
     SECTION("by HTTP: the origin's audit has who asked, and where") {
         CHECK(comes([&] {
             const auto told = site.commands(*follower);
@@ -282,6 +283,15 @@ TEST_CASE("a request that was overheard is no command when it comes again, also 
     CHECK(answer_to("no request").status() == 403);
     CHECK(site.origin->figure("aeolis_follower_requests_refused_total") == 3.0);
     CHECK(times(site.commands(*site.origin), "\"NO_OP\"") == sent);
+    site.origin.reset();
+    site.origin.emplace(site.of_origin, std::nullopt);
+    CHECK(comes([&] {  // once it listens
+        REQUIRE(spy->send((*overheard)->subject, (*overheard)->octets, to));
+        const auto came = answers->next(1s);
+        v1::RequestAnswer answer;
+        return came && *came && answer.ParseFromString((*came)->octets) &&
+               answer.body().find("before this server started") != std::string::npos;
+    }));
 }
 
 TEST_CASE("each metric that the cluster's alert rules and dashboard name is one that an origin or a follower has",

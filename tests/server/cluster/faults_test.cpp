@@ -5,6 +5,7 @@
 #include "tests/support/catch.hpp"
 
 #include <fmt/format.h>
+#include <optional>
 #include <string>
 #include <thread>
 
@@ -16,23 +17,23 @@ using namespace aeolis::tests;
 
 namespace {
 
-/// Asks the engine as its administrator.
-void administer(Engine& engine, const std::string& what, const std::string& body = {}) {
+/// What the engine answers to its administrator; empty: nothing, or an error.
+std::string asked(Engine& engine, const std::string& what, const std::string& body = {}) {
     const auto to = Engine::own_subject();
     auto answers = engine.listen(to);
-    REQUIRE(answers);
-    REQUIRE(engine.send("$JS.API.STREAM." + what, body, to));
+    if (!answers || !engine.send("$JS.API.STREAM." + what, body, to)) return {};
     const auto answer = answers->next(10s);
-    REQUIRE(answer);
-    REQUIRE(*answer);
-    INFO((*answer)->octets);
-    REQUIRE((*answer)->octets.find("\"error\"") == std::string::npos);
+    if (!answer || !*answer || (*answer)->octets.find("\"error\"") != std::string::npos) return {};
+    return (*answer)->octets;
+}
+void administer(Engine& engine, const std::string& what, const std::string& body = {}) {
+    REQUIRE_FALSE(asked(engine, what, body).empty());
 }
 
-std::string stream_of(std::uint64_t octets_max) {
+std::string stream_of(std::int64_t octets_max, int replicas = 1) {
     return fmt::format(R"({{"name":"{}","subjects":["{}"],"retention":"limits","storage":"file","discard":"new",)"
-                       R"("max_bytes":{},"num_replicas":1,"max_consumers":-1,"max_msgs":-1}})",
-                       cluster::run_stream, cluster::all_runs, octets_max);
+                       R"("max_bytes":{},"num_replicas":{},"max_consumers":-1,"max_msgs":-1}})",
+                       cluster::run_stream, cluster::all_runs, octets_max, replicas);
 }
 
 void all_is_the_same(Origin& origin, Copy& copy) {
@@ -132,6 +133,39 @@ TEST_CASE("a network that is cut for a minute loses nothing", "[cluster][R61][lo
         CHECK(copy.follower->status().lost);
         network.join();
     });
+}
+
+TEST_CASE("three engines with replicas lose the leader of the stream, and nothing else", "[cluster][R61]") {
+    if (!NatsServer::present()) return;
+    test::TemporaryFolder folder;
+    NatsCluster engines;
+    auto engine = Engine::connect(at(engines.url()), "administrator");
+    REQUIRE(engine);
+    // Until the three have found each other.
+    REQUIRE(comes([&] {
+        return !asked(*engine, std::string{"CREATE."} + cluster::run_stream, stream_of(-1, NatsCluster::engines))
+                    .empty();
+    }));
+    Origin origin{folder / "origin.db", engines.url()};
+    Copy copy{folder / "copy.db", engines.url()};
+    test::record_run(origin.archive, followed_dictionary, 500);
+    std::thread landing{[&] { record_slowly(origin.archive, 1'000, 20ms); }};
+    std::this_thread::sleep_for(100ms);
+    std::optional<std::size_t> leader;
+    REQUIRE(comes([&] {
+        const auto told = asked(*engine, std::string{"INFO."} + cluster::run_stream);
+        for (std::size_t each = 0; each < NatsCluster::engines; ++each)
+            if (told.find(fmt::format(R"("leader":"{}")", NatsCluster::name_of(each))) != std::string::npos)
+                leader = each;
+        return leader.has_value();
+    }));
+    const auto steps = origin.publisher->status().steps;
+    engines.at(*leader).kill();
+    CHECK(comes([&] { return origin.publisher->status().steps > steps; }));
+    CHECK(comes([&] { return copy.follower->status().behind_items == 0; }));
+    engines.at(*leader).start();
+    landing.join();
+    all_is_the_same(origin, copy);
 }
 
 }  // namespace server_cluster_faults_test

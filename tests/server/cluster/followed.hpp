@@ -80,7 +80,7 @@ class Origin {
 class Copy {
   public:
     Copy(std::filesystem::path file, const std::string& engine, const std::string& origin = {},
-         std::uint16_t of_dictionary = followed_dictionary.id)
+         std::uint16_t of_dictionary = followed_dictionary.id, cluster::ChosenRuns runs = {})
         : file_(std::move(file)), archive(std::move(Archive::open(file_)).value()) {
         auto shared = SharedArchive::open(file_);
         REQUIRE(shared);
@@ -95,6 +95,7 @@ class Copy {
         settings.engine = at(engine);
         settings.archive = file_;
         settings.dictionary = of_dictionary;
+        settings.runs = std::move(runs);
         settings.wait = 20ms;
         settings.look_every = 50ms;
         settings.lost_after = 2s;

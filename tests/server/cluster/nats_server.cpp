@@ -31,18 +31,6 @@ sockaddr_in loopback(std::uint16_t port) {
     return address;
 }
 
-/// A port that nobody has now.
-std::uint16_t free_port() {
-    const int one = ::socket(AF_INET, SOCK_STREAM, 0);
-    auto address = loopback(0);
-    socklen_t size = sizeof address;
-    const bool bound = ::bind(one, reinterpret_cast<const sockaddr*>(&address), size) == 0 &&
-                       ::getsockname(one, reinterpret_cast<sockaddr*>(&address), &size) == 0;
-    ::close(one);
-    if (!bound) throw std::runtime_error("no port is free");
-    return ntohs(address.sin_port);
-}
-
 bool answers(std::uint16_t port) {
     const int one = ::socket(AF_INET, SOCK_STREAM, 0);
     const auto address = loopback(port);
@@ -57,6 +45,22 @@ bool NatsServer::present() {
     if (!program().empty()) return true;
     std::cout << "SKIPPED: AEOLIS_NATS_SERVER names no nats-server (./test unpacks one)\n";
     return false;
+}
+
+std::uint16_t NatsServer::free_port() {
+    const int one = ::socket(AF_INET, SOCK_STREAM, 0);
+    auto address = loopback(0);
+    socklen_t size = sizeof address;
+    const bool bound = ::bind(one, reinterpret_cast<const sockaddr*>(&address), size) == 0 &&
+                       ::getsockname(one, reinterpret_cast<sockaddr*>(&address), &size) == 0;
+    ::close(one);
+    if (!bound) throw std::runtime_error("no port is free");
+    return ntohs(address.sin_port);
+}
+
+NatsServer::NatsServer(std::vector<std::string> options)
+    : streams_(JetStream::present), options_(std::move(options)), port_(free_port()) {
+    start();
 }
 
 NatsServer::NatsServer(JetStream streams) : streams_(streams), port_(free_port()) {
@@ -75,12 +79,18 @@ void NatsServer::start() {
     const auto file = program();
     const auto port = std::to_string(port_);
     const auto store = (folder_.path() / "streams").string();
+    std::vector<std::string> words{file, "-a", "127.0.0.1", "-p", port, "-sd", store};
+    if (streams_ == JetStream::present) words.emplace_back("-js");
+    words.insert(words.end(), options_.begin(), options_.end());
+    std::vector<char*> arguments;
+    arguments.reserve(words.size() + 1);
+    for (auto& word : words) arguments.push_back(word.data());
+    arguments.push_back(nullptr);
     process_ = ::fork();
     if (process_ == 0) {
         const int nothing = ::open("/dev/null", O_RDWR);
         for (const int stream : {0, 1, 2}) ::dup2(nothing, stream);
-        ::execl(file.c_str(), file.c_str(), "-a", "127.0.0.1", "-p", port.c_str(), "-sd", store.c_str(),
-                streams_ == JetStream::present ? "-js" : nullptr, static_cast<char*>(nullptr));
+        ::execv(file.c_str(), arguments.data());
         ::_exit(127);
     }
     for (int tries = 0; tries < 3000; ++tries) {
@@ -100,6 +110,22 @@ void NatsServer::kill() {
 
 void NatsServer::forget() {
     std::filesystem::remove_all(folder_.path() / "streams");
+}
+
+NatsCluster::NatsCluster() {
+    std::vector<std::string> routes;
+    for (std::size_t engine = 0; engine < engines; ++engine)
+        routes.push_back("nats://127.0.0.1:" + std::to_string(NatsServer::free_port()));
+    const auto all = routes[0] + ',' + routes[1] + ',' + routes[2];
+    for (std::size_t engine = 0; engine < engines; ++engine)
+        servers_.push_back(std::make_unique<NatsServer>(std::vector<std::string>{
+            "-n", name_of(engine), "--cluster_name", "test", "--cluster", routes[engine], "--routes", all}));
+}
+
+std::string NatsCluster::url() const {
+    std::string all;
+    for (const auto& server : servers_) all += (all.empty() ? "" : ",") + server->url();
+    return all;
 }
 
 }  // namespace aeolis::tests

@@ -3,9 +3,12 @@
 
 #include "tests/support/temporary_folder.hpp"
 
+#include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <sys/types.h>
+#include <vector>
 
 namespace aeolis::tests {
 
@@ -18,6 +21,8 @@ class NatsServer {
 
     enum class JetStream : std::uint8_t { present, absent };
     explicit NatsServer(JetStream streams = JetStream::present);
+    /// With further options.
+    explicit NatsServer(std::vector<std::string> options);
     NatsServer(const NatsServer&) = delete;
     NatsServer& operator=(const NatsServer&) = delete;
     ~NatsServer();
@@ -29,11 +34,29 @@ class NatsServer {
     /// Removes what its streams hold; only while it is killed.
     void forget();
 
+    static std::uint16_t free_port();  ///< that nobody has now
+
   private:
     test::TemporaryFolder folder_;
     JetStream streams_;
+    std::vector<std::string> options_;
     std::uint16_t port_ = 0;
     pid_t process_ = -1;
+};
+
+/// Three engines that can keep each stream three times.
+class NatsCluster {
+  public:
+    static constexpr std::size_t engines = 3;
+    NatsCluster();
+
+    std::string url() const;  ///< of all three
+    NatsServer& at(std::size_t engine) { return *servers_.at(engine); }
+    /// As the engines know it.
+    static std::string name_of(std::size_t engine) { return "engine-" + std::to_string(engine); }
+
+  private:
+    std::vector<std::unique_ptr<NatsServer>> servers_;
 };
 
 }  // namespace aeolis::tests
