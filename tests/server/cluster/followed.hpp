@@ -32,8 +32,8 @@ inline cluster::EngineAddress at(const std::string& url) {
     return address;
 }
 
-inline Engine connected(const NatsServer& server) {
-    auto engine = Engine::connect(at(server.url()), "test");
+inline Engine connected(const NatsServer& server, const std::string& name = "test") {
+    auto engine = Engine::connect(at(server.url()), name);
     REQUIRE(engine);
     return std::move(*engine);
 }

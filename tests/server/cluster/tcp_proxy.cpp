@@ -32,8 +32,10 @@ int socket_without_waits() {
     return ::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
 }
 
+}  // namespace
+
 /// Octets on their way from one socket to another.
-struct Way {
+struct TcpProxy::Way {
     int from = -1, to = -1;
     std::vector<char> octets{};
 
@@ -52,8 +54,6 @@ struct Way {
         return true;
     }
 };
-
-}  // namespace
 
 struct TcpProxy::Pair {
     Way up, down;

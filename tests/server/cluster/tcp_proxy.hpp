@@ -26,6 +26,7 @@ class TcpProxy {
     void hold(bool held) { held_ = held; }
 
   private:
+    struct Way;
     struct Pair;
     void run();
 

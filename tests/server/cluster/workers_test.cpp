@@ -2,6 +2,7 @@
 #include "server/cluster/case_collector.hpp"
 #include "server/cluster/case_messages.hpp"
 #include "server/cluster/case_worker.hpp"
+#include "tests/server/cluster/followed.hpp"
 #include "tests/server/cluster/nats_server.hpp"
 #include "tests/support/catch.hpp"
 
@@ -19,7 +20,7 @@ using campaign::CampaignStore;
 using campaign::CaseResult;
 using campaign::Progress;
 using cluster::Engine;
-using tests::NatsServer;
+using tests::connected, tests::NatsServer;
 
 namespace {
 
@@ -53,12 +54,6 @@ cluster::EngineAddress at(std::string url) {
     cluster::EngineAddress address;
     address.url = std::move(url);
     return address;
-}
-
-Engine connected(const NatsServer& server, const std::string& name = "test") {
-    auto engine = Engine::connect(at(server.url()), name);
-    REQUIRE(engine);
-    return std::move(*engine);
 }
 
 /// A worker in a thread, until it is ended.
