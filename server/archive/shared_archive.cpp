@@ -10,6 +10,10 @@
 namespace aeolis::archive {
 namespace {
 
+/// A follower's writer commits nothing, so that its log would grow without end. Chosen: as that writer's own limits,
+/// with pages of 16 kB.
+constexpr char moves_log_sql[] = "PRAGMA wal_autocheckpoint = 1000; PRAGMA journal_size_limit = 16384000";
+
 Result<std::unique_ptr<sqlite::Database>> connect(const std::filesystem::path& file) {
     auto opened = sqlite::Database::open(file.string(), sqlite::Mode::read_write_create);
     if (!opened) return opened.error();
@@ -112,6 +116,7 @@ Result<void> SharedArchive::keep_published(std::span<const PublishedRun> runs, c
 
 Result<SharedArchive::Items> SharedArchive::take(RunId run, const RunStep& step, const std::string& place) {
     if (auto done = in_place(); !done) return done.error();
+    if (auto set = database_->execute(moves_log_sql); !set) return set.error();
     auto transaction = sqlite::Transaction::begin_write(*database_);
     if (!transaction) return transaction.error();
     if (auto done = keep_cluster_fact(*database_, fact_taken, place); !done) return done.error();

@@ -119,8 +119,9 @@ class Serving {
 void go_on(const Serving& origin) {
     const auto run = origin.newest();
     if (run.state() == v1::RunState::running) return;
-    const auto body = run.state() == v1::RunState::interrupted ? fmt::format(R"({{"continue_run":{},"pace":0}})", run.run())
-                                                   : std::string{R"({"scenario":"nominal_auto","pace":0})"};
+    const auto body = run.state() == v1::RunState::interrupted
+                          ? fmt::format(R"({{"continue_run":{},"pace":0}})", run.run())
+                          : std::string{R"({"scenario":"nominal_auto","pace":0})"};
     const auto reply = origin.ask("POST", "/api/v1/rehearsals", body);
     INFO(reply.body);
     REQUIRE(reply.status < 300);
@@ -184,6 +185,8 @@ void kill_programs(int kills, std::uint32_t seed) {
     INFO(fmt::format("{}", fmt::join(differences, "\n")));
     CHECK(differences.empty());
     CHECK(faults_of(follower.archive()).empty());
+    constexpr std::uintmax_t log_octets_max = 33'000'000;  // it is moved into the file at half of that
+    CHECK(std::filesystem::file_size(follower.archive().string() + "-wal") < log_octets_max);
     CHECK(follower.newest().outcome() == v1::Landing::touchdown);
 }
 
@@ -198,7 +201,7 @@ TEST_CASE("the programs of origin, engine and follower, each killed in flight, l
 TEST_CASE("the programs of origin, engine and follower, killed at fifty moments, land and hold the same",
           "[cluster][R61][long]") {
     if (!NatsServer::present() || program() == nullptr) return;
-    kill_programs(50, GENERATE(1U, 2U));
+    kill_programs(50, 1);
 }
 
 }  // namespace server_cluster_programs_test
