@@ -92,14 +92,14 @@ try {
       `set title "${title}"; set ylabel "${unit}"; set yrange [${range}]\n` +
       `plot "${data}" using 1:${sigma} with lines ls 1 title "3 sigma", "${data}" using 1:(-$${sigma}) with lines ls 1 notitle, "${data}" using 1:${error} with lines ls 2 title "rebuilt less true"\n`;
     execFileSync('gnuplot', { input: `
-set terminal pngcairo size 1500,1100 font "DejaVu Sans,11"
+set terminal pngcairo noenhanced size 1500,1100 font "DejaVu Sans,11"
 set output "${picture}"
 set key top right
 set grid lc rgb "#dddddd"
 set style line 1 lc rgb "#999999" lw 2
 set style line 2 lc rgb "#c0392b" lw 1.5
 set xlabel "E+ s"; set xrange [-30:440]
-set multiplot layout 2,2 title "nominal_auto, seed 1: rebuilt from its recording and the place where the rover stands"
+set multiplot layout 2,2 title "Scenario nominal_auto, seed 1: rebuilt from its recording and the place where the rover stands"
 ${panel('Position, three axes together', 'm', 2, 3, '0:600')}
 ${panel('Height', 'm', 4, 5, '-400:400')}
 ${panel('Speed', 'm/s', 6, 7, '-2.5:2.5')}

@@ -194,7 +194,10 @@ std::string campaign_table(const Summary& summary, const CampaignVerdict& verdic
     text += failure_rows(summary, call, summary.failures, summary.failed);
     if (summary.outside_limits > 0) text += fmt::format("\n{} landed outside limits\n", summary.outside_limits);
     text += failure_rows(summary, call, summary.outside, summary.outside_limits);
-    text += '\n' + verdict_table(verdict) + '\n';
+    text += '\n' + verdict_table(verdict);
+    if (summary.kept < summary.cases)
+        text += fmt::format("that is of the cases flown so far: {} are missing\n", summary.cases - summary.kept);
+    text += '\n';
     const auto& progress = call.progress;
     const auto by =
         call.queue.empty() ? fmt::format("{} jobs", call.jobs) : fmt::format("{} workers", progress.workers.size());

@@ -79,7 +79,7 @@ class TableReader {
   public:
     explicit TableReader(const std::filesystem::path& file) : file_(file.string()) {}
 
-    Result<std::vector<TableRow>> rows(bool profiles_too) {
+    Result<std::vector<TableRow>> rows(bool of_air) {
         std::error_code ignored;
         if (std::filesystem::is_directory(file_, ignored)) return Error{file_ + ": is a directory, not a table"};
         if (std::filesystem::file_size(file_, ignored) > table_octets_max && !ignored)
@@ -92,7 +92,7 @@ class TableReader {
             const auto first = line.find_first_not_of(" \t\r");
             if (first == std::string::npos || line[first] == '#') continue;
             if (columns_.empty()) {
-                if (const auto read = read_heading(line, number, profiles_too); !read) return read.error();
+                if (const auto read = read_heading(line, number, of_air); !read) return read.error();
                 continue;
             }
             auto row = row_of(line, number);
@@ -101,7 +101,7 @@ class TableReader {
                 const double low_m = *rows.back()[Column::altitude], high_m = *(*row)[Column::altitude];
                 if (high_m <= low_m)
                     return at(number, fmt::format("{} m does not lie above the row before, {} m", high_m, low_m));
-                if (high_m - low_m > gap_max_m)
+                if (of_air && high_m - low_m > gap_max_m)
                     return at(number,
                               fmt::format("a gap of {} km below {} m", (high_m - low_m) / metres_per_km, high_m));
             }
@@ -120,9 +120,9 @@ class TableReader {
     const std::string& file() const { return file_; }
 
   private:
-    Result<void> read_heading(const std::string& line, std::size_t number, bool profiles_too) {
+    Result<void> read_heading(const std::string& line, std::size_t number, bool of_air) {
         commas_ = line.find(',') != std::string::npos;
-        if (!commas_ && profiles_too) {
+        if (!commas_ && of_air) {
             columns_.assign(profile_columns.begin(), profile_columns.end());
             return {};
         }

@@ -43,7 +43,7 @@ bool Radar::hides(const Vector3& to_heatshield_M, const Vector3& direction_M) {
 }
 
 void Radar::add_draws(std::vector<Draw>& draws) const {
-    draws.push_back({"radar_range_fraction", range_scale_});
+    draws.push_back({"radar_range_fraction", range_scale_ - 1.0});
     for (std::size_t beam = 0; beam < beams; ++beam)
         draws.push_back({"radar_velocity_" + std::to_string(beam) + "_mps", velocity_bias_mps_.at(beam)});
 }

@@ -60,7 +60,8 @@ void Vehicle::disperse(const Scenario& scenario, const PointMass& at, std::uint6
 
 void Vehicle::add_draws(const Scenario& scenario, std::vector<Draw>& draws) const {
     draws.push_back({"density_fraction", atmosphere_.departure_fraction()});
-    draws.push_back({"density_wave_phase_rad", atmosphere_.wave_phase_rad()});
+    if (atmosphere_.departure_fraction() != 0.0)  // else there is no wave either
+        draws.push_back({"density_wave_phase_rad", atmosphere_.wave_phase_rad()});
     draws.push_back({"drag_fraction", aeroshell_factors_[0] - 1.0});
     draws.push_back({"slow_drag_fraction", aeroshell_factors_[1] - 1.0});
     draws.push_back({"mass_fraction", configuration_.masses().entry_kg / scenario.masses.entry_kg - 1.0});

@@ -136,7 +136,7 @@ TEST_CASE("a bad table of the air is refused by file, line and reason, and nothi
         {"altitude_m,temperature_C,density_kgm3\n", "air.csv:1: column 'temperature_C' is none of altitude_m, "},
         {"altitude_m,altitude_km,density_kgm3\n", "air.csv:1: column 'altitude_km' says again what another does"},
         {"temperature_K,density_kgm3\n", "air.csv:1: no column is the altitude"},
-        {"altitude_m,temperature_K,pressure_Pa,density_kgm3\n0,220,8.3,0.02\n",
+        {"altitude_m,temperature_K,pressure_Pa,density_kgm3\n0,220,8.3,0.02\n5000,210,4,0.01\n",
          "air.csv:2: pressure 8.3 Pa, while density 0.02 kg/m3 and 220 K make 831.2 Pa: other units?"},
         {heading, "air.csv: has 1 rows, a table needs two"},
         {"", "air.csv: has 0 rows, a table needs two"},

@@ -486,7 +486,7 @@ TEST_CASE("a campaign is studied by the program: verdict, table of all numbers, 
     const auto correlated = ran({"correlate", in("1") + ".db", "--most", "3"});
     INFO(correlated.out);
     CHECK(correlated.code == 0);
-    CHECK_THAT(correlated.out, Catch::Contains("parachute_pressure_Pa") && Catch::Contains("density_fraction"));
+    CHECK_THAT(correlated.out, Catch::Contains("parachute_pressure_Pa") && Catch::Contains("slow_drag_fraction"));
     const auto ellipses = ran({"footprints", in("1") + ".db"});
     CHECK(ellipses.code == 0);
     for (const char* at : {"parachute", "backshell separation", "touchdown"})
