@@ -98,7 +98,7 @@ class ErrorFilter {
     void pass(const Gap& gap);
 
     /// Ends the path at a known place: `off_M_m` from where the path ends without its error. Returns how far that is
-    /// from the error as estimated so far, in standard deviations of the worst axis; beyond the gate nothing is taken in.
+    /// from the error as estimated so far, in standard deviations of the worst axis; beyond the gate it takes nothing.
     double end_at(const Vector3& off_M_m, double sigma_m);
 
     /// The smoothed error at the end of each whole step.

@@ -24,7 +24,7 @@ struct AirTable {
 /// Reads a table of either form, told apart by the comma. Heights become those above the landing radius.
 ///
 /// @param landing_m  height of the landing radius by the table's own heights
-/// Fails, "FILE:LINE: why", at a row that is no number, lies not above the one before, leaves a gap of more than 25 km, has
+/// Fails, "FILE:LINE: why", at a row that is no number, lies not above the one before, leaves a gap over 25 km, has
 /// values that no air has, or values that contradict the gas law by a fifth below 100 km: units of another kind.
 Result<AirTable> air_table_from_file(const std::filesystem::path& file, double landing_m = 0.0);
 

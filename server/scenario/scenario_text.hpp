@@ -17,7 +17,7 @@ namespace aeolis::server {
 Result<simulation::Scenario> scenario_from_text(std::string_view text, const std::string& file);
 
 /// Parses a file of at most 1 MiB; the Error names the file. A file may be `like` another beside it: its own fields
-/// override the other's, and each list in it replaces the other's. Where there is none beside it, `shipped` is looked in.
+/// override the other's, and each list in it replaces the other's. Where there is none beside it, `shipped` has it.
 /// Tables of air and wind that it names are read from beside it.
 Result<simulation::Scenario> scenario_from_file(const std::filesystem::path& file,
                                                 const std::filesystem::path& shipped = {});

@@ -15,8 +15,8 @@ struct Air {
     double speed_of_sound_mps = 0.0;
 };
 
-/// The air above the landing site: the scenario's table or that of Gale (see atmosphere.cpp), its scale by height, and a
-/// case's departure.
+/// The air above the landing site: the scenario's table or that of Gale (see atmosphere.cpp), its scale by height, and
+/// a case's departure.
 ///
 /// Tables are sampled every kilometre.
 /// Density is interpolated exponentially, temperature and scale linearly; outside the table its last layers continue.

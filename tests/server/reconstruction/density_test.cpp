@@ -6,7 +6,6 @@
 #include "tests/simulation/gale.hpp"
 
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <string>
 
@@ -91,7 +90,6 @@ TEST_CASE("ten dispersed landings are rebuilt consistently, and their sigmas are
     }
     for (const auto& [quantity, one] : all) {
         INFO(quantity << ": rms " << one.rms_sigmas());
-        std::printf("%s: %.4f within, rms %.3f sigma\n", quantity.c_str(), one.fraction(), one.rms_sigmas());
         CHECK(one.rms_sigmas() > 0.2);
         CHECK(one.rms_sigmas() < 1.4);
     }
