@@ -300,8 +300,10 @@ Vehicle::RoverMotion Vehicle::rover_motion() const {
         rate_M += along.p_MoB_M.cross(along.v_MB_M) / along.p_MoB_M.squaredNorm();
     }
     Vector3 force_M = -free_fall(rover_.p_MoB_M, Vector3::Zero());
-    if (rover_hangs()) force_M = rover_specific_force_M_;
-    else if (wheels_height_m() > 0.0) force_M = Vector3::Zero();  // it was cut loose above ground
+    if (rover_hangs())
+        force_M = rover_specific_force_M_;
+    else if (wheels_height_m() > 0.0)
+        force_M = Vector3::Zero();  // it was cut loose above ground
     return {q_MRover_.conjugate() * force_M, q_MRover_.conjugate() * rate_M};
 }
 
