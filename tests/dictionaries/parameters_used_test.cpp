@@ -95,10 +95,10 @@ TEST_CASE("no module of EDL or of a device has a constant of its own that tunes 
     std::string tuning;
     std::size_t seen = 0;
     for (const std::string& file : flight_sources()) {
-        const bool of_edl = std::ranges::any_of(
-            std::array{"flight/devices/", "flight/gnc/", "flight/edl/", "flight/edl_bg/", "flight/mfsk/",
-                       "flight/fault_protection/"},
-            [&](const char* folder) { return file.starts_with(folder); });
+        const bool of_edl =
+            std::ranges::any_of(std::array{"flight/devices/", "flight/gnc/", "flight/edl/", "flight/edl_bg/",
+                                           "flight/mfsk/", "flight/fault_protection/"},
+                                [&](const char* folder) { return file.starts_with(folder); });
         const auto lines = of_edl ? structure::lines_of(file) : std::vector<std::string>{};
         for (std::size_t i = 0; i < lines.size(); ++i) {
             std::smatch match;

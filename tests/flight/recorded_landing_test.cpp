@@ -199,7 +199,9 @@ TEST_CASE("each reading of the IMU, from separation to the end of fly-away, is i
     auto sensed =
         std::ranges::find(flown().imu, static_cast<std::uint32_t>(ground.value("imu_count")), &ImuSample::count);
     REQUIRE(flown().imu.end() - sensed >= static_cast<std::ptrdiff_t>(rows.size()));
-    const auto cycle_of = [](const ImuSample& sample) { return flown().cycle_of_imu.lower_bound(sample.count)->second; };
+    const auto cycle_of = [](const ImuSample& sample) {
+        return flown().cycle_of_imu.lower_bound(sample.count)->second;
+    };
     const Sclk first = cycle_of(*sensed), last = cycle_of(*(sensed + static_cast<std::ptrdiff_t>(rows.size()) - 1));
     for (const Octets& row : rows) {
         static_cast<void>(ground.name(row));
