@@ -185,7 +185,8 @@ void kill_programs(int kills, std::uint32_t seed) {
     INFO(fmt::format("{}", fmt::join(differences, "\n")));
     CHECK(differences.empty());
     CHECK(faults_of(follower.archive()).empty());
-    constexpr std::uintmax_t log_octets_max = 33'000'000;  // it is moved into the file at half of that
+    // It is moved into the file at 16 MB, later where readers hold it; what is never moved is 90 MB after a landing.
+    constexpr std::uintmax_t log_octets_max = 66'000'000;
     CHECK(std::filesystem::file_size(follower.archive().string() + "-wal") < log_octets_max);
     CHECK(follower.newest().outcome() == v1::Landing::touchdown);
 }
