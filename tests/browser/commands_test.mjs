@@ -196,7 +196,15 @@ test('a command that needs a second person is asked for in one browser and appro
   for (const { page } of [ann, bob]) await waitFor(() => stageLook(page, 'EDL_SET_PARAMETERS', 'executed'), /ok/);
   const row = ann.page.getByRole('button', { name: 'EDL_SET_PARAMETERS #1' });
   await ann.page.getByTestId('command-line').focus();
-  const place = await row.boundingBox();
+  let place; // once what still comes of the command has moved it
+  await waitFor(
+    async () => {
+      const before = JSON.stringify(place);
+      place = await row.boundingBox();
+      return JSON.stringify(place) === before;
+    },
+    (rests) => rests,
+  );
   await ann.page.getByTestId('command-line').blur();
   assert.deepEqual(await row.boundingBox(), place, 'the first press of a mouse would move what it is on');
   await row.click();
