@@ -61,8 +61,8 @@ test('two commands by keyboard land it; a reload has all of it; a range can be a
   await waitFor(verdict, /^confirmed$/);
   await shows('touchdown', /Touchdown confirmed\s+E\+7:1\d\.\d, 3 of 3 signals/);
   await shows('touchdown-steps', /rover's own IMU still for 10 s/);
+  await pace(page, 100); // before it goes on: what is left takes a second
   await page.keyboard.press('p');
-  await pace(page, 100);
 
   await waitFor(
     () => page.locator('[data-event="TOUCHDOWN"]').count(),
