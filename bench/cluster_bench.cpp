@@ -6,8 +6,8 @@
 //   bare        the same messages given to the engine without waiting for each (JetStream's asynchronous publishing)
 //   publisher   the archive published from its beginning: read, packed, and each step behind the one before it
 //   follower    the stream taken from its beginning into an archive of its own, against the time that the landing took
-//   lag         2 000 packets/s committed each 10 ms: from a commit to its items being durable at a follower and given on
-//               to its streams
+//   lag         2 000 packets/s, committed each 10 ms: from a commit to its items being durable at a follower and given
+//               on to its streams
 //   goals       publisher at 0.5 of the bare one's rate; follower at 50 times real time; lag at 100 ms, 99th percentile
 #include "aeolis/v1/cluster.pb.h"
 #include "bench/must.hpp"

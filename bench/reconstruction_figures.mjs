@@ -16,7 +16,8 @@ const radius_m = 3391148;
 const entry_sclk = 397501715;
 const degree = Math.PI / 180;
 
-const aeolis = (...words) => execFileSync(`${root}build/release/aeolis`, words, { encoding: 'utf8', maxBuffer: 1 << 28 });
+const quiet = { encoding: 'utf8', maxBuffer: 1 << 28 };
+const aeolis = (...words) => execFileSync(`${root}build/release/aeolis`, words, quiet);
 const rows_of = (file) => {
   const [head, ...lines] = readFileSync(file, 'utf8').trimEnd().split('\n');
   const names = head.split(',');
@@ -34,12 +35,36 @@ const place = (latitude_deg, longitude_deg, r) => {
 function compared(number) {
   const in_folder = (name) => join(folder, `${number}-${name}`);
   const landing = JSON.parse(
-    aeolis('rehearse', '--scenario', 'nominal_auto', '--seed', `${seed}`, '--case', `${number}`, '--json',
-      '--archive', in_folder('a.db'), '--truth', in_folder('truth.csv')));
+    aeolis(
+      'rehearse',
+      '--scenario',
+      'nominal_auto',
+      '--seed',
+      `${seed}`,
+      '--case',
+      `${number}`,
+      '--json',
+      '--archive',
+      in_folder('a.db'),
+      '--truth',
+      in_folder('truth.csv'),
+    ),
+  );
   if (landing.outcome !== 'touchdown') throw new Error(`case ${number}: ${landing.outcome}`);
   const { latitude_deg, longitude_deg } = landing.touchdown;
-  aeolis('reconstruct', '--archive', in_folder('a.db'), '--run', '1', '--out', in_folder('path.csv'),
-    '--site', `${latitude_deg}`, `${longitude_deg}`, `${radius_m}`);
+  aeolis(
+    'reconstruct',
+    '--archive',
+    in_folder('a.db'),
+    '--run',
+    '1',
+    '--out',
+    in_folder('path.csv'),
+    '--site',
+    `${latitude_deg}`,
+    `${longitude_deg}`,
+    `${radius_m}`,
+  );
   const truth = rows_of(in_folder('truth.csv'));
   let at = 1;
   const points = [];
@@ -56,10 +81,15 @@ function compared(number) {
     const middle = (e_s - 0.0625 - low.e_s) / (high.e_s - low.e_s);
     const density = low.density_kgm3 * (high.density_kgm3 / low.density_kgm3) ** middle;
     points.push({
-      e_s, off_m, sigma_p_m: point.sigma_p_m,
-      height_m: point.altitude_m - between('altitude_m'), sigma_height_m: point.sigma_height_m,
-      speed_mps: point.speed_mps - between('speed_mps'), sigma_v_mps: point.sigma_v_mps / Math.sqrt(3),
-      density: point.density_kgm3 / density - 1, sigma_density: point.sigma_density_kgm3 / point.density_kgm3,
+      e_s,
+      off_m,
+      sigma_p_m: point.sigma_p_m,
+      height_m: point.altitude_m - between('altitude_m'),
+      sigma_height_m: point.sigma_height_m,
+      speed_mps: point.speed_mps - between('speed_mps'),
+      sigma_v_mps: point.sigma_v_mps / Math.sqrt(3),
+      density: point.density_kgm3 / density - 1,
+      sigma_density: point.sigma_density_kgm3 / point.density_kgm3,
       altitude_km: point.altitude_m / 1000,
     });
   }
@@ -73,7 +103,18 @@ const share = (points, error, sigma) => {
   return { percent: (100 * within) / known.length, largest };
 };
 
-console.log('| case | position, % within 3σ | at most, m | height | at most, m | speed | at most, m/s | density | at most below 60 km, % |');
+const printed = (cells) => console.log(`| ${cells.join(' | ')} |`);
+const position_head = ['position, % within 3σ', 'at most, m'];
+printed([
+  'case',
+  ...position_head,
+  'height',
+  'at most, m',
+  'speed',
+  'at most, m/s',
+  'density',
+  'at most below 60 km, %',
+]);
 console.log('|---:|---:|---:|---:|---:|---:|---:|---:|---:|');
 try {
   for (let number = 0; number <= cases; ++number) {
@@ -82,16 +123,36 @@ try {
     const height = share(points, 'height_m', 'sigma_height_m');
     const speed = share(points, 'speed_mps', 'sigma_v_mps');
     const density = share(points, 'density', 'sigma_density');
-    const low = share(points.filter((point) => point.altitude_km < 60), 'density', 'sigma_density');
-    console.log(`| ${number} | ${position.percent.toFixed(1)} | ${position.largest.toFixed(0)} | ${height.percent.toFixed(1)} | ${height.largest.toFixed(0)} | ${speed.percent.toFixed(1)} | ${speed.largest.toFixed(2)} | ${density.percent.toFixed(1)} | ${(100 * low.largest).toFixed(1)} |`);
+    const low = share(
+      points.filter((point) => point.altitude_km < 60),
+      'density',
+      'sigma_density',
+    );
+    const cells = ({ percent, largest }, digits) => [percent.toFixed(1), largest.toFixed(digits)];
+    printed([
+      number,
+      ...cells(position, 0),
+      ...cells(height, 0),
+      ...cells(speed, 2),
+      density.percent.toFixed(1),
+      (100 * low.largest).toFixed(1),
+    ]);
     if (number > 0 || !picture) continue;
     const data = join(folder, 'errors.csv');
-    writeFileSync(data, points.map((p) => [p.e_s, p.off_m, 3 * p.sigma_p_m, p.height_m, 3 * p.sigma_height_m, p.speed_mps,
-      3 * p.sigma_v_mps, 100 * p.density, 300 * p.sigma_density, p.altitude_km].map((n) => (Number.isNaN(n) ? 'nan' : n)).join(' ')).join('\n'));
+    const row_of = (p) => [
+      ...[p.e_s, p.off_m, 3 * p.sigma_p_m, p.height_m, 3 * p.sigma_height_m],
+      ...[p.speed_mps, 3 * p.sigma_v_mps, 100 * p.density, 300 * p.sigma_density, p.altitude_km],
+    ];
+    const text_of = (numbers) => numbers.map((n) => (Number.isNaN(n) ? 'nan' : n)).join(' ');
+    writeFileSync(data, points.map((point) => text_of(row_of(point))).join('\n'));
+    const plot = (x, error, sigma) =>
+      `plot "${data}" using ${x}:${sigma} with lines ls 1 title "3 sigma", \\\n` +
+      `  "${data}" using ${x}:(-$${sigma}) with lines ls 1 notitle, \\\n` +
+      `  "${data}" using ${x}:${error} with lines ls 2 title "rebuilt less true"\n`;
     const panel = (title, unit, error, sigma, range) =>
-      `set title "${title}"; set ylabel "${unit}"; set yrange [${range}]\n` +
-      `plot "${data}" using 1:${sigma} with lines ls 1 title "3 sigma", "${data}" using 1:(-$${sigma}) with lines ls 1 notitle, "${data}" using 1:${error} with lines ls 2 title "rebuilt less true"\n`;
-    execFileSync('gnuplot', { input: `
+      `set title "${title}"; set ylabel "${unit}"; set yrange [${range}]\n${plot(1, error, sigma)}`;
+    execFileSync('gnuplot', {
+      input: `
 set terminal pngcairo noenhanced size 1500,1100 font "DejaVu Sans,11"
 set output "${picture}"
 set key top right
@@ -99,14 +160,15 @@ set grid lc rgb "#dddddd"
 set style line 1 lc rgb "#999999" lw 2
 set style line 2 lc rgb "#c0392b" lw 1.5
 set xlabel "E+ s"; set xrange [-30:440]
-set multiplot layout 2,2 title "Scenario nominal_auto, seed 1: rebuilt from its recording and the place where the rover stands"
+set multiplot layout 2,2 title "Scenario nominal_auto, seed 1: rebuilt from its recording and the landing site"
 ${panel('Position, three axes together', 'm', 2, 3, '0:600')}
 ${panel('Height', 'm', 4, 5, '-400:400')}
 ${panel('Speed', 'm/s', 6, 7, '-2.5:2.5')}
 set xlabel "height km"; set xrange [10:95]
 set title "Density by drag"; set ylabel "%"; set yrange [-40:40]
-plot "${data}" using 10:9 with lines ls 1 title "3 sigma", "${data}" using 10:(-$9) with lines ls 1 notitle, "${data}" using 10:8 with lines ls 2 title "rebuilt less true"
-` });
+${plot(10, 8, 9)}
+`,
+    });
   }
 } finally {
   rmSync(folder, { recursive: true });

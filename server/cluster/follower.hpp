@@ -41,7 +41,8 @@ Result<void> begin_following(archive::SharedArchive& shared, const EngineAddress
 
 /// Follows another archive: takes its steps from the engine's stream, in the order of each run, and gives them on.
 ///
-/// In       steps of `origin`, of the chosen runs; what is none of its, or leaves something out, is refused, counted and told in a line
+/// In       steps of `origin`, of the chosen runs; what is none of its, or leaves something out, is refused, counted
+///          and told in a line
 /// Out      rows of its own archive, a step a transaction; then `taken`. `run_state`, `clocks`: of the origin's current
 ///          run, once its beginning is here
 /// Faults   an engine or an origin that is away is waited for. Where steps of a run are missing, the stream is read
