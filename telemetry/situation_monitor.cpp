@@ -10,6 +10,7 @@
 #include <array>
 #include <cctype>
 #include <fmt/format.h>
+#include <functional>
 
 namespace aeolis::telemetry {
 namespace {
@@ -255,37 +256,43 @@ void SituationMonitor::touch_down(Sclk sclk, std::string_view how, const Origin&
 
 void SituationMonitor::touchdown(const TouchdownSample& sample, const Origin& origin) {
     TouchdownFacts& facts = touchdown_facts_;
-    const auto keep = [](auto& all, auto fact) {
+    // By the vehicle's time: packets of less priority come later.
+    const auto keep = [&sample](auto& all, auto fact, auto sclk) {
         if (all.size() == touchdown_facts_max) all.erase(all.begin());
-        all.push_back(std::move(fact));
+        all.insert(std::ranges::upper_bound(all, sample.sclk, {}, sclk), std::move(fact));
     };
-    if (sample.live) keep(facts.live, sample.sclk);
+    if (sample.live) keep(facts.live, sample.sclk, std::identity{});
     if (sample.rover_rate_rps && sample.rover_force_mps2)
-        keep(facts.rover_imu, TouchdownFacts::RoverImu{sample.sclk, *sample.rover_rate_rps, *sample.rover_force_mps2});
-    if (sample.flag) facts.flag = TouchdownFacts::Flag{sample.sclk, *sample.flag};
+        keep(facts.rover_imu, TouchdownFacts::RoverImu{sample.sclk, *sample.rover_rate_rps, *sample.rover_force_mps2},
+             &TouchdownFacts::RoverImu::sclk);
+    if (sample.flag && (!facts.flag || sample.sclk >= facts.flag->sclk))
+        facts.flag = TouchdownFacts::Flag{sample.sclk, *sample.flag};
     judge_touchdown(sample.sclk, origin);
 }
 
-// A confirmation stands, unless the vehicle itself takes the touchdown back.
+// What confirmed it may be older than what is kept: a confirmation is undone by a contradiction only.
 void SituationMonitor::judge_touchdown(Sclk now, const Origin& origin) {
     if (!landed_ || !clocks_.entry) return;
-    touchdown_facts_.now = now;
+    touchdown_facts_.now = std::max(touchdown_facts_.now, now);
     const TouchdownJudgement judged = telemetry::judge_touchdown(touchdown_facts_);
-    const bool news = judged.verdict == TouchdownVerdict::confirmed ? touchdown_verdict_ == TouchdownVerdict::untold
-                                                                    : judged.verdict == TouchdownVerdict::contradicted;
-    if (!news || judged.verdict == touchdown_verdict_) return;
+    if (judged.verdict == touchdown_verdict_) return;
+    if (judged.verdict == TouchdownVerdict::reported && touchdown_verdict_ == TouchdownVerdict::confirmed) return;
     touchdown_verdict_ = judged.verdict;
-    landed_->evidence_seq = origin.seq;
+    touchdown_told_.reset();
+    if (judged.verdict == TouchdownVerdict::reported) return;
+    SituationEntry told = *landed_;
+    told.evidence_seq = origin.seq;
     if (judged.verdict == TouchdownVerdict::contradicted) {
-        landed_->rank = SituationRank::danger;
-        landed_->sentence = fmt::format("Touchdown contradicted: {}", judged.steps.front().words);
-        landed_->evidence = judged.steps.front().words;
-        return;
+        told.rank = SituationRank::danger;
+        told.sentence = fmt::format("Touchdown contradicted: {}", judged.steps.front().words);
+        told.evidence = judged.steps.front().words;
+    } else {
+        told.sentence = fmt::format("Touchdown confirmed, at {}", when(seen(judged.sclk, origin)));
+        told.evidence.clear();
+        for (const auto& step : judged.steps)
+            told.evidence += fmt::format("{}{}: {}", told.evidence.empty() ? "" : "; ", step.name, step.words);
     }
-    landed_->sentence = fmt::format("Touchdown confirmed, at {}", when(seen(judged.sclk, origin)));
-    landed_->evidence.clear();
-    for (const auto& step : judged.steps)
-        landed_->evidence += fmt::format("{}{}: {}", landed_->evidence.empty() ? "" : "; ", step.name, step.words);
+    touchdown_told_ = std::move(told);
 }
 
 void SituationMonitor::event(const EventFact& event, const Origin& origin) {
@@ -478,7 +485,7 @@ void SituationMonitor::explained(const Explanation& explanation, const Origin& o
 
 Entries SituationMonitor::at(Ert now) const {
     Entries all = news_;
-    if (landed_) all.push_back(*landed_);
+    if (landed_) all.push_back(touchdown_told_ ? *touchdown_told_ : *landed_);
     const bool silent = add_not_heard(all, now);
     add_links(all, now, silent);
     if (!silent) add_waiting(all, now);

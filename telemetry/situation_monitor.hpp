@@ -154,8 +154,9 @@ class SituationMonitor {
     std::vector<Loss> losses_;          ///< that are over: one a link at most, and the station's
     std::vector<SituationEntry> news_;  ///< news and danger, the oldest first
     std::optional<SituationEntry> backup_, landed_;
-    TouchdownFacts touchdown_facts_;  ///< the newest of each kind
+    TouchdownFacts touchdown_facts_;  ///< the newest of each kind, by the vehicle's time
     TouchdownVerdict touchdown_verdict_{};
+    std::optional<SituationEntry> touchdown_told_;  ///< in place of landed_: confirmed or contradicted
     std::optional<Ert> last_heard_;
     struct Pass {
         Ert rises;

@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 #include <fmt/format.h>
-#include <limits>
+#include <utility>
 
 namespace aeolis::server::campaign {
 namespace {
@@ -33,6 +33,19 @@ constexpr std::array limits_of_columns{
     LimitOf{"timeline_margin_min_s", &Limits::timeline_margin_min_s, true, {"least_margin_s", nullptr}},
 };
 
+/// The figure of a case that comes nearest to the limit, and its margin; no numbers: it has none.
+std::pair<double, double> nearest(const LimitOf& of, const CaseTable& table, std::size_t row, double bound) {
+    std::pair found{unknown, unknown};
+    for (const char* name : of.columns) {
+        const CaseTable::Column* column = name == nullptr ? nullptr : table.column(name);
+        if (column == nullptr || std::isnan(column->values[row])) continue;
+        const double value = column->values[row];
+        const double margin = of.at_least ? value - bound : bound - value;
+        if (std::isnan(found.second) || margin < found.second) found = {value, margin};
+    }
+    return found;
+}
+
 }  // namespace
 
 double CampaignVerdict::fraction() const {
@@ -54,22 +67,16 @@ CampaignVerdict verdict_of(const CaseTable& table, const Limits& limits) {
         LimitMargin one;
         one.limit = of.name;
         one.bound = limits.*of.member;
-        one.margin = std::numeric_limits<double>::infinity();
-        for (const char* name : of.columns) {
-            const CaseTable::Column* column = name == nullptr ? nullptr : table.column(name);
-            if (column == nullptr) continue;
-            for (std::size_t row = 0; row < table.numbers.size(); ++row) {
-                const double value = column->values[row];
-                if (table.outcomes[row] != "touchdown" || std::isnan(value)) continue;
-                const double margin = of.at_least ? value - one.bound : one.bound - value;
-                if (margin < 0.0) ++one.exceeded;
-                if (margin >= one.margin) continue;
-                one.margin = margin;
-                one.value = value;
-                one.number = table.numbers[row];
-            }
+        for (std::size_t row = 0; row < table.numbers.size(); ++row) {
+            if (table.outcomes[row] != "touchdown") continue;
+            const auto [value, margin] = nearest(of, table, row, one.bound);
+            if (margin < 0.0) ++one.exceeded;
+            if (std::isnan(margin) || margin >= one.margin) continue;  // of the first, one.margin is no number
+            one.margin = margin;
+            one.value = value;
+            one.number = table.numbers[row];
         }
-        if (std::isfinite(one.margin)) verdict.limits.push_back(one);
+        verdict.limits.push_back(one);
     }
     return verdict;
 }
@@ -77,9 +84,14 @@ CampaignVerdict verdict_of(const CaseTable& table, const Limits& limits) {
 std::string verdict_table(const CampaignVerdict& verdict) {
     std::string text =
         fmt::format("{:<34}{:>10}{:>10}{:>10}{:>10}{:>10}\n", "limit", "bound", "worst", "margin", "case", "exceeded");
-    for (const LimitMargin& one : verdict.limits)
+    for (const LimitMargin& one : verdict.limits) {
+        if (one.number == 0) {
+            text += fmt::format("{:<34}{:>10.5g}{:>10}\n", one.limit, one.bound, "no figure");
+            continue;
+        }
         text += fmt::format("{:<34}{:>10.5g}{:>10.5g}{:>10.4g}{:>10}{:>10}\n", one.limit, one.bound, one.value,
                             one.margin, one.number, one.exceeded);
+    }
     constexpr double percent = 100.0;
     text += fmt::format("{}: {} of {} cases landed within all limits, {:.2f} %; {:.2f} % are required\n",
                         verdict.passes() ? "passed" : "FAILED", verdict.within, verdict.cases,

@@ -5,20 +5,23 @@
 #include "simulation/scenario.hpp"
 
 #include <cstdint>
-#include <optional>
+#include <limits>
 #include <string>
 #include <vector>
 
 // Whether a campaign passes by its scenario's limits, and by how much.
 namespace aeolis::server::campaign {
 
+/// Of a figure that no landing has, or too few for it.
+inline constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
 /// A limit, and the case that came nearest to it or exceeded it most.
 struct LimitMargin {
     std::string limit;  ///< of the scenario's field: "touchdown_vertical_max_mps"
     double bound = 0.0;
-    double value = 0.0;          ///< of the worst landing
-    double margin = 0.0;         ///< in the limit's unit; negative: exceeded
-    std::uint64_t number = 0;    ///< of that case
+    double value = unknown;      ///< of the worst landing; no number: no landing has a figure
+    double margin = unknown;     ///< in the limit's unit; negative: exceeded
+    std::uint64_t number = 0;    ///< of that case; 0: none
     std::uint64_t exceeded = 0;  ///< landings that did
 };
 
@@ -26,7 +29,7 @@ struct CampaignVerdict {
     std::uint64_t cases = 0;
     std::uint64_t within = 0;  ///< landed within all limits
     double fraction_min = 1.0;
-    std::vector<LimitMargin> limits;  ///< in the scenario's order; those of which no landing has a figure are left out
+    std::vector<LimitMargin> limits;  ///< all of them, in the scenario's order
     bool passes() const;
     double fraction() const;
 };

@@ -47,12 +47,21 @@ constexpr std::array error_fields{
 };
 static_assert(sizeof(Dispersions) == error_fields.size() * sizeof(double), "an error belongs to no group");
 
+double spread_of(const Moments& of) {
+    return of.count() < 2 ? unknown : of.deviation();
+}
+
 double deviation_of(const CaseTable& table, std::string_view name) {
     const CaseTable::Column* column = table.column(name);
     Moments spread;
     for (std::size_t i = 0; column != nullptr && i < column->values.size(); ++i)
         if (!std::isnan(column->values[i])) spread.add(column->values[i]);
-    return spread.deviation();
+    return spread_of(spread);
+}
+
+/// Of what too few landings show: `otherwise`.
+std::string shown(double value, int digits, std::string_view otherwise) {
+    return std::isnan(value) ? std::string{otherwise} : fmt::format("{:.{}f}", value, digits);
 }
 
 /// What a table or a file shows of an influence, in its order.
@@ -124,17 +133,18 @@ Influence influence_of(const std::string& group, const CaseTable& table, double 
         across.add(e * std::cos(course_rad) - n * std::sin(course_rad));
         plane.add(e, n);
     }
-    found.along_m = along.deviation();
-    found.across_m = across.deviation();
-    found.ellipse = plane.ellipse_99();
+    found.along_m = spread_of(along);
+    found.across_m = spread_of(across);
+    if (plane.count() >= 2) found.ellipse = plane.ellipse_99();
     found.vertical_mps = deviation_of(table, "vertical_mps");
     found.horizontal_mps = deviation_of(table, "horizontal_mps");
     found.propellant_kg = deviation_of(table, "propellant_kg");
     found.parachute_mach = deviation_of(table, "parachute_mach");
     found.parachute_pressure_Pa = deviation_of(table, "parachute_pressure_Pa");
     found.peak_deceleration_mps2 = deviation_of(table, "peak_deceleration_mps2");
-    if (const CaseTable::Column* left = table.column("propellant_kg"); left != nullptr && !left->values.empty())
-        found.propellant_least_kg = std::ranges::min(left->values);
+    if (const CaseTable::Column* left = table.column("propellant_kg"); left != nullptr)
+        for (const double kg : left->values)
+            if (!std::isnan(kg) && !(kg >= found.propellant_least_kg)) found.propellant_least_kg = kg;
     return found;
 }
 
@@ -145,17 +155,20 @@ std::string sensitivity_table(const std::vector<Influence>& influences, const In
     const auto numbers = [&](const std::string& name, const std::string& landed, const auto& value) {
         text += fmt::format("{:<26}{:>8}", name, landed);
         for (const ShownFigure& figure : shown_figures)
-            text += fmt::format("{:>10.{}f}", figure.scale * value(figure), figure.digits);
+            text += fmt::format("{:>10}", shown(figure.scale * value(figure), figure.digits, "-"));
     };
     const auto row = [&](const std::string& name, const Influence& one) {
         numbers(name, fmt::format("{}/{}", one.landed, one.cases),
                 [&](const ShownFigure& figure) { return figure.value(one); });
-        text += fmt::format("{:>17}{:>10.1f}\n",
-                            fmt::format("{:.2f} x {:.2f}", one.ellipse.major_m * km, one.ellipse.minor_m * km),
-                            one.propellant_least_kg);
+        const auto axes = one.ellipse
+                              ? fmt::format("{:.2f} x {:.2f}", one.ellipse->major_m * km, one.ellipse->minor_m * km)
+                              : std::string{"-"};
+        text += fmt::format("{:>17}{:>10}\n", axes, shown(one.propellant_least_kg, 1, "-"));
     };
     std::vector<Influence> ordered = influences;
-    std::ranges::stable_sort(ordered, std::ranges::greater{}, &Influence::along_m);
+    std::ranges::stable_sort(ordered, std::ranges::greater{}, [](const Influence& one) {
+        return std::isnan(one.along_m) ? -1.0 : one.along_m;  // the unknown last
+    });
     for (const Influence& one : ordered) row(one.group, one);
     numbers("root of sum of squares", "", [&](const ShownFigure& figure) {
         double squares = 0.0;
@@ -174,9 +187,11 @@ std::string sensitivity_csv(const std::vector<Influence>& influences, const Infl
     const auto row = [&](const Influence& one) {
         text += fmt::format("{},{},{}", one.group, one.cases, one.landed);
         for (const ShownFigure& figure : shown_figures)
-            text += fmt::format(",{:.{}f}", figure.scale * figure.value(one), figure.digits + 2);
-        text += fmt::format(",{:.4f},{:.4f},{:.2f},{:.2f}\n", one.ellipse.major_m * km, one.ellipse.minor_m * km,
-                            one.ellipse.azimuth_deg, one.propellant_least_kg);
+            text += "," + shown(figure.scale * figure.value(one), figure.digits + 2, "");
+        text += one.ellipse ? fmt::format(",{:.4f},{:.4f},{:.2f}", one.ellipse->major_m * km, one.ellipse->minor_m * km,
+                                          one.ellipse->azimuth_deg)
+                            : std::string{",,,"};
+        text += "," + shown(one.propellant_least_kg, 2, "") + '\n';
     };
     for (const Influence& one : influences) row(one);
     row(all);

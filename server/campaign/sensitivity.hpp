@@ -2,10 +2,12 @@
 #pragma once
 
 #include "server/campaign/case_table.hpp"
+#include "server/campaign/limit_margins.hpp"
 #include "server/campaign/statistics.hpp"
 #include "simulation/scenario.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,15 +27,16 @@ std::vector<ErrorGroup> single_errors(const simulation::Scenario& scenario);
 /// The scenario with only those errors, by its own deviations. Its name ends with the group's.
 simulation::Scenario with_errors(const simulation::Scenario& scenario, const ErrorGroup& group);
 
-/// Spread of the landings under one group of errors.
+/// Spread of the landings under one group of errors. What fewer than two landings have is no number.
 struct Influence {
     std::string group;
     std::uint64_t cases = 0, landed = 0;
-    double along_m = 0.0, across_m = 0.0;  ///< standard deviation of the touchdown by the course at the target
-    Ellipse ellipse;
-    double vertical_mps = 0.0, horizontal_mps = 0.0;  ///< standard deviations, as below
-    double propellant_kg = 0.0, parachute_mach = 0.0, parachute_pressure_Pa = 0.0, peak_deceleration_mps2 = 0.0;
-    double propellant_least_kg = 0.0;
+    double along_m = unknown, across_m = unknown;  ///< standard deviation of the touchdown by the course at the target
+    std::optional<Ellipse> ellipse;
+    double vertical_mps = unknown, horizontal_mps = unknown;  ///< standard deviations, as below
+    double propellant_kg = unknown, parachute_mach = unknown, parachute_pressure_Pa = unknown,
+           peak_deceleration_mps2 = unknown;
+    double propellant_least_kg = unknown;  ///< of all cases
 };
 /// @param course_deg  azimuth of the course at the target
 Influence influence_of(const std::string& group, const CaseTable& table, double course_deg);

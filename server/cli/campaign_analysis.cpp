@@ -107,6 +107,10 @@ int footprints(const std::filesystem::path& file) {
         campaign::PlaneMoments plane;
         for (std::size_t i = 0; e != nullptr && n != nullptr && i < e->values.size(); ++i)
             if (!std::isnan(e->values[i]) && !std::isnan(n->values[i])) plane.add(e->values[i], n->values[i]);
+        if (plane.count() < 2) {
+            fmt::print("{:<28}{:>8}{:>22}\n", name, plane.count(), "too few cases");
+            continue;
+        }
         const auto ellipse = plane.ellipse_99();
         fmt::print("{:<28}{:>8}{:>22}{:>12.1f}{:>12.2f}{:>12.2f}\n", name, plane.count(),
                    fmt::format("{:.2f} x {:.2f}", ellipse.major_m * campaign::km, ellipse.minor_m * campaign::km),

@@ -151,7 +151,7 @@ void print_density(const std::vector<DensityPoint>& density) {
         row("", point);
         next_m -= every_m;
     }
-    row("(last: the parachute)", density.back());
+    row("(last known)", density.back());
 }
 
 int reconstruct(const ReconstructOptions& options) {
@@ -190,8 +190,7 @@ int reconstruct(const ReconstructOptions& options) {
         "\n{} readings of the IMU, {} missing and filled, {} gaps; {} readings of radar beams taken, {} refused. "
         "Accelerometers' bias {:.2e}, {:.2e}, {:.2e} m/s2.\n"
         "+-: one standard deviation, of the three axes together. Times are those of the vehicle's clock, from the "
-        "entry "
-        "that ground's last parameters state.\n",
+        "entry that ground's last parameters state.\n",
         path->readings, path->readings_filled, path->breaks, path->beams_taken, path->beams_refused, bias.x(), bias.y(),
         bias.z());
     if (options.site.empty())

@@ -36,7 +36,7 @@ std::vector<DensityPoint> density_along(const Path& path, const RecordedLanding&
     for (std::size_t i = 1; i < path.points.size(); ++i) {
         const PathPoint& before = path.points[i - 1];
         const PathPoint& now = path.points[i];
-        if (parachute && now.at >= *parachute) break;
+        if (parachute && now.at >= *parachute) break;  // it carries from then on
         for (; next_gone != gone.end() && *next_gone <= now.at; ++next_gone) mass_kg -= balance_pair_kg;
         if (now.at - before.at > 1.5 * path_step_s) continue;  // a gap
         const Vector3 v_M = 0.5 * (before.state.v_MB_M + now.state.v_MB_M);
@@ -44,6 +44,7 @@ std::vector<DensityPoint> density_along(const Path& path, const RecordedLanding&
         const double drag_mps2 = -now.felt_M_mps2.dot(v_M) / speed_mps;
         const double height_m = 0.5 * (before.state.p_MoB_M.norm() + now.state.p_MoB_M.norm()) - path.target_radius_m;
         const double mach = speed_mps / flight::gnc::speed_of_sound_mps(height_m);
+        if (!parachute && mach < errors.parachute_possible_mach) break;  // whether it is out nobody told
         const double attack_rad = angle_between(now.state.q_MB * Vector3::UnitZ(), v_M);
         const double drag = aeroshell_coefficients(mach, attack_rad).drag;
         const double attack_sigma_rad = std::hypot(now.sigma_angle_rad.maxCoeff(), errors.wind_mps / speed_mps);

@@ -18,8 +18,11 @@ struct DensityErrors {
     double fast_drag_fraction = 0.01;   ///< of the drag coefficient, above Mach 8
     double slow_drag_fraction = 0.033;  ///< the same, below Mach 3
     double mass_fraction = 0.001;
-    double wind_mps = 7.0;            ///< of each horizontal component
-    double felt_mps2 = 0.02;          ///< thrusters' pulses and the place of the IMU. Our assumption
+    double wind_mps = 7.0;    ///< of each horizontal component
+    double felt_mps2 = 0.02;  ///< thrusters' pulses and the place of the IMU. Our assumption
+    /// Slower than this it may be the parachute that is felt, where its deployment is not in the recording. Our
+    /// assumption: it opens below 2.2.
+    double parachute_possible_mach = 2.3;
     double sigma_fraction_max = 0.3;  ///< where less is known, nothing is said. Our assumption
 };
 
@@ -31,7 +34,8 @@ struct DensityPoint {
     double mach = 0.0;
 };
 
-/// The density along the path of the entry vehicle, from where the air is felt to the parachute's deployment.
+/// The density along the path of the entry vehicle, from where the air is felt to the parachute's deployment,
+/// or to where it may have been deployed if the recording does not tell.
 ///
 /// Each point lies in the middle of a step of the path. Of the recording it takes when the balance masses went and when
 /// the parachute was deployed.

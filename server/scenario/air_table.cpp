@@ -123,6 +123,8 @@ class TableReader {
     Result<void> read_heading(const std::string& line, std::size_t number, bool of_air) {
         commas_ = line.find(',') != std::string::npos;
         if (!commas_ && of_air) {
+            if (number_of(words_of(line, false).front()))
+                return at(number, "a profile begins with a line of heading, this one is of numbers");
             columns_.assign(profile_columns.begin(), profile_columns.end());
             return {};
         }

@@ -145,7 +145,10 @@ TEST_CASE("a bad table of the air is refused by file, line and reason, and nothi
         INFO(row.text);
         CHECK_THAT(in.refusal(row.text), Catch::StartsWith(row.says));
     }
-    // A profile's rows have eight values at least.
+    // A profile's first line is no row.
+    CHECK(in.refusal("0 -4.6 137.4 220 831 0.02 0 0\n1 -4.6 137.4 220 800 0.019 0 0\n", "gram.txt") ==
+          "gram.txt:1: a profile begins with a line of heading, this one is of numbers");
+    // Its rows have eight values at least.
     CHECK(in.refusal("heading\n0 -4.6 137.4 220 831\n", "gram.txt") == "gram.txt:2: 5 values, the heading has 8");
     CHECK_THAT(air_table_from_file("/nowhere/air.csv").error().message,
                Catch::Contains("/nowhere/air.csv: cannot be opened"));

@@ -4,6 +4,7 @@
 #include "tests/support/catch.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace server_limit_margins_test {
@@ -21,8 +22,8 @@ CaseTable four() {
     table.outcomes = {"touchdown", "touchdown", "touchdown", "lost"};
     table.columns = {{"vertical_mps", {0.70, 0.80, 0.95, none}},
                      {"propellant_kg", {40.0, 12.0, 30.0, 0.0}},
-                     {"heatshield_least_m", {none, none, 80.0, 1.0}},
-                     {"backshell_least_m", {90.0, 60.0, none, 0.0}},
+                     {"heatshield_least_m", {none, 65.0, 20.0, 1.0}},
+                     {"backshell_least_m", {90.0, 60.0, 15.0, 0.0}},
                      {"limits_exceeded", {0.0, 0.0, 1.0, 0.0}}};
     return table;
 }
@@ -47,13 +48,17 @@ TEST_CASE("a campaign tells each limit's margin, by the landing that came neares
     CHECK(left.margin == Approx(8.0));
     CHECK(left.exceeded == 0);
     const LimitMargin& apart = limit(verdict, "recontact_min_m");  // of both bodies
-    CHECK(apart.value == 60.0);
-    CHECK(apart.number == 2);
-    // A limit of which no landing has a figure is left out.
-    CHECK(std::ranges::find(verdict.limits, "parachute_mach_max", &LimitMargin::limit) == verdict.limits.end());
+    CHECK(apart.value == 15.0);
+    CHECK(apart.number == 5);
+    CHECK(apart.exceeded == 1);                                      // one landing, though both bodies came too near
+    const LimitMargin& mach = limit(verdict, "parachute_mach_max");  // no landing has a figure of it
+    CHECK(mach.number == 0);
+    CHECK(std::isnan(mach.value));
+    CHECK_THAT(verdict_table(verdict), Catch::Contains("parachute_mach_max                       2.2 no figure\n"));
+    CHECK_THAT(verdict_json(verdict), Catch::Contains("\"limit\":\"parachute_mach_max\",\"bound\":2.2,\"worst\":null"));
     CHECK_THAT(verdict_table(verdict), Catch::Contains("FAILED: 2 of 4 cases landed within all limits, 50.00 %"));
     CHECK_THAT(verdict_json(verdict), Catch::Contains("\"verdict\":\"failed\"") &&
-                                          Catch::Contains("\"limit\":\"recontact_min_m\",\"bound\":25,\"worst\":60"));
+                                          Catch::Contains("\"limit\":\"recontact_min_m\",\"bound\":25,\"worst\":15"));
 }
 
 TEST_CASE("a campaign passes from the fraction of its cases that the scenario requires, on both sides of it",

@@ -67,4 +67,20 @@ TEST_CASE("an influence is along the course and across it, and the budget is the
     CHECK_THAT(sensitivity_csv({one, other}, one), Catch::StartsWith("errors,cases,landed,along_sigma_km,"));
 }
 
+TEST_CASE("of errors under which nothing lands no spread is said: it is not zero", "[campaign][analysis]") {
+    CaseTable table;
+    table.numbers = {1, 2};
+    table.outcomes = {"lost", "touchdown"};
+    const double none = std::nan("");
+    table.columns = {{"east_m", {none, 900.0}}, {"north_m", {none, 100.0}}, {"propellant_kg", {none, 12.0}}};
+    const Influence one = influence_of("wind", table, 90.0);
+    CHECK(std::isnan(one.along_m));
+    CHECK_FALSE(one.ellipse);
+    CHECK(one.propellant_least_kg == 12.0);
+    const std::string text = sensitivity_table({one}, one);
+    CHECK_THAT(text, Catch::Contains("wind                           1/2         -         -"));
+    CHECK_FALSE(text.find("nan") != std::string::npos);
+    CHECK_THAT(sensitivity_csv({one}, one), Catch::Contains("wind,2,1,,,,,,,,,,,,12.00\n"));
+}
+
 }  // namespace server_sensitivity_test

@@ -288,6 +288,41 @@ TEST_CASE("a touchdown is confirmed in the second in which all three signals are
     CHECK(ground.first(600.0).rank == Rank::danger);
     CHECK(ground.sentence(600.0) ==
           "Touchdown contradicted: event TOUCHDOWN at E+7:12.5, but touchdown_declared is 0 at E+10:00.0");
+    for (double e_s = 601.0; e_s < 604.0; e_s += 1.0) sample(e_s, 1.0);
+    CHECK(ground.sentence(604.0) == "Touchdown confirmed, at E+7:12");
+    CHECK(ground.first(604.0).rank == Rank::news);
+    sample(602.5, 0.0);  // an older flag, late
+    sample(604.0, 1.0);
+    sample(604.0, 1.0);  // twice
+    CHECK(ground.sentence(605.0) == "Touchdown confirmed, at E+7:12");
+}
+
+TEST_CASE("samples of the touchdown that come late or doubled are judged by the time on board",
+          "[situation][touchdown][R53]") {
+    const auto confirmed_after = [](const std::vector<double>& order) {
+        Ground ground;
+        ground.up(uhf_live_link, -100.0);
+        ground.event("TOUCHDOWN", 432.5, "Touchdown");
+        std::size_t given = 0;
+        for (const double e_s : order) {
+            ground.monitor.touchdown({sclk(e_s), 1.0, 0.0007, still_weight_mps2, true}, ground.from(e_s));
+            ++given;
+            if (ground.about("landed", 600.0)->sentence.starts_with("Touchdown confirmed")) break;
+        }
+        return given;
+    };
+    std::vector<double> order;
+    for (double e_s = 433.0; e_s <= 443.0; e_s += 1.0) order.push_back(e_s);
+    CHECK(confirmed_after(order) == 11);
+    auto swapped = order;
+    std::swap(swapped[4], swapped[7]);
+    CHECK(confirmed_after(swapped) == 11);
+    auto doubled = order;
+    doubled.insert(doubled.begin() + 3, order[2]);
+    CHECK(confirmed_after(doubled) == 12);
+    auto late = order;  // the last but one comes last: no gap was without a sample
+    std::swap(late[9], late[10]);
+    CHECK(confirmed_after(late) == 10);
 }
 
 TEST_CASE("a touchdown that is heard by tones alone, or whose UHF stops, stays reported", "[situation][touchdown]") {

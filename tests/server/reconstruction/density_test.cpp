@@ -114,6 +114,20 @@ TEST_CASE("without errors of vehicle, air and sensors the density is that of the
     CHECK(recorded.balance_pairs_gone().size() == 3);
     CHECK(density.back().at < *recorded.reported("PARACHUTE_DEPLOY"));
     CHECK(density.back().at - path->entry > 240.0);
+
+    // Without the word that the parachute was deployed: only where it cannot be out, with the same values.
+    const auto event = tests::shipped_dictionary().event("PARACHUTE_DEPLOY")->id;
+    const auto untold = tests::recorded_of(flown, [&](const auto& packet) {
+        const auto read = read_tm_packet(packet);
+        return !read || read->primary.apid != flight::evr::PARACHUTE_DEPLOY::apid ||
+               read_bits(packet, tm_data_offset_octets * 8, 16) != event.value;
+    });
+    REQUIRE_FALSE(untold.reported("PARACHUTE_DEPLOY"));
+    const auto shorter = density_along(*path, untold);
+    REQUIRE(shorter.size() > 1000);
+    CHECK(shorter.size() < density.size());
+    CHECK(shorter.back().mach >= 2.3);
+    CHECK(shorter.back().density_kgm3 == density.at(shorter.size() - 1).density_kgm3);
 }
 
 }  // namespace server_reconstruction_density_test
