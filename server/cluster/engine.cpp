@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <map>
 #include <mutex>
 #include <nats/nats.h>
 #include <utility>
@@ -28,6 +29,41 @@ using ConsumerInfo = Owned<jsConsumerInfo, jsConsumerInfo_Destroy>;
 using PubAck = Owned<jsPubAck, jsPubAck_Destroy>;
 using MetaData = Owned<jsMsgMetaData, jsMsgMetaData_Destroy>;
 
+/// The first refusal of what was published without waiting. A thread of the library tells of it, and may do so after
+/// its connection was closed: it knows a number, behind which nobody may be left.
+class Refusals {
+  public:
+    Refusals() {
+        const std::scoped_lock lock{mutex};
+        number_ = ++last;
+        all.emplace(number_, "");
+    }
+    Refusals(const Refusals&) = delete;
+    Refusals& operator=(const Refusals&) = delete;
+    ~Refusals() {
+        const std::scoped_lock lock{mutex};
+        all.erase(number_);
+    }
+    /// As the library hands it back.
+    void* number() const { return reinterpret_cast<void*>(number_); }
+    static void tell(void* number, const char* why) {
+        const std::scoped_lock lock{mutex};
+        const auto one = all.find(reinterpret_cast<std::uintptr_t>(number));
+        if (one != all.end() && one->second.empty()) one->second = why;
+    }
+    /// Empty: there was none since it was taken.
+    std::string take() {
+        const std::scoped_lock lock{mutex};
+        return std::exchange(all.at(number_), {});
+    }
+
+  private:
+    static inline std::mutex mutex;
+    static inline std::uintptr_t last = 0;
+    static inline std::map<std::uintptr_t, std::string> all;
+    std::uintptr_t number_ = 0;
+};
+
 }  // namespace handles
 namespace {
 
@@ -37,7 +73,10 @@ constexpr std::int64_t second_ns = 1'000'000'000;
 constexpr std::int64_t forgotten_after_s = 30 * 24 * 3600;  // chosen: what nobody took for a month, nobody will
 constexpr std::int64_t reader_forgotten_after_s = 300;      // chosen: it is made again where it was
 constexpr std::int64_t reconnect_wait_ms = 250;
-constexpr std::int64_t pending_max = 2048;  // published and not yet confirmed: as in the figure of the limits
+constexpr std::int64_t pending_max = 2048;     // published and not yet confirmed: as in the figure of the limits
+constexpr std::int64_t ping_every_ms = 5'000;  // chosen: a network that swallows all is known after two of them
+constexpr int pings_out_max = 2;
+constexpr int replicas_of_several = 3;  // of a stream, where three engines and more are named: one may be lost
 
 /// What stands before an '@' may be a secret, and hold commas and slashes: all of it is left out, though it be of
 /// several URLs.
@@ -180,8 +219,8 @@ Result<std::optional<Heard>> Listening::next(std::chrono::milliseconds wait) {
 
 struct Engine::State {
     std::string shown;
-    std::mutex mutex;     // of the one below, which a thread of the library writes
-    std::string refusal;  // of what was published without waiting; empty: none
+    int replicas = 1;  // of streams that it makes
+    Refusals refusals;
     Connection connection;
     Streams streams;
 
@@ -206,11 +245,15 @@ Result<Engine> Engine::connect(const EngineAddress& address, const std::string& 
     std::vector<const char*> servers;
     servers.reserve(urls.size());
     for (const auto& url : urls) servers.push_back(url.c_str());
+    if (urls.size() >= replicas_of_several) state->replicas = replicas_of_several;
     then(natsOptions_SetServers(made, servers.data(), static_cast<int>(servers.size())));
     then(natsOptions_SetName(made, name.c_str()));
     then(natsOptions_SetTimeout(made, patience.count()));
     then(natsOptions_SetMaxReconnect(made, -1));
     then(natsOptions_SetReconnectWait(made, reconnect_wait_ms));
+    then(natsOptions_SetWriteDeadline(made, patience.count()));  // else a network that takes nothing is waited for
+    then(natsOptions_SetPingInterval(made, ping_every_ms));
+    then(natsOptions_SetMaxPingsOut(made, pings_out_max));
     if (status != NATS_OK) return Error{fmt::format("--nats {}: not the address of an engine", state->shown)};
     const auto file = [&](const std::filesystem::path& path, const char* option, auto&& set) -> Result<void> {
         if (path.empty() || set(path.c_str()) == NATS_OK) return {};
@@ -244,12 +287,10 @@ Result<Engine> Engine::connect(const EngineAddress& address, const std::string& 
     defaults.Wait = patience.count();
     defaults.PublishAsync.MaxPending = pending_max;
     // Without this the library takes a refusal for done.
-    defaults.PublishAsync.ErrHandler = [](jsCtx*, jsPubAckErr* refusal, void* closure) {
-        auto& told = *static_cast<State*>(closure);
-        const std::scoped_lock lock{told.mutex};
-        if (told.refusal.empty()) told.refusal = refusal->ErrText != nullptr ? refusal->ErrText : "refused";
+    defaults.PublishAsync.ErrHandler = [](jsCtx*, jsPubAckErr* refusal, void* number) {
+        Refusals::tell(number, refusal->ErrText != nullptr ? refusal->ErrText : "refused");
     };
-    defaults.PublishAsync.ErrHandlerClosure = state.get();
+    defaults.PublishAsync.ErrHandlerClosure = state->refusals.number();
     jsCtx* streams = nullptr;
     status = natsConnection_JetStream(&streams, connection, &defaults);
     if (status != NATS_OK) return state->refused("JetStream", status);
@@ -270,6 +311,7 @@ Result<void> Engine::make_stream(const std::string& stream, const std::string& s
     config.SubjectsLen = 1;
     config.Retention = keep == Keep::until_taken ? js_WorkQueuePolicy : js_LimitsPolicy;
     config.Storage = js_FileStorage;
+    config.Replicas = state_->replicas;
     if (keep == Keep::newest)
         config.MaxMsgsPerSubject = 1;
     else
@@ -297,10 +339,7 @@ Result<void> Engine::publish(const std::string& subject, std::string_view octets
 }
 
 Result<void> Engine::publish(const std::string& subject, const std::vector<std::string>& messages) {
-    {
-        const std::scoped_lock lock{state_->mutex};
-        state_->refusal.clear();
-    }
+    (void)state_->refusals.take();
     auto status = NATS_OK;
     for (auto message = messages.begin(); message != messages.end() && status == NATS_OK; ++message)
         status = js_PublishAsync(state_->streams.get(), subject.c_str(), message->data(),
@@ -312,9 +351,8 @@ Result<void> Engine::publish(const std::string& subject, const std::vector<std::
     natsMsgList left{};  // not confirmed, and no more waited for
     if (js_PublishAsyncGetPendingList(&left, state_->streams.get()) == NATS_OK) natsMsgList_Destroy(&left);
     if (status != NATS_OK) return state_->refused("publishing to " + subject, status);
-    const std::scoped_lock lock{state_->mutex};
-    if (!state_->refusal.empty())
-        return Error{fmt::format("{}: publishing to {}: {}", state_->shown, subject, state_->refusal)};
+    if (const auto why = state_->refusals.take(); !why.empty())
+        return Error{fmt::format("{}: publishing to {}: {}", state_->shown, subject, why)};
     return {};
 }
 

@@ -8,19 +8,17 @@
 #include "server/rehearsal/rehearsal.hpp"
 #include "server/scenario/scenario_text.hpp"
 #include "tests/server/running_server.hpp"
+#include "tests/support/child_process.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <csignal>
-#include <cstdlib>
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <fstream>
 #include <google/protobuf/struct.pb.h>
-#include <iostream>
 #include <map>
 #include <mutex>
-#include <sys/wait.h>
 #include <unistd.h>
 
 namespace server_campaign_test {
@@ -103,12 +101,6 @@ std::string refusal(const std::filesystem::path& file, const Identity& other) {
     return store.error().message;
 }
 
-const char* program() {
-    const char* given = std::getenv("AEOLIS_PROGRAM");
-    if (given == nullptr) std::cout << "SKIPPED: AEOLIS_PROGRAM does not name the program to try\n";
-    return given;
-}
-
 /// A file with the quickest landing there is: GNC alone, from shortly before entry.
 std::string light_scenario(const test::TemporaryFolder& folder) {
     auto scenario = test::shipped_scenario("gnc_alone");
@@ -123,28 +115,16 @@ struct Ended {
     std::string out;
 };
 
-/// `aeolis campaign`, its standard output into a file.
-pid_t start(const char* program, std::vector<std::string> arguments, const std::filesystem::path& out) {
-    arguments.insert(arguments.begin(), {program, "campaign"});
-    std::vector<char*> words;
-    for (auto& argument : arguments) words.push_back(argument.data());
-    words.push_back(nullptr);
-    const pid_t child = fork();
-    REQUIRE(child >= 0);
-    if (child == 0) {
-        const int file = ::open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
-        if (file < 0 || ::dup2(file, STDOUT_FILENO) < 0 || ::dup2(file, STDERR_FILENO) < 0) _exit(127);
-        execv(program, words.data());
-        _exit(127);
-    }
-    return child;
+/// `aeolis campaign`, both its streams into a file.
+test::ChildProcess start(std::vector<std::string> arguments, const std::filesystem::path& out) {
+    arguments.insert(arguments.begin(), {test::program(), "campaign"});
+    return test::ChildProcess{std::move(arguments), out};
 }
 
-Ended wait_for(pid_t child, const std::filesystem::path& out) {
-    int status = 0;
-    REQUIRE(waitpid(child, &status, 0) == child);
+Ended wait_for(test::ChildProcess child, const std::filesystem::path& out) {
+    const int code = child.ended_within(std::chrono::hours{1});
     std::ifstream stream{out};
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, {std::istreambuf_iterator<char>{stream}, {}}};
+    return {code, {std::istreambuf_iterator<char>{stream}, {}}};
 }
 
 google::protobuf::Struct json_of(const std::string& text) {
@@ -355,53 +335,51 @@ TEST_CASE("results of another scenario, seed, dictionary or program are refused 
 }
 
 TEST_CASE("kill -9 loses nothing that was committed and repeats nothing", "[campaign]") {
-    if (program() == nullptr) return;
+    if (test::program().empty()) return;
     const test::TemporaryFolder folder;
     const auto file = folder / "killed.db", out = folder / "out";
     std::vector<std::string> arguments{"--scenario", light_scenario(folder), "--cases", "12", "--jobs", "1", "--json",
                                        "--results",  file.string()};
-    const pid_t child = start(program(), arguments, out);
+    auto child = start(arguments, out);
     std::int64_t seen = 0;
     for (int i = 0; i < 3000 && seen < 1; ++i) {
         usleep(10'000);
         seen = count_of(file, "SELECT count(*) FROM cases");
     }
-    kill(child, SIGKILL);
-    wait_for(child, out);
+    child.kill();
     const auto committed = count_of(file, "SELECT count(*) FROM cases");
     CHECK(committed >= seen);
     CHECK(seen >= 1);
     CHECK(committed < 12);
 
     arguments[5] = "2";  // jobs: what comes out does not depend on them
-    const auto resumed = wait_for(start(program(), arguments, out), out);
+    const auto resumed = wait_for(start(arguments, out), out);
     const auto json = json_of(resumed.out);
     CHECK(number_at(json, {"kept"}) == 12);
     CHECK(number_at(json, {"flown"}) == 12 - committed);
     auto uninterrupted = arguments;
     uninterrupted.back() = (folder / "whole.db").string();
-    wait_for(start(program(), uninterrupted, out), out);
+    wait_for(start(uninterrupted, out), out);
     CHECK(rows_of(file) == rows_of(folder / "whole.db"));
 
     // The same file for another seed, from the command line.
     auto other = arguments;
     other.insert(other.end(), {"--seed", "2"});
-    const auto refused = wait_for(start(program(), other, out), out);
+    const auto refused = wait_for(start(other, out), out);
     CHECK(refused.code == 1);
     CHECK_THAT(refused.out, Catch::Contains("seed: 1 there, 2 here"));
 }
 
 TEST_CASE("an interrupt ends the program cleanly, with a report of what is kept", "[campaign]") {
-    if (program() == nullptr) return;
+    if (test::program().empty()) return;
     const test::TemporaryFolder folder;
     const auto file = folder / "a.db", out = folder / "out";
-    const pid_t child = start(
-        program(),
+    auto child = start(
         {"--scenario", light_scenario(folder), "--cases", "5000", "--jobs", "1", "--json", "--results", file.string()},
         out);
     for (int i = 0; i < 3000 && count_of(file, "SELECT count(*) FROM cases") < 1; ++i) usleep(50'000);
-    kill(child, SIGINT);
-    const auto ended = wait_for(child, out);
+    child.signal(SIGINT);
+    const auto ended = wait_for(std::move(child), out);
     CHECK(ended.code == 1);  // not all are flown
     CHECK_FALSE(std::filesystem::exists(folder / "a.db-wal"));
     const auto kept = number_at(json_of(ended.out), {"kept"});
@@ -413,11 +391,10 @@ namespace {
 
 /// The bands of Dispersed landings [facts], over the cases 1 … `cases` of the campaign that ships.
 void check_bands(int cases) {
-    if (program() == nullptr) return;
+    if (test::program().empty()) return;
     const test::TemporaryFolder folder;
     const auto out = folder / "out";
-    const auto ended = wait_for(start(program(),
-                                      {"--scenario", "campaign", "--cases", fmt::format("{}", cases), "--json",
+    const auto ended = wait_for(start({"--scenario", "campaign", "--cases", fmt::format("{}", cases), "--json",
                                        "--results", (folder / "a.db").string()},
                                       out),
                                 out);
@@ -453,12 +430,12 @@ TEST_CASE("five hundred dispersed cases land within the published bands", "[.lon
 
 TEST_CASE("a campaign is studied by the program: verdict, table of all numbers, correlations, ellipses, comparison",
           "[campaign][analysis]") {
-    if (program() == nullptr) return;
+    if (test::program().empty()) return;
     const test::TemporaryFolder folder;
     const auto scenario = light_scenario(folder);
     const auto in = [&](const char* name) { return (folder / name).string(); };
     const auto ran = [&](std::vector<std::string> arguments) {
-        return wait_for(start(program(), std::move(arguments), folder / "out"), folder / "out");
+        return wait_for(start(std::move(arguments), folder / "out"), folder / "out");
     };
     for (const char* seed : {"1", "2"}) {
         const auto flown =

@@ -7,22 +7,18 @@
 #include "tests/server/run_copies.hpp"
 #include "tests/server/web_client.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/child_process.hpp"
 
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <csignal>
-#include <cstdlib>
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <fstream>
-#include <iostream>
 #include <iterator>
+#include <optional>
 #include <random>
-#include <sys/wait.h>
 #include <thread>
-#include <unistd.h>
 
 // The programs as they are started, killed at any moment.
 namespace server_cluster_programs_test {
@@ -44,12 +40,6 @@ bool comes(Condition condition) {
     return true;
 }
 
-const char* program() {
-    const char* given = std::getenv("AEOLIS_PROGRAM");
-    if (given == nullptr) std::cout << "SKIPPED: AEOLIS_PROGRAM does not name the program to try\n";
-    return given;
-}
-
 /// `aeolis serve`, until it is killed.
 class Serving {
   public:
@@ -58,37 +48,20 @@ class Serving {
     }
     Serving(const Serving&) = delete;
     Serving& operator=(const Serving&) = delete;
-    ~Serving() { kill(); }
 
-    void kill() {
-        if (process_ <= 0) return;
-        ::kill(process_, SIGKILL);
-        ::waitpid(process_, nullptr, 0);
-        process_ = -1;
-    }
+    void kill() { process_.reset(); }
     void start(const std::vector<std::string>& options) {
         std::vector<std::string> words{program(),   "serve",           "--listen",    "127.0.0.1:0",
                                        "--archive", archive_.string(), "--log-level", "error"};
         words.insert(words.end(), options.begin(), options.end());
-        std::vector<char*> arguments;
-        arguments.reserve(words.size() + 1);
-        for (auto& word : words) arguments.push_back(word.data());
-        arguments.push_back(nullptr);
         const auto output = archive_.string() + ".out";
         std::filesystem::remove(output);
-        process_ = ::fork();
-        if (process_ == 0) {
-            const int out = ::open(output.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-            ::dup2(out, STDOUT_FILENO);
-            ::dup2(out, STDERR_FILENO);
-            ::execv(arguments[0], arguments.data());
-            ::_exit(127);
-        }
+        process_.emplace(std::move(words), output);
         std::string text;
         const bool started = comes([&] {
             std::ifstream in{output};
             text.assign(std::istreambuf_iterator<char>{in}, {});
-            return text.find("end with Ctrl-C") != std::string::npos || ::waitpid(process_, nullptr, WNOHANG) != 0;
+            return text.find("end with Ctrl-C") != std::string::npos || !process_->running();
         });
         INFO(text);
         REQUIRE(started);
@@ -111,7 +84,7 @@ class Serving {
 
   private:
     const std::filesystem::path archive_;
-    pid_t process_ = -1;
+    std::optional<ChildProcess> process_;
     std::uint16_t port_ = 0;
 };
 
@@ -195,13 +168,13 @@ void kill_programs(int kills, std::uint32_t seed) {
 
 TEST_CASE("the programs of origin, engine and follower, each killed in flight, land and hold the same",
           "[cluster][R61]") {
-    if (!NatsServer::present() || program() == nullptr) return;
+    if (!NatsServer::present() || program().empty()) return;
     kill_programs(3, 20261127);
 }
 
 TEST_CASE("the programs of origin, engine and follower, killed at fifty moments, land and hold the same",
           "[cluster][R61][long]") {
-    if (!NatsServer::present() || program() == nullptr) return;
+    if (!NatsServer::present() || program().empty()) return;
     kill_programs(50, 1);
 }
 

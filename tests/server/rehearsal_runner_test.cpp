@@ -7,14 +7,14 @@
 #include "server/scenario/scenario_text.hpp"
 #include "tests/server/running_server.hpp"
 #include "tests/server/small_mission.hpp"
+#include "tests/support/acknowledged.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/child_process.hpp"
 #include "tests/support/shipped_dictionary.hpp"
 
 #include <atomic>
 #include <chrono>
-#include <csignal>
 #include <random>
-#include <sys/wait.h>
 #include <thread>
 #include <unistd.h>
 
@@ -119,15 +119,23 @@ simulation::Scenario short_landing() {
     return scenario;
 }
 
-/// Flies with a command now and then until this process is killed; every published sequence number goes into the pipe.
-[[noreturn]] void fly_until_killed(const std::filesystem::path& file, int published,
-                                   const dictionary::Dictionary& dictionary) {
+/// A clock other than that of the sheet.
+dictionary::Dictionary with_clock_rate(double rate) {
+    auto dictionary = tests::shipped_dictionary();
+    dictionary.clock.front().correlation.rate = rate;
+    dictionary.clock.front().correlation.version = 4;
+    return dictionary;
+}
+
+constexpr const char* flying = "part of a test: a flight that is killed";
+
+/// Flies with a command now and then until this process is killed; every published sequence number is acknowledged.
+[[noreturn]] void fly_until_killed(const std::filesystem::path& file, const dictionary::Dictionary& dictionary) {
     auto archive = archive::Archive::open(file);
     if (!archive) ::_exit(1);
-    PipelineThread pipeline{std::move(*archive), dictionary, PipelineThread::Faults::give_up, [&](const auto& batch) {
-                                const archive::Sequence seq = batch->last_seq;
-                                if (::write(published, &seq, sizeof seq) != sizeof seq) ::_exit(1);
-                            }};
+    const test::Acknowledging acknowledges{file};
+    PipelineThread pipeline{std::move(*archive), dictionary, PipelineThread::Faults::give_up,
+                            [&](const auto& batch) { acknowledges(batch->last_seq); }};
     std::atomic<bool> begun{false};
     RehearsalRunner::Callbacks callbacks;
     callbacks.on_begun = [&](const auto&) { begun = true; };
@@ -195,23 +203,12 @@ std::vector<std::string> items_flown(const archive::CutOffRun& cut, archive::Seq
     return items;
 }
 
+/// @param rate  of the clock, where it is not the sheet's
 archive::Sequence kill_after(archive::Sequence published, const std::filesystem::path& file,
-                             const dictionary::Dictionary& dictionary = tests::shipped_dictionary()) {
-    int pipe[2];
-    REQUIRE(::pipe(pipe) == 0);
-    const pid_t child = ::fork();
-    REQUIRE(child >= 0);
-    if (child == 0) fly_until_killed(file, pipe[1], dictionary);
-    ::close(pipe[1]);
-    archive::Sequence acknowledged = 0;
-    while (acknowledged < published && ::read(pipe[0], &acknowledged, sizeof acknowledged) > 0) {
-    }
-    ::kill(child, SIGKILL);
-    ::waitpid(child, nullptr, 0);
-    while (::read(pipe[0], &acknowledged, sizeof acknowledged) > 0) {
-    }
-    ::close(pipe[0]);
-    return acknowledged;
+                             const std::string& rate = {}) {
+    auto flight =
+        test::ChildProcess::part(flying, {{"AEOLIS_TEST_ARCHIVE", file.string()}, {"AEOLIS_TEST_CLOCK_RATE", rate}});
+    return test::killed_after(flight, published, file);
 }
 
 enum class Ended : std::uint8_t { killed, left };
@@ -303,11 +300,11 @@ void end_and_continue(archive::Sequence published, archive::Sequence further, En
     }
 }
 
-/// An archive whose run was begun by `dictionary` and ended by kill -9, and what there is of the run as it is read
-/// today.
-std::pair<archive::Archive, archive::CutOffRun>
-cut_off_in(const std::filesystem::path& file, const dictionary::Dictionary& dictionary = tests::shipped_dictionary()) {
-    kill_after(2'000, file, dictionary);
+/// An archive whose run was begun with a clock of this rate and ended by kill -9, and what there is of the run as it is
+/// read today.
+std::pair<archive::Archive, archive::CutOffRun> cut_off_in(const std::filesystem::path& file,
+                                                           const std::string& rate = {}) {
+    kill_after(2'000, file, rate);
     auto archive = archive::Archive::open(file);
     REQUIRE(archive);
     auto cut = archive::Reader::open(file, tests::shipped_dictionary())->cut_off(archive::RunId{1});
@@ -316,6 +313,12 @@ cut_off_in(const std::filesystem::path& file, const dictionary::Dictionary& dict
 }
 
 }  // namespace
+
+TEST_CASE("part of a test: a flight that is killed", "[.part]") {
+    const auto file = test::variable("AEOLIS_TEST_ARCHIVE"), rate = test::variable("AEOLIS_TEST_CLOCK_RATE");
+    REQUIRE_FALSE(file.empty());
+    fly_until_killed(file, rate.empty() ? tests::shipped_dictionary() : with_clock_rate(std::stod(rate)));
+}
 
 TEST_CASE("a run that kill -9 ended goes on in the same run as if nothing had been, commands, faults and all",
           "[rehearsal][archive][R41][R43]") {
@@ -409,12 +412,9 @@ TEST_CASE("a run that goes on keeps the clock with which it was begun, whatever 
     test::TemporaryFolder folder;
     const auto file = folder / "killed.db";
     spdlog::set_level(spdlog::level::err);
-    auto then = tests::shipped_dictionary();
-    then.clock.front().correlation.rate = 1.0 + 2.0e-5;  // some 18 ms over the flight to entry
-    then.clock.front().correlation.version = 4;
     const dictionary::Dictionary& today = tests::shipped_dictionary();
-    auto [archive, cut] = cut_off_in(file, then);
-    CHECK(cut.clock.rate == 1.0 + 2.0e-5);
+    auto [archive, cut] = cut_off_in(file, "1.00002");  // some 18 ms over the flight to entry
+    CHECK(cut.clock.rate == 1.00002);
     std::atomic<bool> begun{false};
     std::string failure;
     v1::RunState state;

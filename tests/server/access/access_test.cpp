@@ -4,14 +4,13 @@
 #include "server/access/network.hpp"
 #include "server/access/secrets.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/child_process.hpp"
 #include "tests/support/shipped_dictionary.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 #include <fmt/format.h>
 #include <fstream>
 #include <sys/stat.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 namespace access_access_test {
 
@@ -72,7 +71,7 @@ TEST_CASE("the first start makes one way in, which only lets its owner choose a 
     const auto who = accounts.who(in->secret);
     CHECK(who.user == "administrator");
     CHECK(may(who, Right::administer));
-    struct stat file{};
+    struct stat file {};
     REQUIRE(::stat(accounts.file.c_str(), &file) == 0);
     CHECK((file.st_mode & 0777) == 0600);
     accounts.open();  // a second start finds its accounts, and no session
@@ -80,36 +79,40 @@ TEST_CASE("the first start makes one way in, which only lets its owner choose a 
     CHECK_FALSE(accounts.who(in->secret).role);
 }
 
+namespace {
+constexpr int changes_each = 10;  // by either process
+}
+
+TEST_CASE("part of a test: another process that changes the accounts", "[.part]") {
+    const auto file = test::variable("AEOLIS_TEST_ACCOUNTS");
+    REQUIRE_FALSE(file.empty());
+    for (int i = 0; i < changes_each; ++i) {
+        const AccountsLock lock{file};
+        auto all = read_accounts(file);
+        REQUIRE(all);
+        auto& account = *all->add_accounts();
+        account.set_user(fmt::format("child-{}", i));
+        account.set_role("observer");
+        REQUIRE(write_accounts(file, *all));
+    }
+}
+
 TEST_CASE("who changes the accounts waits until another process has done so, and loses nothing of it", "[access]") {
     Accounts accounts;
-    constexpr int each = 10;
-    const auto child = ::fork();
-    if (child == 0) {
-        for (int i = 0; i < each; ++i) {
-            const AccountsLock lock{accounts.file};
-            auto all = read_accounts(accounts.file);
-            if (!all) ::_exit(1);
-            auto& account = *all->add_accounts();
-            account.set_user(fmt::format("child-{}", i));
-            account.set_role("observer");
-            if (!write_accounts(accounts.file, *all)) ::_exit(1);
-        }
-        ::_exit(0);
-    }
-    for (int i = 0; i < each; ++i) {
+    auto other = test::ChildProcess::part("part of a test: another process that changes the accounts",
+                                          {{"AEOLIS_TEST_ACCOUNTS", accounts.file.string()}});
+    for (int i = 0; i < changes_each; ++i) {
         v1::NewToken wanted;
         wanted.set_owner("administrator");
         wanted.set_name(fmt::format("token-{}", i));
         wanted.set_role("observer");
         CHECK(accounts.access->add_token(wanted));
     }
-    int status = 1;
-    REQUIRE(::waitpid(child, &status, 0) == child);
-    CHECK(status == 0);
+    CHECK(other.ended_within() == 0);
     const auto all = read_accounts(accounts.file);
     REQUIRE(all);
-    CHECK(all->accounts_size() == 1 + each);
-    CHECK(all->tokens_size() == each);
+    CHECK(all->accounts_size() == 1 + changes_each);
+    CHECK(all->tokens_size() == changes_each);
 }
 
 TEST_CASE("without accounts browsers are told apart, and all programs without a cookie are one", "[access]") {

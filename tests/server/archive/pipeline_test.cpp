@@ -4,7 +4,9 @@
 #include "server/pipeline/pipeline.hpp"
 #include "telemetry/station/station_packets.hpp"
 #include "tests/server/small_mission.hpp"
+#include "tests/support/acknowledged.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/child_process.hpp"
 #include "tests/support/shipped_dictionary.hpp"
 #include "tests/support/slept_time.hpp"
 
@@ -12,7 +14,6 @@
 #include <csignal>
 #include <cstdio>
 #include <sys/resource.h>
-#include <sys/wait.h>
 
 namespace archive_pipeline_test {
 
@@ -668,38 +669,29 @@ TEST_CASE("finishing seals the series and says how the run ended", "[pipeline][R
     CHECK(reader.series(run, {{"altitude_m", "GNC-0002"}, {}, {}})->channels(1).sclk_size() == 2);
 }
 
+TEST_CASE("part of a test: a recording that is killed", "[.part]") {
+    const auto file = variable("AEOLIS_TEST_ARCHIVE");
+    REQUIRE_FALSE(file.empty());
+    const auto dictionary = small_dictionary();
+    auto archive = Archive::open(file);
+    REQUIRE(archive);
+    const Acknowledging acknowledges{file};
+    Pipeline pipeline(*archive, dictionary);
+    pipeline.on_publish([&](const auto& batch) { acknowledges(batch->last_seq); });
+    REQUIRE(pipeline.begin({}));
+    for (std::uint32_t i = 0;; ++i) {
+        const auto count = static_cast<std::uint16_t>(i & 0x3FFFU);
+        REQUIRE(pipeline.accept(live(navigation_packet(count, i / 64.0, 1.0F, 2.0F))));
+        if (i % 50 == 49) REQUIRE(pipeline.commit());
+    }
+}
+
 TEST_CASE("kill -9 takes back nothing that was acknowledged", "[pipeline][archive]") {
     TemporaryFolder folder;
     const auto file = folder / "a.db";
-    int acknowledgements[2];
-    REQUIRE(::pipe(acknowledgements) == 0);
-    const pid_t child = ::fork();
-    REQUIRE(child >= 0);
-    if (child == 0) {
-        const auto dictionary = small_dictionary();
-        auto archive = Archive::open(file);
-        Pipeline pipeline(*archive, dictionary);
-        pipeline.on_publish([&](const auto& batch) {
-            const Sequence seq = batch->last_seq;
-            if (::write(acknowledgements[1], &seq, sizeof seq) != sizeof seq) ::_exit(1);
-        });
-        if (!pipeline.begin({})) ::_exit(1);
-        for (std::uint32_t i = 0; i < 10'000'000; ++i) {
-            const auto count = static_cast<std::uint16_t>(i & 0x3FFFU);
-            if (!pipeline.accept(live(navigation_packet(count, i / 64.0, 1.0F, 2.0F)))) ::_exit(1);
-            if (i % 50 == 49 && !pipeline.commit()) ::_exit(1);
-        }
-        ::_exit(0);
-    }
-    ::close(acknowledgements[1]);
-    Sequence acknowledged = 0;
-    while (acknowledged < 20'000 && ::read(acknowledgements[0], &acknowledged, sizeof acknowledged) > 0) {
-    }
-    ::kill(child, SIGKILL);
-    ::waitpid(child, nullptr, 0);
-    while (::read(acknowledgements[0], &acknowledged, sizeof acknowledged) > 0) {
-    }
-    ::close(acknowledgements[0]);
+    auto recording =
+        ChildProcess::part("part of a test: a recording that is killed", {{"AEOLIS_TEST_ARCHIVE", file.string()}});
+    const Sequence acknowledged = killed_after(recording, 20'000, file);
     REQUIRE(acknowledged >= 20'000);
 
     const auto dictionary = small_dictionary();

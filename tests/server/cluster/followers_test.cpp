@@ -2,17 +2,14 @@
 #include "server/cluster/run_messages.hpp"
 #include "tests/server/cluster/followed.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/child_process.hpp"
 
 #include <atomic>
-#include <csignal>
-#include <cstdlib>
 #include <fmt/format.h>
 #include <memory>
 #include <mutex>
 #include <random>
-#include <sys/wait.h>
 #include <thread>
-#include <unistd.h>
 
 namespace server_cluster_followers_test {
 
@@ -259,33 +256,6 @@ TEST_CASE("two servers that publish one archive's runs are told apart, and the s
 
 namespace {
 
-std::string given(const char* name) {
-    const char* value = std::getenv(name);
-    return value != nullptr ? value : "";
-}
-
-/// This program again, as one part of the cluster, until it is killed.
-class Child {
-  public:
-    Child(const char* part, const std::filesystem::path& file, const std::string& engine) {
-        process_ = ::fork();
-        if (process_ != 0) return;
-        ::setenv("AEOLIS_TEST_ARCHIVE", file.c_str(), 1);
-        ::setenv("AEOLIS_TEST_ENGINE", engine.c_str(), 1);
-        ::execl("/proc/self/exe", "aeolis_tests", part, static_cast<char*>(nullptr));
-        ::_exit(127);
-    }
-    Child(const Child&) = delete;
-    Child& operator=(const Child&) = delete;
-    ~Child() {
-        ::kill(process_, SIGKILL);
-        ::waitpid(process_, nullptr, 0);
-    }
-
-  private:
-    pid_t process_ = -1;
-};
-
 constexpr const char* as_origin = "part of a test: an origin that is killed";
 constexpr const char* as_copy = "part of a test: a follower that is killed";
 
@@ -295,20 +265,24 @@ void kill_at_moments(int moments, std::uint32_t seed) {
     std::mt19937 random{seed};
     const auto some = [&](int most_ms) { return std::chrono::milliseconds{random() % static_cast<unsigned>(most_ms)}; };
     const auto origin = folder / "origin.db", copy = folder / "copy.db";
+    const auto part = [&](const char* name, const std::filesystem::path& file) {
+        return test::ChildProcess::part(name,
+                                        {{"AEOLIS_TEST_ARCHIVE", file.string()}, {"AEOLIS_TEST_ENGINE", server.url()}});
+    };
     {
-        auto first = std::make_unique<Child>(as_origin, origin, server.url());
+        auto first = part(as_origin, origin);
         REQUIRE(comes([&] { return std::filesystem::exists(origin); }));
-        auto second = std::make_unique<Child>(as_copy, copy, server.url());
+        auto second = part(as_copy, copy);
         for (int moment = 0; moment < moments; ++moment) {
             std::this_thread::sleep_for(300ms + some(400));
             switch (random() % 3) {
             case 0:
-                first.reset();
-                first = std::make_unique<Child>(as_origin, origin, server.url());
+                first.kill();
+                first = part(as_origin, origin);
                 break;
             case 1:
-                second.reset();
-                second = std::make_unique<Child>(as_copy, copy, server.url());
+                second.kill();
+                second = part(as_copy, copy);
                 break;
             default:
                 server.kill();
@@ -329,14 +303,14 @@ void kill_at_moments(int moments, std::uint32_t seed) {
 }  // namespace
 
 TEST_CASE("part of a test: an origin that is killed", "[.part]") {
-    REQUIRE_FALSE(given("AEOLIS_TEST_ARCHIVE").empty());
-    Origin origin{given("AEOLIS_TEST_ARCHIVE"), given("AEOLIS_TEST_ENGINE")};
+    REQUIRE_FALSE(test::variable("AEOLIS_TEST_ARCHIVE").empty());
+    Origin origin{test::variable("AEOLIS_TEST_ARCHIVE"), test::variable("AEOLIS_TEST_ENGINE")};
     for (;;) record_slowly(origin.archive, 300, 2ms);
 }
 
 TEST_CASE("part of a test: a follower that is killed", "[.part]") {
-    REQUIRE_FALSE(given("AEOLIS_TEST_ARCHIVE").empty());
-    Copy copy{given("AEOLIS_TEST_ARCHIVE"), given("AEOLIS_TEST_ENGINE")};
+    REQUIRE_FALSE(test::variable("AEOLIS_TEST_ARCHIVE").empty());
+    Copy copy{test::variable("AEOLIS_TEST_ARCHIVE"), test::variable("AEOLIS_TEST_ENGINE")};
     for (;;) std::this_thread::sleep_for(1s);
 }
 

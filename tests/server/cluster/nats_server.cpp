@@ -3,15 +3,11 @@
 
 #include <arpa/inet.h>
 #include <chrono>
-#include <csignal>
-#include <cstdlib>
-#include <fcntl.h>
 #include <filesystem>
 #include <iostream>
 #include <netinet/in.h>
 #include <stdexcept>
 #include <sys/socket.h>
-#include <sys/wait.h>
 #include <thread>
 #include <unistd.h>
 
@@ -19,8 +15,7 @@ namespace aeolis::tests {
 namespace {
 
 std::string program() {
-    const char* named = std::getenv("AEOLIS_NATS_SERVER");
-    return named != nullptr ? named : "";
+    return test::variable("AEOLIS_NATS_SERVER");
 }
 
 sockaddr_in loopback(std::uint16_t port) {
@@ -32,9 +27,13 @@ sockaddr_in loopback(std::uint16_t port) {
 }
 
 bool answers(std::uint16_t port) {
-    const int one = ::socket(AF_INET, SOCK_STREAM, 0);
+    const int one = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
     const auto address = loopback(port);
-    const bool connected = ::connect(one, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+    sockaddr_in own{};
+    socklen_t size = sizeof own;
+    const bool connected = ::connect(one, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 &&
+                           ::getsockname(one, reinterpret_cast<sockaddr*>(&own), &size) == 0 &&
+                           own.sin_port != address.sin_port;  // a port that nobody has may be connected to itself
     ::close(one);
     return connected;
 }
@@ -48,7 +47,7 @@ bool NatsServer::present() {
 }
 
 std::uint16_t NatsServer::free_port() {
-    const int one = ::socket(AF_INET, SOCK_STREAM, 0);
+    const int one = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
     auto address = loopback(0);
     socklen_t size = sizeof address;
     const bool bound = ::bind(one, reinterpret_cast<const sockaddr*>(&address), size) == 0 &&
@@ -67,10 +66,6 @@ NatsServer::NatsServer(JetStream streams) : streams_(streams), port_(free_port()
     start();
 }
 
-NatsServer::~NatsServer() {
-    kill();
-}
-
 std::string NatsServer::url() const {
     return "nats://127.0.0.1:" + std::to_string(port_);
 }
@@ -82,30 +77,16 @@ void NatsServer::start() {
     std::vector<std::string> words{file, "-a", "127.0.0.1", "-p", port, "-sd", store};
     if (streams_ == JetStream::present) words.emplace_back("-js");
     words.insert(words.end(), options_.begin(), options_.end());
-    std::vector<char*> arguments;
-    arguments.reserve(words.size() + 1);
-    for (auto& word : words) arguments.push_back(word.data());
-    arguments.push_back(nullptr);
-    process_ = ::fork();
-    if (process_ == 0) {
-        const int nothing = ::open("/dev/null", O_RDWR);
-        for (const int stream : {0, 1, 2}) ::dup2(nothing, stream);
-        ::execv(file.c_str(), arguments.data());
-        ::_exit(127);
-    }
-    for (int tries = 0; tries < 3000; ++tries) {
+    process_.emplace(std::move(words));
+    for (int tries = 0; tries < 3000 && process_->running(); ++tries) {
         if (answers(port_)) return;
-        if (::waitpid(process_, nullptr, WNOHANG) == process_) break;
         std::this_thread::sleep_for(std::chrono::milliseconds{10});
     }
     throw std::runtime_error(file + " does not answer");
 }
 
 void NatsServer::kill() {
-    if (process_ <= 0) return;
-    ::kill(process_, SIGKILL);
-    ::waitpid(process_, nullptr, 0);
-    process_ = -1;
+    process_.reset();
 }
 
 void NatsServer::forget() {

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "tests/support/child_process.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
-#include <sys/types.h>
 #include <vector>
 
 namespace aeolis::tests {
@@ -25,7 +26,6 @@ class NatsServer {
     explicit NatsServer(std::vector<std::string> options);
     NatsServer(const NatsServer&) = delete;
     NatsServer& operator=(const NatsServer&) = delete;
-    ~NatsServer();
 
     std::string url() const;
     std::uint16_t port() const { return port_; }
@@ -41,7 +41,7 @@ class NatsServer {
     JetStream streams_;
     std::vector<std::string> options_;
     std::uint16_t port_ = 0;
-    pid_t process_ = -1;
+    std::optional<test::ChildProcess> process_;
 };
 
 /// Three engines that can keep each stream three times.
