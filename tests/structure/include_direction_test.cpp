@@ -103,6 +103,7 @@ const std::vector<Home>& homes() {
         {"zstd", {"server/archive/", "tests/", "bench/"}, "zstd is at home in server/archive/"},
         {"nats/", {"server/cluster/engine.cpp"}, "NATS is at home in server/cluster/engine.cpp"},
         {"muParser", {"server/archive/expression.cpp"}, "muParser is at home in server/archive/expression.cpp"},
+        {"yaml", {"server/procedures/yaml_document.cpp"}, "libyaml is at home in server/procedures/yaml_document.cpp"},
         {"sodium", {"server/access/secrets.cpp"}, "libsodium is at home in server/access/secrets.cpp"},
         {"boost/", with_effects, "Boost is at home in server/"},
         {"openssl/",
@@ -151,6 +152,7 @@ const std::vector<std::pair<std::string, std::vector<std::string>>>& layers() {
         {"pipeline", {"archive"}},
         {"links", {"pipeline"}},
         {"scenario", {"base"}},
+        {"procedures", {}},
         {"venue", {"base"}},
         {"rehearsal", {"pipeline", "scenario", "venue"}},
         {"campaign", {"rehearsal"}},
@@ -158,7 +160,7 @@ const std::vector<std::pair<std::string, std::vector<std::string>>>& layers() {
         {"tones", {"rehearsal"}},
         {"api", {"campaign", "access"}},
         {"net", {"api", "links", "cluster"}},
-        {"cli", {"net", "cluster", "tones", "reconstruction"}},
+        {"cli", {"net", "cluster", "tones", "reconstruction", "procedures"}},
     };
     return order;
 }

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/base/json_object.hpp"
+#include "server/cli/commands.hpp"
+#include "server/cli/options.hpp"
+#include "server/cli/shipped_paths.hpp"
+#include "server/procedures/procedure_reader.hpp"
+#include "server/procedures/procedure_text.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <fmt/format.h>
+#include <fstream>
+#include <iterator>
+#include <memory>
+
+namespace aeolis::server {
+namespace {
+
+using procedures::ReadProcedure;
+using procedures::TextFinding;
+using Files = std::vector<std::filesystem::path>;
+
+struct ProcedureOptions {
+    std::filesystem::path dictionary = SharedOptions{}.dictionary;
+    Files files;
+    bool json = false;
+};
+
+/// The procedures of a folder, by name.
+Files procedures_in(const std::filesystem::path& folder) {
+    Files files;
+    std::error_code error;
+    for (const auto& entry : std::filesystem::directory_iterator{folder, error})
+        if (entry.path().extension() == ".yaml") files.push_back(entry.path());
+    std::ranges::sort(files);
+    return files;
+}
+
+/// Reads a file, whose watchdogs may name the procedures that lie beside it. An Error when there is no such file.
+Result<ReadProcedure> procedure_of(const std::filesystem::path& file, const dictionary::Dictionary& dictionary) {
+    std::ifstream stream{file, std::ios::binary};
+    if (!stream || std::filesystem::is_directory(file)) return Error{file.string() + ": cannot be read"};
+    // One octet more than may be read shows that there are too many.
+    std::string text(procedures::yaml_octets_max + 1, '\0');
+    stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+    text.resize(static_cast<std::size_t>(stream.gcount()));
+    std::vector<std::string> beside;
+    const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path{"."};
+    for (const auto& other : procedures_in(folder)) beside.push_back(other.stem().string());
+    return procedures::read_procedure(text, file.string(), dictionary, beside);
+}
+
+std::string finding_json(const TextFinding& finding) {
+    return JsonObject{}
+        .count("line", finding.mark.line)
+        .count("column", finding.mark.column)
+        .text("message", finding.message)
+        .str();
+}
+
+std::string procedure_json(const std::filesystem::path& file, const ReadProcedure& read) {
+    JsonObject object;
+    object.text("file", file.string());
+    if (read.procedure) {
+        object.text("procedure", read.procedure->id).count("revision", read.procedure->revision);
+        object.raw("approved", read.procedure->approvals.empty() ? "false" : "true");
+        object.count("steps", read.procedure->preconditions.size() + read.procedure->body.size() +
+                                  read.procedure->confirmation.size());
+        object.count("watchdogs", read.procedure->watchdogs.size());
+    }
+    return object.raw("findings", json_array(read.findings, finding_json)).str();
+}
+
+/// Returns 0 when no file breaks a rule, 1 when one does, 2 when one cannot be read.
+int procedure_check(const ProcedureOptions& options) {
+    const auto dictionary = loaded_dictionary(options.dictionary);
+    if (!dictionary) return 1;
+    const Files files = options.files.empty() ? procedures_in(options.dictionary / "procedures") : options.files;
+    if (files.empty())
+        return failed(fmt::format("procedure check: {} has no procedures", options.dictionary.string()), 2);
+    bool sound = true;
+    std::vector<std::string> reports;
+    reports.reserve(files.size());
+    for (const auto& file : files) {
+        const auto read = procedure_of(file, *dictionary);
+        if (!read) return failed("procedure check: " + read.error().message, 2);
+        sound = sound && read->procedure.has_value();
+        if (options.json) {
+            reports.push_back(procedure_json(file, *read));
+            continue;
+        }
+        for (const TextFinding& finding : read->findings) fmt::print(stderr, "{}\n", finding.text());
+        if (read->procedure)
+            fmt::print("{}: no rule is broken: revision {}, {}, {} preconditions, {} steps, {} watchdogs, {} "
+                       "confirmations\n",
+                       file.string(), read->procedure->revision,
+                       read->procedure->approvals.empty() ? "a draft" : "approved",
+                       read->procedure->preconditions.size(), read->procedure->body.size(),
+                       read->procedure->watchdogs.size(), read->procedure->confirmation.size());
+    }
+    if (options.json)
+        fmt::print("{}\n", JsonObject{}.raw("procedures", json_array(reports, [](auto text) { return text; })).str());
+    return sound ? 0 : 1;
+}
+
+int procedure_print(const ProcedureOptions& options) {
+    const auto dictionary = loaded_dictionary(options.dictionary);
+    if (!dictionary) return 1;
+    const auto read = procedure_of(options.files.front(), *dictionary);
+    if (!read) return failed("procedure print: " + read.error().message, 2);
+    for (const TextFinding& finding : read->findings) fmt::print(stderr, "{}\n", finding.text());
+    if (!read->procedure) return 1;
+    fmt::print("{}", procedures::printed(*read->procedure, *dictionary));
+    return 0;
+}
+
+}  // namespace
+
+void add_procedure_command(CLI::App& program, int& exit_code) {
+    auto& procedure = *program.add_subcommand("procedure", "checks and prints the procedures of the control room");
+    procedure.require_subcommand(1);
+    const auto options = std::make_shared<ProcedureOptions>();
+    const auto add_dictionary = [&](CLI::App& command) {
+        command.add_option("--dictionary", options->dictionary, "the dictionary's directory")->capture_default_str();
+    };
+    auto& check = *procedure.add_subcommand(
+        "check", "checks every rule, and names each fault with file, line and column; exit code 1 when there is one");
+    check.add_option("FILE", options->files, "procedures in YAML; without any, those of the dictionary");
+    add_dictionary(check);
+    check.add_flag("--json", options->json, "print one JSON object");
+    check.callback([options, &exit_code] { exit_code = procedure_check(*options); });
+
+    auto& print = *procedure.add_subcommand("print", "prints a procedure as plain text, to be ticked and signed");
+    print.add_option("FILE", options->files, "a procedure in YAML")->required()->expected(1);
+    add_dictionary(print);
+    print.callback([options, &exit_code] { exit_code = procedure_print(*options); });
+}
+
+}  // namespace aeolis::server

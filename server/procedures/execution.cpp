@@ -1,0 +1,500 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/procedures/execution.hpp"
+
+#include "common/check.hpp"
+#include "server/procedures/step_order.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+namespace aeolis::server::procedures {
+namespace {
+
+constexpr std::array act_kinds{Act::Kind::tick,    Act::Kind::sign,        Act::Kind::choose,
+                               Act::Kind::skip,    Act::Kind::sent,        Act::Kind::hold,
+                               Act::Kind::release, Act::Kind::acknowledge, Act::Kind::stop};
+
+bool all_hold(const std::vector<ConditionState>& states) {
+    return std::ranges::all_of(states, [](const auto& one) { return one.verdict == Verdict::holds; });
+}
+
+std::string first_not_held(const std::vector<ConditionState>& states) {
+    const auto one = std::ranges::find_if(states, [](const auto& state) { return state.verdict != Verdict::holds; });
+    return one == states.end() ? std::string{} : fmt::format("{} ({})", name_of(one->verdict), one->evidence);
+}
+
+std::string who(const Act& act) {
+    return fmt::format("{} ({})", act.person, name_of(act.position));
+}
+
+/// Whether the act comes from the step's position, or from the flight director.
+bool may_act(const Act& act, Position position) {
+    return act.position == position || act.position == Position::flight_director;
+}
+
+}  // namespace
+
+std::string_view name_of(StepState state) {
+    switch (state) {
+    case StepState::waiting: return "waiting";
+    case StepState::held: return "held";
+    case StepState::active: return "active";
+    case StepState::late: return "late";
+    case StepState::checked: return "checked";
+    case StepState::ticked: return "ticked";
+    case StepState::skipped: return "skipped";
+    case StepState::not_taken: return "not_taken";
+    }
+    return "";
+}
+
+std::string_view name_of(Part part) {
+    switch (part) {
+    case Part::preconditions: return "preconditions";
+    case Part::body: return "body";
+    case Part::confirmation: return "confirmation";
+    case Part::confirmed: return "confirmed";
+    case Part::ended: return "ended";
+    case Part::stopped: return "stopped";
+    }
+    return "";
+}
+
+std::string_view name_of(Act::Kind kind) {
+    switch (kind) {
+    case Act::Kind::tick: return "tick";
+    case Act::Kind::sign: return "sign";
+    case Act::Kind::choose: return "choose";
+    case Act::Kind::skip: return "skip";
+    case Act::Kind::sent: return "sent";
+    case Act::Kind::hold: return "hold";
+    case Act::Kind::release: return "release";
+    case Act::Kind::acknowledge: return "acknowledge";
+    case Act::Kind::stop: return "stop";
+    }
+    return "";
+}
+
+std::optional<Act::Kind> act_named(std::string_view name) {
+    for (const Act::Kind kind : act_kinds)
+        if (name_of(kind) == name) return kind;
+    return std::nullopt;
+}
+
+Execution::Execution(const Procedure& procedure, const dictionary::Dictionary& dictionary, Ert begun)
+    : procedure_(&procedure), begun_(begun), watch_(dictionary) {
+    AEOLIS_CHECK(!procedure.body.empty());
+    for (const auto* part : {&procedure.preconditions, &procedure.body, &procedure.confirmation})
+        for (const Step& step : *part) {
+            steps_.push_back(&step);
+            Numbers& numbers = numbers_.emplace_back();
+            watch_conditions(step.conditions, numbers.conditions);
+            for (const Choice& choice : step.choices)
+                watch_conditions(choice.conditions, numbers.choices.emplace_back());
+        }
+    for (const Watchdog& watchdog : procedure.watchdogs)
+        watch_conditions(watchdog.conditions, watchdog_numbers_.emplace_back());
+    status_.resize(steps_.size());
+    paused_us_.resize(steps_.size());
+    watchdogs_.resize(procedure.watchdogs.size());
+    watch_.pass(begun);
+    begin_part(Part::preconditions);
+    settle();
+}
+
+void Execution::watch_conditions(const std::vector<Condition>& conditions, std::vector<std::size_t>& numbers) {
+    numbers.reserve(conditions.size());
+    for (const Condition& condition : conditions) numbers.push_back(watch_.add(condition));
+}
+
+// ---- what is received ----------------------------------------------------------------------------------------------
+
+void Execution::on(const ChannelSample& sample) {
+    if (watch_.on(sample)) settle();
+}
+
+void Execution::on(const EventReceived& event) {
+    if (watch_.on(event)) settle();
+}
+
+void Execution::on(const CommandFate& fate) {
+    watch_.pass(fate.at);
+    if (fates_.size() < commands_followed_max || fates_.contains(fate.command)) {
+        Fate& known = fates_[fate.command];
+        known.status[static_cast<std::size_t>(fate.stage)] = fate.status;
+        known.text = fmt::format("{} {}: {}", name_of(fate.stage), name_of(fate.status), fate.evidence);
+    }
+    settle();
+}
+
+void Execution::predict(const EntryPrediction& prediction) {
+    watch_.predict(prediction);
+    settle();
+}
+
+void Execution::pass(Ert now) {
+    watch_.pass(now);
+    settle();
+}
+
+// ---- how steps follow each other -----------------------------------------------------------------------------------
+
+Execution::Range Execution::range_of(Part part) const {
+    const std::size_t body = procedure_->preconditions.size(), confirmation = body + procedure_->body.size();
+    switch (part) {
+    case Part::preconditions: return {0, body};
+    case Part::body: return {body, confirmation};
+    case Part::confirmation: return {confirmation, steps_.size()};
+    default: return {0, 0};
+    }
+}
+
+const StepStatus* Execution::step(std::string_view id) const {
+    const auto found = std::ranges::find_if(steps_, [&](const Step* one) { return one->id == id; });
+    return found == steps_.end() ? nullptr : &status_[static_cast<std::size_t>(found - steps_.begin())];
+}
+
+/// Whether the step is active, whatever holds the procedure.
+bool Execution::stands_open(std::size_t index) const {
+    return status_[index].active_since && !is_over(status_[index].state);
+}
+
+std::vector<ConditionState> Execution::judge(const std::vector<Condition>& conditions,
+                                             const std::vector<std::size_t>& numbers, Ert step_since) const {
+    std::vector<ConditionState> states;
+    states.reserve(numbers.size());
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+        std::optional<Ert> since;
+        if (const auto* event = std::get_if<EventCondition>(&conditions[i])) {
+            if (event->since == EventCondition::Since::procedure) since = begun_;
+            if (event->since == EventCondition::Since::step) since = step_since;
+        }
+        states.push_back(watch_.judge(numbers[i], since));
+    }
+    return states;
+}
+
+void Execution::look_at_watchdogs() {
+    for (std::size_t i = 0; i < watchdogs_.size(); ++i) {
+        const Watchdog& watchdog = procedure_->watchdogs[i];
+        WatchdogStatus& status = watchdogs_[i];
+        if (status.tripped) continue;  // its evidence is what it was then
+        status.conditions = judge(watchdog.conditions, watchdog_numbers_[i], begun_);
+        if (!all_hold(status.conditions)) continue;
+        status.tripped = watch_.now();
+        if (watchdog.hold && held_.empty()) set_held(fmt::format("watchdog {}", watchdog.id), {});
+    }
+}
+
+std::optional<Ert> Execution::limit_passed(std::size_t index) const {
+    const Step& step = *steps_[index];
+    std::optional<Ert> limit;
+    if (step.limit_s && held_.empty())
+        limit =
+            Ert{status_[index].active_since->microseconds + std::llround(*step.limit_s * 1.0e6) + paused_us_[index]};
+    if (step.limit_e && watch_.prediction()) {
+        const Ert by = instant_of(*step.limit_e, *watch_.prediction());
+        limit = limit ? std::min(*limit, by) : by;
+    }
+    return limit && *limit < watch_.now() ? limit : std::nullopt;
+}
+
+/// Judges an active step anew.
+void Execution::look(std::size_t index) {
+    const Step& step = *steps_[index];
+    StepStatus& status = status_[index];
+    const Ert since = *status.active_since;
+    status.conditions = judge(step.conditions, numbers_[index].conditions, since);
+    status.choices.resize(step.choices.size());
+    for (std::size_t i = 0; i < step.choices.size(); ++i)
+        status.choices[i] = judge(step.choices[i].conditions, numbers_[index].choices[i], since);
+    if (status.command)
+        if (const auto fate = fates_.find(*status.command); fate != fates_.end())
+            status.command_evidence = fate->second.text;
+    if (!status.late_since) status.late_since = limit_passed(index);
+    status.state = !held_.empty() ? StepState::held : status.late_since ? StepState::late : StepState::active;
+    if (held_.empty() && is_done(index)) {
+        const bool by_itself = status.by.empty() && (step.command || !step.conditions.empty());
+        end_step(index, by_itself ? StepState::checked : StepState::ticked);
+    }
+}
+
+bool Execution::is_done(std::size_t index) const {
+    const Step& step = *steps_[index];
+    const StepStatus& status = status_[index];
+    if (status.signatures.size() < step.signatures.size()) return false;
+    if (!step.choices.empty()) return status.chosen.has_value();
+    if (!status.by.empty()) return true;
+    if (step.command) {
+        const auto fate = status.command ? fates_.find(*status.command) : fates_.end();
+        if (fate == fates_.end() ||
+            fate->second.status[static_cast<std::size_t>(step.command->until)] != commands::Status::ok)
+            return false;
+    } else if (step.conditions.empty()) {
+        return !step.signatures.empty();  // to sign it was all there was to do
+    }
+    return all_hold(status.conditions);
+}
+
+void Execution::activate(std::size_t index) {
+    status_[index].active_since = watch_.now();
+    status_[index].state = StepState::active;
+}
+
+void Execution::begin_step(std::size_t index) {
+    if (steps_[index]->hold)
+        status_[index].state = StepState::held;
+    else
+        activate(index);
+}
+
+void Execution::end_step(std::size_t index, StepState state) {
+    status_[index].state = state;
+    status_[index].over_since = watch_.now();
+}
+
+void Execution::begin_part(Part part) {
+    part_ = part;
+    const auto [first, end] = range_of(part);
+    if (part == Part::body) {
+        current_ = 0;
+        begin_step(first);
+        return;
+    }
+    for (std::size_t index = first; index < end; ++index) begin_step(index);
+}
+
+void Execution::finish(Part part) {
+    part_ = part;
+    for (std::size_t index = 0; index < status_.size(); ++index)
+        if (!is_over(status_[index].state)) end_step(index, StepState::not_taken);
+}
+
+/// Goes on to what follows, once what is under way is over. @return whether it did
+bool Execution::advance() {
+    const auto [first, end] = range_of(part_);
+    if (part_ == Part::body) {
+        const StepStatus& status = status_[first + current_];
+        if (!is_over(status.state)) return false;
+        const auto ways = ways_on(procedure_->body, current_);
+        const Target way = ways[status.chosen.value_or(0)];
+        switch (way.kind) {
+        case Target::Kind::step:
+            current_ = way.step;
+            begin_step(first + current_);
+            return true;
+        case Target::Kind::confirmation: begin_part(Part::confirmation); return true;
+        case Target::Kind::end: finish(Part::ended); return false;
+        }
+    }
+    for (std::size_t index = first; index < end; ++index)
+        if (!is_over(status_[index].state)) return false;
+    if (part_ == Part::preconditions) {
+        begin_part(Part::body);
+        return true;
+    }
+    const bool left_out = std::any_of(status_.begin() + static_cast<std::ptrdiff_t>(first), status_.end(),
+                                      [](const auto& status) { return status.state == StepState::skipped; });
+    finish(left_out ? Part::ended : Part::confirmed);
+    return false;
+}
+
+void Execution::settle() {
+    if (over()) return;
+    look_at_watchdogs();
+    do {
+        const auto [first, end] = range_of(part_);
+        for (std::size_t index = first; index < end; ++index)
+            if (stands_open(index)) look(index);
+    } while (held_.empty() && advance());
+}
+
+// ---- what people do ------------------------------------------------------------------------------------------------
+
+Result<void> Execution::on(const Act& act) {
+    watch_.pass(act.at);
+    settle();
+    const auto taken = take(act);
+    settle();
+    return taken;
+}
+
+Result<void> Execution::take(const Act& act) {
+    if (over()) return Error{fmt::format("the procedure is over: {}", name_of(part_))};
+    if (act.person.empty() || act.person.size() > person_octets_max)
+        return Error{fmt::format("whoever acts gives a name, of {} characters at most", person_octets_max)};
+    if (act.reason.size() > reason_octets_max)
+        return Error{fmt::format("a reason has {} characters at most", reason_octets_max)};
+    switch (act.kind) {
+    case Act::Kind::tick: return tick(act);
+    case Act::Kind::sign: return sign(act);
+    case Act::Kind::choose: return choose(act);
+    case Act::Kind::skip: return skip(act);
+    case Act::Kind::sent: return sent(act);
+    case Act::Kind::hold: return hold(act);
+    case Act::Kind::release: return release(act);
+    case Act::Kind::acknowledge: return acknowledge(act);
+    case Act::Kind::stop:
+        if (act.position != Position::flight_director) return Error{"only the flight director stops a procedure"};
+        if (act.reason.empty()) return Error{"to stop a procedure needs a reason"};
+        finish(Part::stopped);
+        return {};
+    }
+    return Error{"no such act"};
+}
+
+/// The step that the act names, if it is active.
+Result<std::size_t> Execution::open_step(const Act& act) const {
+    const auto found = std::ranges::find_if(steps_, [&](const Step* one) { return one->id == act.step; });
+    if (found == steps_.end()) return Error{fmt::format("'{}' is no step of {}", act.step, procedure_->id)};
+    const auto index = static_cast<std::size_t>(found - steps_.begin());
+    if (!stands_open(index))
+        return Error{fmt::format("step {} is {}, not active", act.step, name_of(status_[index].state))};
+    if (!held_.empty() && act.kind != Act::Kind::sent) return Error{fmt::format("the procedure is held: {}", held_)};
+    return index;
+}
+
+Result<void> Execution::tick(const Act& act) {
+    const auto index = open_step(act);
+    if (!index) return index.error();
+    const Step& step = *steps_[*index];
+    StepStatus& status = status_[*index];
+    if (!may_act(act, step.who))
+        return Error{fmt::format("step {} is ticked by {} or the flight director", step.id, name_of(step.who))};
+    if (step.command) return Error{fmt::format("step {} is done by its command, which nobody ticks", step.id)};
+    if (!step.choices.empty()) return Error{fmt::format("step {} is a branch: choose one of its ways", step.id)};
+    if (act.reason.empty() && !all_hold(status.conditions))
+        return Error{fmt::format("step {}: its condition {}; to tick it all the same needs a reason", step.id,
+                                 first_not_held(status.conditions))};
+    status.by = who(act);
+    status.reason = act.reason;
+    return {};
+}
+
+Result<void> Execution::sign(const Act& act) {
+    const auto index = open_step(act);
+    if (!index) return index.error();
+    const Step& step = *steps_[*index];
+    auto& signatures = status_[*index].signatures;
+    if (std::ranges::find(step.signatures, act.position) == step.signatures.end())
+        return Error{fmt::format("step {} needs no signature of {}", step.id, name_of(act.position))};
+    if (std::ranges::find(signatures, act.position, &Signature::position) != signatures.end())
+        return Error{fmt::format("step {} is already signed by {}", step.id, name_of(act.position))};
+    signatures.push_back({act.position, act.person, watch_.now()});
+    return {};
+}
+
+Result<void> Execution::choose(const Act& act) {
+    const auto index = open_step(act);
+    if (!index) return index.error();
+    const Step& step = *steps_[*index];
+    StepStatus& status = status_[*index];
+    if (step.choices.empty()) return Error{fmt::format("step {} is no branch", step.id)};
+    if (!may_act(act, step.who))
+        return Error{fmt::format("step {} is decided by {} or the flight director", step.id, name_of(step.who))};
+    if (act.choice >= step.choices.size())
+        return Error{
+            fmt::format("step {} has {} ways, none of the number {}", step.id, step.choices.size(), act.choice)};
+    if (status.signatures.size() < step.signatures.size())
+        return Error{fmt::format("step {} lacks signatures: {} of {}", step.id, status.signatures.size(),
+                                 step.signatures.size())};
+    for (const auto* states : {&status.conditions, &status.choices[act.choice]})
+        if (act.reason.empty() && !all_hold(*states))
+            return Error{fmt::format("step {}: a condition of this way {}; to go it all the same needs a reason",
+                                     step.id, first_not_held(*states))};
+    status.chosen = act.choice;
+    status.by = who(act);
+    status.reason = act.reason;
+    return {};
+}
+
+Result<void> Execution::skip(const Act& act) {
+    const auto index = open_step(act);
+    if (!index) return index.error();
+    if (act.position != Position::flight_director) return Error{"only the flight director skips a step"};
+    if (act.reason.empty()) return Error{fmt::format("to skip step {} needs a reason", act.step)};
+    if (!steps_[*index]->choices.empty())
+        return Error{fmt::format("step {} is a branch: choose one of its ways", act.step)};
+    status_[*index].by = who(act);
+    status_[*index].reason = act.reason;
+    end_step(*index, StepState::skipped);
+    return {};
+}
+
+Result<void> Execution::sent(const Act& act) {
+    const auto index = open_step(act);
+    if (!index) return index.error();
+    const Step& step = *steps_[*index];
+    StepStatus& status = status_[*index];
+    if (!step.command) return Error{fmt::format("step {} has no command", step.id)};
+    if (act.position != Position::command) return Error{"only the position command sends"};
+    if (act.command == 0) return Error{"a command that was sent has a number"};
+    if (status.command) {
+        const auto fate = fates_.find(*status.command);
+        const bool failed = fate != fates_.end() && std::ranges::find(fate->second.status, commands::Status::failed) !=
+                                                        fate->second.status.end();
+        if (!failed)
+            return Error{fmt::format("step {}: its command was sent as number {}, and has not failed", step.id,
+                                     *status.command)};
+    }
+    status.command = act.command;
+    status.command_evidence = "sent; nothing is known of it yet";
+    return {};
+}
+
+void Execution::set_held(std::string why, std::string person) {
+    held_ = std::move(why);
+    held_by_ = std::move(person);
+    held_since_ = watch_.now();
+}
+
+Result<void> Execution::hold(const Act& act) {
+    if (!held_.empty()) return Error{fmt::format("the procedure is held already: {}", held_)};
+    if (act.reason.empty()) return Error{"to hold a procedure needs a reason"};
+    set_held(fmt::format("{}: {}", who(act), act.reason), act.person);
+    return {};
+}
+
+Result<void> Execution::release(const Act& act) {
+    if (!act.step.empty()) {
+        const auto found = std::ranges::find_if(steps_, [&](const Step* one) { return one->id == act.step; });
+        if (found == steps_.end()) return Error{fmt::format("'{}' is no step of {}", act.step, procedure_->id)};
+        const auto index = static_cast<std::size_t>(found - steps_.begin());
+        StepStatus& status = status_[index];
+        if (status.state != StepState::held || status.active_since)
+            return Error{fmt::format("step {} is {}, not at its hold", act.step, name_of(status.state))};
+        if (!may_act(act, *(*found)->hold))
+            return Error{
+                fmt::format("step {} is released by {} or the flight director", act.step, name_of(*(*found)->hold))};
+        if (!held_.empty()) return Error{fmt::format("the procedure is held: {}", held_)};
+        activate(index);
+        return {};
+    }
+    if (held_.empty()) return Error{"the procedure is not held"};
+    if (act.position != Position::flight_director && act.person != held_by_)
+        return Error{"the procedure is released by whoever holds it, or by the flight director"};
+    for (std::size_t index = 0; index < status_.size(); ++index)
+        if (stands_open(index))
+            paused_us_[index] +=
+                watch_.now().microseconds - std::max(held_since_, *status_[index].active_since).microseconds;
+    held_.clear();
+    held_by_.clear();
+    return {};
+}
+
+Result<void> Execution::acknowledge(const Act& act) {
+    const auto found = std::ranges::find(procedure_->watchdogs, act.step, &Watchdog::id);
+    if (found == procedure_->watchdogs.end())
+        return Error{fmt::format("'{}' is no watchdog of {}", act.step, procedure_->id)};
+    WatchdogStatus& status = watchdogs_[static_cast<std::size_t>(found - procedure_->watchdogs.begin())];
+    if (!status.tripped) return Error{fmt::format("watchdog {} has not tripped", act.step)};
+    if (status.acknowledged) return Error{fmt::format("watchdog {} is already acknowledged", act.step)};
+    if (!may_act(act, found->who))
+        return Error{
+            fmt::format("watchdog {} is acknowledged by {} or the flight director", act.step, name_of(found->who))};
+    status.acknowledged = Signature{act.position, act.person, watch_.now()};
+    return {};
+}
+
+}  // namespace aeolis::server::procedures
