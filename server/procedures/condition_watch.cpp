@@ -35,6 +35,10 @@ std::string_view name_of(Verdict verdict) {
     return "not known";
 }
 
+bool all_hold(const std::vector<ConditionState>& states) {
+    return std::ranges::all_of(states, [](const auto& one) { return one.verdict == Verdict::holds; });
+}
+
 std::size_t ConditionWatch::add(const Condition& condition) {
     AEOLIS_CHECK(heard_.empty());
     if (const auto* of_channel = std::get_if<ChannelCondition>(&condition)) {

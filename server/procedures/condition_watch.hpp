@@ -42,6 +42,9 @@ struct ConditionState {
     bool operator==(const ConditionState&) const = default;
 };
 
+/// Whether every condition is known to hold; of none, yes.
+bool all_hold(const std::vector<ConditionState>& states);
+
 /// Judges conditions by what Earth has received, and by nothing else.
 ///
 /// In      live samples and events in the order of their receipt, the predicted entry, Earth's clock. What a recording

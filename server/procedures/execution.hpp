@@ -87,13 +87,13 @@ struct Act {
         stop,         ///< the procedure ends here
     };
     Kind kind{};
-    std::string step;
+    std::string step{};
     Position position{};
-    std::string person;
-    std::string reason;
+    std::string person{};
+    std::string reason{};
     std::size_t choice = 0;
     std::uint64_t command = 0;
-    Ert at;
+    Ert at{};
 };
 std::string_view name_of(Act::Kind kind);
 std::optional<Act::Kind> act_named(std::string_view name);

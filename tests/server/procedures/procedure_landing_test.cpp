@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+// Procedures carried out on a landing that is flown, by what reaches Earth and a team that does as they say.
+#include "server/procedures/execution.hpp"
+#include "server/procedures/procedure_reader.hpp"
+#include "server/rehearsal/rehearsal.hpp"
+#include "server/scenario/scenario_library.hpp"
+#include "telemetry/decoded_packet.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/shipped_dictionary.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+
+namespace server_procedures_procedure_landing_test {
+
+using namespace aeolis;
+using namespace aeolis::server;
+using namespace aeolis::server::procedures;
+
+namespace {
+
+Procedure shipped_procedure(const std::string& name) {
+    const std::vector<std::string> others{"computer_reset", "commanding_closed", "tones_lost"};
+    std::ifstream file{AEOLIS_SOURCE_DIR "/dictionaries/msl/procedures/" + name + ".yaml", std::ios::binary};
+    const std::string text{std::istreambuf_iterator<char>{file}, {}};
+    const auto read = read_procedure(text, name + ".yaml", tests::shipped_dictionary(), others);
+    REQUIRE(read.procedure);
+    return *read.procedure;
+}
+
+/// A landing with its ground, and a procedure at a time.
+class Room {
+  public:
+    explicit Room(const std::string& scenario)
+        : rehearsal_(*ScenarioLibrary{AEOLIS_SOURCE_DIR "/simulation/scenarios"}.scenario(scenario), 1, 0,
+                     tests::shipped_dictionary()) {}
+
+    /// Flies until the procedure is over, at most so long; the team does what each step asks for.
+    Execution carry_out(const Procedure& procedure, double at_most_s) {
+        Execution execution{procedure, tests::shipped_dictionary(), rehearsal_.landing().ert_now()};
+        const auto start = rehearsal_.run_start(1.0);
+        const Scet entry{rehearsal_.scenario().entry_scet};
+        execution.predict({entry, start.light_time_s});
+        const std::uint64_t end = rehearsal_.cycles() + static_cast<std::uint64_t>(at_most_s * 64.0);
+        while (!execution.over() && rehearsal_.cycles() < end && !rehearsal_.finished()) {
+            hear(execution);
+            if (rehearsal_.cycles() % 64 == 0) act(execution);
+        }
+        return execution;
+    }
+    const Rehearsal& rehearsal() const { return rehearsal_; }
+
+  private:
+    void hear(Execution& execution) {
+        const auto& dictionary = tests::shipped_dictionary();
+        for (const auto& packet : rehearsal_.step().packets) {
+            if (!telemetry::is_live_telemetry(packet.link.name)) continue;
+            decoder_.decode(packet.octets, decoded_);
+            if (!decoded_.refusal.empty()) continue;
+            if (decoded_.event != nullptr) execution.on(EventReceived{decoded_.event->id, packet.ert});
+            const auto& fields = dictionary.packets[decoded_.content.packet].fields;
+            for (std::size_t i = 0; i < fields.size(); ++i)
+                if (fields[i].channel)
+                    execution.on(ChannelSample{*fields[i].channel, decoded_.content.value[i], packet.ert});
+        }
+        for (const auto& stage : rehearsal_.take_stages())
+            execution.on(CommandFate{stage.command, stage.stage, stage.status, stage.evidence, stage.ert});
+        execution.pass(rehearsal_.landing().ert_now());
+    }
+
+    /// Signs, ticks, releases, sends and takes the first way, for each step whose turn it is.
+    void act(Execution& execution) {
+        const auto& procedure = execution.procedure();
+        for (const auto* part : {&procedure.preconditions, &procedure.body, &procedure.confirmation})
+            for (const Step& step : *part) {
+                const StepStatus status = *execution.step(step.id);
+                if (is_over(status.state) || status.state == StepState::waiting) continue;
+                if (status.state == StepState::held) {
+                    done(execution, {Act::Kind::release, step.id, *step.hold});
+                    continue;
+                }
+                for (const Position position : step.signatures)
+                    if (std::ranges::find(status.signatures, position, &Signature::position) == status.signatures.end())
+                        done(execution, {Act::Kind::sign, step.id, position});
+                if (step.command && !status.command) send(execution, step);
+                if (!step.choices.empty()) done(execution, {Act::Kind::choose, step.id, step.who});
+                if (!step.command && step.choices.empty() && step.conditions.empty() && step.signatures.empty())
+                    done(execution, {Act::Kind::tick, step.id, step.who});
+            }
+    }
+
+    void send(Execution& execution, const Step& step) {
+        v1::CommandRequest request;
+        request.set_command(step.command->name);
+        request.set_from_solution(step.command->from_solution);
+        request.set_armed(true);
+        request.set_confirmation(step.command->name);
+        for (const auto& [name, value] : step.command->arguments) {
+            auto& argument = *request.add_arguments();
+            argument.set_name(name);
+            argument.set_value(value);
+        }
+        const auto reply = rehearsal_.submit(request, {}, true);
+        INFO(step.id << ": " << reply.reason());
+        REQUIRE(reply.accepted());
+        Act act{Act::Kind::sent, step.id, Position::command};
+        act.command = reply.command();
+        done(execution, act);
+    }
+
+    void done(Execution& execution, Act act) {
+        act.person = "the team";
+        act.at = rehearsal_.landing().ert_now();
+        const auto taken = execution.on(act);
+        INFO(act.step << ": " << (taken ? "" : taken.error().message));
+        REQUIRE(taken);
+    }
+
+    Rehearsal rehearsal_;
+    telemetry::PacketDecoder decoder_{tests::shipped_dictionary()};
+    telemetry::DecodedPacket decoded_;
+};
+
+std::string states(const Execution& execution) {
+    std::string text{name_of(execution.part())};
+    const auto& procedure = execution.procedure();
+    for (const auto* part : {&procedure.preconditions, &procedure.body, &procedure.confirmation})
+        for (const Step& step : *part) {
+            const StepStatus& status = *execution.step(step.id);
+            text += "\n" + step.id + " " + std::string{name_of(status.state)} + " " + status.command_evidence;
+            for (const auto& condition : status.conditions)
+                text += "; " + std::string{name_of(condition.verdict)} + ": " + condition.evidence;
+        }
+    return text;
+}
+
+}  // namespace
+
+TEST_CASE("start and Second Chance are confirmed on a landing that is flown, by what reached Earth, with no tick "
+          "against a condition",
+          "[procedures]") {
+    Room room{"nominal"};
+    const auto start_procedure = shipped_procedure("start");
+    const auto start = room.carry_out(start_procedure, 240.0);
+    INFO(states(start));
+    CHECK(start.part() == Part::confirmed);
+    for (const char* by_itself : {"computer", "not_begun", "send_parameters", "late_cruise", "do_edl", "begun"}) {
+        INFO(by_itself);
+        CHECK(start.step(by_itself)->state == StepState::checked);
+    }
+    for (const StepStatus& step : start.steps()) CHECK(step.reason.empty());
+    for (const auto& watchdog : start.watchdogs()) CHECK_FALSE(watchdog.tripped);
+
+    const auto second_procedure = shipped_procedure("second_chance_enabled");
+    const auto second = room.carry_out(second_procedure, 240.0);
+    INFO(states(second));
+    CHECK(second.part() == Part::confirmed);
+    CHECK(second.step("enable")->late_since);  // 20 minutes before entry is late for what arrives at E−47:00
+    CHECK(second.step("prime")->state == StepState::checked);
+    CHECK(second.step("enabled")->state == StepState::checked);
+}
+
+}  // namespace server_procedures_procedure_landing_test
