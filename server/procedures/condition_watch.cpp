@@ -50,6 +50,15 @@ std::size_t ConditionWatch::add(const Condition& condition) {
     return watched_.size() - 1;
 }
 
+void ConditionWatch::know(const ReceivedFacts& before) {
+    for (const auto& [channel, conditions] : by_channel_)
+        if (const auto sample = before.latest().find(channel); sample != before.latest().end()) on(sample->second);
+    for (auto& [event, last] : events_)
+        if (const auto received = before.events().find(event); received != before.events().end())
+            on(EventReceived{event, received->second});
+    prediction_ = before.prediction();
+}
+
 bool ConditionWatch::on(const ChannelSample& sample) {
     pass(sample.received);
     const auto conditions = by_channel_.find(sample.channel);

@@ -4,6 +4,7 @@
 #include "common/time.hpp"
 #include "dictionaries/dictionary.hpp"
 #include "server/procedures/procedure.hpp"
+#include "server/procedures/received_facts.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -14,21 +15,6 @@
 
 namespace aeolis::server::procedures {
 
-/// A live sample of a channel as it reached Earth.
-struct ChannelSample {
-    ChannelId channel;
-    std::optional<double> value;  ///< none: undefined on board
-    Ert received;
-};
-struct EventReceived {
-    EvrId event;
-    Ert received;
-};
-/// When the vehicle is predicted to enter, and how far it is.
-struct EntryPrediction {
-    Scet entry;
-    double light_time_s = 0.0;
-};
 /// The instant on Earth's clock.
 Ert instant_of(const EntryTime& time, const EntryPrediction& prediction);
 
@@ -60,6 +46,9 @@ class ConditionWatch {
 
     /// Adds a condition, before anything is received. @return its number
     std::size_t add(const Condition& condition);
+
+    /// Takes what was received before, once all conditions are added. "For 3 s" counts from the newest of it.
+    void know(const ReceivedFacts& before);
 
     /// @return whether a condition asks for this channel
     bool on(const ChannelSample& sample);

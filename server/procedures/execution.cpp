@@ -64,7 +64,8 @@ std::optional<Act::Kind> act_named(std::string_view name) {
     return std::nullopt;
 }
 
-Execution::Execution(const Procedure& procedure, const dictionary::Dictionary& dictionary, Ert begun)
+Execution::Execution(const Procedure& procedure, const dictionary::Dictionary& dictionary, Ert begun,
+                     const ReceivedFacts& before)
     : procedure_(&procedure), begun_(begun), watch_(dictionary) {
     AEOLIS_CHECK(!procedure.body.empty());
     for (const auto* part : {&procedure.preconditions, &procedure.body, &procedure.confirmation})
@@ -80,6 +81,7 @@ Execution::Execution(const Procedure& procedure, const dictionary::Dictionary& d
     status_.resize(steps_.size());
     paused_us_.resize(steps_.size());
     watchdogs_.resize(procedure.watchdogs.size());
+    watch_.know(before);
     watch_.pass(begun);
     begin_part(Part::preconditions);
     settle();

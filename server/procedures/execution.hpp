@@ -126,8 +126,9 @@ inline constexpr std::size_t commands_followed_max = 10'000;  ///< chosen: more 
 /// Memory  by its procedure, and commands_followed_max. A copy is a snapshot: fed the same it stays the same
 class Execution {
   public:
-    /// Both must outlive this object and its copies.
-    Execution(const Procedure& procedure, const dictionary::Dictionary& dictionary, Ert begun);
+    /// Procedure and dictionary must outlive this object and its copies. `before`: what was received before it began.
+    Execution(const Procedure& procedure, const dictionary::Dictionary& dictionary, Ert begun,
+              const ReceivedFacts& before = {});
 
     /// What no condition asks for only moves the clock; limits and ages are judged at the next pass.
     void on(const ChannelSample& sample);

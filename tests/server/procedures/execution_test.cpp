@@ -286,6 +286,25 @@ TEST_CASE("a watchdog trips once, keeps its evidence, holds the procedure, and i
           "COMPUTER_STARTED received 2000-001T12:01:41.000");
 }
 
+TEST_CASE("a procedure knows from its beginning what was received before, and how old it is", "[procedures]") {
+    const auto& dictionary = tests::shipped_dictionary();
+    const auto procedure = tests::procedure_of(with_body(
+        "  - {step: a, who: gnc, do: A, check: [{channel: edl_enabled, is: '==', value: true}, {channel: reset_count, "
+        "is: '==', value: 0}, {event: EDL_BEGUN, since: run}, {event: EDL_BEGUN, since: procedure}, {from: E-1:00 "
+        "vehicle}]}\n"));
+    ReceivedFacts before;
+    before.on(ChannelSample{dictionary.channel("edl_enabled")->id, 0.0, at(60.0)});
+    before.on(ChannelSample{dictionary.channel("edl_enabled")->id, 1.0, at(80.0)});
+    before.on(ChannelSample{dictionary.channel("reset_count")->id, 0.0, at(60.0)});
+    before.on(EventReceived{dictionary.event("EDL_BEGUN")->id, at(50.0)});
+    before.predict({{150'000'000}, 0.0});
+    const Execution execution{procedure, dictionary, at(100.0), before};
+    std::vector<Verdict> verdicts;
+    for (const auto& condition : execution.step("a")->conditions) verdicts.push_back(condition.verdict);
+    CHECK(verdicts ==
+          std::vector{Verdict::holds, Verdict::not_known, Verdict::holds, Verdict::does_not_hold, Verdict::holds});
+}
+
 TEST_CASE("names and reasons have limits", "[procedures]") {
     UnderWay run{WrittenProcedure{}};
     const auto with = [&](const std::string& person, const std::string& reason) {

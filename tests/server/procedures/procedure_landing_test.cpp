@@ -36,37 +36,55 @@ class Room {
         : rehearsal_(*ScenarioLibrary{AEOLIS_SOURCE_DIR "/simulation/scenarios"}.scenario(scenario), 1, 0,
                      tests::shipped_dictionary()) {}
 
+    /// Flies until the event was received.
+    void fly_until(const char* event) {
+        const auto* wanted = tests::shipped_dictionary().event(event);
+        while (!rehearsal_.finished() && !facts_.events().contains(wanted->id)) hear(nullptr);
+        REQUIRE(facts_.events().contains(wanted->id));
+    }
+
     /// Flies until the procedure is over, at most so long; the team does what each step asks for.
     Execution carry_out(const Procedure& procedure, double at_most_s) {
-        Execution execution{procedure, tests::shipped_dictionary(), rehearsal_.landing().ert_now()};
-        const auto start = rehearsal_.run_start(1.0);
-        const Scet entry{rehearsal_.scenario().entry_scet};
-        execution.predict({entry, start.light_time_s});
+        facts_.predict({rehearsal_.scenario().entry_scet, rehearsal_.run_start(1.0).light_time_s});
+        Execution execution{procedure, tests::shipped_dictionary(), rehearsal_.landing().ert_now(), facts_};
         const std::uint64_t end = rehearsal_.cycles() + static_cast<std::uint64_t>(at_most_s * 64.0);
         while (!execution.over() && rehearsal_.cycles() < end && !rehearsal_.finished()) {
-            hear(execution);
+            hear(&execution);
             if (rehearsal_.cycles() % 64 == 0) act(execution);
         }
         return execution;
     }
-    const Rehearsal& rehearsal() const { return rehearsal_; }
 
   private:
-    void hear(Execution& execution) {
+    template <typename Fact>
+    void take(const Fact& fact, Execution* execution) {
+        facts_.on(fact);
+        if (execution != nullptr) execution->on(fact);
+    }
+
+    void hear(Execution* execution) {
         const auto& dictionary = tests::shipped_dictionary();
         for (const auto& packet : rehearsal_.step().packets) {
             if (!telemetry::is_live_telemetry(packet.link.name)) continue;
             decoder_.decode(packet.octets, decoded_);
             if (!decoded_.refusal.empty()) continue;
-            if (decoded_.event != nullptr) execution.on(EventReceived{decoded_.event->id, packet.ert});
+            if (decoded_.event != nullptr) take(EventReceived{decoded_.event->id, packet.ert}, execution);
             const auto& fields = dictionary.packets[decoded_.content.packet].fields;
             for (std::size_t i = 0; i < fields.size(); ++i)
                 if (fields[i].channel)
-                    execution.on(ChannelSample{*fields[i].channel, decoded_.content.value[i], packet.ert});
+                    take(ChannelSample{*fields[i].channel, decoded_.content.value[i], packet.ert}, execution);
         }
         for (const auto& stage : rehearsal_.take_stages())
-            execution.on(CommandFate{stage.command, stage.stage, stage.status, stage.evidence, stage.ert});
-        execution.pass(rehearsal_.landing().ert_now());
+            if (execution != nullptr)
+                execution->on(CommandFate{stage.command, stage.stage, stage.status, stage.evidence, stage.ert});
+        if (execution != nullptr) execution->pass(rehearsal_.landing().ert_now());
+    }
+
+    /// The first way for which everything is known to hold that is asked.
+    static std::size_t way_of(const StepStatus& status) {
+        const auto way = std::ranges::find_if(status.choices, all_hold);
+        REQUIRE(way != status.choices.end());
+        return static_cast<std::size_t>(way - status.choices.begin());
     }
 
     /// Signs, ticks, releases, sends and takes the first way, for each step whose turn it is.
@@ -84,7 +102,11 @@ class Room {
                     if (std::ranges::find(status.signatures, position, &Signature::position) == status.signatures.end())
                         done(execution, {Act::Kind::sign, step.id, position});
                 if (step.command && !status.command) send(execution, step);
-                if (!step.choices.empty()) done(execution, {Act::Kind::choose, step.id, step.who});
+                if (!step.choices.empty()) {
+                    Act choose{Act::Kind::choose, step.id, step.who};
+                    choose.choice = way_of(status);
+                    done(execution, choose);
+                }
                 if (!step.command && step.choices.empty() && step.conditions.empty() && step.signatures.empty())
                     done(execution, {Act::Kind::tick, step.id, step.who});
             }
@@ -118,6 +140,7 @@ class Room {
     }
 
     Rehearsal rehearsal_;
+    ReceivedFacts facts_;
     telemetry::PacketDecoder decoder_{tests::shipped_dictionary()};
     telemetry::DecodedPacket decoded_;
 };
@@ -159,6 +182,20 @@ TEST_CASE("start and Second Chance are confirmed on a landing that is flown, by 
     CHECK(second.step("enable")->late_since);  // 20 minutes before entry is late for what arrives at E−47:00
     CHECK(second.step("prime")->state == StepState::checked);
     CHECK(second.step("enabled")->state == StepState::checked);
+}
+
+TEST_CASE("after a reset behind cruise-stage separation the procedure for it finds Second Chance in control, and "
+          "nothing is sent",
+          "[procedures]") {
+    Room room{"second_chance"};
+    room.fly_until("SECOND_CHANCE_TAKES_OVER");
+    const auto procedure = shipped_procedure("computer_reset");
+    const auto reset = room.carry_out(procedure, 120.0);
+    INFO(states(reset));
+    CHECK(reset.part() == Part::confirmed);
+    CHECK(reset.step("stage")->chosen == 1);
+    CHECK(reset.step("backup")->state == StepState::checked);
+    CHECK(reset.step("prime_back")->state == StepState::not_taken);
 }
 
 }  // namespace server_procedures_procedure_landing_test
