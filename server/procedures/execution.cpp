@@ -177,7 +177,9 @@ std::optional<Ert> Execution::limit_passed(std::size_t index) const {
     if (step.limit_s && held_.empty())
         limit =
             Ert{status_[index].active_since->microseconds + std::llround(*step.limit_s * 1.0e6) + paused_us_[index]};
-    if (step.limit_e && watch_.prediction()) {
+    // By when a command is to leave: once it was sent, its evidence may take the way there and back.
+    const bool left = step.limit_e && step.limit_e->where == EntryTime::Where::sent && status_[index].command;
+    if (step.limit_e && !left && watch_.prediction()) {
         const Ert by = instant_of(*step.limit_e, *watch_.prediction());
         limit = limit ? std::min(*limit, by) : by;
     }

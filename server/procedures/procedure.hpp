@@ -117,7 +117,7 @@ struct Step {
     std::vector<Choice> choices;       ///< one of them is taken
     std::optional<Position> hold;      ///< who lets it begin
     std::optional<double> limit_s;     ///< from when it becomes active
-    std::optional<EntryTime> limit_e;  ///< the instant by which it is to be done
+    std::optional<EntryTime> limit_e;  ///< the instant by which it is to be done; `sent`: by which its command is sent
     std::optional<Target> next;        ///< of the main body, instead of the step that follows
     Mark mark;
 };

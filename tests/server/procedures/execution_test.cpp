@@ -239,6 +239,16 @@ TEST_CASE("a limit from entry is told only when entry is predicted", "[procedure
     CHECK(run.status("a").late_since == at(490.0));
 }
 
+TEST_CASE("by when a command is to leave is kept once it was sent, whenever its evidence comes", "[procedures]") {
+    const auto written = with_body("  - {step: a, who: command, do: A, command: {name: NO_OP}, by: E-0:10 sent}\n");
+    UnderWay sent{written}, late{written};
+    for (UnderWay* run : {&sent, &late}) run->execution.predict({{500'000'000}, 100.0});  // it leaves by 390 s
+    CHECK(sent.act(Act::Kind::sent, "a", Position::command, "", 0, 1).empty());
+    for (UnderWay* run : {&sent, &late}) run->pass(400.0);
+    CHECK(sent.state("a") == StepState::active);
+    CHECK(late.status("a").late_since == at(390.0));
+}
+
 TEST_CASE("the flight director skips a step with a reason, and without its confirmation nothing is confirmed",
           "[procedures]") {
     UnderWay run{WrittenProcedure{}};

@@ -29,18 +29,29 @@ Procedure shipped_procedure(const std::string& name) {
     return *read.procedure;
 }
 
+simulation::Scenario shipped_scenario(const std::string& name) {
+    return *ScenarioLibrary{AEOLIS_SOURCE_DIR "/simulation/scenarios"}.scenario(name);
+}
+
 /// A landing with its ground, and a procedure at a time.
 class Room {
   public:
-    explicit Room(const std::string& scenario)
-        : rehearsal_(*ScenarioLibrary{AEOLIS_SOURCE_DIR "/simulation/scenarios"}.scenario(scenario), 1, 0,
-                     tests::shipped_dictionary()) {}
+    explicit Room(const simulation::Scenario& scenario) : rehearsal_(scenario, 1, 0, tests::shipped_dictionary()) {}
+
+    const Rehearsal& rehearsal() const { return rehearsal_; }
 
     /// Flies until the event was received.
     void fly_until(const char* event) {
         const auto* wanted = tests::shipped_dictionary().event(event);
         while (!rehearsal_.finished() && !facts_.events().contains(wanted->id)) hear(nullptr);
         REQUIRE(facts_.events().contains(wanted->id));
+    }
+
+    /// Flies until the station receives what happens at that time from the predicted entry.
+    void fly_to(double e_s) {
+        const EntryPrediction prediction{rehearsal_.scenario().entry_scet, rehearsal_.run_start(1.0).light_time_s};
+        const Ert until = instant_of({e_s, EntryTime::Where::received}, prediction);
+        while (!rehearsal_.finished() && rehearsal_.landing().ert_now() < until) hear(nullptr);
     }
 
     /// Flies until the procedure is over, at most so long; the team does what each step asks for.
@@ -160,10 +171,39 @@ std::string states(const Execution& execution) {
 
 }  // namespace
 
+TEST_CASE(
+    "with the true light time seven procedures are carried out on one landing, each in its time, and none is late",
+    "[procedures][long]") {
+    auto scenario = shipped_scenario("nominal_light_time");
+    scenario.start_before_entry_s = 5.0 * 3600.0;
+    Room room{scenario};
+    const auto carry_out = [&](const char* name, double at_most_s) {
+        const auto procedure = shipped_procedure(name);
+        const auto execution = room.carry_out(procedure, at_most_s);
+        INFO(name << " " << states(execution));
+        CHECK(execution.part() == Part::confirmed);
+        for (const StepStatus& step : execution.steps()) {
+            CHECK(step.reason.empty());
+            CHECK_FALSE(step.late_since);
+        }
+    };
+    carry_out("start", 4500.0);
+    carry_out("second_chance_enabled", 2000.0);
+    carry_out("navigation_delivery", 2000.0);
+    room.fly_to(-5000.0);
+    carry_out("commanding_closed", 600.0);
+    room.fly_to(60.0);
+    carry_out("uhf_lost", 120.0);
+    room.fly_to(310.0);
+    carry_out("tones_lost", 60.0);
+    room.fly_until("TOUCHDOWN");
+    carry_out("day_after", 120.0);
+}
+
 TEST_CASE("start and Second Chance are confirmed on a landing that is flown, by what reached Earth, with no tick "
           "against a condition",
           "[procedures]") {
-    Room room{"nominal"};
+    Room room{shipped_scenario("nominal")};
     const auto start_procedure = shipped_procedure("start");
     const auto start = room.carry_out(start_procedure, 240.0);
     INFO(states(start));
@@ -187,7 +227,7 @@ TEST_CASE("start and Second Chance are confirmed on a landing that is flown, by 
 TEST_CASE("after a reset behind cruise-stage separation the procedure for it finds Second Chance in control, and "
           "nothing is sent",
           "[procedures]") {
-    Room room{"second_chance"};
+    Room room{shipped_scenario("second_chance")};
     room.fly_until("SECOND_CHANCE_TAKES_OVER");
     const auto procedure = shipped_procedure("computer_reset");
     const auto reset = room.carry_out(procedure, 120.0);
