@@ -9,6 +9,15 @@
 namespace aeolis::server::procedures {
 namespace {
 
+std::string_view after(Since since) {
+    switch (since) {
+    case Since::run: return "";
+    case Since::procedure: return " since the procedure began";
+    case Since::step: break;
+    }
+    return " since the step began";
+}
+
 struct InWords {
     const dictionary::Dictionary& dictionary;
 
@@ -17,17 +26,12 @@ struct InWords {
         std::string text = fmt::format("{} {} {}", channel.name, name_of(condition.comparison),
                                        exact_text(channel.type, condition.value));
         if (condition.for_s > 0.0) text += fmt::format(" for {} s", commands::shortest_text(condition.for_s));
-        return text;
+        return text.append(after(condition.since));
     }
     std::string operator()(const EventCondition& condition) const {
         const auto* event = dictionary.event(condition.event);
         const std::string name = event == nullptr ? std::string{} : event->name;
-        switch (condition.since) {
-        case EventCondition::Since::run: return name + " received";
-        case EventCondition::Since::procedure: return name + " received since the procedure began";
-        case EventCondition::Since::step: break;
-        }
-        return name + " received since the step began";
+        return fmt::format("{} received{}", name, after(condition.since));
     }
     std::string operator()(const TimeCondition& condition) const { return "from " + text_of(condition.from); }
 };

@@ -93,12 +93,13 @@ ConditionState ConditionWatch::judge(std::size_t number, std::optional<Ert> sinc
     AEOLIS_CHECK(number < watched_.size());
     const Watched& watched = watched_[number];
     if (const auto* of_channel = std::get_if<ChannelCondition>(&watched.condition))
-        return judge_channel(watched, *of_channel);
+        return judge_channel(watched, *of_channel, since);
     if (const auto* of_event = std::get_if<EventCondition>(&watched.condition)) return judge_event(*of_event, since);
     return judge_time(std::get<TimeCondition>(watched.condition));
 }
 
-ConditionState ConditionWatch::judge_channel(const Watched& watched, const ChannelCondition& condition) const {
+ConditionState ConditionWatch::judge_channel(const Watched& watched, const ChannelCondition& condition,
+                                             std::optional<Ert> since) const {
     const auto& channel = dictionary_->channels[condition.channel.value];
     const auto heard = heard_.find(condition.channel);
     if (heard == heard_.end()) return {Verdict::not_known, channel.name + " was never received"};
@@ -107,11 +108,14 @@ ConditionState ConditionWatch::judge_channel(const Watched& watched, const Chann
     if (const double age_s = seconds_between(received, now_); age_s > commands::stale_after_s)
         return {Verdict::not_known,
                 fmt::format("{} was last received {}, {} s ago", channel.name, when, std::floor(age_s))};
+    if (since && received < *since)
+        return {Verdict::not_known, fmt::format("{} was last received {}, before that", channel.name, when)};
     if (!value) return {Verdict::not_known, fmt::format("{} is undefined on board, received {}", channel.name, when)};
     std::string evidence = fmt::format("{} is {}, received {}", channel.name, exact_text(channel.type, *value), when);
     if (!watched.held_since) return {Verdict::does_not_hold, std::move(evidence)};
     if (condition.for_s <= 0.0) return {Verdict::holds, std::move(evidence)};
-    const double held_s = seconds_between(*watched.held_since, received);
+    const Ert from = since ? std::max(*since, *watched.held_since) : *watched.held_since;
+    const double held_s = seconds_between(from, received);
     evidence += fmt::format(", so for {} s", commands::shortest_text(held_s));
     return {held_s >= condition.for_s ? Verdict::holds : Verdict::does_not_hold, std::move(evidence)};
 }

@@ -60,7 +60,7 @@ class ConditionWatch {
     void pass(Ert now);
     Ert now() const { return now_; }
 
-    /// @param since  an event counts from here; none: from the beginning
+    /// @param since  what was received counts from here; none: from the beginning
     ConditionState judge(std::size_t condition, std::optional<Ert> since) const;
 
   private:
@@ -73,7 +73,8 @@ class ConditionWatch {
         Condition condition;
         std::optional<Ert> held_since;  ///< of a channel: receipt of the first of the samples in a row that compare so
     };
-    ConditionState judge_channel(const Watched& watched, const ChannelCondition& condition) const;
+    ConditionState judge_channel(const Watched& watched, const ChannelCondition& condition,
+                                 std::optional<Ert> since) const;
     ConditionState judge_event(const EventCondition& condition, std::optional<Ert> since) const;
     ConditionState judge_time(const TimeCondition& condition) const;
 

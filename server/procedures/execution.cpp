@@ -15,6 +15,12 @@ constexpr std::array act_kinds{Act::Kind::tick,    Act::Kind::sign,        Act::
                                Act::Kind::skip,    Act::Kind::sent,        Act::Kind::hold,
                                Act::Kind::release, Act::Kind::acknowledge, Act::Kind::stop};
 
+Since since_of(const Condition& condition) {
+    if (const auto* channel = std::get_if<ChannelCondition>(&condition)) return channel->since;
+    if (const auto* event = std::get_if<EventCondition>(&condition)) return event->since;
+    return Since::run;
+}
+
 }  // namespace
 
 std::string_view name_of(StepState state) {
@@ -150,9 +156,10 @@ std::vector<ConditionState> Execution::judge(const std::vector<Condition>& condi
     states.reserve(numbers.size());
     for (std::size_t i = 0; i < numbers.size(); ++i) {
         std::optional<Ert> since;
-        if (const auto* event = std::get_if<EventCondition>(&conditions[i])) {
-            if (event->since == EventCondition::Since::procedure) since = begun_;
-            if (event->since == EventCondition::Since::step) since = step_since;
+        switch (since_of(conditions[i])) {
+        case Since::run: break;
+        case Since::procedure: since = begun_; break;
+        case Since::step: since = step_since; break;
         }
         states.push_back(watch_.judge(numbers[i], since));
     }

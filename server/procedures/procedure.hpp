@@ -55,24 +55,27 @@ std::string_view name_of(Comparison comparison);  ///< "==", "!=", "<", "<=", ">
 std::optional<Comparison> comparison_named(std::string_view name);
 bool holds(Comparison comparison, double left, double right);
 
+/// From when on what was received counts.
+enum class Since : std::uint8_t {
+    run,        ///< from its beginning
+    procedure,  ///< since the procedure was begun
+    step,       ///< since the step became active; of a watchdog: since the procedure was begun
+};
+std::string_view name_of(Since since);
+
 /// The latest value received of a channel compares so, and has for so long.
 struct ChannelCondition {
     ChannelId channel;
     Comparison comparison = Comparison::equal;
     double value = 0.0;
     double for_s = 0.0;
+    Since since = Since::run;
 };
 /// An event report was received.
 struct EventCondition {
-    enum class Since : std::uint8_t {
-        run,        ///< ever
-        procedure,  ///< since the procedure was begun
-        step,       ///< since the step became active; of a watchdog: since the procedure was begun
-    };
     EvrId event;
     Since since = Since::step;
 };
-std::string_view name_of(EventCondition::Since since);
 /// The instant has come.
 struct TimeCondition {
     EntryTime from;

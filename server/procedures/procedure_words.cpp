@@ -84,11 +84,11 @@ bool holds(Comparison comparison, double left, double right) {
     return false;
 }
 
-std::string_view name_of(EventCondition::Since since) {
+std::string_view name_of(Since since) {
     switch (since) {
-    case EventCondition::Since::run: return "run";
-    case EventCondition::Since::procedure: return "procedure";
-    case EventCondition::Since::step: return "step";
+    case Since::run: return "run";
+    case Since::procedure: return "procedure";
+    case Since::step: return "step";
     }
     return "";
 }

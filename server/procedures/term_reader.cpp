@@ -18,7 +18,7 @@ using Kind = YamlNode::Kind;
 
 constexpr std::array stages_until{commands::Stage::radiated, commands::Stage::received, commands::Stage::accepted,
                                   commands::Stage::executed, commands::Stage::verified};
-constexpr std::array sinces{EventCondition::Since::run, EventCondition::Since::procedure, EventCondition::Since::step};
+constexpr std::array sinces{Since::run, Since::procedure, Since::step};
 
 /// Its name, for those that are found by one.
 constexpr auto name_of_entry = [](const auto& entry) -> std::string_view { return entry.name; };
@@ -74,7 +74,7 @@ bool TermReader::unit_is_right(const YamlNode& node, const dictionary::Channel& 
 
 std::optional<Condition> TermReader::channel_condition(const YamlNode& node) {
     static constexpr std::array must{std::string_view{"channel"}, std::string_view{"is"}, std::string_view{"value"}};
-    static constexpr std::array may{std::string_view{"unit"}, std::string_view{"for_s"}};
+    static constexpr std::array may{std::string_view{"unit"}, std::string_view{"for_s"}, std::string_view{"since"}};
     if (!table(node, "a condition on a channel", must, may)) return std::nullopt;
     ChannelCondition read;
     bool whole = true;
@@ -92,6 +92,11 @@ std::optional<Condition> TermReader::channel_condition(const YamlNode& node) {
         const auto seconds = number(*for_s, "for_s", 0.0, condition_for_s_max, " s");
         whole = whole && seconds;
         read.for_s = seconds.value_or(0.0);
+    }
+    if (node.member("since") != nullptr) {
+        const auto since = since_of(node);
+        whole = whole && since;
+        read.since = since.value_or(Since::run);
     }
     const std::string name = words(node, "channel", "a channel");
     if (name.empty()) return std::nullopt;
@@ -129,20 +134,23 @@ std::optional<Condition> TermReader::channel_condition(const YamlNode& node) {
     return read;
 }
 
+std::optional<Since> TermReader::since_of(const YamlNode& node) {
+    const std::string text = words(node, "since", "since");
+    const auto named = std::ranges::find(sinces, text, [](Since one) { return name_of(one); });
+    if (named != sinces.end()) return *named;
+    if (!text.empty()) add(node.member("since")->mark, fmt::format("since '{}': must be run, procedure or step", text));
+    return std::nullopt;
+}
+
 std::optional<Condition> TermReader::event_condition(const YamlNode& node) {
     static constexpr std::array must{std::string_view{"event"}, std::string_view{"since"}};
     if (!table(node, "a condition on an event", must, {})) return std::nullopt;
     EventCondition read;
     bool whole = true;
-    const std::string since = words(node, "since", "since");
-    const auto named = std::ranges::find(sinces, since, [](auto one) { return name_of(one); });
-    if (named == sinces.end()) {
-        if (!since.empty())
-            add(node.member("since")->mark, fmt::format("since '{}': must be run, procedure or step", since));
+    if (const auto since = since_of(node))
+        read.since = *since;
+    else
         whole = false;
-    } else {
-        read.since = *named;
-    }
     const std::string name = words(node, "event", "an event");
     if (name.empty()) return std::nullopt;
     const auto* event = dictionary_.event(name);

@@ -28,6 +28,7 @@ class TermReader : public FormReader {
     std::optional<Condition> condition(const YamlNode& node);
     std::optional<Condition> channel_condition(const YamlNode& node);
     std::optional<Condition> event_condition(const YamlNode& node);
+    std::optional<Since> since_of(const YamlNode& node);
     bool unit_is_right(const YamlNode& node, const dictionary::Channel& channel);
     std::optional<double> value(const YamlNode& node, const dictionary::Type& type, const std::string& of);
     void arguments(const YamlNode& node, const YamlNode* given, const dictionary::Command& command,

@@ -77,10 +77,23 @@ TEST_CASE("for 3 s holds from receipt to receipt, and a gap or one other value b
     CHECK(low.verdict() == Verdict::does_not_hold);
 }
 
+TEST_CASE("a value received before is not known where only what comes since counts", "[procedures]") {
+    AltitudeBelow low{5000.0, 3.0};
+    low.hear(4000.0, 100.0);
+    low.hear(4000.0, 110.0);
+    CHECK(low.watch.judge(low.number, at(110.0)).verdict == Verdict::does_not_hold);
+    CHECK(low.watch.judge(low.number, at(111.0)) ==
+          ConditionState{Verdict::not_known, "altitude_m was last received 2000-001T12:01:50.000, before that"});
+    low.hear(4000.0, 113.0);
+    CHECK(low.watch.judge(low.number, at(111.0)).verdict == Verdict::does_not_hold);
+    low.hear(4000.0, 114.0);
+    CHECK(low.watch.judge(low.number, at(111.0)).verdict == Verdict::holds);
+}
+
 TEST_CASE("an event counts by its receipt, from where it is said to count", "[procedures]") {
     const auto& dictionary = tests::shipped_dictionary();
     ConditionWatch watch{dictionary};
-    const auto begun = watch.add(EventCondition{dictionary.event("EDL_BEGUN")->id, EventCondition::Since::run});
+    const auto begun = watch.add(EventCondition{dictionary.event("EDL_BEGUN")->id, Since::run});
     CHECK(watch.judge(begun, {}) == ConditionState{Verdict::does_not_hold, "EDL_BEGUN was never received"});
     CHECK_FALSE(watch.on(EventReceived{dictionary.event("TOUCHDOWN")->id, at(1.0)}));
     CHECK(watch.on(EventReceived{dictionary.event("EDL_BEGUN")->id, at(2.0)}));

@@ -9,6 +9,7 @@
 #include "tests/support/shipped_dictionary.hpp"
 
 #include <algorithm>
+#include <deque>
 #include <fstream>
 #include <iterator>
 
@@ -177,15 +178,17 @@ TEST_CASE(
     auto scenario = shipped_scenario("nominal_light_time");
     scenario.start_before_entry_s = 5.0 * 3600.0;
     Room room{scenario};
+    std::deque<Procedure> procedures;
     const auto carry_out = [&](const char* name, double at_most_s) {
-        const auto procedure = shipped_procedure(name);
-        const auto execution = room.carry_out(procedure, at_most_s);
+        const auto& procedure = procedures.emplace_back(shipped_procedure(name));  // an execution refers to it
+        auto execution = room.carry_out(procedure, at_most_s);
         INFO(name << " " << states(execution));
         CHECK(execution.part() == Part::confirmed);
         for (const StepStatus& step : execution.steps()) {
             CHECK(step.reason.empty());
             CHECK_FALSE(step.late_since);
         }
+        return execution;
     };
     carry_out("start", 4500.0);
     carry_out("second_chance_enabled", 2000.0);
@@ -193,7 +196,9 @@ TEST_CASE(
     room.fly_to(-5000.0);
     carry_out("commanding_closed", 600.0);
     room.fly_to(60.0);
-    carry_out("uhf_lost", 120.0);
+    // The blackout has begun a moment ago: that UHF is back is found only when it is.
+    const auto uhf = carry_out("uhf_lost", 120.0);
+    CHECK(uhf.step("back")->over_since->microseconds - uhf.begun().microseconds > 30'000'000);
     room.fly_to(310.0);
     carry_out("tones_lost", 60.0);
     room.fly_until("TOUCHDOWN");

@@ -162,6 +162,8 @@ TEST_CASE("conditions: unknown channels and events, wrong units, types and range
           "p.yaml:9:48: 'EDL_BEGAN' is no event of the dictionary; the nearest name is 'EDL_BEGUN'\n");
     CHECK(of_condition("{event: EDL_BEGUN, since: ever}") ==
           "p.yaml:9:66: since 'ever': must be run, procedure or step\n");
+    CHECK(of_condition("{channel: reset_count, is: '==', value: 1, since: noon}") ==
+          "p.yaml:9:90: since 'noon': must be run, procedure or step\n");
     CHECK(of_condition("{event: EDL_BEGUN}") == "p.yaml:9:40: a condition on an event lacks 'since'\n");
     CHECK(of_condition("{channel: altitude_m, is: '<', value: 1}") ==
           "p.yaml:9:40: channel 'altitude_m' is in m; 'unit' must say so\n");
