@@ -70,23 +70,25 @@ std::optional<Act::Kind> act_named(std::string_view name) {
     return std::nullopt;
 }
 
-Execution::Execution(const Procedure& procedure, const dictionary::Dictionary& dictionary, Ert begun,
+Execution::Execution(std::shared_ptr<const Procedure> procedure, const dictionary::Dictionary& dictionary, Ert begun,
                      const ReceivedFacts& before)
-    : procedure_(&procedure), begun_(begun), watch_(dictionary) {
-    AEOLIS_CHECK(!procedure.body.empty());
-    for (const auto* part : {&procedure.preconditions, &procedure.body, &procedure.confirmation})
+    : procedure_(std::move(procedure)), begun_(begun), watch_(dictionary) {
+    AEOLIS_CHECK(procedure_ != nullptr && !procedure_->body.empty());
+    for (const auto* part : {&procedure_->preconditions, &procedure_->body, &procedure_->confirmation})
         for (const Step& step : *part) {
             steps_.push_back(&step);
             Numbers& numbers = numbers_.emplace_back();
             watch_conditions(step.conditions, numbers.conditions);
+            numbers.choices.reserve(step.choices.size());
             for (const Choice& choice : step.choices)
                 watch_conditions(choice.conditions, numbers.choices.emplace_back());
         }
-    for (const Watchdog& watchdog : procedure.watchdogs)
+    watchdog_numbers_.reserve(procedure_->watchdogs.size());
+    for (const Watchdog& watchdog : procedure_->watchdogs)
         watch_conditions(watchdog.conditions, watchdog_numbers_.emplace_back());
     status_.resize(steps_.size());
     paused_us_.resize(steps_.size());
-    watchdogs_.resize(procedure.watchdogs.size());
+    watchdogs_.resize(procedure_->watchdogs.size());
     watch_.know(before);
     watch_.pass(begun);
     begin_part(Part::preconditions);

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -126,8 +127,9 @@ inline constexpr std::size_t commands_followed_max = 10'000;  ///< chosen: more 
 /// Memory  by its procedure, and commands_followed_max. A copy is a snapshot: fed the same it stays the same
 class Execution {
   public:
-    /// Procedure and dictionary must outlive this object and its copies. `before`: what was received before it began.
-    Execution(const Procedure& procedure, const dictionary::Dictionary& dictionary, Ert begun,
+    /// @param procedure  not null; its copies share it. The dictionary must outlive them
+    /// @param before     what was received before it began
+    Execution(std::shared_ptr<const Procedure> procedure, const dictionary::Dictionary& dictionary, Ert begun,
               const ReceivedFacts& before = {});
 
     /// What no condition asks for only moves the clock; limits and ages are judged at the next pass.
@@ -192,7 +194,7 @@ class Execution {
     Result<void> acknowledge(const Act& act);
     void set_held(std::string why, std::string person);
 
-    const Procedure* procedure_;
+    std::shared_ptr<const Procedure> procedure_;
     Ert begun_;
     ConditionWatch watch_;
     std::vector<const Step*> steps_;

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <cstdlib>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -22,7 +23,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         if (finding.mark.line == 0 || finding.mark.column == 0 || finding.message.empty()) std::abort();
     if (!read.procedure) return 0;
     if (printed(*read.procedure, *loaded.dictionary).empty()) std::abort();
-    Execution execution{*read.procedure, *loaded.dictionary, Ert{}};
+    Execution execution{std::make_shared<const Procedure>(*read.procedure), *loaded.dictionary, Ert{}};
     execution.pass(Ert{1'000'000});
     if (execution.steps().empty()) std::abort();
     return 0;

@@ -26,7 +26,7 @@ constexpr Ert at(double seconds) {
 class UnderWay {
   public:
     explicit UnderWay(const WrittenProcedure& written)
-        : procedure_(tests::procedure_of(written)), execution{procedure_, tests::shipped_dictionary(), at(now_s)} {}
+        : execution{tests::shared_procedure(written), tests::shipped_dictionary(), at(now_s)} {}
 
     void hear(const char* channel, std::optional<double> value) {
         execution.on(ChannelSample{tests::shipped_dictionary().channel(channel)->id, value, at(now_s)});
@@ -47,10 +47,6 @@ class UnderWay {
     StepState state(const char* step) const { return execution.step(step)->state; }
     const StepStatus& status(const char* step) const { return *execution.step(step); }
 
-  private:
-    Procedure procedure_;
-
-  public:
     double now_s = 100.0;
     Execution execution;
 };
@@ -298,7 +294,7 @@ TEST_CASE("a watchdog trips once, keeps its evidence, holds the procedure, and i
 
 TEST_CASE("a procedure knows from its beginning what was received before, and how old it is", "[procedures]") {
     const auto& dictionary = tests::shipped_dictionary();
-    const auto procedure = tests::procedure_of(with_body(
+    const auto procedure = tests::shared_procedure(with_body(
         "  - {step: a, who: gnc, do: A, check: [{channel: edl_enabled, is: '==', value: true}, {channel: reset_count, "
         "is: '==', value: 0}, {event: EDL_BEGUN, since: run}, {event: EDL_BEGUN, since: procedure}, {from: E-1:00 "
         "vehicle}]}\n"));
@@ -422,7 +418,7 @@ void check_rules(const Execution& execution, const Procedure& procedure) {
 
 TEST_CASE("whatever comes in whatever order, the rules of an execution hold, in 1000 runs from a seed",
           "[procedures]") {
-    const Procedure procedure = tests::procedure_of(with_everything());
+    const auto procedure = tests::shared_procedure(with_everything());
     std::mt19937 random{43};
     std::array<std::size_t, 6> ended_in{};
     for (int trial = 0; trial < 1000; ++trial) {
@@ -438,7 +434,7 @@ TEST_CASE("whatever comes in whatever order, the rules of an execution hold, in 
             Execution passed = execution;
             passed.pass(at(now_s));
             const bool taken = inputs.back()(execution);
-            check_rules(execution, procedure);
+            check_rules(execution, *procedure);
             for (std::size_t k = 0; k < before.size(); ++k)
                 if (is_over(before[k].state)) REQUIRE(execution.steps()[k] == before[k]);
             if (!taken) REQUIRE(execution.steps() == passed.steps());

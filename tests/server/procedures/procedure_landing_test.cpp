@@ -9,9 +9,9 @@
 #include "tests/support/shipped_dictionary.hpp"
 
 #include <algorithm>
-#include <deque>
 #include <fstream>
 #include <iterator>
+#include <memory>
 
 namespace server_procedures_procedure_landing_test {
 
@@ -21,13 +21,13 @@ using namespace aeolis::server::procedures;
 
 namespace {
 
-Procedure shipped_procedure(const std::string& name) {
+std::shared_ptr<const Procedure> shipped_procedure(const std::string& name) {
     const std::vector<std::string> others{"computer_reset", "commanding_closed", "tones_lost"};
     std::ifstream file{AEOLIS_SOURCE_DIR "/dictionaries/msl/procedures/" + name + ".yaml", std::ios::binary};
     const std::string text{std::istreambuf_iterator<char>{file}, {}};
     const auto read = read_procedure(text, name + ".yaml", tests::shipped_dictionary(), others);
     REQUIRE(read.procedure);
-    return *read.procedure;
+    return std::make_shared<const Procedure>(*read.procedure);
 }
 
 simulation::Scenario shipped_scenario(const std::string& name) {
@@ -56,9 +56,10 @@ class Room {
     }
 
     /// Flies until the procedure is over, at most so long; the team does what each step asks for.
-    Execution carry_out(const Procedure& procedure, double at_most_s) {
+    Execution carry_out(const std::string& name, double at_most_s) {
         facts_.predict({rehearsal_.scenario().entry_scet, rehearsal_.run_start(1.0).light_time_s});
-        Execution execution{procedure, tests::shipped_dictionary(), rehearsal_.landing().ert_now(), facts_};
+        Execution execution{shipped_procedure(name), tests::shipped_dictionary(), rehearsal_.landing().ert_now(),
+                            facts_};
         const std::uint64_t end = rehearsal_.cycles() + static_cast<std::uint64_t>(at_most_s * 64.0);
         while (!execution.over() && rehearsal_.cycles() < end && !rehearsal_.finished()) {
             hear(&execution);
@@ -178,10 +179,8 @@ TEST_CASE(
     auto scenario = shipped_scenario("nominal_light_time");
     scenario.start_before_entry_s = 5.0 * 3600.0;
     Room room{scenario};
-    std::deque<Procedure> procedures;
     const auto carry_out = [&](const char* name, double at_most_s) {
-        const auto& procedure = procedures.emplace_back(shipped_procedure(name));  // an execution refers to it
-        auto execution = room.carry_out(procedure, at_most_s);
+        auto execution = room.carry_out(name, at_most_s);
         INFO(name << " " << states(execution));
         CHECK(execution.part() == Part::confirmed);
         for (const StepStatus& step : execution.steps()) {
@@ -209,8 +208,7 @@ TEST_CASE("start and Second Chance are confirmed on a landing that is flown, by 
           "against a condition",
           "[procedures]") {
     Room room{shipped_scenario("nominal")};
-    const auto start_procedure = shipped_procedure("start");
-    const auto start = room.carry_out(start_procedure, 240.0);
+    const auto start = room.carry_out("start", 240.0);
     INFO(states(start));
     CHECK(start.part() == Part::confirmed);
     for (const char* by_itself : {"computer", "not_begun", "send_parameters", "late_cruise", "do_edl", "begun"}) {
@@ -220,8 +218,7 @@ TEST_CASE("start and Second Chance are confirmed on a landing that is flown, by 
     for (const StepStatus& step : start.steps()) CHECK(step.reason.empty());
     for (const auto& watchdog : start.watchdogs()) CHECK_FALSE(watchdog.tripped);
 
-    const auto second_procedure = shipped_procedure("second_chance_enabled");
-    const auto second = room.carry_out(second_procedure, 240.0);
+    const auto second = room.carry_out("second_chance_enabled", 240.0);
     INFO(states(second));
     CHECK(second.part() == Part::confirmed);
     CHECK(second.step("enable")->late_since);  // 20 minutes before entry is late for what arrives at E−47:00
@@ -234,8 +231,7 @@ TEST_CASE("after a reset behind cruise-stage separation the procedure for it fin
           "[procedures]") {
     Room room{shipped_scenario("second_chance")};
     room.fly_until("SECOND_CHANCE_TAKES_OVER");
-    const auto procedure = shipped_procedure("computer_reset");
-    const auto reset = room.carry_out(procedure, 120.0);
+    const auto reset = room.carry_out("computer_reset", 120.0);
     INFO(states(reset));
     CHECK(reset.part() == Part::confirmed);
     CHECK(reset.step("stage")->chosen == 1);

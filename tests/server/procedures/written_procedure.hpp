@@ -5,6 +5,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/shipped_dictionary.hpp"
 
+#include <memory>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -62,6 +63,10 @@ inline server::procedures::Procedure procedure_of(const WrittenProcedure& writte
     for (const auto& finding : read.findings) UNSCOPED_INFO(finding.text());
     REQUIRE(read.procedure);
     return *read.procedure;
+}
+
+inline std::shared_ptr<const server::procedures::Procedure> shared_procedure(const WrittenProcedure& written) {
+    return std::make_shared<const server::procedures::Procedure>(procedure_of(written));
 }
 
 }  // namespace aeolis::tests
