@@ -165,7 +165,7 @@ struct Procedure {
     std::vector<Redline> redlines;  ///< oldest first
 };
 
-/// The step's text as it stands: that of its last redline, else its own.
+/// The step's text as it stands: that of its last redline that was approved, else its own.
 const std::string& text_now(const Procedure& procedure, const Step& step);
 
 inline constexpr std::size_t steps_max = 100;              ///< of each part; chosen: a longer one is two procedures

@@ -102,11 +102,11 @@ class Printer {
 
     void step(const Step& step) {
         page_ += fmt::format("[ ]   {}, {}\n", step.id, name_of(step.who));
-        const Redline* last = nullptr;
+        const std::string& now = text_now(procedure_, step);
+        paragraph(page_, std::string(indent, ' '), now);
+        if (&now != &step.text) line("REDLINED; before:", step.text);
         for (const Redline& redline : procedure_.redlines)
-            if (redline.step == step.id) last = &redline;
-        paragraph(page_, std::string(indent, ' '), text_now(procedure_, step));
-        if (last != nullptr) line("REDLINED; approved text:", step.text);
+            if (redline.step == step.id && redline.approved_by.empty()) line("REDLINE NOT APPROVED:", redline.text);
         if (step.hold) line("HOLD until released by", fmt::format("{} ________________", name_of(*step.hold)));
         conditions("check:", step.conditions);
         if (step.command) {

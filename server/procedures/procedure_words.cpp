@@ -94,8 +94,9 @@ std::string_view name_of(Since since) {
 }
 
 const std::string& text_now(const Procedure& procedure, const Step& step) {
-    const auto last = std::find_if(procedure.redlines.rbegin(), procedure.redlines.rend(),
-                                   [&](const Redline& redline) { return redline.step == step.id; });
+    const auto last = std::find_if(procedure.redlines.rbegin(), procedure.redlines.rend(), [&](const Redline& redline) {
+        return redline.step == step.id && !redline.approved_by.empty();
+    });
     return last == procedure.redlines.rend() ? step.text : last->text;
 }
 

@@ -206,7 +206,7 @@ TEST_CASE(
 
 TEST_CASE("start and Second Chance are confirmed on a landing that is flown, by what reached Earth, with no tick "
           "against a condition",
-          "[procedures]") {
+          "[procedures][release]") {
     Room room{shipped_scenario("nominal")};
     const auto start = room.carry_out("start", 240.0);
     INFO(states(start));
@@ -228,7 +228,7 @@ TEST_CASE("start and Second Chance are confirmed on a landing that is flown, by 
 
 TEST_CASE("after a reset behind cruise-stage separation the procedure for it finds Second Chance in control, and "
           "nothing is sent",
-          "[procedures]") {
+          "[procedures][release]") {
     Room room{shipped_scenario("second_chance")};
     room.fly_until("SECOND_CHANCE_TAKES_OVER");
     const auto reset = room.carry_out("computer_reset", 120.0);

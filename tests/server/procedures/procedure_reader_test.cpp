@@ -63,7 +63,8 @@ TEST_CASE("a procedure is read with its parts, its words and what it holds ready
     written.watchdogs = R"(watchdogs:
   - {watchdog: w, when: [{channel: fault_inhibit, is: "==", value: true}], who: systems, do: Tell., begin: other, hold: true}
 )";
-    written.rest = "redlines:\n  - {step: a, do: Send that., reason: R, by: B. Li, on: 2026-11-28}\n";
+    written.rest =
+        "redlines:\n  - {step: a, do: Send that., reason: R, by: B. Li, on: 2026-11-28, approved_by: A. Ng}\n";
     const auto procedure = procedure_of(written);
     const auto& dictionary = tests::shipped_dictionary();
     CHECK(procedure.approvals.at(0).name == "A. Ng");

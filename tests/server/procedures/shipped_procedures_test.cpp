@@ -74,13 +74,21 @@ TEST_CASE("a procedure is printed for paper: no line is too long, and each step 
                          Catch::Contains("approved    by nobody: a draft\n"));
 }
 
-TEST_CASE("a redline is printed beside the text that it replaces, and all of them at the end", "[procedures]") {
+TEST_CASE("an approved redline is the step's text, printed beside the one before; others are named as not approved",
+          "[procedures]") {
     tests::WrittenProcedure written;
-    written.rest = "redlines:\n  - {step: a, do: A at once., reason: R, by: B. Li, on: 2026-11-28}\n";
-    const std::string page = printed(tests::procedure_of(written), tests::shipped_dictionary());
-    CHECK_THAT(page, Catch::Contains("[ ]   a, gnc\n      A at once.\n      REDLINED; approved text: A\n") &&
-                         Catch::Contains(
-                             "step a, by B. Li on 2026-11-28, not approved\n      now: A at once.\n      because R\n"));
+    written.rest =
+        "redlines:\n  - {step: a, do: A at once., reason: R, by: B. Li, on: 2026-11-28, approved_by: A. Ng}\n"
+        "  - {step: a, do: A later., reason: S, by: C. Yo, on: 2026-11-29}\n";
+    const auto procedure = tests::procedure_of(written);
+    CHECK(text_now(procedure, procedure.body.at(0)) == "A at once.");
+    const std::string page = printed(procedure, tests::shipped_dictionary());
+    CHECK_THAT(page,
+               Catch::Contains("[ ]   a, gnc\n      A at once.\n      REDLINED; before: A\n"
+                               "      REDLINE NOT APPROVED: A later.\n") &&
+                   Catch::Contains("step a, by B. Li on 2026-11-28, approved by A. Ng\n      now: A at once.\n      "
+                                   "because R\n") &&
+                   Catch::Contains("step a, by C. Yo on 2026-11-29, not approved\n"));
 }
 
 }  // namespace server_procedures_shipped_procedures_test
