@@ -146,6 +146,7 @@ std::string event_cell(const Prospect& side, const std::string& name) {
 
 std::vector<std::string> event_names(const Prospect& without, const Prospect* with) {
     std::vector<std::string> names;
+    names.reserve(without.events.size());
     for (const EventTimes& event : without.events) names.push_back(event.name);
     if (with == nullptr) return names;
     for (const EventTimes& event : with->events)

@@ -151,7 +151,7 @@ TEST_CASE("placed at its own state, from numbers alone too, a landing flies on t
         double e_s;
         Bounds copy, from_numbers;
     };
-    // From numbers navigation on board misses some readings of the IMU, which counts at 10 g: at E+60 s.
+    // From numbers the IMU's noise is another; before the bank reversals, at E+60 s, small differences grow.
     constexpr std::array moments{
         Moment{60.0, {10.0, 0.05, 1.0}, {1000.0, 1.0, 1.0}}, Moment{150.0, {10.0, 0.05, 1.0}, {50.0, 0.25, 1.0}},
         Moment{270.0, {1.0, 0.05, 0.1}, {5.0, 0.25, 1.0}},   Moment{330.0, {1.0, 0.05, 0.1}, {2.0, 0.25, 1.0}},
