@@ -99,6 +99,25 @@ void Computer::shift_navigation(const NavigationShift& by) {
     state_->edl.shift_navigation(by);
 }
 
+bool Computer::resume(std::span<const std::uint8_t> state_frame) {
+    const auto state = StateFrame::read(state_frame);
+    if (!state) return false;
+    const auto deliver = [this](ModuleId to, const Message& message) {
+        return state_->next_cycle.try_push_back({.from = ModuleId::cross_string, .to = to, .message = message});
+    };
+    bool delivered = deliver(ModuleId::units, UnitsSelected{state->header().units});
+    state->in_parts([&](const StatePart& part) { delivered = delivered && deliver(ModuleId::edl, part); });
+    return delivered && deliver(ModuleId::edl, Resume{ResumeReason::placed});
+}
+
+void Computer::tell_no_state() {
+    state_->edl.tell_no_state();
+}
+
+bool Computer::may_take_over() const {
+    return state_->cross_string.enabled();
+}
+
 Computer::Counters Computer::counters() const {
     return {state_->sync.cycles(), state_->sync.overruns(), state_->mailbox_overflows, state_->unexpected_messages,
             state_->load.resets};

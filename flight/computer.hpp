@@ -5,7 +5,9 @@
 #include "flight/kernel/cycle_runner.hpp"
 #include "flight/load.hpp"
 
+#include <cstdint>
 #include <memory>
+#include <span>
 
 namespace aeolis::flight {
 
@@ -49,6 +51,15 @@ class Computer {
 
     /// Shifts this computer's navigation state at the start of a campaign case.
     void shift_navigation(const NavigationShift& by);
+
+    /// Makes this computer go on, with its next step, from the state that another one told on the line between them in
+    /// the cycle before. For simulations that begin in mid-flight. False when the octets are no state of this build.
+    bool resume(std::span<const std::uint8_t> state_frame);
+
+    /// Whether ground has enabled this computer to take over as Second Chance.
+    bool may_take_over() const;
+    /// From here on tells the other computer no state, for simulations in which it is off.
+    void tell_no_state();
 
     /// The whole state, for injected faults (flight/computer_state.hpp).
     ComputerState& state() { return *state_; }

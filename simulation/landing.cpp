@@ -111,6 +111,7 @@ struct Landing::State {
     std::array<TruthState, remembered_ticks> remembered{};
     std::int64_t ticks_without_computer = 0;
     bool computer_on = true;
+    bool unheard = false;
     std::uint64_t seed, case_number;
     bool dispersed;
     std::optional<ParachuteReport> parachute;
@@ -213,6 +214,10 @@ void Landing::State::disperse() {
 }
 
 void Landing::State::fly() {
+    if (unheard) {
+        recorder.forget();
+        if (!world.cruise_stage_on()) computers.leave_idle_backup();
+    }
     const std::size_t recorded_before = recorder.octets().size();
     radiated.clear();
     fly_tick(false);
@@ -228,13 +233,15 @@ void Landing::State::fly_tick(bool skipped) {
     const std::int64_t cycle_start_us = now_us();
     uplinks.arrive(cycle_start_us,
                    [&](std::int64_t, const std::vector<std::uint8_t>& packet) { world.receive(packet); });
-    world.set_nvm(static_cast<std::uint32_t>(recorder.octets().size()), Recorder::capacity_octets);
+    world.set_nvm(static_cast<std::uint32_t>(recorder.used_octets()), Recorder::capacity_octets);
     remembered[static_cast<std::size_t>(world.sclk().ticks()) % remembered_ticks] = world.truth();
 
     const std::size_t radiated_before = radiated.size();
     const flight::DeviceOutputs* commands = gnc_alone ? run_gnc_alone() : run_computers(skipped);
-    radiate(radiated.span().subspan(radiated_before), cycle_start_us);
-    receive_tone(commands != nullptr ? commands->tone : std::nullopt, cycle_start_us);
+    if (!unheard) {
+        radiate(radiated.span().subspan(radiated_before), cycle_start_us);
+        receive_tone(commands != nullptr ? commands->tone : std::nullopt, cycle_start_us);
+    }
     if (commands != nullptr)
         world.advance(*commands);
     else
@@ -506,6 +513,7 @@ const CycleReport& Landing::step() {
              {&s.uhf_told, &s.x_band_told, &s.x_band_telemetry_told})  // the transmitters have no driver any more
             if (told->up) s.tell(*told, false, "computer off", cycle_start_us);
     }
+    if (s.unheard) return s.report;
     s.relay_recording(cycle_start_us);
 
     const std::int64_t now_us = s.now_us();
@@ -544,6 +552,38 @@ bool Landing::dispersed() const {
 void Landing::take_case(std::uint64_t case_number) {
     AEOLIS_CHECK(!state_->dispersed);
     state_->case_number = case_number;
+}
+
+void Landing::redraw(std::uint64_t seed, std::uint64_t case_number, const std::optional<StateKnowledge>& knowledge) {
+    state_->world.redraw(seed, case_number, knowledge);
+}
+
+PlacedState Landing::placed_state() const {
+    PlacedState state = state_->world.placed_state();
+    const auto frame = state_->computers.state_frame();
+    state.computer.assign(frame.begin(), frame.end());
+    return state;
+}
+
+Result<void> Landing::place(const PlacedState& state) {
+    State& s = *state_;
+    const auto fired = [&](flight::PyroId pyro) { return state.fired[static_cast<std::size_t>(pyro)]; };
+    if (s.gnc_alone || s.gnc_stand_in) return Error{"a landing without its own computer and GNC cannot be placed"};
+    if (s.world.outcome() != Outcome::running) return Error{"the landing is over"};
+    if (Sclk::from_ticks(state.sclk.ticks()) != state.sclk) return Error{"the time is not a whole tick of 1/64 s"};
+    if (state.sclk < s.scenario.entry_sclk - s.scenario.start_before_entry_s)
+        return Error{"the time is before the landing's start"};
+    if (!fired(flight::PyroId::cruise_stage_separation)) return Error{"the cruise stage is still attached"};
+    if (fired(flight::PyroId::bridle_cutter)) return Error{"the bridle is cut: the rover stands"};
+    if (!s.computers.place(state.computer)) return Error{"the computer's state is not a state frame of this build"};
+    s.world.place(state);
+    s.dispersed = true;  // a placed landing has the errors that it has
+    return {};
+}
+
+void Landing::fly_unheard() {
+    state_->unheard = true;
+    state_->recorder.forget();
 }
 
 void Landing::uplink(std::span<const std::uint8_t> octets) {

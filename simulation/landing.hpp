@@ -2,11 +2,13 @@
 #pragma once
 
 #include "common/ids.hpp"
+#include "common/result.hpp"
 #include "common/time.hpp"
 #include "flight/computer.hpp"
 #include "simulation/draws.hpp"
 #include "simulation/links/x_band_front_end.hpp"
 #include "simulation/links/x_band_receiver_model.hpp"
+#include "simulation/placed_state.hpp"
 #include "simulation/scenario.hpp"
 #include "telemetry/port.hpp"
 
@@ -161,6 +163,27 @@ class Landing {
     bool dispersed() const;
     /// Sets the case. Only before the dispersions are drawn.
     void take_case(std::uint64_t case_number);
+
+    // ---- a landing in mid-flight, to be flown on many times ----------------------------------------------------
+
+    /// Draws anew what lies ahead: air, wind, gusts, aerodynamics, the luck of buses and devices and, until they act,
+    /// the parachute, the radar and the ground. State, masses, the IMU's errors and what navigation on board believes
+    /// stay: they are the truth of this landing.
+    ///
+    /// With `knowledge` nothing but what navigation believes is certain: the true state departs from the present one by
+    /// a draw of that, and all other errors are drawn too.
+    void redraw(std::uint64_t seed, std::uint64_t case_number, const std::optional<StateKnowledge>& knowledge = {});
+
+    /// The present state as numbers, the computer's too, unless nobody hears the landing.
+    PlacedState placed_state() const;
+    /// Flies on from `state`, between cruise-stage separation and touchdown. Errors of air, vehicle and instruments are
+    /// this landing's. Refused: a time or a configuration outside that, a computer's state that cannot be read, a
+    /// landing that is over or has no flight computer with GNC. Refused, nothing is changed.
+    Result<void> place(const PlacedState& state);
+
+    /// From here on nothing is recorded or reaches Earth, and a backup computer that ground has not enabled is off. The
+    /// vehicle flies the same, in less time. Commands still reach prime.
+    void fly_unheard();
 
     /// Sends octets from the station now; what survives the uplink reaches the vehicle a light time later.
     void uplink(std::span<const std::uint8_t> octets);

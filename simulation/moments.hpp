@@ -15,6 +15,11 @@ namespace aeolis::simulation {
 /// at the change itself.
 class BankReversals {
   public:
+    BankReversals() = default;
+    /// Of a flight that has had `count` reversals.
+    explicit BankReversals(int count) : count_(count) {}
+    int count() const { return count_; }
+
     /// Call each tick. Returns a reversal that has become certain, named and dated.
     std::optional<TruthEvent> observe(const TruthState& truth, double bank_rad);
 
@@ -28,8 +33,14 @@ class BankReversals {
 /// The largest sensed acceleration, certain when the acceleration has fallen to seven tenths of it.
 class PeakDeceleration {
   public:
+    PeakDeceleration() = default;
+    /// Of a flight with this peak so far; `passed`: it is certain, and was returned.
+    PeakDeceleration(const TruthEvent& so_far, double mps2, bool passed)
+        : peak_mps2_(mps2), peak_(so_far), told_(passed) {}
+
     std::optional<TruthEvent> observe(const TruthState& truth);
     double mps2() const { return peak_mps2_; }
+    bool passed() const { return told_; }
 
   private:
     double peak_mps2_ = 0.0;

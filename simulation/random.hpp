@@ -39,6 +39,7 @@ enum class Stream : std::uint64_t {
     relay,
     carrier,
     rover_imu,
+    placing,
 };
 
 /// Random numbers of one stream of one case of one seed: SplitMix64, and Box–Muller for the normal distribution.

@@ -43,6 +43,13 @@ Radar radar(const Scenario& scenario, std::uint64_t seed, std::uint64_t case_num
             Random{seed, case_number, a ? Stream::radar_dropout : Stream::radar_b_dropout}};
 }
 
+bool on_four_engines(const flight::EngineCommand& engines) {
+    const auto& throttle = engines.throttle;
+    const auto idle = std::count_if(throttle.begin(), throttle.end(), [](double t) { return t < 0.05; });
+    const auto pushing = std::count_if(throttle.begin(), throttle.end(), [](double t) { return t > 0.1; });
+    return engines.ignited && idle == 4 && pushing == 4;
+}
+
 std::string seconds_text(double seconds) {
     std::array<char, 32> text{};
     std::snprintf(text.data(), text.size(), "%.2f s", seconds);
@@ -139,6 +146,7 @@ struct World::State {
 
     bool heatshield_hides(const flight::RadarBeam& beam) const {
         if (vehicle.configuration().heatshield) return true;
+        if (!vehicle.separated().heatshield.released()) return false;  // gone before the vehicle was placed
         return Radar::hides(vehicle.separated().heatshield.from(vehicle.at().p_MoB_M),
                             vehicle.q_MB() * vector3(beam.direction_B));
     }
@@ -161,6 +169,7 @@ struct World::State {
         watch();
     }
     void fly_one_tick();
+    void measure_last_tick();
     void touch_ground(const std::optional<PointMass>& rover);
     void watch();
 };
@@ -191,10 +200,7 @@ void World::State::obey() {
     const flight::EngineCommand& engines = buses.engines();
     vehicle.command(buses.thrusters(), buses.devices().thrusters_enabled(), engines, buses.pay_out_bridle(), now_s());
 
-    const auto& throttle = engines.throttle;
-    const auto idle = std::count_if(throttle.begin(), throttle.end(), [](double t) { return t < 0.05; });
-    const auto pushing = std::count_if(throttle.begin(), throttle.end(), [](double t) { return t > 0.1; });
-    if (engines.ignited && !sky_crane_started && idle == 4 && pushing == 4) {
+    if (!sky_crane_started && on_four_engines(engines)) {
         sky_crane_started = true;
         tell("sky_crane_start");
     }
@@ -210,6 +216,16 @@ void World::State::listen_to_imu(flight::Unit unit) {
     if (unit == imu_unit) return;
     imu_unit = unit;
     imus[static_cast<std::size_t>(unit)].begin_reading();
+}
+
+// What a copy measures that flies ahead is, but for the change of two ticks, what the vehicle has measured.
+void World::State::measure_last_tick() {
+    State ahead{*this};
+    ahead.ticks -= 2;
+    ahead.imus[static_cast<std::size_t>(imu_unit)].begin_reading();
+    for (int tick = 0; tick < 2; ++tick) ahead.fly_one_tick();  // a reading is under way at the end of the first
+    imus = ahead.imus;
+    imu_samples = ahead.imu_samples;
 }
 
 void World::State::fly_one_tick() {
@@ -246,8 +262,8 @@ void World::State::touch_ground(const std::optional<PointMass>& rover) {
         const Horizon local = horizon(p);
         const double vertical_mps = -rover->v_MB_M.dot(local.up);
         const double horizontal_mps = std::hypot(rover->v_MB_M.dot(local.east), rover->v_MB_M.dot(local.north));
-        const Vector3 target =
-            place(scenario.target.latitude_deg * degree_rad, scenario.target.longitude_deg * degree_rad, 1.0);
+        const Vector3 target = simulation::place(scenario.target.latitude_deg * degree_rad,
+                                                 scenario.target.longitude_deg * degree_rad, 1.0);
         const double miss_m =
             scenario.target.radius_m * std::atan2(target.cross(local.up).norm(), target.dot(local.up));
         contact = sclk() + seconds_per_tick;
@@ -348,6 +364,54 @@ flight::NavigationShift World::disperse(std::uint64_t seed, std::uint64_t case_n
     s.buses.disperse(seed, case_number);
     return {array3(learnt.p_MoB_M), array3(learnt.v_MB_M), array4(s.star_scanner.error()),
             array3(s.imus[static_cast<std::size_t>(s.imu_unit)].accelerometer_bias_mps2())};
+}
+
+void World::redraw(std::uint64_t seed, std::uint64_t case_number, const std::optional<StateKnowledge>& knowledge) {
+    State& s = *state_;
+    const Dispersions& errors = s.scenario.dispersions;
+    s.vehicle.redraw(s.scenario, seed, case_number, knowledge.has_value());
+    s.buses.disperse(seed, case_number);
+    if (knowledge || s.vehicle.configuration().heatshield)  // later it may have navigated by them
+        s.radars = {radar(s.scenario, seed, case_number, flight::Unit::a),
+                    radar(s.scenario, seed, case_number, flight::Unit::b)};
+    if (!knowledge) return;
+    s.imus[0].disperse(errors, {seed, case_number, Stream::imu}, {seed, case_number, Stream::imu_mounting});
+    s.imus[1].disperse(errors, {seed, case_number, Stream::imu_b}, {seed, case_number, Stream::imu_b_mounting});
+    s.rover_imu = {errors, {seed, case_number, Stream::rover_imu}};
+    Random random{seed, case_number, Stream::placing};
+    const double by_axis = 1.0 / std::numbers::sqrt3;
+    const Vector3 by_M_m = knowledge->position_m * by_axis * vector3(random.normal3());
+    const Vector3 by_M_mps = knowledge->velocity_mps * by_axis * vector3(random.normal3());
+    s.vehicle.shift(by_M_m, by_M_mps, rotation(knowledge->attitude_rad * vector3(random.normal3())));
+}
+
+PlacedState World::placed_state() const {
+    const State& s = *state_;
+    PlacedState state;
+    state.sclk = s.sclk();
+    s.vehicle.add_to(state, s.initial.start);
+    s.buses.add_to(state);
+    state.peak_deceleration_mps2 = s.peak.mps2();
+    state.peak_passed = s.peak.passed();
+    state.bank_reversals = s.reversals.count();
+    return state;
+}
+
+void World::place(const PlacedState& state) {
+    State& s = *state_;
+    const std::int64_t ticks = std::llround((state.sclk - s.initial.start) / seconds_per_tick);
+    const bool elsewhen = ticks != s.ticks;
+    s.ticks = ticks;
+    s.vehicle.place(s.scenario, state, s.initial.start);
+    s.buses.place(state);
+    if (elsewhen) s.measure_last_tick();
+    s.events.clear();
+    s.entered = s.vehicle.at().p_MoB_M.norm() <= s.scenario.entry.radius_m + entry_margin_m;
+    s.separation_commanded = true;
+    s.reversals = BankReversals{state.bank_reversals};
+    s.peak = {moment("peak_deceleration", s.truth()), state.peak_deceleration_mps2, state.peak_passed};
+    s.engines_commanded = state.engines.ignited;
+    s.sky_crane_started = state.bridle.has_value() || on_four_engines(state.engines);
 }
 
 flight::DeviceInputs& World::sense() {

@@ -7,6 +7,7 @@
 #include "simulation/buses/bus.hpp"
 #include "simulation/draws.hpp"
 #include "simulation/landing.hpp"
+#include "simulation/placed_state.hpp"
 #include "simulation/scenario.hpp"
 
 #include <array>
@@ -53,6 +54,14 @@ class World {
     /// have the spread of a draw at the start. Returns the shift of the on-board navigation: to what ground knows, and
     /// to what the instruments would have measured.
     flight::NavigationShift disperse(std::uint64_t seed, std::uint64_t case_number);
+
+    /// Draws anew, in a flight under way, what lies ahead; see Landing::redraw.
+    void redraw(std::uint64_t seed, std::uint64_t case_number, const std::optional<StateKnowledge>& knowledge);
+
+    /// The present state, without the computer's.
+    PlacedState placed_state() const;
+    /// Sets it, and with it the time. For a state between cruise-stage separation and touchdown.
+    void place(const PlacedState& state);
 
     /// Returns the computer's inputs of the present tick. Call once a tick; valid until the next call. The vehicle's
     /// computers add their messages to each other.

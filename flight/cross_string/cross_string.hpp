@@ -46,6 +46,8 @@ class CrossString {
 
     /// Whether this computer is in control as Second Chance, so that the bus may listen to it.
     bool in_control() const { return in_control_ && !off_; }
+    /// Whether ground has enabled it to take over.
+    bool enabled() const { return enabled_; }
 
   private:
     static void put(StateOctets& line, std::span<const std::uint8_t> state);

@@ -73,6 +73,9 @@ class EdlMain {
 
     void shift_navigation(const NavigationShift& by) { gnc_.shift_navigation(by); }
 
+    /// From here on tells the other computer no state: nobody listens. For simulations of many cases.
+    void tell_no_state() { tells_state_ = false; }
+
     /// Whether this computer leaves the landing to the other one.
     bool stands_by() const { return activity_ != Activity::flies; }
 
@@ -96,6 +99,7 @@ class EdlMain {
     void explain_stand_by(Sclk told, Outbox& out) const;
     void tell_phase(Outbox& out) const;
     void take_over(const StateHeader& prime, Sclk now, Outbox& out);
+    void go_on(Outbox& out);
     void watch_approach(Sclk now, Outbox& out);
     void set_inhibited(bool inhibited, Outbox& out);
     /// The reason why entry cannot be set to `said`. `navigated`: the time of entry by navigation.
@@ -151,6 +155,7 @@ class EdlMain {
     UnitSelection units_;  // kept only for a computer that takes over
     std::uint32_t cycle_count_ = 0;
     bool inhibited_ = false;
+    bool tells_state_ = true;
     bool designation_pending_ = false;  // both computers are about to restart: nothing begins before that
     bool refused_to_hold_ = false;      // reported once per fault, not once per report
     // Values of the previous cycle: the ends of these phases are events.

@@ -9,7 +9,7 @@
 namespace aeolis::flight {
 
 void EdlMain::tell_state(Sclk now, Outbox& out) {
-    if (load_.role != Role::prime || revision_ == 0) return;
+    if (load_.role != Role::prime || revision_ == 0 || !tells_state_) return;
     const StateHeader header{.time = now,
                              .revision = revision_,
                              .begun = timeline_.begun(),
@@ -31,7 +31,8 @@ void EdlMain::on(const StatePart& part, Outbox&) {
 
 void EdlMain::on(const Resume& resume, Outbox& out) {
     const std::optional<StateFrame> state = std::exchange(state_of_another_, std::nullopt);
-    if (!state || timeline_.begun()) return out.event(evr::STATE_UNREADABLE{});
+    const bool placed = resume.reason == ResumeReason::placed;
+    if (!state || (timeline_.begun() && !placed)) return out.event(evr::STATE_UNREADABLE{});
     // A state of another build with the same dictionary is detected by its size, before any of it is used.
     const bool fits = StateFrame::of(state->header(), *this).octets().size() == state->octets().size();
     if (!fits || !state->restore(*this)) return out.event(evr::STATE_UNREADABLE{});
@@ -39,7 +40,9 @@ void EdlMain::on(const Resume& resume, Outbox& out) {
     unverified_.miss_some();
     fly_by_table(out);
     if (timeline_.begun()) out.send(ModuleId::units, EdlBegun{});
-    if (resume.reason == ResumeReason::restart)
+    if (placed)
+        go_on(out);
+    else if (resume.reason == ResumeReason::restart)
         restart(out.now(), out);
     else
         take_over(state->header(), out.now(), out);
@@ -112,6 +115,13 @@ void EdlMain::take_over(const StateHeader& prime, Sclk now, Outbox& out) {
     out.send(ModuleId::mfsk, ToneRequest{tone::taken_over, now});
     tell_phase(out);
     ++revision_;
+}
+
+// As a computer that takes over, but in the very cycle after the state: no reading is missing. A reply under way may be.
+void EdlMain::go_on(Outbox& out) {
+    timeline_.await_nothing();
+    out.send(ModuleId::pyro, ArmPyros{configuration_.pyros_armed});
+    tell_phase(out);
 }
 
 void EdlMain::on(const SelectPrimeCommand& command, Outbox& out) {

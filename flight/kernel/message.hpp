@@ -81,7 +81,8 @@ struct StatePart {
 struct StoredStatePart {  ///< from non-volatile memory, once, after a restart
     StatePart part;
 };
-enum class ResumeReason : std::uint8_t { restart, take_over };
+/// `placed`: put in from outside, by a simulation that begins in mid-flight; nothing on board asks for it.
+enum class ResumeReason : std::uint8_t { restart, take_over, placed };
 /// To Edl, after the parts: continue from that state. R32, R33
 struct Resume {
     ResumeReason reason{};

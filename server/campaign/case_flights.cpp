@@ -86,7 +86,10 @@ std::optional<CaseResult> CaseFlights::fly(std::uint64_t case_number) const {
             if (abandon_) return std::nullopt;
             flight->step();
         }
-        summarise(*flight, result);
+        result = result_of(flight->landing.landing(), flight->firings, flight->events, scenario_, dictionary_,
+                           dispersion_sclk(scenario_));
+        result.number = case_number;
+        result.end_cycle = flight->cycles;
     } catch (const CheckFailed& bug) {
         lost(text_of_bug(bug));
     } catch (const std::exception& error) {
@@ -95,17 +98,18 @@ std::optional<CaseResult> CaseFlights::fly(std::uint64_t case_number) const {
     return result;
 }
 
-void CaseFlights::summarise(const Flight& flight, CaseResult& result) const {
-    const auto& landing = flight.landing.landing();
+CaseResult result_of(const simulation::Landing& landing, const RecordedFirings& firings,
+                     std::span<const simulation::TruthEvent> events, const simulation::Scenario& scenario,
+                     const dictionary::Dictionary& dictionary, double from_sclk) {
+    CaseResult result;
     result.outcome = simulation::name_of(landing.outcome());
-    const auto least_margin_s = least_timeline_margin_s(flight.firings.all(), dictionary_);
-    const auto judgement = simulation::judge(scenario_.limits, simulation::figures_of(landing, least_margin_s));
+    const auto least_margin_s = least_timeline_margin_s(firings.all(), dictionary);
+    const auto judgement = simulation::judge(scenario.limits, simulation::figures_of(landing, least_margin_s));
     result.reason = simulation::reason_of(landing, judgement);
     result.limits_exceeded = judgement.exceeded.size();
-    result.end_cycle = flight.cycles;
     result.touchdown = landing.touchdown();
     if (result.touchdown) {
-        const Place at = place_of(result.touchdown->latitude_deg, result.touchdown->longitude_deg, scenario_.target);
+        const Place at = place_of(result.touchdown->latitude_deg, result.touchdown->longitude_deg, scenario.target);
         result.east_m = at.east_m;
         result.north_m = at.north_m;
     }
@@ -113,15 +117,16 @@ void CaseFlights::summarise(const Flight& flight, CaseResult& result) const {
     result.separation = landing.separation();
     result.peak_deceleration_mps2 = landing.peak_deceleration_mps2();
     result.propellant_kg = landing.inspect().propellant_kg;
-    result.margins = timeline_margins(flight.firings.all(), dictionary_, dispersion_sclk(scenario_));
-    for (const simulation::TruthEvent& event : flight.events) {
+    result.margins = timeline_margins(firings.all(), dictionary, from_sclk);
+    for (const simulation::TruthEvent& event : events) {
         const auto& [x, y, z] = event.p_MoB_M_m;
         const Place at =
-            place_of(std::atan2(z, std::hypot(x, y)) / degree_rad, std::atan2(y, x) / degree_rad, scenario_.target);
+            place_of(std::atan2(z, std::hypot(x, y)) / degree_rad, std::atan2(y, x) / degree_rad, scenario.target);
         result.events.push_back({event.name, event.e_s, event.altitude_m, event.speed_mps, at.east_m, at.north_m});
     }
     result.draws = landing.draws();
     std::ranges::sort(result.events, {}, [](const CaseEvent& event) { return std::tie(event.e_s, event.name); });
+    return result;
 }
 
 }  // namespace aeolis::server::campaign

@@ -11,8 +11,14 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 
 namespace aeolis::server::campaign {
+
+/// The result of a landing that has ended. Margins are of timepoints that fired after `from_sclk`.
+CaseResult result_of(const simulation::Landing& landing, const RecordedFirings& firings,
+                     std::span<const simulation::TruthEvent> events, const simulation::Scenario& scenario,
+                     const dictionary::Dictionary& dictionary, double from_sclk);
 
 /// Flies the cases of a campaign. The part common to all cases is flown once; each case starts from a copy of it.
 ///
@@ -44,7 +50,6 @@ class CaseFlights {
         void step();
     };
     std::unique_ptr<Flight> begun(std::uint64_t case_number) const;
-    void summarise(const Flight& flight, CaseResult& result) const;
 
     simulation::Scenario scenario_;
     std::uint64_t seed_;

@@ -16,6 +16,7 @@ void add_decode_command(CLI::App& program, int& exit_code);
 void add_dictionary_command(CLI::App& program, int& exit_code);
 void add_entry_command(CLI::App& program, int& exit_code);
 void add_export_command(CLI::App& program, int& exit_code);
+void add_forecast_command(CLI::App& program, int& exit_code);
 void add_ingest_command(CLI::App& program, int& exit_code);
 void add_modules_command(CLI::App& program, int& exit_code);
 void add_overlay_command(CLI::App& program, int& exit_code);

@@ -60,6 +60,7 @@ int main(int argc, char** argv) {
     add_procedure_command(program, exit_code);
     add_tones_command(program, exit_code);
     add_export_command(program, exit_code);
+    add_forecast_command(program, exit_code);
     add_ingest_command(program, exit_code);
     add_send_command(program, exit_code);
     add_report_command(program, exit_code);

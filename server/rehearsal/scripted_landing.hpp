@@ -45,6 +45,8 @@ class ScriptedLanding {
     void run_prime_by(std::shared_ptr<flight::CycleRunner> runner) { landing_.run_prime_by(std::move(runner)); }
     /// See Landing::take_case.
     void take_case(std::uint64_t case_number) { landing_.take_case(case_number); }
+    /// See Landing::redraw.
+    void redraw(std::uint64_t seed, std::uint64_t case_number) { landing_.redraw(seed, case_number); }
 
     /// Equips the station to decode tones from samples, if the scenario says so, and to explain silences. Call before
     /// the first step.

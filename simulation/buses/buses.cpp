@@ -32,6 +32,18 @@ void Buses::disperse(std::uint64_t seed, std::uint64_t case_number) {
     imu_link_ = {seed, case_number, Stream::imu_link};
 }
 
+void Buses::place(const PlacedState& state) {
+    devices_.place(state);
+    engines_ = state.engines;
+    pay_out_bridle_ = state.bridle.has_value();
+    engines_tick_ = state.sclk.ticks();
+}
+
+void Buses::add_to(PlacedState& state) const {
+    devices_.add_to(state);
+    state.engines = engines_;
+}
+
 void Buses::take(const flight::DeviceOutputs& out) {
     commanded_ = true;
     addressed_ = out.units;

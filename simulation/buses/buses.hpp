@@ -29,6 +29,10 @@ class Buses {
     /// Starts a campaign case: draws errors and jitter anew; commands under way stay.
     void disperse(std::uint64_t seed, std::uint64_t case_number);
 
+    /// Sets what the devices hold. Commands under way stay.
+    void place(const PlacedState& state);
+    void add_to(PlacedState& state) const;
+
     /// Takes the computer's commands of this cycle.
     void take(const flight::DeviceOutputs& out);
     /// Notes that no computer runs the buses in this cycle: no frame begins with the next tick.

@@ -42,6 +42,18 @@ Avionics::Avionics(double start_before_entry_s, Random random) : random_(random)
     if (start_before_entry_s < x_band_tones_before_entry_s) start_on(SwitchId::x_band_tones);
 }
 
+void Avionics::place(const PlacedState& state) {
+    on_ = state.switched_on;
+    fired_ = state.fired;
+    thrusters_enabled_ = state.thrusters_enabled;
+}
+
+void Avionics::add_to(PlacedState& state) const {
+    state.switched_on = on_;
+    state.fired = fired_;
+    state.thrusters_enabled = thrusters_enabled_;
+}
+
 bool Avionics::execute(const BusCommand& command, std::int64_t tick, const DeviceFaults& faults) {
     bool first_firing = false;
     const auto has = [&](DeviceFault::Kind kind) { return faults.has(kind, command.device, command.unit); };

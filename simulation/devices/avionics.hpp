@@ -3,6 +3,7 @@
 
 #include "simulation/buses/bus.hpp"
 #include "simulation/buses/device_faults.hpp"
+#include "simulation/placed_state.hpp"
 
 namespace aeolis::simulation {
 
@@ -28,6 +29,10 @@ class Avionics {
     }
     bool thrusters_enabled() const { return thrusters_enabled_; }
     bool fired(flight::PyroId pyro) const { return fired_[static_cast<std::size_t>(pyro)]; }
+
+    /// Sets what was switched, fired and enabled. Replies under way stay.
+    void place(const PlacedState& state);
+    void add_to(PlacedState& state) const;
 
     /// Executes a command that reached its terminal. Returns true when it fired a pyro for the first time.
     bool execute(const BusCommand& command, std::int64_t tick, const DeviceFaults& faults);

@@ -56,7 +56,7 @@ void Computers::step(flight::DeviceInputs& in, bool with_prime) {
             out_[place].begin_cycle();
     };
     cycle(listening, in);
-    cycle(other, beside_);
+    if (!backup_off_) cycle(other, beside_);
 
     for (const flight::DeviceOutputs& out : out_)
         if (!out.restart_record.empty()) restart_record_ = out.restart_record;
@@ -74,6 +74,14 @@ void Computers::replace_gnc(const flight::gnc::Output& told) {
 
 void Computers::shift_navigation(const flight::NavigationShift& by) {
     for (flight::Computer& computer : computers_) computer.shift_navigation(by);
+}
+
+void Computers::leave_idle_backup() {
+    const std::size_t backup = 1 - prime();
+    if (backup_off_ || commander_ != prime() || computers_[backup].may_take_over()) return;
+    backup_off_ = true;
+    computers_[prime()].tell_no_state();
+    out_[backup].begin_cycle();
 }
 
 void Computers::choose_commander() {

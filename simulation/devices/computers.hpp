@@ -4,7 +4,9 @@
 #include "flight/computer.hpp"
 
 #include <array>
+#include <cstdint>
 #include <memory>
+#include <span>
 #include <utility>
 
 namespace aeolis::simulation {
@@ -41,6 +43,15 @@ class Computers {
     /// Starts a campaign case: shifts the navigation state of both computers.
     void shift_navigation(const flight::NavigationShift& by);
 
+    /// Makes prime go on from the state frame that another told in the cycle before. False when it is no state frame.
+    bool place(std::span<const std::uint8_t> state_frame) { return computers_[prime()].resume(state_frame); }
+    /// Prime's state frame of the last cycle; empty: it told none.
+    std::span<const std::uint8_t> state_frame() const { return out_[prime()].cross_string.span(); }
+
+    /// Turns the backup off if ground has not enabled it. It would only listen, so prime flies the same. After
+    /// cruise-stage separation: before, the state that prime tells is also that of its own restart.
+    void leave_idle_backup();
+
     /// The commands of this cycle for the buses; null when neither computer is in command.
     const flight::DeviceOutputs* commands() const { return commander_ == nobody ? nullptr : &out_[commander_]; }
     /// The outputs of the computer at `place` (0: A, 1: B) in this cycle.
@@ -66,6 +77,7 @@ class Computers {
     flight::StateOctets restart_record_;
     std::shared_ptr<flight::CycleRunner> runner_;
     bool prime_is_b_ = false;
+    bool backup_off_ = false;
 };
 
 }  // namespace aeolis::simulation

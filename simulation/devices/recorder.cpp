@@ -6,12 +6,17 @@
 namespace aeolis::simulation {
 
 bool Recorder::append(std::span<const std::uint8_t> packets) {
-    if (octets_.size() + packets.size() > capacity_octets_) {
+    if (used_octets() + packets.size() > capacity_octets_) {
         refused_octets_ += packets.size();
         return false;
     }
     octets_.insert(octets_.end(), packets.begin(), packets.end());
     return true;
+}
+
+void Recorder::forget() {
+    forgotten_octets_ += octets_.size();
+    octets_.clear();
 }
 
 std::span<const std::uint8_t> take_packet(std::span<const std::uint8_t>& octets) {

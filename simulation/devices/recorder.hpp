@@ -20,12 +20,17 @@ class Recorder {
 
     /// Returns false and keeps nothing when the memory is full.
     bool append(std::span<const std::uint8_t> packets);
+    /// What is kept: all of it, or since forget() the latest.
     std::span<const std::uint8_t> octets() const { return octets_; }
+    std::size_t used_octets() const { return forgotten_octets_ + octets_.size(); }
+    /// Drops what is kept. It still counts as used.
+    void forget();
     std::uint64_t refused_octets() const { return refused_octets_; }
 
   private:
     std::size_t capacity_octets_;
     std::vector<std::uint8_t> octets_;
+    std::size_t forgotten_octets_ = 0;
     std::uint64_t refused_octets_ = 0;
 };
 

@@ -3,6 +3,8 @@
 
 #include "simulation/vectors.hpp"
 
+#include <optional>
+
 namespace aeolis::simulation {
 
 /// The bridle that lowers the rover from the descent stage: a damped spring that can only pull.
@@ -20,6 +22,7 @@ class Bridle {
 
     void start(double now_s);
     bool started() const { return started_; }
+    std::optional<double> started_s() const { return started_ ? std::optional{start_s_} : std::nullopt; }
 
     double payed_out_m(double now_s) const;
     double speed_mps(double now_s) const;  ///< of the rover away from the stage

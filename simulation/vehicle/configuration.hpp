@@ -32,6 +32,7 @@ class Configuration {
 
     double propellant_kg() const { return propellant_kg_; }
     void burn(double propellant_kg);
+    void fill(double propellant_kg) { propellant_kg_ = propellant_kg; }
 
     const Masses& masses() const { return masses_; }
     const Stations& stations() const { return stations_; }

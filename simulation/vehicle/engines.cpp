@@ -38,9 +38,6 @@ double Engines::advance(double now_s, double step_s, double propellant_left_kg) 
     if (!running_ && thrust_sum_N_ == 0.0) return 0.0;
     const double kept = std::exp(-step_s / (running_ ? throttle_lag_s : shutdown_lag_s));
     double burnt_kg = 0.0;
-    thrust_sum_N_ = 0.0;
-    force_B_N_.setZero();
-    torque_B_Nm_.setZero();
     for (std::size_t i = 0; i < thrust_N_.size(); ++i) {
         const double asked_N = running_ ? std::max(least_thrust_N, throttle_[i] * largest_thrust_N) : 0.0;
         const double before_N = thrust_N_[i];
@@ -48,12 +45,31 @@ double Engines::advance(double now_s, double step_s, double propellant_left_kg) 
         if (!running_ && thrust_N_[i] < 0.1) thrust_N_[i] = 0.0;
         const double impulse_s = least_impulse_s + (most_impulse_s - least_impulse_s) * thrust_N_[i] / largest_thrust_N;
         burnt_kg += 0.5 * (before_N + thrust_N_[i]) * step_s / (impulse_s * standard_gravity_mps2);
+    }
+    sum_up();
+    return burnt_kg;
+}
+
+void Engines::sum_up() {
+    thrust_sum_N_ = 0.0;
+    force_B_N_.setZero();
+    torque_B_Nm_.setZero();
+    for (std::size_t i = 0; i < thrust_N_.size(); ++i) {
         thrust_sum_N_ += thrust_N_[i];
         const Vector3 force_B_N = thrust_N_[i] * vector3(engine_mounts[i].direction_B);
         force_B_N_ += force_B_N;
         torque_B_Nm_ += vector3(engine_mounts[i].position_B_m).cross(force_B_N);
     }
-    return burnt_kg;
+}
+
+void Engines::place(const flight::EngineCommand& placed, std::optional<double> valves_s) {
+    *this = {};
+    if (valves_s) open_valves(*valves_s);
+    command(placed, 0.0);  // engines that are ignited have run for long
+    running_ = ignited_ && valves_open_;
+    for (std::size_t i = 0; i < thrust_N_.size(); ++i)
+        thrust_N_[i] = running_ ? std::max(least_thrust_N, throttle_[i] * largest_thrust_N) : 0.0;
+    sum_up();
 }
 
 }  // namespace aeolis::simulation

@@ -5,6 +5,7 @@
 #include "simulation/vectors.hpp"
 
 #include <array>
+#include <optional>
 
 namespace aeolis::simulation {
 
@@ -25,12 +26,20 @@ class Engines {
     /// Advances thrust by `step_s` and returns the propellant burnt in that time [kg].
     double advance(double now_s, double step_s, double propellant_left_kg);
 
+    /// Sets engines that hold this command, with the thrust of its throttles. `valves_s`: when their valves were opened.
+    void place(const flight::EngineCommand& command, std::optional<double> valves_s);
+    std::optional<double> valves_open_since_s() const {
+        return valves_open_ ? std::optional{valves_open_since_s_} : std::nullopt;
+    }
+
     bool running() const { return running_; }
     double thrust_N() const { return thrust_sum_N_; }  ///< sum over the engines, each along its own direction
     Vector3 force_B_N() const { return force_B_N_; }
     Vector3 torque_B_Nm() const { return torque_B_Nm_; }
 
   private:
+    void sum_up();
+
     bool valves_open_ = false;
     double valves_open_since_s_ = 0.0;
     bool ignited_ = false;

@@ -5,6 +5,8 @@
 #include "simulation/vehicle/parachute.hpp"
 #include "simulation/vehicle/rover_wheels.hpp"
 
+#include <utility>
+
 namespace aeolis::simulation {
 namespace {
 
@@ -56,6 +58,71 @@ void Vehicle::disperse(const Scenario& scenario, const PointMass& at, std::uint6
     wind_ = drawn.wind_;
     body_.p_MoB_M = at.p_MoB_M;
     body_.v_MB_M = at.v_MB_M;
+}
+
+void Vehicle::redraw(const Scenario& scenario, std::uint64_t seed, std::uint64_t case_number, bool all) {
+    const Vehicle drawn{scenario, at(), q_MB(), seed, case_number};
+    atmosphere_ = drawn.atmosphere_;
+    wind_ = drawn.wind_;
+    aeroshell_factors_ = drawn.aeroshell_factors_;
+    if (all || !mortar_s_) {
+        parachute_area_m2_ = drawn.parachute_area_m2_;
+        parachute_plane_rad_ = drawn.parachute_plane_rad_;
+    }
+    if (all || configuration_.heatshield) terrain_ = drawn.terrain_;  // later the radar may have seen it
+    if (all) configuration_.weigh(drawn.configuration_.masses(), 1.0);
+}
+
+void Vehicle::shift(const Vector3& by_M_m, const Vector3& by_M_mps, const Quaternion& turn) {
+    body_.p_MoB_M += by_M_m;
+    body_.v_MB_M += by_M_mps;
+    body_.q_MB = (body_.q_MB * turn).normalized();
+    rover_.p_MoB_M += by_M_m;
+    rover_.v_MB_M += by_M_mps;
+}
+
+void Vehicle::place(const Scenario& scenario, const PlacedState& state, Sclk start) {
+    using flight::PyroId;
+    const Masses masses = configuration_.masses();  // this case's
+    configuration_ = Configuration{scenario};
+    configuration_.weigh(masses, 1.0);
+    fired_.reset();
+    const SeparatedBodies separated = std::exchange(separated_, {});
+    const double now_s = state.sclk - start;
+    for (std::size_t pyro = 0; pyro < state.fired.size(); ++pyro)
+        if (state.fired[pyro]) fire(static_cast<PyroId>(pyro), now_s);
+    configuration_.fill(state.propellant_kg);
+    separated_ = separated;
+    const auto seconds = [&](const std::optional<Sclk>& at) { return at ? std::optional{*at - start} : std::nullopt; };
+    mortar_s_ = seconds(state.mortar);
+    right_at_mortar_M_ = vector3(state.right_at_mortar_M);
+    engines_.place(state.engines, seconds(state.valves));
+    bridle_ = {};
+    if (state.bridle) bridle_.start(*state.bridle - start);
+    thrusters_ = {};
+    const auto& [w, x, y, z] = state.q_MB;
+    body_ = {vector3(state.p_MoB_M_m), vector3(state.v_MB_M_mps), Quaternion{w, x, y, z}.normalized(),
+             vector3(state.rate_B_rps)};
+    rover_ = {vector3(state.p_MoRover_M_m), vector3(state.v_MRover_M_mps)};
+    q_MRover_ = body_.q_MB;
+    centre_B_m_ = configuration_.centre_B_m();
+}
+
+void Vehicle::add_to(PlacedState& state, Sclk start) const {
+    state.p_MoB_M_m = array3(body_.p_MoB_M);
+    state.v_MB_M_mps = array3(body_.v_MB_M);
+    state.q_MB = array4(body_.q_MB);
+    state.rate_B_rps = array3(body_.rate_B_rps);
+    state.propellant_kg = configuration_.propellant_kg();
+    const auto sclk = [&](const std::optional<double>& at_s) {
+        return at_s ? std::optional{start + *at_s} : std::nullopt;
+    };
+    state.mortar = sclk(mortar_s_);
+    state.right_at_mortar_M = array3(right_at_mortar_M_);
+    state.valves = sclk(engines_.valves_open_since_s());
+    state.bridle = sclk(bridle_.started_s());
+    state.p_MoRover_M_m = array3(rover_.p_MoB_M);
+    state.v_MRover_M_mps = array3(rover_.v_MB_M);
 }
 
 void Vehicle::add_draws(const Scenario& scenario, std::vector<Draw>& draws) const {

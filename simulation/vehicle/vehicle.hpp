@@ -7,6 +7,7 @@
 #include "simulation/mars/point_mass.hpp"
 #include "simulation/mars/terrain.hpp"
 #include "simulation/mars/wind.hpp"
+#include "simulation/placed_state.hpp"
 #include "simulation/scenario.hpp"
 #include "simulation/vehicle/aeroshell.hpp"
 #include "simulation/vehicle/bridle.hpp"
@@ -35,6 +36,15 @@ class Vehicle {
 
     /// Starts a campaign case: draws masses, drag, parachute, air and wind anew, and sets the true position.
     void disperse(const Scenario& scenario, const PointMass& at, std::uint64_t seed, std::uint64_t case_number);
+
+    /// Draws anew what lies ahead of a flight under way: air, wind, gusts, aerodynamics, and the parachute and the
+    /// ground until they act. `all`: those too, and the masses.
+    void redraw(const Scenario& scenario, std::uint64_t seed, std::uint64_t case_number, bool all);
+    /// Moves the true state, and with it a rover that hangs on the bridle; `turn`: in B, after the attitude.
+    void shift(const Vector3& by_M_m, const Vector3& by_M_mps, const Quaternion& turn);
+    /// Sets the state. `start`: the Sclk of second zero. Bodies that are jettisoned already fly on.
+    void place(const Scenario& scenario, const PlacedState& state, Sclk start);
+    void add_to(PlacedState& state, Sclk start) const;
 
     /// Applies the effect of a pyro. A second firing does nothing.
     void fire(flight::PyroId pyro, double now_s);

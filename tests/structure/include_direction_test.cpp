@@ -156,11 +156,12 @@ const std::vector<std::pair<std::string, std::vector<std::string>>>& layers() {
         {"venue", {"base"}},
         {"rehearsal", {"pipeline", "scenario", "venue"}},
         {"campaign", {"rehearsal"}},
+        {"shadow", {"campaign"}},
         {"cluster", {"campaign", "access"}},
         {"tones", {"rehearsal"}},
         {"api", {"campaign", "access"}},
         {"net", {"api", "links", "cluster"}},
-        {"cli", {"net", "cluster", "tones", "reconstruction", "procedures"}},
+        {"cli", {"net", "cluster", "tones", "reconstruction", "procedures", "shadow"}},
     };
     return order;
 }
