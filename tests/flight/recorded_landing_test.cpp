@@ -69,7 +69,9 @@ const Flown& flown() {
         load.entry_reference = simulation::make_entry_reference(scenario);
         Computer computer{load, world.sclk()};
         const auto out = std::make_unique<DeviceOutputs>();
-        world.set_nvm(0, 1U << 30);
+        constexpr std::uint32_t nvm_capacity_octets = 1U << 30;
+        std::uint32_t nvm_octets = 0;
+        world.set_nvm(nvm_octets, nvm_capacity_octets);
         world.receive(test::set_parameters(world.solution()));
         int after = 0;
         for (int cycle = 0; after < 64 * 30 && cycle < 64 * 1500; ++cycle) {
@@ -85,6 +87,8 @@ const Flown& flown() {
             if (out->thrusters != ThrusterCommand{}) flown.pulses[now] = out->thrusters;
             if (out->engines.ignited) flown.throttles[now] = out->engines;
             take(out->nvm.span(), flown.recorded);
+            nvm_octets += static_cast<std::uint32_t>(out->nvm.size());
+            world.set_nvm(nvm_octets, nvm_capacity_octets);
             for (auto& packet : test::packets_in_pltus(out->uhf.span())) flown.radiated.push_back(std::move(packet));
             world.advance(*out);
             after += world.outcome() != simulation::Outcome::running;

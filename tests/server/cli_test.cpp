@@ -492,12 +492,16 @@ TEST_CASE("a rebuilt path leaves in each format of the field, and lies on itself
         std::ofstream{in(name), std::ios::binary} << text;
         return in(name);
     };
+    const auto first_row = oem.find("\n2012-");
+    REQUIRE(first_row != std::string::npos);
+    const auto number_at = oem.find(' ', first_row);
+    const auto first_number = oem.substr(number_at, oem.find(' ', number_at + 1) - number_at);
     std::ofstream{in("cut.bsp"), std::ios::binary} << text_of(in("path.bsp")).substr(0, 3000);
     const std::array<std::tuple<std::string, int, std::string>, 12> refused{{
         {spoilt("earth.oem", "= MARS", "= EARTH"), 1, "but: MSL about EARTH in EME2000"},
         {spoilt("frame.oem", "= EME2000", "= ITRF97"), 1, "but: MSL about MARS in ITRF97"},
         {spoilt("later.oem", "2012-08-06T", "2022-08-06T"), 1, "no instant is in both"},
-        {spoilt("text.oem", " -451.5", " nan451.5"), 1, "is no number"},
+        {spoilt("text.oem", first_number, " nan451.5"), 1, "is no number"},
         {spoilt("centre.oem", "CENTER_NAME", "COMMENT"), 1, "the segment has no CENTER_NAME"},
         {in("cut.bsp"), 1, "cut.bsp: "},
         {in("path.aem"), 1, "the message begins with CCSDS_AEM_VERS, not CCSDS_OEM_VERS"},
