@@ -71,7 +71,7 @@ TEST_CASE("the first start makes one way in, which only lets its owner choose a 
     const auto who = accounts.who(in->secret);
     CHECK(who.user == "administrator");
     CHECK(may(who, Right::administer));
-    struct stat file {};
+    struct stat file{};
     REQUIRE(::stat(accounts.file.c_str(), &file) == 0);
     CHECK((file.st_mode & 0777) == 0600);
     accounts.open();  // a second start finds its accounts, and no session
