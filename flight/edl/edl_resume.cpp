@@ -117,7 +117,8 @@ void EdlMain::take_over(const StateHeader& prime, Sclk now, Outbox& out) {
     ++revision_;
 }
 
-// As a computer that takes over, but in the very cycle after the state: no reading is missing. A reply under way may be.
+// As a computer that takes over, but in the very cycle after the state: no reading is missing, though a reply under way
+// may be.
 void EdlMain::go_on(Outbox& out) {
     timeline_.await_nothing();
     out.send(ModuleId::pyro, ArmPyros{configuration_.pyros_armed});

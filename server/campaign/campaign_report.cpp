@@ -24,16 +24,6 @@ std::string spread_json(const Spread& spread) {
         .str();
 }
 
-std::string ellipse_json(const Ellipse& ellipse) {
-    return JsonObject{}
-        .number("major_km", ellipse.major_m * km)
-        .number("minor_km", ellipse.minor_m * km)
-        .number("azimuth_deg", ellipse.azimuth_deg)
-        .number("centre_east_km", ellipse.east_m * km)
-        .number("centre_north_km", ellipse.north_m * km)
-        .str();
-}
-
 std::string again(const Summary& summary, const Call& call, std::uint64_t number) {
     return fmt::format("aeolis rehearse --scenario {} --seed {} --case {}", call.scenario, summary.seed, number);
 }
@@ -80,6 +70,16 @@ std::string failure_rows(const Summary& summary, const Call& call, const std::ve
 }
 
 }  // namespace
+
+std::string ellipse_json(const Ellipse& ellipse) {
+    return JsonObject{}
+        .number("major_km", ellipse.major_m * km)
+        .number("minor_km", ellipse.minor_m * km)
+        .number("azimuth_deg", ellipse.azimuth_deg)
+        .number("centre_east_km", ellipse.east_m * km)
+        .number("centre_north_km", ellipse.north_m * km)
+        .str();
+}
 
 std::string campaign_json(const Summary& summary, const CampaignVerdict& verdict, const Call& call) {
     JsonObject outcomes;

@@ -17,6 +17,8 @@ struct Call {
     std::string queue{};     ///< the engine whose workers flew the cases; empty: flown here
 };
 
+std::string ellipse_json(const Ellipse& ellipse);
+
 /// A campaign as `aeolis campaign` prints it: one JSON object on one line, or a table for people.
 std::string campaign_json(const Summary& summary, const CampaignVerdict& verdict, const Call& call);
 std::string campaign_table(const Summary& summary, const CampaignVerdict& verdict, const Call& call);

@@ -99,17 +99,18 @@ std::string verdict_table(const CampaignVerdict& verdict) {
     return text;
 }
 
+std::string limit_json(const LimitMargin& one) {
+    return JsonObject{}
+        .text("limit", one.limit)
+        .number("bound", one.bound)
+        .number("worst", one.value)
+        .number("margin", one.margin)
+        .count("case", one.number)
+        .count("exceeded", one.exceeded)
+        .str();
+}
+
 std::string verdict_json(const CampaignVerdict& verdict) {
-    const auto limit_json = [](const LimitMargin& one) {
-        return JsonObject{}
-            .text("limit", one.limit)
-            .number("bound", one.bound)
-            .number("worst", one.value)
-            .number("margin", one.margin)
-            .count("case", one.number)
-            .count("exceeded", one.exceeded)
-            .str();
-    };
     return JsonObject{}
         .text("verdict", verdict.passes() ? "passed" : "failed")
         .count("within_limits", verdict.within)

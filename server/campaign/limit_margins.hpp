@@ -38,5 +38,6 @@ CampaignVerdict verdict_of(const CaseTable& table, const simulation::Limits& lim
 /// A table for people, with the verdict in its last line.
 std::string verdict_table(const CampaignVerdict& verdict);
 std::string verdict_json(const CampaignVerdict& verdict);
+std::string limit_json(const LimitMargin& one);  ///< without figures where no landing has one
 
 }  // namespace aeolis::server::campaign

@@ -36,6 +36,7 @@ Result<double> entry_time(const std::string& text) {
     if (text.size() < 3 || text[0] != 'E' || (text[1] != '+' && text[1] != '-')) return wrong;
     const char* const first = text.data() + (text[1] == '+' ? 2 : 1);
     const char* const end = text.data() + text.size();
+    if (text[2] == '-') return wrong;  // which a number may begin with
     double e_s = 0.0;
     const auto [read_to, fault] = std::from_chars(first, end, e_s);
     if (fault != std::errc{} || read_to != end || !std::isfinite(e_s)) return wrong;

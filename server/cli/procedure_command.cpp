@@ -50,6 +50,11 @@ Result<ReadProcedure> procedure_of(const std::filesystem::path& file, const dict
     return procedures::read_procedure(text, file.string(), dictionary, beside);
 }
 
+/// "1 step", "2 steps".
+std::string counted(std::size_t count, const char* what) {
+    return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
 std::string finding_json(const TextFinding& finding) {
     return JsonObject{}
         .count("line", finding.mark.line)
@@ -91,12 +96,12 @@ int procedure_check(const ProcedureOptions& options) {
         }
         for (const TextFinding& finding : read->findings) fmt::print(stderr, "{}\n", finding.text());
         if (read->procedure)
-            fmt::print("{}: no rule is broken: revision {}, {}, {} preconditions, {} steps, {} watchdogs, {} "
-                       "confirmations\n",
-                       file.string(), read->procedure->revision,
-                       read->procedure->approvals.empty() ? "a draft" : "approved",
-                       read->procedure->preconditions.size(), read->procedure->body.size(),
-                       read->procedure->watchdogs.size(), read->procedure->confirmation.size());
+            fmt::print("{}: no rule is broken: revision {}, {}, {}, {}, {}, {}\n", file.string(),
+                       read->procedure->revision, read->procedure->approvals.empty() ? "a draft" : "approved",
+                       counted(read->procedure->preconditions.size(), "precondition"),
+                       counted(read->procedure->body.size(), "step"),
+                       counted(read->procedure->watchdogs.size(), "watchdog"),
+                       counted(read->procedure->confirmation.size(), "confirmation"));
     }
     if (options.json)
         fmt::print("{}\n", JsonObject{}.raw("procedures", json_array(reports, [](auto text) { return text; })).str());

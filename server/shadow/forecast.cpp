@@ -11,7 +11,6 @@
 #include <deque>
 #include <fmt/format.h>
 #include <mutex>
-#include <pthread.h>
 #include <thread>
 
 namespace aeolis::server::shadow {
@@ -119,8 +118,7 @@ class Crew {
         : count_(count), work_(std::move(work)) {
         const auto members = std::min<std::size_t>(std::max(1U, order.jobs), count);
         threads_.reserve(members);
-        for (std::size_t i = 0; i < members; ++i)
-            threads_.emplace_back([this, idle = order.idle_processors] { run(idle); });
+        for (std::size_t i = 0; i < members; ++i) threads_.emplace_back([this] { run(); });
     }
     Crew(const Crew&) = delete;
     Crew& operator=(const Crew&) = delete;
@@ -144,8 +142,7 @@ class Crew {
     }
 
   private:
-    void run(bool idle) {
-        if (const sched_param priority{}; idle) pthread_setschedparam(pthread_self(), SCHED_IDLE, &priority);
+    void run() {
         for (std::size_t i = next_++; i < count_; i = next_++) {
             work_(i);
             const std::scoped_lock lock{mutex_};
@@ -214,20 +211,18 @@ Result<TruthForecast> forecast_from_truth(const ScriptedLanding& landing, const 
         const std::uint64_t number = place / side_count + 1;
         campaign::CaseResult& result = side.cases[number - 1];
         std::uint64_t cycles = 0;
-        std::string lost = side.lost;
-        if (lost.empty())
-            lost = guarded([&] {
-                Flight flight{*side.shared};
-                flight.draw(order.seed, number);
-                while (flight.landing().outcome() == Outcome::running && !stop) {
-                    flight.step();
-                    cycles = flight.cycles();
-                }
-                if (stop) return;
-                result = campaign::result_of(flight.landing(), flight.firings(), flight.events(), scenario, dictionary,
-                                             apart_s);
-                side.refusals[number - 1] = flight.refusal();
-            });
+        const std::string lost = guarded([&] {
+            Flight flight{*side.shared};
+            flight.draw(order.seed, number);
+            while (flight.landing().outcome() == Outcome::running && !stop) {
+                flight.step();
+                cycles = flight.cycles();
+            }
+            if (stop) return;
+            result =
+                campaign::result_of(flight.landing(), flight.firings(), flight.events(), scenario, dictionary, apart_s);
+            side.refusals[number - 1] = flight.refusal();
+        });
         if (!lost.empty()) {
             result.outcome = simulation::name_of(Outcome::lost);
             result.reason = lost;
@@ -250,6 +245,8 @@ Result<TruthForecast> forecast_from_truth(const ScriptedLanding& landing, const 
         crew.wait(told);
         forecast.processor_s += crew.processor_s();
     }
+    for (const Side& side : sides)
+        if (!side.lost.empty()) return Error{side.lost};
     if (sides[1].shared && !sides[1].shared->refusal().empty()) return Error{sides[1].shared->refusal()};
     for (Side& side : sides) {
         side.cases.resize(order.cases);

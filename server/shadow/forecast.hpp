@@ -26,10 +26,9 @@ struct Assumption {
 };
 
 struct ForecastOrder {
-    std::uint64_t seed = 1;        ///< of the errors that are drawn anew
-    std::uint64_t cases = 32;      ///< of each side
-    unsigned jobs = 1;             ///< cases flown at a time
-    bool idle_processors = false;  ///< take only processor time that nobody else wants
+    std::uint64_t seed = 1;    ///< of the errors that are drawn anew
+    std::uint64_t cases = 32;  ///< of each side
+    unsigned jobs = 1;         ///< cases flown at a time
 };
 
 struct ForecastProgress {
@@ -63,8 +62,8 @@ inline constexpr double airless_before_entry_s = 100.0;
 /// In       stop: ends all flights with their next second. tell: on the calling thread, ten times a second
 /// Out      depends on landing, assumption, seed and cases only, not on jobs
 /// Memory   one landing a job, some megabytes
-/// Faults   an Error names a command that is refused, or says that it was stopped; a check that fails in a case ends
-///          that case as lost
+/// Faults   an Error names a command that is refused, a check that fails before the cases part, or says that it was
+///          stopped; a check that fails in a case ends that case as lost, with its reason
 Result<TruthForecast> forecast_from_truth(const ScriptedLanding& landing, const simulation::Scenario& scenario,
                                           const dictionary::Dictionary& dictionary, const Assumption& assumption,
                                           const ForecastOrder& order, const std::atomic<bool>& stop,

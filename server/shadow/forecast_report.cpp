@@ -2,10 +2,12 @@
 #include "server/shadow/forecast_report.hpp"
 
 #include "server/base/json_object.hpp"
+#include "server/campaign/campaign_report.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <span>
 
 namespace aeolis::server::shadow {
 namespace {
@@ -35,14 +37,17 @@ std::string values_json(const Values& values) {
         .raw("interval_99",
              values.interval_99
                  ? JsonObject{}.number("from", values.interval_99->from).number("to", values.interval_99->to).str()
-                 : "\"too few\"")
+                 : "null")
         .str();
+}
+
+std::string outside_json(const Prospect::Outside& one) {
+    return JsonObject{}.count("case", one.number).text("outcome", one.outcome).text("reason", one.reason).str();
 }
 
 std::string prospect_json(const Prospect& prospect) {
     JsonObject outcomes;
     for (const auto& [outcome, count] : prospect.outcomes) outcomes.count(outcome, count);
-    const auto& ellipse = prospect.ellipse_99;
     return JsonObject{}
         .count("cases", prospect.cases)
         .raw("outcomes", outcomes.str())
@@ -52,14 +57,8 @@ std::string prospect_json(const Prospect& prospect) {
                         [](const EventTimes& event) {
                             return JsonObject{}.text("name", event.name).raw("e_s", values_json(event.e_s)).str();
                         }))
-        .raw("ellipse_99", !ellipse ? "\"too few\""
-                                    : JsonObject{}
-                                          .number("major_km", ellipse->major_m * km)
-                                          .number("minor_km", ellipse->minor_m * km)
-                                          .number("azimuth_deg", ellipse->azimuth_deg)
-                                          .number("centre_east_km", ellipse->east_m * km)
-                                          .number("centre_north_km", ellipse->north_m * km)
-                                          .str())
+        .raw("outside_limits", json_array(prospect.outside, outside_json))
+        .raw("ellipse_99", prospect.ellipse_99 ? campaign::ellipse_json(*prospect.ellipse_99) : "null")
         .raw("miss_m", values_json(prospect.miss_m))
         .raw("east_m", values_json(prospect.east_m))
         .raw("north_m", values_json(prospect.north_m))
@@ -68,17 +67,7 @@ std::string prospect_json(const Prospect& prospect) {
         .raw("propellant_kg", values_json(prospect.propellant_kg))
         .raw("peak_deceleration_mps2", values_json(prospect.peak_deceleration_mps2))
         .raw("least_timeline_margin_s", values_json(prospect.least_margin_s))
-        .raw("limits", json_array(prospect.limits,
-                                  [](const campaign::LimitMargin& one) {
-                                      return JsonObject{}
-                                          .text("limit", one.limit)
-                                          .number("bound", one.bound)
-                                          .number("worst", one.value)
-                                          .number("margin", one.margin)
-                                          .count("case", one.number)
-                                          .count("exceeded", one.exceeded)
-                                          .str();
-                                  }))
+        .raw("limits", json_array(prospect.limits, campaign::limit_json))
         .str();
 }
 
@@ -168,6 +157,29 @@ std::string outcomes_text(const Prospect& side) {
     return text;
 }
 
+/// Why cases are not within limits: each reason once, with the first case that has it, and five reasons at most.
+std::string reasons_text(const std::string& side, const std::vector<Prospect::Outside>& outside) {
+    struct Reason {
+        const Prospect::Outside* first;
+        std::size_t cases;
+    };
+    std::vector<Reason> reasons;
+    for (const auto& one : outside) {
+        const auto same = std::ranges::find(reasons, one.reason, [](const Reason& each) { return each.first->reason; });
+        if (same != reasons.end())
+            ++same->cases;
+        else
+            reasons.push_back({&one, 1});
+    }
+    constexpr std::size_t shown = 5;
+    std::string text;
+    for (const auto& [first, cases] : std::span{reasons}.first(std::min(shown, reasons.size())))
+        text += fmt::format("{}case {}: {}: {}{}\n", side, first->number, first->outcome, first->reason,
+                            cases == 1 ? "" : fmt::format(" ({} cases)", cases));
+    if (reasons.size() > shown) text += fmt::format("{}{} more reasons: see --json\n", side, reasons.size() - shown);
+    return text;
+}
+
 }  // namespace
 
 std::string entry_time_text(double e_s) {
@@ -231,11 +243,14 @@ std::string forecast_table(const TruthForecast& forecast, const simulation::Limi
     text += table.text();
     if (compared) {
         const Pairs pairs = pairs_of(forecast.without, forecast.with);
-        text += fmt::format("case by case: within limits in both {}, only without {}, only with {}, in neither {}; "
-                            "miss changes by {} m, propellant by {} kg\n",
-                            pairs.within_both, pairs.only_without, pairs.only_with, pairs.within_neither,
-                            cell(pairs.miss_change_m, 1, 1.0), cell(pairs.propellant_change_kg, 2, 1.0));
+        text += fmt::format("case by case: within limits in both {}, only without {}, only with {}, in neither {}",
+                            pairs.within_both, pairs.only_without, pairs.only_with, pairs.within_neither);
+        text += pairs.miss_change_m.count == 0
+                    ? "\n"
+                    : fmt::format("; miss changes by {} m, propellant by {} kg\n", cell(pairs.miss_change_m, 1, 1.0),
+                                  cell(pairs.propellant_change_kg, 2, 1.0));
     }
+    text += reasons_text(compared ? "without, " : "", without.outside) + reasons_text("with, ", with.outside);
     if (without.cases < values_for_99)
         text += fmt::format(
             "median (least ... most of these cases); for a 99 % interval {} cases are too few, it takes {}: "

@@ -138,6 +138,7 @@ Prospect prospect_of(std::span<const CaseResult> cases, const simulation::Limits
     for (const CaseResult& result : cases) {
         ++prospect.outcomes[result.outcome];
         if (result.touchdown) places.add(result.east_m, result.north_m);
+        if (!within_limits(result)) prospect.outside.push_back({result.number, result.outcome, result.reason});
     }
     prospect.within = proportion(static_cast<std::uint64_t>(std::ranges::count_if(cases, within_limits)), cases.size());
     prospect.events = times_of(cases, after_e_s);

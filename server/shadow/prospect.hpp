@@ -53,7 +53,12 @@ struct EventTimes {
 struct Prospect {
     std::uint64_t cases = 0;
     std::map<std::string, std::uint64_t> outcomes;
-    Proportion within;               ///< landed within all of the scenario's limits
+    Proportion within;  ///< landed within all of the scenario's limits
+    struct Outside {
+        std::uint64_t number = 0;
+        std::string outcome, reason;
+    };
+    std::vector<Outside> outside;    ///< the other cases, and why
     std::vector<EventTimes> events;  ///< after the forecast's beginning, by median
     Values miss_m, east_m, north_m, vertical_mps, horizontal_mps, propellant_kg, peak_deceleration_mps2, least_margin_s;
     std::optional<campaign::Ellipse> ellipse_99;  ///< of the touchdowns, about the target; none: fewer than three

@@ -26,7 +26,7 @@ class Engines {
     /// Advances thrust by `step_s` and returns the propellant burnt in that time [kg].
     double advance(double now_s, double step_s, double propellant_left_kg);
 
-    /// Sets engines that hold this command, with the thrust of its throttles. `valves_s`: when their valves were opened.
+    /// Sets engines that hold this command, with the thrust of its throttles. `valves_s`: when their valves opened.
     void place(const flight::EngineCommand& command, std::optional<double> valves_s);
     std::optional<double> valves_open_since_s() const {
         return valves_open_ ? std::optional{valves_open_since_s_} : std::nullopt;

@@ -49,30 +49,9 @@
 namespace server_cli_test {
 
 using aeolis::test::program;
+using aeolis::test::run;
 
 // The program as people start it: what it says, on one line, and how it ends.
-namespace {
-
-struct Ended {
-    int code = -1;
-    std::string text;  ///< of both streams
-};
-
-Ended run(const std::string& program, const std::string& arguments) {
-    // Ten minutes, so that one which does not end fails by its name.
-    std::FILE* pipe = popen(("timeout 600 '" + program + "' " + arguments + " 2>&1 </dev/null").c_str(), "r");
-    REQUIRE(pipe != nullptr);
-    Ended ended;
-    std::array<char, 4096> chunk{};
-    for (std::size_t read = 0; (read = std::fread(chunk.data(), 1, chunk.size(), pipe)) > 0;)
-        ended.text.append(chunk.data(), read);
-    const int status = pclose(pipe);
-    ended.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-    return ended;
-}
-
-}  // namespace
-
 TEST_CASE("a command file is sent to a server by the program, whole or not at all, a line a command",
           "[cli][http][R44]") {
     if (program().empty()) return;
@@ -92,7 +71,7 @@ TEST_CASE("a command file is sent to a server by the program, whole or not at al
     };
     const std::string good =
         R"({"commands":[{"command":"NO_OP"},{"command":"EDL_SET_PARAMETERS","from_solution":true,"hold":true}]})";
-    Ended tried;
+    aeolis::test::Ended tried;
     for (int i = 0; i < 3000 && tried.code != 0; ++i)  // until the run has begun
         tried = send(good, "--dry-run");
     INFO(tried.text);
@@ -327,6 +306,40 @@ TEST_CASE("a settings file may name several hosts with commas between, and a pat
     server.signal(SIGTERM);
     CHECK(server.ended_within() == 0);
     CHECK_THAT(said(), Catch::Contains("asked to end: ending"));
+}
+
+TEST_CASE("the program forecasts from any moment, side by side with what is assumed, and refuses the rest in one line",
+          "[cli][shadow]") {
+    if (program().empty()) return;
+    const std::string landing = "forecast --scenario nominal_auto --cases 2 --at ";
+    const auto lost = run(program(), landing + R"(E+420 --fault '{"computer_reset": true}')");
+    CHECK(lost.code == 0);
+    CHECK_THAT(lost.text, Catch::StartsWith("from the truth of nominal_auto, seed 1, at E+420.0 s: 2 cases"));
+    CHECK_THAT(lost.text, Catch::Contains("case by case: within limits in both 0, only without 2"));
+    CHECK_THAT(lost.text, Catch::Contains("\nwith, case 1: impact: ") && Catch::Contains(" (2 cases)\n"));
+    const auto json = run(program(), landing + "E+420 --json");
+    google::protobuf::Struct object;
+    REQUIRE(aeolis::server::from_json(json.text, object));
+    CHECK(object.fields().at("from").string_value() == "truth");
+    CHECK(object.fields().at("without").struct_value().fields().at("cases").number_value() == 2.0);
+    CHECK_FALSE(object.fields().contains("with"));
+
+    const std::array<std::tuple<std::string, int, const char*>, 7> refused{{
+        {"E+-420", 2, "--at: 'E+-420' is not seconds from entry, like E-600 or E+200"},
+        {"420", 2, "--at: '420' is not seconds from entry"},
+        {"E-9000", 1, "--at E-9000: nominal_auto begins at E-"},
+        {"E+900", 1, "the landing of nominal_auto with seed 1 is over by then: touchdown"},
+        {"E+420 --command NO_OPS", 1, "NO_OPS is refused: unknown command 'NO_OPS'"},
+        {"E+420 --command 'NO_OP {'", 2, "--command NO_OP: "},
+        {R"(E+420 --fault '{"gremlin": true}')", 2, "gremlin"},
+    }};
+    for (const auto& [arguments, code, says] : refused) {
+        const auto ended = run(program(), landing + arguments);
+        INFO(arguments << " -> " << ended.code << ": " << ended.text);
+        CHECK(ended.code == code);
+        CHECK_THAT(ended.text, Catch::Contains(says));
+        CHECK(std::count(ended.text.begin(), ended.text.end(), '\n') == 1);
+    }
 }
 
 TEST_CASE("the entry reference is a table of falling speed, with every row a number", "[cli][R27]") {

@@ -12,7 +12,8 @@
 #include <thread>
 #include <unistd.h>
 
-// What a process that is killed has said that it made durable: the newest sequence number, in a file beside its archive.
+// What a process has made durable, by its own word, before it is killed: the newest sequence number, in a file beside
+// its archive.
 namespace aeolis::test {
 
 inline std::filesystem::path acknowledged_file(const std::filesystem::path& archive) {

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/support/child_process.hpp"
 
+#include <array>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <fcntl.h>
 #include <iostream>
@@ -96,6 +98,19 @@ int ChildProcess::ended_within(std::chrono::seconds limit) {
         std::this_thread::sleep_for(std::chrono::milliseconds{2});
     }
     return WIFEXITED(status_) ? WEXITSTATUS(status_) : -1;
+}
+
+Ended run(const std::string& program, const std::string& arguments, const std::filesystem::path& folder) {
+    const auto there = folder.empty() ? std::string{} : "cd '" + folder.string() + "' && ";
+    std::FILE* pipe = popen((there + "timeout 600 '" + program + "' " + arguments + " 2>&1 </dev/null").c_str(), "r");
+    if (pipe == nullptr) throw std::runtime_error("no process can be started");
+    Ended ended;
+    std::array<char, 4096> chunk{};
+    for (std::size_t read = 0; (read = std::fread(chunk.data(), 1, chunk.size(), pipe)) > 0;)
+        ended.text.append(chunk.data(), read);
+    const int status = pclose(pipe);
+    ended.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    return ended;
 }
 
 std::string variable(const char* name) {

@@ -10,7 +10,7 @@
 
 namespace aeolis::test {
 
-/// Another program, without input. It is killed with this object, and with the thread that started it however that ends.
+/// Another program, without input. It is killed with this object, or when the thread that started it ends.
 class ChildProcess {
   public:
     using Variables = std::map<std::string, std::string>;
@@ -38,6 +38,14 @@ class ChildProcess {
     pid_t process_ = -1;
     int status_ = 0;  ///< once it has ended
 };
+
+struct Ended {
+    int code = -1;     ///< of the exit; -1: a signal
+    std::string text;  ///< of both streams
+};
+/// Runs a program without input, in `folder` if one is named, with arguments as a shell reads them. After ten minutes it
+/// is told to end, so that what hangs fails by its name.
+Ended run(const std::string& program, const std::string& arguments, const std::filesystem::path& folder = {});
 
 /// A variable of the environment; empty: there is none.
 std::string variable(const char* name);

@@ -35,8 +35,7 @@ inline flight::Message random_message(std::mt19937& random) {
         part->size = any();
         for (auto& octet : part->octets) octet = any();
     }
-    if (auto* resume = std::get_if<Resume>(&message))
-        resume->reason = random() % 2 == 0 ? ResumeReason::restart : ResumeReason::take_over;
+    if (auto* resume = std::get_if<Resume>(&message)) resume->reason = static_cast<ResumeReason>(random() % 3);
     if (auto* enable = std::get_if<EnableSecondChanceCommand>(&message)) enable->enabled = true;
     if (auto* tick = std::get_if<ClockTick>(&message)) tick->now = Sclk::from_ticks(64000 + random() % 100000);
     if (auto* tick = std::get_if<Tick>(&message)) tick->now = Sclk::from_ticks(64000 + random() % 100000);

@@ -4,10 +4,7 @@
 #include "tests/support/child_process.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-#include <array>
-#include <cstdio>
 #include <fstream>
-#include <sys/wait.h>
 
 namespace server_procedures_procedure_command_test {
 
@@ -15,24 +12,9 @@ using aeolis::test::program;
 
 namespace {
 
-struct Ended {
-    int code = -1;
-    std::string text;  ///< of both streams
-};
-
 /// `aeolis procedure …`, in the folder.
-Ended procedure(const std::filesystem::path& folder, const std::string& arguments) {
-    const std::string command =
-        "cd '" + folder.string() + "' && timeout 60 '" + program() + "' procedure " + arguments + " 2>&1 </dev/null";
-    std::FILE* pipe = popen(command.c_str(), "r");
-    REQUIRE(pipe != nullptr);
-    Ended ended;
-    std::array<char, 4096> chunk{};
-    for (std::size_t read = 0; (read = std::fread(chunk.data(), 1, chunk.size(), pipe)) > 0;)
-        ended.text.append(chunk.data(), read);
-    const int status = pclose(pipe);
-    ended.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-    return ended;
+aeolis::test::Ended procedure(const std::filesystem::path& folder, const std::string& arguments) {
+    return aeolis::test::run(program(), "procedure " + arguments, folder);
 }
 
 }  // namespace
@@ -53,11 +35,10 @@ TEST_CASE("the program checks procedures and ends with 0, with 1 when one breaks
     std::ofstream{folder / "q.yaml"} << "procedure: q\n";
     const auto both = procedure(folder.path(), "check p.yaml q.yaml");
     CHECK(both.code == 1);
-    CHECK_THAT(
-        both.text,
-        Catch::Contains("p.yaml: no rule is broken: revision 1, a draft, 0 preconditions, 1 steps, 1 watchdogs, 1 "
-                        "confirmations\n") &&
-            Catch::Contains("q.yaml:1:1: a procedure lacks 'title'\n"));
+    CHECK_THAT(both.text,
+               Catch::Contains("p.yaml: no rule is broken: revision 1, a draft, 0 preconditions, 1 step, 1 watchdog, 1 "
+                               "confirmation\n") &&
+                   Catch::Contains("q.yaml:1:1: a procedure lacks 'title'\n"));
     CHECK(procedure(folder.path(), "check p.yaml").code == 0);
 
     const auto json = procedure(folder.path(), "check --json p.yaml");
