@@ -15,6 +15,7 @@
 #include "server/rehearsal/prediction_service.hpp"
 #include "server/rehearsal/rehearsal_manager.hpp"
 #include "server/scenario/scenario_library.hpp"
+#include "server/shadow/forecast_service.hpp"
 
 #include <filesystem>
 #include <functional>
@@ -65,6 +66,7 @@ class Api {
         RehearsalManager& rehearsals;
         PredictionService& predictions;
         campaign::CampaignManager& campaigns;
+        shadow::ForecastService& forecasts;
         StreamHub& hub;
         PipelineThread& pipeline;
         const StaticFiles& console;
@@ -157,6 +159,11 @@ class Api {
     using CampaignQuestion =
         std::function<HttpResponse(const std::filesystem::path& file, const std::function<bool()>& stop)>;
     void ask_campaign(const ApiRequest& call, CampaignQuestion question);
+    // forecast_routes.cpp
+    void post_forecast(const ApiRequest& call);
+    void list_forecasts(const ApiRequest& call);
+    void get_forecast(const ApiRequest& call);
+    void cancel_forecast(const ApiRequest& call);
     // access_routes.cpp
     void session(const ApiRequest& call);
     void log_in(const ApiRequest& call);

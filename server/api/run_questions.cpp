@@ -13,6 +13,8 @@
 #include "server/api/time_texts.hpp"
 #include "server/api/touchdown.hpp"
 #include "server/archive/items.hpp"
+#include "server/archive/run_differences.hpp"
+#include "server/archive/run_instant.hpp"
 #include "server/base/csv_text.hpp"
 #include "server/base/json.hpp"
 #include "telemetry/text.hpp"
@@ -24,14 +26,13 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <functional>
+#include <limits>
 
 namespace aeolis::server {
 namespace {
 
 constexpr std::array<std::string_view, 3> series_formats{"json", "csv", "protobuf"};
 constexpr std::array<std::string_view, 2> report_formats{"json", "csv"};
-constexpr std::string_view ert_prefix = "ert:";
-constexpr double scet_text_s = 1.0e-3;  // day-of-year texts are truncated to it: converts to the tick within it
 
 template <typename Message>
 HttpResponse answer(Result<Message> result) {
@@ -450,6 +451,15 @@ HttpResponse preconditions(const AnswerContext& context, archive::Reader& reader
     return answer(Result<v1::PreconditionList>{std::move(list)});
 }
 
+HttpResponse differences(const AnswerContext& context, archive::Reader& reader, archive::RunId run,
+                         const QueryText& query) {
+    const auto other = query.amount("with", std::numeric_limits<std::uint32_t>::max());
+    if (!other) return error_response(400, other.error());
+    if (!*other) return error_response(400, Error{"with: the number of the other run is wanted"});
+    return answer(archive::differences(reader, context.dictionary, run,
+                                       archive::RunId{static_cast<std::uint32_t>(**other)}));
+}
+
 HttpResponse limits(const AnswerContext& context, archive::Reader& reader, archive::RunId run, const QueryText& query) {
     const auto recorded = recorded_of(query);
     if (!recorded) return error_response(400, recorded.error());
@@ -554,6 +564,7 @@ const std::array questions{
              {"decision", "text", "from", "to", "after", "limit", "order", "duplicates", "format"},
              list_formats,
              explanations},
+    RunRoute{"differences", {"with"}, {}, differences},
     RunRoute{"limits", {"recorded"}, {}, limits},
     RunRoute{"touchdown", {"at", "recorded"}, {}, touchdown_report},
     RunRoute{"recording", {}, {}, recording},
@@ -586,30 +597,13 @@ std::string as_flown_csv(const v1::AsFlownReport& report) {
 
 Result<std::optional<Sclk>> instant_of(const QueryText& query, std::string_view name, archive::Reader& reader,
                                        archive::RunId run) {
-    std::string text = query.text(name).value_or("");
-    if (text.starts_with("E ")) text[1] = '+';  // a plus that was not percent-encoded is a blank
-    const auto entry_s = seconds_from_entry(text);
-    const bool is_ert = text.starts_with(ert_prefix);
-    const auto utc = scet_from_text(std::string_view{text}.substr(is_ert ? ert_prefix.size() : 0));
-    if (!entry_s && !utc) {
-        const auto sclk_s = query.number(name);
-        if (!sclk_s || is_ert)
-            return Error{fmt::format("{}: '{}' is no instant: seconds of SCLK, SCET as 2012-219T05:00:00 or "
-                                     "2012-08-06T05:00:00Z, ert:2012-219T05:13:48, or E+4:58",
-                                     name, text)};
-        return *sclk_s ? std::optional{Sclk{**sclk_s}} : std::nullopt;
-    }
+    const std::string text = query.text(name).value_or("");
+    if (text.empty()) return std::optional<Sclk>{};
     const auto state = reader.run(run);
     if (!state) return state.error();
-    if (entry_s) return std::optional{Sclk{state->entry_sclk()} + *entry_s};
-    const auto clock = archive::correlation_of(*state);
-    if (clock.scet == Scet{})
-        return Error{
-            fmt::format("{}: nobody knows which SCET run {} has: seconds of SCLK are wanted", name, run.value)};
-    const auto light_us = is_ert ? static_cast<std::int64_t>(state->light_time_s() * 1.0e6) : 0;
-    const Sclk exact = clock.sclk_of(Scet{utc->microseconds - light_us}),
-               tick = Sclk::from_ticks(std::llround(exact.seconds / seconds_per_tick));
-    return std::optional{std::abs(tick - exact) < scet_text_s ? tick : exact};
+    const auto instant = archive::instant_of(text, *state, name);
+    if (!instant) return instant.error();
+    return std::optional{*instant};
 }
 
 Result<archive::SclkRange> range_of(const QueryText& query, archive::Reader& reader, archive::RunId run) {

@@ -27,9 +27,7 @@ struct RunRoute {
     HttpResponse (*answer)(const AnswerContext&, archive::Reader&, archive::RunId, const QueryText&);
 };
 
-/// Reads a parameter that names an instant: seconds of SCLK; SCET as scet_from_text() reads it, converted by the run's
-/// clock correlation; "ert:" and the UTC time at which the instant is seen on Earth; or a time from entry. None when
-/// absent.
+/// Reads a parameter that names an instant, as archive::instant_of() does. None when absent.
 Result<std::optional<Sclk>> instant_of(const QueryText& query, std::string_view name, archive::Reader& reader,
                                        archive::RunId run);
 /// The range given by the parameters "from" and "to".

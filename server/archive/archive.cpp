@@ -256,8 +256,8 @@ Result<RunId> Archive::State::add_run(const RunStart& start, const dictionary::D
     auto row = database.prepare(
         "INSERT INTO runs (run, scenario, title, venue, seed, case_number, pace, state, outcome, started, start_sclk,"
         " entry_sclk, correlation_sclk, correlation_scet_us, light_time_s, tone_model, dictionary, scenario_text,"
-        " clock_version, clock_rate, leap_seconds)"
-        " VALUES (?,?,?,?,?,?,?,'running','running',?,?,?,?,?,?,?,?,?,?,?,?)");
+        " clock_version, clock_rate, leap_seconds, forked_run, forked_cycle, forked_e_s, forked_seed)"
+        " VALUES (?,?,?,?,?,?,?,'running','running',?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)");
     if (!row) return row.error();
     row->bind(1, *next)
         .bind(2, std::string_view(start.scenario))
@@ -278,6 +278,11 @@ Result<RunId> Archive::State::add_run(const RunStart& start, const dictionary::D
         .bind(17, std::int64_t{start.correlation.version})
         .bind(18, start.correlation.rate)
         .bind(19, std::int64_t{start.correlation.leap_seconds});
+    if (const auto& fork = start.forked_from)
+        row->bind(20, std::int64_t{fork->run.value})
+            .bind(21, sqlite::number(fork->cycle))
+            .bind(22, fork->e_s)
+            .bind(23, sqlite::number(fork->seed));
     if (auto done = row->run(); !done) return done.error();
     auto anchor = database.prepare("INSERT INTO run_anchors VALUES (?,?,?,?)");
     if (!anchor) return anchor.error();
@@ -335,6 +340,16 @@ Result<void> Archive::prune(RunId run, AuditRecord by) {
 Result<bool> Archive::remove_pruned() {
     if (state_->identities() != state_->opened) return true;  // the next batch tells of it, and puts the file back
     return state_->pruning.step();
+}
+
+Result<std::uint64_t> Archive::keep_forecast(const ForecastRecord& forecast) {
+    if (auto done = state_->in_place(); !done) return done.error();
+    auto transaction = sqlite::Transaction::begin_write(state_->database);
+    if (!transaction) return transaction.error();
+    auto number = archive::keep_forecast(state_->database, forecast);
+    if (!number) return number;
+    if (auto done = transaction->commit(); !done) return done.error();
+    return number;
 }
 
 Result<LayoutOutcome> Archive::change_layout(const LayoutChange& change) {

@@ -4,6 +4,7 @@
 #include "common/result.hpp"
 #include "dictionaries/dictionary.hpp"
 #include "server/archive/audit.hpp"
+#include "server/archive/forecasts.hpp"
 #include "server/archive/layouts.hpp"
 #include "server/archive/records.hpp"
 
@@ -56,6 +57,8 @@ class Archive {
     Result<void> prune(RunId run, AuditRecord by);
     /// Removes a piece of what pruned runs left, some milliseconds of work. False: nothing is left (pruning.hpp).
     Result<bool> remove_pruned();
+    /// Stores a forecast; durable when it returns. @return its number
+    Result<std::uint64_t> keep_forecast(const ForecastRecord& forecast);
     /// Saves or removes a layout of the console; durable when it returns.
     Result<LayoutOutcome> change_layout(const LayoutChange& change);
     /// Adds the last item of a run that is not in progress; durable when it returns. @return the annotation with its

@@ -59,7 +59,7 @@ const std::vector<Rows>& rows_of_run() {
         rows.push_back({"runs",
                         "SELECT scenario, title, venue, case_number, pace, started, ended, start_sclk, entry_sclk,"
                         " correlation_sclk, correlation_scet_us, clock_version, clock_rate, leap_seconds, light_time_s,"
-                        " tone_model, dictionary FROM runs WHERE run = ?1",
+                        " tone_model, dictionary, forked_run, forked_cycle, forked_e_s, forked_seed FROM runs WHERE run = ?1",
                         true});
         return rows;
     }();

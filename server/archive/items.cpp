@@ -247,6 +247,14 @@ v1::ClockReply to_reply(const ClockCorrelation& clock) {
     return reply;
 }
 
+v1::ForkOrigin to_reply(const ForkPoint& fork) {
+    v1::ForkOrigin reply;
+    reply.set_run(fork.run.value);
+    reply.set_e_s(fork.e_s);
+    reply.set_seed(fork.seed);
+    return reply;
+}
+
 ClockCorrelation correlation_of(const v1::RunState& run) {
     const auto& clock = run.clock();
     return {Sclk{clock.sclk()}, Scet{clock.scet_us()}, clock.rate(), clock.leap_seconds(), clock.version()};

@@ -45,6 +45,7 @@ v1::Item item_of(const Record& record, const dictionary::Dictionary* dictionary)
 std::vector<std::uint8_t> octets_of_hex(std::string_view hex);
 
 v1::ClockReply to_reply(const ClockCorrelation& clock);
+v1::ForkOrigin to_reply(const ForkPoint& fork);
 ClockCorrelation correlation_of(const v1::RunState& run);
 /// When on Earth the event on board at `at` is received, by the run's clock correlation and light time. A time too far
 /// away for a date compares as before or after everything.

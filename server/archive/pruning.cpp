@@ -40,8 +40,8 @@ constexpr char first_block_sql[] = "SELECT min(block) FROM pyramid WHERE run = ?
 constexpr std::array remove_blocks_sql{
     "DELETE FROM pyramid_columns WHERE key >= ?2 << 16 AND key < min(?3, (?1 + 1) << 23) << 16",
     "DELETE FROM pyramid WHERE run = ?1 AND block >= ?2 AND block < ?3"};
-constexpr std::array tables_of_run{"recordings", "link_totals",  "sequence_totals",
-                                   "requests",   "run_solution", "run_anchors"};
+constexpr std::array tables_of_run{"recordings",   "link_totals", "sequence_totals", "requests",
+                                   "run_solution", "run_anchors", "forecasts"};
 
 /// The number that the statement selects; none: NULL.
 Result<std::optional<std::int64_t>> number_of(sqlite::Statement& statement) {

@@ -121,6 +121,14 @@ Result<std::vector<AuditEntry>> Reader::audit(std::uint64_t after, std::size_t l
     return audit_entries(state_->database, after, limit, order);
 }
 
+Result<std::vector<ForecastRecord>> Reader::forecasts(RunId run, std::uint64_t after, std::size_t limit, Order order) {
+    return forecasts_of(state_->database, run, after, limit, order);
+}
+
+Result<std::optional<ForecastRecord>> Reader::forecast(RunId run, std::uint64_t number) {
+    return forecast_of(state_->database, run, number);
+}
+
 Result<std::vector<LayoutRecord>> Reader::layouts(const std::string& owner) {
     return layouts_of(state_->database, owner);
 }
@@ -199,12 +207,39 @@ Result<std::string> Reader::scenario_text(RunId run) {
     return text;
 }
 
-Result<CutOffRun> Reader::cut_off(RunId run) {
+namespace {
+
+Sequence sequence_of_annotation(const Annotation& annotation) {
+    return std::visit([](const auto& record) { return record.seq; }, annotation);
+}
+
+/// Reads from the columns forked_run, forked_cycle, forked_e_s and forked_seed, the first of which is `column`.
+std::optional<ForkPoint> fork_point(const sqlite::Statement& row, int column) {
+    if (row.is_null(column)) return std::nullopt;
+    return ForkPoint{{static_cast<std::uint32_t>(row.integer(column))},
+                     static_cast<std::uint64_t>(row.integer(column + 1)),
+                     row.real(column + 2),
+                     static_cast<std::uint64_t>(row.integer(column + 3))};
+}
+
+}  // namespace
+
+Result<FlownRun> Reader::cut_off(RunId run) {
+    const auto state = this->run(run);
+    if (!state) return state.error();
+    if (state->state() != v1::RunState::interrupted)
+        return Error{"run " + std::to_string(run.value) + " was not cut off: it is " +
+                     v1::RunState::State_Name(state->state())};
+    return flown(run);
+}
+
+Result<FlownRun> Reader::flown(RunId run) {
     auto snapshot = sqlite::Transaction::begin_read(state_->database);
     if (!snapshot) return snapshot.error();
     static constexpr char run_sql[] =
-        "SELECT state, scenario_text, started, seed, dictionary, correlation_sclk, correlation_scet_us, clock_rate,"
-        " leap_seconds, clock_version FROM runs WHERE run = ?";
+        "SELECT case_number, scenario_text, started, seed, dictionary, correlation_sclk, correlation_scet_us,"
+        " clock_rate, leap_seconds, clock_version, entry_sclk, light_time_s, forked_run, forked_cycle, forked_e_s,"
+        " forked_seed FROM runs WHERE run = ?";
     auto rows = state_->query(run_sql);
     if (!rows) return rows.error();
     auto& row = **rows;
@@ -212,22 +247,24 @@ Result<CutOffRun> Reader::cut_off(RunId run) {
     auto found = row.step();
     if (!found) return found.error();
     if (!*found) return Error{"no run " + std::to_string(run.value)};
-    if (row.text(0) != "interrupted")
-        return Error{"run " + std::to_string(run.value) + " was not cut off: it is " + std::string(row.text(0))};
-    CutOffRun cut;
-    cut.run = run;
-    cut.scenario_text = row.text(1);
-    cut.started = row.text(2);
-    cut.seed = static_cast<std::uint64_t>(row.integer(3));
-    cut.clock = clock_of(row, 5);
+    FlownRun flown;
+    flown.run = run;
+    flown.case_number = static_cast<std::uint64_t>(row.integer(0));
+    flown.entry = {row.real(10)};
+    flown.light_time_s = row.real(11);
+    flown.forked_from = fork_point(row, 12);
+    flown.scenario_text = row.text(1);
+    flown.started = row.text(2);
+    flown.seed = static_cast<std::uint64_t>(row.integer(3));
+    flown.clock = clock_of(row, 5);
     if (auto same = state_->same_dictionary({run, false, static_cast<std::uint16_t>(row.integer(4)), {}}); !same)
         return same.error();
     auto last = state_->last_seq(run);
     if (!last) return last.error();
-    cut.last_seq = *last;
+    flown.last_seq = *last;
     auto requests = state_->requests(run);
     if (!requests) return requests.error();
-    cut.requests = std::move(*requests);
+    flown.requests = std::move(*requests);
     static constexpr char annotations_sql[] = "SELECT key FROM notes WHERE key BETWEEN ?1 AND ?2 UNION ALL"
                                               " SELECT key FROM alarm_actions WHERE key BETWEEN ?1 AND ?2 ORDER BY key";
     auto annotations = state_->query(annotations_sql);
@@ -236,9 +273,29 @@ Result<CutOffRun> Reader::cut_off(RunId run) {
     for (;;) {
         auto one = (*annotations)->step();
         if (!one) return one.error();
-        if (!*one) return cut;
-        cut.annotations.push_back(sequence_of((*annotations)->integer(0)));
+        if (!*one) return flown;
+        flown.annotations.push_back(sequence_of((*annotations)->integer(0)));
     }
+}
+
+Result<std::vector<Annotation>> Reader::annotations(RunId run) {
+    std::vector<Annotation> all;
+    const auto add = [&]<typename Record>(const Record&) -> Result<void> {
+        auto rows = state_->query(rows_sql<Record>());
+        if (!rows) return rows.error();
+        auto& row = **rows;
+        row.bind(1, item_key(run, 0)).bind(2, item_key(run, sequence_max)).bind(3, std::int64_t{-1});
+        for (;;) {
+            auto found = row.step();
+            if (!found) return found.error();
+            if (!*found) return {};
+            all.emplace_back(read_row<Record>(row));
+        }
+    };
+    if (auto read = add(NoteRecord{}); !read) return read.error();
+    if (auto read = add(AlarmActionRecord{}); !read) return read.error();
+    std::ranges::sort(all, {}, sequence_of_annotation);
+    return all;
 }
 
 namespace {
@@ -247,7 +304,8 @@ const SqlInOrder& runs_sql() {
     static const std::string columns =
         "SELECT r.run, scenario, title, venue, seed, state, outcome, pace, started, last_seq, entry_sclk, start_sclk,"
         " light_time_s, tone_model, digest, coalesce(progress, 0), correlation_sclk, correlation_scet_us, clock_rate,"
-        " leap_seconds, clock_version FROM runs r LEFT JOIN recordings c ON c.run = r.run"
+        " leap_seconds, clock_version, forked_run, forked_cycle, forked_e_s, forked_seed"
+        " FROM runs r LEFT JOIN recordings c ON c.run = r.run"
         " WHERE r.run BETWEEN ?1 AND ?2 ORDER BY r.run";
     static const SqlInOrder sql{columns, columns + " DESC"};
     return sql;
@@ -275,6 +333,7 @@ Result<v1::RunState> Reader::State::run_state(const sqlite::Statement& row) {
     state.set_digest(std::string(row.text(14)));
     state.set_relay_progress(row.real(15));
     *state.mutable_clock() = to_reply(clock_of(row, 16));
+    if (const auto fork = fork_point(row, 21)) *state.mutable_forked_from() = to_reply(*fork);
     auto last = row.is_null(9) ? last_seq(run) : Result<Sequence>(static_cast<Sequence>(row.integer(9)));
     if (!last) return last.error();
     state.set_last_seq(*last);

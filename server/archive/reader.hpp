@@ -9,6 +9,7 @@
 #include "dictionaries/dictionary.hpp"
 #include "dictionaries/timeline_plan.hpp"
 #include "server/archive/audit.hpp"
+#include "server/archive/forecasts.hpp"
 #include "server/archive/layouts.hpp"
 #include "server/archive/records.hpp"
 #include "telemetry/alarm_register.hpp"
@@ -225,8 +226,12 @@ class Reader {
     Result<ItemPage> items(RunId run, Sequence after, std::size_t limit);
     Result<ItemPage> items(RunId run, Sequence after, std::size_t limit, ItemKinds kinds);
     Result<Sequence> last_seq(RunId run);
-    /// What is needed to continue an interrupted run. Fails when the run was not interrupted.
-    Result<CutOffRun> cut_off(RunId run);
+    /// What is needed to fly a run again, in whatever state it is.
+    Result<FlownRun> flown(RunId run);
+    /// The same of an interrupted run, which it lets continue. Fails when the run was not interrupted.
+    Result<FlownRun> cut_off(RunId run);
+    /// What people added to a run, in the order of numbers.
+    Result<std::vector<Annotation>> annotations(RunId run);
     /// The scenario of a run of this dictionary, as Protobuf text. The Error says why there is none.
     Result<std::string> scenario_text(RunId run);
 
@@ -295,6 +300,9 @@ class Reader {
     Result<std::vector<v1::Silence>> silences(RunId run);
 
     Result<std::vector<AuditEntry>> audit(std::uint64_t after, std::size_t limit, Order order = {});
+    /// A page of a run's forecasts, and one of them: see forecasts.hpp.
+    Result<std::vector<ForecastRecord>> forecasts(RunId run, std::uint64_t after, std::size_t limit, Order order);
+    Result<std::optional<ForecastRecord>> forecast(RunId run, std::uint64_t number);
     /// The layouts of the owner, the one saved longest ago first.
     Result<std::vector<LayoutRecord>> layouts(const std::string& owner);
 

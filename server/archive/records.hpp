@@ -255,6 +255,14 @@ struct RawRecord {
 /// Octets kept of each link of a run by default; chosen. When there are more, the oldest are removed.
 inline constexpr std::uint64_t raw_octets_kept = std::uint64_t{1} << 30U;
 
+/// The instant of another run from which a run goes on otherwise.
+struct ForkPoint {
+    RunId run;
+    std::uint64_t cycle = 0;  ///< cycles of 1/64 s flown before it
+    double e_s = 0.0;         ///< of the vehicle's clock
+    std::uint64_t seed = 0;   ///< of the errors that are drawn anew from there on; 0: the run's own errors
+};
+
 struct RunStart {
     std::string scenario, title;
     std::string venue = "rehearsal";
@@ -268,6 +276,7 @@ struct RunStart {
     std::string tone_model;
     std::string scenario_text;  ///< the whole scenario as Protobuf text: with the seed, the run can be flown again
     std::vector<std::pair<std::string, double>> solution;  ///< ground's navigation solution
+    std::optional<ForkPoint> forked_from;
 };
 
 /// How a run ended; `running`: it has not, or was cut off.
@@ -289,15 +298,18 @@ struct RequestRecord {
     std::string request;      ///< as kept_text() writes it
 };
 
-/// A run that was cut off, with all that is needed to fly it again up to that point.
-struct CutOffRun {
+/// A run with all that is needed to fly it again.
+struct FlownRun {
     RunId run;
     std::string scenario_text, started;
-    std::uint64_t seed = 0;
+    std::uint64_t seed = 0, case_number = 0;
+    Sclk entry;                           ///< as predicted
+    double light_time_s = 0.0;
     ClockCorrelation clock;               ///< used by the run, whatever the dictionary's file says now
     Sequence last_seq = 0;                ///< durable, and perhaps published
     std::vector<RequestRecord> requests;  ///< in the order taken
     std::vector<Sequence> annotations;    ///< items made by people: flying does not produce them again
+    std::optional<ForkPoint> forked_from;
 };
 
 /// A person's addition to a run, in progress or over.

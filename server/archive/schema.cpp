@@ -30,7 +30,8 @@ CREATE TABLE runs (
     ended TEXT NOT NULL DEFAULT '', last_seq INTEGER, start_sclk REAL NOT NULL, entry_sclk REAL NOT NULL,
     correlation_sclk REAL NOT NULL, correlation_scet_us INTEGER NOT NULL, clock_version INTEGER NOT NULL,
     clock_rate REAL NOT NULL, leap_seconds INTEGER NOT NULL, light_time_s REAL NOT NULL,
-    tone_model TEXT NOT NULL, dictionary INTEGER NOT NULL, scenario_text TEXT NOT NULL) STRICT;
+    tone_model TEXT NOT NULL, dictionary INTEGER NOT NULL, scenario_text TEXT NOT NULL,
+    forked_run INTEGER, forked_cycle INTEGER, forked_e_s REAL, forked_seed INTEGER) STRICT;
 CREATE TABLE run_solution (
     run INTEGER NOT NULL, position INTEGER NOT NULL, name TEXT NOT NULL, value REAL NOT NULL,
     PRIMARY KEY (run, position)) STRICT, WITHOUT ROWID;
@@ -87,6 +88,12 @@ CREATE TABLE raw_octets (
 CREATE TABLE audit (
     entry INTEGER PRIMARY KEY, at TEXT NOT NULL, who TEXT NOT NULL, peer TEXT NOT NULL, action TEXT NOT NULL,
     detail TEXT NOT NULL, outcome TEXT NOT NULL, hash TEXT NOT NULL) STRICT;
+
+-- What instructors asked of a run's truth; no part of what it recorded (forecasts.hpp).
+CREATE TABLE forecasts (
+    run INTEGER NOT NULL, number INTEGER NOT NULL, asked TEXT NOT NULL, asked_by TEXT NOT NULL, at_e_s REAL NOT NULL,
+    request TEXT NOT NULL, state TEXT NOT NULL, reason TEXT NOT NULL, result TEXT NOT NULL, ended TEXT NOT NULL,
+    PRIMARY KEY (run, number)) STRICT, WITHOUT ROWID;
 
 CREATE TABLE layouts (
     owner TEXT NOT NULL, name TEXT NOT NULL, view TEXT NOT NULL, saved TEXT NOT NULL,

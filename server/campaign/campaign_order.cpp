@@ -12,15 +12,12 @@
 #include <unistd.h>
 
 namespace aeolis::server::campaign {
-namespace {
 
-/// Gives the calling thread the lowest priority from now on.
 void use_idle_priority() {
+    constexpr int lowest = 19;
     const sched_param none{};
-    if (sched_setscheduler(0, SCHED_IDLE, &none) != 0) setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), 19);
+    if (sched_setscheduler(0, SCHED_IDLE, &none) != 0) setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), lowest);
 }
-
-}  // namespace
 
 std::filesystem::path results_file(const std::filesystem::path& folder, const std::string& scenario,
                                    std::uint64_t seed) {

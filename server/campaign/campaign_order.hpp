@@ -19,6 +19,9 @@ struct Order {
     bool idle_priority = false;  ///< cases fly only while the processor is idle; the storing thread excepted
 };
 
+/// Gives the calling thread the lowest priority from now on: it runs only while nothing else wants the processor.
+void use_idle_priority();
+
 /// The file in a folder for the results of this scenario and seed.
 std::filesystem::path results_file(const std::filesystem::path& folder, const std::string& scenario,
                                    std::uint64_t seed);

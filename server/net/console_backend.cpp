@@ -5,6 +5,7 @@
 #include "server/archive/upkeep.hpp"
 #include "server/base/json.hpp"
 #include "server/base/wall_clock.hpp"
+#include "server/rehearsal/again_of.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -96,8 +97,9 @@ Result<std::unique_ptr<ConsoleBackend>> ConsoleBackend::open(Settings settings,
     backend->pipeline_->on_audited([self](const archive::AuditHead& head) { self->keep_audit_head(head); });
     backend->rehearsals_ = std::make_unique<RehearsalManager>(
         backend->scenarios_, dictionary, *backend->pipeline_, post,
-        [self](archive::RunId run, const auto& done) {
-            const bool taken = self->queries_->ask([run, done](archive::Reader& reader) { done(reader.cut_off(run)); });
+        [self](const v1::StartRehearsal& request, const auto& done) {
+            const bool taken =
+                self->queries_->ask([request, done](archive::Reader& reader) { done(again_of(request, reader)); });
             if (!taken) done(Error{QueryThreads::busy});
         },
         self->timeline_questions(),
@@ -109,9 +111,18 @@ Result<std::unique_ptr<ConsoleBackend>> ConsoleBackend::open(Settings settings,
     backend->access_ = std::move(*access);
     backend->campaigns_ =
         std::make_unique<campaign::CampaignManager>(chosen.archive.parent_path(), backend->scenarios_, dictionary);
+    backend->forecasts_ =
+        std::make_unique<shadow::ForecastService>(dictionary, [self](const archive::ForecastRecord& forecast) {
+            const auto done = [](const Result<std::uint64_t>& kept) {
+                if (!kept) spdlog::error("a forecast could not be stored: {}", kept.error().message);
+            };
+            if (!self->pipeline_->keep_forecast(forecast, done))
+                spdlog::error("run {}: forecast {} could not be stored: too much waits", forecast.run.value,
+                              forecast.number);
+        });
     backend->api_ = std::make_unique<Api>(Api::Parts{
         dictionary, backend->scenarios_, *backend->queries_, *backend->rehearsals_, backend->predictions_,
-        *backend->campaigns_, *backend->hub_, *backend->pipeline_, backend->console_, *backend->access_,
+        *backend->campaigns_, *backend->forecasts_, *backend->hub_, *backend->pipeline_, backend->console_, *backend->access_,
         backend->server_->secure(), [self] { return self->server_->connections(); }, backend->clock_watch_,
         chosen.publish_to.url.empty() && chosen.follow_by.url.empty() ? std::function<Replication()>{}
                                                                       : [self] { return self->replication(); },
@@ -230,6 +241,7 @@ ConsoleBackend::~ConsoleBackend() {
     api_.reset();
     follower_.reset();
     publisher_.reset();
+    forecasts_.reset();
     campaigns_.reset();  // abandons cases in flight
     downlink_.reset();
     rehearsals_.reset();

@@ -21,15 +21,19 @@ namespace aeolis::pipeline {
 /// Assigns sequence numbers and notes them in the batch that will make them durable.
 class Numbering {
   public:
+    /// Which number comes last: that of the last item given out, or of items behind it that are stored already.
+    enum class Last : std::uint8_t { given, stored };
     /// @param taken  numbers, ascending, of stored items that are not produced again
-    explicit Numbering(Sequence first = 1, std::vector<Sequence> taken = {}) : next_(first), taken_(std::move(taken)) {
-        pass_taken();
+    explicit Numbering(Sequence first = 1, std::vector<Sequence> taken = {}, Last last = Last::stored)
+        : next_(first), taken_(std::move(taken)), last_(last) {
+        if (last_ == Last::stored) pass_taken();
     }
 
     Sequence next(archive::Batch& batch) {
+        pass_taken();
         batch.last_seq = next_++;
         if (batch.first_seq == 0) batch.first_seq = batch.last_seq;
-        pass_taken();
+        if (last_ == Last::stored) pass_taken();
         return batch.last_seq;
     }
     Sequence last() const { return next_ - 1; }
@@ -41,6 +45,7 @@ class Numbering {
     Sequence next_;
     std::vector<Sequence> taken_;
     std::size_t passed_ = 0;
+    Last last_;
 };
 
 /// Takes one run's packets, on either path: identifies each, whether it was seen before, and derives everything from

@@ -22,8 +22,8 @@ struct Pipeline::State {
 
     /// All state of the current run.
     struct Run {
-        Run(RunId id_in, archive::RunStart start_in, const State& state, std::vector<Sequence> taken)
-            : id(id_in), start(std::move(start_in)), numbering(1, std::move(taken)),
+        Run(RunId id_in, archive::RunStart start_in, const State& state, Numbering numbering_in)
+            : id(id_in), start(std::move(start_in)), numbering(std::move(numbering_in)),
               intake(state.dictionary, state.columns, state.other), staleness(state.dictionary),
               situation(state.dictionary, start) {}
         RunId id;
@@ -37,6 +37,8 @@ struct Pipeline::State {
         Sequence last_durable = 0;
         Sequence repeat_until = 0;  ///< items up to here are already durable
         Compare compare;            ///< not null while items are repeated
+        std::optional<Repeated> origin;  ///< until the fork
+        std::size_t annotated = 0;       ///< of the origin's annotations
         std::optional<Error> differs;
         struct RawLink {
             std::uint64_t received = 0, stored = 0;  ///< octets; the first `stored` are durable
@@ -45,6 +47,17 @@ struct Pipeline::State {
         std::uint16_t station_carriers = 0, station_events = 0, station_spectra = 0;  ///< packets so far
 
         bool repeats() const { return compare != nullptr; }
+        /// Adds the origin's annotations whose numbers have come.
+        void annotate() {
+            for (; annotated < origin->annotations.size(); ++annotated) {
+                const archive::Annotation& annotation = origin->annotations[annotated];
+                const Sequence seq = std::visit([](const auto& record) { return record.seq; }, annotation);
+                if (seq > numbering.last()) return;
+                pending.add(annotation);
+                pending.first_seq = pending.first_seq == 0 ? seq : std::min(pending.first_seq, seq);
+                pending.last_seq = std::max(pending.last_seq, seq);
+            }
+        }
         /// When something left the vehicle, by light time.
         Sclk sent(Ert ert) const {
             const double after_s =
@@ -124,15 +137,36 @@ Result<RunId> Pipeline::begin(const archive::RunStart& start) {
     if (state_->run) return Error{"run " + std::to_string(state_->run->id.value) + " still goes on"};
     auto id = state_->archive.begin_run(start, state_->dictionary);
     if (!id) return id.error();
-    state_->run.emplace(*id, start, *state_, std::vector<Sequence>{});
+    state_->run.emplace(*id, start, *state_, Numbering{});
     return *id;
+}
+
+Result<RunId> Pipeline::begin(const archive::RunStart& start, Repeated repeated) {
+    if (state_->run) return Error{"run " + std::to_string(state_->run->id.value) + " still goes on"};
+    AEOLIS_CHECK(repeated.compare != nullptr);
+    auto id = state_->archive.begin_run(start, state_->dictionary);
+    if (!id) return id.error();
+    std::vector<Sequence> numbers;
+    for (const auto& annotation : repeated.annotations)
+        numbers.push_back(std::visit([](const auto& record) { return record.seq; }, annotation));
+    state_->run.emplace(*id, start, *state_, Numbering{1, std::move(numbers), Numbering::Last::given});
+    state_->run->origin = std::move(repeated);
+    return *id;
+}
+
+Result<Sequence> Pipeline::forked() {
+    AEOLIS_CHECK(state_->run.has_value() && state_->run->origin.has_value());
+    if (auto done = commit(); !done) return done.error();
+    state_->run->origin.reset();
+    if (state_->run->differs) return *state_->run->differs;
+    return state_->run->last_durable;
 }
 
 Result<void> Pipeline::resume(RunId run, const archive::RunStart& start, Sequence durable, Compare compare,
                               std::vector<Sequence> annotations) {
     if (state_->run) return Error{"run " + std::to_string(state_->run->id.value) + " still goes on"};
     AEOLIS_CHECK(compare != nullptr);
-    state_->run.emplace(run, start, *state_, std::move(annotations));
+    state_->run.emplace(run, start, *state_, Numbering{1, std::move(annotations)});
     state_->run->repeat_until = durable;
     state_->run->last_durable = durable;
     state_->run->compare = std::move(compare);
@@ -263,9 +297,9 @@ Result<archive::Annotation> Pipeline::annotate(RunId run, archive::Annotation an
         state_->publish(state_->published(run, batch, true));
         return added;
     }
-    if (state_->run->repeats())
-        return Error{"run " + std::to_string(run.value) +
-                     " is flown again up to where it was cut off: try again when it goes on"};
+    if (state_->run->repeats() || state_->run->origin)
+        return Error{"run " + std::to_string(run.value) + " is flown again up to where it was cut off or forked: try "
+                                                          "again when it goes on"};
     if (auto room = state_->room(); !room) return room.error();
     auto& current = *state_->run;
     std::visit([&](auto& record) { record.seq = current.numbering.next(current.pending); }, annotation);
@@ -480,14 +514,18 @@ Result<void> Pipeline::commit() {
         return {};
     }
     if (!run.pending.packets.empty() || run.progress != run.durable_progress) run.pending.totals = run.totals();
+    if (run.origin) run.annotate();
     if (run.pending.empty()) return {};
+    if (run.origin && !run.differs && run.pending.last_seq != 0)
+        if (auto same = run.origin->compare(*state_->published(run.origin->run, run.pending, true)); !same)
+            run.differs = same.error();
     if (auto done = state_->archive.append(run.id, run.pending); !done) return done;
     run.durable_progress = run.progress;
     const auto batch = state_->published(run.id, run.pending, state_->items_wanted);
     run.pending.clear();
     if (!batch) return {};
     run.last_durable = batch->last_seq;
-    if (state_->publish) state_->publish(batch);
+    if (state_->publish && !run.origin) state_->publish(batch);
     return {};
 }
 

@@ -72,6 +72,19 @@ class Pipeline {
     /// Begins a run; durable when it returns. One at a time: the last one must have been finished or abandoned.
     Result<RunId> begin(const archive::RunStart& start);
 
+    /// What a run repeats up to the fork: items of another run, which `compare` reads, and what people added to it,
+    /// ascending by number.
+    struct Repeated {
+        RunId run;
+        Compare compare;
+        std::vector<archive::Annotation> annotations;
+    };
+    /// Begins a run that is another up to a fork. Until forked(), its items are compared with those of the other and
+    /// stored with its annotations, but not published: they are a past that nobody sees happen.
+    Result<RunId> begin(const archive::RunStart& start, Repeated repeated);
+    /// Stores what waits; from here on the run is as any. @return its last item; the Error names the first that differs
+    Result<Sequence> forked();
+
     /// Resumes a run that was cut off, flown again from its beginning. Items up to `durable` are neither stored nor
     /// published again but compared with the archive by `compare`; after them the run continues as any. One at a time,
     /// as begin().

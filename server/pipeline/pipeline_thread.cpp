@@ -96,7 +96,25 @@ void PipelineThread::perform(Action action) {
     if (taken) done.wait();
 }
 
-Result<void> PipelineThread::resume(archive::CutOffRun& cut, const archive::RunStart& start) {
+Result<archive::RunId> PipelineThread::begin(const archive::RunStart& start, archive::RunId of) {
+    auto reader = archive::Reader::open(archive_.file(), dictionary_);
+    if (!reader) return reader.error();
+    auto stored = std::make_shared<archive::Reader>(std::move(*reader));
+    auto annotations = stored->annotations(of);
+    if (!annotations) return annotations.error();
+    const auto compare = [stored](const pipeline::PublishedBatch& again) { return same_items(*stored, again); };
+    Result<archive::RunId> run = Error{"the archive is closing"};
+    perform([&] { run = pipeline_.begin(start, {of, compare, std::move(*annotations)}); });
+    return run;
+}
+
+Result<archive::Sequence> PipelineThread::forked() {
+    Result<archive::Sequence> result = Error{"the archive is closing"};
+    perform([&] { result = pipeline_.forked(); });
+    return result;
+}
+
+Result<void> PipelineThread::resume(archive::FlownRun& cut, const archive::RunStart& start) {
     auto reader = archive::Reader::open(archive_.file(), dictionary_);
     if (!reader) return reader.error();
     auto stored = std::make_shared<archive::Reader>(std::move(*reader));
@@ -259,6 +277,12 @@ bool PipelineThread::annotate(archive::RunId run, archive::Annotation annotation
             done(Error{fmt::format(
                 "this is taken, and stored as soon as the disk takes it; do not send it again. Now: {}", fault)});
         });
+    }});
+}
+
+bool PipelineThread::keep_forecast(archive::ForecastRecord forecast, std::function<void(Result<std::uint64_t>)> done) {
+    return !blocked() && jobs_.try_push(Action{[this, forecast = std::move(forecast), done = std::move(done)] {
+        done(archive_.keep_forecast(forecast));
     }});
 }
 

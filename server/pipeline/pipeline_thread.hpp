@@ -58,8 +58,12 @@ class PipelineThread {
 
     /// Begins a run; waits until it is in the archive.
     Result<archive::RunId> begin(const archive::RunStart& start);
+    /// Begins a run that is another up to a fork: see Pipeline::begin.
+    Result<archive::RunId> begin(const archive::RunStart& start, archive::RunId of);
+    /// Waits until all deliveries were taken and stored. @return the last item; an Error when what was flown again differs
+    Result<archive::Sequence> forked();
     /// Resumes a run that was cut off, flown again from its beginning: stored items are compared and not stored again.
-    Result<void> resume(archive::CutOffRun& cut, const archive::RunStart& start);
+    Result<void> resume(archive::FlownRun& cut, const archive::RunStart& start);
     /// Waits until all deliveries were taken. True when the run has caught up with the stored items; an Error when it
     /// differs from them.
     Result<bool> caught_up();
@@ -89,6 +93,9 @@ class PipelineThread {
     bool annotate(archive::RunId run, archive::Annotation annotation,
                   std::function<void(Result<archive::Annotation>)> done);
 
+    /// Stores a forecast. Calls `done` on this thread with its number once it is durable, or with an Error. False, and
+    /// nothing done, when too much waits.
+    bool keep_forecast(archive::ForecastRecord forecast, std::function<void(Result<std::uint64_t>)> done);
     /// Saves or removes a layout. Calls `done` on this thread once that is durable, or with an Error: nothing was
     /// changed. False, and nothing done, when too much waits.
     bool change_layout(archive::LayoutChange change, std::function<void(Result<archive::LayoutOutcome>)> done);

@@ -62,6 +62,15 @@ Result<void> Rehearsal::inject(const v1::FaultInjection& injection) {
     return {};
 }
 
+Result<void> Rehearsal::redraw(std::uint64_t seed) {
+    if (!landing().dispersed())
+        return Error{fmt::format("seed: the errors of {} are drawn {} s before entry, by the seed of the run; fork it "
+                                 "later, or start another run",
+                                 scenario_.name, scenario_.disperse_before_entry_s.value_or(0.0))};
+    flight_.redraw(seed, case_number_);
+    return {};
+}
+
 std::vector<v1::CommandReply> Rehearsal::look(std::span<const v1::CommandRequest> file, const std::string& browser) {
     std::vector<v1::CommandReply> replies;
     std::vector<commands::Request> requests;

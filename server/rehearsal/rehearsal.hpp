@@ -50,6 +50,9 @@ class Rehearsal {
     /// Injects a fault from the next cycle on. The Error names the field at fault.
     Result<void> inject(const v1::FaultInjection& injection);
 
+    /// See Landing::redraw. The Error says why nothing can be drawn anew yet.
+    Result<void> redraw(std::uint64_t seed);
+
     /// The stages since the last call, without `seq`.
     std::vector<archive::StageRecord> take_stages();
     /// Why commands of the scenario's own script were refused.
@@ -66,6 +69,7 @@ class Rehearsal {
     v1::Clocks clocks() const;
 
     const simulation::Scenario& scenario() const { return scenario_; }
+    const ScriptedLanding& flight() const { return flight_; }
     const simulation::Landing& landing() const { return flight_.landing(); }
     const commands::CommandGateway& gateway() const { return flight_.gateway(); }
     const telemetry::GroundStation& station() const { return flight_.station(); }

@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <limits>
 #include <spdlog/spdlog.h>
 
 namespace aeolis::server {
@@ -45,10 +44,10 @@ std::vector<v1::CommandRequest> timeline_changes(const simulation::Scenario& sce
 }  // namespace
 
 RehearsalManager::RehearsalManager(const ScenarioLibrary& scenarios, const dictionary::Dictionary& dictionary,
-                                   PipelineThread& pipeline, Post post, ReadCutOff read_cut_off,
+                                   PipelineThread& pipeline, Post post, ReadAgain read_again,
                                    TimelineQuestions timeline, Callbacks callbacks)
     : scenarios_(scenarios), dictionary_(dictionary), pipeline_(pipeline), post_(std::move(post)),
-      read_cut_off_(std::move(read_cut_off)), timeline_(std::move(timeline)), callbacks_(std::move(callbacks)) {}
+      read_again_(std::move(read_again)), timeline_(std::move(timeline)), callbacks_(std::move(callbacks)) {}
 
 RehearsalManager::~RehearsalManager() = default;
 
@@ -63,19 +62,13 @@ void RehearsalManager::start(const v1::StartRehearsal& request, Began began) {
     if (const auto busy = refusal_while_going_on(); !busy) return began(busy.error());
     const auto pace = checked_pace(request.pace());
     if (!pace) return began(pace.error());
-    if (request.continue_run() != 0) {
-        if (request.has_inline_scenario() || !request.scenario().empty() || request.seed() != 0)
-            return began(Error{"continue_run: the run has its scenario and its seed; leave them out"});
-        if (request.continue_run() > std::numeric_limits<std::uint32_t>::max())
-            return began(Error{fmt::format("no run {}", request.continue_run())});
-        return read_cut_off_(archive::RunId{static_cast<std::uint32_t>(request.continue_run())},
-                             [this, began = std::move(began), pace = *pace](Result<archive::CutOffRun> cut) {
-                                 post_([this, began, pace, cut = std::move(cut)]() mutable {
-                                     if (!cut) return began(cut.error());
-                                     continue_run(std::move(*cut), pace, began);
-                                 });
-                             });
-    }
+    if (request.continue_run() != 0 || request.has_fork())
+        return read_again_(request, [this, began = std::move(began), pace = *pace](Result<RehearsalRunner::Again> again) {
+            post_([this, began, pace, again = std::move(again)]() mutable {
+                if (!again) return began(again.error());
+                fly_again(std::move(*again), pace, began);
+            });
+        });
     if (request.has_inline_scenario() && !request.scenario().empty())
         return began(Error{"scenario and inline_scenario: one of them, not both"});
     auto scenario = request.has_inline_scenario() ? scenario_from_message(request.inline_scenario())
@@ -109,13 +102,14 @@ void RehearsalManager::fly(Flight flight, Began began) {
                                                 pipeline_, callbacks_for(std::move(began)));
 }
 
-void RehearsalManager::continue_run(archive::CutOffRun cut, double pace, Began began) {
+void RehearsalManager::fly_again(RehearsalRunner::Again again, double pace, Began began) {
     if (const auto busy = refusal_while_going_on(); !busy) return began(busy.error());
-    auto scenario = scenario_from_text(cut.scenario_text, fmt::format("the scenario of run {}", cut.run.value));
+    const auto of = fmt::format("the scenario of run {}", again.run.run.value);
+    auto scenario = scenario_from_text(again.run.scenario_text, of);
     if (!scenario) return began(scenario.error());
     runner_.reset();
     phase_ = Phase::beginning;
-    runner_ = std::make_unique<RehearsalRunner>(std::move(*scenario), std::move(cut), pace, dictionary_, pipeline_,
+    runner_ = std::make_unique<RehearsalRunner>(std::move(*scenario), std::move(again), pace, dictionary_, pipeline_,
                                                 callbacks_for(std::move(began)));
 }
 

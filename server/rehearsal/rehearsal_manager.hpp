@@ -37,8 +37,9 @@ class RehearsalManager {
         std::function<void(v1::Clocks)> on_clocks;
     };
     using Post = std::function<void(std::function<void()>)>;
-    /// Reads a run that was cut off, on any thread; an Error when it was not.
-    using ReadCutOff = std::function<void(archive::RunId, std::function<void(Result<archive::CutOffRun>)>)>;
+    /// Reads, on any thread, the run that a request continues or forks: see again_of().
+    using ReadAgain =
+        std::function<void(const v1::StartRehearsal&, std::function<void(Result<RehearsalRunner::Again>)>)>;
     using Began = std::function<void(Result<v1::RunState>)>;
     /// Analyses, on any thread, the timeline as these commands would change it; empty: none changes it. An Error
     /// refuses them. Run 0: no run yet; the commands are its script. `only_check`: a dry run.
@@ -62,7 +63,7 @@ class RehearsalManager {
     };
 
     RehearsalManager(const ScenarioLibrary& scenarios, const dictionary::Dictionary& dictionary,
-                     PipelineThread& pipeline, Post post, ReadCutOff read_cut_off, TimelineQuestions timeline,
+                     PipelineThread& pipeline, Post post, ReadAgain read_again, TimelineQuestions timeline,
                      Callbacks callbacks);
     ~RehearsalManager();
 
@@ -107,7 +108,7 @@ class RehearsalManager {
     Phase phase() const { return runner_ && runner_->over() ? Phase::over : phase_; }
     Result<void> refusal_while_going_on() const;
     void fly(Flight flight, Began began);
-    void continue_run(archive::CutOffRun cut, double pace, Began began);
+    void fly_again(RehearsalRunner::Again again, double pace, Began began);
     RehearsalRunner::Callbacks callbacks_for(Began began);
     void begun(const Result<v1::RunState>& state, const Began& began);
     Result<void> order_of_run(const v1::RehearsalControl& control);
@@ -134,7 +135,7 @@ class RehearsalManager {
     const dictionary::Dictionary& dictionary_;
     PipelineThread& pipeline_;
     Post post_;
-    ReadCutOff read_cut_off_;
+    ReadAgain read_again_;
     TimelineQuestions timeline_;
     Callbacks callbacks_;
     v1::RunState state_;

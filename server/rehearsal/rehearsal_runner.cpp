@@ -7,6 +7,7 @@
 #include "server/archive/kept_request.hpp"
 #include "server/base/wall_clock.hpp"
 #include "server/rehearsal/command_messages.hpp"
+#include "server/rehearsal/kept_requests.hpp"
 #include "server/rehearsal/rehearsal.hpp"
 #include "server/scenario/scenario_text.hpp"
 
@@ -63,10 +64,10 @@ RehearsalRunner::RehearsalRunner(simulation::Scenario scenario, std::uint64_t se
     thread_ = std::thread{[this] { run(); }};
 }
 
-RehearsalRunner::RehearsalRunner(simulation::Scenario scenario, archive::CutOffRun cut, double pace,
+RehearsalRunner::RehearsalRunner(simulation::Scenario scenario, Again again, double pace,
                                  const dictionary::Dictionary& dictionary, PipelineThread& pipeline,
                                  Callbacks callbacks)
-    : scenario_(std::move(scenario)), seed_(cut.seed), cut_(std::move(cut)), dictionary_(dictionary),
+    : scenario_(std::move(scenario)), seed_(again.run.seed), again_(std::move(again)), dictionary_(dictionary),
       pipeline_(pipeline), callbacks_(std::move(callbacks)) {
     pace_ = std::clamp(pace, 0.0, pace_max);
     thread_ = std::thread{[this] { run(); }};
@@ -161,8 +162,14 @@ std::vector<std::optional<v1::CommandReply>> RehearsalRunner::repeated(const Sen
 }
 
 void RehearsalRunner::run() {
-    Rehearsal rehearsal{scenario_, seed_, 0, dictionary_, {}, cut_ ? std::optional{cut_->clock} : std::nullopt};
+    Rehearsal rehearsal{scenario_,
+                        seed_,
+                        again_ ? again_->run.case_number : 0,
+                        dictionary_,
+                        {},
+                        again_ ? std::optional{again_->run.clock} : std::nullopt};
     start_ = rehearsal.run_start(pace_);
+    if (again_) start_.forked_from = again_->fork ? again_->fork : again_->run.forked_from;
     if (const auto begun = begin(rehearsal)) {
         callbacks_.on_begun(state(rehearsal));
         fly(rehearsal);
@@ -180,7 +187,7 @@ void RehearsalRunner::run() {
 }
 
 Result<void> RehearsalRunner::begin(Rehearsal& rehearsal) {
-    if (cut_) return catch_up(rehearsal);
+    if (again_) return again_->fork ? fork(rehearsal) : catch_up(rehearsal);
     const auto run = pipeline_.begin(start_);
     if (!run) return run.error();
     run_id_ = *run;
@@ -193,34 +200,80 @@ bool RehearsalRunner::stop_wanted() const {
     return stop_;
 }
 
+Result<void> RehearsalRunner::repeat_due(Rehearsal& rehearsal, std::size_t& next) {
+    const auto& requests = again_->run.requests;
+    for (; next < requests.size() && requests[next].cycle == rehearsal.cycles(); ++next) {
+        if (!repeat(rehearsal, requests[next].request))
+            return Error{fmt::format("what was taken at cycle {} is refused now", requests[next].cycle)};
+        take_stages(rehearsal);
+    }
+    return {};
+}
+
 Result<void> RehearsalRunner::catch_up(Rehearsal& rehearsal) {
-    run_id_ = cut_->run;
-    start_.started = cut_->started;
-    spdlog::info("run {} is flown again up to item {}", run_id_.value, cut_->last_seq);
-    if (auto resumed = pipeline_.resume(*cut_, start_); !resumed) return resumed;
+    auto& cut = again_->run;
+    run_id_ = cut.run;
+    start_.started = cut.started;
+    spdlog::info("run {} is flown again up to item {}", run_id_.value, cut.last_seq);
+    if (auto resumed = pipeline_.resume(cut, start_); !resumed) return resumed;
     const auto given_up = [&](const std::string& why) {
         pipeline_.abandon();
         return Error{fmt::format("run {} cannot be continued: {}", run_id_.value, why)};
     };
-    auto request = cut_->requests.begin();
-    for (;;) {
+    for (std::size_t next = 0;;) {
         if (stop_wanted()) return given_up("it was stopped");
-        for (; request != cut_->requests.end() && request->cycle == rehearsal.cycles(); ++request) {
-            if (!repeat(rehearsal, request->request))
-                return given_up("what was taken at cycle " + std::to_string(request->cycle) + " is refused now");
-            take_stages(rehearsal);
-        }
+        if (const auto repeated = repeat_due(rehearsal, next); !repeated) return given_up(repeated.error().message);
         if (rehearsal.cycles() % cycles_between_looks == 0) {
             if (!deliver(rehearsal, Clock::now())) return given_up("the archive gave up");
             const auto caught_up = pipeline_.caught_up();
             if (!caught_up) return given_up(caught_up.error().message);
-            if (*caught_up && request == cut_->requests.end()) break;
+            if (*caught_up && next == cut.requests.size()) break;
             if (rehearsal.finished())
-                return given_up(fmt::format("flown again it ends before item {}", cut_->last_seq));
+                return given_up(fmt::format("flown again it ends before item {}", cut.last_seq));
         }
         step(rehearsal);
     }
-    spdlog::info("run {} goes on from item {}, at E{:+.1f} s", run_id_.value, cut_->last_seq, rehearsal.clocks().e_s());
+    spdlog::info("run {} goes on from item {}, at E{:+.1f} s", run_id_.value, cut.last_seq, rehearsal.clocks().e_s());
+    return {};
+}
+
+Result<void> RehearsalRunner::fork(Rehearsal& rehearsal) {
+    auto& parent = again_->run;
+    const auto& at = *again_->fork;
+    std::erase_if(parent.requests, [&](const archive::RequestRecord& each) { return each.cycle >= at.cycle; });
+    const auto run = pipeline_.begin(start_, parent.run);
+    if (!run) return run.error();
+    run_id_ = *run;
+    spdlog::info("run {} begins as run {}, flown again up to E{:+.1f} s", run_id_.value, parent.run.value, at.e_s);
+    const auto given_up = [&](const std::string& why) {
+        const auto reason = fmt::format("it could not be forked from run {}: {}", parent.run.value, why);
+        deliver(rehearsal, Clock::now());
+        static_cast<void>(pipeline_.finish({archive::Outcome::stopped, reason, "", wall_clock_text()}));
+        return Error{fmt::format("run {}: {}", run_id_.value, reason)};
+    };
+    // All of them first: a fork that is cut off here is continued with them, and so comes to the fork.
+    for (const auto& request : parent.requests) delivery_.entries.emplace_back(request);
+    v1::KeptRequest marker;
+    *marker.mutable_fork() = archive::to_reply(at);
+    delivery_.entries.emplace_back(archive::RequestRecord{at.cycle, archive::kept_text(marker)});
+    for (std::size_t next = 0; rehearsal.cycles() < at.cycle;) {
+        if (stop_wanted()) return given_up("it was stopped");
+        if (const auto repeated = repeat_due(rehearsal, next); !repeated) return given_up(repeated.error().message);
+        if (delivery_.entries.size() >= delivery_entries && !deliver(rehearsal, Clock::now()))
+            return given_up("the archive gave up");
+        if (rehearsal.finished())
+            return given_up(fmt::format("the run ends before, at E{:+.1f} s: {}", rehearsal.clocks().e_s(),
+                                        rehearsal.outcome_reason()));
+        step(rehearsal);
+    }
+    if (!deliver(rehearsal, Clock::now())) return given_up("the archive gave up");
+    const auto last = pipeline_.forked();
+    if (!last) return given_up(last.error().message);
+    parent.last_seq = *last;
+    if (at.seed != 0)
+        if (const auto redrawn = rehearsal.redraw(at.seed); !redrawn) return given_up(redrawn.error().message);
+    paused_ = again_->paused;
+    spdlog::info("run {} goes on by itself from E{:+.1f} s", run_id_.value, rehearsal.clocks().e_s());
     return {};
 }
 
@@ -398,19 +451,10 @@ void RehearsalRunner::keep(const Rehearsal& rehearsal, const v1::KeptRequest& re
 
 bool RehearsalRunner::repeat(Rehearsal& rehearsal, const std::string& request) {
     const auto kept = archive::kept_request(request);
-    switch (kept.kept_case()) {
-    case v1::KeptRequest::kCommand: {
-        const auto reply = rehearsal.submit(kept.command(), kept.browser(), kept.director());
+    return server::repeat(rehearsal, kept, [&](const v1::CommandReply& reply) {
         const std::scoped_lock lock{mutex_};
-        if (reply.accepted()) client_ids_.accepted(kept.command(), reply.command());
-        return reply.accepted();
-    }
-    case v1::KeptRequest::kVerdict: return rehearsal.judge(verdict_of(kept.verdict())).ok();
-    case v1::KeptRequest::kIntervention:
-        return !kept.intervention().has_fault() || rehearsal.inject(kept.intervention().fault()).ok();
-    case v1::KeptRequest::KEPT_NOT_SET: break;
-    }
-    return false;
+        client_ids_.accepted(kept.command(), reply.command());
+    });
 }
 
 void RehearsalRunner::step(Rehearsal& rehearsal) {
@@ -470,7 +514,8 @@ archive::Outcome RehearsalRunner::outcome(const Rehearsal& rehearsal) const {
 v1::RunState RehearsalRunner::state(const Rehearsal& rehearsal) const {
     v1::RunState state;
     state.set_run(run_id_.value);
-    if (cut_) state.set_last_seq(cut_->last_seq);  // until the stream gives newer numbers
+    if (again_) state.set_last_seq(again_->run.last_seq);  // until the stream gives newer numbers
+    if (start_.forked_from) *state.mutable_forked_from() = archive::to_reply(*start_.forked_from);
     state.set_scenario(start_.scenario);
     state.set_title(start_.title);
     state.set_venue(start_.venue);

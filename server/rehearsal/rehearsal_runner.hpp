@@ -40,6 +40,8 @@ class Rehearsal;
 /// Cut off  a run ended by a crash is flown again as fast as possible with the same seed, clock, and requests at the
 ///          same cycles. Each item is compared with the archive; after the last stored one the run continues as normal.
 ///          When an item differs, the run stays interrupted and on_begun gets the Error (decision 0021)
+/// Fork     another run is flown again up to an instant, in the same way, and stored as a new one; from there on it goes
+///          on by itself. When an item differs, the new run ends there and on_begun gets the Error (decision 0060)
 /// Faults   a run that cannot begin in the archive is not flown: on_begun gets the Error
 class RehearsalRunner {
   public:
@@ -68,9 +70,15 @@ class RehearsalRunner {
     /// Dictionary and pipeline must outlive this.
     RehearsalRunner(simulation::Scenario scenario, std::uint64_t seed, double pace,
                     const dictionary::Dictionary& dictionary, PipelineThread& pipeline, Callbacks callbacks);
-    /// Continues a run that was cut off. @param scenario  the one in its row
-    RehearsalRunner(simulation::Scenario scenario, archive::CutOffRun cut, double pace,
-                    const dictionary::Dictionary& dictionary, PipelineThread& pipeline, Callbacks callbacks);
+    /// A run that begins as another: one that was cut off, to be continued, or with `fork` a new one.
+    struct Again {
+        archive::FlownRun run;
+        std::optional<archive::ForkPoint> fork{};
+        bool paused = false;  ///< at the fork
+    };
+    /// @param scenario  the one in the run's row
+    RehearsalRunner(simulation::Scenario scenario, Again again, double pace, const dictionary::Dictionary& dictionary,
+                    PipelineThread& pipeline, Callbacks callbacks);
     ~RehearsalRunner();  ///< leaves the run, to be continued, and waits for its thread
 
     /// Takes an order. The Error says why an intervention is refused; commands are refused in their replies. Replies to
@@ -93,6 +101,10 @@ class RehearsalRunner {
     Result<void> begin(Rehearsal& rehearsal);
     /// Flies again the part of the run that is in the archive.
     Result<void> catch_up(Rehearsal& rehearsal);
+    /// Flies the other run again up to the fork, and stores it as this one.
+    Result<void> fork(Rehearsal& rehearsal);
+    /// Repeats the requests that were taken before this cycle, from `next` on.
+    Result<void> repeat_due(Rehearsal& rehearsal, std::size_t& next);
     bool stop_wanted() const;
     void fly(Rehearsal& rehearsal);
     /// Takes the orders since the last call; waits for one until `due`.
@@ -133,7 +145,7 @@ class RehearsalRunner {
 
     simulation::Scenario scenario_;
     std::uint64_t seed_;
-    std::optional<archive::CutOffRun> cut_;
+    std::optional<Again> again_;
     const dictionary::Dictionary& dictionary_;
     PipelineThread& pipeline_;
     Callbacks callbacks_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/shadow/forecast.hpp"
 
+#include "server/campaign/campaign_order.hpp"
 #include "server/campaign/case_flights.hpp"
 #include "server/shadow/prospect.hpp"
 
@@ -118,7 +119,11 @@ class Crew {
         : count_(count), work_(std::move(work)) {
         const auto members = std::min<std::size_t>(std::max(1U, order.jobs), count);
         threads_.reserve(members);
-        for (std::size_t i = 0; i < members; ++i) threads_.emplace_back([this] { run(); });
+        for (std::size_t i = 0; i < members; ++i)
+            threads_.emplace_back([this, idle = order.idle] {
+                if (idle) campaign::use_idle_priority();
+                run();
+            });
     }
     Crew(const Crew&) = delete;
     Crew& operator=(const Crew&) = delete;

@@ -29,6 +29,7 @@ struct ForecastOrder {
     std::uint64_t seed = 1;    ///< of the errors that are drawn anew
     std::uint64_t cases = 32;  ///< of each side
     unsigned jobs = 1;         ///< cases flown at a time
+    bool idle = false;         ///< only while nothing else wants the processor
 };
 
 struct ForecastProgress {

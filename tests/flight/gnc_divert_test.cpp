@@ -15,11 +15,11 @@ TEST_CASE("a sidestep of 304 m from rest peaks at 30 m/s in mid-way", "[gnc][R27
     CHECK(divert.position_M(9.3).x() == Approx(152.0));
 }
 
-TEST_CASE("whatever the start, it ends at rest where it was meant to", "[gnc][R27]") {
+TEST_CASE("whatever the drift, it ends at rest, aside from where the drift alone would end", "[gnc][R27]") {
     Divert divert;
     const Vector3 v0(-12.0, 7.0, 3.0), to(100.0, -250.0, 20.0);
     divert.start(to, v0, 18.0);
-    CHECK((divert.position_M(18.0) - to).norm() < 1e-9);
+    CHECK((divert.position_M(18.0) - (to + 9.0 * v0)).norm() < 1e-9);
     CHECK(divert.velocity_M(18.0).norm() < 1e-9);
     CHECK((divert.velocity_M(0.0) - v0).norm() < 1e-12);
     CHECK(divert.acceleration_M(1e-6).norm() < 1e-4);
@@ -35,6 +35,25 @@ TEST_CASE("velocity is the slope of position and acceleration that of velocity",
         CHECK(((divert.velocity_M(t + 1e-4) - divert.velocity_M(t - 1e-4)) / 2e-4 - divert.acceleration_M(t)).norm() <
               1e-5);
     }
+}
+
+TEST_CASE("a drift from any side makes the sidestep no dearer: the velocity to gain and lose is the same", "[gnc][R27]") {
+    const auto gained_mps = [](const Vector3& v0) {
+        Divert divert;
+        divert.start({304.0, 0.0, 0.0}, v0, 18.0);
+        return (divert.velocity_M(9.0) - 0.5 * v0).norm();
+    };
+    for (const Vector3& v0 : {Vector3{20.0, 0.0, 0.0}, Vector3{-20.0, 0.0, 0.0}, Vector3{0.0, 20.0, 0.0}})
+        CHECK(gained_mps(v0) == Approx(gained_mps(Vector3::Zero())));
+}
+
+TEST_CASE("a sidestep that would end where the backshell drifts to goes to the other side", "[gnc][R27]") {
+    constexpr aeolis::flight::Parameters parameters;
+    const Vector3 divert(304.0, 0.0, 0.0);
+    CHECK(sidestep_M(parameters, divert, {-30.0, 0.0, 0.0}, 18.0) == divert);
+    CHECK(sidestep_M(parameters, divert, {10.0, 0.0, 0.0}, 18.0) == divert);
+    CHECK(sidestep_M(parameters, divert, {30.0, 0.0, 0.0}, 18.0) == -divert);
+    CHECK(sidestep_M(parameters, divert, {0.0, 30.0, 0.0}, 18.0) == divert);
 }
 
 TEST_CASE("azimuth goes from north to east", "[gnc][R27]") {

@@ -71,7 +71,7 @@ TEST_CASE(
                                 tests::shipped_dictionary(),
                                 pipeline,
                                 [&](auto action) { network.post(std::move(action)); },
-                                [](archive::RunId, const auto& done) { done(Error{"none was cut off"}); },
+                                [](const v1::StartRehearsal&, const auto& done) { done(Error{"none was cut off"}); },
                                 questions,
                                 {[](const auto&) {}, [](const auto&) {}}};
     bool begun = false;

@@ -160,7 +160,7 @@ constexpr const char* flying = "part of a test: a flight that is killed";
 }
 
 /// The same run without any crash: every item up to `last`, with the requests at their cycles.
-std::vector<std::string> items_flown(const archive::CutOffRun& cut, archive::Sequence last,
+std::vector<std::string> items_flown(const archive::FlownRun& cut, archive::Sequence last,
                                      const std::filesystem::path& file) {
     const dictionary::Dictionary& dictionary = tests::shipped_dictionary();
     {
@@ -247,7 +247,7 @@ void end_and_continue(archive::Sequence published, archive::Sequence further, En
     const archive::Sequence acknowledged =
         ended == Ended::left ? leave_after(published, file) : kill_after(published, file);
     REQUIRE(acknowledged >= published);
-    std::optional<archive::CutOffRun> cut;
+    std::optional<archive::FlownRun> cut;
     std::string failure;
     {
         auto archive = archive::Archive::open(file);
@@ -275,7 +275,7 @@ void end_and_continue(archive::Sequence published, archive::Sequence further, En
         };
         callbacks.on_state = [](const auto&) {};
         callbacks.on_clocks = [](const auto&) {};
-        RehearsalRunner runner{*scenario, *cut, 0.0, dictionary, pipeline, callbacks};
+        RehearsalRunner runner{*scenario, {.run = *cut}, 0.0, dictionary, pipeline, callbacks};
         while (!runner.over() && pipeline.figures().published_items < further)
             std::this_thread::sleep_for(std::chrono::milliseconds{1});
         if (ended == Ended::left) {
@@ -302,7 +302,7 @@ void end_and_continue(archive::Sequence published, archive::Sequence further, En
 
 /// An archive whose run was begun with a clock of this rate and ended by kill -9, and what there is of the run as it is
 /// read today.
-std::pair<archive::Archive, archive::CutOffRun> cut_off_in(const std::filesystem::path& file,
+std::pair<archive::Archive, archive::FlownRun> cut_off_in(const std::filesystem::path& file,
                                                            const std::string& rate = {}) {
     kill_after(2'000, file, rate);
     auto archive = archive::Archive::open(file);
@@ -359,7 +359,7 @@ TEST_CASE("a run that does not come out the same is not continued, and what it h
         PipelineThread pipeline{std::move(archive), dictionary, PipelineThread::Faults::give_up, [](const auto&) {}};
         RehearsalRunner::Callbacks callbacks;
         callbacks.on_begun = [&](Result<v1::RunState> state) { failure = state ? "continued" : state.error().message; };
-        RehearsalRunner runner{short_landing(), cut, 0.0, dictionary, pipeline, callbacks};
+        RehearsalRunner runner{short_landing(), {.run = cut}, 0.0, dictionary, pipeline, callbacks};
         while (!runner.over()) std::this_thread::sleep_for(std::chrono::milliseconds{1});
     }
     CHECK_THAT(failure, Catch::Contains("run 1 cannot be continued: run 1: flown again, item"));
@@ -386,7 +386,7 @@ TEST_CASE("what is written down while a cut-off run is being continued keeps its
         callbacks.on_begun = [&](Result<v1::RunState> state) { told = state ? state->last_seq() : 0; };
         callbacks.on_state = [](const auto&) {};
         callbacks.on_clocks = [](const auto&) {};
-        RehearsalRunner runner{short_landing(), cut, 0.0, dictionary, pipeline, callbacks};
+        RehearsalRunner runner{short_landing(), {.run = cut}, 0.0, dictionary, pipeline, callbacks};
         while (!runner.over() && pipeline.figures().published_items < 500)
             std::this_thread::sleep_for(std::chrono::milliseconds{1});
         CHECK(runner.order(StopRun{}));
@@ -430,7 +430,7 @@ TEST_CASE("a run that goes on keeps the clock with which it was begun, whatever 
         };
         callbacks.on_state = [](const auto&) {};
         callbacks.on_clocks = [](const auto&) {};
-        RehearsalRunner runner{short_landing(), cut, 0.0, today, pipeline, callbacks};
+        RehearsalRunner runner{short_landing(), {.run = cut}, 0.0, today, pipeline, callbacks};
         while (!begun) std::this_thread::sleep_for(std::chrono::milliseconds{1});
         CHECK(runner.order(StopRun{}));
         while (!runner.over()) std::this_thread::sleep_for(std::chrono::milliseconds{1});

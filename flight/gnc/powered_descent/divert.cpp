@@ -12,7 +12,7 @@ void Divert::start(const Vector3& displacement_M, const Vector3& v0_M, double du
     const double T = duration_s_;
     v0_ = v0_M;
     // The cubic, quartic and quintic terms that meet the three conditions at T, after v0 T is subtracted.
-    const Vector3 left = displacement_M - v0_M * T;
+    const Vector3 left = displacement_M - 0.5 * v0_M * T;
     const Vector3 speed = -v0_M * T;
     c3_ = (10.0 * left - 4.0 * speed) / (T * T * T);
     c4_ = (-15.0 * left + 7.0 * speed) / (T * T * T * T);
@@ -39,6 +39,12 @@ Vector3 Divert::acceleration_M(double t_s) const {
 Vector3 Divert::command_M(const Parameters& parameters, double t_s, const Vector3& x_M, const Vector3& v_M) const {
     return acceleration_M(t_s) + parameters.divert_velocity_gain_per_s * (velocity_M(t_s) - v_M) +
            parameters.divert_position_gain_per_s2 * (position_M(t_s) - x_M);
+}
+
+Vector3 sidestep_M(const Parameters& parameters, const Vector3& divert_M, const Vector3& v0_M, double duration_s) {
+    const Vector3 from_backshell_M = divert_M - 0.5 * v0_M * duration_s;
+    const bool close = from_backshell_M.norm() < parameters.divert_clearance_min_m && divert_M.dot(v0_M) > 0.0;
+    return close ? Vector3{-divert_M} : divert_M;
 }
 
 Vector3 azimuth_direction(const Vector3& p_MoB_M, double azimuth_rad) {

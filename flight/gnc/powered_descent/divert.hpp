@@ -17,7 +17,9 @@ namespace aeolis::flight::gnc::powered_descent {
 
 class Divert {
   public:
-    /// @param displacement_M  [m] horizontal, from the start to the point of rest
+    /// Ends at rest at displacement_M + v0_M · duration_s / 2: the displacement counts from where the drift would end
+    /// if it were nulled evenly, so that it costs the same with any drift.
+    /// @param displacement_M  [m] horizontal
     /// @param v0_M            [m/s] horizontal velocity at the start
     void start(const Vector3& displacement_M, const Vector3& v0_M, double duration_s);
 
@@ -39,6 +41,10 @@ class Divert {
     Vector3 v0_ = Vector3::Zero(), c3_ = Vector3::Zero(), c4_ = Vector3::Zero(), c5_ = Vector3::Zero();
     double duration_s_ = 1.0;
 };
+
+/// The displacement to fly: `divert_M`, or its opposite where the backshell, which drifts on at v0_M, would come to
+/// within divert_clearance_min_m of the end of the sidestep.
+Vector3 sidestep_M(const Parameters& parameters, const Vector3& divert_M, const Vector3& v0_M, double duration_s);
 
 /// Horizontal unit vector of an azimuth (from north to east) at p, in M.
 Vector3 azimuth_direction(const Vector3& p_MoB_M, double azimuth_rad);

@@ -16,9 +16,11 @@
 // Valid    90 … 0.75 m/s; net decelerations are limited to 1 … 6 m/s², which the thrust of [facts] Vehicle allows
 namespace aeolis::flight::gnc::powered_descent {
 
-/// Height of the stage when the wheels touch the ground: the bridle, and the stage above the bridle.
+/// Height of the stage when touchdown is declared, from which the published heights count: the bridle, and the stage
+/// above it, less what it sinks while thrust settles after the wheels' first contact.
 constexpr double stage_height_at_touchdown_m(const Parameters& parameters) {
-    return parameters.bridle_length_m + parameters.stage_above_bridle_m;
+    return parameters.bridle_length_m + parameters.stage_above_bridle_m -
+           parameters.sky_crane_descent_rate_mps * parameters.touchdown_settle_s;
 }
 /// Altitude at which the powered approach ends.
 constexpr double approach_end_altitude_m(const Parameters& parameters) {

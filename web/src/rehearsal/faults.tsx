@@ -41,19 +41,17 @@ export function faultWords({ device_fault: device, system_fault: system, station
   return system ? `${SYSTEM}, for ${system.duration_s} s` : `${COMPUTER} starts anew`;
 }
 
-export function FaultForm() {
+const hasLength = () => what.value !== COMPUTER;
+const badLength = () => hasLength() && !(Number(seconds.value) > 0);
+
+/** The fault that the fields say. */
+export const pickedFault = (): Fault => injectionOf(what.value, unit.value, kind.value, Number(seconds.value));
+
+/** Which fault, and for how long. */
+export function FaultFields() {
   const device = ![SYSTEM, COMPUTER, STATION].includes(what.value);
-  const bad = what.value !== COMPUTER && !(Number(seconds.value) > 0);
   return (
-    <form
-      class="table-tools"
-      data-testid="faults"
-      aria-label="faults"
-      onSubmit={(event) => {
-        event.preventDefault();
-        if (!bad) void inject(injectionOf(what.value, unit.value, kind.value, Number(seconds.value)));
-      }}
-    >
+    <>
       <label>
         break{' '}
         <select
@@ -100,20 +98,37 @@ export function FaultForm() {
           </select>
         </label>
       )}
-      {what.value !== COMPUTER && (
+      {hasLength() && (
         <label>
           for{' '}
           <input
             class="seed"
             value={seconds.value}
             inputMode="decimal"
-            aria-invalid={bad}
+            aria-invalid={badLength()}
             data-testid="fault-seconds"
             onInput={(event) => (seconds.value = event.currentTarget.value)}
           />{' '}
           s
         </label>
       )}
+    </>
+  );
+}
+
+export function FaultForm() {
+  const bad = badLength();
+  return (
+    <form
+      class="table-tools"
+      data-testid="faults"
+      aria-label="faults"
+      onSubmit={(event) => {
+        event.preventDefault();
+        if (!bad) void inject(pickedFault());
+      }}
+    >
+      <FaultFields />
       <button type="submit" disabled={bad || busy.value} data-testid="fault-inject">
         inject now
       </button>

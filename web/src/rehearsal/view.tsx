@@ -12,11 +12,14 @@ import { control } from '../run/connection';
 import { startRehearsal, watch } from '../run/session';
 import { modeNow, pastRange, replay, runNow, runs, scenarios, store } from '../run/shown';
 import { isGoing } from '../run/start';
+import { fromEntry } from '../run/time';
 import { InstructorPanel } from './instructor_panel';
 import { PACES, attainedText, nextPace, paceText } from './model';
+import type { WhatIf as WhatIfOf } from './what_if';
 import './style.css';
 
 const Review = openedLater(async () => (await import('./review')).Review);
+const WhatIf = openedLater<Parameters<typeof WhatIfOf>[0]>(async () => (await import('./what_if')).WhatIf);
 
 export function changePace(direction: 1 | -1): void {
   const run = store.value;
@@ -76,6 +79,7 @@ const seed = signal('1');
 /** The order for which an answer is awaited. */
 const starting = signal<Parameters<typeof startRehearsal>[0] | undefined>(undefined);
 const left = signal('');
+const whatIf = signal(false);
 const refused = signal('');
 
 async function begin(order: Parameters<typeof startRehearsal>[0]): Promise<void> {
@@ -219,6 +223,19 @@ export function Rehearsal() {
       {past && <p class="not-past">▲ The list is of now; of the run that is shown it says nothing that came later.</p>}
       <div class="table-scroll" tabIndex={0} role="group" aria-label="runs">
         {store.value?.run.state === 'finished' && !isReal(store.value.run) && <Review />}
+        {store.value && !isReal(store.value.run) && (
+          <details
+            class="instructor"
+            data-testid="what-if"
+            open={whatIf.value}
+            onToggle={(event) => (whatIf.value = event.currentTarget.open)}
+          >
+            <summary>
+              What if: fork this run, lay it over another{allowed && ', forecast what would come of it'}
+            </summary>
+            {whatIf.value && <WhatIf run={store.value} blocked={blocked} begin={(order) => void begin(order)} />}
+          </details>
+        )}
         <table data-testid="run-list">
           <thead>
             <tr>
@@ -240,7 +257,15 @@ export function Rehearsal() {
               return (
                 <tr key={String(each.run)} class={shown ? 'shown' : ''} data-run={String(each.run)} data-state={state}>
                   <td class="number">{String(each.run)}</td>
-                  <td>{each.scenario}</td>
+                  <td>
+                    {each.scenario}
+                    {each.forkedFrom && (
+                      <span class="status-dim">
+                        {' '}
+                        fork of {String(each.forkedFrom.run)} at {fromEntry(each.forkedFrom.eS, { tenths: true })}
+                      </span>
+                    )}
+                  </td>
                   <td class="number">{String(each.seed)}</td>
                   <td>
                     {state === 'past' ? '◧ ' : state === 'interrupted' ? '▲ ' : ''}

@@ -70,10 +70,13 @@ const wholeHistory = new WeakSet<RunStore>(); // runs whose history has arrived,
  * the server's words.
  */
 export async function startRehearsal(
-  order: { scenario: string; seed: string; pace: number } | { continue_run: number; pace: number },
+  order:
+    | { scenario: string; seed: string; pace: number }
+    | { continue_run: number; pace: number }
+    | { fork: { run: number; at: string; seed?: string; paused: boolean }; pace: number },
   isWaitedFor = () => true,
 ): Promise<void> {
-  // for a cut-off run the answer arrives after it has been flown again
+  // for a cut-off run and a fork the answer arrives after it has been flown again
   await call('POST', '/rehearsals', order, Infinity);
   if (isWaitedFor()) watch(0);
 }

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/api/api.hpp"
+#include "server/api/query_text.hpp"
+#include "server/base/json.hpp"
+
+#include <charconv>
+#include <fmt/format.h>
+
+// The routes of forecasts. They tell the truth of a rehearsal, so all of them need the right to rehearse.
+namespace aeolis::server {
+namespace {
+
+std::optional<std::uint64_t> number_of(std::string_view text) {
+    std::uint64_t number = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (error != std::errc{} || end != text.data() + text.size() || number == 0) return std::nullopt;
+    return number;
+}
+
+HttpResponse no_forecast(archive::RunId run, std::string_view number) {
+    return error_response(404, fmt::format("run {}, forecast '{}': there is none; GET /api/v1/runs/{}/forecasts lists "
+                                           "them",
+                                           run.value, number, run.value));
+}
+
+}  // namespace
+
+void Api::post_forecast(const ApiRequest& call) {
+    v1::ForecastRequest wanted;
+    if (const auto parsed = from_json(call.request.body, wanted); !parsed)
+        return call.respond(error_response(400, parsed.error()));
+    if (const auto full = parts_.forecasts.full(); !full.empty()) return call.respond(error_response(503, full));
+    ask(
+        call, {},
+        [this, wanted, by = call.who.user, respond = call.respond, current = current_run()](
+            archive::Reader& reader, archive::RunId id, const QueryText&) -> std::optional<HttpResponse> {
+            auto flown = reader.flown(id);
+            if (!flown) return error_response(422, flown.error());
+            auto state = reader.run(id);
+            if (!state) return error_response(404, state.error());
+            if (current.run() == id.value && current.state() != v1::RunState::finished)
+                *state->mutable_clocks() = current.clocks();
+            auto read = shadow::read_forecast(wanted, *state, std::move(*flown));
+            if (!read) return error_response(422, read.error());
+            read->record.asked_by = by;
+            const auto kept = [this, read = *read, respond](const Result<std::uint64_t>& number) mutable {
+                if (!number) return respond(error_response(503, number.error()));
+                read.record.number = *number;
+                const auto record = read.record;
+                parts_.forecasts.add(std::move(read));
+                respond(json_response(parts_.forecasts.now(record), 201));
+            };
+            if (!parts_.pipeline.keep_forecast(read->record, kept))
+                return error_response(503, "nothing was asked, too much waits to be stored: try again");
+            return std::nullopt;
+        },
+        JobPriority::soon);
+}
+
+void Api::list_forecasts(const ApiRequest& call) {
+    auto wanted = ListRequest::of(call.request, ListPage::usual(archive::Order::newest_first));
+    if (!wanted) return call.respond(error_response(400, wanted.error()));
+    ask(
+        call, {},
+        [this, wanted = *wanted](archive::Reader& reader, archive::RunId id,
+                                 const QueryText&) -> std::optional<HttpResponse> {
+            const auto& page = wanted.page;
+            const auto records = reader.forecasts(id, page.after, page.limit, page.order);
+            if (!records) return error_response(500, records.error());
+            v1::ForecastList list;
+            for (const auto& record : *records) *list.add_forecasts() = parts_.forecasts.now(record);
+            if (records->size() == page.limit) list.set_next_after(records->back().number);
+            return wanted.response(std::move(list), {"forecasts"});
+        },
+        JobPriority::soon);
+}
+
+void Api::get_forecast(const ApiRequest& call) {
+    ask(
+        call, {},
+        [this, text = call.parts[1]](archive::Reader& reader, archive::RunId id,
+                                     const QueryText&) -> std::optional<HttpResponse> {
+            const auto number = number_of(text);
+            if (!number) return no_forecast(id, text);
+            const auto record = reader.forecast(id, *number);
+            if (!record) return error_response(500, record.error());
+            return *record ? json_response(parts_.forecasts.now(**record)) : no_forecast(id, text);
+        },
+        JobPriority::soon);
+}
+
+void Api::cancel_forecast(const ApiRequest& call) {
+    ask(
+        call, {},
+        [this, text = call.parts[1]](archive::Reader& reader, archive::RunId id,
+                                     const QueryText&) -> std::optional<HttpResponse> {
+            const auto number = number_of(text);
+            if (!number) return no_forecast(id, text);
+            const auto record = reader.forecast(id, *number);
+            if (!record) return error_response(500, record.error());
+            if (!*record) return no_forecast(id, text);
+            if (!parts_.forecasts.cancel(id, *number))
+                return error_response(409, fmt::format("run {}, forecast {}: it neither flies nor waits", id.value,
+                                                       *number));
+            return json_response(parts_.forecasts.now(**record), 202);
+        },
+        JobPriority::soon);
+}
+
+}  // namespace aeolis::server
