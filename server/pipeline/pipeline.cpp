@@ -298,8 +298,8 @@ Result<archive::Annotation> Pipeline::annotate(RunId run, archive::Annotation an
         return added;
     }
     if (state_->run->repeats() || state_->run->origin)
-        return Error{"run " + std::to_string(run.value) + " is flown again up to where it was cut off or forked: try "
-                                                          "again when it goes on"};
+        return Error{"run " + std::to_string(run.value) + " is flown again up to where it was " +
+                     (state_->run->origin ? "forked" : "cut off") + ": try again when it goes on"};
     if (auto room = state_->room(); !room) return room.error();
     auto& current = *state_->run;
     std::visit([&](auto& record) { record.seq = current.numbering.next(current.pending); }, annotation);

@@ -6,13 +6,24 @@
 namespace aeolis::server {
 namespace {
 
-/// Whether the sequence passes from one anchor to another at this row. Rows that may be late have no margin to keep.
+/// The anchor from which the plan knows the distance of this one: itself, where only the landing decides it.
+AnchorId base_of(const dictionary::Dictionary& dictionary, AnchorId anchor) {
+    for (;;) {
+        const auto& row = dictionary.anchors[anchor.value];
+        if (!row.parent || !row.offset_s) return anchor;
+        anchor = *row.parent;
+    }
+}
+
+/// Whether the sequence passes at this row from one anchor to another whose distance only the landing decides. Between
+/// others the plan keeps the distance, and its analysis proves it. Rows that may be late have no margin to keep.
 bool begins_after_another_anchor(const dictionary::Dictionary& dictionary, std::size_t row) {
     const auto& timeline = dictionary.timeline;
     const auto held_to = [&](std::size_t i) { return timeline[i].anchor && !timeline[i].may_be_late; };
     if (!held_to(row)) return false;
     for (std::size_t before = row; before-- > 0;)
-        if (held_to(before)) return *timeline[before].anchor != *timeline[row].anchor;
+        if (held_to(before))
+            return base_of(dictionary, *timeline[before].anchor) != base_of(dictionary, *timeline[row].anchor);
     return true;
 }
 

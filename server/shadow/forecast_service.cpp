@@ -119,6 +119,7 @@ bool ForecastService::cancel(archive::RunId run, std::uint64_t number) {
     {
         const std::scoped_lock lock{mutex_};
         if (flying_ && is(*flying_, run, number)) {
+            if (flown_) return false;
             cancelled_ = true;
             stop_ = true;
             return true;
@@ -180,12 +181,13 @@ void ForecastService::work() {
             waiting_.pop_front();
             flying_ = next.record;
             progress_ = {};
-            stop_ = cancelled_ = false;
+            stop_ = cancelled_ = flown_ = false;
         }
         fly(next);
         bool keep = true;
         {
             const std::scoped_lock lock{mutex_};
+            flown_ = true;
             if (cancelled_) {
                 next.record.state = name_of(v1::Forecast::cancelled);
                 next.record.reason.clear();

@@ -73,7 +73,8 @@ class ForecastService {
     std::deque<ReadForecast> waiting_;                ///< under mutex_
     std::optional<archive::ForecastRecord> flying_;   ///< under mutex_
     ForecastProgress progress_;                       ///< under mutex_
-    bool cancelled_ = false, over_ = false;           ///< under mutex_; of the one that flies; of the service
+    bool cancelled_ = false, flown_ = false;          ///< under mutex_; the one that flies
+    bool over_ = false;                               ///< under mutex_; the service
     std::atomic<bool> stop_{false};                   ///< the one that flies ends
     std::thread thread_;
 };

@@ -159,7 +159,7 @@ const std::vector<std::pair<std::string, std::vector<std::string>>>& layers() {
         {"shadow", {"campaign"}},
         {"cluster", {"campaign", "access"}},
         {"tones", {"rehearsal"}},
-        {"api", {"campaign", "access"}},
+        {"api", {"shadow", "access"}},
         {"net", {"api", "links", "cluster"}},
         {"cli", {"net", "cluster", "tones", "reconstruction", "procedures", "shadow"}},
     };

@@ -78,7 +78,7 @@ TEST_CASE("only channels whose limits have contexts are told of, with the channe
     CHECK(limits.channels()[0].channel == mission.speed);
     CHECK(limits.decided_by().size() == 2);
     const LimitsInForce shipped{tests::shipped_dictionary()};
-    CHECK(shipped.channels().size() == 2);
+    CHECK(shipped.channels().size() == 3);
     CHECK(shipped.decided_by() == std::vector{tests::shipped_dictionary().channel("edl_phase")->id});
 }
 

@@ -92,7 +92,8 @@ TEST_CASE("every table of a run is known to prune", "[archive][prune]") {
         REQUIRE(Archive::open(file).ok());
     }
     std::string known =
-        "'dictionaries', 'dictionary_channels', 'dictionary_packets', 'words', 'pruned_runs', 'audit', 'layouts'";
+        "'dictionaries', 'dictionary_channels', 'dictionary_packets', 'words', 'pruned_runs', 'audit', 'layouts',"
+        " 'forecasts'";
     for (const auto& table : run_tables()) known += std::string(", '") + table.name + "'";
     CHECK(ask(file, ("SELECT count(*) FROM sqlite_schema WHERE type = 'table' AND name NOT LIKE 'sqlite%' AND name NOT "
                      "LIKE 'search_%' AND name NOT IN (" +
