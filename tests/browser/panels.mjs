@@ -19,6 +19,7 @@ export const PANELS = [
   'recorded',
   'rehearsal',
   'campaigns',
+  'what_if',
   'vehicle',
   'users',
 ];

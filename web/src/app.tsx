@@ -45,6 +45,7 @@ const DATA = {
   recorded: openedLater(async () => (await import('./recorded/view')).Recorded),
   rehearsal: Rehearsal,
   campaigns: openedLater(async () => (await import('./campaigns/view')).Campaigns),
+  what_if: openedLater(async () => (await import('./rehearsal/what_if')).WhatIf),
   vehicle: openedLater(async () => (await import('./vehicle/view')).Vehicle),
 };
 

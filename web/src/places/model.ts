@@ -14,6 +14,7 @@ export type Tab =
   | 'recorded'
   | 'rehearsal'
   | 'campaigns'
+  | 'what_if'
   | 'alarms'
   | 'notes'
   | 'users'
@@ -41,6 +42,7 @@ export const TABS: { id: Tab; title: string; key: string; words: string }[] = [
     key: 'd',
     words: 'campaigns of dispersed landings: start, watch the ellipse fill',
   },
+  { id: 'what_if', title: 'What if', key: ';', words: 'what if: fork a run, forecast it, lay it over another' },
   { id: 'users', title: 'Users', key: 'u', words: 'users, tokens, audit: for administrators' },
 ];
 

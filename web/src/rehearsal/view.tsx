@@ -15,11 +15,9 @@ import { isGoing } from '../run/start';
 import { fromEntry } from '../run/time';
 import { InstructorPanel } from './instructor_panel';
 import { PACES, attainedText, nextPace, paceText } from './model';
-import type { WhatIf as WhatIfOf } from './what_if';
 import './style.css';
 
 const Review = openedLater(async () => (await import('./review')).Review);
-const WhatIf = openedLater<Parameters<typeof WhatIfOf>[0]>(async () => (await import('./what_if')).WhatIf);
 
 export function changePace(direction: 1 | -1): void {
   const run = store.value;
@@ -79,10 +77,10 @@ const seed = signal('1');
 /** The order for which an answer is awaited. */
 const starting = signal<Parameters<typeof startRehearsal>[0] | undefined>(undefined);
 const left = signal('');
-const whatIf = signal(false);
 const refused = signal('');
 
-async function begin(order: Parameters<typeof startRehearsal>[0]): Promise<void> {
+/** Starts a run, or says beside the list of runs why the server does not. */
+export async function begin(order: Parameters<typeof startRehearsal>[0]): Promise<void> {
   if (starting.value) return;
   starting.value = order;
   refused.value = left.value = '';
@@ -148,6 +146,17 @@ export function EndRun({ run, name, words }: { run: number; name: string; words:
   );
 }
 
+/** Why no run can be begun now; empty: one can. */
+export function whyNotBegin(): string {
+  const going = runs.value.find(isGoing);
+  if (!mayRehearse()) return whyNotRehearse('starting and ending');
+  if (pastRange.value) return 'from a past view nothing is started or ended; Esc leaves it';
+  if (starting.value) return 'a run begins';
+  return going ? `run ${going.run} goes on; end it first` : '';
+}
+
+export const beginProblem = () => refused.value;
+
 export function Rehearsal() {
   const run = runNow();
   const allowed = mayRehearse();
@@ -155,7 +164,7 @@ export function Rehearsal() {
   const names = scenarios.value.length > 0 ? scenarios.value : [{ name: 'nominal', title: '' }];
   const badSeed = !/^\d{1,15}$/.test(seed.value);
   const past = pastRange.value; // a past view sends nothing and shows nothing of the present
-  const blocked = !allowed || past !== undefined || going !== undefined || starting.value !== undefined;
+  const blocked = whyNotBegin() !== '';
   return (
     <div class="table-box" data-testid="rehearsal">
       <form
@@ -223,19 +232,6 @@ export function Rehearsal() {
       {past && <p class="not-past">▲ The list is of now; of the run that is shown it says nothing that came later.</p>}
       <div class="table-scroll" tabIndex={0} role="group" aria-label="runs">
         {store.value?.run.state === 'finished' && !isReal(store.value.run) && <Review />}
-        {store.value && !isReal(store.value.run) && (
-          <details
-            class="instructor"
-            data-testid="what-if"
-            open={whatIf.value}
-            onToggle={(event) => (whatIf.value = event.currentTarget.open)}
-          >
-            <summary>
-              What if: fork this run, lay it over another{allowed && ', forecast what would come of it'}
-            </summary>
-            {whatIf.value && <WhatIf run={store.value} blocked={blocked} begin={(order) => void begin(order)} />}
-          </details>
-        )}
         <table data-testid="run-list">
           <thead>
             <tr>

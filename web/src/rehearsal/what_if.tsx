@@ -6,13 +6,15 @@ import { useEffect } from 'preact/hooks';
 import { mayRehearse } from '../access/model';
 import { outcomeWords } from '../clocks/model';
 import { wordsFor } from '../run/api';
+import { isReal } from '../mode/model';
 import { change, read } from '../run/connection';
-import { pastRange, runs } from '../run/shown';
+import { pastRange, runs, store, tick } from '../run/shown';
 import { isGoing } from '../run/start';
 import type { RunStore } from '../run/store';
 import { fromEntry, readFromEntry } from '../run/time';
 import { FaultFields, faultWords, pickedFault } from './faults';
 import { FIGURES, assumed, eventName, laterBy, partText, stateText, timeIn, valuesText } from './what_if_model';
+import { begin, beginProblem, whyNotBegin } from './view';
 import type { Differences, Forecast } from './what_if_model';
 
 const AGAIN_MS = 1000; // chosen: interval of requests for the progress of a forecast
@@ -98,9 +100,9 @@ function Instant({ run }: { run: RunStore }) {
   );
 }
 
-type Begin = (order: { fork: { run: number; at: string; seed?: string; paused: boolean }; pace: number }) => void;
-
-function ForkForm({ run, blocked, begin }: { run: RunStore; blocked: boolean; begin: Begin }) {
+function ForkForm({ run }: { run: RunStore }) {
+  const whyNot = whyNotBegin();
+  const blocked = whyNot !== '';
   const badSeed = !/^\d{0,15}$/.test(seed.value);
   const without = readFromEntry(at.value) === undefined;
   return (
@@ -111,7 +113,7 @@ function ForkForm({ run, blocked, begin }: { run: RunStore; blocked: boolean; be
         event.preventDefault();
         if (blocked || badSeed || without) return;
         const own = seed.value === '' ? {} : { seed: seed.value };
-        begin({ fork: { run: run.id, at: at.value, ...own, paused: waits.value }, pace: 1 });
+        void begin({ fork: { run: run.id, at: at.value, ...own, paused: waits.value }, pace: 1 });
       }}
     >
       <Instant run={run} />
@@ -137,13 +139,7 @@ function ForkForm({ run, blocked, begin }: { run: RunStore; blocked: boolean; be
       <button type="submit" disabled={blocked || badSeed || without} data-testid="fork-go">
         fork run {run.id}
       </button>
-      <span class="status-dim">
-        {run.going
-          ? 'end this run first: one flies at a time'
-          : blocked
-            ? 'not now: leave the past with Esc, or end the run that goes on'
-            : 'a new run: this one again up to there, then by itself'}
-      </span>
+      <span>{blocked ? `▲ ${whyNot}` : 'a new run: this one again up to there, then by itself'}</span>
     </form>
   );
 }
@@ -226,7 +222,8 @@ function Compare({ run }: { run: RunStore }) {
   const parent = run.run.forkedFrom && Number(run.run.forkedFrom.run);
   const others = runs.value.filter((each) => Number(each.run) !== run.id && !isGoing(each));
   const known = differences.value?.run === run.id ? differences.value.of : undefined;
-  if (run.going || others.length === 0) return null;
+  if (run.going) return <p>once this run is over</p>;
+  if (others.length === 0) return <p>there is no other run that is over</p>;
   const chosen = parent ?? Number(others[0]?.run);
   return (
     <>
@@ -372,7 +369,7 @@ function Forecasts({ run }: { run: RunStore }) {
               <th class="number">from</th>
               <th>assumed</th>
               <th>state</th>
-              <th />
+              <th>result</th>
             </tr>
           </thead>
           <tbody>
@@ -412,19 +409,37 @@ function Forecasts({ run }: { run: RunStore }) {
   );
 }
 
-/** Forks, differences and forecasts of a run. */
-export function WhatIf({ run, blocked, begin }: { run: RunStore; blocked: boolean; begin: Begin }) {
+export function WhatIf() {
+  void tick.value; // a store changes without a new object
+  const run = store.value;
+  if (!run || isReal(run.run)) return <p class="none">of a rehearsal only: none is shown</p>;
   const instructor = mayRehearse();
+  const words = problem.value || beginProblem();
   return (
-    <>
-      {instructor && <ForkForm run={run} blocked={blocked || run.going} begin={begin} />}
-      <Compare run={run} />
-      {instructor && <Forecasts run={run} />}
-      {problem.value && (
-        <p role="alert" class="status-alarm" data-testid="what-if-problem">
-          ✖ {problem.value}
-        </p>
-      )}
-    </>
+    <div class="table-box what-if" data-testid="what-if">
+      <div class="table-scroll" tabIndex={0} role="group" aria-label="what if">
+        {words && (
+          <p role="alert" class="status-alarm" data-testid="what-if-problem">
+            ✖ {words}
+          </p>
+        )}
+        {instructor && (
+          <section>
+            <h3>Go on otherwise</h3>
+            <ForkForm run={run} />
+          </section>
+        )}
+        {instructor && (
+          <section>
+            <h3>What would come of it, from the truth</h3>
+            <Forecasts run={run} />
+          </section>
+        )}
+        <section>
+          <h3>Laid over another run</h3>
+          <Compare run={run} />
+        </section>
+      </div>
+    </div>
   );
 }

@@ -43,7 +43,15 @@ describe('a forecast', () => {
     expect(stateText(forecast({ state: 'flying' }))).toBe('flies the run again up to there');
     expect(
       stateText(
-        forecast({ state: 'flying', done: '12', of: '64', without: '6', within_without: '6', with: '6', within_with: '5' }),
+        forecast({
+          state: 'flying',
+          done: '12',
+          of: '64',
+          without: '6',
+          within_without: '6',
+          with: '6',
+          within_with: '5',
+        }),
       ),
     ).toBe('12 of 64 flown; within limits 6 of 6, with it 5 of 6');
     expect(stateText(forecast({ state: 'failed', reason: 'DO_EDL is refused' }))).toBe('✖ DO_EDL is refused');
