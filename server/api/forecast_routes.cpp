@@ -100,8 +100,8 @@ void Api::cancel_forecast(const ApiRequest& call) {
             if (!record) return error_response(500, record.error());
             if (!*record) return no_forecast(id, text);
             if (!parts_.forecasts.cancel(id, *number))
-                return error_response(409, fmt::format("run {}, forecast {}: it neither flies nor waits", id.value,
-                                                       *number));
+                return error_response(
+                    409, fmt::format("run {}, forecast {}: it neither flies nor waits", id.value, *number));
             return json_response(parts_.forecasts.now(**record), 202);
         },
         JobPriority::soon);

@@ -456,8 +456,8 @@ HttpResponse differences(const AnswerContext& context, archive::Reader& reader, 
     const auto other = query.amount("with", std::numeric_limits<std::uint32_t>::max());
     if (!other) return error_response(400, other.error());
     if (!*other) return error_response(400, Error{"with: the number of the other run is wanted"});
-    return answer(archive::differences(reader, context.dictionary, run,
-                                       archive::RunId{static_cast<std::uint32_t>(**other)}));
+    return answer(
+        archive::differences(reader, context.dictionary, run, archive::RunId{static_cast<std::uint32_t>(**other)}));
 }
 
 HttpResponse limits(const AnswerContext& context, archive::Reader& reader, archive::RunId run, const QueryText& query) {

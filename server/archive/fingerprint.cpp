@@ -56,11 +56,12 @@ const std::vector<Rows>& rows_of_run() {
             {"sequence_totals", "SELECT * FROM sequence_totals WHERE run = ?1 ORDER BY link, packets, name", true});
         for (const std::string column : {"outcome", "outcome_reason", "seed", "digest", "scenario_text"})
             rows.push_back({"runs." + column, "SELECT " + column + " FROM runs WHERE run = ?1", true});
-        rows.push_back({"runs",
-                        "SELECT scenario, title, venue, case_number, pace, started, ended, start_sclk, entry_sclk,"
-                        " correlation_sclk, correlation_scet_us, clock_version, clock_rate, leap_seconds, light_time_s,"
-                        " tone_model, dictionary, forked_run, forked_cycle, forked_e_s, forked_seed FROM runs WHERE run = ?1",
-                        true});
+        rows.push_back(
+            {"runs",
+             "SELECT scenario, title, venue, case_number, pace, started, ended, start_sclk, entry_sclk,"
+             " correlation_sclk, correlation_scet_us, clock_version, clock_rate, leap_seconds, light_time_s,"
+             " tone_model, dictionary, forked_run, forked_cycle, forked_e_s, forked_seed FROM runs WHERE run = ?1",
+             true});
         return rows;
     }();
     return all;

@@ -32,8 +32,9 @@ Result<std::uint64_t> keep_forecast(sqlite::Database& database, const ForecastRe
         if (!found) return found.error();
         number = static_cast<std::uint64_t>(newest->integer(0)) + 1;
     }
-    auto row = database.prepare("INSERT OR REPLACE INTO forecasts (run, number, asked, asked_by, at_e_s, request, state,"
-                                " reason, ended, result) VALUES (?,?,?,?,?,?,?,?,?,?)");
+    auto row =
+        database.prepare("INSERT OR REPLACE INTO forecasts (run, number, asked, asked_by, at_e_s, request, state,"
+                         " reason, ended, result) VALUES (?,?,?,?,?,?,?,?,?,?)");
     if (!row) return row.error();
     row->bind(1, std::int64_t{forecast.run.value})
         .bind(2, sqlite::number(number))
@@ -61,9 +62,10 @@ Result<std::optional<ForecastRecord>> forecast_of(sqlite::Database& database, Ru
 Result<std::vector<ForecastRecord>> forecasts_of(sqlite::Database& database, RunId run, std::uint64_t after,
                                                  std::size_t limit, Order order) {
     const bool newest_first = order == Order::newest_first;
-    const std::string page = newest_first ? "(?2 = 0 OR number < ?2) ORDER BY number DESC" : "number > ?2 ORDER BY number";
-    auto rows =
-        database.prepare((std::string{all_columns} + "'' FROM forecasts WHERE run = ?1 AND " + page + " LIMIT ?3").c_str());
+    const std::string page =
+        newest_first ? "(?2 = 0 OR number < ?2) ORDER BY number DESC" : "number > ?2 ORDER BY number";
+    auto rows = database.prepare(
+        (std::string{all_columns} + "'' FROM forecasts WHERE run = ?1 AND " + page + " LIMIT ?3").c_str());
     if (!rows) return rows.error();
     rows->bind(1, std::int64_t{run.value}).bind(2, sqlite::number(after)).bind(3, sqlite::number(limit));
     std::vector<ForecastRecord> forecasts;

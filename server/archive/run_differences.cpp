@@ -211,8 +211,8 @@ Result<v1::RunDifferences> differences(Reader& reader, const dictionary::Diction
     *told.mutable_other() = *second;
     const auto part = part_e_s(*one, *second);
     if (part) told.set_part_e_s(*part);
-    const double from_e_s = part.value_or(std::min(one->start_sclk() - one->entry_sclk(),
-                                                   second->start_sclk() - second->entry_sclk()));
+    const double from_e_s =
+        part.value_or(std::min(one->start_sclk() - one->entry_sclk(), second->start_sclk() - second->entry_sclk()));
     const auto events = events_of(reader, *one, from_e_s), other_events = events_of(reader, *second, from_e_s);
     if (!events) return events.error();
     if (!other_events) return other_events.error();

@@ -122,8 +122,9 @@ Result<std::unique_ptr<ConsoleBackend>> ConsoleBackend::open(Settings settings,
         });
     backend->api_ = std::make_unique<Api>(Api::Parts{
         dictionary, backend->scenarios_, *backend->queries_, *backend->rehearsals_, backend->predictions_,
-        *backend->campaigns_, *backend->forecasts_, *backend->hub_, *backend->pipeline_, backend->console_, *backend->access_,
-        backend->server_->secure(), [self] { return self->server_->connections(); }, backend->clock_watch_,
+        *backend->campaigns_, *backend->forecasts_, *backend->hub_, *backend->pipeline_, backend->console_,
+        *backend->access_, backend->server_->secure(), [self] { return self->server_->connections(); },
+        backend->clock_watch_,
         chosen.publish_to.url.empty() && chosen.follow_by.url.empty() ? std::function<Replication()>{}
                                                                       : [self] { return self->replication(); },
         backend->follows_,

@@ -35,8 +35,8 @@ struct Pipeline::State {
         archive::Batch pending;
         double progress = 0.0, durable_progress = 0.0;  ///< of the recording
         Sequence last_durable = 0;
-        Sequence repeat_until = 0;  ///< items up to here are already durable
-        Compare compare;            ///< not null while items are repeated
+        Sequence repeat_until = 0;       ///< items up to here are already durable
+        Compare compare;                 ///< not null while items are repeated
         std::optional<Repeated> origin;  ///< until the fork
         std::size_t annotated = 0;       ///< of the origin's annotations
         std::optional<Error> differs;

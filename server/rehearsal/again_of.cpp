@@ -24,8 +24,7 @@ Result<archive::ForkPoint> fork_point_of(const v1::Fork& fork, const v1::RunStat
     if (cycles < 0.0)
         return Error{fmt::format("fork.at: {} is before run {} begins, at E{:+.0f} s", fork.at(), run.run(),
                                  run.start_sclk() - run.entry_sclk())};
-    if (cycles > cycles_max)
-        return Error{fmt::format("fork.at: {} is after all that a run can hold", fork.at())};
+    if (cycles > cycles_max) return Error{fmt::format("fork.at: {} is after all that a run can hold", fork.at())};
     const auto cycle = static_cast<std::uint64_t>(cycles);
     const double e_s = run.start_sclk() + cycles * seconds_per_tick - run.entry_sclk();
     return archive::ForkPoint{{static_cast<std::uint32_t>(run.run())}, cycle, e_s, fork.seed()};

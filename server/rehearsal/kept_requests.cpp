@@ -31,13 +31,13 @@ Result<void> fly_again(Rehearsal& rehearsal, const archive::FlownRun& run, std::
         for (; request != run.requests.end() && request->cycle == rehearsal.cycles() && rehearsal.cycles() < cycle;
              ++request)
             if (!repeat(rehearsal, archive::kept_request(request->request)))
-                return Error{fmt::format("run {}: what was taken at cycle {} is refused now", run.run.value,
-                                         request->cycle)};
+                return Error{
+                    fmt::format("run {}: what was taken at cycle {} is refused now", run.run.value, request->cycle)};
         if (rehearsal.cycles() >= cycle) return {};
         if (stop()) return Error{"it was stopped"};
         if (rehearsal.finished())
-            return Error{fmt::format("run {} ends before, at E{:+.1f} s: {}", run.run.value,
-                                     rehearsal.clocks().e_s(), rehearsal.outcome_reason())};
+            return Error{fmt::format("run {} ends before, at E{:+.1f} s: {}", run.run.value, rehearsal.clocks().e_s(),
+                                     rehearsal.outcome_reason())};
         rehearsal.step();
         rehearsal.take_stages();
     }

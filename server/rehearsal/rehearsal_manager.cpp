@@ -63,12 +63,13 @@ void RehearsalManager::start(const v1::StartRehearsal& request, Began began) {
     const auto pace = checked_pace(request.pace());
     if (!pace) return began(pace.error());
     if (request.continue_run() != 0 || request.has_fork())
-        return read_again_(request, [this, began = std::move(began), pace = *pace](Result<RehearsalRunner::Again> again) {
-            post_([this, began, pace, again = std::move(again)]() mutable {
-                if (!again) return began(again.error());
-                fly_again(std::move(*again), pace, began);
-            });
-        });
+        return read_again_(request,
+                           [this, began = std::move(began), pace = *pace](Result<RehearsalRunner::Again> again) {
+                               post_([this, began, pace, again = std::move(again)]() mutable {
+                                   if (!again) return began(again.error());
+                                   fly_again(std::move(*again), pace, began);
+                               });
+                           });
     if (request.has_inline_scenario() && !request.scenario().empty())
         return began(Error{"scenario and inline_scenario: one of them, not both"});
     auto scenario = request.has_inline_scenario() ? scenario_from_message(request.inline_scenario())

@@ -162,12 +162,8 @@ std::vector<std::optional<v1::CommandReply>> RehearsalRunner::repeated(const Sen
 }
 
 void RehearsalRunner::run() {
-    Rehearsal rehearsal{scenario_,
-                        seed_,
-                        again_ ? again_->run.case_number : 0,
-                        dictionary_,
-                        {},
-                        again_ ? std::optional{again_->run.clock} : std::nullopt};
+    Rehearsal rehearsal{scenario_,   seed_, again_ ? again_->run.case_number : 0,
+                        dictionary_, {},    again_ ? std::optional{again_->run.clock} : std::nullopt};
     start_ = rehearsal.run_start(pace_);
     if (again_) start_.forked_from = again_->fork ? again_->fork : again_->run.forked_from;
     if (const auto begun = begin(rehearsal)) {
@@ -228,8 +224,7 @@ Result<void> RehearsalRunner::catch_up(Rehearsal& rehearsal) {
             const auto caught_up = pipeline_.caught_up();
             if (!caught_up) return given_up(caught_up.error().message);
             if (*caught_up && next == cut.requests.size()) break;
-            if (rehearsal.finished())
-                return given_up(fmt::format("flown again it ends before item {}", cut.last_seq));
+            if (rehearsal.finished()) return given_up(fmt::format("flown again it ends before item {}", cut.last_seq));
         }
         step(rehearsal);
     }

@@ -70,12 +70,12 @@ class ForecastService {
     Keep keep_;
     mutable std::mutex mutex_;
     std::condition_variable changed_;
-    std::deque<ReadForecast> waiting_;                ///< under mutex_
-    std::optional<archive::ForecastRecord> flying_;   ///< under mutex_
-    ForecastProgress progress_;                       ///< under mutex_
-    bool cancelled_ = false, flown_ = false;          ///< under mutex_; the one that flies
-    bool over_ = false;                               ///< under mutex_; the service
-    std::atomic<bool> stop_{false};                   ///< the one that flies ends
+    std::deque<ReadForecast> waiting_;               ///< under mutex_
+    std::optional<archive::ForecastRecord> flying_;  ///< under mutex_
+    ForecastProgress progress_;                      ///< under mutex_
+    bool cancelled_ = false, flown_ = false;         ///< under mutex_; the one that flies
+    bool over_ = false;                              ///< under mutex_; the service
+    std::atomic<bool> stop_{false};                  ///< the one that flies ends
     std::thread thread_;
 };
 

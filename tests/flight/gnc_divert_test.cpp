@@ -37,7 +37,8 @@ TEST_CASE("velocity is the slope of position and acceleration that of velocity",
     }
 }
 
-TEST_CASE("a drift from any side makes the sidestep no dearer: the velocity to gain and lose is the same", "[gnc][R27]") {
+TEST_CASE("a drift from any side makes the sidestep no dearer: the velocity to gain and lose is the same",
+          "[gnc][R27]") {
     const auto gained_mps = [](const Vector3& v0) {
         Divert divert;
         divert.start({304.0, 0.0, 0.0}, v0, 18.0);

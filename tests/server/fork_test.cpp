@@ -151,7 +151,8 @@ const v1::EventDifference* named(const google::protobuf::RepeatedPtrField<v1::Ev
 
 }  // namespace
 
-TEST_CASE("a fork to which nothing is done is its parent again, item by item, notes and all", "[fork][rehearsal][R60]") {
+TEST_CASE("a fork to which nothing is done is its parent again, item by item, notes and all",
+          "[fork][rehearsal][R60]") {
     Recorded recorded;
     CHECK(recorded.fork("E+3:10") == "");
     auto reader = recorded.reader();

@@ -303,7 +303,7 @@ void end_and_continue(archive::Sequence published, archive::Sequence further, En
 /// An archive whose run was begun with a clock of this rate and ended by kill -9, and what there is of the run as it is
 /// read today.
 std::pair<archive::Archive, archive::FlownRun> cut_off_in(const std::filesystem::path& file,
-                                                           const std::string& rate = {}) {
+                                                          const std::string& rate = {}) {
     kill_after(2'000, file, rate);
     auto archive = archive::Archive::open(file);
     REQUIRE(archive);

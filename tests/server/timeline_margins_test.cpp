@@ -37,9 +37,9 @@ TEST_CASE("a row that only the landing starts has the time by which it came afte
 
 TEST_CASE("rows of the clock have no margin to keep: the plan has their distance, and its analysis proves it",
           "[timeline][R19]") {
-    CHECK(timeline_margins({fired("pressurant_valve_2", 0.0), fired("cruise_stage_separation", 2.0),
-                            fired("gnc_enable", 60.0)},
-                           tests::shipped_dictionary(), -1.0)
+    CHECK(timeline_margins(
+              {fired("pressurant_valve_2", 0.0), fired("cruise_stage_separation", 2.0), fired("gnc_enable", 60.0)},
+              tests::shipped_dictionary(), -1.0)
               .empty());
 }
 

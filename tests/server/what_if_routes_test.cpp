@@ -71,8 +71,16 @@ class Landed {
 };
 
 double part(const v1::Forecast& forecast, const char* side, const char* figure) {
-    return forecast.result().fields().at(side).struct_value().fields().at("within_limits").struct_value().fields().at(
-        figure).number_value();
+    return forecast.result()
+        .fields()
+        .at(side)
+        .struct_value()
+        .fields()
+        .at("within_limits")
+        .struct_value()
+        .fields()
+        .at(figure)
+        .number_value();
 }
 
 }  // namespace
@@ -103,7 +111,8 @@ TEST_CASE("a forecast of a recorded run is flown beside everything else, kept wi
     CHECK_FALSE(list.forecasts(0).has_result());
 }
 
-TEST_CASE("a forecast that is cancelled, or abandoned by the end of the server, says so", "[forecast][http][R58][idle]") {
+TEST_CASE("a forecast that is cancelled, or abandoned by the end of the server, says so",
+          "[forecast][http][R58][idle]") {
     Landed landed;
     for (int i = 0; i < 3; ++i)
         REQUIRE(landed.post("/runs/1/forecasts", R"({"at":"E-10:00","cases":500})").status == 201);
@@ -135,8 +144,9 @@ TEST_CASE("a forecast that cannot be is refused in words, or kept with the reaso
     const auto late = landed.ended(1);
     CHECK(late.state() == v1::Forecast::failed);
     CHECK_THAT(late.reason(), Catch::StartsWith("run 1 ends before, at E+"));
-    REQUIRE(landed.post("/runs/1/forecasts", R"({"at":"E-8:20","cases":1,"commands":[{"command":"DO_NOTHING"}]})")
-                .status == 201);
+    REQUIRE(
+        landed.post("/runs/1/forecasts", R"({"at":"E-8:20","cases":1,"commands":[{"command":"DO_NOTHING"}]})").status ==
+        201);
     const auto unknown = landed.ended(2);
     CHECK(unknown.state() == v1::Forecast::failed);
     CHECK_THAT(unknown.reason(), Catch::StartsWith("DO_NOTHING is refused: "));
