@@ -66,7 +66,7 @@ class Api {
         RehearsalManager& rehearsals;
         PredictionService& predictions;
         campaign::CampaignManager& campaigns;
-        shadow::ForecastService& forecasts;
+        std::shared_ptr<shadow::ForecastService> forecasts;
         StreamHub& hub;
         PipelineThread& pipeline;
         const StaticFiles& console;

@@ -29,26 +29,38 @@ void Api::post_forecast(const ApiRequest& call) {
     v1::ForecastRequest wanted;
     if (const auto parsed = from_json(call.request.body, wanted); !parsed)
         return call.respond(error_response(400, parsed.error()));
-    if (const auto full = parts_.forecasts.full(); !full.empty()) return call.respond(error_response(503, full));
+    if (const auto place = parts_.forecasts->reserve(); !place) return call.respond(error_response(503, place.error()));
+    const std::weak_ptr<shadow::ForecastService> service = parts_.forecasts;
+    const auto give_back = [service](const Respond& respond) -> Respond {
+        return [service, respond](HttpResponse response) {
+            if (const auto forecasts = service.lock()) forecasts->fill({});
+            respond(std::move(response));
+        };
+    };
+    ApiRequest asked = call;
+    asked.respond = give_back(call.respond);  // whatever is answered but by `kept`, the place is free again
     ask(
-        call, {},
-        [this, wanted, by = call.who.user, respond = call.respond, current = current_run()](
+        asked, {},
+        [this, wanted, service, by = call.who.user, respond = call.respond, current = current_run()](
             archive::Reader& reader, archive::RunId id, const QueryText&) -> std::optional<HttpResponse> {
-            auto flown = reader.flown(id);
-            if (!flown) return error_response(422, flown.error());
             auto state = reader.run(id);
             if (!state) return error_response(404, state.error());
             if (current.run() == id.value && current.state() != v1::RunState::finished)
                 *state->mutable_clocks() = current.clocks();
-            auto read = shadow::read_forecast(wanted, *state, std::move(*flown));
+            auto read = shadow::read_forecast(wanted, *state, reader);
             if (!read) return error_response(422, read.error());
             read->record.asked_by = by;
-            const auto kept = [this, read = *read, respond](const Result<std::uint64_t>& number) mutable {
-                if (!number) return respond(error_response(503, number.error()));
+            const auto kept = [service, read = *read, respond](const Result<std::uint64_t>& number) mutable {
+                const auto forecasts = service.lock();  // on the pipeline's thread, which may outlive it
+                if (!forecasts) return respond(error_response(503, "the server ends"));
+                if (!number) {
+                    forecasts->fill({});
+                    return respond(error_response(503, number.error()));
+                }
                 read.record.number = *number;
                 const auto record = read.record;
-                parts_.forecasts.add(std::move(read));
-                respond(json_response(parts_.forecasts.now(record), 201));
+                forecasts->fill(std::move(read));
+                respond(json_response(forecasts->now(record), 201));
             };
             if (!parts_.pipeline.keep_forecast(read->record, kept))
                 return error_response(503, "nothing was asked, too much waits to be stored: try again");
@@ -68,7 +80,7 @@ void Api::list_forecasts(const ApiRequest& call) {
             const auto records = reader.forecasts(id, page.after, page.limit, page.order);
             if (!records) return error_response(500, records.error());
             v1::ForecastList list;
-            for (const auto& record : *records) *list.add_forecasts() = parts_.forecasts.now(record);
+            for (const auto& record : *records) *list.add_forecasts() = parts_.forecasts->now(record);
             if (records->size() == page.limit) list.set_next_after(records->back().number);
             return wanted.response(std::move(list), {"forecasts"});
         },
@@ -84,7 +96,7 @@ void Api::get_forecast(const ApiRequest& call) {
             if (!number) return no_forecast(id, text);
             const auto record = reader.forecast(id, *number);
             if (!record) return error_response(500, record.error());
-            return *record ? json_response(parts_.forecasts.now(**record)) : no_forecast(id, text);
+            return *record ? json_response(parts_.forecasts->now(**record)) : no_forecast(id, text);
         },
         JobPriority::soon);
 }
@@ -99,10 +111,10 @@ void Api::cancel_forecast(const ApiRequest& call) {
             const auto record = reader.forecast(id, *number);
             if (!record) return error_response(500, record.error());
             if (!*record) return no_forecast(id, text);
-            if (!parts_.forecasts.cancel(id, *number))
+            if (!parts_.forecasts->cancel(id, *number))
                 return error_response(
                     409, fmt::format("run {}, forecast {}: it neither flies nor waits", id.value, *number));
-            return json_response(parts_.forecasts.now(**record), 202);
+            return json_response(parts_.forecasts->now(**record), 202);
         },
         JobPriority::soon);
 }

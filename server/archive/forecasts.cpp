@@ -24,6 +24,12 @@ ForecastRecord record_of(const sqlite::Statement& row, RunId run) {
 }  // namespace
 
 Result<std::uint64_t> keep_forecast(sqlite::Database& database, const ForecastRecord& forecast) {
+    auto run = database.prepare("SELECT count(*) FROM runs WHERE run = ?1");
+    if (!run) return run.error();
+    auto known = run->bind(1, std::int64_t{forecast.run.value}).step();
+    if (!known) return known.error();
+    if (run->integer(0) == 0)
+        return Error{"run " + std::to_string(forecast.run.value) + " is not in the archive any more"};
     auto number = forecast.number;
     if (number == 0) {
         auto newest = database.prepare("SELECT coalesce(max(number), 0) FROM forecasts WHERE run = ?1");

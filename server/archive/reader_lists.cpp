@@ -175,6 +175,24 @@ Result<v1::PacketList> Reader::packets(RunId run, const PacketQuery& query) {
     return list;
 }
 
+Result<std::vector<std::vector<std::uint8_t>>> Reader::received_octets(RunId run, Sequence& after, std::size_t limit) {
+    auto rows =
+        state_->query("SELECT key, octets FROM packets WHERE key > ?1 AND key <= ?2 AND link IS NOT"
+                      " (SELECT number FROM words WHERE kind = 'link' AND word = 'station') ORDER BY key LIMIT ?3");
+    if (!rows) return rows.error();
+    auto& row = **rows;
+    row.bind(1, item_key(run, after)).bind(2, item_key(run, sequence_max)).bind(3, static_cast<std::int64_t>(limit));
+    std::vector<std::vector<std::uint8_t>> packets;
+    for (;;) {
+        auto found = row.step();
+        if (!found) return found.error();
+        if (!*found) return packets;
+        after = sequence_of(row.integer(0));
+        const auto octets = row.octets(1);
+        packets.emplace_back(octets.begin(), octets.end());
+    }
+}
+
 Result<void> Reader::each_recorded_packet(RunId run, const TakePacket& take) {
     const auto instant = state_->instant(run);
     if (!instant) return instant.error();

@@ -9,7 +9,9 @@
 namespace aeolis::archive {
 namespace {
 
-constexpr double window_s = 60.0;  // of channels compared at a time
+constexpr double window_s = 60.0;               // of channels compared at a time
+constexpr double span_max_s = 14.0 * 86'400.0;  // chosen: twice the longest rehearsal
+constexpr double same_time_s = 0.5 * seconds_per_tick;
 
 /// Seconds from entry at which the runs part: where one is forked from the other, or both from a third.
 std::optional<double> part_e_s(const v1::RunState& run, const v1::RunState& other) {
@@ -104,12 +106,13 @@ using Samples = std::map<std::uint32_t, std::vector<Sample>>;  // by channel
 Result<Samples> samples_of(Reader& reader, const v1::RunState& run, double from_e_s) {
     Samples samples;
     const double from_s = run.entry_sclk() + from_e_s;
-    const SclkRange range{from_s, from_s + window_s - seconds_per_tick};
+    const SclkRange range{from_s, from_s + window_s};
     const auto read = reader.each_sample(RunId{static_cast<std::uint32_t>(run.run())}, {}, range,
                                          [&](std::span<const ChannelValue> values) -> Result<void> {
                                              for (const auto& each : values)
-                                                 samples[each.channel.value].push_back(
-                                                     {each.sclk.seconds - run.entry_sclk(), each.value, each.text});
+                                                 if (each.sclk.seconds < from_s + window_s)
+                                                     samples[each.channel.value].push_back(
+                                                         {each.sclk.seconds - run.entry_sclk(), each.value, each.text});
                                              return {};
                                          });
     if (!read) return read.error();
@@ -128,8 +131,8 @@ void compare(const std::vector<Sample>& one, const std::vector<Sample>& other, C
         if (found.differing + found.only_one == 0) found.from_e_s = e_s;
     };
     for (auto a = one.begin(), b = other.begin(); a != one.end() || b != other.end();) {
-        const bool first_only = b == other.end() || (a != one.end() && a->e_s < b->e_s);
-        if (first_only || a == one.end() || b->e_s < a->e_s) {
+        const bool first_only = b == other.end() || (a != one.end() && a->e_s < b->e_s - same_time_s);
+        if (first_only || a == one.end() || b->e_s < a->e_s - same_time_s) {
             differs_at(first_only ? a->e_s : b->e_s);
             ++found.only_one;
             ++(first_only ? a : b);
@@ -165,8 +168,16 @@ Result<void> add_channels(Reader& reader, const dictionary::Dictionary& dictiona
     const auto end = end_e_s(reader, told.run()), other_end = end_e_s(reader, told.other());
     if (!end) return end.error();
     if (!other_end) return other_end.error();
+    const double until_e_s = std::min(*end, *other_end);
+    if (until_e_s - from_e_s > span_max_s)
+        return Error{"the runs have samples over more than 14 days from where they part: too many to be compared"};
+    told.set_channels_until_e_s(until_e_s);
+    const auto cut = [&](std::vector<Sample> samples) {
+        std::erase_if(samples, [&](const Sample& each) { return each.e_s > until_e_s + same_time_s; });
+        return samples;
+    };
     std::map<std::uint32_t, ChannelFound> found;
-    for (double e_s = from_e_s; e_s <= std::max(*end, *other_end); e_s += window_s) {
+    for (double e_s = from_e_s; e_s <= until_e_s; e_s += window_s) {
         const auto one = samples_of(reader, told.run(), e_s), other = samples_of(reader, told.other(), e_s);
         if (!one) return one.error();
         if (!other) return other.error();
@@ -175,7 +186,7 @@ Result<void> add_channels(Reader& reader, const dictionary::Dictionary& dictiona
             for (const auto& [channel, samples] : *side) channels.insert(channel);
         for (const auto channel : channels) {
             const auto a = one->find(channel), b = other->find(channel);
-            compare(a == one->end() ? none : a->second, b == other->end() ? none : b->second, found[channel]);
+            compare(a == one->end() ? none : cut(a->second), b == other->end() ? none : cut(b->second), found[channel]);
         }
     }
     for (const auto& [channel, each] : found) {

@@ -111,18 +111,18 @@ Result<std::unique_ptr<ConsoleBackend>> ConsoleBackend::open(Settings settings,
     backend->access_ = std::move(*access);
     backend->campaigns_ =
         std::make_unique<campaign::CampaignManager>(chosen.archive.parent_path(), backend->scenarios_, dictionary);
-    backend->forecasts_ =
-        std::make_unique<shadow::ForecastService>(dictionary, [self](const archive::ForecastRecord& forecast) {
-            const auto done = [](const Result<std::uint64_t>& kept) {
+    backend->forecasts_ = std::make_shared<shadow::ForecastService>(
+        dictionary, chosen.archive,
+        [pipeline = backend->pipeline_.get()](const archive::ForecastRecord& forecast,
+                                              const std::function<void(bool)>& done) {
+            return pipeline->keep_forecast(forecast, [done](const Result<std::uint64_t>& kept) {
                 if (!kept) spdlog::error("a forecast could not be stored: {}", kept.error().message);
-            };
-            if (!self->pipeline_->keep_forecast(forecast, done))
-                spdlog::error("run {}: forecast {} could not be stored: too much waits", forecast.run.value,
-                              forecast.number);
+                done(kept.ok());
+            });
         });
     backend->api_ = std::make_unique<Api>(Api::Parts{
         dictionary, backend->scenarios_, *backend->queries_, *backend->rehearsals_, backend->predictions_,
-        *backend->campaigns_, *backend->forecasts_, *backend->hub_, *backend->pipeline_, backend->console_,
+        *backend->campaigns_, backend->forecasts_, *backend->hub_, *backend->pipeline_, backend->console_,
         *backend->access_, backend->server_->secure(), [self] { return self->server_->connections(); },
         backend->clock_watch_,
         chosen.publish_to.url.empty() && chosen.follow_by.url.empty() ? std::function<Replication()>{}

@@ -103,7 +103,7 @@ class ConsoleBackend {
     std::unique_ptr<RehearsalManager> rehearsals_;
     PredictionService predictions_;
     std::unique_ptr<campaign::CampaignManager> campaigns_;
-    std::unique_ptr<shadow::ForecastService> forecasts_;
+    std::shared_ptr<shadow::ForecastService> forecasts_;
     std::unique_ptr<DownlinkFollower> downlink_;
     std::unique_ptr<Api> api_;
 

@@ -37,6 +37,8 @@ class Numbering {
         return batch.last_seq;
     }
     Sequence last() const { return next_ - 1; }
+    /// From here on all numbers are free.
+    void forget_taken() { taken_.clear(), passed_ = 0; }
 
   private:
     void pass_taken() {

@@ -147,6 +147,7 @@ Result<RunId> Pipeline::begin(const archive::RunStart& start, Repeated repeated)
     auto id = state_->archive.begin_run(start, state_->dictionary);
     if (!id) return id.error();
     std::vector<Sequence> numbers;
+    numbers.reserve(repeated.annotations.size());
     for (const auto& annotation : repeated.annotations)
         numbers.push_back(std::visit([](const auto& record) { return record.seq; }, annotation));
     state_->run.emplace(*id, start, *state_, Numbering{1, std::move(numbers), Numbering::Last::given});
@@ -154,10 +155,15 @@ Result<RunId> Pipeline::begin(const archive::RunStart& start, Repeated repeated)
     return *id;
 }
 
+bool Pipeline::differs() const {
+    return state_->run && state_->run->differs.has_value();
+}
+
 Result<Sequence> Pipeline::forked() {
     AEOLIS_CHECK(state_->run.has_value() && state_->run->origin.has_value());
     if (auto done = commit(); !done) return done.error();
     state_->run->origin.reset();
+    state_->run->numbering.forget_taken();
     if (state_->run->differs) return *state_->run->differs;
     return state_->run->last_durable;
 }

@@ -84,6 +84,8 @@ class Pipeline {
     Result<RunId> begin(const archive::RunStart& start, Repeated repeated);
     /// Stores what waits; from here on the run is as any. @return its last item; the Error names the first that differs
     Result<Sequence> forked();
+    /// Whether an item that was flown again is not what it was.
+    bool differs() const;
 
     /// Resumes a run that was cut off, flown again from its beginning. Items up to `durable` are neither stored nor
     /// published again but compared with the archive by `compare`; after them the run continues as any. One at a time,

@@ -110,7 +110,10 @@ Result<archive::RunId> PipelineThread::begin(const archive::RunStart& start, arc
 
 Result<archive::Sequence> PipelineThread::forked() {
     Result<archive::Sequence> result = Error{"the archive is closing"};
-    perform([&] { result = pipeline_.forked(); });
+    perform([&] {
+        static_cast<void>(retry_until_stored([&] { return pipeline_.commit(); }));
+        result = pipeline_.forked();
+    });
     return result;
 }
 
@@ -369,6 +372,7 @@ void PipelineThread::run() {
                 finish(std::get<Finish>(*job));
         }
         commit_what_is_due();
+        differs_ = pipeline_.differs();
         remove_pruned();
         pending_octets_ = pipeline_.pending_octets();
     }

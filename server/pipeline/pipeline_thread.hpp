@@ -62,6 +62,8 @@ class PipelineThread {
     Result<archive::RunId> begin(const archive::RunStart& start, archive::RunId of);
     /// Waits until all deliveries were taken and stored. @return the last item; an Error when what was flown again differs
     Result<archive::Sequence> forked();
+    /// Whether something of it differs, as of the last commit.
+    bool differs() const { return differs_; }
     /// Resumes a run that was cut off, flown again from its beginning: stored items are compared and not stored again.
     Result<void> resume(archive::FlownRun& cut, const archive::RunStart& start);
     /// Waits until all deliveries were taken. True when the run has caught up with the stored items; an Error when it
@@ -183,6 +185,7 @@ class PipelineThread {
     std::atomic<bool> items_wanted_{true}, given_up_{false}, closing_{false}, blocked_{false};
     std::atomic<std::uint64_t> deliveries_{0}, failed_commits_{0}, batches_{0}, items_{0}, not_decoded_{0};
     std::atomic<std::size_t> pending_octets_{0};
+    std::atomic<bool> differs_{false};
     mutable std::mutex figures_mutex_;
     std::map<std::string, Received> links_;
     std::map<std::string, archive::LinkTotals> totals_;

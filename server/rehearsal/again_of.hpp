@@ -9,7 +9,13 @@
 namespace aeolis::server {
 
 /// The instant of a run that a fork names. The Error says which it cannot be.
-Result<archive::ForkPoint> fork_point_of(const v1::Fork& fork, const v1::RunState& run);
+/// @param name  of the field, for the Error
+Result<archive::ForkPoint> fork_point_of(const v1::Fork& fork, const v1::RunState& run,
+                                         std::string_view name = "fork.at");
+
+/// Whether a run that does not go on was flown to that instant. The Error says when its record ends.
+Result<void> check_flown(archive::Reader& reader, const v1::RunState& run, const archive::ForkPoint& at,
+                         std::string_view name);
 
 /// Reads the run that the request continues or forks. The Error names the field at fault.
 Result<RehearsalRunner::Again> again_of(const v1::StartRehearsal& request, archive::Reader& reader);

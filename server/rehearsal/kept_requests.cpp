@@ -25,20 +25,24 @@ bool repeat(Rehearsal& rehearsal, const v1::KeptRequest& kept,
     return false;
 }
 
-Result<void> fly_again(Rehearsal& rehearsal, const archive::FlownRun& run, std::uint64_t cycle,
-                       const std::function<bool()>& stop) {
+bool is_fork(const archive::RequestRecord& request) {
+    return archive::kept_request(request.request).has_fork();
+}
+
+Result<void> fly_again(Rehearsal& rehearsal, const archive::FlownRun& run, const FlyAgain& how) {
     for (auto request = run.requests.begin();;) {
-        for (; request != run.requests.end() && request->cycle == rehearsal.cycles() && rehearsal.cycles() < cycle;
-             ++request)
-            if (!repeat(rehearsal, archive::kept_request(request->request)))
-                return Error{
-                    fmt::format("run {}: what was taken at cycle {} is refused now", run.run.value, request->cycle)};
-        if (rehearsal.cycles() >= cycle) return {};
-        if (stop()) return Error{"it was stopped"};
+        const bool there = rehearsal.cycles() >= how.cycle;
+        for (; request != run.requests.end() && request->cycle == rehearsal.cycles(); ++request)
+            if (!there || how.with_requests_of_cycle || is_fork(*request))
+                if (!repeat(rehearsal, archive::kept_request(request->request)))
+                    return Error{fmt::format("run {}: what was taken at cycle {} is refused now", run.run.value,
+                                             request->cycle)};
+        if (there) return {};
+        if (how.stop()) return Error{"it was stopped"};
         if (rehearsal.finished())
             return Error{fmt::format("run {} ends before, at E{:+.1f} s: {}", run.run.value, rehearsal.clocks().e_s(),
                                      rehearsal.outcome_reason())};
-        rehearsal.step();
+        if (auto looked = how.look(rehearsal.step()); !looked) return looked;
         rehearsal.take_stages();
     }
 }

@@ -235,7 +235,9 @@ Result<void> RehearsalRunner::catch_up(Rehearsal& rehearsal) {
 Result<void> RehearsalRunner::fork(Rehearsal& rehearsal) {
     auto& parent = again_->run;
     const auto& at = *again_->fork;
-    std::erase_if(parent.requests, [&](const archive::RequestRecord& each) { return each.cycle >= at.cycle; });
+    std::erase_if(parent.requests, [&](const archive::RequestRecord& each) {
+        return each.cycle > at.cycle || (each.cycle == at.cycle && !is_fork(each));  // its seed is the run's by then
+    });
     const auto run = pipeline_.begin(start_, parent.run);
     if (!run) return run.error();
     run_id_ = *run;
@@ -251,16 +253,20 @@ Result<void> RehearsalRunner::fork(Rehearsal& rehearsal) {
     v1::KeptRequest marker;
     *marker.mutable_fork() = archive::to_reply(at);
     delivery_.entries.emplace_back(archive::RequestRecord{at.cycle, archive::kept_text(marker)});
-    for (std::size_t next = 0; rehearsal.cycles() < at.cycle;) {
+    std::size_t next = 0;
+    while (rehearsal.cycles() < at.cycle) {
         if (stop_wanted()) return given_up("it was stopped");
         if (const auto repeated = repeat_due(rehearsal, next); !repeated) return given_up(repeated.error().message);
         if (delivery_.entries.size() >= delivery_entries && !deliver(rehearsal, Clock::now()))
             return given_up("the archive gave up");
+        if (pipeline_.differs()) break;
         if (rehearsal.finished())
             return given_up(fmt::format("the run ends before, at E{:+.1f} s: {}", rehearsal.clocks().e_s(),
                                         rehearsal.outcome_reason()));
         step(rehearsal);
     }
+    if (rehearsal.cycles() == at.cycle)
+        if (const auto repeated = repeat_due(rehearsal, next); !repeated) return given_up(repeated.error().message);
     if (!deliver(rehearsal, Clock::now())) return given_up("the archive gave up");
     const auto last = pipeline_.forked();
     if (!last) return given_up(last.error().message);

@@ -17,7 +17,8 @@ namespace aeolis::server::shadow {
 namespace {
 
 constexpr std::uint64_t usual_cases = 32;
-constexpr const char* stopped = "the forecast was cancelled";
+constexpr auto keep_again = std::chrono::seconds{1};
+constexpr std::size_t packets_read = 1'000;  // of the archive at a time
 
 std::string name_of(v1::Forecast::State state) {
     return v1::Forecast::State_Name(state);
@@ -45,11 +46,56 @@ Result<Assumption> assumption_of(const v1::ForecastRequest& request, const simul
     return assumption;
 }
 
+/// The packets that ground received of a run, in order, to be held against what it receives when flown again.
+class StoredPackets {
+  public:
+    StoredPackets(archive::Reader reader, archive::RunId run, bool goes_on)
+        : reader_(std::move(reader)), run_(run), goes_on_(goes_on) {}
+
+    Result<void> look(const telemetry::Received& received) {
+        for (const auto& packet : received.packets) {
+            if (next_ == page_.size())
+                if (auto read = read_page(); !read) return read;
+            if (page_.empty()) {
+                if (goes_on_) return {};  // what it has just received is not stored yet
+                return Error{fmt::format("run {} has no more packets from there on", run_.value)};
+            }
+            if (page_[next_++] != packet.octets)
+                return Error{
+                    fmt::format("run {}: flown again, packet {} that ground receives is not what it was: the run "
+                                "is of another program",
+                                run_.value, count_)};
+            ++count_;
+        }
+        return {};
+    }
+
+  private:
+    Result<void> read_page() {
+        auto page = reader_.received_octets(run_, after_, packets_read);
+        if (!page) return page.error();
+        page_ = std::move(*page);
+        next_ = 0;
+        return {};
+    }
+
+    archive::Reader reader_;
+    archive::RunId run_;
+    bool goes_on_;
+    archive::Sequence after_ = 0;
+    std::vector<std::vector<std::uint8_t>> page_;
+    std::size_t next_ = 0;
+    std::uint64_t count_ = 1;
+};
+
 }  // namespace
 
 Result<ReadForecast> read_forecast(const v1::ForecastRequest& request, const v1::RunState& state,
-                                   archive::FlownRun run) {
+                                   archive::Reader& reader) {
     ReadForecast forecast;
+    auto flown = reader.flown(archive::RunId{static_cast<std::uint32_t>(state.run())});
+    if (!flown) return flown.error();
+    archive::FlownRun& run = *flown;
     if (run.scenario_text.empty())
         return Error{fmt::format("run {} follows another mission: nothing can be flown again", run.run.value)};
     auto scenario = scenario_from_text(run.scenario_text, fmt::format("the scenario of run {}", run.run.value));
@@ -65,8 +111,14 @@ Result<ReadForecast> read_forecast(const v1::ForecastRequest& request, const v1:
             return Error{"at: an instant of the run is wanted, like E+3:10; only a run that goes on has a now"};
         instant.set_at(fmt::format("{}", state.clocks().sclk()));
     }
-    const auto at = fork_point_of(instant, state);
+    const auto at = fork_point_of(instant, state, "at");
     if (!at) return at.error();
+    if (!state.has_clocks())
+        if (const auto reached = check_flown(reader, state, *at, "at"); !reached) return reached.error();
+    if (state.has_clocks() && at->e_s > state.clocks().e_s())
+        return Error{fmt::format("at: E{:+.1f} s is yet to come: run {} is at E{:+.1f} s", at->e_s, state.run(),
+                                 state.clocks().e_s())};
+    forecast.now = state.has_clocks();
     auto assumption = assumption_of(request, *scenario);
     if (!assumption) return assumption.error();
     forecast.cycle = at->cycle;
@@ -89,8 +141,8 @@ Result<ReadForecast> read_forecast(const v1::ForecastRequest& request, const v1:
     return forecast;
 }
 
-ForecastService::ForecastService(const dictionary::Dictionary& dictionary, Keep keep)
-    : dictionary_(dictionary), keep_(std::move(keep)), thread_([this] { work(); }) {}
+ForecastService::ForecastService(const dictionary::Dictionary& dictionary, std::filesystem::path file, Keep keep)
+    : dictionary_(dictionary), file_(std::move(file)), keep_(std::move(keep)), thread_([this] { work(); }) {}
 
 ForecastService::~ForecastService() {
     {
@@ -102,15 +154,20 @@ ForecastService::~ForecastService() {
     thread_.join();
 }
 
-std::string ForecastService::full() const {
+Result<void> ForecastService::reserve() {
     const std::scoped_lock lock{mutex_};
-    if (waiting_.size() < waiting_max) return {};
-    return fmt::format("{} forecasts wait already: cancel one, or wait until one is ready", waiting_.size());
+    if (waiting_.size() + reserved_ >= waiting_max)
+        return Error{fmt::format("{} forecasts wait already: cancel one, or wait until one is ready",
+                                 waiting_.size() + reserved_)};
+    ++reserved_;
+    return {};
 }
 
-void ForecastService::add(ReadForecast forecast) {
+void ForecastService::fill(std::optional<ReadForecast> forecast) {
     const std::scoped_lock lock{mutex_};
-    waiting_.push_back(std::move(forecast));
+    --reserved_;
+    if (!forecast) return;
+    waiting_.push_back(std::move(*forecast));
     changed_.notify_all();
 }
 
@@ -119,7 +176,6 @@ bool ForecastService::cancel(archive::RunId run, std::uint64_t number) {
     {
         const std::scoped_lock lock{mutex_};
         if (flying_ && is(*flying_, run, number)) {
-            if (flown_) return false;
             cancelled_ = true;
             stop_ = true;
             return true;
@@ -128,15 +184,24 @@ bool ForecastService::cancel(archive::RunId run, std::uint64_t number) {
             std::ranges::find_if(waiting_, [&](const ReadForecast& each) { return is(each.record, run, number); });
         if (found == waiting_.end()) return false;
         removed = std::move(found->record);
+        removed->state = name_of(v1::Forecast::cancelled);
+        removed->ended = wall_clock_text();
+        const std::scoped_lock ended_lock{ended_->mutex};
+        ended_->all.push_back({std::move(*removed), false});
         waiting_.erase(found);
     }
-    removed->state = name_of(v1::Forecast::cancelled);
-    removed->ended = wall_clock_text();
-    keep_(*removed);
+    keep_ended();
     return true;
 }
 
-v1::Forecast ForecastService::now(const archive::ForecastRecord& record) const {
+v1::Forecast ForecastService::now(const archive::ForecastRecord& stored) const {
+    const std::scoped_lock lock{mutex_};
+    archive::ForecastRecord record = stored;
+    {
+        const std::scoped_lock ended_lock{ended_->mutex};
+        for (const auto& each : ended_->all)
+            if (is(each.record, stored.run, stored.number)) record = each.record;
+    }
     v1::Forecast told;
     told.set_run(record.run.value);
     told.set_forecast(record.number);
@@ -150,7 +215,7 @@ v1::Forecast ForecastService::now(const archive::ForecastRecord& record) const {
     auto state = v1::Forecast::queued;
     if (!v1::Forecast::State_Parse(record.state, &state)) state = v1::Forecast::failed;
     if (state == v1::Forecast::queued) {
-        const std::scoped_lock lock{mutex_};
+        const auto waits = [&](const ReadForecast& each) { return is(each.record, record.run, record.number); };
         if (flying_ && is(*flying_, record.run, record.number)) {
             state = v1::Forecast::flying;
             told.set_done(progress_.done);
@@ -159,9 +224,7 @@ v1::Forecast ForecastService::now(const archive::ForecastRecord& record) const {
             told.set_within_without(progress_.within_without);
             told.set_with(progress_.with);
             told.set_within_with(progress_.within_with);
-        } else if (std::ranges::none_of(waiting_, [&](const ReadForecast& each) {
-                       return is(each.record, record.run, record.number);
-                   })) {
+        } else if (reserved_ == 0 && std::ranges::none_of(waiting_, waits)) {
             state = v1::Forecast::abandoned;
         }
     }
@@ -173,50 +236,86 @@ void ForecastService::work() {
     campaign::use_idle_priority();
     for (;;) {
         ReadForecast next;
+        keep_ended();
         {
             std::unique_lock lock{mutex_};
-            changed_.wait(lock, [this] { return over_ || !waiting_.empty(); });
+            changed_.wait_for(lock, keep_again, [this] { return over_ || !waiting_.empty(); });
             if (over_) return;
+            if (waiting_.empty()) continue;
             next = std::move(waiting_.front());
             waiting_.pop_front();
             flying_ = next.record;
             progress_ = {};
-            stop_ = cancelled_ = flown_ = false;
+            stop_ = cancelled_ = false;
         }
         fly(next);
-        bool keep = true;
-        {
-            const std::scoped_lock lock{mutex_};
-            flown_ = true;
-            if (cancelled_) {
-                next.record.state = name_of(v1::Forecast::cancelled);
-                next.record.reason.clear();
-                next.record.result.clear();
-            }
-            keep = !over_ || next.record.state == name_of(v1::Forecast::ready);
-        }
-        if (keep) keep_(next.record);
         const std::scoped_lock lock{mutex_};
+        if (cancelled_) {
+            next.record.state = name_of(v1::Forecast::cancelled);
+            next.record.reason.clear();
+            next.record.result.clear();
+        }
+        const bool abandoned = over_ && next.record.state != name_of(v1::Forecast::ready);
+        if (!abandoned) end(std::move(next.record));
         flying_.reset();
-        if (over_) return;
     }
+}
+
+void ForecastService::end(archive::ForecastRecord record) {
+    const std::scoped_lock lock{ended_->mutex};
+    ended_->all.push_back({std::move(record), false});
+}
+
+void ForecastService::keep_ended() {
+    std::vector<archive::ForecastRecord> records;
+    {
+        const std::scoped_lock lock{ended_->mutex};
+        for (auto& each : ended_->all)
+            if (!std::exchange(each.on_its_way, true)) records.push_back(each.record);
+    }
+    for (const auto& record : records) {
+        const auto settle = [ended = ended_, run = record.run, number = record.number](bool durable) {
+            const std::scoped_lock lock{ended->mutex};
+            const auto found =
+                std::ranges::find_if(ended->all, [&](const auto& each) { return is(each.record, run, number); });
+            if (found == ended->all.end()) return;
+            if (durable)
+                ended->all.erase(found);
+            else
+                found->on_its_way = false;
+        };
+        if (!keep_(record, settle)) settle(false);
+    }
+}
+
+std::string ForecastService::fly_to(ReadForecast& forecast, Rehearsal& rehearsal) {
+    auto reader = archive::Reader::open(file_, dictionary_);
+    if (!reader) return reader.error().message;
+    StoredPackets stored{std::move(*reader), forecast.run.run, forecast.now};
+    const FlyAgain how{forecast.cycle, forecast.now, [this] { return stop_.load(); },
+                       [&](const telemetry::Received& received) { return stored.look(received); }};
+    const auto there = fly_again(rehearsal, forecast.run, how);
+    return there ? std::string{} : there.error().message;
 }
 
 void ForecastService::fly(ReadForecast& forecast) {
     const auto& run = forecast.run;
-    Result<TruthForecast> flown = Error{stopped};
-    {
-        Rehearsal rehearsal{forecast.scenario, run.seed, run.case_number, dictionary_, {}, run.clock};
-        if (const auto there = fly_again(rehearsal, run, forecast.cycle, [this] { return stop_.load(); }); !there)
-            flown = there.error();
-        else
-            flown = forecast_from_truth(rehearsal.flight(), forecast.scenario, dictionary_, forecast.assumption,
-                                        forecast.order, stop_, [this](const ForecastProgress& progress) {
-                                            const std::scoped_lock lock{mutex_};
-                                            progress_ = progress;
-                                        });
-    }
     auto& record = forecast.record;
+    const auto flown = [&]() -> Result<TruthForecast> {
+        try {
+            Rehearsal rehearsal{forecast.scenario, run.seed, run.case_number, dictionary_, {}, run.clock};
+            if (const auto why = fly_to(forecast, rehearsal); !why.empty()) return Error{why};
+            return forecast_from_truth(rehearsal.flight(), forecast.scenario, dictionary_, forecast.assumption,
+                                       forecast.order, stop_, [this](const ForecastProgress& progress) {
+                                           const std::scoped_lock lock{mutex_};
+                                           progress_ = progress;
+                                       });
+        } catch (const CheckFailed& bug) {
+            return Error{text_of_bug(bug)};
+        } catch (const std::exception& error) {
+            return Error{std::string{"the simulation ended: "} + error.what()};
+        }
+    }();
     record.ended = wall_clock_text();
     record.state = name_of(flown ? v1::Forecast::ready : v1::Forecast::failed);
     if (!flown) {

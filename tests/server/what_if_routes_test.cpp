@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "server/archive/sqlite.hpp"
 #include "server/base/json.hpp"
 #include "tests/server/running_server.hpp"
 #include "tests/server/web_client.hpp"
@@ -39,6 +40,14 @@ class Landed {
     }
     auto post(const std::string& path, const std::string& body) const {
         return web_request(port(), "POST", "/api/v1" + path, body);
+    }
+    void execute(const char* sql) {
+        auto database =
+            archive::sqlite::Database::open(server_.archive().string(), archive::sqlite::Mode::read_write_create);
+        REQUIRE(database);
+        const auto done = database->execute(sql);
+        INFO((done ? "" : done.error().message));
+        REQUIRE(done);
     }
     v1::Forecast forecast(std::uint64_t number) const {
         v1::Forecast told;
@@ -140,16 +149,24 @@ TEST_CASE("a forecast that cannot be is refused in words, or kept with the reaso
     CHECK(landed.post("/runs/7/forecasts", R"({"at":"E+1:00"})").status == 404);
     CHECK(web_request(landed.port(), "GET", "/api/v1/runs/1/forecasts/9").status == 404);
 
-    REQUIRE(landed.post("/runs/1/forecasts", R"({"at":"E+2:00:00"})").status == 201);
-    const auto late = landed.ended(1);
-    CHECK(late.state() == v1::Forecast::failed);
-    CHECK_THAT(late.reason(), Catch::StartsWith("run 1 ends before, at E+"));
+    CHECK_THAT(refusal(R"({"at":"E+2:00:00"})"), Catch::Contains("at: E+7200.0 s is after the record of run 1 ends"));
     REQUIRE(
         landed.post("/runs/1/forecasts", R"({"at":"E-8:20","cases":1,"commands":[{"command":"DO_NOTHING"}]})").status ==
         201);
-    const auto unknown = landed.ended(2);
+    const auto unknown = landed.ended(1);
     CHECK(unknown.state() == v1::Forecast::failed);
     CHECK_THAT(unknown.reason(), Catch::StartsWith("DO_NOTHING is refused: "));
+}
+
+TEST_CASE("a forecast of a run that does not come out the same is none: it names the packet that differs",
+          "[forecast][http][R58][idle]") {
+    Landed landed;
+    landed.execute("UPDATE packets SET octets = zeroblob(length(octets)) WHERE key ="
+                   " (SELECT key FROM packets WHERE link = 1 ORDER BY key LIMIT 1 OFFSET 100)");
+    REQUIRE(landed.post("/runs/1/forecasts", R"({"at":"E+6:00","cases":1})").status == 201);
+    const auto other = landed.ended(1);
+    CHECK(other.state() == v1::Forecast::failed);
+    CHECK_THAT(other.reason(), Catch::StartsWith("run 1: flown again, packet "));
 }
 
 TEST_CASE("a fork is begun over HTTP, waits at its instant, and is laid over its parent", "[fork][http][R60]") {

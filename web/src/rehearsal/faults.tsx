@@ -42,7 +42,7 @@ export function faultWords({ device_fault: device, system_fault: system, station
 }
 
 const hasLength = () => what.value !== COMPUTER;
-const badLength = () => hasLength() && !(Number(seconds.value) > 0);
+export const badLength = () => hasLength() && !(Number(seconds.value) > 0);
 
 /** The fault that the fields say. */
 export const pickedFault = (): Fault => injectionOf(what.value, unit.value, kind.value, Number(seconds.value));

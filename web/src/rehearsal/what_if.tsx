@@ -12,7 +12,7 @@ import { pastRange, runs, store, tick } from '../run/shown';
 import { isGoing } from '../run/start';
 import type { RunStore } from '../run/store';
 import { fromEntry, readFromEntry } from '../run/time';
-import { FaultFields, faultWords, pickedFault } from './faults';
+import { FaultFields, badLength, faultWords, pickedFault } from './faults';
 import { FIGURES, assumed, eventName, laterBy, partText, stateText, timeIn, valuesText } from './what_if_model';
 import { begin, beginProblem, whyNotBegin } from './view';
 import type { Differences, Forecast } from './what_if_model';
@@ -183,7 +183,8 @@ function DifferencesOf({ run, of }: { run: RunStore; of: Differences }) {
       <DifferenceTable of={of} name="timepoints" />
       <DifferenceTable of={of} name="events" />
       <p>
-        channels: {channels.length} differ, {of.channels_equal ?? 0} do not
+        channels{of.channels_until_e_s === undefined ? '' : `, up to ${fromEntry(of.channels_until_e_s)}`}:{' '}
+        {channels.length} differ, {of.channels_equal ?? 0} do not
         {channels.length > CHANNELS_SHOWN && `; the ${CHANNELS_SHOWN} that differ first:`}
       </p>
       {channels.length > 0 && (
@@ -310,12 +311,16 @@ function Forecasts({ run }: { run: RunStore }) {
     void refreshForecasts(run);
     const timer = setInterval(() => {
       const all = forecasts.value?.run === run.id ? forecasts.value.all : [];
-      if (all.some((each) => each.state === 'flying' || each.state === 'queued')) void refreshForecasts(run);
+      const known = forecasts.value?.run === run.id;
+      if (!known || all.some((each) => each.state === 'flying' || each.state === 'queued')) void refreshForecasts(run);
     }, AGAIN_MS);
     return () => clearInterval(timer);
   }, [run.id]);
   const all = forecasts.value?.run === run.id ? forecasts.value.all : [];
-  const badCases = !/^[1-9]\d{0,2}$|^1000$/.test(cases.value);
+  const bad =
+    !/^[1-9]\d{0,2}$|^1000$/.test(cases.value) ||
+    (breaks.value && badLength()) ||
+    (at.value === '' ? !run.going : readFromEntry(at.value) === undefined);
   return (
     <>
       <form
@@ -323,7 +328,7 @@ function Forecasts({ run }: { run: RunStore }) {
         data-testid="forecast"
         onSubmit={(event) => {
           event.preventDefault();
-          if (!badCases) void askForecast(run);
+          if (!bad) void askForecast(run);
         }}
       >
         <Instant run={run} />
@@ -333,7 +338,7 @@ function Forecasts({ run }: { run: RunStore }) {
             class="seed"
             value={cases.value}
             inputMode="numeric"
-            aria-invalid={badCases}
+            aria-invalid={!/^[1-9]\d{0,2}$|^1000$/.test(cases.value)}
             onInput={(event) => (cases.value = event.currentTarget.value)}
           />
         </label>
@@ -357,7 +362,7 @@ function Forecasts({ run }: { run: RunStore }) {
           with a fault
         </label>
         {breaks.value && <FaultFields />}
-        <button type="submit" disabled={badCases || busy.value} data-testid="forecast-go">
+        <button type="submit" disabled={bad || busy.value} data-testid="forecast-go">
           what if
         </button>
       </form>

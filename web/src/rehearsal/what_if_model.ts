@@ -26,6 +26,7 @@ export interface Differences {
   timepoints?: EventDifference[];
   channels?: ChannelDifference[];
   channels_equal?: number;
+  channels_until_e_s?: number;
   run: { outcome: string };
   other: { outcome: string };
 }
