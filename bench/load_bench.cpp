@@ -270,14 +270,16 @@ struct ListServer {
         : console(folder / "web"),
           rehearsals(
               scenarios, dictionary, pipeline, [](const auto& action) { action(); },
-              [](archive::RunId, const auto& done) { done(Error{"was not cut off"}); },
+              [](const v1::StartRehearsal&, const auto& done) { done(Error{"was not cut off"}); },
               {[](archive::RunId, const auto&, bool, const auto& done) { done(std::string{}); },
                [](archive::RunId, const auto& done) { done(server::TimelineCheck::Reanalysis{}); }},
               {[](const auto&) {}, [](const auto&) {}}),
-          campaigns(folder, scenarios, dictionary), predictions(dictionary),
-          access(std::move(server::Access::open({.file = folder / "accounts.json"})).value()),
-          api({dictionary, scenarios, queries, rehearsals, predictions, campaigns, hub, pipeline, console, *access,
-               false, [] { return std::size_t{0}; }, clock_watch}) {
+          campaigns(folder, scenarios, dictionary),
+          forecasts(std::make_shared<server::shadow::ForecastService>(dictionary, folder / "none.db",
+                                                                      [](const auto&, const auto&) { return false; })),
+          predictions(dictionary), access(std::move(server::Access::open({.file = folder / "accounts.json"})).value()),
+          api({dictionary, scenarios, queries, rehearsals, predictions, campaigns, forecasts, hub, pipeline, console,
+               *access, false, [] { return std::size_t{0}; }, clock_watch}) {
         for (std::size_t i = 0; i < people; ++i) {
             v1::NewUser user;
             user.set_user("person" + std::to_string(i));
@@ -298,6 +300,7 @@ struct ListServer {
     server::StaticFiles console;
     server::RehearsalManager rehearsals;
     server::campaign::CampaignManager campaigns;
+    std::shared_ptr<server::shadow::ForecastService> forecasts;
     server::PredictionService predictions;
     std::unique_ptr<server::Access> access;
     server::ClockWatch clock_watch;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "aeolis/v1/what_if.pb.h"
 #include "server/archive/reader.hpp"
 
 namespace aeolis::archive {

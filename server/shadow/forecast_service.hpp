@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "aeolis/v1/forecast.pb.h"
+#include "aeolis/v1/what_if.pb.h"
 #include "common/result.hpp"
 #include "dictionaries/dictionary.hpp"
 #include "server/archive/forecasts.hpp"

@@ -51,16 +51,18 @@ struct Server {
                                 recorded.dictionary,
                                 pipeline,
                                 [](const auto& action) { action(); },
-                                [](archive::RunId, const auto& done) { done(Error{"was not cut off"}); },
+                                [](const v1::StartRehearsal&, const auto& done) { done(Error{"was not cut off"}); },
                                 {[](archive::RunId, const auto&, bool, const auto& done) { done(std::string{}); },
                                  [](archive::RunId, const auto& done) { done(TimelineCheck::Reanalysis{}); }},
                                 {[](const auto&) {}, [](const auto&) {}}};
     campaign::CampaignManager campaigns{recorded.folder / "campaigns", scenarios, recorded.dictionary};
+    std::shared_ptr<shadow::ForecastService> forecasts = std::make_shared<shadow::ForecastService>(
+        recorded.dictionary, recorded.file(), [](const auto&, const auto&) { return false; });
     PredictionService predictions{recorded.dictionary};
     std::unique_ptr<Access> access = std::move(Access::open({})).value();
     ClockWatch clock_watch;
-    Api api{{recorded.dictionary, scenarios, *queries, rehearsals, predictions, campaigns, hub, pipeline, console,
-             *access, false, [] { return std::size_t{1}; }, clock_watch}};
+    Api api{{recorded.dictionary, scenarios, *queries, rehearsals, predictions, campaigns, forecasts, hub, pipeline,
+             console, *access, false, [] { return std::size_t{1}; }, clock_watch}};
 };
 
 HttpResponse ask(Server& server, const HttpRequest& request) {

@@ -5,7 +5,7 @@
 #include "tests/server/web_client.hpp"
 #include "tests/support/catch.hpp"
 
-#include "aeolis/v1/forecast.pb.h"
+#include "aeolis/v1/what_if.pb.h"
 #include "aeolis/v1/run.pb.h"
 
 #include <chrono>

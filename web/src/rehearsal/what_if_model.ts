@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Forks, forecasts and differences of runs, as the server tells of them (schema/aeolis/v1/run.proto, forecast.proto).
+// Forks, forecasts and differences of runs, as the server tells of them (schema/aeolis/v1/what_if.proto).
 import { fromEntry } from '../run/time';
 import type { Fault } from './instructor';
 
