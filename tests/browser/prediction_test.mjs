@@ -46,7 +46,10 @@ test('the nominal flight stands faint under a live run, ahead of it, and beside 
   await waitFor(() => server.get('/runs/1').then(({ state }) => state), /finished/);
   await page.reload();
   await shows('touchdown-figures', /against predicted\s*[+−]\d+\.\d s/);
-  assert.equal(await page.locator('[title*="of E+7:11.5 in the nominal flight"]').count(), 1);
+  const { events } = await server.get('/runs/1/prediction');
+  const at = events.find(({ name }) => name === 'touchdown').e_s;
+  const predicted = `E+${Math.floor(at / 60)}:${(at % 60).toFixed(1).padStart(4, '0')}`;
+  assert.equal(await page.locator(`[title*="of ${predicted} in the nominal flight"]`).count(), 1, predicted);
   await page.keyboard.press('y'); // a past of it
   await shows('reading-of-past', /As it was heard then/);
   await waitFor(ahead, (samples) => samples > 100);
