@@ -5,8 +5,8 @@
 #include "tests/server/web_client.hpp"
 #include "tests/support/catch.hpp"
 
-#include "aeolis/v1/what_if.pb.h"
 #include "aeolis/v1/run.pb.h"
+#include "aeolis/v1/what_if.pb.h"
 
 #include <chrono>
 #include <fmt/format.h>
