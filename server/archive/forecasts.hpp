@@ -14,8 +14,6 @@
 // rehearsal, so they are no items, and do not travel to followers.
 namespace aeolis::archive {
 
-inline constexpr std::size_t forecasts_page_max = 1'000;
-
 struct ForecastRecord {
     RunId run;
     std::uint64_t number = 0;  ///< in its run, from 1

@@ -238,8 +238,8 @@ Result<FlownRun> Reader::flown(RunId run) {
     if (!snapshot) return snapshot.error();
     static constexpr char run_sql[] =
         "SELECT case_number, scenario_text, started, seed, dictionary, correlation_sclk, correlation_scet_us,"
-        " clock_rate, leap_seconds, clock_version, entry_sclk, light_time_s, forked_run, forked_cycle, forked_e_s,"
-        " forked_seed FROM runs WHERE run = ?";
+        " clock_rate, leap_seconds, clock_version, forked_run, forked_cycle, forked_e_s, forked_seed FROM runs"
+        " WHERE run = ?";
     auto rows = state_->query(run_sql);
     if (!rows) return rows.error();
     auto& row = **rows;
@@ -250,9 +250,7 @@ Result<FlownRun> Reader::flown(RunId run) {
     FlownRun flown;
     flown.run = run;
     flown.case_number = static_cast<std::uint64_t>(row.integer(0));
-    flown.entry = {row.real(10)};
-    flown.light_time_s = row.real(11);
-    flown.forked_from = fork_point(row, 12);
+    flown.forked_from = fork_point(row, 10);
     flown.scenario_text = row.text(1);
     flown.started = row.text(2);
     flown.seed = static_cast<std::uint64_t>(row.integer(3));

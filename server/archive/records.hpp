@@ -303,8 +303,6 @@ struct FlownRun {
     RunId run;
     std::string scenario_text, started;
     std::uint64_t seed = 0, case_number = 0;
-    Sclk entry;  ///< as predicted
-    double light_time_s = 0.0;
     ClockCorrelation clock;               ///< used by the run, whatever the dictionary's file says now
     Sequence last_seq = 0;                ///< durable, and perhaps published
     std::vector<RequestRecord> requests;  ///< in the order taken

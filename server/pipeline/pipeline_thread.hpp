@@ -60,7 +60,8 @@ class PipelineThread {
     Result<archive::RunId> begin(const archive::RunStart& start);
     /// Begins a run that is another up to a fork: see Pipeline::begin.
     Result<archive::RunId> begin(const archive::RunStart& start, archive::RunId of);
-    /// Waits until all deliveries were taken and stored. @return the last item; an Error when what was flown again differs
+    /// Waits until all deliveries were taken and stored. An Error when what was flown again differs.
+    /// @return the number of the last item
     Result<archive::Sequence> forked();
     /// Whether something of it differs, as of the last commit.
     bool differs() const { return differs_; }

@@ -115,10 +115,11 @@ Result<ReadForecast> read_forecast(const v1::ForecastRequest& request, const v1:
     if (!at) return at.error();
     if (!state.has_clocks())
         if (const auto reached = check_flown(reader, state, *at, "at"); !reached) return reached.error();
-    if (state.has_clocks() && at->e_s > state.clocks().e_s())
+    if (state.has_clocks() && at->e_s > state.clocks().e_s() + seconds_per_tick)
         return Error{fmt::format("at: E{:+.1f} s is yet to come: run {} is at E{:+.1f} s", at->e_s, state.run(),
                                  state.clocks().e_s())};
-    forecast.now = state.has_clocks();
+    forecast.goes_on = state.has_clocks();
+    forecast.now = request.at().empty();
     auto assumption = assumption_of(request, *scenario);
     if (!assumption) return assumption.error();
     forecast.cycle = at->cycle;
@@ -291,7 +292,7 @@ void ForecastService::keep_ended() {
 std::string ForecastService::fly_to(ReadForecast& forecast, Rehearsal& rehearsal) {
     auto reader = archive::Reader::open(file_, dictionary_);
     if (!reader) return reader.error().message;
-    StoredPackets stored{std::move(*reader), forecast.run.run, forecast.now};
+    StoredPackets stored{std::move(*reader), forecast.run.run, forecast.goes_on};
     const FlyAgain how{forecast.cycle, forecast.now, [this] { return stop_.load(); },
                        [&](const telemetry::Received& received) { return stored.look(received); }};
     const auto there = fly_again(rehearsal, forecast.run, how);

@@ -27,7 +27,8 @@ namespace aeolis::server::shadow {
 struct ReadForecast {
     archive::FlownRun run;
     std::uint64_t cycle = 0;  ///< of the run's landing, at which the cases begin
-    bool now = false;  ///< of the run that goes on: what was taken at that cycle counts, and it may not be stored yet
+    bool goes_on = false;     ///< the run: what it received last may not be stored yet
+    bool now = false;         ///< the instant is where it is now: what was taken there counts
     simulation::Scenario scenario;
     Assumption assumption;
     ForecastOrder order;

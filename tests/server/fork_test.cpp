@@ -21,15 +21,6 @@ using namespace aeolis::server;
 
 namespace {
 
-simulation::Scenario short_landing() {
-    auto scenario = test::shipped_scenario("nominal_auto");
-    scenario.start_before_entry_s = 900.0;
-    scenario.commands[0].send_before_entry_s = 895.0;
-    scenario.commands[1].send_before_entry_s = 885.0;
-    scenario.radio.tones_from_samples = false;
-    return scenario;
-}
-
 RehearsalRunner::Callbacks told_to(std::atomic<bool>& begun, std::string& failure) {
     RehearsalRunner::Callbacks callbacks;
     callbacks.on_begun = [&](Result<v1::RunState> state) {
@@ -54,7 +45,7 @@ class Recorded {
         {
             std::atomic<bool> begun{false};
             std::string failure;
-            RehearsalRunner runner{short_landing(), 7, 0.0, dictionary_, *pipeline, told_to(begun, failure)};
+            RehearsalRunner runner{test::short_landing(), 7, 0.0, dictionary_, *pipeline, told_to(begun, failure)};
             wait_for([&] { return begun.load(); });
             v1::CommandRequest request;
             request.set_command("NO_OP");

@@ -110,15 +110,6 @@ TEST_CASE(
 
 namespace {
 
-simulation::Scenario short_landing() {
-    auto scenario = test::shipped_scenario("nominal_auto");
-    scenario.start_before_entry_s = 900.0;
-    scenario.commands[0].send_before_entry_s = 895.0;
-    scenario.commands[1].send_before_entry_s = 885.0;
-    scenario.radio.tones_from_samples = false;
-    return scenario;
-}
-
 /// A clock other than that of the sheet.
 dictionary::Dictionary with_clock_rate(double rate) {
     auto dictionary = tests::shipped_dictionary();
@@ -141,7 +132,7 @@ constexpr const char* flying = "part of a test: a flight that is killed";
     callbacks.on_begun = [&](const auto&) { begun = true; };
     callbacks.on_state = [](const auto&) {};
     callbacks.on_clocks = [](const auto&) {};
-    RehearsalRunner runner{short_landing(), 7, 0.0, dictionary, pipeline, callbacks};
+    RehearsalRunner runner{test::short_landing(), 7, 0.0, dictionary, pipeline, callbacks};
     InterveneRun fault, note;
     auto& device_fault = *fault.intervention.mutable_fault()->mutable_device_fault();
     device_fault.set_device(v1::DEVICE_IMU);
@@ -166,7 +157,7 @@ std::vector<std::string> items_flown(const archive::FlownRun& cut, archive::Sequ
     {
         PipelineThread pipeline{std::move(archive::Archive::open(file)).value(), dictionary,
                                 PipelineThread::Faults::give_up, [](const auto&) {}};
-        Rehearsal rehearsal{short_landing(), 7, 0, dictionary};
+        Rehearsal rehearsal{test::short_landing(), 7, 0, dictionary};
         REQUIRE(pipeline.begin(rehearsal.run_start(0.0)));
         archive::Sequence stored = 0;
         for (auto request = cut.requests.begin(); stored < last;) {
@@ -224,7 +215,7 @@ archive::Sequence leave_after(archive::Sequence published, const std::filesystem
     callbacks.on_state = [](const auto&) {};
     callbacks.on_clocks = [](const auto&) {};
     {
-        RehearsalRunner runner{short_landing(), 7, 0.0, dictionary, pipeline, callbacks};
+        RehearsalRunner runner{test::short_landing(), 7, 0.0, dictionary, pipeline, callbacks};
         while (!begun) std::this_thread::sleep_for(std::chrono::milliseconds{1});
         v1::CommandRequest request;
         request.set_command("NO_OP");
@@ -359,7 +350,7 @@ TEST_CASE("a run that does not come out the same is not continued, and what it h
         PipelineThread pipeline{std::move(archive), dictionary, PipelineThread::Faults::give_up, [](const auto&) {}};
         RehearsalRunner::Callbacks callbacks;
         callbacks.on_begun = [&](Result<v1::RunState> state) { failure = state ? "continued" : state.error().message; };
-        RehearsalRunner runner{short_landing(), {.run = cut}, 0.0, dictionary, pipeline, callbacks};
+        RehearsalRunner runner{test::short_landing(), {.run = cut}, 0.0, dictionary, pipeline, callbacks};
         while (!runner.over()) std::this_thread::sleep_for(std::chrono::milliseconds{1});
     }
     CHECK_THAT(failure, Catch::Contains("run 1 cannot be continued: run 1: flown again, item"));
@@ -386,7 +377,7 @@ TEST_CASE("what is written down while a cut-off run is being continued keeps its
         callbacks.on_begun = [&](Result<v1::RunState> state) { told = state ? state->last_seq() : 0; };
         callbacks.on_state = [](const auto&) {};
         callbacks.on_clocks = [](const auto&) {};
-        RehearsalRunner runner{short_landing(), {.run = cut}, 0.0, dictionary, pipeline, callbacks};
+        RehearsalRunner runner{test::short_landing(), {.run = cut}, 0.0, dictionary, pipeline, callbacks};
         while (!runner.over() && pipeline.figures().published_items < 500)
             std::this_thread::sleep_for(std::chrono::milliseconds{1});
         CHECK(runner.order(StopRun{}));
@@ -430,7 +421,7 @@ TEST_CASE("a run that goes on keeps the clock with which it was begun, whatever 
         };
         callbacks.on_state = [](const auto&) {};
         callbacks.on_clocks = [](const auto&) {};
-        RehearsalRunner runner{short_landing(), {.run = cut}, 0.0, today, pipeline, callbacks};
+        RehearsalRunner runner{test::short_landing(), {.run = cut}, 0.0, today, pipeline, callbacks};
         while (!begun) std::this_thread::sleep_for(std::chrono::milliseconds{1});
         CHECK(runner.order(StopRun{}));
         while (!runner.over()) std::this_thread::sleep_for(std::chrono::milliseconds{1});

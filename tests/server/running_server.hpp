@@ -21,6 +21,16 @@ inline simulation::Scenario shipped_scenario(const char* name) {
     return *scenario;
 }
 
+/// One that is flown from its script in seconds, with tones drawn from the symbol error.
+inline simulation::Scenario short_landing() {
+    auto scenario = shipped_scenario("nominal_auto");
+    scenario.start_before_entry_s = 900.0;
+    scenario.commands[0].send_before_entry_s = 895.0;
+    scenario.commands[1].send_before_entry_s = 885.0;
+    scenario.radio.tones_from_samples = false;
+    return scenario;
+}
+
 /// `aeolis serve` on a free port with an archive of its own, in this process.
 class RunningServer {
   public:

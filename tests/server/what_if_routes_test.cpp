@@ -25,7 +25,7 @@ namespace {
 /// A server with a landing that was flown to its end as run 1.
 class Landed {
   public:
-    Landed() : server_(short_landing(), 0.0) {
+    Landed() : server_(test::short_landing(), 0.0) {
         spdlog::set_level(spdlog::level::off);
         until([&] { return current().state() == v1::RunState::finished; });
     }
@@ -49,9 +49,9 @@ class Landed {
         INFO((done ? "" : done.error().message));
         REQUIRE(done);
     }
-    v1::Forecast forecast(std::uint64_t number) const {
+    v1::Forecast forecast(std::uint64_t number, int run = 1) const {
         v1::Forecast told;
-        const auto path = fmt::format("/api/v1/runs/1/forecasts/{}", number);
+        const auto path = fmt::format("/api/v1/runs/{}/forecasts/{}", run, number);
         REQUIRE(from_json(web_request(port(), "GET", path).body, told));
         return told;
     }
@@ -67,15 +67,6 @@ class Landed {
     }
 
   private:
-    static simulation::Scenario short_landing() {
-        auto scenario = test::shipped_scenario("nominal_auto");
-        scenario.start_before_entry_s = 900.0;
-        scenario.commands[0].send_before_entry_s = 895.0;
-        scenario.commands[1].send_before_entry_s = 885.0;
-        scenario.radio.tones_from_samples = false;
-        return scenario;
-    }
-
     RunningServer server_;
 };
 
@@ -167,6 +158,22 @@ TEST_CASE("a forecast of a run that does not come out the same is none: it names
     const auto other = landed.ended(1);
     CHECK(other.state() == v1::Forecast::failed);
     CHECK_THAT(other.reason(), Catch::StartsWith("run 1: flown again, packet "));
+}
+
+TEST_CASE("a forecast of now knows what was done while the run waits there", "[forecast][fork][http][R58][idle]") {
+    Landed landed;
+    REQUIRE(landed.post("/rehearsals", R"({"fork":{"run":1,"at":"E+1:30","paused":true},"pace":0})").status == 201);
+    REQUIRE(landed.post("/rehearsals/current", R"({"inject":{"computer_reset":true}})").status == 202);
+    Landed::until([&] {  // 202 says that it was asked for
+        const auto done = web_request(landed.port(), "GET", "/api/v1/runs/2/interventions");
+        return done.body.find("computer_reset") != std::string::npos;
+    });
+    REQUIRE(landed.post("/runs/2/forecasts", R"({"cases":1})").status == 201);
+    CHECK(landed.post("/runs/2/forecasts", R"({"at":"E+1:31"})").status == 422);  // yet to come
+    Landed::until([&] { return landed.forecast(1, 2).state() == v1::Forecast::ready; });
+    const auto lost = landed.forecast(1, 2);
+    CHECK(lost.at_e_s() == 90.0);
+    CHECK(part(lost, "without", "part") == 0.0);  // nobody takes over from the computer that was reset
 }
 
 TEST_CASE("a fork is begun over HTTP, waits at its instant, and is laid over its parent", "[fork][http][R60]") {
