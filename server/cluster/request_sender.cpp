@@ -124,6 +124,10 @@ class RequestSender::Thread {
             }
             auto& request = next->request;
             const auto origin = settings_.heard();
+            if (origin.publisher.empty()) {
+                next->answered(no_answer("the origin has not been heard here yet, and was not asked: try again"));
+                continue;
+            }
             request.set_origin(settings_.origin);
             request.set_publisher(origin.publisher);
             request.set_heard(origin.heard);

@@ -23,9 +23,9 @@ class RequestSender {
   public:
     static constexpr std::size_t waiting_max = 100;  ///< chosen: more people than are at one site
     using Answered = std::function<void(v1::RequestAnswer)>;
-    /// What the follower heard of its origin last.
+    /// What the follower heard of its origin last. Without it the origin would refuse the request, so it is not asked.
     struct Origin {
-        std::string publisher;
+        std::string publisher;  ///< empty: it has not been heard
         std::uint64_t heard = 0;
     };
     struct Settings {

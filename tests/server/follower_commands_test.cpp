@@ -4,14 +4,18 @@
 #include "server/access/secrets.hpp"
 #include "server/base/json.hpp"
 #include "server/cluster/engine.hpp"
+#include "server/cluster/request_sender.hpp"
 #include "server/cluster/run_messages.hpp"
 #include "tests/server/cluster/nats_server.hpp"
 #include "tests/server/running_server.hpp"
 #include "tests/server/web_client.hpp"
 
+#include <atomic>
 #include <fmt/format.h>
 #include <fstream>
+#include <future>
 #include <map>
+#include <memory>
 #include <optional>
 #include <regex>
 #include <set>
@@ -295,6 +299,43 @@ TEST_CASE("a request that was overheard is no command when it comes again, also 
         return came && *came && answer.ParseFromString((*came)->octets) &&
                answer.body().find("before this server started") != std::string::npos;
     }));
+}
+
+TEST_CASE("a follower that has not heard its origin says so, and asks nothing that would be refused",
+          "[cluster][access][R61]") {
+    if (!NatsServer::present()) return;
+    NatsServer engine;
+    cluster::EngineAddress address;
+    address.url = engine.url();
+    auto spy = cluster::Engine::connect(address, "spy");
+    REQUIRE(spy);
+    auto requests = spy->listen(cluster::subject_of_requests("origin"));
+    REQUIRE(requests);
+    std::atomic<bool> heard = false;
+    cluster::RequestSender sender{{address, "origin", new_signing_seed(), [&] {
+                                       return heard ? cluster::RequestSender::Origin{"its process", 1}
+                                                    : cluster::RequestSender::Origin{};
+                                   }}};
+    const auto ask = [&](std::chrono::seconds within) {
+        auto answer = std::make_shared<std::promise<v1::RequestAnswer>>();
+        auto given = answer->get_future();
+        sender.ask({}, [answer](v1::RequestAnswer reply) { answer->set_value(std::move(reply)); });
+        return given.wait_for(within) == std::future_status::ready ? std::optional{given.get()} : std::nullopt;
+    };
+    const auto answer = ask(60s);
+    REQUIRE(answer);
+    CHECK(answer->status() == 503);
+    CHECK_THAT(answer->body(), Catch::Contains("has not been heard here yet"));
+    heard = true;
+    CHECK_FALSE(ask(0s));  // nobody answers
+    const auto came = requests->next(60s);
+    REQUIRE(came);
+    REQUIRE(*came);
+    v1::SignedRequest message;
+    v1::FollowerRequest request;
+    REQUIRE(message.ParseFromString((*came)->octets));
+    REQUIRE(request.ParseFromString(message.request()));
+    CHECK(request.publisher() == "its process");  // the first that was sent
 }
 
 TEST_CASE("each metric that the cluster's alert rules and dashboard name is one that an origin or a follower has",
