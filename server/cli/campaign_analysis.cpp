@@ -174,7 +174,9 @@ int study(const StudyOptions& options) {
             if (!table) return said(table.error());
             influences.push_back(campaign::influence_of(group.name, *table, course_deg));
         }
-        const auto table = group_flown(options, scenario, dictionary, line);
+        auto all = scenario;
+        all.name += "-all";  // a file of its own: that of the campaign may have more cases
+        const auto table = group_flown(options, all, dictionary, line);
         if (!table) return said(table.error());
         together = campaign::influence_of("all", *table, course_deg);
     }

@@ -48,13 +48,14 @@ TEST_CASE("a drift from any side makes the sidestep no dearer: the velocity to g
         CHECK(gained_mps(v0) == Approx(gained_mps(Vector3::Zero())));
 }
 
-TEST_CASE("a sidestep that would end where the backshell drifts to goes to the other side", "[gnc][R27]") {
+TEST_CASE("a sidestep over whose end the backshell will drift, then or later, goes to the other side", "[gnc][R27]") {
     constexpr aeolis::flight::Parameters parameters;
     const Vector3 divert(304.0, 0.0, 0.0);
-    CHECK(sidestep_M(parameters, divert, {-30.0, 0.0, 0.0}, 18.0) == divert);
-    CHECK(sidestep_M(parameters, divert, {10.0, 0.0, 0.0}, 18.0) == divert);
-    CHECK(sidestep_M(parameters, divert, {30.0, 0.0, 0.0}, 18.0) == -divert);
-    CHECK(sidestep_M(parameters, divert, {0.0, 30.0, 0.0}, 18.0) == divert);
+    for (const Vector3& elsewhere : {Vector3{-30.0, 0.0, 0.0}, Vector3{0.0, 30.0, 0.0}, Vector3{1.0, 0.0, 0.0},
+                                     Vector3{8.0, 8.0, 0.0}, Vector3{0.0, 0.0, 0.0}})
+        CHECK(sidestep_M(parameters, divert, elsewhere, 18.0) == divert);
+    for (const Vector3& over_it : {Vector3{30.0, 0.0, 0.0}, Vector3{10.0, 0.0, 0.0}, Vector3{4.0, 1.0, 0.0}})
+        CHECK(sidestep_M(parameters, divert, over_it, 18.0) == -divert);
 }
 
 TEST_CASE("azimuth goes from north to east", "[gnc][R27]") {

@@ -12,6 +12,7 @@
 #include "tests/support/telecommands.hpp"
 
 #include <algorithm>
+#include <array>
 #include <string>
 #include <vector>
 
@@ -35,8 +36,8 @@ void step(Landing& landing, int cycles) {
 }
 
 /// A commanded landing before GNC is enabled, to be forked. Second Chance may take over.
-Landing before_gnc(double until_e_s = -600.0) {
-    Landing landing{tests::gale_scenario(900.0), 1};
+Landing before_gnc(double until_e_s = -600.0, std::uint64_t seed = 1) {
+    Landing landing{tests::gale_scenario(900.0), seed};
     landing.uplink(test::set_parameters(landing.solution()));
     step(landing, 64);
     landing.uplink(test::enable_second_chance());
@@ -66,12 +67,16 @@ void land(Landing& landing) {
     while (landing.outcome() == Outcome::running) landing.step();
 }
 
-/// Flies with some parameters changed, and demands that all is as it should be.
-void check_lands(const Landing& common, const std::vector<Change>& changes) {
+std::string text_of(const std::vector<Change>& changes) {
     std::string text;
     for (const Change& one : changes)
         text += tests::shipped_dictionary().parameters[one.id.value].name + "=" + std::to_string(one.value) + " ";
-    INFO(text);
+    return text;
+}
+
+/// Flies with some parameters changed, and demands that all is as it should be.
+void check_lands(const Landing& common, const std::vector<Change>& changes) {
+    INFO(text_of(changes));
     Landing landing{common};
     change(landing, changes);
     land(landing);
@@ -111,6 +116,47 @@ void check_together(std::uint64_t seed, int tables) {
     for (int table = 0; table < tables; ++table) {
         INFO("seed " << seed << ", table " << table);
         check_lands(common, drawn_together(random));
+    }
+}
+
+/// A fault that docs/faults.md has under *Survived*, whenever it is.
+struct Survived {
+    const char* what;
+    flight::Device device;
+    bool both;  ///< units
+    DeviceFault::Kind kind;
+    double from_e_s, to_e_s;  ///< it begins between these
+    double length_s;
+};
+constexpr std::array survived{
+    Survived{"IMU", flight::Device::imu, false, DeviceFault::Kind::silent, -500.0, 430.0, 0.5},
+    Survived{"radar", flight::Device::radar, true, DeviceFault::Kind::silent, 290.0, 370.0, 15.0},
+    Survived{"pyros of A", flight::Device::pyro, false, DeviceFault::Kind::refuses, -500.0, 430.0, 1000.0},
+    Survived{"pyros", flight::Device::pyro, true, DeviceFault::Kind::denies, -500.0, 430.0, 1000.0},
+    Survived{"thrusters", flight::Device::thrusters, true, DeviceFault::Kind::silent, -500.0, 370.0, 10.0},
+    Survived{"engines", flight::Device::descent_engines, true, DeviceFault::Kind::silent, 370.0, 430.0, 0.5},
+    Survived{"replies of UHF", flight::Device::uhf, true, DeviceFault::Kind::late, -500.0, 430.0, 1000.0},
+};
+
+/// Each flight has a table and a fault, each drawn anew, and errors of its own.
+void check_with_faults(std::uint64_t seed, int flights) {
+    Random random{seed, 1, Stream::devices};
+    for (int flight = 0; flight < flights; ++flight) {
+        const Survived& fault = survived[static_cast<std::size_t>(flight) % survived.size()];
+        const double e_s = fault.from_e_s + (fault.to_e_s - fault.from_e_s) * random.uniform();
+        Landing landing = before_gnc(-600.0, seed + static_cast<std::uint64_t>(flight));
+        const auto changes = drawn_together(random);
+        INFO("seed " << seed << ", flight " << flight << ": " << text_of(changes) << ", " << fault.what << " from E"
+                     << e_s);
+        change(landing, changes);
+        while (landing.truth().e_s < e_s && landing.outcome() == Outcome::running) landing.step();
+        for (const auto unit : {flight::Unit::a, flight::Unit::b})
+            if (fault.both || unit == flight::Unit::a)
+                landing.inject(DeviceFault{fault.device, unit, fault.kind, 0.0, fault.length_s, 0.5});
+        land(landing);
+        const Judgement judgement = tests::judged_held_up(landing);
+        INFO(reason_of(landing, judgement));
+        CHECK(judgement.verdict == Verdict::landed);
     }
 }
 
@@ -195,9 +241,9 @@ TEST_CASE("a few parameters at either end of their ranges land within the limits
 }
 
 TEST_CASE("each parameter at either end of its range lands within the limits", "[.long][simulation][parameters][R25]") {
-    const Landing common = before_gnc();
     for (std::uint16_t row = 0; row < flight::parameter_count; ++row)
-        if (flight::parameter_specs.at(row).member != nullptr) check_both_ends(common, ParameterId{row});
+        if (flight::parameter_specs.at(row).member != nullptr)
+            check_both_ends(before_gnc(-600.0, 1 + row), ParameterId{row});  // each with errors of its own
 }
 
 TEST_CASE("tables of several parameters that use up what they may deviate together land within the limits",
@@ -209,6 +255,16 @@ TEST_CASE("a hundred tables of several parameters, each as far from the one buil
           "limits",
           "[.long][simulation][parameters][R25]") {
     check_together(2, 100);
+}
+
+TEST_CASE("with a changed table of parameters each kind of fault that is survived is survived as well",
+          "[simulation][parameters][faults][R25][R27][release]") {
+    check_with_faults(3, static_cast<int>(survived.size()));
+}
+
+TEST_CASE("with a hundred tables, each with a fault and errors of its own, the rover lands within the limits",
+          "[.long][simulation][parameters][faults][R25][R27]") {
+    check_with_faults(100, 100);
 }
 
 TEST_CASE("a table whose changes are each in range but together too much is refused on board, as on ground",

@@ -26,11 +26,11 @@ namespace {
 
 constexpr double start_before_entry_s = 1200.0;
 
-/// As nominal_auto: parameters, and "do edl" twenty seconds later.
-Scenario commanded() {
-    Scenario scenario = tests::gale_scenario(start_before_entry_s);
-    scenario.commands.push_back({1190.0, "EDL_SET_PARAMETERS", {}, true});
-    scenario.commands.push_back({1170.0, "EDL_DO_EDL", {}, false});
+/// As nominal_auto: parameters ten seconds after the start, and "do edl" twenty seconds later.
+Scenario commanded(double start_s = start_before_entry_s) {
+    Scenario scenario = tests::gale_scenario(start_s);
+    scenario.commands.push_back({start_s - 10.0, "EDL_SET_PARAMETERS", {}, true});
+    scenario.commands.push_back({start_s - 30.0, "EDL_DO_EDL", {}, false});
     return scenario;
 }
 
@@ -105,6 +105,9 @@ double to_tick(double seconds) {
     return std::round(seconds * 64.0) / 64.0;
 }
 
+/// Before the heaters of the catalyst beds, which are the first row on the clock.
+constexpr double early_start_s = 11'400.0;
+
 /// Draws changes of every kind: of timepoints, anchors and parameters, from a tick to a thousand seconds, or anywhere
 /// in the range of an argument.
 class Changes {
@@ -114,6 +117,8 @@ class Changes {
     double part() { return static_cast<double>(random_()) / 4294967296.0; }
     /// Somewhere from after "do edl" until fly-away.
     double moment_e_s() { return -1165.0 + 1605.0 * part(); }
+    /// Somewhere before that, as often in each factor of time to entry.
+    double early_moment_e_s() { return -1200.0 * std::pow(early_start_s / 1200.0 - 0.01, part()); }
 
     commands::Request draw(const Trunk& trunk) {
         const double kind = part();
@@ -192,15 +197,23 @@ bool is_judged_by_flight_alone(const commands::Request& request) {
     return request.command != "EDL_SET_PARAMETERS";
 }
 
-/// Flies each of `count` changes that the board accepts, whatever ground says; parameters only if ground does too. On
-/// every other such flight a second change follows, within ten seconds or two minutes.
-void try_changes(std::uint32_t seed, std::size_t count) {
+/// What became of changes that were tried.
+struct Tried {
+    std::size_t accepted = 0;         ///< on ground and on board
+    std::size_t by_ground_alone = 0;  ///< the board refused what ground let leave
+    std::size_t parameters = 0;       ///< accepted ones that set parameters
+    std::size_t second = 0;           ///< accepted changes behind another
+};
+
+/// Flies each change that the board accepts, whatever ground says; parameters only if ground does too. On every other
+/// such flight a second change follows, within ten seconds or two minutes.
+Tried try_changes(const Scenario& scenario, std::uint32_t seed, std::size_t count, double (Changes::*moment_e_s)()) {
     Changes changes{seed}, seconds{seed + 1};
     std::vector<double> moments(count);
-    for (double& moment : moments) moment = changes.moment_e_s();
+    for (double& moment : moments) moment = (changes.*moment_e_s)();
     std::sort(moments.begin(), moments.end());
-    Trunk trunk{commanded()};
-    std::size_t by_both = 0, by_ground_alone = 0, parameters_flown = 0, second_changes = 0;
+    Trunk trunk{scenario};
+    Tried tried;
     for (const double moment : moments) {
         trunk.fly_until(moment);
         if (!trunk.flying()) continue;
@@ -215,10 +228,9 @@ void try_changes(std::uint32_t seed, std::size_t count) {
             continue;
         }
         OnBoard board{trunk.landing.landing(), request};
-        by_both += ground_accepts && board.executed;
-        parameters_flown += ground_accepts && board.executed && !is_judged_by_flight_alone(request);
-        // Parameters that come after GNC was enabled are refused by the board alone.
-        by_ground_alone += ground_accepts && !board.executed && is_judged_by_flight_alone(request);
+        tried.accepted += ground_accepts && board.executed;
+        tried.parameters += ground_accepts && board.executed && !is_judged_by_flight_alone(request);
+        tried.by_ground_alone += ground_accepts && !board.executed;
         if (!board.executed || (!ground_accepts && !is_judged_by_flight_alone(request))) continue;
         std::string second;
         if (seconds.part() < 0.5) {
@@ -228,7 +240,7 @@ void try_changes(std::uint32_t seed, std::size_t count) {
             if (board.flying() && is_judged_by_flight_alone(follows) && commands::encode(of, follows.arguments, 7)) {
                 board.send(follows);
                 second = text_of(follows, trunk.e_s());
-                second_changes += board.executed;
+                tried.second += board.executed;
             }
         }
         board.land();
@@ -237,12 +249,17 @@ void try_changes(std::uint32_t seed, std::size_t count) {
     }
     trunk.fly_until(1.0e6);
     CHECK(unsafe(trunk.landing.landing()) == "");
-    INFO(by_both << " of " << count << " were accepted on ground and on board, " << by_ground_alone
-                 << " more on ground alone; " << second_changes << " second changes");
-    CHECK(by_both >= count / 4);
-    CHECK(second_changes >= count / 20);
-    CHECK(by_ground_alone <= count / 20);
-    CHECK(parameters_flown > 0);
+    INFO(tried.accepted << " of " << count << " were accepted on ground and on board, " << tried.by_ground_alone
+                        << " more on ground alone; " << tried.second << " second changes");
+    CHECK(tried.accepted >= count / 4);
+    CHECK(tried.by_ground_alone <= count / 20);
+    return tried;
+}
+
+void check_changes(std::uint32_t seed, std::size_t count) {
+    const Tried tried = try_changes(commanded(), seed, count, &Changes::moment_e_s);
+    CHECK(tried.second >= count / 20);
+    CHECK(tried.parameters > 0);
 }
 
 commands::Request entry_at(double sclk) {
@@ -256,12 +273,24 @@ commands::Request entry_at(double sclk) {
 
 TEST_CASE("no change that is accepted makes an unsafe landing of a safe one: 40 of any kind at any time",
           "[timeline][R19][R51][release]") {
-    try_changes(24, 40);
+    check_changes(24, 40);
 }
 
 TEST_CASE("no change that is accepted makes an unsafe landing of a safe one: 2000 of any kind at any time",
           "[.long][timeline][R51]") {
-    try_changes(2012, 2000);
+    check_changes(2012, 2000);
+}
+
+TEST_CASE("no change that is accepted in the hours before entry makes an unsafe landing of a safe one: 4 of any kind",
+          "[timeline][R19][R51][release]") {
+    try_changes(commanded(early_start_s), 3, 4, &Changes::early_moment_e_s);
+}
+
+TEST_CASE("no change that is accepted in the hours before entry makes an unsafe landing of a safe one: 200 of any kind",
+          "[.long][timeline][R51]") {
+    const Tried tried = try_changes(commanded(early_start_s), 2013, 200, &Changes::early_moment_e_s);
+    CHECK(tried.second > 0);
+    CHECK(tried.parameters > 0);
 }
 
 TEST_CASE("a vehicle to which nobody sends a command, or only what ground refuses, was not commanded",

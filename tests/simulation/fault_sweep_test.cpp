@@ -39,7 +39,7 @@ constexpr std::array kind_names{"silent", "refuses", "late", "dropout", "doubled
 // Bounds of docs/faults.md.
 constexpr double imu_silence_survived_s = 0.5, imu_silence_in_calm_survived_s = 2.0, radar_silence_survived_s = 20.0,
                  radar_silence_on_parachute_survived_s = 40.0, radar_heard_before_priming_s = 15.0,
-                 thrusters_rest_survived_s = 10.0, engines_silence_survived_s = 0.25;
+                 thrusters_rest_survived_s = 10.0, engines_silence_survived_s = 0.5;
 
 struct Drawn {
     Device device{};

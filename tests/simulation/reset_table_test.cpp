@@ -34,7 +34,7 @@ struct Moment {
 };
 
 constexpr double hold_s = 2.0;            // devices hold their last command for so long [facts-l]
-constexpr double thrown_far_s = 4.0;      // ours: with hold_s more the stage has burnt long enough to fall clear
+constexpr double thrown_far_s = 2.0;      // flown: with hold_s more the stage has burnt long enough to fall clear
 constexpr double repeated_rows_s = 10.0;  // ours: what the rows that a restart goes back over may take, replies and all
 
 struct Expected {

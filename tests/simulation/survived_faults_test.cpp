@@ -10,6 +10,7 @@
 #include "tests/support/telecommands.hpp"
 
 #include <cmath>
+#include <initializer_list>
 #include <string>
 #include <vector>
 
@@ -90,6 +91,29 @@ void check_short_entry(double short_km, std::uint64_t seed) {
     CHECK(judgement.verdict == Verdict::landed);
 }
 
+/// Engine controllers that say nothing, or take no command, for half a second: from before the backshell's separation
+/// to the end of the landing, each `every_s`.
+void check_engines(std::uint64_t seed, double every_s, std::initializer_list<DeviceFault::Kind> kinds) {
+    constexpr double length_s = 0.5, from_e_s = 375.0;
+    Landing common{tests::gale_scenario(900.0), seed};
+    command(common);
+    int tried = 0;
+    for (double e_s = from_e_s; common.outcome() == Outcome::running; e_s += every_s) {
+        while (common.truth().e_s < e_s && common.outcome() == Outcome::running) common.step();
+        for (const auto kind : kinds) {
+            INFO("seed " << seed << ", engines " << static_cast<int>(kind) << " from E+" << e_s);
+            Landing landing{common};
+            for (const auto unit : {flight::Unit::a, flight::Unit::b})
+                landing.inject(DeviceFault{flight::Device::descent_engines, unit, kind, 0.0, length_s});
+            const Judgement judgement = flown_to_its_end(landing);
+            INFO(reason_of(landing, judgement));
+            CHECK(judgement.verdict == Verdict::landed);
+            ++tried;
+        }
+    }
+    CHECK(tried > 40.0 / every_s);
+}
+
 }  // namespace
 
 TEST_CASE(
@@ -145,6 +169,19 @@ TEST_CASE("a radar that is silent for a while, or from the sky crane on, is surv
             if (!tried.lands) CHECK(tests::count_recorded<flight::evr::RADAR_LOST>(landing.recording()) >= 1);
         }
     }
+}
+
+TEST_CASE("engine controllers that are silent, or take no command, for half a second at any time are survived",
+          "[simulation][faults][R27][release]") {
+    check_engines(1, 2.0, {DeviceFault::Kind::silent});
+    check_engines(2, 2.0, {DeviceFault::Kind::refuses});
+}
+
+TEST_CASE("engine controllers that are silent, or take no command, for half a second are survived at each eighth of a "
+          "second of three landings",
+          "[.long][simulation][faults][R27]") {
+    for (std::uint64_t seed = 1; seed <= 3; ++seed)
+        check_engines(seed, 0.125, {DeviceFault::Kind::silent, DeviceFault::Kind::refuses});
 }
 
 TEST_CASE("propellant that runs low is told once, on board", "[simulation][faults][R27]") {

@@ -42,8 +42,12 @@ Vector3 Divert::command_M(const Parameters& parameters, double t_s, const Vector
 }
 
 Vector3 sidestep_M(const Parameters& parameters, const Vector3& divert_M, const Vector3& v0_M, double duration_s) {
-    const Vector3 from_backshell_M = divert_M - 0.5 * v0_M * duration_s;
-    const bool close = from_backshell_M.norm() < parameters.divert_clearance_min_m && divert_M.dot(v0_M) > 0.0;
+    const Vector3 from_backshell_M = divert_M - 0.5 * v0_M * duration_s;  // at the end of the sidestep
+    const double drift2 = v0_M.squaredNorm();
+    const double nearest_s =
+        drift2 > 0.0 ? std::clamp(from_backshell_M.dot(v0_M) / drift2, 0.0, parameters.divert_clearance_for_s) : 0.0;
+    const double nearest_m = (from_backshell_M - nearest_s * v0_M).norm();
+    const bool close = nearest_m < parameters.divert_clearance_min_m && divert_M.dot(v0_M) > 0.0;
     return close ? Vector3{-divert_M} : divert_M;
 }
 

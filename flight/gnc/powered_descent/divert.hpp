@@ -43,7 +43,8 @@ class Divert {
 };
 
 /// The displacement to fly: `divert_M`, or its opposite where the backshell, which drifts on at v0_M, would come to
-/// within divert_clearance_min_m of the end of the sidestep.
+/// within divert_clearance_min_m of the end of the sidestep, then or in divert_clearance_for_s after it: over that
+/// place the stage sinks until the rover stands.
 Vector3 sidestep_M(const Parameters& parameters, const Vector3& divert_M, const Vector3& v0_M, double duration_s);
 
 /// Horizontal unit vector of an azimuth (from north to east) at p, in M.
