@@ -153,6 +153,8 @@ void EdlMain::take_triggers(Sclk now, Outbox& out) {
     }
     for (const gnc::ModeChange& change : output_.mode_changes) explain(change, out);
     if (output_.bank_reversal.number != 0) announce_bank_reversal(output_, out);
+    if (!output_.sidestep.empty())
+        out.record(explanation(Decision::sidestep, ExplanationVerdict::decided, 0, output_.sidestep.span()));
     peak_deceleration_.watch(table_.values(), output_, out);
     unverified_.watch(table_.values(), output_, bridle_m_, configuration_, out);
     gnc_health_.watch(table_.values(), output_, out);

@@ -188,15 +188,13 @@ void EdlMain::record_channels(Sclk now, Outbox& out) {
     }
     // Repeated while parameters may still arrive, so that a lost or early read-back is made up for.
     const auto held_every_s = static_cast<std::int64_t>(table_.values().parameters_held_every_s);
-    const bool held_due = due(now, 1) && now.ticks() / 64 % held_every_s == 0;
-    if (!configuration_.enabled && held_due) {
+    if (!configuration_.enabled && due(now, 1) && now.ticks() / 64 % held_every_s == 0) {
         if (parameters_) out.record(parameters_held());
         out.record(table_.report());
     }
     if (load_.telemetry_plan == Plan::wideband) out.record(wideband(now));
-    // Before "do edl" no more often than the parameters, whose changes ground judges by it.
-    const bool configuration_due = timeline_.begun() ? due(now, 1) : held_due;
-    if (const auto is = flown_as(configuration_); configuration_due || is != recorded_configuration_) {
+    // Before "do edl" too: ground asks it before parameters leave.
+    if (const auto is = flown_as(configuration_); due(now, 1) || is != recorded_configuration_) {
         out.record(is);
         recorded_configuration_ = is;
     }

@@ -330,8 +330,9 @@ void EdlGnc::decide_on_engines(const Configuration& configuration, Sclk now, Out
             (m.descent_rate_mps - parameters().constant_velocity_mps) / approach_.deceleration_mps2();
         const Vector3& p_MoB_M = strapdown_.state().p_MoB_M;
         const Vector3 divert_M = load_.divert_m * azimuth_direction(p_MoB_M, load_.divert_azimuth_deg * degree);
-        divert_.start(sidestep_M(parameters(), divert_M, m.level_velocity_M, duration_s), m.level_velocity_M,
-                      duration_s);
+        const auto sidestep = choose_sidestep(parameters(), divert_M, m.level_velocity_M, duration_s);
+        out.sidestep = sidestep.conditions;
+        divert_.start(sidestep.displacement_M, m.level_velocity_M, duration_s);
         divert_from_M_ = p_MoB_M;
     } else if (mode() == Mode::powered_approach) {
         if (fire(Trigger::constant_velocity,

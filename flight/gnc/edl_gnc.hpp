@@ -187,6 +187,7 @@ struct Output {
     double bank_deg = 0.0;
     double angle_of_attack_deg = 0.0;
     double drag_mps2 = 0.0;
+    Conditions sidestep;  ///< by which its side was chosen; empty but in the cycle of that
     double range_to_go_m = 0.0;
     double crossrange_m = 0.0;
     double predicted_range_m = 0.0;

@@ -208,6 +208,27 @@ TEST_CASE("a precondition that is known not to hold refuses, with the value; wha
     }
 }
 
+TEST_CASE(
+    "once GNC is enabled ground sends no parameters any more, and says why; before, and while it does not know, it "
+    "does",
+    "[gateway][R23][R25]") {
+    auto parameters = request("EDL_SET_PARAMETERS"), stage = request("EDL_STAGE_PARAMETER"),
+         activate = request("EDL_ACTIVATE_PARAMETERS");
+    parameters.from_solution = true;
+    stage.arguments = {{"parameter", 0.0}, {"value", 4.0}};
+    activate.arguments = {{"parameter_version", 1.0}, {"parameter_changes", 1.0}, {"parameter_crc", 1.0}};
+    for (const auto& asked : {parameters, stage, activate, request("EDL_DISCARD_PARAMETERS")}) {
+        INFO(asked.command);
+        Station unknown, before, after;
+        const auto said = [&](Station& station) { return station.send(asked).reason; };
+        CHECK_THAT(said(unknown), !Catch::Contains("gnc_enabled"));
+        before.hear(packet_of("GncConfiguration", {{"gnc_enabled", 0}}), true, now);
+        CHECK(said(before) == said(unknown));
+        after.hear(packet_of("GncConfiguration", {{"gnc_enabled", 1}}), true, now);
+        CHECK_THAT(after.refusal(asked), Catch::Contains("gnc_enabled == 0: is 1"));
+    }
+}
+
 TEST_CASE("do edl wants the parameters on board to be those that were sent: other ones refuse it, equal ones let it go",
           "[gateway][R23][R44]") {
     Station station;

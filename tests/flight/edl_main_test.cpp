@@ -71,6 +71,23 @@ TEST_CASE("do edl before parameters is refused and not remembered", "[edl][R23]"
     CHECK(f.edl.timeline().begun());
 }
 
+TEST_CASE("what GNC takes the vehicle to be is told each second, also before \"do edl\"", "[edl][R30]") {
+    Fixture f;
+    f.set_parameters(entry_s - 1190);
+    const auto told_in = [&](double from_s, int seconds) {
+        int told = 0;
+        for (int tick = 0; tick < 64 * seconds; ++tick) {
+            const double now_s = from_s + tick * seconds_per_tick;
+            f.handle(Tick{Sclk{now_s}}, now_s);
+            told += f.recorder.packets<packet::GncConfiguration>();
+        }
+        return told;
+    };
+    CHECK(told_in(entry_s - 1189, 32) == 32);
+    CHECK_FALSE(f.do_edl(entry_s - 1157).has_value());
+    CHECK(told_in(entry_s - 1157, 32) == 32);
+}
+
 TEST_CASE("a turn of another time is reported and confirmed, and nothing is flown to it", "[edl][R4]") {
     Fixture f;
     f.set_parameters(entry_s - 1190);

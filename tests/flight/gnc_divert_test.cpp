@@ -48,14 +48,24 @@ TEST_CASE("a drift from any side makes the sidestep no dearer: the velocity to g
         CHECK(gained_mps(v0) == Approx(gained_mps(Vector3::Zero())));
 }
 
-TEST_CASE("a sidestep over whose end the backshell will drift, then or later, goes to the other side", "[gnc][R27]") {
+TEST_CASE("a sidestep over whose end the backshell will drift, then or later, goes to the other side, and says why",
+          "[gnc][R27][R38]") {
     constexpr aeolis::flight::Parameters parameters;
     const Vector3 divert(304.0, 0.0, 0.0);
-    for (const Vector3& elsewhere : {Vector3{-30.0, 0.0, 0.0}, Vector3{0.0, 30.0, 0.0}, Vector3{1.0, 0.0, 0.0},
-                                     Vector3{8.0, 8.0, 0.0}, Vector3{0.0, 0.0, 0.0}})
-        CHECK(sidestep_M(parameters, divert, elsewhere, 18.0) == divert);
-    for (const Vector3& over_it : {Vector3{30.0, 0.0, 0.0}, Vector3{10.0, 0.0, 0.0}, Vector3{4.0, 1.0, 0.0}})
-        CHECK(sidestep_M(parameters, divert, over_it, 18.0) == -divert);
+    // With 2.0 m/s the backshell is 206 m away after 40 s more, with 2.2 m/s 196 m; with 60 m/s it has passed before.
+    for (const Vector3& elsewhere : {Vector3{-30.0, 0.0, 0.0}, Vector3{0.0, 30.0, 0.0}, Vector3{2.0, 0.0, 0.0},
+                                     Vector3{60.0, 0.0, 0.0}, Vector3{8.0, 8.0, 0.0}, Vector3{0.0, 0.0, 0.0}}) {
+        const auto chosen = choose_sidestep(parameters, divert, elsewhere, 18.0);
+        CHECK(chosen.displacement_M == divert);
+        CHECK(chosen.conditions.size() == 2);
+        CHECK(all_hold(chosen.conditions));
+    }
+    for (const Vector3& over_it : {Vector3{30.0, 0.0, 0.0}, Vector3{10.0, 0.0, 0.0}, Vector3{2.2, 0.0, 0.0}}) {
+        const auto chosen = choose_sidestep(parameters, divert, over_it, 18.0);
+        CHECK(chosen.displacement_M == -divert);
+        CHECK(chosen.conditions.size() == 3);
+        CHECK(all_hold(chosen.conditions));
+    }
 }
 
 TEST_CASE("azimuth goes from north to east", "[gnc][R27]") {

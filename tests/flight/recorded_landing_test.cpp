@@ -4,6 +4,7 @@
 #include "flight/computer.hpp"
 #include "flight/gnc/entry/lateral_logic.hpp"
 #include "flight/gnc/mars.hpp"
+#include "flight/gnc/powered_descent/divert.hpp"
 #include "flight/gnc/powered_descent/vertical_profile.hpp"
 #include "flight/gnc/triggers/triggers.hpp"
 #include "generated/dictionary_flight.hpp"
@@ -536,6 +537,9 @@ class Recorded {
         }
         // Touchdown is judged before this cycle's thrust is commanded: by that of the one before.
         if (quantity == "thrust_N") return near("thrust_command_N", at - seconds_per_tick);
+        if (quantity == "sidestep_as_planned") return Range{0.0, 1.0};
+        if (quantity == "drift_along_sidestep_mps") return of_sidestep(Quantity::drift_along_sidestep_mps, at);
+        if (quantity == "backshell_nearest_m") return of_sidestep(Quantity::backshell_nearest_m, at);
         if (facts.contains(quantity)) return exactly(fact_before(quantity, at));
         if (values_.contains(quantity)) return near(quantity, at);
         return std::nullopt;
@@ -557,6 +561,9 @@ class Recorded {
         if (quantity == "dynamic_pressure_Pa") return any({p.parachute_pressure_max_Pa});
         if (quantity == "mach") return any({p.parachute_mach_max});
         if (quantity == "time_to_parachute_s") return any({p.sufr_lead_s});
+        if (quantity == "sidestep_as_planned") return any({0.0, 1.0});
+        if (quantity == "backshell_nearest_m") return any({p.divert_clearance_min_m});
+        if (quantity == "drift_along_sidestep_mps") return any({0.0});
         if (quantity == "time_to_backshell_s") return any({p.priming_lead_s});
         if (quantity == "time_since_backshell_s") return any({p.powered_approach_delay_s});
         if (quantity == "time_since_parachute_s") return any({p.heatshield_delay_min_s, p.heatshield_patience_s});
@@ -681,6 +688,29 @@ class Recorded {
     void note(const char* channel, double sclk, const dictionary::Type& type, double value) {
         types_[channel] = type;
         labels_[channel][sclk] = telemetry::number_text(type, value);
+    }
+
+    /// What the choice of the sidestep's side compares, by the navigated state of that cycle.
+    std::optional<Range> of_sidestep(Quantity quantity, double at) const {
+        namespace powered_descent = gnc::powered_descent;
+        const auto vector = [&](const std::string& name, const char* unit) {
+            gnc::Vector3 v;
+            for (const int i : {0, 1, 2}) v[i] = values_.at(name + "_" + "xyz"[i] + unit).at(at);
+            return v;
+        };
+        const gnc::Vector3 p_M = vector("nav_position", "_m"), v_M = vector("nav_velocity", "_mps");
+        const gnc::Vector3 up = p_M.normalized();
+        const double sinking_mps = near("descent_rate_mps", at).low;
+        const Parameters p;
+        const Load load;
+        powered_descent::ApproachProfile approach;
+        approach.start(p, near("altitude_m", at).low, sinking_mps);
+        const auto chosen = powered_descent::choose_sidestep(
+            p, load.divert_m * powered_descent::azimuth_direction(p_M, load.divert_azimuth_deg * gnc::degree),
+            v_M - v_M.dot(up) * up, (sinking_mps - p.constant_velocity_mps) / approach.deceleration_mps2());
+        for (const auto& condition : chosen.conditions)
+            if (condition.quantity == quantity) return within(condition.value, 1.0e-3);
+        return std::nullopt;
     }
 
     static double latest(const std::set<double>& moments, double before) {

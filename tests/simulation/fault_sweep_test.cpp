@@ -152,8 +152,7 @@ bool may_be_lost(const Drawn& drawn, const Sound& sound) {
                Sound::overlaps(drawn, sound.at(point::radar_power), sound.at(point::sky_crane));
     }
     case Device::descent_engines:
-        return (drawn.length_s > engines_silence_survived_s || sound.meets(drawn, point::engine_ignition) ||
-                sound.meets(drawn, point::engines_off)) &&
+        return drawn.length_s > engines_silence_survived_s &&
                Sound::overlaps(drawn, sound.at(point::backshell_separation), sound.at(point::engines_off));
     case Device::thrusters:
         return does_not_act && drawn.length_s > thrusters_rest_survived_s &&

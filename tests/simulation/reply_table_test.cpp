@@ -227,7 +227,9 @@ void check(const Row& row, Kind kind, const Flown& flown) {
     CHECK(told.count<flight::evr::TIMEPOINT_UNVERIFIED>() == (verdict == TimepointVerdict::unverified));
     const bool verified_late = kind == Kind::late || (row.commanded_again && verdict == TimepointVerdict::unverified);
     // A late reply to the stop of UHF comes while the recording is being closed: in time for it or not.
-    if (row.timepoint != point::uhf_stop || kind != Kind::late)
+    if (row.timepoint == point::uhf_stop && kind == Kind::late)
+        CHECK(told.count<flight::evr::TIMEPOINT_VERIFIED_LATE>() <= 1);
+    else
         CHECK(told.count<flight::evr::TIMEPOINT_VERIFIED_LATE>() == verified_late);
     if (kind == Kind::doubled) CHECK(told.told<flight::evr::REPLY_UNEXPECTED>());
     // The tone of what was done is asked for only when it was, as far as anything on board can tell: the device of a

@@ -41,14 +41,28 @@ Vector3 Divert::command_M(const Parameters& parameters, double t_s, const Vector
            parameters.divert_position_gain_per_s2 * (position_M(t_s) - x_M);
 }
 
-Vector3 sidestep_M(const Parameters& parameters, const Vector3& divert_M, const Vector3& v0_M, double duration_s) {
+Sidestep choose_sidestep(const Parameters& parameters, const Vector3& divert_M, const Vector3& v0_M,
+                         double duration_s) {
+    const Condition goes_with = above(Quantity::drift_along_sidestep_mps, v0_M.dot(divert_M.normalized()), 0.0);
     const Vector3 from_backshell_M = divert_M - 0.5 * v0_M * duration_s;  // at the end of the sidestep
     const double drift2 = v0_M.squaredNorm();
     const double nearest_s =
         drift2 > 0.0 ? std::clamp(from_backshell_M.dot(v0_M) / drift2, 0.0, parameters.divert_clearance_for_s) : 0.0;
     const double nearest_m = (from_backshell_M - nearest_s * v0_M).norm();
-    const bool close = nearest_m < parameters.divert_clearance_min_m && divert_M.dot(v0_M) > 0.0;
-    return close ? Vector3{-divert_M} : divert_M;
+    const Condition close = below(Quantity::backshell_nearest_m, nearest_m, parameters.divert_clearance_min_m);
+    const bool planned = !goes_with.holds || !close.holds;
+    Sidestep chosen{planned ? divert_M : Vector3{-divert_M}, {}};
+    chosen.conditions.push_back(is(Quantity::sidestep_as_planned, planned, planned));
+    if (!goes_with.holds) {
+        chosen.conditions.push_back(at_most(Quantity::drift_along_sidestep_mps, goes_with.value, 0.0));
+    } else if (!close.holds) {
+        chosen.conditions.push_back(
+            at_least(Quantity::backshell_nearest_m, nearest_m, parameters.divert_clearance_min_m));
+    } else {
+        chosen.conditions.push_back(close);
+        chosen.conditions.push_back(goes_with);
+    }
+    return chosen;
 }
 
 Vector3 azimuth_direction(const Vector3& p_MoB_M, double azimuth_rad) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "flight/gnc/quantities.hpp"
 #include "flight/gnc/vector.hpp"
 #include "generated/parameters.hpp"
 
@@ -42,10 +43,15 @@ class Divert {
     double duration_s_ = 1.0;
 };
 
-/// The displacement to fly: `divert_M`, or its opposite where the backshell, which drifts on at v0_M, would come to
-/// within divert_clearance_min_m of the end of the sidestep, then or in divert_clearance_for_s after it: over that
-/// place the stage sinks until the rover stands.
-Vector3 sidestep_M(const Parameters& parameters, const Vector3& divert_M, const Vector3& v0_M, double duration_s);
+struct Sidestep {
+    Vector3 displacement_M;
+    Conditions conditions;  ///< by which the side was chosen. R38
+};
+
+/// The sidestep to fly: `divert_M`, or its opposite where the backshell, which drifts on at v0_M, would come to within
+/// divert_clearance_min_m of the end of the sidestep, then or in divert_clearance_for_s after it: over that place the
+/// stage sinks until the rover stands.
+Sidestep choose_sidestep(const Parameters& parameters, const Vector3& divert_M, const Vector3& v0_M, double duration_s);
 
 /// Horizontal unit vector of an azimuth (from north to east) at p, in M.
 Vector3 azimuth_direction(const Vector3& p_MoB_M, double azimuth_rad);

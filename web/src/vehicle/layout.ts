@@ -56,7 +56,7 @@ export const VEHICLE = {
     roverSeparated: { flag: 'rover_separated', pyros: ['pyro_rover_separation'], timepoint: 'rover_separation' },
     bridleGone: { flag: 'bridle_gone', pyros: ['pyro_bridle_cutter'], timepoint: 'bridle_cut' },
     flyaway: { flag: 'flyaway_started', timepoint: 'flyaway' },
-    enginesOff: { flag: 'engines_off', timepoint: 'engines_off' },
+    enginesOff: { timepoint: 'engines_off' }, // the flag is the order, not the deed
   } satisfies Record<string, Telling>,
 } as const;
 

@@ -142,7 +142,7 @@ describe('how it lies and moves', () => {
     expect(at(flags({}), all)).toBeUndefined();
     expect(at(flags({ backshellGone: 1 }), all)).toEqual(Array(8).fill(0.5));
     expect(at(flags({ backshellGone: 1 }), { throttle_1_percent: 50 })).toBeUndefined();
-    expect(at(flags({ backshellGone: 1, enginesOff: 1 }), {})).toEqual(Array(8).fill(0));
+    expect(at({ ...flags({ backshellGone: 1 }), engines_off: 1 }, all)).toEqual(Array(8).fill(0.5)); // an order is no deed
   });
   it('draws no rover on a bridle of which nothing was told', () => {
     const scene = sceneOf(lookAt(10, [told(9, flags({ backshellGone: 1, roverSeparated: 1 }))]));
