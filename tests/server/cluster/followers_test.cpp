@@ -183,7 +183,8 @@ TEST_CASE("a step of many links in many messages arrives whole, also where the e
     REQUIRE(pipeline.finish({archive::Outcome::touchdown, "", "", ""}));
     CHECK(comes([&] { return same(origin.file(), copy.file()); }));
     CHECK(copy.follower->status().refused == 0);
-    CHECK(origin.publisher->status().octets > 8 * 4 * octets.size());
+    // Each of the two deaths may take the acknowledgement of a step that had arrived: it is not counted then.
+    CHECK(origin.publisher->status().octets > (8 - 2) * 4 * octets.size());
 }
 
 TEST_CASE("a follower tells that its origin is silent, and that it is back", "[cluster][R61]") {
