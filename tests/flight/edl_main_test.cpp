@@ -71,7 +71,7 @@ TEST_CASE("do edl before parameters is refused and not remembered", "[edl][R23]"
     CHECK(f.edl.timeline().begun());
 }
 
-TEST_CASE("what GNC takes the vehicle to be is told each second, also before \"do edl\"", "[edl][R30]") {
+TEST_CASE("what GNC takes the vehicle to be is told each second, also before do edl", "[edl][R30]") {
     Fixture f;
     f.set_parameters(entry_s - 1190);
     const auto told_in = [&](double from_s, int seconds) {
