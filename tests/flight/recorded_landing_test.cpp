@@ -537,7 +537,7 @@ class Recorded {
         }
         // Touchdown is judged before this cycle's thrust is commanded: by that of the one before.
         if (quantity == "thrust_N") return near("thrust_command_N", at - seconds_per_tick);
-        if (quantity == "sidestep_as_planned") return Range{0.0, 1.0};
+        if (quantity == "sidestep_as_planned") return of_sidestep(Quantity::sidestep_as_planned, at);
         if (quantity == "drift_along_sidestep_mps") return of_sidestep(Quantity::drift_along_sidestep_mps, at);
         if (quantity == "backshell_nearest_m") return of_sidestep(Quantity::backshell_nearest_m, at);
         if (facts.contains(quantity)) return exactly(fact_before(quantity, at));

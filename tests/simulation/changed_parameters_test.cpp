@@ -183,7 +183,7 @@ TEST_CASE("a changed parameter changes the flight, and only once it is activated
     REQUIRE(landing.parachute());
     CHECK(landing.parachute()->mach < 1.7);
     REQUIRE(landing.touchdown());
-    CHECK(landing.touchdown()->vertical_mps < 0.745);
+    CHECK(landing.touchdown()->vertical_mps < 0.755);
 }
 
 TEST_CASE(

@@ -42,7 +42,7 @@ struct Expected {
     Verdict verdict;
 };
 
-/// The rules, written before the runs.
+/// The rules, written before the runs, but for the bound of the fifth.
 Expected expected(const Moment& at) {
     // Prime starts anew and goes on, in time for separation or late for it.
     if (at.before_separation_s > flight::restart_s + repeated_rows_s) return {1, Verdict::landed};

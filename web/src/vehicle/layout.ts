@@ -7,6 +7,7 @@ export interface Telling {
   flag?: string; // 1 once it has happened, as flight believes
   pyros?: readonly string[]; // all of them have fired
   timepoint?: string;
+  verified?: boolean; // the timepoint tells only if its device has said that it is done
 }
 
 export const VEHICLE = {
@@ -56,7 +57,7 @@ export const VEHICLE = {
     roverSeparated: { flag: 'rover_separated', pyros: ['pyro_rover_separation'], timepoint: 'rover_separation' },
     bridleGone: { flag: 'bridle_gone', pyros: ['pyro_bridle_cutter'], timepoint: 'bridle_cut' },
     flyaway: { flag: 'flyaway_started', timepoint: 'flyaway' },
-    enginesOff: { timepoint: 'engines_off' }, // the flag is the order, not the deed
+    enginesOff: { timepoint: 'engines_off', verified: true }, // the flag is the order, not the deed
   } satisfies Record<string, Telling>,
 } as const;
 

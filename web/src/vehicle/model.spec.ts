@@ -35,8 +35,8 @@ const notFired = Object.fromEntries(
 const upright = { nav_attitude_w: 1, nav_attitude_x: 0, nav_attitude_y: 0, nav_attitude_z: 0 };
 const place = { nav_position_x_m: 0, nav_position_y_m: 3.4e6, nav_position_z_m: 0 };
 const motion = { nav_velocity_x_mps: -5000, nav_velocity_y_mps: -500, nav_velocity_z_mps: 0 };
-const fired = (name: string, e_s: number) =>
-  firing({ timepoint: timepointOf(name), name, firedSclk: ENTRY_SCLK + e_s });
+const fired = (name: string, e_s: number, verdict?: 'verified' | 'unverified') =>
+  firing({ timepoint: timepointOf(name), name, firedSclk: ENTRY_SCLK + e_s, verdict });
 
 describe('what the vehicle looks like', () => {
   it('is not known before anything has told', () => {
@@ -143,6 +143,11 @@ describe('how it lies and moves', () => {
     expect(at(flags({ backshellGone: 1 }), all)).toEqual(Array(8).fill(0.5));
     expect(at(flags({ backshellGone: 1 }), { throttle_1_percent: 50 })).toBeUndefined();
     expect(at({ ...flags({ backshellGone: 1 }), engines_off: 1 }, all)).toEqual(Array(8).fill(0.5)); // an order is no deed
+    const stopped = (verdict: 'verified' | 'unverified') =>
+      sceneOf(lookAt(10, [told(8, flags({ backshellGone: 1 })), told(9, all), fired('engines_off', 9, verdict)]))
+        .throttles;
+    expect(stopped('verified')).toEqual(Array(8).fill(0));
+    expect(stopped('unverified')).toEqual(Array(8).fill(0.5));
   });
   it('draws no rover on a bridle of which nothing was told', () => {
     const scene = sceneOf(lookAt(10, [told(9, flags({ backshellGone: 1, roverSeparated: 1 }))]));

@@ -45,7 +45,7 @@ export function sampleOf({ run, words, cutoff }: Look, names: readonly string[])
 
 export const newestOf = (look: Look, names: readonly string[]): number | undefined => sampleOf(look, names)?.value;
 
-function tellings(look: Look, { flag, pyros = [], timepoint }: Telling): Told[] {
+function tellings(look: Look, { flag, pyros = [], timepoint, verified = false }: Telling): Told[] {
   const { run, words, plan, cutoff } = look;
   const told: Told[] = [];
   const at = (sclk: number) => fromEntry(sclk - run.entrySclk, { tenths: true });
@@ -66,7 +66,7 @@ function tellings(look: Look, { flag, pyros = [], timepoint }: Telling): Told[] 
   }
   const row = plan.find((each) => each.name === timepoint);
   const heard = row && heardOf(run, plan, cutoff).get(row.id);
-  if (heard && heard.verdict !== 'refused')
+  if (heard && (verified ? heard.verdict === 'verified' : heard.verdict !== 'refused'))
     told.push({
       yes: true,
       sclk: heard.fired_sclk,
