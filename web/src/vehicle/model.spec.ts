@@ -142,7 +142,8 @@ describe('how it lies and moves', () => {
     expect(at(flags({}), all)).toBeUndefined();
     expect(at(flags({ backshellGone: 1 }), all)).toEqual(Array(8).fill(0.5));
     expect(at(flags({ backshellGone: 1 }), { throttle_1_percent: 50 })).toBeUndefined();
-    expect(at({ ...flags({ backshellGone: 1 }), engines_off: 1 }, all)).toEqual(Array(8).fill(0.5)); // an order is no deed
+    // An order is no deed.
+    expect(at({ ...flags({ backshellGone: 1 }), engines_off: 1 }, all)).toEqual(Array(8).fill(0.5));
     const stopped = (verdict: 'verified' | 'unverified') =>
       sceneOf(lookAt(10, [told(8, flags({ backshellGone: 1 })), told(9, all), fired('engines_off', 9, verdict)]))
         .throttles;
