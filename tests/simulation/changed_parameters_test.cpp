@@ -135,7 +135,7 @@ constexpr std::array survived{
     Survived{"pyros", flight::Device::pyro, true, DeviceFault::Kind::denies, -500.0, 430.0, 1000.0},
     Survived{"thrusters", flight::Device::thrusters, true, DeviceFault::Kind::silent, -500.0, 370.0, 10.0},
     Survived{"engines", flight::Device::descent_engines, true, DeviceFault::Kind::silent, 370.0, 430.0, 0.5},
-    Survived{"replies of UHF", flight::Device::uhf, true, DeviceFault::Kind::late, -500.0, 430.0, 1000.0},
+    Survived{"replies of power", flight::Device::power, true, DeviceFault::Kind::late, -500.0, 250.0, 1000.0},
 };
 
 /// Each flight has a table and a fault, each drawn anew, and errors of its own.
