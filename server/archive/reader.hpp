@@ -265,7 +265,7 @@ class Reader {
     Result<std::vector<ChannelValue>> latest(RunId run, std::optional<Sclk> at);
 
     Result<v1::PacketList> packets(RunId run, const PacketQuery& query);
-    /// The octets of packets of real links after `after`, in the order of receipt. `after` becomes the last one's number.
+    /// The octets of packets of real links after `after`, as they were received. `after` becomes the last one's number.
     Result<std::vector<std::vector<std::uint8_t>>> received_octets(RunId run, Sequence& after, std::size_t limit);
     /// Passes the octets of each packet of the run's recording to `take`, in the order of receipt.
     using TakePacket = std::function<void(std::span<const std::uint8_t> packet)>;
