@@ -57,7 +57,8 @@ void tick(double ticks_per_s, Give give) {
 }
 
 Figures figures(const LoopbackClients& all, double cpu, double expected) {
-    must(all.broken() == 0 && static_cast<double>(all.messages()) == expected, "the delivery of every message");
+    must(all.lost_connections() == 0 && static_cast<double>(all.messages()) == expected,
+         "the delivery of every message");
     return {1e6 * cpu / expected, all.latency_ms(0.5), all.latency_ms(0.99)};
 }
 
@@ -79,10 +80,10 @@ Figures bare(LoopbackClients& all) {
         must(sockets.back() >= 0 && ::setsockopt(sockets.back(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof on) == 0,
              "accept");
     }
-    all.forget();
+    all.reset_counts();
     const double before = cpu_s(CLOCK_THREAD_CPUTIME_ID);
     tick(messages_per_s, [&] {
-        auto message = mark_now();
+        auto message = time_stamp_now();
         message.resize(message_octets + 4, '.');  // with a frame's header
         for (const int socket : sockets)
             must(::send(socket, message.data(), message.size(), MSG_NOSIGNAL | MSG_DONTWAIT) ==
@@ -104,10 +105,10 @@ Figures served(LoopbackClients& all, std::size_t a_tick) {
     subscription.mutable_subscribe()->set_all_channels(true);
     all.connect(server.port(), {clients, 0, true, {subscription.SerializeAsString()}});
     std::this_thread::sleep_for(std::chrono::milliseconds{300});
-    all.forget();
+    all.reset_counts();
     const double before = cpu_s(network);
     tick(messages_per_s / static_cast<double>(a_tick), [&] {
-        auto text = mark_now();
+        auto text = time_stamp_now();
         text.resize(message_octets - 32, '.');  // message_octets on the wire
         server.publish(std::vector<std::string>(a_tick, text));
     });

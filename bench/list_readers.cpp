@@ -42,17 +42,18 @@ std::uint64_t answer_octets(std::uint16_t port, const std::string& request, std:
 }  // namespace
 
 ListReaders::ListReaders(std::vector<std::string> targets) {
-    void* const shared = ::mmap(nullptr, sizeof(Board), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    void* const shared =
+        ::mmap(nullptr, sizeof(SharedCounters), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     must(shared != MAP_FAILED, "mmap");
-    board_ = new (shared) Board;
+    counters_ = new (shared) SharedCounters;
     process_ = ::fork();
     must(process_ >= 0, "fork");
     if (process_ != 0) return;
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-    while (board_->port == 0) std::this_thread::sleep_for(std::chrono::milliseconds{1});
+    while (counters_->port == 0) std::this_thread::sleep_for(std::chrono::milliseconds{1});
     std::vector<std::thread> threads;
     for (std::size_t reader = 0; reader < readers; ++reader)
-        threads.emplace_back([this, reader, &targets] { read_lists(*board_, reader, targets); });
+        threads.emplace_back([this, reader, &targets] { read_lists(*counters_, reader, targets); });
     for (auto& thread : threads) thread.join();
     ::_exit(0);
 }
@@ -60,36 +61,36 @@ ListReaders::ListReaders(std::vector<std::string> targets) {
 ListReaders::~ListReaders() {
     ::kill(process_, SIGKILL);
     ::waitpid(process_, nullptr, 0);
-    ::munmap(board_, sizeof(Board));
+    ::munmap(counters_, sizeof(SharedCounters));
 }
 
 void ListReaders::begin(std::uint16_t port, const std::vector<std::string>& tokens) {
     for (std::size_t reader = 0; reader < readers; ++reader) {
         const auto& token = tokens[reader % tokens.size()];
-        must(token.size() < board_->tokens[reader].size(), "a short token");
-        std::memcpy(board_->tokens[reader].data(), token.c_str(), token.size() + 1);
+        must(token.size() < counters_->tokens[reader].size(), "a short token");
+        std::memcpy(counters_->tokens[reader].data(), token.c_str(), token.size() + 1);
     }
-    board_->port = port;
+    counters_->port = port;
 }
 
-void ListReaders::read_lists(Board& board, std::size_t reader, const std::vector<std::string>& targets) {
+void ListReaders::read_lists(SharedCounters& counters, std::size_t reader, const std::vector<std::string>& targets) {
     using Clock = std::chrono::steady_clock;
     for (std::size_t i = 0; i < targets.size(); ++i) {
         const auto& target = targets[(i + reader * targets.size() / readers) % targets.size()];
         std::string status;
         const auto asked = Clock::now();
-        const auto octets = answer_octets(board.port,
+        const auto octets = answer_octets(counters.port,
                                           "GET " + target + " HTTP/1.1\r\nHost: 127.0.0.1\r\nAuthorization: Bearer " +
-                                              board.tokens[reader].data() + "\r\nConnection: close\r\n\r\n",
+                                              counters.tokens[reader].data() + "\r\nConnection: close\r\n\r\n",
                                           status);
         const auto waited = std::chrono::duration_cast<std::chrono::microseconds>(Clock::now() - asked).count();
-        ++board.answers;
-        board.octets += octets;
-        if (status != "HTTP/1.1 200") ++board.refused;
-        for (auto longest = board.longest_us.load(); std::cmp_less(longest, waited);)
-            if (board.longest_us.compare_exchange_weak(longest, static_cast<std::uint64_t>(waited))) break;
+        ++counters.answers;
+        counters.octets += octets;
+        if (status != "HTTP/1.1 200") ++counters.refused;
+        for (auto longest = counters.longest_us.load(); std::cmp_less(longest, waited);)
+            if (counters.longest_us.compare_exchange_weak(longest, static_cast<std::uint64_t>(waited))) break;
     }
-    ++board.over;
+    ++counters.over;
 }
 
 }  // namespace aeolis::bench

@@ -24,23 +24,23 @@ class ListReaders {
 
     /// @param tokens  of programs, given to the readers in turn
     void begin(std::uint16_t port, const std::vector<std::string>& tokens);
-    bool over() const { return board_->over == readers; }
+    bool over() const { return counters_->over == readers; }
 
-    std::uint64_t answers() const { return board_->answers; }
-    std::uint64_t refused() const { return board_->refused; }  ///< answers other than 200
-    std::uint64_t octets() const { return board_->octets; }
-    double longest_ms() const { return static_cast<double>(board_->longest_us) * 1e-3; }
+    std::uint64_t answers() const { return counters_->answers; }
+    std::uint64_t refused() const { return counters_->refused; }  ///< answers other than 200
+    std::uint64_t octets() const { return counters_->octets; }
+    double longest_ms() const { return static_cast<double>(counters_->longest_us) * 1e-3; }
 
   private:
-    struct Board {
+    struct SharedCounters {
         std::atomic<std::uint16_t> port{0};
         std::atomic<std::size_t> over{0};
         std::atomic<std::uint64_t> answers{0}, refused{0}, octets{0}, longest_us{0};
         std::array<std::array<char, 128>, readers> tokens{};
     };
-    static void read_lists(Board& board, std::size_t reader, const std::vector<std::string>& targets);
+    static void read_lists(SharedCounters& counters, std::size_t reader, const std::vector<std::string>& targets);
 
-    Board* board_;
+    SharedCounters* counters_;
     int process_ = -1;
 };
 

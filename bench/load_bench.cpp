@@ -187,7 +187,7 @@ class Watcher {
     void say_that_it_lives() {
         if (now_s() - alive_s_ < 5.0) return;
         alive_s_ = now_s();
-        write(std::string{alive});
+        write(std::string{unsolicited_pong});
     }
     void take(const v1::Batch& batch) {
         const double now = now_s();
@@ -396,7 +396,7 @@ void under_load(Channels channels, bool with_lists) {
         Watcher last{"the last to join", web->port(), next()};
         const std::array all{&first, &middle, &last, &stalled};
         std::this_thread::sleep_for(std::chrono::milliseconds{500});
-        for (auto& each : others) each.forget();
+        for (auto& each : others) each.reset_counts();
         std::vector<std::uint8_t> octets(tm_overhead_octets + 4 * channels_a_packet), event(tm_overhead_octets + 10);
         BitWriter bits{std::span<std::uint8_t>(octets).subspan(tm_data_offset_octets)};
         for (std::size_t i = 0; i < channels_a_packet; ++i)
@@ -489,7 +489,8 @@ void under_load(Channels channels, bool with_lists) {
             goal("lists that are missing", lists_s > 0.0 ? 0.0 : 1.0, 0.0, "");
             goal("lists that were refused", static_cast<double>(readers->refused()), 0.0, "");
         }
-        goal("connections that ended", static_cast<double>(others[0].broken() + others[1].broken()), 0.0, "");
+        goal("connections that ended", static_cast<double>(others[0].lost_connections() + others[1].lost_connections()),
+             0.0, "");
         goal("resident memory", static_cast<double>(resident) * 1e-6, 300.0, "MB");
     }
     for (auto& each : others) each.close();

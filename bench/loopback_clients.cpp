@@ -25,7 +25,7 @@
 namespace aeolis::bench {
 namespace {
 
-constexpr std::uint64_t alive_interval_ns = 5'000'000'000;
+constexpr std::uint64_t pong_interval_ns = 5'000'000'000;
 
 std::uint64_t now_ns() {
     timespec time{};
@@ -69,11 +69,11 @@ int connect_to(std::uint16_t port) {
     return socket;
 }
 
-/// Finds marks in the octets read; a mark cut by the end of a read is completed by the next one.
+/// Finds time stamps in the octets read; a time stamp cut by the end of a read is completed by the next one.
 struct Reading {
     std::string kept;
 
-    void take(Board& board, std::string_view octets) {
+    void take(SharedCounters& counters, std::string_view octets) {
         const auto now = now_ns();
         std::string joined;
         if (!kept.empty()) {
@@ -82,22 +82,23 @@ struct Reading {
         }
         std::uint64_t found = 0;
         for (;;) {
-            const auto at = octets.find(mark);
+            const auto at = octets.find(time_stamp_prefix);
             if (at == std::string_view::npos) break;
-            if (octets.size() < at + mark.size() + 16) break;
+            if (octets.size() < at + time_stamp_prefix.size() + 16) break;
             std::uint64_t made_ns = 0;
-            std::from_chars(octets.data() + at + mark.size(), octets.data() + at + mark.size() + 16, made_ns, 16);
+            std::from_chars(octets.data() + at + time_stamp_prefix.size(),
+                            octets.data() + at + time_stamp_prefix.size() + 16, made_ns, 16);
             const auto bin = std::min<std::size_t>((now - made_ns) / 50'000U, latency_bins - 1);
-            board.latencies[bin].fetch_add(1, std::memory_order_relaxed);
+            counters.latencies[bin].fetch_add(1, std::memory_order_relaxed);
             ++found;
-            octets.remove_prefix(at + mark.size() + 16);
+            octets.remove_prefix(at + time_stamp_prefix.size() + 16);
         }
-        kept = octets.substr(octets.size() - std::min(octets.size(), mark.size() + 16));
-        board.messages.fetch_add(found, std::memory_order_relaxed);
+        kept = octets.substr(octets.size() - std::min(octets.size(), time_stamp_prefix.size() + 16));
+        counters.messages.fetch_add(found, std::memory_order_relaxed);
     }
 };
 
-void read_until_closed(Board& board, int phase, const std::vector<int>& sockets, bool websocket) {
+void read_until_closed(SharedCounters& counters, int phase, const std::vector<int>& sockets, bool websocket) {
     const int epoll = ::epoll_create1(EPOLL_CLOEXEC);
     std::vector<Reading> readings(sockets.size());
     for (std::size_t i = 0; i < sockets.size(); ++i) {
@@ -108,11 +109,11 @@ void read_until_closed(Board& board, int phase, const std::vector<int>& sockets,
     }
     std::array<epoll_event, 256> events{};
     std::vector<char> buffer(256 << 10);
-    for (auto said_ns = now_ns(); board.phase == phase;) {
-        if (websocket && now_ns() - said_ns > alive_interval_ns) {
-            said_ns = now_ns();
+    for (auto sent_ns = now_ns(); counters.phase == phase;) {
+        if (websocket && now_ns() - sent_ns > pong_interval_ns) {
+            sent_ns = now_ns();
             for (const int socket : sockets)
-                (void)::send(socket, alive.data(), alive.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+                (void)::send(socket, unsolicited_pong.data(), unsolicited_pong.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
         }
         const int count = ::epoll_wait(epoll, events.data(), events.size(), 20);
         for (int i = 0; i < count; ++i) {
@@ -120,12 +121,12 @@ void read_until_closed(Board& board, int phase, const std::vector<int>& sockets,
             const auto got = ::recv(sockets[client], buffer.data(), buffer.size(), MSG_DONTWAIT);
             if (got <= 0) {
                 if (got < 0 && errno == EAGAIN) continue;
-                ++board.broken;
+                ++counters.lost_connections;
                 ::epoll_ctl(epoll, EPOLL_CTL_DEL, sockets[client], nullptr);
                 continue;
             }
-            board.octets.fetch_add(static_cast<std::uint64_t>(got), std::memory_order_relaxed);
-            readings[client].take(board, {buffer.data(), static_cast<std::size_t>(got)});
+            counters.octets.fetch_add(static_cast<std::uint64_t>(got), std::memory_order_relaxed);
+            readings[client].take(counters, {buffer.data(), static_cast<std::size_t>(got)});
         }
     }
     ::close(epoll);
@@ -157,32 +158,33 @@ std::vector<std::string> read_subscriptions(int orders, std::size_t count) {
     return subscriptions;
 }
 
-[[noreturn]] void be_clients(Board& board, int orders) {
+[[noreturn]] void be_clients(SharedCounters& counters, int orders) {
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     for (;;) {
         Order order;
         if (::read(orders, &order, sizeof order) != sizeof order) ::_exit(0);
         const auto subscriptions = read_subscriptions(orders, order.subscriptions);
-        const int phase = board.phase;
+        const int phase = counters.phase;
         std::vector<int> sockets;
         for (std::size_t i = 0; i < order.clients; ++i) {
-            sockets.push_back(connect_to(board.port));
+            sockets.push_back(connect_to(counters.port));
             if (order.websocket) open_stream(sockets.back(), subscriptions[i % subscriptions.size()]);
         }
-        board.settled = phase;
-        read_until_closed(board, phase, {sockets.begin(), sockets.end() - static_cast<std::ptrdiff_t>(order.stalled)},
+        counters.reached_phase = phase;
+        read_until_closed(counters, phase,
+                          {sockets.begin(), sockets.end() - static_cast<std::ptrdiff_t>(order.stalled)},
                           order.websocket);
         for (const int socket : sockets) ::close(socket);
-        board.settled = phase + 1;
+        counters.reached_phase = phase + 1;
     }
 }
 
 }  // namespace
 
-std::string mark_now() {
+std::string time_stamp_now() {
     char digits[17];
     std::snprintf(digits, sizeof digits, "%016llx", static_cast<unsigned long long>(now_ns()));
-    return std::string{mark} + digits;
+    return std::string{time_stamp_prefix} + digits;
 }
 
 LoopbackClients::LoopbackClients() {
@@ -190,31 +192,32 @@ LoopbackClients::LoopbackClients() {
     ::getrlimit(RLIMIT_NOFILE, &files);
     files.rlim_cur = files.rlim_max;
     ::setrlimit(RLIMIT_NOFILE, &files);
-    void* const shared = ::mmap(nullptr, sizeof(Board), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    void* const shared =
+        ::mmap(nullptr, sizeof(SharedCounters), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     must(shared != MAP_FAILED, "mmap");
-    board_ = new (shared) Board;
+    counters_ = new (shared) SharedCounters;
     int ends[2];
     must(::pipe(ends) == 0, "pipe");
     process_ = ::fork();
     must(process_ >= 0, "fork");
     if (process_ == 0) {
         ::close(ends[1]);
-        be_clients(*board_, ends[0]);
+        be_clients(*counters_, ends[0]);
     }
     ::close(ends[0]);
     pipe_ = ends[1];
 }
 
 LoopbackClients::~LoopbackClients() {
-    if (board_->phase % 2 == 1) close();
+    if (counters_->phase % 2 == 1) close();
     ::close(pipe_);
     ::waitpid(process_, nullptr, 0);
-    ::munmap(board_, sizeof(Board));
+    ::munmap(counters_, sizeof(SharedCounters));
 }
 
 void LoopbackClients::connect(std::uint16_t port, const Settings& settings) {
-    board_->port = port;
-    const int phase = ++board_->phase;
+    counters_->port = port;
+    const int phase = ++counters_->phase;
     const Order order{settings.clients, settings.stalled, settings.websocket,
                       static_cast<std::uint32_t>(settings.subscriptions.size())};
     must(::write(pipe_, &order, sizeof order) == sizeof order, "write");
@@ -224,24 +227,24 @@ void LoopbackClients::connect(std::uint16_t port, const Settings& settings) {
                  ::write(pipe_, each.data(), octets) == static_cast<ssize_t>(octets),
              "write");
     }
-    while (board_->settled != phase) ::usleep(1000);
+    while (counters_->reached_phase != phase) ::usleep(1000);
 }
 
 void LoopbackClients::close() {
-    const int phase = ++board_->phase;
-    while (board_->settled != phase) ::usleep(1000);
+    const int phase = ++counters_->phase;
+    while (counters_->reached_phase != phase) ::usleep(1000);
 }
 
-void LoopbackClients::forget() {
-    board_->messages = board_->octets = board_->broken = 0;
-    for (auto& bin : board_->latencies) bin = 0;
+void LoopbackClients::reset_counts() {
+    counters_->messages = counters_->octets = counters_->lost_connections = 0;
+    for (auto& bin : counters_->latencies) bin = 0;
 }
 
 double LoopbackClients::latency_ms(double quantile) const {
     std::uint64_t all = 0, sum = 0;
-    for (const auto& bin : board_->latencies) all += bin;
+    for (const auto& bin : counters_->latencies) all += bin;
     for (std::size_t i = 0; i < latency_bins; ++i) {
-        sum += board_->latencies[i];
+        sum += counters_->latencies[i];
         if (static_cast<double>(sum) >= quantile * static_cast<double>(all)) return 0.05 * static_cast<double>(i + 1);
     }
     return 0.0;

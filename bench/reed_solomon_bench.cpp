@@ -24,11 +24,11 @@ constexpr std::size_t blocks = 4000, different_blocks = 50;
 
 /// The best of five, by processor time of this process.
 template <typename Pass>
-double mb_per_s(std::size_t octets, Pass pass) {
+double mb_per_s(std::size_t octets, Pass run_pass) {
     double best = 0.0;
-    for (int part = 0; part < 5; ++part) {
+    for (int pass = 0; pass < 5; ++pass) {
         const std::clock_t start = std::clock();
-        pass();
+        run_pass();
         const double took_s = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
         best = std::max(best, static_cast<double>(octets) / took_s / 1.0e6);
     }
@@ -39,8 +39,8 @@ void damage(Octets& block, std::size_t errors, std::mt19937& random) {
     const std::size_t symbols = block.size() / code.interleave;
     for (std::size_t word = 0; word < code.interleave; ++word)
         for (std::size_t i = 0; i < errors; ++i) {
-            const std::size_t part = symbols / errors;  // of the word, with one wrong symbol in each
-            const std::size_t place = i * part + random() % part;
+            const std::size_t segment = symbols / errors;  // with one wrong symbol in each
+            const std::size_t place = i * segment + random() % segment;
             block[word + place * code.interleave] ^= static_cast<std::uint8_t>(1 + random() % 255);
         }
 }

@@ -8,7 +8,7 @@ bool is_hazardous(const dictionary::Command& command) {
 }
 
 Result<void> authorise(const dictionary::Command& command, const Intent& intent,
-                       std::span<const PreconditionState> preconditions) {
+                       std::span<const PreconditionReply> preconditions) {
     if (is_hazardous(command)) {
         const std::string why = command.reason_for_warning.empty() ? "" : " (" + command.reason_for_warning + ")";
         if (!intent.armed) return Error{command.name + " is hazardous" + why + ": it must be armed first"};
@@ -18,8 +18,8 @@ Result<void> authorise(const dictionary::Command& command, const Intent& intent,
                 (intent.confirmation.empty() ? "nothing was typed" : "'" + intent.confirmation + "' was typed")};
     }
     std::string failing;
-    for (const PreconditionState& condition : preconditions)
-        if (condition.state == PreconditionState::State::fails)
+    for (const PreconditionReply& condition : preconditions)
+        if (condition.verdict == PreconditionReply::Verdict::fails)
             failing += (failing.empty() ? "" : "; ") + condition.text;
     if (!failing.empty()) return Error{command.name + " must not be sent now: " + failing};
     return {};

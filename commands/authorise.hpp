@@ -22,6 +22,6 @@ struct Intent {
 /// its name was not typed exactly, or when a precondition fails. An unknown precondition does not refuse it: flight
 /// checks the same conditions with its own data, and the caller informs the controller. R23
 Result<void> authorise(const dictionary::Command& command, const Intent& intent,
-                       std::span<const PreconditionState> preconditions);
+                       std::span<const PreconditionReply> preconditions);
 
 }  // namespace aeolis::commands

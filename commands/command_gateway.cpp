@@ -98,30 +98,30 @@ Result<CommandGateway::Prepared> CommandGateway::prepare(const Request& request,
                     *wanted, request.release_at};
 }
 
-std::vector<PreconditionState> CommandGateway::preconditions(const dictionary::Command& command, Ert now) const {
-    auto states = check(dictionary_, command, latest(now));
+std::vector<PreconditionReply> CommandGateway::preconditions(const dictionary::Command& command, Ert now) const {
+    auto replies = check(dictionary_, command, latest(now));
     const auto* received = dictionary_.channel(parameters_received);
     const bool wants_them = received != nullptr && std::ranges::any_of(command.preconditions, [&](const auto& each) {
                                 return each.channel == received->id;
                             });
-    if (!wants_them) return states;
-    using State = PreconditionState::State;
+    if (!wants_them) return replies;
+    using Verdict = PreconditionReply::Verdict;
     for (const auto& [name, sent] : read_backs_) {
         if (sent.empty()) continue;
         const ReadBack& told = sent.back();
-        auto& state = states.emplace_back();
+        auto& reply = replies.emplace_back();
         // The first set's reception is confirmed by flight's own channel. A later set is confirmed only by its
         // read-back, which is waited for while it can still arrive.
         const auto [holds, words] =
-            told.held == Status::ok        ? std::pair{State::holds, "read back"}
-            : told.held == Status::failed  ? std::pair{State::fails, "the vehicle reports other values"}
-            : told.held == Status::unknown ? std::pair{State::unknown, "not read back in its time"}
-            : told.renewed                 ? std::pair{State::fails, "sent anew and not read back yet, wait for it"}
-                                           : std::pair{State::unknown, "not read back yet"};
-        state.state = holds;
-        state.text = fmt::format("{} held as sent (command {}): {}", name, told.number, words);
+            told.held == Status::ok        ? std::pair{Verdict::holds, "read back"}
+            : told.held == Status::failed  ? std::pair{Verdict::fails, "the vehicle reports other values"}
+            : told.held == Status::unknown ? std::pair{Verdict::unknown, "not read back in its time"}
+            : told.renewed                 ? std::pair{Verdict::fails, "sent anew and not read back yet, wait for it"}
+                                           : std::pair{Verdict::unknown, "not read back yet"};
+        reply.verdict = holds;
+        reply.text = fmt::format("{} held as sent (command {}): {}", name, told.number, words);
     }
-    return states;
+    return replies;
 }
 
 Reply CommandGateway::submit(const Request& request, Ert now, std::vector<StageReport>& stages, Asker asker) {
@@ -143,10 +143,10 @@ Reply CommandGateway::submit(const Request& request, Ert now, std::vector<StageR
     // A waiting command's preconditions are checked when it leaves: one that fails now may hold then.
     const bool waits = request.hold || prepared->release_at;
     const auto authorised = authorise(*prepared->command, {request.armed, request.confirmation},
-                                      waits ? std::span<const PreconditionState>{} : prepared->preconditions);
+                                      waits ? std::span<const PreconditionReply>{} : prepared->preconditions);
     if (!authorised) return refuse(authorised.error().message);
-    if (auto apart = apart_from_solutions(*prepared->command, prepared->packet); !apart.empty())
-        return refuse(std::move(apart));
+    if (auto unlike = unlike_solutions(*prepared->command, prepared->packet); !unlike.empty())
+        return refuse(std::move(unlike));
     if (!waits)
         if (auto unsafe = unsafe_on_timeline(*prepared->command, prepared->packet, leaves); !unsafe.empty())
             return refuse(std::move(unsafe));
@@ -175,7 +175,7 @@ void CommandGateway::queue(const Prepared& prepared, const Request& request, Ask
     // An unknown condition is no reason to refuse: flight holds the same conditions and decides with its own data.
     std::string not_known;
     for (const auto& condition : prepared.preconditions)
-        if (condition.state == PreconditionState::State::unknown)
+        if (condition.verdict == PreconditionReply::Verdict::unknown)
             not_known += (not_known.empty() ? "; left to flight: " : ", ") + condition.text;
     const auto* report = read_back_packet(dictionary_, *prepared.command);
     auto& underway = underway_.emplace_back(Underway{
@@ -261,7 +261,7 @@ std::string CommandGateway::failing_now(const Underway& underway, Ert now) const
     const auto& command = underway.lifecycle.command();
     std::string failing = unsafe_on_timeline(command, underway.packet, now, underway.number);
     for (const auto& condition : preconditions(command, now))
-        if (condition.state == PreconditionState::State::fails)
+        if (condition.verdict == PreconditionReply::Verdict::fails)
             failing += (failing.empty() ? "" : "; ") + condition.text;
     return failing;
 }
@@ -279,8 +279,8 @@ std::optional<timeline::Change> CommandGateway::timeline_change(const dictionary
     return change ? std::optional{change->what} : std::nullopt;
 }
 
-std::string CommandGateway::apart_from_solutions(const dictionary::Command& command,
-                                                 std::span<const std::uint8_t> packet) const {
+std::string CommandGateway::unlike_solutions(const dictionary::Command& command,
+                                             std::span<const std::uint8_t> packet) const {
     const auto arguments = decode(command, packet);
     return arguments ? solutions_.judge(*arguments) : std::string{};
 }

@@ -121,7 +121,7 @@ class CommandGateway {
         const dictionary::Command* command = nullptr;
         std::vector<std::uint8_t> packet;
         std::string arguments;
-        std::vector<PreconditionState> preconditions;
+        std::vector<PreconditionReply> preconditions;
         std::optional<Fop::Service> wanted;  ///< none: chosen at release
         std::optional<Ert> release_at;
     };
@@ -144,7 +144,7 @@ class CommandGateway {
     Result<Prepared> prepare(const Request& request, Ert now) const;
     /// Evaluates the dictionary's preconditions against the latest values. Where parameters must be on board, also
     /// checks that they are the ones sent.
-    std::vector<PreconditionState> preconditions(const dictionary::Command& command, Ert now) const;
+    std::vector<PreconditionReply> preconditions(const dictionary::Command& command, Ert now) const;
     void note_read_back(const Underway& underway, const StageChange& change);
     void tell(const Prepared& prepared, Ert now, Reply& reply) const;
     void queue(const Prepared& prepared, const Request& request, Asker asker, Ert now, Reply& reply,
@@ -175,7 +175,7 @@ class CommandGateway {
     /// The preconditions that are known not to hold now, and what the command would do to the timeline; empty: none.
     std::string failing_now(const Underway& underway, Ert now) const;
     /// Why the command's parameters do not come from ground's solutions; empty: they do, or it has none.
-    std::string apart_from_solutions(const dictionary::Command& command, std::span<const std::uint8_t> packet) const;
+    std::string unlike_solutions(const dictionary::Command& command, std::span<const std::uint8_t> packet) const;
     /// Why the command must not leave at that time, because of its effect on the timeline; empty: it may leave, or has
     /// no such effect.
     /// @param number  of the command, where it has one

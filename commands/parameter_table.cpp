@@ -26,7 +26,7 @@ Result<void> ParameterTable::set(ParameterId id, double value) {
     return {};
 }
 
-Result<void> ParameterTable::may_fly() const {
+Result<void> ParameterTable::check_deviations() const {
     double sum = 0.0, largest = 0.0;
     std::string largest_name;
     for (const dictionary::ParameterRow& row : dictionary_.parameters) {

@@ -23,7 +23,7 @@ class ParameterTable {
 
     /// Checks whether the table may fly. Fails when its deviations from the table built in add up to more than one
     /// range, and names the largest. Flight refuses to activate such a table too.
-    [[nodiscard]] Result<void> may_fly() const;
+    [[nodiscard]] Result<void> check_deviations() const;
 
     /// CRC-16 over the rows in order, each with its number in 16 bits and its value as a binary64. The data product
     /// that dumps the table and the channel parameter_crc have the same CRC.

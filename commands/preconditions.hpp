@@ -19,18 +19,18 @@ struct LatestValue {
 /// A value older than this is not current. Our assumption: thirty missed samples of a 1 Hz channel.
 inline constexpr double stale_after_s = 30.0;
 
-struct PreconditionState {
-    enum class State { holds, fails, unknown };
-    State state = State::unknown;
+struct PreconditionReply {
+    enum class Verdict { holds, fails, unknown };
+    Verdict verdict = Verdict::unknown;
     std::optional<double> value;
     std::string text;  ///< such as "parameters_received == 1: is 0", "late_cruise == 1: not received yet"
 };
 
 /// "holds", "fails", "unknown"
-const char* name_of(PreconditionState::State state);
+const char* name_of(PreconditionReply::Verdict verdict);
 
 /// Checks each transmission constraint of the command against the latest values, which are indexed by ChannelId.
-std::vector<PreconditionState> check(const dictionary::Dictionary& dictionary, const dictionary::Command& command,
+std::vector<PreconditionReply> check(const dictionary::Dictionary& dictionary, const dictionary::Command& command,
                                      std::span<const LatestValue> latest);
 
 }  // namespace aeolis::commands

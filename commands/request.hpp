@@ -55,7 +55,7 @@ struct Reply {
     std::string reason{};                ///< of a refusal: the check and its values
     std::vector<std::uint8_t> octets{};  ///< the encoded packet
     std::string arguments{};             ///< as sent
-    std::vector<PreconditionState> preconditions{};
+    std::vector<PreconditionReply> preconditions{};
     std::string service{};
     bool needs_approval = false;
     std::optional<Ert> leaves{};       ///< as far as that is settled

@@ -3,6 +3,7 @@
 
 #include "common/check.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -31,7 +32,13 @@ class BitWriter {
     constexpr void put_signed(std::int64_t value, unsigned bits) { put(static_cast<std::uint64_t>(value), bits); }
     constexpr void put_float(float value) { put(std::bit_cast<std::uint32_t>(value), 32); }
     constexpr void put_octets(std::span<const std::uint8_t> octets) {
-        for (const std::uint8_t octet : octets) put(octet, 8);
+        if (position_ % 8 != 0) {
+            for (const std::uint8_t octet : octets) put(octet, 8);
+            return;
+        }
+        AEOLIS_CHECK(octets.size() <= octets_.size() - position_ / 8);
+        std::ranges::copy(octets, octets_.subspan(position_ / 8).begin());
+        position_ += octets.size() * 8;
     }
     constexpr void put_double(double value) { put(std::bit_cast<std::uint64_t>(value), 64); }
 

@@ -91,7 +91,7 @@ class OtherMission::Builder {
             const PacketContainer& container = model_.containers[i];
             dictionary::Packet& packet = mission_.dictionary_.packets.emplace_back();
             packet.name = names_.insert("packet " + container.name).second ? container.name : container.path.substr(1);
-            packet.apid = apid_of(i).value_or(any_apid);
+            packet.apid = apid_of(i).value_or(unrestricted_apid);
             mission_.fields_.emplace_back();
             if (!container.abstract) add_container(i, 0);
         }
@@ -107,8 +107,9 @@ class OtherMission::Builder {
             const auto can = add_conditions(when, added.context);
             if (can && *can) channel.type.alarms.contexts.push_back(std::move(added));
             if (!can)
-                mission_.not_judged_.push_back("line " + std::to_string(type.line) + ": alarms of " + channel.name +
-                                               " in a context that is not a comparison of channels are not judged");
+                mission_.unsupported_alarms_.push_back(
+                    "line " + std::to_string(type.line) + ": alarms of " + channel.name +
+                    " in a context that is not a comparison of channels are not judged");
         }
     }
 
@@ -143,7 +144,7 @@ class OtherMission::Builder {
     /// Nested references multiply even when depth is bounded: what is not reached counts as left out.
     bool too_many_steps() {
         if (++steps_ <= steps_max) return false;
-        mission_.left_out_ = std::max<std::size_t>(mission_.left_out_, 1);
+        mission_.omitted_fields_ = std::max<std::size_t>(mission_.omitted_fields_, 1);
         return true;
     }
 
@@ -173,7 +174,7 @@ class OtherMission::Builder {
 
     void add_type(const std::string& name, const PacketType& type, const std::vector<Amount>& last_indices,
                   unsigned depth) {
-        if (depth == ContainerDecoder::depth_max || mission_.left_out_ > 0 || too_many_steps()) return;
+        if (depth == ContainerDecoder::depth_max || mission_.omitted_fields_ > 0 || too_many_steps()) return;
         if (type.kind == PacketType::Kind::aggregate) {
             for (const auto& member : type.members)
                 add_type(name + "." + member.name, model_.types[member.type], {}, depth + 1);
@@ -195,7 +196,7 @@ class OtherMission::Builder {
         if (fields.contains(key)) return;
         auto known = channels_.find(key);
         if (++fields_ > fields_max || (known == channels_.end() && channels.size() == channels_max)) {
-            ++mission_.left_out_;
+            ++mission_.omitted_fields_;
             return;
         }
         if (known == channels_.end()) {

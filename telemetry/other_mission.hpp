@@ -24,7 +24,7 @@ namespace aeolis::telemetry {
 /// Channels numbers, labels (by their number), flags, times and text; of arrays, and of parameters whose size varies,
 ///          the first `elements_max`. Octets are not channels; contents() has everything
 /// Exact    whole numbers of more than 53 bits and text are in Decoded::texts
-/// Alarms   those of the file; not_judged() names contexts that do not compare channels
+/// Alarms   those of the file; unsupported_alarms() names contexts that do not compare channels
 /// Names    those of the file; of two equal names the later is prefixed with its SpaceSystem's path
 /// Time     the packet's own time, as if from the spacecraft's clock, none beyond 1e12 s; Decoded::timed says whether
 ///          there is one
@@ -38,7 +38,7 @@ class OtherMission {
     static constexpr std::size_t channels_max = 0xFFFF;
     static constexpr std::size_t fields_max = std::size_t{1} << 20U;  ///< chosen: of all packets together
     /// APID of a packet whose container does not restrict it; no real packet has this one.
-    static constexpr Apid any_apid{0xFFFF};
+    static constexpr Apid unrestricted_apid{0xFFFF};
 
     /// @param id    of the XTCE text, like the id of our dictionary
     /// @param time  where packets hold their time; none: as ContainerDecoder finds it
@@ -48,9 +48,9 @@ class OtherMission {
 
     const dictionary::Dictionary& dictionary() const { return dictionary_; }
     /// Number of fields beyond channels_max and fields_max.
-    std::size_t left_out() const { return left_out_; }
+    std::size_t omitted_fields() const { return omitted_fields_; }
     /// The alarms of the file that are not judged, each described in a line.
-    const std::vector<std::string>& not_judged() const { return not_judged_; }
+    const std::vector<std::string>& unsupported_alarms() const { return unsupported_alarms_; }
 
     DecodedContents contents(std::span<const std::uint8_t> packet) const;
     /// Decodes a packet. Returns none when at least a part was decoded; after a refusal `into` is unspecified.
@@ -66,8 +66,8 @@ class OtherMission {
     dictionary::Dictionary dictionary_;
     std::vector<std::map<FieldKey, std::size_t>> fields_;  ///< by packet
     std::optional<ContainerPlan> plan_;                    ///< none: the caller named the place of a packet's time
-    std::size_t left_out_ = 0;
-    std::vector<std::string> not_judged_;
+    std::size_t omitted_fields_ = 0;
+    std::vector<std::string> unsupported_alarms_;
 };
 
 }  // namespace aeolis::telemetry

@@ -43,7 +43,7 @@ class StateExchange {
         else if constexpr (requires { value.coeffs(); })  // Eigen's quaternion
             carry(value.coeffs());
         else if constexpr (requires { value.derived(); })  // Eigen's vectors
-            for (int i = 0; i < value.size(); ++i) number(value.data()[i]);
+            numbers(value.data(), static_cast<std::size_t>(value.size()));
         else if constexpr (requires { value.seconds; })
             number(value.seconds);
         else
@@ -51,7 +51,10 @@ class StateExchange {
     }
     template <typename T, std::size_t N>
     void carry(std::array<T, N>& values) {
-        for (T& value : values) carry(value);
+        if constexpr (std::is_arithmetic_v<T> || std::is_enum_v<T>)
+            numbers(values.data(), N);
+        else
+            for (T& value : values) carry(value);
     }
     template <typename T>
     void carry(std::optional<T>& value) {
@@ -69,16 +72,20 @@ class StateExchange {
 
     template <typename T>
     void number(T& value) {
-        if (at_ + sizeof value > octets_.size()) {
+        numbers(&value, 1);
+    }
+    template <typename T>
+    void numbers(T* values, std::size_t count) {
+        const std::size_t size = count * sizeof(T);
+        if (at_ + size > octets_.size()) {
             ok_ = false;
             return;
         }
-        // -fno-builtin would turn each of these into a call; there are some hundred a cycle.
         if constexpr (writing)
-            __builtin_memcpy(octets_.data() + at_, &value, sizeof value);
+            std::memcpy(octets_.data() + at_, values, size);
         else
-            __builtin_memcpy(&value, octets_.data() + at_, sizeof value);
-        at_ += sizeof value;
+            std::memcpy(values, octets_.data() + at_, size);
+        at_ += size;
     }
 
     std::span<Octet> octets_;

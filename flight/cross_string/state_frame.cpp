@@ -25,10 +25,23 @@ std::uint64_t checksum(std::span<const std::uint8_t> octets) {
         sum ^= sum >> high_bits;  // a multiplication alone never moves high bits down
     };
     std::array<std::uint64_t, lanes> sums{offset_basis, 1, 2, 3};
-    for (std::size_t at = 0; at < octets.size(); at += row) {
-        std::array<std::uint64_t, lanes> words{};
-        std::memcpy(words.data(), octets.data() + at, std::min(row, octets.size() - at));
-        for (std::size_t lane = 0; lane < lanes; ++lane) add(sums[lane], words[lane]);
+    // Not a loop: g++ would vectorize it, and SSE2 multiplies words of eight octets by shifts, four times as slowly.
+    const auto add_row = [&](const std::array<std::uint64_t, lanes>& words) {
+        add(sums[0], words[0]);
+        add(sums[1], words[1]);
+        add(sums[2], words[2]);
+        add(sums[3], words[3]);
+    };
+    std::array<std::uint64_t, lanes> words{};
+    std::size_t at = 0;
+    for (; at + row <= octets.size(); at += row) {
+        std::memcpy(words.data(), octets.data() + at, row);
+        add_row(words);
+    }
+    if (at < octets.size()) {
+        words.fill(0);
+        std::memcpy(words.data(), octets.data() + at, octets.size() - at);
+        add_row(words);
     }
     std::uint64_t all = octets.size();
     for (const std::uint64_t sum : sums) add(all, sum);

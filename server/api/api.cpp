@@ -340,8 +340,9 @@ void Api::run_question(const ApiRequest& call) {
         return respond(json_response(current));
     ask(
         call, std::move(*query),
-        [&dictionary, &queries = parts_.queries, asker = Asker{client_of(call.who), call.request.gone}, clock = clock(),
-         instructor = may(call.who, Right::rehearse), answer = question->answer, path = call.request.path,
+        [&dictionary, &queries = parts_.queries, asker = Asker{client_of(call.who), call.request.disconnected},
+         clock = clock(), instructor = may(call.who, Right::rehearse), answer = question->answer,
+         path = call.request.path,
          asked = call.request.query](archive::Reader& reader, archive::RunId id, const QueryText& asked_of) {
             const auto parts = [&queries, asker](ReadPart read) { return in_parts(queries, asker, std::move(read)); };
             auto response = answer({dictionary, clock(id), instructor, parts}, reader, id, asked_of);
@@ -379,7 +380,8 @@ void Api::ask(const ApiRequest& call, QueryText query, RunQuestion question, Job
         if (reader.stopped()) response = stopped_response("ask for less, by from and to, points or limit");
         respond(std::move(*response));
     };
-    if (!parts_.queries.ask(job, {client_of(call.who), call.request.gone}, priority)) call.respond(busy_response());
+    if (!parts_.queries.ask(job, {client_of(call.who), call.request.disconnected}, priority))
+        call.respond(busy_response());
 }
 
 void Api::answer_page(const ApiRequest& call, const ListPage::Limits& limits, AnswerPage answer, JobPriority priority) {

@@ -6,7 +6,7 @@
 
 namespace aeolis::server {
 
-decltype(HttpResponse::more) in_parts(QueryThreads& queries, const Asker& asker, ReadPart read) {
+decltype(HttpResponse::next_part) in_parts(QueryThreads& queries, const Asker& asker, ReadPart read) {
     const auto shared = std::make_shared<ReadPart>(std::move(read));
     return [&queries, asker, shared](const std::function<void(BodyPart)>& tell) {
         const auto job = [shared, tell](archive::Reader& reader) {

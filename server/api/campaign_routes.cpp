@@ -17,13 +17,13 @@ HttpResponse response_or_conflict(const Result<Message>& done, unsigned status =
 }  // namespace
 
 void Api::ask_campaign(const ApiRequest& call, CampaignQuestion question) {
-    answer_on_query_thread(call, [this, name = call.parts[0], gone = call.request.gone,
+    answer_on_query_thread(call, [this, name = call.parts[0], disconnected = call.request.disconnected,
                                   question = std::move(question)](archive::Reader&) {
         const auto file = parts_.campaigns.file_of(name);
         if (!file)
             return error_response(404,
                                   fmt::format("campaign '{}': there is none; GET /api/v1/campaigns lists them", name));
-        const auto stop = parts_.queries.stop_of_question(gone);
+        const auto stop = parts_.queries.stop_of_question(disconnected);
         auto response = question(*file, stop);
         return stop() ? stopped_response("ask for fewer touchdowns by limit; aeolis campaign reads a file of any size")
                       : response;

@@ -55,7 +55,7 @@ bool is_text(std::string_view content_type) {
 /// A body in parts on its way.
 struct CodedParts {
     Gzip gzip;
-    decltype(HttpResponse::more) more;
+    decltype(HttpResponse::next_part) next_part;
     bool ended = false;
 
     BodyPart coded(const BodyPart& part) {
@@ -128,20 +128,20 @@ std::string Gzip::deflated(std::string_view part, int flush) {
 
 void encode(HttpResponse& response, const AcceptedCodings& accepted) {
     if (response.status != 200 || !is_text(response.content_type)) return;
-    if (!response.more && response.body.size() < coded_octets_min && accepted.identity) return;
+    if (!response.next_part && response.body.size() < coded_octets_min && accepted.identity) return;
     response.fields.emplace_back("Vary", "Accept-Encoding");
     if (!accepted.gzip) return;
     response.fields.emplace_back("Content-Encoding", "gzip");
     const auto parts = std::make_shared<CodedParts>();
     response.body = parts->gzip.add(response.body);
-    if (!response.more) {
+    if (!response.next_part) {
         response.body += parts->gzip.end();
         return;
     }
-    parts->more = std::move(response.more);
-    response.more = [parts](const std::function<void(BodyPart)>& tell) {
+    parts->next_part = std::move(response.next_part);
+    response.next_part = [parts](const std::function<void(BodyPart)>& tell) {
         if (parts->ended) return tell(std::optional<std::string>{});
-        parts->more([parts, tell](const BodyPart& part) { tell(parts->coded(part)); });
+        parts->next_part([parts, tell](const BodyPart& part) { tell(parts->coded(part)); });
     };
 }
 

@@ -25,7 +25,7 @@ struct HttpRequest {
     std::string body;
     Credentials credentials{};
     /// Whether the client has disconnected, so that work may stop. Call from any thread. Null: unknown.
-    std::function<bool()> gone{};
+    std::function<bool()> disconnected{};
     std::string accept_encoding{};  ///< the header, with its lines joined by commas
 };
 
@@ -43,7 +43,7 @@ struct HttpResponse {
     /// Null: `body` is the whole body. Else `body` is its first part, and this is called for each further part once the
     /// client has taken the one before; the answer may come from any thread. An Error closes the connection, so that
     /// the client sees that the body is incomplete.
-    std::function<void(std::function<void(BodyPart)>)> more{};
+    std::function<void(std::function<void(BodyPart)>)> next_part{};
 
     std::string field(std::string_view name) const;  ///< the value of a field; empty: absent
 };

@@ -10,10 +10,11 @@ namespace {
 constexpr std::array what_is_short{JobPriority::at_once, JobPriority::soon};
 constexpr std::array questions_first{JobPriority::in_turn, JobPriority::soon};
 
-std::function<bool()> gone_or_late(std::function<bool()> gone, std::chrono::milliseconds question_max) {
+std::function<bool()> disconnected_or_late(std::function<bool()> disconnected, std::chrono::milliseconds question_max) {
     const auto deadline = std::chrono::steady_clock::now() + question_max;
-    return
-        [deadline, gone = std::move(gone)] { return (gone && gone()) || std::chrono::steady_clock::now() > deadline; };
+    return [deadline, disconnected = std::move(disconnected)] {
+        return (disconnected && disconnected()) || std::chrono::steady_clock::now() > deadline;
+    };
 }
 
 }  // namespace
@@ -56,10 +57,10 @@ void QueryThreads::serve(archive::Reader& reader, std::span<const JobPriority> k
     }
 }
 
-std::function<bool()> QueryThreads::stop_of_question(std::function<bool()> gone,
+std::function<bool()> QueryThreads::stop_of_question(std::function<bool()> disconnected,
                                                      std::chrono::milliseconds question_max) const {
     // After the end nobody receives the answer.
-    return [this, stop = gone_or_late(std::move(gone), question_max)] { return over_ || stop(); };
+    return [this, stop = disconnected_or_late(std::move(disconnected), question_max)] { return over_ || stop(); };
 }
 
 void QueryThreads::take_turn(std::unique_lock<std::mutex>& lock) {
@@ -92,7 +93,7 @@ void QueryThreads::give_way(Clock::time_point& slice_began) {
 
 void QueryThreads::answer(const WaitingJob& asked, archive::Reader& reader, std::chrono::milliseconds question_max) {
     if (asked.priority == JobPriority::in_turn) {
-        const auto stop = stop_of_question(asked.asker.gone, question_max);
+        const auto stop = stop_of_question(asked.asker.disconnected, question_max);
         {
             std::unique_lock lock{mutex_};
             take_turn(lock);
@@ -102,7 +103,7 @@ void QueryThreads::answer(const WaitingJob& asked, archive::Reader& reader, std:
             return stop();
         });
     } else {
-        reader.stop_when(gone_or_late(asked.asker.gone, question_max));
+        reader.stop_when(disconnected_or_late(asked.asker.disconnected, question_max));
     }
     try {
         asked.job(reader);

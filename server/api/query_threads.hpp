@@ -33,8 +33,8 @@ enum class JobPriority : std::uint8_t {
 
 /// The client for whom a job is done, by which jobs are served in turn.
 struct Asker {
-    std::string client{};          ///< an account, a browser, or an address; empty: the server itself
-    std::function<bool()> gone{};  ///< whether the client has disconnected; null: unknown
+    std::string client{};                  ///< an account, a browser, or an address; empty: the server itself
+    std::function<bool()> disconnected{};  ///< whether the client has disconnected; null: unknown
 };
 
 /// Threads that query the archive, each with its own read-only connection. A thread reconnects when the file was
@@ -80,7 +80,7 @@ class QueryThreads {
     bool ask(Job job, Asker asker = {}, JobPriority priority = JobPriority::in_turn);
     /// The stop condition for a query that reads a file other than the archive, the same as a reader's. Its time starts
     /// now. Call on one of these threads.
-    std::function<bool()> stop_of_question(std::function<bool()> gone,
+    std::function<bool()> stop_of_question(std::function<bool()> disconnected,
                                            std::chrono::milliseconds question_max = question_seconds_max) const;
     std::uint64_t asked() const { return asked_; }
     /// How long queries waited until a thread took them.

@@ -36,7 +36,7 @@ void Api::export_raw(const ApiRequest& call) {
     wanted.to = *to;
     const auto format = query->text("format").value_or("pcap");
     ask(call, std::move(*query),
-        [wanted, format, &queries = parts_.queries, asker = Asker{client_of(call.who), call.request.gone}](
+        [wanted, format, &queries = parts_.queries, asker = Asker{client_of(call.who), call.request.disconnected}](
             archive::Reader& reader, archive::RunId run, const QueryText&) -> std::optional<HttpResponse> {
             if (const auto state = reader.run(run); !state) return error_response(500, state.error());
             auto begun = RawExport::begin(reader, run, wanted, format);
@@ -48,7 +48,7 @@ void Api::export_raw(const ApiRequest& call) {
             response.content_type = pages->is_pcap() ? "application/vnd.tcpdump.pcap" : "application/octet-stream";
             response.body = pages->head() + first->value_or("");
             if (!pages->done())
-                response.more =
+                response.next_part =
                     in_parts(queries, asker, [pages](archive::Reader& of_part) { return pages->page(of_part); });
             return response;
         });

@@ -171,7 +171,7 @@ HttpResponse in_parts(const AnswerContext& context, archive::Reader& reader, con
     auto first = parts->next(reader);
     if (!first) return error_response(400, first.error());
     HttpResponse response{200, content_type, "no-store", parts->text.head() + first->value_or("")};
-    response.more = context.in_parts([parts](archive::Reader& of_part) { return parts->next(of_part); });
+    response.next_part = context.in_parts([parts](archive::Reader& of_part) { return parts->next(of_part); });
     return response;
 }
 
@@ -446,7 +446,7 @@ HttpResponse preconditions(const AnswerContext& context, archive::Reader& reader
     for (const auto& condition : commands::check(context.dictionary, *command, latest)) {
         auto& told = *list.add_preconditions();
         told.set_text(condition.text);
-        told.set_state(commands::name_of(condition.state));
+        told.set_state(commands::name_of(condition.verdict));
     }
     return answer(Result<v1::PreconditionList>{std::move(list)});
 }

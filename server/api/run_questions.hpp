@@ -13,9 +13,10 @@ namespace aeolis::server {
 /// What an answer may need besides the archive.
 struct AnswerContext {
     const dictionary::Dictionary& dictionary;
-    std::optional<Ert> now;                                          ///< only of the current run
-    bool instructor;                                                 ///< the operator may rehearse
-    std::function<decltype(HttpResponse::more)(ReadPart)> in_parts;  ///< of body_parts.hpp, for the client who asks
+    std::optional<Ert> now;  ///< only of the current run
+    bool instructor;         ///< the operator may rehearse
+    /// Of body_parts.hpp, for the client who asks.
+    std::function<decltype(HttpResponse::next_part)(ReadPart)> in_parts;
 };
 
 /// A route to a question about one run: the last part of its path, its parameters, the formats of its answer, and its

@@ -48,7 +48,7 @@ void Api::export_samples(const ApiRequest& call) {
     auto wanted = std::make_shared<SampleExport>(std::move(*text));
     wanted->channels = std::move(channels);
     ask(call, std::move(*query),
-        [wanted, &queries = parts_.queries, asker = Asker{client_of(call.who), call.request.gone}](
+        [wanted, &queries = parts_.queries, asker = Asker{client_of(call.who), call.request.disconnected}](
             archive::Reader& reader, archive::RunId run, const QueryText& of) -> std::optional<HttpResponse> {
             const auto range = range_of(of, reader, run);
             if (!range) return error_response(400, range.error());
@@ -63,7 +63,7 @@ void Api::export_samples(const ApiRequest& call) {
             response.content_type = wanted->text.is_csv() ? "text/csv; charset=utf-8" : "application/x-ndjson";
             response.body = wanted->text.head() + first->value_or("");
             if (!wanted->done)
-                response.more =
+                response.next_part =
                     in_parts(queries, asker, [wanted](archive::Reader& of_part) { return wanted->page(of_part); });
             return response;
         });

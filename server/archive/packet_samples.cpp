@@ -28,7 +28,7 @@ constexpr char last_segment_by_sql[] =
 constexpr char in_range_sql[] =
     "SELECT octets, sclk, ert_us, key FROM packets WHERE run = ?1 AND apid = ?2 AND source = ?3 AND packet = ?4"
     " AND sclk BETWEEN ?5 AND ?6 AND sampled = 1 ORDER BY sclk, key";
-constexpr char in_range_of_any_apid_sql[] =
+constexpr char in_range_of_unrestricted_apid_sql[] =
     "SELECT octets, sclk, ert_us, key FROM packets WHERE run = ?1 AND ?2 IS NOT NULL AND source = ?3 AND packet = ?4"
     " AND sclk BETWEEN ?5 AND ?6 AND sampled = 1 ORDER BY sclk, key";
 
@@ -38,7 +38,7 @@ struct PacketsOf {
     Apid apid;
     Source source{};
 
-    bool any_apid() const { return apid == telemetry::OtherMission::any_apid; }
+    bool unrestricted_apid() const { return apid == telemetry::OtherMission::unrestricted_apid; }
     void bind(sqlite::Statement& row, const ClosedRange& range) const {
         row.bind(1, std::int64_t{run.value})
             .bind(2, std::int64_t{apid.value})
@@ -52,7 +52,7 @@ struct PacketsOf {
 /// The newest packet by reception among the keys first … last, as a row to read; none: there is none.
 Result<std::optional<Query>> newest_among(Reader::State& reader, const PacketsOf& of, double to_s, std::int64_t first,
                                           std::int64_t last, bool by_key) {
-    auto rows = reader.query(by_key || of.any_apid() ? newest_by_key_sql : newest_of_apid_sql);
+    auto rows = reader.query(by_key || of.unrestricted_apid() ? newest_by_key_sql : newest_of_apid_sql);
     if (!rows) return rows.error();
     of.bind(**rows, {-std::numeric_limits<double>::infinity(), to_s});
     (*rows)->bind(7, first).bind(8, last);
@@ -139,7 +139,7 @@ Result<std::vector<ChannelValue>> text_samples(Reader::State& reader, const RunI
         for (const Source source : {Source::realtime, Source::recorded}) {
             if (only && *only != source) continue;
             const PacketsOf of{run.run, place.packet, reader.dictionary.packets[place.packet].apid, source};
-            auto rows = reader.query(of.any_apid() ? in_range_of_any_apid_sql : in_range_sql);
+            auto rows = reader.query(of.unrestricted_apid() ? in_range_of_unrestricted_apid_sql : in_range_sql);
             if (!rows) return rows.error();
             of.bind(**rows, range);
             for (;;) {

@@ -42,7 +42,8 @@ Result<void> read_presences(Reader::State& reader, const RunInfo& run, PacketCol
                             const ClosedRange& range, std::vector<PacketPresence>& presences) {
     const Apid apid = reader.dictionary.packets[place.packet].apid;
     auto rows = reader.query(
-        (apid == telemetry::OtherMission::any_apid ? presences_of_container_sql : presences_of_packet_sql).c_str());
+        (apid == telemetry::OtherMission::unrestricted_apid ? presences_of_container_sql : presences_of_packet_sql)
+            .c_str());
     if (!rows) return rows.error();
     auto& row = **rows;
     row.bind(1, std::int64_t{run.run.value})

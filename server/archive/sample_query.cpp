@@ -28,7 +28,7 @@ constexpr char tail_by_key_sql[] =
     "SELECT octets, sclk FROM packets WHERE key > ?5 AND key <= ?8 AND +run = ?1 AND +apid = ?2 AND +source = ?6"
     " AND sclk BETWEEN ?3 AND ?4 AND packet = ?7 AND sampled = 1";
 // For another mission's packets, whose containers may have any APID.
-constexpr char tail_of_any_apid_sql[] =
+constexpr char tail_of_unrestricted_apid_sql[] =
     "SELECT octets, sclk FROM packets WHERE key > ?5 AND key <= ?8 AND +run = ?1 AND ?2 IS NOT NULL AND +source = ?6"
     " AND sclk BETWEEN ?3 AND ?4 AND packet = ?7 AND sampled = 1";
 
@@ -118,7 +118,7 @@ Result<void> read_tail(Reader::State& reader, const SealedSeries& series, std::s
     if (!last) return last.error();
 
     const Apid apid = reader.dictionary.packets[series.packet].apid;
-    const char* const sql = apid == telemetry::OtherMission::any_apid          ? tail_of_any_apid_sql
+    const char* const sql = apid == telemetry::OtherMission::unrestricted_apid ? tail_of_unrestricted_apid_sql
                             : series.nodes[0] < *last - series.last_packet_seq ? tail_by_time_sql
                                                                                : tail_by_key_sql;
     auto rows = reader.query(sql);

@@ -96,7 +96,7 @@ Result<std::string> command_file(const ParametersOptions& options, const diction
         if (const auto set = table.set(change->id, change->value); !set) return set.error();
         text += ",\n" + line_of(stage_command, {{"parameter", change->id.value}, {"value", change->value}});
     }
-    if (const auto possible = table.may_fly(); !possible) return possible.error();
+    if (const auto possible = table.check_deviations(); !possible) return possible.error();
     return text + ",\n" +
            line_of("EDL_ACTIVATE_PARAMETERS", {{"parameter_version", options.table},
                                                {"parameter_changes", static_cast<double>(options.changes.size())},

@@ -116,9 +116,9 @@ FollowedMission followed_mission(const ServeOptions& options) {
     if (!xtce) return refused(xtce.exit_code);
     FollowedMission mission;
     mission.model = std::make_unique<telemetry::OtherMission>(std::move(*xtce.model), xtce.id, std::move(xtce.time));
-    if (mission.model->left_out() > 0)
+    if (mission.model->omitted_fields() > 0)
         spdlog::warn("{}: more numbers than can be channels: the rest is in the packets only", options.xtce.text());
-    for (const auto& line : mission.model->not_judged()) spdlog::warn("{}: {}", options.xtce.text(), line);
+    for (const auto& line : mission.model->unsupported_alarms()) spdlog::warn("{}: {}", options.xtce.text(), line);
     mission.link = DownlinkFollower::Settings{.address = *address,
                                               .format = options.format,
                                               .xtce = options.xtce.text(),

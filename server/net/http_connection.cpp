@@ -26,7 +26,7 @@ namespace websocket = beast::websocket;
 using Request = http::request<http::string_body>;
 using Response = http::response<http::string_body>;
 using Parser = http::request_parser<http::string_body>;
-using More = decltype(HttpResponse::more);
+using NextPart = decltype(HttpResponse::next_part);
 
 constexpr const char* stream_path = "/api/v1/stream";
 constexpr std::size_t slice_octets = 64 << 10;  // chosen: of a long body sent in parts
@@ -119,7 +119,7 @@ struct Exchange {
     std::optional<WaitingPeers::Waiting> waiting;
     Response response;
     std::optional<BodyBudget::Share> share;  ///< for the response's body
-    More more;                               ///< null: the response is complete
+    NextPart next_part;                      ///< null: the response is complete
 };
 
 /// A client's connection: one request after another.
@@ -137,7 +137,7 @@ class HttpConnection {
     Task<bool> answer(Exchange& exchange);
     Task<bool> write(Exchange& exchange);
     Task<bool> write_whole(Exchange& exchange);
-    Task<bool> write_parts(Response first, More more);
+    Task<bool> write_parts(Response first, NextPart next_part);
 
     Credentials credentials_of(const Request& request) const;
     std::string client_address(const Request& request) const;
@@ -343,7 +343,7 @@ Task<> HttpConnection<AnyStream>::ask(Exchange& exchange, std::string path, std:
                       std::move(query),
                       std::move(request.body()),
                       std::move(exchange.credentials),
-                      exchange.waiting->gone(),
+                      exchange.waiting->disconnected(),
                       joined(request, http::field::accept_encoding)};
     const auto hand_on = [this, &asked](const Respond& respond) {
         service_.handlers.request(std::move(asked), respond);
@@ -352,7 +352,7 @@ Task<> HttpConnection<AnyStream>::ask(Exchange& exchange, std::string path, std:
     if (!service_.answers.has_room(answered.body.size())) answered = too_many_answers();
     exchange.share.emplace(service_.answers, answered.body.size());
     exchange.response = response_of(answered, request.version());
-    exchange.more = std::move(answered.more);
+    exchange.next_part = std::move(answered.next_part);
 }
 
 /// Adds the header fields common to all responses.
@@ -371,8 +371,8 @@ void HttpConnection<AnyStream>::add_fields(Exchange& exchange) const {
 
 template <typename AnyStream>
 Task<bool> HttpConnection<AnyStream>::write(Exchange& exchange) {
-    if (exchange.more && exchange.request.method() != http::verb::head)
-        return write_parts(std::move(exchange.response), std::move(exchange.more));
+    if (exchange.next_part && exchange.request.method() != http::verb::head)
+        return write_parts(std::move(exchange.response), std::move(exchange.next_part));
     return write_whole(exchange);
 }
 
@@ -381,7 +381,7 @@ Task<bool> HttpConnection<AnyStream>::write_whole(Exchange& exchange) {
     auto& response = exchange.response;
     response.prepare_payload();
     if (exchange.request.method() == http::verb::head) response.body().clear();
-    if (exchange.more) response.erase(http::field::content_length);  // the length is unknown
+    if (exchange.next_part) response.erase(http::field::content_length);  // the length is unknown
     http::response_serializer<http::string_body> serializer{response};
     error_code error;
     while (!error && !serializer.is_done()) {
@@ -393,7 +393,7 @@ Task<bool> HttpConnection<AnyStream>::write_whole(Exchange& exchange) {
 
 /// Writes a body in parts; each is requested once the client has taken the one before.
 template <typename AnyStream>
-Task<bool> HttpConnection<AnyStream>::write_parts(Response first, More more) {
+Task<bool> HttpConnection<AnyStream>::write_parts(Response first, NextPart next_part) {
     const bool chunked = first.version() >= 11;  // in HTTP/1.0 the end of the connection ends the body
     if (!chunked) first.keep_alive(false);
     const bool keep = first.keep_alive();
@@ -409,7 +409,7 @@ Task<bool> HttpConnection<AnyStream>::write_parts(Response first, More more) {
              rest.remove_prefix(std::min(rest.size(), slice_octets)))
             error = co_await write_slice(asio::buffer(rest.data(), std::min(rest.size(), slice_octets)), chunked);
         lowest_.expires_never();
-        if (!error) part = co_await told<BodyPart>(service_.io, more);
+        if (!error) part = co_await told<BodyPart>(service_.io, next_part);
     }
     if (error || !part) co_return tear();
     if (!chunked) co_return false;

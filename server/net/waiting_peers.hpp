@@ -14,11 +14,11 @@ namespace aeolis::server::net {
 /// Rule     poll_peers() asks each socket whether the peer has closed its side; the peer's last octets, even TLS's
 ///          close, may be unread
 /// Faults   a silent network goes unnoticed; a query's own time-out bounds that
-/// Thread   the network thread, except for the function that gone() returns
+/// Thread   the network thread, except for the function that disconnected() returns
 class WaitingPeers {
     struct Peer {
         int descriptor = -1;
-        std::shared_ptr<std::atomic<bool>> gone;
+        std::shared_ptr<std::atomic<bool>> disconnected;
     };
 
   public:
@@ -32,8 +32,8 @@ class WaitingPeers {
         Waiting(const Waiting&) = delete;
         Waiting& operator=(const Waiting&) = delete;
         /// A function that tells, on any thread, whether the client has disconnected; it may outlive this.
-        std::function<bool()> gone() const {
-            return [gone = place_->gone] { return gone->load(std::memory_order_relaxed); };
+        std::function<bool()> disconnected() const {
+            return [disconnected = place_->disconnected] { return disconnected->load(std::memory_order_relaxed); };
         }
 
       private:
@@ -45,7 +45,7 @@ class WaitingPeers {
         for (const auto& peer : peers_) {
             pollfd polled{peer.descriptor, POLLRDHUP, 0};
             // POLLERR and POLLHUP are reported without being requested.
-            if (::poll(&polled, 1, 0) > 0) peer.gone->store(true, std::memory_order_relaxed);
+            if (::poll(&polled, 1, 0) > 0) peer.disconnected->store(true, std::memory_order_relaxed);
         }
     }
 

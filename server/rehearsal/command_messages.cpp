@@ -58,7 +58,7 @@ v1::CommandReply message_of(const commands::Reply& reply) {
     for (const auto& condition : reply.preconditions) {
         auto& told = *message.add_preconditions();
         told.set_text(condition.text);
-        told.set_state(commands::name_of(condition.state));
+        told.set_state(commands::name_of(condition.verdict));
     }
     message.set_service(reply.service);
     message.set_needs_approval(reply.needs_approval);

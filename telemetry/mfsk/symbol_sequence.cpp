@@ -14,18 +14,18 @@ constexpr int settle_hops = 8;         // chosen: decisions are sought once a se
 /// Sum of the hops' evidence, the newest hop first.
 struct Gathered {
     ToneSums sums{}, in_phase{};
-    ToneTilt tilt = level_tilt();
+    SidebandRatios sideband_ratios = equal_sidebands();
     double energy = 0.0;
     void add(const HopEvidence& hop) {
         if (!hop.found) return;
-        tilt = hop.tilt;
+        sideband_ratios = hop.sideband_ratios;
         energy += hop.energy;
         for (std::size_t tone = 0; tone < sums.size(); ++tone) {
             sums[tone] += hop.sums[tone];
             in_phase[tone] += hop.in_phase[tone];
         }
     }
-    ToneEvidence weighed() const { return weigh(sums, in_phase, tilt, energy); }
+    ToneEvidence evidence() const { return tone_evidence_of(sums, in_phase, sideband_ratios, energy); }
 };
 
 }  // namespace
@@ -58,7 +58,7 @@ DecidedSymbol SymbolSequence::decide() const {
         total += hop.total_n0_hz;
         symbol.doppler_hz += hop.doppler_hz;
     }
-    symbol.evidence = gathered.weighed();
+    symbol.evidence = gathered.evidence();
     if (gathered.energy < energy_of_use)
         symbol.evidence.log_likelihood_ratio = -std::numeric_limits<double>::infinity();
     if (seen > 0) {
@@ -116,7 +116,8 @@ void SymbolSequence::settle(std::vector<DecidedSymbol>& out) {
     const std::int64_t oldest_survivor = std::max({hops_seen_ - std::ssize(hops_) + 1, first_state_, came_out_});
     for (std::int64_t hops = hops_seen_; hops >= oldest_survivor; --hops) {
         if (hops < hops_seen_) since.add(hops_[hops_.size() - static_cast<std::size_t>(hops_seen_ - hops)]);
-        const double partial = since.energy < energy_of_use ? 0.0 : since.weighed().log_likelihood_ratio - begin_cost();
+        const double partial =
+            since.energy < energy_of_use ? 0.0 : since.evidence().log_likelihood_ratio - begin_cost();
         survivors.push_back({state(hops).score + std::max(partial, 0.0), hops});
     }
     for (;;) {

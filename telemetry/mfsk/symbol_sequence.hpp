@@ -14,14 +14,14 @@ namespace aeolis::telemetry {
 struct HopEvidence {
     std::int64_t first_sample = 0;
     CarrierLock lock = CarrierLock::searching;
-    bool found = false;            ///< false: the following fields are zero
-    double energy = 0.0;           ///< expected energy of a tone in this hop over the noise density, from the carrier
-    ToneSums sums{};               ///< scaled: noise has E|G|² = energy, a tone adds |G| = energy
-    ToneSums in_phase{};           ///< the same of the component in phase with the carrier, where a tone adds nothing
-    ToneTilt tilt = level_tilt();  ///< of the noise
-    double total_n0_hz = 0.0;      ///< running mean
-    double fit_n0_hz = 0.0;        ///< the same of this hop's window alone
-    double doppler_hz = 0.0;       ///< predicted plus tracked
+    bool found = false;   ///< false: the following fields are zero
+    double energy = 0.0;  ///< expected energy of a tone in this hop over the noise density, from the carrier
+    ToneSums sums{};      ///< scaled: noise has E|G|² = energy, a tone adds |G| = energy
+    ToneSums in_phase{};  ///< the same of the component in phase with the carrier, where a tone adds nothing
+    SidebandRatios sideband_ratios = equal_sidebands();                        ///< of the noise
+    double total_n0_hz = 0.0;                                                  ///< running mean
+    double fit_n0_hz = 0.0;                                                    ///< the same of this hop's window alone
+    double doppler_hz = 0.0;                                                   ///< predicted plus tracked
     double frequency_hz = 0.0, frequency_deviation_hz = 0.0, rate_hzps = 0.0;  ///< tracked
     double lead_s = 0.0;                                                       ///< of the subcarriers' time, by Doppler
     bool gap = false;                                                          ///< too few samples to tell

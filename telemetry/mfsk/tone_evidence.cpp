@@ -16,14 +16,15 @@ constexpr double absent_share = 0.25,
 
 }  // namespace
 
-ToneEvidence weigh(const ToneSums& sums, const ToneSums& in_phase, const ToneTilt& tilt, double energy) {
+ToneEvidence tone_evidence_of(const ToneSums& sums, const ToneSums& in_phase, const SidebandRatios& ratios,
+                              double energy) {
     std::array<double, MfskWaveform::tones> log_ratio{};
     ToneEvidence evidence;
     for (std::size_t tone = 0; tone < sums.size(); ++tone) {
         const double magnitude = std::abs(sums[tone]);
         const std::complex<float> turned{-sums[tone].imag(), sums[tone].real()};
         // The mean of both sidebands' noise is 1.
-        const float lower = 2.0F / (1.0F + tilt[tone]), upper = lower * tilt[tone];
+        const float lower = 2.0F / (1.0F + ratios[tone]), upper = lower * ratios[tone];
         const double sideband =
             0.5 * std::max(std::norm(in_phase[tone] + turned) / upper, std::norm(in_phase[tone] - turned) / lower);
         const double ratio = log_bessel_i0(2.0 * magnitude) - energy;

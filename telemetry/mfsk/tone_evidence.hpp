@@ -15,11 +15,11 @@ struct ToneEvidence {
 };
 
 /// The density of noise in the upper sideband of each tone over that in the lower.
-using ToneTilt = std::array<float, MfskWaveform::tones>;
-constexpr ToneTilt level_tilt() {
-    ToneTilt tilt{};
-    tilt.fill(1.0F);
-    return tilt;
+using SidebandRatios = std::array<float, MfskWaveform::tones>;
+constexpr SidebandRatios equal_sidebands() {
+    SidebandRatios ratios{};
+    ratios.fill(1.0F);
+    return ratios;
 }
 
 /// Weighs the tones by the exact non-coherent statistic.
@@ -30,8 +30,9 @@ constexpr ToneTilt level_tilt() {
 ///
 /// `in_phase` are the same sums of the component in phase with the carrier. A tone has no such component, because its
 /// two sidebands are alike; a spectral line in the samples has one. So a tone is weighed not only against noise but
-/// also against a line of any strength at either sideband. `tilt` is the ratio of the noise in the two sidebands, which
-/// a filter changes.
-ToneEvidence weigh(const ToneSums& sums, const ToneSums& in_phase, const ToneTilt& tilt, double energy);
+/// also against a line of any strength at either sideband. `ratios` are those of the noise in the two sidebands, which a
+/// filter changes.
+ToneEvidence tone_evidence_of(const ToneSums& sums, const ToneSums& in_phase, const SidebandRatios& ratios,
+                              double energy);
 
 }  // namespace aeolis::telemetry

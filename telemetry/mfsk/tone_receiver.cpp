@@ -96,7 +96,7 @@ SymbolSequence ToneReceiver::new_sequence(std::int64_t first_hop) const {
 }
 
 ToneReceiver::Track::Track(const HopLayout& layout, SymbolSequence symbols) : tracker(layout), own(std::move(symbols)) {
-    for (auto* each : {&noise, &smooth, &tilt}) each->fill(1.0F);
+    for (auto* each : {&noise, &smooth, &sideband_ratios}) each->fill(1.0F);
 }
 
 void ToneReceiver::push(std::span<const std::complex<float>> samples) {
@@ -252,7 +252,7 @@ HopEvidence ToneReceiver::evidence_of(Track& track, const CarrierHop& hop) {
             const float scale = std::sqrt(energy / track.smooth[tone]);
             evidence.sums[tone] *= scale;
             evidence.in_phase[tone] *= scale;
-            evidence.tilt[tone] = track.tilt[tone];
+            evidence.sideband_ratios[tone] = track.sideband_ratios[tone];
         }
         track.frequency_hz = hop.frequency_hz;
         track.rate_hzps = hop.rate_hzps;
@@ -300,7 +300,7 @@ void ToneReceiver::learn_noise(Track& track, const CarrierHop& hop, const ToneSu
         const float both = 0.5F * (upper + lower);
         for (int i = tone; i < tone + tones_a_median; ++i) {
             track.smooth[static_cast<std::size_t>(i)] = noise > spilt * both ? both : noise;
-            track.tilt[static_cast<std::size_t>(i)] = upper / lower;
+            track.sideband_ratios[static_cast<std::size_t>(i)] = upper / lower;
         }
     }
     near.assign(track.smooth.begin(), track.smooth.end());
@@ -479,7 +479,8 @@ void ToneReceiver::learn_clock(const HopEvidence& hop) {
         std::vector<ToneEvidence> looks;
         looks.reserve(hypotheses);
         for (std::size_t i = 0; i < hypotheses; ++i)
-            looks.push_back(weigh(clock_.sums[i], clock_.sums[hypotheses + i], hop.tilt, clock_.energy));
+            looks.push_back(
+                tone_evidence_of(clock_.sums[i], clock_.sums[hypotheses + i], hop.sideband_ratios, clock_.energy));
         const auto best = static_cast<std::size_t>(
             std::ranges::max_element(looks, {}, &ToneEvidence::log_likelihood_ratio) - looks.begin());
         const std::uint8_t tone = looks[best].best[0].tone;

@@ -98,7 +98,7 @@ class ToneReceiver {
         std::array<float, MfskWaveform::tones> noise;   ///< of each tone, running means
         std::array<float, MfskWaveform::tones> smooth;  ///< medians over the neighbours
         std::vector<float> spectrum;                    ///< around the carrier, running means
-        ToneTilt tilt;
+        SidebandRatios sideband_ratios;
         int noise_hops = 0;
         bool ended = false;
     };

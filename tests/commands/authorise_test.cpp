@@ -9,7 +9,7 @@ namespace commands_authorise_test {
 
 using namespace aeolis;
 using namespace aeolis::commands;
-using State = PreconditionState::State;
+using Verdict = PreconditionReply::Verdict;
 
 namespace {
 
@@ -39,13 +39,13 @@ TEST_CASE("a hazardous command needs arming and its name typed exactly", "[autho
 
 TEST_CASE("a precondition that fails refuses and is told; one that is not known is left to flight",
           "[authorise][R23]") {
-    const std::vector<PreconditionState> states{{State::holds, 1.0, "a == 1: is 1"},
-                                                {State::fails, 0.0, "b == 1: is 0"},
-                                                {State::unknown, {}, "c == 1: not known, no value has come"},
-                                                {State::fails, 3.0, "d < 2: is 3"}};
-    CHECK(authorise(command("NO_OP"), {}, states).error().message ==
+    const std::vector<PreconditionReply> replies{{Verdict::holds, 1.0, "a == 1: is 1"},
+                                                 {Verdict::fails, 0.0, "b == 1: is 0"},
+                                                 {Verdict::unknown, {}, "c == 1: not known, no value has come"},
+                                                 {Verdict::fails, 3.0, "d < 2: is 3"}};
+    CHECK(authorise(command("NO_OP"), {}, replies).error().message ==
           "NO_OP must not be sent now: b == 1: is 0; d < 2: is 3");
-    CHECK(authorise(command("NO_OP"), {}, std::span{states}.subspan(2, 1)).ok());
+    CHECK(authorise(command("NO_OP"), {}, std::span{replies}.subspan(2, 1)).ok());
 }
 
 TEST_CASE("in the shipped dictionary do edl is hazardous and wants parameters in late cruise",

@@ -248,7 +248,7 @@ TEST_CASE("do edl wants the parameters on board to be those that were sent: othe
         std::string text;
         for (const auto& each : reply.preconditions)
             if (each.text.starts_with("EDL_SET_PARAMETERS held as sent"))
-                text = name_of(each.state) + (": " + each.text);
+                text = name_of(each.verdict) + (": " + each.text);
         return std::pair{reply.accepted, text};
     };
     CHECK(said() ==

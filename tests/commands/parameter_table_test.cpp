@@ -57,7 +57,7 @@ TEST_CASE("ground and flight agree which tables may fly: of several parameters t
             REQUIRE(ground.set(id, value));
             table.stage(id, value);
         }
-        const bool may_fly = static_cast<bool>(ground.may_fly());
+        const bool may_fly = static_cast<bool>(ground.check_deviations());
         CHECK(may_fly == (table.deviation_with_staged() <= table_deviation_max));
         return may_fly;
     };
@@ -72,7 +72,7 @@ TEST_CASE("ground and flight agree which tables may fly: of several parameters t
     REQUIRE(ground.set(parameter::guidance_gain, 1.0));
     REQUIRE(ground.set(parameter::guidance_saturation, 0.975));
     CHECK(
-        ground.may_fly().error().message ==
+        ground.check_deviations().error().message ==
         "the changes together are too large: as fractions of their ranges they add up to 1.5, at most 1; the largest, "
         "guidance_gain, has 1");
 }

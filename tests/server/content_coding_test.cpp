@@ -125,7 +125,7 @@ TEST_CASE("only a text of a kibibyte or more is compressed, and what depends on 
 TEST_CASE("a body in parts is compressed part by part, and a part that fails ends it", "[http]") {
     const auto body_of = [](std::vector<server::BodyPart> parts) {
         auto response = text_response("begin ");
-        response.more = [parts = std::move(parts), next = std::size_t{0}](const auto& tell) mutable {
+        response.next_part = [parts = std::move(parts), next = std::size_t{0}](const auto& tell) mutable {
             tell(next < parts.size() ? parts[next++] : server::BodyPart{std::optional<std::string>{}});
         };
         encode(response, {true, true});
@@ -136,7 +136,7 @@ TEST_CASE("a body in parts is compressed part by part, and a part that fails end
     auto response = body_of({std::optional{noise}, std::optional{std::string{}}, std::optional<std::string>{"end"}});
     std::string octets = response.body;
     for (bool ended = false; !ended;)
-        response.more([&](const server::BodyPart& part) {
+        response.next_part([&](const server::BodyPart& part) {
             REQUIRE(part);
             ended = !*part;
             octets += part->value_or("");
@@ -144,7 +144,7 @@ TEST_CASE("a body in parts is compressed part by part, and a part that fails end
     CHECK(inflated(octets) == "begin " + noise + "end");
 
     auto broken = body_of({Error{"the disk is gone"}});
-    broken.more([&](const server::BodyPart& part) { CHECK(part.error().message == "the disk is gone"); });
+    broken.next_part([&](const server::BodyPart& part) { CHECK(part.error().message == "the disk is gone"); });
 }
 
 TEST_CASE("over a socket a compressed answer has its own length, HEAD tells the same, and a part at a time is whole",
@@ -154,7 +154,7 @@ TEST_CASE("over a socket a compressed answer has its own length, HEAD tells the 
     handlers.request = [&](const server::HttpRequest& request, const server::Respond& respond_with) {
         auto response = text_response(text, "text/csv; charset=utf-8");
         if (request.path == "/parts")
-            response.more = [&text, left = std::make_shared<int>(3)](const auto& tell) {
+            response.next_part = [&text, left = std::make_shared<int>(3)](const auto& tell) {
                 tell((*left)-- > 0 ? std::optional{text} : std::optional<std::string>{});
             };
         in_accepted_coding(request, respond_with)(std::move(response));

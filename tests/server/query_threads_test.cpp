@@ -40,7 +40,7 @@ struct Recorded {
                 const auto proof = reader.proof(archive::RunId{1});
                 answered.set_value(proof ? "answered" : reader.stopped() ? "stopped" : proof.error().message);
             },
-            {.gone = gone}));
+            {.disconnected = gone}));
         return answered.get_future().get();
     }
 };

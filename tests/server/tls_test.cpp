@@ -247,7 +247,7 @@ TEST_CASE("over TLS, too, a client that leaves is noticed while its question is 
     std::promise<std::pair<std::function<bool()>, server::Respond>> asked;
     server::WebServer::Handlers handlers;
     handlers.request = [&](const server::HttpRequest& request, const server::Respond& respond) {
-        asked.set_value({request.gone, respond});
+        asked.set_value({request.disconnected, respond});
     };
     server::WebServer::Settings settings;
     settings.certificate = folder / "cert.pem";

@@ -46,7 +46,7 @@ server::HttpResponse in_parts(std::size_t count, std::size_t octets, std::atomic
                               std::size_t broken = SIZE_MAX) {
     server::HttpResponse response;
     response.body = "begin ";
-    response.more = [=, &asked](const std::function<void(server::BodyPart)>& tell) {
+    response.next_part = [=, &asked](const std::function<void(server::BodyPart)>& tell) {
         const auto i = asked++;
         if (i == broken) return tell(Error{"the disk is gone"});
         tell(i < count ? std::optional{std::string(octets, static_cast<char>('a' + i % 26))} : std::nullopt);
@@ -135,7 +135,7 @@ TEST_CASE("who asks and leaves is noticed, so that the question can stop", "[htt
     server::Respond answer;
     std::atomic<bool> asked{false};
     const Connections here{[&](const server::HttpRequest& request, const server::Respond& respond) {
-        gone = request.gone;
+        gone = request.disconnected;
         answer = respond;
         asked = true;
     }};

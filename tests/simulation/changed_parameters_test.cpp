@@ -292,7 +292,7 @@ TEST_CASE("a table whose changes are each in range but together too much is refu
     CHECK(tests::count_recorded<evr::COMMAND_REFUSED>(landing.recording()) == 1);
     commands::ParameterTable table{tests::shipped_dictionary()};
     for (const Change& one : changes) REQUIRE(table.set(one.id, one.value));
-    CHECK_FALSE(table.may_fly());
+    CHECK_FALSE(table.check_deviations());
 }
 
 }  // namespace simulation_changed_parameters_test

@@ -86,7 +86,7 @@ TEST_CASE("a packet that cannot be read to its end gives what stands before; one
     const auto& packet = mission->dictionary().packets[decoded.packet];
     CHECK(decoded.value[*field_index(packet, "a")] == 5.0);
     CHECK_FALSE(decoded.value[*field_index(packet, "c")]);
-    CHECK(packet.apid == OtherMission::any_apid);
+    CHECK(packet.apid == OtherMission::unrestricted_apid);
     CHECK(mission->decode(test::hex("000100000007 0506"), decoded) == "not_a_packet");
     CHECK(mission->decode({}, decoded) == "not_a_packet");
     CHECK(mission_of(with_containers("", "", ""))->decode(test::hex("000100000001 0506"), decoded) ==
@@ -106,7 +106,7 @@ TEST_CASE("of lists without a known length the first are channels, and a hostile
         "parameterRef='m'/></EntryList></SequenceContainer>"));
     CHECK(mission->dictionary().channels.size() == 1 + OtherMission::elements_max);
     CHECK(mission->dictionary().channel("m[15]") != nullptr);
-    CHECK(mission->left_out() == 0);
+    CHECK(mission->omitted_fields() == 0);
 }
 
 TEST_CASE("two parameters of one name in different systems are two channels", "[telemetry][downlink]") {
@@ -187,7 +187,7 @@ TEST_CASE("limits and label alarms of the file are judged, exclusive ones and co
     REQUIRE(findings.size() == 1);
     CHECK(findings[0].message == "ChangeAlarmRanges of type 'temp' is not judged");
     const OtherMission mission{std::move(*model), 1};
-    CHECK(mission.not_judged().empty());
+    CHECK(mission.unsupported_alarms().empty());
     const auto& dictionary = mission.dictionary();
     AlarmMonitor monitor{dictionary};
     const auto id = [&](const char* name) { return dictionary.channel(name)->id; };

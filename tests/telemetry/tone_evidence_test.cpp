@@ -26,7 +26,7 @@ ToneSums drawn(int sent, double energy, simulation::Random& random) {
 }
 
 ToneEvidence weighed(const ToneSums& sums, double energy, simulation::Random& random) {
-    return weigh(sums, drawn(-1, energy, random), level_tilt(), energy);
+    return tone_evidence_of(sums, drawn(-1, energy, random), equal_sidebands(), energy);
 }
 
 }  // namespace
@@ -66,7 +66,8 @@ TEST_CASE("a symbol is likelier than none when it is there, and less likely when
     const ToneEvidence strong = weighed(drawn(200, 300.0, random), 300.0, random);
     CHECK(std::ranges::max_element(strong.spectrum) - strong.spectrum.begin() == 100);
     CHECK(spectrum_db(strong.spectrum[100]) == Approx(10.0 * std::log10(300.0)).margin(1.5));  // energy over noise
-    CHECK(weigh(ToneSums{}, ToneSums{}, level_tilt(), 0.0).log_likelihood_ratio == Approx(0.0).margin(1e-9));
+    CHECK(tone_evidence_of(ToneSums{}, ToneSums{}, equal_sidebands(), 0.0).log_likelihood_ratio ==
+          Approx(0.0).margin(1e-9));
 }
 
 TEST_CASE("a line in the samples, at one sideband alone, is no tone however strong it is", "[tones]") {
@@ -78,7 +79,7 @@ TEST_CASE("a line in the samples, at one sideband alone, is no tone however stro
             sums[77] += line;
             in_phase[77] += std::complex<float>{0.0F, 1.0F} * line;
             INFO(energy << " " << strength);
-            CHECK(weigh(sums, in_phase, level_tilt(), energy).log_likelihood_ratio < 0.0);
+            CHECK(tone_evidence_of(sums, in_phase, equal_sidebands(), energy).log_likelihood_ratio < 0.0);
         }
 }
 
