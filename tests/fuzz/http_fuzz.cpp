@@ -69,9 +69,9 @@ HttpResponse ask(Server& server, const HttpRequest& request) {
     std::promise<HttpResponse> answered;
     server.api.handle(request, [&](HttpResponse response) { answered.set_value(std::move(response)); });
     auto response = answered.get_future().get();
-    for (bool more = response.more != nullptr; more;) {
+    for (bool more = response.next_part != nullptr; more;) {
         std::promise<BodyPart> told;
-        response.more([&](BodyPart part) { told.set_value(std::move(part)); });
+        response.next_part([&](BodyPart part) { told.set_value(std::move(part)); });
         const auto part = told.get_future().get();
         more = part && *part;
         if (more) response.body += **part;
