@@ -30,8 +30,8 @@ constexpr SidebandRatios equal_sidebands() {
 ///
 /// `in_phase` are the same sums of the component in phase with the carrier. A tone has no such component, because its
 /// two sidebands are alike; a spectral line in the samples has one. So a tone is weighed not only against noise but
-/// also against a line of any strength at either sideband. `ratios` are those of the noise in the two sidebands, which a
-/// filter changes.
+/// also against a line of any strength at either sideband. `ratios`: for each tone, the noise in its upper sideband
+/// divided by that in its lower one; a filter makes it differ from one.
 ToneEvidence tone_evidence_of(const ToneSums& sums, const ToneSums& in_phase, const SidebandRatios& ratios,
                               double energy);
 
