@@ -19,6 +19,11 @@ class FixedVector {
     constexpr bool empty() const { return size_ == 0; }
     constexpr bool full() const { return size_ == N; }
     constexpr void clear() { size_ = 0; }
+    /// Sets the size; what is added holds old values, for the caller to fill. More than N is a bug.
+    constexpr void resize(std::size_t size) {
+        AEOLIS_CHECK(size <= N);
+        size_ = size;
+    }
 
     /// Adds `value` at the end; returns false and adds nothing when full.
     [[nodiscard]] constexpr bool try_push_back(const T& value) {
@@ -68,6 +73,7 @@ class FixedVector {
     constexpr const T* begin() const { return values_.data(); }
     constexpr const T* end() const { return values_.data() + size_; }
     constexpr std::span<const T> span() const { return {values_.data(), size_}; }
+    constexpr std::span<T> span() { return {values_.data(), size_}; }
 
   private:
     std::array<T, N> values_{};

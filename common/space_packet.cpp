@@ -47,15 +47,16 @@ void write_primary_header(const PrimaryHeader& header, std::span<std::uint8_t> p
 
 std::optional<PrimaryHeader> read_primary_header(std::span<const std::uint8_t> octets) {
     if (octets.size() < primary_header_octets) return std::nullopt;
-    BitReader reader{octets};
-    if (reader.get(3) != 0) return std::nullopt;
+    // Every packet passes here some times: whole octets, not bit by bit.
+    const auto word = [&](std::size_t at) { return static_cast<unsigned>(octets[at] << 8U | octets[at + 1]); };
+    const unsigned identification = word(0), sequence = word(2);
+    if (identification >> 13U != 0 || sequence >> 14U != unsegmented) return std::nullopt;
     PrimaryHeader header;
-    header.telecommand = reader.get(1) != 0;
-    header.secondary_header = reader.get(1) != 0;
-    header.apid = {static_cast<std::uint16_t>(reader.get(11))};
-    if (reader.get(2) != unsegmented) return std::nullopt;
-    header.count = static_cast<std::uint16_t>(reader.get(14));
-    header.length = static_cast<std::uint16_t>(reader.get(16));
+    header.telecommand = (identification >> 12U & 1U) != 0;
+    header.secondary_header = (identification >> 11U & 1U) != 0;
+    header.apid = {static_cast<std::uint16_t>(identification & 0x7FFU)};
+    header.count = static_cast<std::uint16_t>(sequence & 0x3FFFU);
+    header.length = static_cast<std::uint16_t>(word(4));
     return header;
 }
 

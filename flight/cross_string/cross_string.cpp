@@ -39,9 +39,7 @@ void CrossString::on(const StatePart& part, Outbox& out) {
     if (load_role_ == Role::prime) return tell(part, out);
     heard_ = out.now();
     if (in_control_) return;
-    const auto state = assembly_.on(part);
-    if (!state) return;
-    latest_ = *state;
+    if (!assembly_.take(part) || !latest_.replace(assembly_.octets())) return;
     too_old_told_ = false;
     const StateHeader prime = latest_.header();
     // The managers must address the right units from the first command on.

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "common/fixed_vector.hpp"
 #include "common/time.hpp"
 
 #include <array>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <optional>
 #include <span>
 #include <type_traits>
@@ -28,6 +30,13 @@ class StateExchange {
     template <typename... Values>
     void operator()(Values&... values) {
         (carry(values), ...);
+    }
+
+    /// A table of nothing but doubles, whole.
+    template <typename Table>
+    void doubles(Table& table) {
+        static_assert(std::is_trivially_copyable_v<Table> && alignof(Table) == alignof(double));
+        numbers(&table, 1);
     }
 
     bool ok() const { return ok_; }
@@ -55,6 +64,19 @@ class StateExchange {
             numbers(values.data(), N);
         else
             for (T& value : values) carry(value);
+    }
+    /// Only the values that are there.
+    template <typename T, std::size_t N>
+    void carry(FixedVector<T, N>& values) {
+        static_assert(N <= std::numeric_limits<std::uint8_t>::max());
+        auto count = static_cast<std::uint8_t>(values.size());
+        number(count);
+        if (count > N) {
+            ok_ = false;
+            return;
+        }
+        values.resize(count);
+        for (T& value : values) carry(value);
     }
     template <typename T>
     void carry(std::optional<T>& value) {

@@ -50,24 +50,31 @@ std::uint64_t checksum(std::span<const std::uint8_t> octets) {
 
 }  // namespace
 
-void StateFrame::seal(std::span<std::uint8_t> room, std::size_t checksum_at) {
+void StateFrame::seal(std::size_t checksum_at) {
     const auto size = static_cast<std::uint16_t>(checksum_at + checksum_octets);
-    std::memcpy(room.data(), &dictionary_id, sizeof dictionary_id);
-    std::memcpy(room.data() + sizeof dictionary_id, &size, sizeof size);
-    const std::uint64_t sum = checksum(room.first(checksum_at));
-    std::memcpy(room.data() + checksum_at, &sum, sizeof sum);
-    octets_.append(room.first(size));
+    octets_.resize(size);
+    const std::span<std::uint8_t> frame = octets_.span();
+    std::memcpy(frame.data(), &dictionary_id, sizeof dictionary_id);
+    std::memcpy(frame.data() + sizeof dictionary_id, &size, sizeof size);
+    const std::uint64_t sum = checksum(frame.first(checksum_at));
+    std::memcpy(frame.data() + checksum_at, &sum, sizeof sum);
 }
 
 std::optional<StateFrame> StateFrame::read(std::span<const std::uint8_t> octets) {
-    if (octets.size() < prefix_octets + checksum_octets || octets.size() > state_octets_max) return std::nullopt;
+    std::optional<StateFrame> frame{std::in_place};
+    if (!frame->replace(octets)) frame.reset();
+    return frame;
+}
+
+bool StateFrame::replace(std::span<const std::uint8_t> octets) {
+    if (octets.size() < prefix_octets + checksum_octets || octets.size() > state_octets_max) return false;
     const std::size_t checksum_at = octets.size() - checksum_octets;
     if (number_at<std::uint16_t>(octets, 0) != dictionary_id || number_at<std::uint16_t>(octets, 2) != octets.size() ||
         number_at<std::uint64_t>(octets, checksum_at) != checksum(octets.first(checksum_at)))
-        return std::nullopt;
-    StateFrame frame;
-    frame.octets_.append(octets);
-    return frame;
+        return false;
+    octets_.clear();
+    octets_.append(octets);
+    return true;
 }
 
 StateHeader StateFrame::header_of(std::span<const std::uint8_t> octets) {

@@ -36,17 +36,21 @@ class StateFrame {
     /// Frames the state that `state.carry` lists.
     template <typename State>
     static StateFrame of(StateHeader header, State& state) {
-        std::array<std::uint8_t, state_octets_max> room{};
-        StateExchange exchange{std::span{room}.subspan(prefix_octets, room.size() - prefix_octets - checksum_octets)};
+        StateFrame frame;
+        frame.octets_.resize(state_octets_max);
+        StateExchange exchange{
+            frame.octets_.span().subspan(prefix_octets, state_octets_max - prefix_octets - checksum_octets)};
         exchange(header, state);
         AEOLIS_CHECK(exchange.ok());
-        StateFrame frame;
-        frame.seal(room, prefix_octets + exchange.size());
+        frame.seal(prefix_octets + exchange.size());
         return frame;
     }
 
     /// None when the octets are not a whole frame of this build.
     static std::optional<StateFrame> read(std::span<const std::uint8_t> octets);
+    /// Replaces this frame by another. False, and it stays as it is, when the octets are not a whole frame of this
+    /// build.
+    [[nodiscard]] bool replace(std::span<const std::uint8_t> octets);
 
     StateHeader header() const { return header_of(octets()); }
     /// Reads the header of octets that may or may not be a frame.
@@ -71,7 +75,7 @@ class StateFrame {
     static constexpr std::size_t prefix_octets = 4;
     static constexpr std::size_t checksum_octets = 8;
 
-    void seal(std::span<std::uint8_t> room, std::size_t checksum_at);
+    void seal(std::size_t checksum_at);
     std::span<const std::uint8_t> content() const {
         return octets().subspan(prefix_octets, octets_.size() - prefix_octets - checksum_octets);
     }
@@ -85,8 +89,7 @@ class StateAssembly {
     /// The frame that this part completes, if it does.
     std::optional<StateFrame> on(const StatePart& part);
 
-    /// Takes a part that is only to be forwarded. True when it is the last, and octets() holds the whole frame,
-    /// unchecked.
+    /// Takes a part. True when it is the last, and octets() holds the whole frame, unchecked.
     bool take(const StatePart& part);
     std::span<const std::uint8_t> octets() const { return octets_.span(); }
 

@@ -33,9 +33,13 @@ void EdlMain::on(const Resume& resume, Outbox& out) {
     const std::optional<StateFrame> state = std::exchange(state_of_another_, std::nullopt);
     const bool placed = resume.reason == ResumeReason::placed;
     if (!state || (timeline_.begun() && !placed)) return out.event(evr::STATE_UNREADABLE{});
-    // A state of another build with the same dictionary is detected by its size, before any of it is used.
-    const bool fits = StateFrame::of(state->header(), *this).octets().size() == state->octets().size();
-    if (!fits || !state->restore(*this)) return out.event(evr::STATE_UNREADABLE{});
+    // A state of another build with the same dictionary is detected by its size, once it is read: then nothing of it
+    // stays.
+    const StateFrame before = StateFrame::of(state->header(), *this);
+    if (!state->restore(*this)) {
+        AEOLIS_CHECK(before.restore(*this));
+        return out.event(evr::STATE_UNREADABLE{});
+    }
     revision_ = state->header().revision + 1;
     unverified_.miss_some();
     fly_by_table(out);

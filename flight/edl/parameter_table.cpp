@@ -41,27 +41,21 @@ CommandRefusal refusal_of(const gnc::Conditions& conditions) {
     return std::ranges::any_of(conditions, fixed) ? CommandRefusal::fixed_at_build : CommandRefusal::bad_argument;
 }
 
-const ParameterTable::Change* ParameterTable::staged_of(ParameterId id) const {
-    const auto staged = std::span{staged_}.first(staged_count_);
-    const auto found = std::ranges::find(staged, id.value, &Change::id);
-    return found == staged.end() ? nullptr : &*found;
-}
-
 bool ParameterTable::has_room(ParameterId id) const {
-    return staged_count_ < staged_changes_max || staged_of(id) != nullptr;
+    return !staged_.full() || std::ranges::find(staged_, id.value, &Change::id) != staged_.end();
 }
 
 void ParameterTable::stage(ParameterId id, double value) {
-    AEOLIS_CHECK(has_room(id));
-    const Change* const same = staged_of(id);
-    const std::size_t place = same != nullptr ? static_cast<std::size_t>(same - staged_.data()) : staged_count_++;
-    staged_[place] = {id.value, value};
+    const auto same = std::ranges::find(staged_, id.value, &Change::id);
+    if (same != staged_.end())
+        same->value = value;
+    else
+        staged_.push_back({id.value, value});
 }
 
 Parameters ParameterTable::with_staged() const {
     Parameters values = values_;
-    for (const Change& change : std::span{staged_}.first(staged_count_))
-        set_value(values, ParameterId{change.id}, change.value);
+    for (const Change& change : staged_) set_value(values, ParameterId{change.id}, change.value);
     return values;
 }
 
@@ -80,7 +74,7 @@ double ParameterTable::deviation_with_staged() const {
 void ParameterTable::activate(std::uint16_t version) {
     values_ = with_staged();
     version_ = version;
-    changes_ = staged_count_;
+    changes_ = static_cast<std::uint16_t>(staged_.size());
     discard();
 }
 
@@ -91,7 +85,7 @@ packet::ParameterTable ParameterTable::report() const {
     return {.parameter_version = version_,
             .parameter_changes = changes_,
             .parameters_changed = changed,
-            .parameters_staged = staged_count_,
+            .parameters_staged = static_cast<std::uint16_t>(staged_.size()),
             .parameter_crc = crc16(rows_of(values_))};
 }
 

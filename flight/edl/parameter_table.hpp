@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "common/fixed_vector.hpp"
 #include "common/ids.hpp"
 #include "common/space_packet.hpp"
 #include "flight/gnc/quantities.hpp"
@@ -49,12 +50,12 @@ class ParameterTable {
 
     const Parameters& values() const { return values_; }
     std::uint16_t version() const { return version_; }  ///< ground's number; 0: as built in
-    std::size_t staged() const { return staged_count_; }
+    std::size_t staged() const { return staged_.size(); }
 
     /// Whether a change of this parameter can be staged. A second change of the same parameter replaces the first.
     bool has_room(ParameterId id) const;
     void stage(ParameterId id, double value);
-    void discard() { staged_count_ = 0; }
+    void discard() { staged_.clear(); }
     /// CRC of the table that activation would make.
     std::uint16_t crc_with_staged() const;
     /// Sum of that table's deviations from the one built in (common/deviation.hpp).
@@ -67,7 +68,7 @@ class ParameterTable {
     /// State for another computer, without the built-in values, which are the same there.
     template <typename Exchange>
     void carry(Exchange& exchange) {
-        exchange(values_, version_, changes_, staged_count_, staged_);
+        exchange(values_, version_, changes_, staged_);
     }
 
   private:
@@ -80,14 +81,12 @@ class ParameterTable {
             exchange(id, value);
         }
     };
-    const Change* staged_of(ParameterId id) const;
     Parameters with_staged() const;
 
     Parameters values_, built_in_;
     std::uint16_t version_ = 0;
     std::uint16_t changes_ = 0;  ///< by which the version was made
-    std::uint16_t staged_count_ = 0;
-    std::array<Change, staged_changes_max> staged_{};
+    FixedVector<Change, staged_changes_max> staged_;
 };
 
 }  // namespace aeolis::flight

@@ -6,8 +6,6 @@
 #include "flight/kernel/outbox.hpp"
 #include "flight/timeline/timeline.hpp"
 
-#include <algorithm>
-#include <array>
 #include <optional>
 #include <span>
 
@@ -56,12 +54,7 @@ class UnverifiedActions {
 
     template <typename Exchange>
     void carry(Exchange& exchange) {
-        auto count = static_cast<std::uint8_t>(kept_.size());
-        std::array<Followed, kept_max> all{};
-        std::ranges::copy(kept_, all.begin());
-        exchange(count, all, felt_before_mps2_);
-        kept_.clear();
-        for (std::size_t i = 0; i < std::min<std::size_t>(count, kept_max); ++i) kept_.push_back(all[i]);
+        exchange(kept_, felt_before_mps2_);
     }
 
   private:

@@ -12,13 +12,11 @@ namespace aeolis::flight {
 template <typename Send>
 void state_parts(std::span<const std::uint8_t> octets, Sclk time, Send&& send) {
     const std::size_t count = (octets.size() + state_part_octets_max - 1) / state_part_octets_max;
+    StatePart part{.time = time, .count = static_cast<std::uint8_t>(count)};  // a part keeps octets of the one before
     for (std::size_t i = 0; i < count; ++i) {
         const auto rest = octets.subspan(i * state_part_octets_max);
-        StatePart part{time,
-                       static_cast<std::uint8_t>(i),
-                       static_cast<std::uint8_t>(count),
-                       static_cast<std::uint8_t>(std::min(rest.size(), state_part_octets_max)),
-                       {}};
+        part.index = static_cast<std::uint8_t>(i);
+        part.size = static_cast<std::uint8_t>(std::min(rest.size(), state_part_octets_max));
         std::copy_n(rest.begin(), part.size, part.octets.begin());
         send(part);
     }

@@ -53,6 +53,17 @@ struct Fixture {
     packet::ParameterTable report() const { return edl.parameter_table().report(); }
 };
 
+/// The state of another build of the same dictionary: one number more.
+struct StateOfAnotherBuild {
+    EdlMain& edl;
+    double more = 7.0;
+
+    template <typename Exchange>
+    void carry(Exchange& exchange) {
+        exchange(edl, more);
+    }
+};
+
 }  // namespace
 
 TEST_CASE("parameters are staged one by one and activated together, and every user of them gets the table",
@@ -196,6 +207,26 @@ TEST_CASE("the table's version is told on change and every eight seconds, also b
         told += f.recorder.packets<packet::ParameterTable>();
     }
     CHECK(told == 10);
+}
+
+TEST_CASE("a computer that is restarted with the state of another build goes on as if it had none",
+          "[edl][parameters][R25][R32]") {
+    Fixture f;
+    REQUIRE(f.stage(parameter::guidance_gain, 4.0));
+    REQUIRE(f.activate(5, 1));
+    StateOfAnotherBuild another{f.edl};
+    const StateHeader header{.time = Sclk{1000.0}, .revision = 9};
+    const StateFrame frame = StateFrame::of(header, another);
+    Load load;
+    load.resets = 1;
+    Fixture restarted;
+    restarted.edl = EdlMain{load};
+    REQUIRE(restarted.stage(parameter::heartbeat_after_s, 30.0));
+    const StateFrame before = StateFrame::of(header, restarted.edl);
+    frame.in_parts([&](const StatePart& part) { restarted.handle(part); });
+    restarted.handle(Resume{ResumeReason::restart});
+    CHECK(restarted.recorder.events<evr::STATE_UNREADABLE>() == 1);
+    CHECK(std::ranges::equal(StateFrame::of(header, restarted.edl).octets(), before.octets()));
 }
 
 TEST_CASE("a computer that is restarted goes on with the table and what was staged, and tells those who need it",

@@ -4,6 +4,7 @@
 #include "flight/gnc/vector.hpp"
 #include "tests/support/catch.hpp"
 
+#include <algorithm>
 #include <random>
 #include <vector>
 
@@ -26,10 +27,18 @@ struct Everything {
     gnc::Quaternion attitude = gnc::Quaternion::Identity();
     std::array<bool, 5> fired{};
     std::uint32_t count = 0;
+    FixedVector<double, 3> some;
+    struct Table {
+        double first = 0.0, second = 0.0;
+        template <typename Exchange>
+        void carry(Exchange& exchange) {
+            exchange.doubles(*this);
+        }
+    } table;
 
     template <typename Exchange>
     void carry(Exchange& exchange) {
-        exchange(number, flag, time, anchor, offset_s, row, vector, attitude, fired, count);
+        exchange(number, flag, time, anchor, offset_s, row, vector, attitude, fired, count, some, table);
     }
 };
 
@@ -60,6 +69,9 @@ Everything something() {
     e.attitude = gnc::Quaternion{0.5, -0.5, 0.5, -0.5};
     e.fired = {true, false, true, true, false};
     e.count = 77;
+    e.some.push_back(7.0);
+    e.some.push_back(8.0);
+    e.table = {.first = 9.0, .second = 10.0};
     return e;
 }
 
@@ -79,6 +91,7 @@ TEST_CASE("a state arrives at the other computer as it left, number for number",
     CHECK(arrived->header().touchdown);
     Everything got;
     got.offset_s = 5.0;  // must become undefined, as it was sent
+    for (const double old : {1.0, 2.0, 3.0}) got.some.push_back(old);
     REQUIRE(arrived->restore(got));
     CHECK(got.number == sent.number);
     CHECK(got.flag == sent.flag);
@@ -90,6 +103,17 @@ TEST_CASE("a state arrives at the other computer as it left, number for number",
     CHECK(got.attitude.coeffs() == sent.attitude.coeffs());
     CHECK(got.fired == sent.fired);
     CHECK(got.count == sent.count);
+    CHECK(std::ranges::equal(got.some, sent.some));
+    CHECK(got.table.first == sent.table.first);
+    CHECK(got.table.second == sent.table.second);
+}
+
+TEST_CASE("a state that claims more values than there is room for is not restored", "[cross_string][R33]") {
+    FixedVector<double, 2> two;
+    FixedVector<double, 3> three;
+    for (const double value : {1.0, 2.0, 3.0}) three.push_back(value);
+    CHECK_FALSE(StateFrame::of(header, three).restore(two));
+    CHECK(two.empty());
 }
 
 TEST_CASE("one changed bit anywhere, or one octet more or less, and a state is no state", "[cross_string][R33]") {
