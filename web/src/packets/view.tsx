@@ -216,7 +216,7 @@ function PacketRows({ run, lines }: { run: RunStore; lines: Line[] }) {
         <thead>
           <tr>
             <th class="number">from entry</th>
-            <th>packet</th>
+            <th>number</th>
             <th class="number">APID</th>
             <th>packet</th>
             <th class="number">octets</th>
