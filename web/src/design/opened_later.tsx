@@ -17,6 +17,12 @@ export function openedLater<Props extends object = object>(
       );
     }
     if (panel.value === 'failed') return <p role="alert">This part could not be loaded. Reload the page.</p>;
-    return panel.value ? <panel.value.Shown {...props} /> : <p data-loading role="status">Loading …</p>;
+    return panel.value ? (
+      <panel.value.Shown {...props} />
+    ) : (
+      <p data-loading role="status">
+        Loading …
+      </p>
+    );
   };
 }
