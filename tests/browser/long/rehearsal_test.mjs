@@ -54,7 +54,7 @@ test('an instructor’s fault and note are folded away while a rehearsal goes on
   await shows('review-facts', /landing\s+E\+7:\d\d\.\d\s+touchdown/);
   const facts = await text('review-facts');
   assert.match(facts, /Touchdown: descending \d\.\d m\/s/);
-  assert.match(facts, /\d+\.\d km from the target, by the vehicle’s own navigation/);
+  assert.match(facts, /\d+\.\d km from the target, by the vehicle['’]s own navigation/);
   const timepoints = [...facts.matchAll(/(\d+) of (\d+)/g)].map(([, fired, all]) => [Number(fired), Number(all)]);
   assert.ok(
     timepoints.some(([fired, all]) => all > 45 && all - fired <= 1),

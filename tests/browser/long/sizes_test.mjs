@@ -4,7 +4,7 @@
 import assert from 'node:assert/strict';
 import { before, test } from 'node:test';
 import { SIZES, STATES, measured } from '../sizes.mjs';
-import { comesToRest, waitFor, workplace } from '../support.mjs';
+import { comesToRest, landed, waitFor, workplace } from '../support.mjs';
 
 const { open, serve } = workplace();
 const withScrollbars = workplace({ scrollbars: true });
@@ -135,16 +135,16 @@ test('at each size that people have, in four states and both themes, all texts a
   assert.deepEqual(await measured(withScrollbars, t, Object.keys(STATES), SIZES, ['dark', 'light']), []);
 });
 
-test('at 3 m the clock from entry and the phase are read: 15 mm on a screen of 24 inches from 1920 × 950 on', async () => {
-  const { page, shows } = await open(blackout.address);
-  await shows('phases', /▶/);
+test('at 3 m the clock from entry and news are read: 15 mm on a screen of 24 inches from 1920 × 950 on', async () => {
+  const { page, shows } = await open((await landed(serve)).address);
+  await shows('situation-sentence', /Touchdown/);
   for (const [width, height] of [
     [1920, 950],
     [2560, 1300],
     [3840, 2000],
   ]) {
     await page.setViewportSize({ width, height });
-    for (const selector of ['[data-testid=clock-entry]', '.phase-now b']) {
+    for (const selector of ['[data-testid=clock-entry]', '[data-testid=situation-sentence]']) {
       const px = await page
         .locator(selector)
         .evaluate((each) => parseFloat(getComputedStyle(each).fontSize) * each.currentCSSZoom);

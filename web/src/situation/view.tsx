@@ -9,6 +9,8 @@ import './style.css';
 
 /** Letters that have room in one line in the large size, at each width; more have the smaller one. */
 const ONE_LINE = 68;
+/** Letters of news that have room in the largest size beside what can be pressed. */
+const NEWS = 48;
 
 /** The evidence of an entry, which leads to its instant. */
 function Evidence({ line, words }: { line: Line; words: string }) {
@@ -47,11 +49,13 @@ export function Situation() {
   const { first, more } = situationNow(run);
   if (!run && !first) return null;
   const isLong = first && first.sentence.length + first.countdown.length > ONE_LINE;
+  // What counts down keeps one size, however long the time is written.
+  const isNews = first && first.countdown === '' && first.sentence.length <= NEWS;
   const look = first ? lookOf(first) : 'never';
   const [next, waiting] = [more.find((line) => !line.aside), more.filter((line) => !line.aside).length];
   return (
     <section
-      class={`situation ${first?.rank === 'lost' ? 'situation-lost' : ''} ${isLong ? 'situation-long' : ''}`}
+      class={`situation ${first?.rank === 'lost' ? 'situation-lost' : ''} ${isLong ? 'situation-long' : isNews ? 'situation-news' : ''}`}
       style={{ '--look': `var(--${STATUS[look].token})` }}
       data-testid="situation"
       data-rank={first?.rank}

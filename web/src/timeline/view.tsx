@@ -155,7 +155,7 @@ function drawTimeline({ context: c, width: width_px, height: height_px, colours 
   drawPredicted(c, x, y(1), Math.min(run.seenE, pastRange.value?.to ?? Infinity), colours);
   marks(lanes.tones, x, y(TONE), (px, py) => box(c, px, py, 3.8, colours.tone), false);
   marks(lanes.heardByTone, x, y(TONE), (px, py) => box(c, px, py, 3.8, colours.tone), true);
-  drawDoppler(c, lanes, x, y(DOPPLER), colours);
+  drawDoppler(c, lanes, x, y(DOPPLER), width - 14, colours);
   marks(
     lanes.live,
     x,
@@ -327,6 +327,7 @@ function drawDoppler(
   lanes: Lanes,
   x: (e: number) => number,
   y: number,
+  edge: number,
   colours: Surface['colours'],
 ): void {
   c.font = `${TYPE.mark}px ${colours.sans}`;
@@ -340,7 +341,7 @@ function drawDoppler(
     const delay = `+${(told_e_s - e_s).toFixed(1)} s`;
     const silent_e_s = lanes.toneOutages.find(({ from }) => from > e_s)?.from;
     const next_e_s = Math.min(lanes.doppler[i + 1]?.e_s ?? Infinity, silent_e_s ?? Infinity);
-    if (px + 12 + c.measureText(delay).width < x(next_e_s)) c.fillText(delay, px + 8, y + 0.5);
+    if (px + 12 + c.measureText(delay).width < Math.min(edge, x(next_e_s))) c.fillText(delay, px + 8, y + 0.5);
   }
 }
 
@@ -384,7 +385,7 @@ function labels(
   const all = [...known.values()]
     .filter(({ mark }) => mark.important || closeUp)
     .sort((a, b) => Number(b.mark.important) - Number(a.mark.important) || a.mark.e_s - b.mark.e_s);
-  const rows: [number, number][][] = Array.from({ length: Math.max(1, Math.floor((height - top - 6) / 15)) }, () => []);
+  const rows: [number, number][][] = Array.from({ length: Math.max(0, Math.floor((height - top - 6) / 15)) }, () => []);
   c.font = `${TYPE.table}px ${colours.sans}`;
   c.textAlign = 'center';
   for (const { mark, done } of all) {

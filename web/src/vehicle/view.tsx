@@ -219,10 +219,10 @@ function Facts({ look }: { look: Look }) {
           ellipse={prediction.value?.ellipse}
         />
         <figcaption>
-          {targetOf(look.run) ? '' : 'No target is known: the middle is where it is. '}
-          Path over ground by navigation on board
-          {prediction.value?.ellipse ? `, and ${ellipseWords(prediction.value.ellipse)}` : ''}. The ground in the
-          picture is smooth: its relief is not known.
+          Path over ground by navigation on board. The ground in the picture is smooth: its relief is not known.
+          {/* what comes later stands last: it moves nothing */}
+          {prediction.value?.ellipse ? ` Around the target: ${ellipseWords(prediction.value.ellipse)}.` : ''}
+          {targetOf(look.run) ? '' : ' No target is known: the middle is where it is.'}
         </figcaption>
       </figure>
     </div>
