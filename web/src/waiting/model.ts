@@ -278,10 +278,10 @@ function ended(store: RunStore): Waiting {
   };
 }
 
-/** As the card of the touchdown says it, once the server has judged it. */
+/** As the card of the touchdown says it, once the server has judged it; until then no verdict. */
 const landedTitle = (): string => {
-  const verdict = touchdownKnown.value?.verdict ?? 'untold';
-  return `Touchdown ${verdict === 'untold' ? 'reported' : verdict}`;
+  const verdict = touchdownKnown.value?.verdict;
+  return verdict === undefined ? 'Touchdown' : `Touchdown ${verdict === 'untold' ? 'reported' : verdict}`;
 };
 
 type FirstStep = (typeof LAYOUT.firstSteps)[number];

@@ -476,7 +476,7 @@ describe('waiting for', () => {
         aPlan,
         Infinity,
       ).title,
-    ).toBe('Touchdown reported');
+    ).toBe('Touchdown');
     const report = { verdict: 'confirmed' as const, steps: [], figures: [], place_unknown: '' };
     touchdownAnswer.value = { at: Infinity, live: false, report };
     const landed = aStore([], aRun({ state: 'finished', outcome: 'touchdown', relayProgress: 1 }));
