@@ -54,7 +54,7 @@ test('an instructor’s fault and note are folded away while a rehearsal goes on
   await shows('review-facts', /landing\s+E\+7:\d\d\.\d\s+touchdown/);
   const facts = await text('review-facts');
   assert.match(facts, /Touchdown: descending \d\.\d m\/s/);
-  assert.match(facts, /\d+\.\d km from the target, by the vehicle['’]s own navigation/);
+  assert.match(facts, /\d+\.\d km from the target, by the vehicle's own navigation/);
   const timepoints = [...facts.matchAll(/(\d+) of (\d+)/g)].map(([, fired, all]) => [Number(fired), Number(all)]);
   assert.ok(
     timepoints.some(([fired, all]) => all > 45 && all - fired <= 1),
@@ -64,7 +64,7 @@ test('an instructor’s fault and note are folded away while a rehearsal goes on
   assert.match(facts, /radar B silent, for 10 s; [\dm. ]+ s later: Bob wrote “radar B\?”/);
   assert.match(
     facts,
-    /1 command of people: 1 carried out, 0 failed, 0 cancelled, 0 not known\s+2 commands of the scenario’s script: 2 carried out/,
+    /1 command of people: 1 carried out, 0 failed, 0 cancelled, 0 not known\s+2 commands of the scenario's script: 2 carried out/,
   );
   assert.match(await text('review-terms'), /commands\s+10\.0 of 10\s+1 of 1 of people/);
   assert.match(await text('review'), /The instructor wrote\s+E−\d+:\d\d\.\d Ida do they see <b>it<\/b>\?/);
