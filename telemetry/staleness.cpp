@@ -130,16 +130,21 @@ void StalenessMonitor::pass(Ert now, std::vector<StalenessChange>& out) {
         if (row.last && row.is != Staleness::missing) judge(row, now, out);
 }
 
+bool StalenessMonitor::nothing_comes(double absent_s, Ert now) const {
+    return std::min(absent_s, seconds_between(best_since_, now)) >= link_down_s;
+}
+
 void StalenessMonitor::judge(Row& row, Ert now, std::vector<StalenessChange>& out) const {
     const double absent_s = seconds_between(*row.last, now);
     if (row.of_ground) {
         if (absent_s > stale_least_s) change(row, Staleness::explained, "the ground makes none", now, out);
     } else if (best_ == LinkIs::down) {
-        if (std::min(absent_s, seconds_between(best_since_, now)) >= link_down_s)
-            change(row, Staleness::explained, silent_for(), now, out);
+        if (nothing_comes(absent_s, now)) change(row, Staleness::explained, silent_for(), now, out);
     } else if (const double interval = interval_s(row); interval > 0.0) {
         if (seconds_between(row.since, now) > std::max(row.intervals * interval, stale_least_s))
             change(row, Staleness::missing, silent_for(), now, out);
+        else if (best_ == LinkIs::lost && nothing_comes(absent_s, now))
+            change(row, Staleness::explained, silent_for(), now, out);
     } else if (!row.interval_s.empty() && state_) {
         if (absent_s > stale_least_s) change(row, Staleness::explained, "not expected in " + phase_, now, out);
     } else if (best_ == LinkIs::lost) {

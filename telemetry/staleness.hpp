@@ -60,7 +60,8 @@ struct StalenessChange {
 ///          heavy losses is allowed more: as many intervals as its losses before the last packet explain with a
 ///          probability of `stale_chance`. While all links are down nothing is expected: the silence is then the
 ///          link's, which has a reason. A lost link has none: missing packets stay so, and the others become missing
-/// Explained  Every packet once all links have been down for `link_down_s`; one that the phase does not promise after
+/// Explained  Every packet once all links have been down or lost for `link_down_s`, if lost until it is missing: what
+///          comes over no link is not of now, however patient its rate; one that the phase does not promise after
 ///          `stale_least_s`; one without a promise once the links are lost, or, for a mission without a plan, after
 ///          `stale_intervals` of the longest interval at which it came lately; one that the ground makes, after
 ///          `stale_least_s`
@@ -104,6 +105,7 @@ class StalenessMonitor {
     double reckon(const Row& row, Ert ert);
     void change(Row& row, Staleness to, std::string reason, Ert now, std::vector<StalenessChange>& out) const;
     void judge(Row& row, Ert now, std::vector<StalenessChange>& out) const;
+    bool nothing_comes(double absent_s, Ert now) const;
     /// Why nothing comes: "the link is down: plasma blackout", "the link is lost: …"; empty while one is up.
     std::string silent_for() const;
 

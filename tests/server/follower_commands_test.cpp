@@ -119,7 +119,7 @@ struct Site {
     NatsServer engine;
     std::string seed = new_signing_seed();
     ConsoleBackend::Settings of_origin;
-    std::optional<Server> origin, follower;
+    std::unique_ptr<Server> origin, follower;
 
     explicit Site(const char* role = "controller") {
         ConsoleBackend::Settings of_follower;
@@ -130,7 +130,7 @@ struct Site {
             of_origin.accounts,
             {{"admin", "administrator"}, {"nina", "controller"}, {"olga", "controller"}, {"dora", "director"}});
         list(role);
-        origin.emplace(of_origin, shipped_scenario("nominal"));
+        origin = std::make_unique<Server>(of_origin, shipped_scenario("nominal"));
         of_follower.archive = folder / "follower.db";
         of_follower.accounts = folder / "follower.json";
         of_follower.follow_by.url = engine.url();
@@ -143,7 +143,7 @@ struct Site {
                                             {"otto", "observer"}});
         std::ofstream{of_follower.follower_key} << hexadecimal(seed) << '\n';
         std::filesystem::permissions(of_follower.follower_key, std::filesystem::perms::owner_read);
-        follower.emplace(of_follower, std::nullopt);
+        follower = std::make_unique<Server>(of_follower, std::nullopt);
         REQUIRE(comes([&] { return command("nina", R"({"command":"NO_OP"})").status == 202; }));  // it has begun
     }
     void list(const char* role) {
@@ -291,7 +291,7 @@ TEST_CASE("a request that was overheard is no command when it comes again, also 
     CHECK(site.origin->figure("aeolis_follower_requests_refused_total") == 3.0);
     CHECK(times(site.commands(*site.origin), "\"NO_OP\"") == sent);
     site.origin.reset();
-    site.origin.emplace(site.of_origin, std::nullopt);
+    site.origin = std::make_unique<Server>(site.of_origin, std::nullopt);
     CHECK(comes([&] {  // once it listens
         REQUIRE(spy->send(overheard->subject, overheard->octets, to));
         const auto came = answers->next(1s);

@@ -107,24 +107,41 @@ TEST_CASE("a link that is lost takes no alarm away, and what it does not bring b
     ground.hear(1.0);
     ground.monitor.link("uhf_live", LinkIs::lost, "unexplained: nothing is predicted to silence it now", at_s(3.0),
                         ground.changes);
-    CHECK(ground.after(9.0) == 0);
-    REQUIRE(ground.after(9.5) == 1);  // four intervals after it was last heard, not after the link went
-    CHECK(ground.changes[0].is == Staleness::missing);
-    CHECK(ground.changes[0].silent_s == 8.5);
+    CHECK(ground.after(3.5) == 0);
+    REQUIRE(ground.after(9.0) == 1);  // not of now a second after nothing can come, though it is not due yet
+    CHECK(ground.changes[0].is == Staleness::explained);
+    CHECK(ground.changes[0].silent_s == 3.0);
     CHECK(ground.changes[0].reason == "the link is lost: unexplained: nothing is predicted to silence it now");
+    REQUIRE(ground.after(9.5) == 2);  // four intervals after it was last heard, not after the link went
+    CHECK(ground.changes[1].is == Staleness::missing);
+    CHECK(ground.changes[1].silent_s == 8.5);
+    CHECK(ground.changes[1].reason == ground.changes[0].reason);
     ground.monitor.link("uhf_live", LinkIs::up, "nominal", at_s(20.0), ground.changes);
-    CHECK(ground.after(21.0) == 1);  // until it is heard
+    CHECK(ground.after(21.0) == 2);  // until it is heard
     ground.hear(22.0);
-    REQUIRE(ground.after(30.0) == 2);
-    CHECK(ground.changes[1].reason == "heard again");
-    REQUIRE(ground.after(30.5) == 3);  // while the link is up
-    CHECK(ground.changes[2].reason.empty());
+    REQUIRE(ground.after(30.0) == 3);
+    CHECK(ground.changes[2].reason == "heard again");
+    REQUIRE(ground.after(30.5) == 4);  // while the link is up
+    CHECK(ground.changes[3].reason.empty());
     ground.monitor.link("uhf_live", LinkIs::lost, "ground fault: no way to the station", at_s(31.0), ground.changes);
-    CHECK(ground.after(60.0) == 3);  // that stands
+    CHECK(ground.after(60.0) == 4);  // that stands
     ground.monitor.link("uhf_live", LinkIs::down, "Earth set", at_s(61.0), ground.changes);
-    REQUIRE(ground.after(900.0) == 4);
-    CHECK(ground.changes[3].is == Staleness::explained);
-    CHECK(ground.changes[3].reason == "the link is down: Earth set");
+    REQUIRE(ground.after(900.0) == 5);
+    CHECK(ground.changes[4].is == Staleness::explained);
+    CHECK(ground.changes[4].reason == "the link is down: Earth set");
+}
+
+TEST_CASE("what comes again over a link that was lost is current, and was no alarm before it was due",
+          "[alarms][staleness]") {
+    Ground ground;
+    ground.hear(1.0);
+    ground.monitor.link("uhf_live", LinkIs::lost, "unexplained", at_s(2.0), ground.changes);
+    REQUIRE(ground.after(4.0) == 1);
+    ground.monitor.link("uhf_live", LinkIs::up, "nominal", at_s(5.0), ground.changes);
+    ground.hear(5.5);
+    REQUIRE(ground.after(6.0) == 2);
+    CHECK(ground.changes[0].is == Staleness::explained);
+    CHECK(ground.changes[1].is == Staleness::current);
 }
 
 TEST_CASE("a silence that is not explained any more is waited for from then, with the usual patience",

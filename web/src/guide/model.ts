@@ -12,6 +12,7 @@ import type { Dictionary } from '../run/dictionary';
 import type { RunStore } from '../run/store';
 import type { Mode } from '../mode/model';
 import { mayAct, mayRehearse } from '../access/model';
+import { entriesAt, isAmiss } from '../situation/model';
 import { missingStep, tooLate } from '../waiting/model';
 import type { Told } from '../waiting/model';
 import { told as toldNow } from '../waiting/told';
@@ -159,8 +160,11 @@ export function guideStep(
   }
   const phases = phaseSteps(run, words, plan, until);
   const now = phases.findIndex((phase) => phase.state === 'now');
-  const plain =
-    LAYOUT.phases.find((phase) => phase.title === phases[now]?.title)?.plain ?? 'The vehicle flies by itself.';
+  // What a lesson says of a good day is not said on a bad one.
+  const amiss = entriesAt(run, until).some(isAmiss);
+  const plain = amiss
+    ? 'Something is not as it should be: the large line above says what, and “why” leads to it. What is no longer heard is old.'
+    : (LAYOUT.phases.find((phase) => phase.title === phases[now]?.title)?.plain ?? 'The vehicle flies by itself.');
   const pace = run.run.pace === 0 ? Infinity : run.run.pace;
   const paused = run.run.state === 'paused';
   if (now <= 0 && run.seenE < NEAR_ENTRY_S) {
@@ -195,7 +199,9 @@ export function guideStep(
         ]
       : pace > FAST
         ? [{ key: '−', words: 'to 10× or less, to see it happen' }]
-        : [{ words: 'Watch the dot come down along the grey line, the predicted path.' }];
+        : amiss
+          ? [{ key: 'a', words: 'acknowledges what is announced as an alarm' }]
+          : [{ words: 'Watch the dot come down along the grey line, the predicted path.' }];
   return {
     number: now <= 0 ? 3 : Math.min(GUIDE_STEPS - 1, now + 2),
     title: now <= 0 ? 'Entry is near' : (phases[now]?.title ?? ''),

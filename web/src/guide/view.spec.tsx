@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // @vitest-environment happy-dom
 import { describe, expect, it } from 'vitest';
-import { aDictionary, aPlan, aRun, aStore, firing, samples, stage } from '../testing/fixtures';
+import { aDictionary, aPlan, aRun, aStore, firing, samples, situation, stage } from '../testing/fixtures';
 import type { NamedRun, NamedStage } from '../stream/names';
 import { GUIDE_STEPS, guideShown, guideStep, toggleGuide } from './model';
 
@@ -134,6 +134,29 @@ describe('the guide', () => {
     expect(
       keys(guideStep(aStore(entry, at(100, { state: 'paused' })), aDictionary, aPlan, 'rehearsal', 'type', Infinity)),
     ).toEqual(['p']);
+  });
+  it('says nothing of a good day while something is amiss, and is its old self after that', () => {
+    const store = (...entries: Parameters<typeof situation>[1][]) =>
+      guideStep(
+        aStore(
+          [
+            ...done(2),
+            firing({ timepoint: 0, name: 'coolant_vent', firedSclk: 200 }),
+            samples(1100, { 1: 4 }),
+            situation('2012-219T04:59:55.0', ...entries),
+          ],
+          at(100, { pace: 1 }),
+        ),
+        aDictionary,
+        aPlan,
+        'rehearsal',
+        'type',
+        Infinity,
+      );
+    const fault = store({ rank: 'news', subject: 'station', sentence: 'A fault on the ground' });
+    expect(fault?.why).toContain('not as it should be');
+    expect(keys(fault)).toEqual(['a']);
+    expect(store({ rank: 'news', subject: 'landed', sentence: 'Landed' })?.why).not.toContain('not as it should be');
   });
   it('slows nothing down once it has landed: then the recording comes down', () => {
     const landed = aStore(

@@ -54,6 +54,12 @@ export function lookOf({ rank, subject, sentence }: Pick<Line, 'rank' | 'subject
 export const aside = signalOfRun<ReadonlySet<string>>(new Set());
 export const listShown = signal(false);
 
+/** News that is no loss. */
+const NO_LOSS = ['landed', 'commanding'];
+/** Whether an entry tells of what should not be, and is now. */
+export const isAmiss = ({ rank, subject }: Pick<NamedEntry, 'rank' | 'subject'>): boolean =>
+  rank === 'danger' || (rank === 'news' && !NO_LOSS.includes(subject));
+
 /** What the server said at `until` (SCLK), the most important first. */
 export const entriesAt = (run: RunStore | undefined, until: number): readonly NamedEntry[] =>
   run?.situations.findLast(({ ert_s }) => run.knownBy(ert_s, until))?.fact.entries ?? [];

@@ -13,7 +13,7 @@ import type { Dictionary } from '../run/dictionary';
 import type { CommandRow, RunStore } from '../run/store';
 import { duration, fromEntry, secondsOfErt } from '../run/time';
 import { roughly } from '../situation/countdown';
-import { entriesAt } from '../situation/model';
+import { entriesAt, isAmiss } from '../situation/model';
 import { heardOf, lastHeard, speaksOf } from '../timeline/heard';
 import { isImportant, nextTimepoint } from '../timeline/model';
 import type { Prediction } from '../timeline/model';
@@ -254,9 +254,6 @@ export function noteWords(note: string): string {
   return /[^.!?…]$/.test(sentence) ? `${sentence}.` : sentence;
 }
 
-/** News that is no loss. */
-const OVER = ['landed', 'commanding'];
-
 function ended(store: RunStore): Waiting {
   const run = store.run;
   const complete =
@@ -267,7 +264,7 @@ function ended(store: RunStore): Waiting {
         : 'How much of the recording came down is not told.';
   // What was lost on the way, or still is, comes first: a good end does not hide it.
   const lost = entriesAt(store, Infinity)
-    .filter(({ rank, subject }) => subject.startsWith('loss of ') || (rank === 'news' && !OVER.includes(subject)))
+    .filter((entry) => entry.subject.startsWith('loss of ') || (entry.rank === 'news' && isAmiss(entry)))
     .map(({ sentence }) => `▲ ${sentence}. `)
     .join('');
   return {
