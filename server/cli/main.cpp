@@ -6,10 +6,12 @@
 #include "server/cli/shipped_paths.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <fmt/format.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 #include <string>
+#include <utility>
 
 namespace {
 
@@ -71,7 +73,9 @@ int main(int argc, char** argv) {
 
     try {
         if (const auto taken = take_settings(program, argc, argv); !taken) return failed(taken.error().message, 2);
-        program.parse(argc, argv);
+        auto words = with_environment(program, argc, argv);
+        std::ranges::reverse(words);  // as CLI11 wants them
+        program.parse(std::move(words));
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) return program.exit(error);  // --help, --version
         return failed(wrong_use(program, error, argc, argv), 2);

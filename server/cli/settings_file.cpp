@@ -2,12 +2,14 @@
 #include "server/cli/settings_file.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cctype>
 #include <cstdlib>
 #include <filesystem>
 #include <fmt/format.h>
 #include <fstream>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -31,6 +33,17 @@ std::string variable_of(std::string_view option) {
     auto variable = "AEOLIS_" + std::string{option};
     for (char& c : variable) c = c == '-' ? '_' : static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
     return variable;
+}
+
+bool is_given(const CLI::Option& option, std::span<const std::string> words) {
+    const auto gives = [&](const std::string& word) {
+        const auto is_long = [&](const std::string& name) {
+            return word == "--" + name || word.starts_with("--" + name + "=");
+        };
+        const auto is_short = [&](const std::string& name) { return word.starts_with("-" + name); };
+        return std::ranges::any_of(option.get_lnames(), is_long) || std::ranges::any_of(option.get_snames(), is_short);
+    };
+    return std::ranges::any_of(words, gives);
 }
 
 bool serves(int argc, char** argv) {
@@ -81,6 +94,28 @@ Result<std::optional<std::string>> setting_in_file(const std::filesystem::path& 
     for (const auto& item : *lines)
         if (item.name == option && item.inputs.size() == 1) value = item.inputs.front();
     return value;
+}
+
+std::vector<std::string> with_environment(const CLI::App& program, int argc, char** argv) {
+    std::vector<std::string> words{argv + std::min(argc, 1), argv + argc};
+    const CLI::App* command = &program;
+    std::size_t behind = 0;
+    while (behind < words.size()) {
+        const auto named =
+            command->get_subcommands([&](const CLI::App* each) { return each->get_name() == words[behind]; });
+        if (named.empty()) break;
+        command = named.front();
+        ++behind;
+    }
+    std::vector<std::string> set;
+    for (const CLI::Option* option : command->get_options()) {
+        const auto variable = option->get_envname();
+        if (variable.empty() || option->get_lnames().empty() || is_given(*option, words)) continue;
+        if (const char* const value = std::getenv(variable.c_str()); value != nullptr && *value != '\0')
+            set.push_back(fmt::format("--{}={}", option->get_lnames().front(), value));
+    }
+    words.insert(words.begin() + static_cast<std::ptrdiff_t>(behind), set.begin(), set.end());
+    return words;
 }
 
 std::optional<std::string> setting_given(int argc, char** argv, std::string_view option) {

@@ -220,6 +220,10 @@ TEST_CASE("each option of serve stands in an environment variable of its name, a
                Catch::Contains("neither 0 nor within 1 … 1000: 0.5"));
     CHECK_THAT(run("env", fmt::format("AEOLIS_PACE=0.5 '{}' serve --pace 0.7", program())).text,
                Catch::Contains("1000: 0.7"));
+    // As if it were typed, with what it needs.
+    CHECK_THAT(run("env", fmt::format("AEOLIS_SEED=many '{}' serve", program())).text,
+               Catch::Contains("--seed") && Catch::Contains("many"));
+    CHECK(run("env", fmt::format("AEOLIS_PACE= '{}' serve --help", program())).code == 0);  // as good as unset
 }
 
 TEST_CASE(
