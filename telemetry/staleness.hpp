@@ -35,7 +35,7 @@ enum class LinkIs : std::uint8_t {
 /// The staleness of a packet: whether its newest values are still of now.
 enum class Staleness : std::uint8_t {
     current,
-    explained,  ///< nothing comes, and nothing is due: no alarm
+    explained,  ///< nothing can come, or nothing is due yet: no alarm
     missing,    ///< due and absent: an alarm
 };
 
@@ -60,6 +60,7 @@ struct StalenessChange {
 ///          heavy losses is allowed more: as many intervals as its losses before the last packet explain with a
 ///          probability of `stale_chance`. While all links are down nothing is expected: the silence is then the
 ///          link's, which has a reason. A lost link has none: missing packets stay so, and the others become missing
+///          when they are due
 /// Explained  Every packet once all links have been down or lost for `link_down_s`, if lost until it is missing: what
 ///          comes over no link is not of now, however patient its rate; one that the phase does not promise after
 ///          `stale_least_s`; one without a promise once the links are lost, or, for a mission without a plan, after

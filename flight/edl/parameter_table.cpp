@@ -11,6 +11,11 @@
 
 namespace aeolis::flight {
 
+// Parameters::carry hands the table over as a block of doubles.
+static_assert(sizeof(Parameters) == sizeof(double) * std::ranges::count_if(parameter_specs, [](const auto& spec) {
+                                        return spec.member != nullptr;
+                                    }));
+
 std::array<std::uint8_t, parameter_rows_octets> rows_of(const Parameters& parameters) {
     std::array<std::uint8_t, parameter_rows_octets> octets{};
     BitWriter writer{octets};

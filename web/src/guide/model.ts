@@ -163,11 +163,11 @@ export function guideStep(
   // What a lesson says of a good day is not said on a bad one.
   const amiss = entriesAt(run, until).some(isAmiss);
   const plain = amiss
-    ? 'Something is not as it should be: the large line above says what, and “why” leads to it. What is no longer heard is old.'
+    ? 'Not all goes as it should: the large line above says what, or its list does. What is no longer heard is old.'
     : (LAYOUT.phases.find((phase) => phase.title === phases[now]?.title)?.plain ?? 'The vehicle flies by itself.');
   const pace = run.run.pace === 0 ? Infinity : run.run.pace;
   const paused = run.run.state === 'paused';
-  if (now <= 0 && run.seenE < NEAR_ENTRY_S) {
+  if (now <= 0 && run.seenE < NEAR_ENTRY_S && !amiss) {
     return {
       number: 3,
       title: 'Nothing to do until entry',
@@ -200,11 +200,11 @@ export function guideStep(
       : pace > FAST
         ? [{ key: '−', words: 'to 10× or less, to see it happen' }]
         : amiss
-          ? [{ key: 'a', words: 'acknowledges what is announced as an alarm' }]
+          ? [{ key: 'm', words: 'opens the list, where more matters than the line says' }]
           : [{ words: 'Watch the dot come down along the grey line, the predicted path.' }];
   return {
     number: now <= 0 ? 3 : Math.min(GUIDE_STEPS - 1, now + 2),
-    title: now <= 0 ? 'Entry is near' : (phases[now]?.title ?? ''),
+    title: now <= 0 && !amiss ? 'Entry is near' : (phases[Math.max(now, 0)]?.title ?? ''),
     why: plain,
     press,
     wants: !paused && !down && pace > FAST ? 'pace' : 'nothing',

@@ -136,16 +136,16 @@ describe('the guide', () => {
     ).toEqual(['p']);
   });
   it('says nothing of a good day while something is amiss, and is its old self after that', () => {
-    const store = (...entries: Parameters<typeof situation>[1][]) =>
+    const store = (e_s: number, ...entries: Parameters<typeof situation>[1][]) =>
       guideStep(
         aStore(
           [
             ...done(2),
             firing({ timepoint: 0, name: 'coolant_vent', firedSclk: 200 }),
-            samples(1100, { 1: 4 }),
+            samples(1000 + e_s, { 1: e_s < 0 ? 0 : 4 }),
             situation('2012-219T04:59:55.0', ...entries),
           ],
-          at(100, { pace: 1 }),
+          at(e_s, { pace: 1 }),
         ),
         aDictionary,
         aPlan,
@@ -153,10 +153,13 @@ describe('the guide', () => {
         'type',
         Infinity,
       );
-    const fault = store({ rank: 'news', subject: 'station', sentence: 'A fault on the ground' });
-    expect(fault?.why).toContain('not as it should be');
-    expect(keys(fault)).toEqual(['a']);
-    expect(store({ rank: 'news', subject: 'landed', sentence: 'Landed' })?.why).not.toContain('not as it should be');
+    const fault = { rank: 'news', subject: 'station', sentence: 'A fault on the ground' } as const;
+    expect(store(100, fault)?.why).toContain('Not all goes as it should');
+    expect(keys(store(100, fault))).toEqual(['m']);
+    expect(store(-700, fault)?.why).toContain('Not all goes as it should');
+    expect(store(-700, fault)?.title).not.toMatch(/Nothing to do|Entry is near/);
+    expect(store(100)?.why).not.toContain('Not all goes');
+    expect(store(100, { rank: 'news', subject: 'landed', sentence: 'Landed' })?.why).not.toContain('Not all goes');
   });
   it('slows nothing down once it has landed: then the recording comes down', () => {
     const landed = aStore(

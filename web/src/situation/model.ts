@@ -54,11 +54,11 @@ export function lookOf({ rank, subject, sentence }: Pick<Line, 'rank' | 'subject
 export const aside = signalOfRun<ReadonlySet<string>>(new Set());
 export const listShown = signal(false);
 
-/** News that is no loss. */
-const NO_LOSS = ['landed', 'commanding'];
-/** Whether an entry tells of what should not be, and is now. */
+/** News of what goes as it should. */
+const AS_IT_SHOULD = ['landed', 'commanding'];
+/** Whether an entry tells of danger, or of what did not go as it should and is news still. */
 export const isAmiss = ({ rank, subject }: Pick<NamedEntry, 'rank' | 'subject'>): boolean =>
-  rank === 'danger' || (rank === 'news' && !NO_LOSS.includes(subject));
+  rank === 'danger' || (rank === 'news' && !AS_IT_SHOULD.includes(subject));
 
 /** What the server said at `until` (SCLK), the most important first. */
 export const entriesAt = (run: RunStore | undefined, until: number): readonly NamedEntry[] =>

@@ -51,11 +51,12 @@ export function Situation() {
   const isLong = first && first.sentence.length + first.countdown.length > ONE_LINE;
   // What counts down keeps one size, however long the time is written.
   const isNews = first && first.countdown === '' && first.sentence.length <= NEWS;
+  const size = isLong ? 'situation-long' : isNews ? 'situation-news' : '';
   const look = first ? lookOf(first) : 'never';
   const [next, waiting] = [more.find((line) => !line.aside), more.filter((line) => !line.aside).length];
   return (
     <section
-      class={`situation ${first?.rank === 'lost' ? 'situation-lost' : ''} ${isLong ? 'situation-long' : isNews ? 'situation-news' : ''}`}
+      class={`situation ${first?.rank === 'lost' ? 'situation-lost' : ''} ${size}`}
       style={{ '--look': `var(--${STATUS[look].token})` }}
       data-testid="situation"
       data-rank={first?.rank}
