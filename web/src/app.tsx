@@ -15,7 +15,7 @@ import { Panel } from './design/panel';
 import { openedLater } from './design/opened_later';
 import { Phases } from './phases/view';
 import { Plots } from './plots/view';
-import { PaceBar, Rehearsal } from './rehearsal/view';
+import { PaceBar } from './rehearsal/pace';
 import { ReplayBar } from './replay/view';
 import { stream } from './run/connection';
 import { dismissNotice, modeNow, notices, runNow } from './run/shown';
@@ -43,7 +43,7 @@ const DATA = {
   links: openedLater(async () => (await import('./links/view')).Links),
   flown: openedLater(async () => (await import('./flown/view')).Flown),
   recorded: openedLater(async () => (await import('./recorded/view')).Recorded),
-  rehearsal: Rehearsal,
+  rehearsal: openedLater(async () => (await import('./rehearsal/view')).Rehearsal),
   campaigns: openedLater(async () => (await import('./campaigns/view')).Campaigns),
   what_if: openedLater(async () => (await import('./rehearsal/what_if')).WhatIf),
   vehicle: openedLater(async () => (await import('./vehicle/view')).Vehicle),

@@ -35,7 +35,12 @@ listenForCalls();
  * opened.
  */
 const loadSoon = () =>
-  Promise.all([import('./alarms/view'), import('./menu/view'), import('./commands/details')]).catch(() => undefined);
+  Promise.all([
+    import('./alarms/view'),
+    import('./menu/view'),
+    import('./commands/details'),
+    import('./rehearsal/view'),
+  ]).catch(() => undefined);
 
 /** Resolves once the content is known or a log-in is needed. */
 const known = new Promise<void>(

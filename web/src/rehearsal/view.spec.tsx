@@ -10,7 +10,8 @@ import type { ToWorker } from '../stream/messages';
 import { aDictionary, aRun, aStore } from '../testing/fixtures';
 import { aServer } from '../testing/server';
 import { attainedText, nextPace } from './model';
-import { PaceBar, Rehearsal, changePace, togglePause } from './view';
+import { PaceBar, changePace, togglePause } from './pace';
+import { Rehearsal } from './view';
 
 describe('the pace', () => {
   it('steps up to as fast as it goes, and down to one', () => {

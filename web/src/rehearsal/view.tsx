@@ -1,76 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rehearsals: a bar with pace and pause that is always visible, and a panel with the runs and the start of new ones.
+// The panel of rehearsals: the runs, and the start of new ones.
 import { signal } from '@preact/signals';
 import { mayRehearse, whyNotRehearse } from '../access/model';
 import { outcomeWords } from '../clocks/model';
 import { openedLater } from '../design/opened_later';
 import { STATUS } from '../design/status';
 import { canContinue, isReal } from '../mode/model';
-import { changeReplayPace, playOrHold } from '../replay/model';
 import { wordsFor } from '../run/api';
-import { control } from '../run/connection';
 import { startRehearsal, watch } from '../run/session';
-import { modeNow, pastRange, replay, runNow, runs, scenarios, store } from '../run/shown';
+import { pastRange, runNow, runs, scenarios, store } from '../run/shown';
 import { isGoing } from '../run/start';
 import { fromEntry } from '../run/time';
+import { EndRun } from './end_run';
 import { InstructorPanel } from './instructor_panel';
-import { PACES, attainedText, nextPace, paceText } from './model';
 import './style.css';
 
 const Review = openedLater(async () => (await import('./review')).Review);
-
-export function changePace(direction: 1 | -1): void {
-  const run = store.value;
-  if (replay.value) changeReplayPace(direction);
-  else if (run && modeNow() === 'rehearsal' && mayRehearse())
-    control({ action: 'pace', pace: nextPace(run.run.pace, direction) });
-}
-export function togglePause(): void {
-  const run = store.value;
-  if (replay.value) playOrHold();
-  else if (run && modeNow() === 'rehearsal' && mayRehearse())
-    control({ action: 'pause', pause: run.run.state !== 'paused' });
-}
-
-export function PaceBar() {
-  const run = runNow();
-  if (!run?.going || modeNow() !== 'rehearsal') return null;
-  const paused = run.run.state === 'paused';
-  const attained = <span class="attained">{paused ? 'paused' : attainedText(run.run.pace, run.run.attainedPace)}</span>;
-  if (!mayRehearse())
-    return (
-      <div class="pace-bar" data-testid="pace-bar">
-        <span>{paceText(run.run.pace)}</span>
-        {attained}
-      </div>
-    );
-  return (
-    <div class="pace-bar" role="group" aria-label="pace of the rehearsal" data-testid="pace-bar">
-      <button type="button" onClick={togglePause} data-testid="pause" title="key p">
-        {paused ? '▶ go on' : '❚❚ pause'}
-      </button>
-      <button type="button" onClick={() => changePace(-1)} aria-label="slower" title="key −">
-        −
-      </button>
-      <select
-        aria-label="pace"
-        data-testid="pace"
-        value={String(run.run.pace)}
-        onChange={(event) => control({ action: 'pace', pace: Number(event.currentTarget.value) })}
-      >
-        {[...new Set([...PACES, run.run.pace])].map((pace) => (
-          <option key={pace} value={String(pace)}>
-            {paceText(pace)}
-          </option>
-        ))}
-      </select>
-      <button type="button" onClick={() => changePace(1)} aria-label="faster" title="key +">
-        +
-      </button>
-      {attained}
-    </div>
-  );
-}
 
 const scenario = signal('nominal');
 const seed = signal('1');
@@ -116,33 +61,6 @@ function CatchingUp() {
         leave it alone
       </button>
     </p>
-  );
-}
-
-const ending = signal(''); // name and run of the button that was pressed once
-
-/** A button that ends the run. It ends the landing for everyone, so it takes two presses. */
-export function EndRun({ run, name, words }: { run: number; name: string; words: string }) {
-  const mine = `${name} ${run}`;
-  const sure = ending.value === mine;
-  return (
-    <button
-      type="button"
-      class={sure ? 'danger' : ''}
-      data-testid={name}
-      onBlur={() => (ending.value = '')}
-      onKeyDown={(event) => {
-        if (event.key !== 'Escape' || !sure) return;
-        ending.value = '';
-        event.stopPropagation();
-      }}
-      onClick={() => {
-        if (sure) control({ action: 'stop' }, run);
-        ending.value = sure ? '' : mine;
-      }}
-    >
-      {sure ? `▲ press again: run ${run} ends for everyone` : words}
-    </button>
   );
 }
 

@@ -5,7 +5,7 @@ import { TABS, bringUp, closeFull, full, placeOf, toggleFull } from '../places/m
 import type { Tab } from '../places/model';
 import { backFile, stage } from '../commands/file';
 import { back, openCommandLine, step, typeIntoLine } from '../commands/line';
-import { changePace, togglePause } from '../rehearsal/view';
+import { changePace, togglePause } from '../rehearsal/pace';
 import { toggleGuide } from '../guide/model';
 import { toggleRecording, toggleReplay } from '../replay/model';
 import { backToLive } from '../run/session';

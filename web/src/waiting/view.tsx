@@ -3,7 +3,7 @@ import { STATUS, held } from '../design/status';
 import { useEffect } from 'preact/hooks';
 import { chosen, lineFocused, openCommandLine, previewNow, step } from '../commands/line';
 import { mayRehearse, whyNotRehearse } from '../access/model';
-import { EndRun } from '../rehearsal/view';
+import { EndRun } from '../rehearsal/end_run';
 import { isLost, stream } from '../run/connection';
 import type { Dictionary } from '../run/dictionary';
 import { cutoff, dictionary, modeNow, runNow, takesCommands, timepoints } from '../run/shown';
