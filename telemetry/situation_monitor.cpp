@@ -58,7 +58,7 @@ constexpr std::array<std::string_view, 17> bad_tones{
 constexpr std::string_view fatal_tone = "check_failed";
 // Subjects.
 constexpr std::string_view landing = "landed", computer = "computer", station_fault = "station",
-                           commanding = "commanding";
+                           commanding = "commanding", recording = "recording";
 
 constexpr std::size_t sentence_octets_max = 240;  ///< chosen: two lines of the console
 constexpr double orbiter_soon_s = 600.0;          ///< chosen: nobody looks at a countdown to a pass beyond it
@@ -379,6 +379,8 @@ void SituationMonitor::tone(ToneId tone, double likelihood, Sclk start, const Or
 void SituationMonitor::link(const LinkState& state, const Origin& origin) {
     LinkRow& row = links_[state.link.name];
     if (state.link.name == uhf_live_link.name) note_touchdown_silence(state);
+    if (state.link.name == relay_link.name && landed_)
+        recording_told_ = recording_told_ || state.up || state.silence == SilenceClass::recording_complete;
     if (state.up) {
         note_loss(state.link.name, row, state.ert, origin);
         row = LinkRow{};
@@ -485,7 +487,10 @@ void SituationMonitor::explained(const Explanation& explanation, const Origin& o
 
 Entries SituationMonitor::at(Ert now) const {
     Entries all = news_;
-    if (landed_) all.push_back(touchdown_told_ ? *touchdown_told_ : *landed_);
+    if (landed_) {
+        all.push_back(touchdown_told_ ? *touchdown_told_ : *landed_);
+        if (recording_follows()) all.back().rank = SituationRank::lasting;
+    }
     const bool silent = add_not_heard(all, now);
     add_links(all, now, silent);
     if (!silent) add_waiting(all, now);
@@ -710,8 +715,13 @@ void SituationMonitor::add_step(Entries& all, std::size_t next, Ert now) const {
     all.push_back(std::move(entry));
 }
 
+bool SituationMonitor::recording_follows() const {
+    return touchdown_verdict_ == TouchdownVerdict::confirmed && recording_told_;
+}
+
 void SituationMonitor::add_recording(Entries& all, Ert now) const {
-    SituationEntry entry{SituationRank::waiting, "recording", "Waiting for the recording", {}, 0, last_change(), {}};
+    SituationEntry entry{
+        SituationRank::waiting, std::string(recording), "Waiting for the recording", {}, 0, last_change(), {}};
     if (landed_) entry.since = landed_->since;
     if (const auto found = links_.find(relay_link.name); found != links_.end()) {
         const LinkRow& link = found->second;
@@ -719,14 +729,15 @@ void SituationMonitor::add_recording(Entries& all, Ert now) const {
         entry.evidence_seq = link.seq;
         entry.evidence = "link " + relay_link.name;
         if (link.up) {
+            if (recording_follows()) entry.rank = SituationRank::news;
             entry.sentence =
                 landed_ ? "The recording comes down" : "The recording comes down; it has not told of a landing yet";
         } else if (link.silence == SilenceClass::recording_complete) {
-            entry.rank = SituationRank::calm;
+            entry.rank = recording_follows() ? SituationRank::news : SituationRank::calm;
             entry.sentence = "The recording is complete";
         } else if (link.until) {
             entry.sentence += ": " + capitalised(link.words);
-            entry.awaited = "recording";
+            entry.awaited = recording;
             entry.at = link.until;
             entry.overdue = now > *link.until;
         } else if (link.silence == SilenceClass::no_orbiter) {

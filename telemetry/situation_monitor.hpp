@@ -24,10 +24,10 @@ namespace aeolis::telemetry {
 /// It is a fold over items in their order: equal items give equal situations, live, after a restart or flown again.
 /// In       facts, each with the number of its item; the time on Earth
 /// Out      the ranked list for that time, the most important first
-/// Rules    News stays until something follows it. A prediction excuses neither a silence that began without one nor a
-///          fault that the station knows. A touchdown is reported by its own evidence
-///          alone, and confirmed or contradicted as touchdown.hpp has it. A predicted time that has
-///          passed is overdue, and none is given where nothing is predicted
+/// Rules    News stays until something follows it: a confirmed touchdown until the recording comes, and lasts from
+///          then. A prediction excuses neither a silence that began without one nor a fault that the station knows.
+///          A touchdown is reported by its own evidence alone, and confirmed or contradicted as touchdown.hpp has it.
+///          A predicted time that has passed is overdue, and none is given where nothing is predicted
 /// Memory   bounded: entries_max entries; a row a link, a timepoint, a command under way
 class SituationMonitor {
   public:
@@ -144,6 +144,7 @@ class SituationMonitor {
     bool add_not_heard(std::vector<SituationEntry>& all, Ert now) const;
     void add_waiting(std::vector<SituationEntry>& all, Ert now) const;
     void add_step(std::vector<SituationEntry>& all, std::size_t next, Ert now) const;
+    bool recording_follows() const;  ///< the confirmed touchdown, as news
     void add_recording(std::vector<SituationEntry>& all, Ert now) const;
     void add_lasting(std::vector<SituationEntry>& all, Ert now) const;
 
@@ -157,6 +158,7 @@ class SituationMonitor {
     TouchdownFacts touchdown_facts_;  ///< the newest of each kind, by the vehicle's time
     TouchdownVerdict touchdown_verdict_{};
     std::optional<SituationEntry> touchdown_told_;  ///< in place of landed_: confirmed or contradicted
+    bool recording_told_ = false;                   ///< after touchdown it has begun to come, or is complete
     std::optional<Ert> last_heard_;
     struct Pass {
         Ert rises;

@@ -7,8 +7,10 @@ import { existsSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import path from 'node:path';
 import { root } from './support.mjs';
 
-const TILE_PX = 8;
-const DIFFERS = 28; // of 255, in any colour
+/** The size of a tile, and how far its mean may lie from the stored one: of 255, in any colour. */
+const FINE = { tile_px: 8, differs: 28 };
+/** For many pictures of whole windows: a sixteenth of the octets; a panel that moved or is empty shows all the same. */
+export const COARSE = { tile_px: 32, differs: 10 };
 // a colour of at least this share of tiles is background: the page, a panel, edges, table lines
 const GROUND_SHARE = 0.004;
 const GROUND_NEAR = 5; // of 255
@@ -37,15 +39,15 @@ function differentTraces(name, now, stored) {
 }
 
 /** Compares with the stored picture; undefined, or a line that states the difference. */
-export async function comparePicture(page, name, screenshot) {
+export async function comparePicture(page, name, screenshot, { tile_px, differs: limit } = FINE) {
   const file = path.join(folder, `${name}.png`);
   const traces = await page.evaluate(columnsOfTraces, TRACES);
   if (process.env.AEOLIS_RENEW_PICTURES) {
-    for (const each of [folder, wholeFolder]) mkdirSync(each, { recursive: true });
+    for (const each of [folder, wholeFolder]) mkdirSync(path.dirname(path.join(each, name)), { recursive: true });
     writeFileSync(path.join(wholeFolder, `${name}.png`), screenshot);
     writeFileSync(
       file,
-      Buffer.from((await page.evaluate(inPage, { png: screenshot.toString('base64'), tile: TILE_PX })).png, 'base64'),
+      Buffer.from((await page.evaluate(inPage, { png: screenshot.toString('base64'), tile: tile_px })).png, 'base64'),
     );
     const { [name]: _before, ...others } = storedTraces();
     const all = traces.length > 0 ? { ...others, [name]: traces } : others;
@@ -59,8 +61,8 @@ export async function comparePicture(page, name, screenshot) {
   const { width, height, differs } = await page.evaluate(inPage, {
     png: screenshot.toString('base64'),
     stored: readFileSync(file).toString('base64'),
-    tile: TILE_PX,
-    limit: DIFFERS,
+    tile: tile_px,
+    limit,
     share: GROUND_SHARE,
     near: GROUND_NEAR,
   });
@@ -80,11 +82,11 @@ const RENEWED_AFTER_MS = 1500; // longer than history and a draw after it take, 
  * Waits until `what` matches the stored picture; undefined, or the remaining difference. On a busy machine the page's
  * successive requests take seconds.
  */
-export async function comesToLook(page, name, what) {
+export async function comesToLook(page, name, what, fineness = FINE) {
   if (process.env.AEOLIS_RENEW_PICTURES) await page.waitForTimeout(RENEWED_AFTER_MS);
   const end = Date.now() + SETTLES_MS;
   for (;;) {
-    const found = await comparePicture(page, name, await what.screenshot({ animations: 'disabled' }));
+    const found = await comparePicture(page, name, await what.screenshot({ animations: 'disabled' }), fineness);
     if (found.length === 0 || Date.now() > end) return found;
     await page.waitForTimeout(250);
   }

@@ -294,11 +294,15 @@ TEST_CASE("nothing that the situation says over a landing is false, and a landin
         for (const auto& entry : at.situation.entries()) {
             CAPTURE(entry.sentence());
             CHECK(entry.rank() != SituationEntry::danger);
-            const auto known = std::set<std::string>{"landed", "commanding"};
+            const auto known = std::set<std::string>{"landed", "commanding", "recording"};
             if (entry.rank() == SituationEntry::news) CHECK(known.contains(entry.subject()));
         }
     CHECK_THAT(find(told.seconds.back().situation, "landed")->sentence(),
                Catch::StartsWith("Touchdown confirmed, at E+7:"));
+    CHECK(find(told.seconds.back().situation, "landed")->rank() == SituationEntry::lasting);
+    const auto& first = told.seconds.back().situation.entries(0);
+    CHECK(first.sentence() == "The recording is complete");
+    CHECK(first.rank() == SituationEntry::news);
 }
 
 TEST_CASE("when the prime computer fails, the situation says which computer flies, and since when",

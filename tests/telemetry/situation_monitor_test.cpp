@@ -297,6 +297,30 @@ TEST_CASE("a touchdown is confirmed in the second in which all three signals are
     CHECK(ground.sentence(605.0) == "Touchdown confirmed, at E+7:12");
 }
 
+TEST_CASE(
+    "a confirmed touchdown is news until its recording comes, and lasts from then; one reported alone stays first",
+    "[situation][touchdown]") {
+    Ground ground;
+    ground.up(uhf_live_link, -100.0);
+    ground.event("TOUCHDOWN", 432.5, "Touchdown");
+    ground.down(uhf_live_link, 460.0, "switched off: as planned", false);
+    ground.up(relay_link, 500.0);
+    CHECK(ground.sentence(501.0) == "Touchdown reported at E+7:12");
+    CHECK(ground.about("recording", 501.0)->rank == Rank::waiting);
+    ground.down(relay_link, 510.0, "no orbiter in view", false, 900.0);
+    for (double e_s = 433.0; e_s < 444.0; e_s += 1.0)
+        ground.monitor.touchdown({sclk(e_s), 1.0, 0.0007, still_weight_mps2, true}, ground.from(e_s));
+    const auto landed = ground.about("landed", 511.0);
+    CHECK(landed->sentence == "Touchdown confirmed, at E+7:12");
+    CHECK(landed->rank == Rank::lasting);
+    CHECK(ground.about("recording", 511.0)->rank == Rank::waiting);
+    ground.up(relay_link, 900.0);
+    CHECK(ground.first(901.0).sentence == "The recording comes down");
+    CHECK(ground.first(901.0).rank == Rank::news);
+    ground.monitor.touchdown({sclk(1000.0), 0.0, 0.0007, still_weight_mps2, true}, ground.from(1000.0));
+    CHECK(ground.first(1001.0).sentence.starts_with("Touchdown contradicted"));
+}
+
 TEST_CASE("samples of the touchdown that come late or doubled are judged by the time on board",
           "[situation][touchdown][R53]") {
     const auto confirmed_after = [](const std::vector<double>& order) {

@@ -14,12 +14,22 @@ export const LAYOUT = {
   /** The event that ground makes when Doppler shows a feature of the flight. */
   seenByDoppler: 'SEEN_BY_DOPPLER',
 
-  /** Plots from top to bottom. `per` converts the dictionary's unit to the displayed one. */
+  /**
+   * Plots from top to bottom. `per` converts the dictionary's unit to the displayed one. `linearBelow`, in that: the axis
+   * is linear up to there and logarithmic above, for what ends far below where it began.
+   */
   plots: [
-    { title: 'Altitude', channel: ['altitude_m'], unit: 'km', per: 1000, digits: 2 },
-    { title: 'Speed', channel: ['speed_mps'], unit: 'm/s', per: 1, digits: 1 },
-    { title: 'Deceleration', channel: ['sensed_deceleration_g', 'drag_mps2'], unit: undefined, per: 1, digits: 2 },
-    { title: 'Bank', channel: ['bank_deg'], unit: 'deg', per: 1, digits: 1 },
+    { title: 'Altitude', channel: ['altitude_m'], unit: 'km', per: 1000, digits: 2, linearBelow: 0.1 },
+    { title: 'Speed', channel: ['speed_mps'], unit: 'm/s', per: 1, digits: 1, linearBelow: undefined },
+    {
+      title: 'Deceleration',
+      channel: ['sensed_deceleration_g', 'drag_mps2'],
+      unit: undefined,
+      per: 1,
+      digits: 2,
+      linearBelow: undefined,
+    },
+    { title: 'Bank', channel: ['bank_deg'], unit: 'deg', per: 1, digits: 1, linearBelow: undefined },
   ],
 
   /**

@@ -32,6 +32,24 @@ export function valueTicks(low: number, high: number, high_px: number): number[]
   return ticks(low, high, valueStep(high - low, 1));
 }
 
+/**
+ * The ticks of an axis that is linear about zero and logarithmic above `linear_below`: zero and powers of ten, those
+ * that are apart; round numbers, if fewer than two of them are in sight.
+ */
+export function decadeTicks(low: number, high: number, high_px: number, linear_below: number): number[] {
+  const at = (value: number) => Math.asinh(value / linear_below);
+  const px = high_px / (at(high) - at(low));
+  const shown = low <= 0 && high >= 0 ? [0] : [];
+  const decades = Math.ceil(Math.log10(Math.max(high, -low) / linear_below));
+  for (let power = decades; power >= 0; --power)
+    for (const sign of [1, -1]) {
+      const value = sign * Number((linear_below * 10 ** power).toPrecision(1));
+      const isApart = shown.every((other) => Math.abs(at(value) - at(other)) * px >= LEAST_APART_PX);
+      if (value >= low && value <= high && isApart) shown.push(value);
+    }
+  return shown.length > 1 ? shown.sort((one, other) => one - other) : valueTicks(low, high, high_px);
+}
+
 export function ticks(from: number, to: number, step: number): number[] {
   const all: number[] = [];
   for (let n = Math.ceil(from / step - 1e-9); n * step <= to + step * 1e-9 && all.length < 200; ++n) all.push(n * step);

@@ -3,6 +3,8 @@
 import { SOURCES, STATUS } from '../design/status';
 import { LAYOUT } from '../layout';
 import type { RunStore } from '../run/store';
+import { isAmiss } from '../situation/model';
+import { newsOf } from '../situation/news';
 
 interface EventLine {
   key: string;
@@ -15,6 +17,8 @@ interface EventLine {
   live: boolean;
   recorded: boolean;
   explanation: boolean;
+  /** The ground itself tells it. */
+  ground: boolean;
 }
 
 export const LEVELS = [
@@ -91,6 +95,28 @@ export function eventLines(
       live: row.live,
       recorded: row.recorded,
       explanation: false,
+      ground: row.fact.name === LAYOUT.seenByDoppler,
+    });
+  }
+  // What the ground found by itself; what it repeats of an event stands in its row already.
+  for (const { seq, ert_s, rank, subject, sentence, evidence } of newsOf(store)) {
+    const sclk = store.sclkSeenAt(ert_s);
+    if (evidence.startsWith('event ') || !inRange(sclk)) continue;
+    const level = rank === 'danger' ? 'WARNING_HI' : isAmiss({ rank, subject }) ? 'WARNING_LO' : 'ACTIVITY_HI';
+    if (LEVELS.indexOf(level) >= LEVELS.indexOf('WARNING_LO')) ++warnings;
+    if (LEVELS.indexOf(level) < least) continue;
+    lines.push({
+      key: `s${seq} ${sentence}`,
+      seq,
+      e_s: sclk - store.entrySclk,
+      level,
+      name: '',
+      text: sentence,
+      why: [],
+      live: true,
+      recorded: false,
+      explanation: false,
+      ground: true,
     });
   }
   for (const row of store.explanations) {
@@ -120,6 +146,7 @@ export function eventLines(
         live: row.live,
         recorded: row.recorded,
         explanation: true,
+        ground: false,
       });
     }
   }
@@ -128,11 +155,11 @@ export function eventLines(
   return { lines: found.slice(0, most), found: found.length, warnings };
 }
 
-export function sourceWords(line: { name: string; live: boolean; recorded: boolean }): {
+export function sourceWords(line: Pick<EventLine, 'live' | 'recorded' | 'ground'>): {
   shape: string;
   words: string;
 } {
-  if (line.name === LAYOUT.seenByDoppler) return { shape: '≈', words: 'made on ground' };
+  if (line.ground) return { shape: '≈', words: 'made on ground' };
   const { uhf, recording } = SOURCES;
   if (line.live && line.recorded)
     return { shape: uhf.shape + recording.shape, words: 'seen live and found in the recording' };

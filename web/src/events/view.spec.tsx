@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import { describe, expect, it } from 'vitest';
 import { SOURCES, STATUS } from '../design/status';
-import { aStore, event, explanation } from '../testing/fixtures';
+import { aStore, event, explanation, situation } from '../testing/fixtures';
 import { LEVELS, eventLines, levelShape, sourceWords } from './model';
 
 const all = { from: 'DIAGNOSTIC', search: '', range: undefined } as const;
@@ -41,9 +41,33 @@ describe('events', () => {
         [true, false],
         [false, true],
         [true, true],
-      ].map(([live = false, recorded = false]) => sourceWords({ name: 'A', live, recorded }).shape),
+      ].map(([live = false, recorded = false]) => sourceWords({ live, recorded, ground: false }).shape),
     ).toEqual(['◆', '▣', '◆▣']);
-    expect(sourceWords({ name: 'SEEN_BY_DOPPLER', live: true, recorded: false }).words).toBe('made on ground');
+    expect(sourceWords({ live: true, recorded: false, ground: true }).words).toBe('made on ground');
+  });
+  it('have what the ground itself lost or found among them, once, and not what it repeats of an event', () => {
+    const lost = {
+      rank: 'danger' as const,
+      subject: 'station',
+      sentence: 'A fault on the ground',
+      evidence: 'the station',
+    };
+    const over = { rank: 'lasting' as const, subject: 'loss of station', sentence: 'Station was lost from E−1:50' };
+    const landed = { rank: 'news' as const, subject: 'landed', sentence: 'Touchdown confirmed', evidence: 'told' };
+    const told = { ...landed, subject: 'computer', sentence: 'On the backup', evidence: 'event SECOND_CHANCE' };
+    const store = aStore([
+      situation('2012-219T04:59:52.0', lost),
+      situation('2012-219T04:59:55.0', lost, told),
+      situation('2012-219T04:59:58.0', landed, over, { rank: 'waiting', subject: 'recording', sentence: 'Waiting' }),
+    ]);
+    const { lines, warnings } = eventLines(store, { ...all, from: 'ACTIVITY_LO' }, 10);
+    expect(warnings).toBe(1);
+    expect(lines.map(({ text, level, e_s }) => [text, level, Math.round(e_s)])).toEqual([
+      ['Touchdown confirmed', 'ACTIVITY_HI', -102],
+      ['Station was lost from E−1:50', 'ACTIVITY_HI', -102],
+      ['A fault on the ground', 'WARNING_HI', -108],
+    ]);
+    expect(eventLines(store, { ...all, range: { from: -300, to: -105 } }, 10).lines).toHaveLength(1);
   });
   it('beyond what is shown are counted', () => {
     const store = aStore(['A', 'B', 'C'].map((name, i) => event({ name, sclk: 900 + i })));

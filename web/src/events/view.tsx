@@ -71,7 +71,7 @@ export function Events() {
               key={line.key}
               class={`event level-${line.level}`}
               data-event={line.name}
-              data-menu={`timepoint ${line.name}`}
+              data-menu={line.name === '' ? undefined : `timepoint ${line.name}`}
               data-at={line.e_s}
             >
               <time>{fromEntry(line.e_s, { tenths: true })}</time>

@@ -46,27 +46,59 @@ export function predictedBounds(
 export const samplesAhead = ({ series, entry_sclk, now_e_s }: PredictedLine, to_e_s: number): number =>
   Math.max(0, series.firstAfter(entry_sclk + to_e_s) - series.firstAfter(entry_sclk + now_e_s));
 
-const paths = new WeakMap<uPlot, { key: string; path: Path2D }>();
+/** The predicted line as it was drawn, with the ends of both axes at that time. */
+interface Kept {
+  key: string;
+  x: [number, number];
+  y: [number, number];
+  picture: OffscreenCanvas;
+}
+const pictures = new WeakMap<uPlot, Kept>();
+const STANDS_PX = 0.5; // chosen: a line that would move by less stands
 
-/** The predicted line between two times in the pixels of the plot, kept while neither it nor the axes change. */
-function pathOf(plot: uPlot, { series, entry_sclk, per, gap_s }: PredictedLine, from: number, to: number): Path2D {
-  const [x0, y0] = [plot.valToPos(from, 'x', true), plot.valToPos(0, 'y', true)];
-  const [x_px, y_px] = [(plot.valToPos(to, 'x', true) - x0) / (to - from), plot.valToPos(1, 'y', true) - y0];
-  const key = `${predictedVersion.peek()} ${entry_sclk} ${per} ${from} ${to} ${x0} ${y0} ${x_px} ${y_px}`;
-  const kept = paths.get(plot);
-  if (kept?.key === key) return kept.path;
-  const path = new Path2D();
-  const end = Math.min(series.length, series.firstAfter(entry_sclk + to) + 1);
+/** Whether the ends of the axis are where they were when the line was drawn. */
+const stands = (plot: uPlot, axis: 'x' | 'y', ends: [number, number], [begin, end]: [number, number]): boolean =>
+  Math.abs(plot.valToPos(ends[0], axis, true) - begin) < STANDS_PX &&
+  Math.abs(plot.valToPos(ends[1], axis, true) - end) < STANDS_PX;
+
+/**
+ * The predicted line in the pixels of the plot. Dashes over a busy line cost more than all else in a plot, so it is
+ * drawn again only once an axis has moved by half a pixel.
+ */
+function pictureOf(plot: uPlot, line: PredictedLine, x: [number, number], y: [number, number]): OffscreenCanvas {
+  const { left, top, width, height } = plot.bbox;
+  const { series, entry_sclk, per, gap_s } = line;
+  const colours = palette();
+  const key = `${predictedVersion.peek()} ${entry_sclk} ${per} ${width} ${height} ${colours.name}`;
+  const kept = pictures.get(plot);
+  if (
+    kept?.key === key &&
+    stands(plot, 'x', kept.x, [left, left + width]) &&
+    stands(plot, 'y', kept.y, [top + height, top])
+  )
+    return kept.picture;
+  const picture = kept?.key === key ? kept.picture : new OffscreenCanvas(width, height);
+  const ctx = picture.getContext('2d');
+  if (!ctx) return picture;
+  const ratio = window.devicePixelRatio || 1;
+  ctx.clearRect(0, 0, width, height);
+  ctx.strokeStyle = colours.dim;
+  ctx.lineWidth = ratio;
+  ctx.setLineDash(DASH.map((each) => each * ratio));
+  ctx.beginPath();
+  const end = Math.min(series.length, series.firstAfter(entry_sclk + x[1]) + 1);
   let before = -Infinity;
-  for (let i = Math.max(0, series.firstAfter(entry_sclk + from) - 1); i < end; ++i) {
+  for (let i = Math.max(0, series.firstAfter(entry_sclk + x[0]) - 1); i < end; ++i) {
     const e_s = (series.sclk[i] as number) - entry_sclk;
-    const [px, py] = [x0 + (e_s - from) * x_px, y0 + ((series.value[i] as number) / per) * y_px];
-    if (e_s - before > gap_s) path.moveTo(px, py);
-    else path.lineTo(px, py);
+    const px = plot.valToPos(e_s, 'x', true) - left;
+    const py = plot.valToPos((series.value[i] as number) / per, 'y', true) - top;
+    if (e_s - before > gap_s) ctx.moveTo(px, py);
+    else ctx.lineTo(px, py);
     before = e_s;
   }
-  paths.set(plot, { key, path });
-  return path;
+  ctx.stroke();
+  pictures.set(plot, { key, x, y, picture });
+  return picture;
 }
 
 /** Draws the predicted line, and a hollow dot on it for now; of a difference the line is zero. */
@@ -74,7 +106,8 @@ export function drawPredictedLine(plot: uPlot, line: PredictedLine, isDifference
   const { ctx } = plot;
   const { left, top, width, height } = plot.bbox;
   const { min: from, max: to } = plot.scales.x ?? {};
-  if (from === undefined || to === undefined) return;
+  const { min: low, max: high } = plot.scales.y ?? {};
+  if (from === undefined || to === undefined || low === undefined || high === undefined) return;
   const ratio = window.devicePixelRatio || 1;
   const colours = palette();
   const x = (e_s: number) => plot.valToPos(e_s, 'x', true);
@@ -86,9 +119,9 @@ export function drawPredictedLine(plot: uPlot, line: PredictedLine, isDifference
   ctx.strokeStyle = colours.dim;
   ctx.globalAlpha = FAINT;
   ctx.lineWidth = ratio;
-  ctx.setLineDash(DASH.map((each) => each * ratio));
-  ctx.beginPath();
   if (isDifference) {
+    ctx.setLineDash(DASH.map((each) => each * ratio));
+    ctx.beginPath();
     ctx.moveTo(left, y(0));
     ctx.lineTo(left + width, y(0));
     ctx.stroke();
@@ -96,10 +129,9 @@ export function drawPredictedLine(plot: uPlot, line: PredictedLine, isDifference
     return;
   }
   const { series, entry_sclk, per, gap_s, channel, now_e_s } = line;
-  ctx.stroke(pathOf(plot, line, from, to));
+  ctx.drawImage(pictureOf(plot, line, [from, to], [low, high]), left, top);
   const now = predictedAt(channel, series, entry_sclk + now_e_s, gap_s);
   if (now !== undefined) {
-    ctx.setLineDash([]);
     ctx.globalAlpha = 1;
     ctx.beginPath();
     ctx.arc(x(now_e_s), y(now / per), RADIUS * ratio, 0, 7);

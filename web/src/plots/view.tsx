@@ -4,7 +4,7 @@ import { useLayoutEffect, useRef } from 'preact/hooks';
 import uPlot from 'uplot';
 import 'uplot/dist/uPlot.min.css';
 import { TYPE } from '../design/type';
-import { CHARACTER_PX, axisNumber, shortLabel, shortStep, ticks, valueTicks } from '../draw/axis';
+import { CHARACTER_PX, axisNumber, decadeTicks, shortLabel, shortStep, ticks, valueTicks } from '../draw/axis';
 import { grownBy } from '../draw/canvas';
 import { onDraw } from '../draw/loop';
 import { palette } from '../draw/palette';
@@ -49,6 +49,8 @@ interface Properties {
   over?: readonly DictionaryChannel[];
   /** Of the reading; left out: those that fit the value. */
   digits?: number | undefined;
+  /** The axis of values is logarithmic above this, in `unit`; left out: linear. */
+  linearBelow?: number | undefined;
 }
 
 const X_AXIS_PX = 22;
@@ -103,7 +105,12 @@ function drawPredicted(plot: uPlot, channel: DictionaryChannel, per: number): vo
   if (line) drawing?.drawPredictedLine(plot, line, showsDifference(channel));
 }
 
-function options(width: number, height: number, { channel, per, over }: Properties): uPlot.Options {
+function options(
+  width: number,
+  height: number,
+  { channel, per, over }: Properties,
+  linear_below: number | undefined,
+): uPlot.Options {
   const colours = palette();
   const label = shortLabel(shownRun()?.entryKnown !== false);
   const axis = {
@@ -119,7 +126,7 @@ function options(width: number, height: number, { channel, per, over }: Properti
     pxAlign: 1,
     padding: [6, RIGHT_PX, 0, 0],
     cursor: { show: false }, // our own cursor is shared by plots, tones and timeline
-    scales: { x: { time: false } },
+    scales: { x: { time: false }, ...(linear_below !== undefined && { y: { distr: 4, asinh: linear_below } }) },
     axes: [
       {
         ...axis,
@@ -137,7 +144,11 @@ function options(width: number, height: number, { channel, per, over }: Properti
         // as wide as its longest number: those of a large constant are whole too
         size: (_plot, words) => Math.max(Y_AXIS_PX, ...(words ?? []).map((each) => each.length * CHARACTER_PX + 10)),
         gap: 4,
-        splits: (plot, _index, low, high) => valueTicks(low, high, plot.height - X_AXIS_PX),
+        splits: (plot, _index, low, high) =>
+          linear_below === undefined
+            ? valueTicks(low, high, plot.height - X_AXIS_PX)
+            : decadeTicks(low, high, plot.height - X_AXIS_PX, linear_below),
+        filter: (_plot, splits) => splits, // of a logarithmic axis, too: they have their distance already
         values: (_plot, splits) => splits.map(axisNumber),
       },
     ],
@@ -278,7 +289,7 @@ export function toggleDifference(): void {
 const wordsOf = (name: string) => inWords(name).replace(/ (m|km|mps|mps2|g|deg|dps|s|n|kg|pa)$/, '');
 
 function Plot(properties: Properties) {
-  const { title, channel, unit, per, digits, over = [] } = properties;
+  const { title, channel, unit, per, digits, over = [], linearBelow } = properties;
   const box = useRef<HTMLDivElement>(null);
   const mark = useRef<HTMLElement>(null);
   const drawn = useRef<uPlot | undefined>(undefined);
@@ -309,7 +320,8 @@ function Plot(properties: Properties) {
       const span = plotSpanOf(run, channel.id, isAhead());
       const isDifference = showsDifference(channel);
       const line = lineOf(channel, per);
-      const newShape = `${palette().name} ${run?.entryKnown} ${channel.id} ${over.map(({ id }) => id).join()}`;
+      const linear_below = isDifference ? undefined : linearBelow;
+      const newShape = `${palette().name} ${run?.entryKnown} ${channel.id} ${over.map(({ id }) => id).join()} ${linear_below}`;
       const changes = LIVE_LINKS.map((link) => run?.links.get(link) ?? []);
       const silences = changes.reduce((all, each) => all + each.length, 0);
       // a present silence grows with the clock, without new samples
@@ -329,7 +341,7 @@ function Plot(properties: Properties) {
         if (!plot || newShape !== shape) {
           plot?.destroy();
           shape = newShape;
-          plot = drawn.current = new uPlot(options(width, height, properties), [[], [], []], element);
+          plot = drawn.current = new uPlot(options(width, height, properties, linear_below), [[], [], []], element);
         } else if (plot.width !== width || plot.height !== height) {
           plot.setSize({ width, height });
         }
@@ -363,6 +375,7 @@ function Plot(properties: Properties) {
                   ...((line && drawing?.predictedBounds(line, span.from, span.to)) ?? []),
                   ...(run ? extremes(run, over, channel.unit, span).map((each) => each / per) : []),
                 ],
+            linear_below,
           );
           plot?.setScale('y', { min: low, max: high });
         });
@@ -373,7 +386,7 @@ function Plot(properties: Properties) {
       stop();
       plot?.destroy();
     };
-  }, [channel.id, per, over.length]);
+  }, [channel.id, per, over.length, linearBelow]);
 
   void tick.value;
   const run = shownRun();
@@ -518,8 +531,12 @@ function holesOf([x, silent, lit]: Aligned): number {
   return holes;
 }
 
-/** The range of the axis: all data, and what else must be in sight. */
-function bounds(data: readonly (readonly (number | null | undefined)[])[], also: readonly number[]): [number, number] {
+/** The range of the axis: all data, and what else must be in sight, with a margin of the axis's length. */
+function bounds(
+  data: readonly (readonly (number | null | undefined)[])[],
+  also: readonly number[],
+  linear_below: number | undefined,
+): [number, number] {
   let low = Math.min(Infinity, ...also);
   let high = Math.max(-Infinity, ...also);
   for (const values of data.slice(1)) {
@@ -530,8 +547,11 @@ function bounds(data: readonly (readonly (number | null | undefined)[])[], also:
     }
   }
   if (low > high) return [0, 1];
-  const margin = high > low ? (high - low) * 0.06 : Math.max(1, Math.abs(high) * 0.1);
-  return [low - margin, high + margin];
+  const onAxis = (value: number) => (linear_below === undefined ? value : Math.asinh(value / linear_below));
+  const valueAt = (at: number) => (linear_below === undefined ? at : Math.sinh(at) * linear_below);
+  const length = onAxis(high) - onAxis(low);
+  const margin = length > 0 ? length * 0.06 : linear_below === undefined ? Math.max(1, Math.abs(high) * 0.1) : 0.1;
+  return [valueAt(onAxis(low) - margin), valueAt(onAxis(high) + margin)];
 }
 
 export function Plots() {
@@ -553,6 +573,7 @@ export function Plots() {
               unit={pick?.unit ?? channel.unit}
               per={pick?.per ?? 1}
               digits={pick?.digits}
+              linearBelow={pick?.linearBelow}
             />
           );
         })}
@@ -577,6 +598,7 @@ export function Plots() {
             unit={(scaled && pick.unit) || channel.unit}
             per={scaled ? pick.per : 1}
             digits={pick.digits}
+            linearBelow={known && pick.linearBelow}
           />
         );
       })}

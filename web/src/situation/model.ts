@@ -11,6 +11,7 @@ import type { RunStore } from '../run/store';
 import { choice, spanNow } from '../run/window';
 import type { NamedEntry } from '../stream/names';
 import { countdownWords } from './countdown';
+import { shortWords } from './news';
 
 export type Rank = NamedEntry['rank'] | 'lost';
 /** An entry as it is drawn. Times in seconds from entry; NaN: not known. */
@@ -44,9 +45,9 @@ export const LOOKS: Record<Rank, Status> = {
   calm: 'good',
   lasting: 'caution',
 };
-/** A touchdown is good news; a link that is silent is silent, however calm that leaves people. */
+/** A touchdown is good news, and so is its recording; a link that is silent is silent, however calm that leaves people. */
 export function lookOf({ rank, subject, sentence }: Pick<Line, 'rank' | 'subject' | 'sentence'>): Status {
-  if (rank === 'news' && subject === 'landed') return 'holds';
+  if (rank === 'news' && (subject === 'landed' || subject === 'recording')) return 'holds';
   return rank === 'calm' && / silent\b/.test(sentence) ? 'quiet' : LOOKS[rank];
 }
 
@@ -55,7 +56,7 @@ export const aside = signalOfRun<ReadonlySet<string>>(new Set());
 export const listShown = signal(false);
 
 /** News of what goes as it should. */
-const AS_IT_SHOULD = ['landed', 'commanding'];
+const AS_IT_SHOULD = ['landed', 'commanding', 'recording'];
 /** Whether an entry tells of danger, or of what did not go as it should and is news still. */
 export const isAmiss = ({ rank, subject }: Pick<NamedEntry, 'rank' | 'subject'>): boolean =>
   rank === 'danger' || (rank === 'news' && !AS_IT_SHOULD.includes(subject));
@@ -120,7 +121,7 @@ export function situationOf(
       .filter(({ rank }) => rank === 'lasting')
       .map(({ subject, sentence }) => ({
         subject,
-        words: (sentence.split(/ since | from |, |: /)[0] ?? sentence).replace(/^Flying on/, 'on'),
+        words: shortWords(sentence),
         sentence,
       })),
   };

@@ -7,6 +7,8 @@ import type { Dictionary } from '../run/dictionary';
 import type { Explanation } from '../gen/aeolis/v1/items_pb';
 import type { TimepointRow } from '../gen/aeolis/v1/run_pb';
 import type { NamedLink } from '../stream/names';
+import { isAmiss } from '../situation/model';
+import { newsOf, shortWords } from '../situation/news';
 import { heardOf, lastHeard, speaksOf } from './heard';
 import type { Heard } from './heard';
 
@@ -53,6 +55,8 @@ export interface Lanes {
   heardByTone: Mark[];
   /** Features of the flight that the carrier's Doppler shows, and when ground had recognised each. */
   doppler: { e_s: number; told_e_s: number; text: string }[];
+  /** What went amiss on board, as the banner told it: since when, in short words, and whether it is danger. */
+  amiss: { e_s: number; words: string; danger: boolean }[];
   liveOutages: Outage[];
   toneOutages: Outage[];
   relay: number;
@@ -72,6 +76,7 @@ export function lanesOf(store: RunStore, plan: readonly TimepointRow[], cutoff: 
     recorded: [],
     heardByTone: [],
     doppler: featuresSeen(store, cutoff),
+    amiss: amissOnBoard(store, cutoff),
     toneOutages: [],
     liveOutages: [],
     relay: store.run.relayProgress,
@@ -107,6 +112,18 @@ export function lanesOf(store: RunStore, plan: readonly TimepointRow[], cutoff: 
   lanes.liveOutages = liveOutages(store, now, cutoff);
   lanes.toneOutages = outages(store, 'x_band', now, cutoff);
   return lanes;
+}
+
+/** Without what was lost of the links, which their lanes show, and what the table of commands or the alarms show. */
+function amissOnBoard(store: RunStore, cutoff: number): Lanes['amiss'] {
+  const isElsewhere = (subject: string) =>
+    ['station', 'vehicle'].includes(subject) || store.links.has(subject) || /^(loss of|command|channel) /.test(subject);
+  return newsOf(store)
+    .filter((news) => isAmiss(news) && !isElsewhere(news.subject) && store.knownBy(news.ert_s, cutoff))
+    .flatMap(({ since_s, sentence, rank }) => {
+      const e_s = store.sclkSeenAt(since_s) - store.entrySclk;
+      return Number.isNaN(e_s) ? [] : [{ e_s, words: shortWords(sentence), danger: rank === 'danger' }];
+    });
 }
 
 /** The features that the Doppler has shown by `cutoff`, oldest first. */

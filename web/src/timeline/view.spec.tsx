@@ -1,7 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 import { LinkChange_Silence } from '../gen/aeolis/v1/items_pb';
 import { describe, expect, it } from 'vitest';
-import { aDictionary, aPlan, aStore, event, explanation, firing, link, samples, tone } from '../testing/fixtures';
+import {
+  aDictionary,
+  aPlan,
+  aStore,
+  event,
+  explanation,
+  firing,
+  link,
+  samples,
+  situation,
+  tone,
+} from '../testing/fixtures';
 import { create } from '@bufbuild/protobuf';
 import { ConditionSchema } from '../gen/aeolis/v1/items_pb';
 import { DictionaryReplySchema } from '../gen/aeolis/v1/run_pb';
@@ -36,6 +47,25 @@ describe('the timeline', () => {
     ]);
     expect(lanesOf(store, aPlan, Infinity).doppler).toEqual([{ e_s: -150, told_e_s: expect.closeTo(-148), text }]);
     expect(lanesOf(store, aPlan, 851).doppler).toEqual([]);
+  });
+  it('marks what went amiss on board at its instant once it was told, and no link, which has its lane', () => {
+    const since = '2012-219T04:59:50.000';
+    const backup = { rank: 'danger' as const, subject: 'computer', since };
+    const store = aStore([
+      link({ link: 'uhf_live', up: false, reason: 'unexplained', ert: '2012-219T04:59:40.0' }),
+      situation(
+        '2012-219T04:59:55.0',
+        { ...backup, sentence: 'Flying on backup computer B since E−1:50' },
+        { ...backup, subject: 'uhf_live', sentence: 'UHF lost' },
+        { ...backup, subject: 'station', sentence: 'A fault on the ground' },
+        { ...backup, subject: 'vehicle', sentence: 'Not heard' },
+        { ...backup, rank: 'news', subject: 'landed', sentence: 'Touchdown confirmed' },
+      ),
+    ]);
+    expect(lanesOf(store, aPlan, Infinity).amiss).toEqual([
+      { e_s: expect.closeTo(-110), words: 'on backup computer B', danger: true },
+    ]);
+    expect(lanesOf(store, aPlan, 894).amiss).toEqual([]);
   });
   it('names a silence by its reason, and ends it', () => {
     const store = aStore([

@@ -40,6 +40,7 @@ const GUTTER = 118;
 const TOP = 26;
 const CLOSE_UP_S = 180; // chosen: in a shorter stretch every timepoint has room for its name
 const LABELS = 42; // at least two rows of names
+const AMISS_LETTERS = 30; // chosen: what went amiss has a name of that length at most, else its mark alone
 const LANES = ['plan', 'predicted', 'by tone', 'by Doppler', 'by telemetry, live', 'by recording'] as const;
 const [TONE, DOPPLER, LIVE, RECORDING] = [2, 3, 4, 5];
 const selected = signal<number | undefined>(undefined);
@@ -170,6 +171,13 @@ function drawTimeline({ context: c, width: width_px, height: height_px, colours 
     (px, py, bad) => (bad ? triangle(c, px, py, colours.caution) : framed(c, px, py, 4, colours.recording)),
     true,
   );
+  for (const { e_s, danger } of lanes.amiss) {
+    c.strokeStyle = danger ? colours.alarm : colours.caution;
+    c.setLineDash([1, 3]);
+    line(c, Math.round(x(e_s)) + 0.5, TOP, Math.round(x(e_s)) + 0.5, bottom);
+    c.setLineDash([]);
+    triangle(c, x(e_s), TOP - 2, c.strokeStyle);
+  }
   const chosen = hits.filter((hit) => hit.id === selected.value);
   for (const hit of chosen) ring(c, hit.x, hit.y, 8, colours.text);
   labels(c, lanes, x, bottom, width, height, colours);
@@ -388,10 +396,23 @@ function labels(
   const rows: [number, number][][] = Array.from({ length: Math.max(0, Math.floor((height - top - 6) / 15)) }, () => []);
   c.font = `${TYPE.table}px ${colours.sans}`;
   c.textAlign = 'center';
-  for (const { mark, done } of all) {
-    const px = x(mark.e_s);
+  const amiss = lanes.amiss
+    .filter(({ words }) => words.length <= AMISS_LETTERS)
+    .map(({ e_s, words, danger }) => ({
+      e_s,
+      words,
+      colour: danger ? colours.alarm : colours.caution,
+      important: true,
+    }));
+  const names = all.map(({ mark: { e_s, name, important }, done }) => ({
+    e_s,
+    words: shortTitle(name),
+    colour: done ? colours.text : colours.dim,
+    important,
+  }));
+  for (const { e_s, words, colour, important } of [...amiss, ...names]) {
+    const px = x(e_s);
     if (px < GUTTER || px > width - 14) continue;
-    const words = shortTitle(mark.name);
     const half = c.measureText(words).width / 2 + 5;
     const at = Math.min(width - 14 - half, Math.max(GUTTER + half, px));
     const row = rows.findIndex((taken) => taken.every(([left, right]) => at + half < left || at - half > right));
@@ -399,8 +420,8 @@ function labels(
     rows[row]?.push([at - half, at + half]);
     c.strokeStyle = colours.line;
     line(c, px, top, px, top + 6 + row * 15);
-    c.fillStyle = done ? colours.text : colours.dim;
-    c.globalAlpha = mark.important ? 1 : 0.75;
+    c.fillStyle = colour;
+    c.globalAlpha = important ? 1 : 0.75;
     c.fillText(words, at, top + 13 + row * 15);
     c.globalAlpha = 1;
   }
