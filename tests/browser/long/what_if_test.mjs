@@ -39,8 +39,13 @@ test('a landing is forked, goes on otherwise, is laid over the one that it was, 
   await shows('what-if', /E\+360\.0 s is after the record of run 2 ends/);
   await form.getByTestId('what-if-at').fill('E+1:00');
   await page.getByTestId('forecast-go').click();
-  await waitFor(async () => (await server.get('/runs/2/forecasts/1')).state, /ready/);
+  await waitFor(async () => (await server.get('/runs/2/forecasts/2')).state, /ready/);
   await page.getByTestId('forecasts').getByRole('button', { name: 'show' }).click();
+  await shows('forecast-result', /from what ground heard, last at E\+0:\d\d\.\d; assumed: radar A silent/);
+  await page.getByTestId('forecast-from').selectOption('truth');
+  await page.getByTestId('forecast-go').click();
+  await waitFor(async () => (await server.get('/runs/2/forecasts/1')).state, /ready/);
+  await page.getByTestId('forecasts').getByRole('button', { name: 'show' }).last().click();
   await shows(
     'forecast-result',
     /from the truth; assumed: radar A silent[^]*landed within limits \(99 % confidence\)\s+2 of 2 \(\d+ … 100 %\)/,
