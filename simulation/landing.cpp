@@ -581,6 +581,11 @@ Result<void> Landing::place(const PlacedState& state) {
     return {};
 }
 
+void Landing::shift(const flight::NavigationShift& vehicle, const flight::NavigationShift& navigation) {
+    state_->world.shift(vehicle);
+    state_->computers.shift_navigation(navigation);
+}
+
 void Landing::fly_unheard() {
     state_->unheard = true;
     state_->recorder.forget();

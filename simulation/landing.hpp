@@ -181,6 +181,10 @@ class Landing {
     /// landing that is over or has no flight computer with GNC. Refused, nothing is changed.
     Result<void> place(const PlacedState& state);
 
+    /// Moves the true state by `vehicle`, and what navigation on board believes by `navigation`, for a ground that
+    /// learns where the vehicle is. Of `vehicle` the accelerometers' bias does nothing.
+    void shift(const flight::NavigationShift& vehicle, const flight::NavigationShift& navigation);
+
     /// From here on nothing is recorded or reaches Earth, and a backup computer that ground has not enabled is off. The
     /// vehicle flies the same, in less time. Commands still reach prime.
     void fly_unheard();

@@ -385,6 +385,11 @@ void World::redraw(std::uint64_t seed, std::uint64_t case_number, const std::opt
     s.vehicle.shift(by_M_m, by_M_mps, rotation(knowledge->attitude_rad * vector3(random.normal3())));
 }
 
+void World::shift(const flight::NavigationShift& by) {
+    const auto& [w, x, y, z] = by.q_BB;
+    state_->vehicle.shift(vector3(by.p_MoB_M_m), vector3(by.v_MB_M_mps), Quaternion{w, x, y, z});
+}
+
 PlacedState World::placed_state() const {
     const State& s = *state_;
     PlacedState state;

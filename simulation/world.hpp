@@ -58,6 +58,9 @@ class World {
     /// Draws anew, in a flight under way, what lies ahead; see Landing::redraw.
     void redraw(std::uint64_t seed, std::uint64_t case_number, const std::optional<StateKnowledge>& knowledge);
 
+    /// Moves the true state.
+    void shift(const flight::NavigationShift& by);
+
     /// The present state, without the computer's.
     PlacedState placed_state() const;
     /// Sets it, and with it the time. For a state between cruise-stage separation and touchdown.

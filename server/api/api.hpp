@@ -164,6 +164,9 @@ class Api {
     void list_forecasts(const ApiRequest& call);
     void get_forecast(const ApiRequest& call);
     void cancel_forecast(const ApiRequest& call);
+    /// Answers of one forecast, or that there is none for who asks.
+    void ask_forecast(const ApiRequest& call,
+                      const std::function<HttpResponse(const archive::ForecastRecord&)>& answer);
     // access_routes.cpp
     void session(const ApiRequest& call);
     void log_in(const ApiRequest& call);

@@ -6,7 +6,7 @@
 #include <charconv>
 #include <fmt/format.h>
 
-// The routes of forecasts. They tell the truth of a rehearsal, so all of them need the right to rehearse.
+// The routes of forecasts. Those from the truth of a rehearsal are for who may rehearse: to others there are none.
 namespace aeolis::server {
 namespace {
 
@@ -29,6 +29,9 @@ void Api::post_forecast(const ApiRequest& call) {
     v1::ForecastRequest wanted;
     if (const auto parsed = from_json(call.request.body, wanted); !parsed)
         return call.respond(error_response(400, parsed.error()));
+    if (wanted.from() == v1::ForecastRequest::truth)
+        if (auto refusal = refusal_of(call.who, Right::rehearse); refusal.status != 200)
+            return call.respond(std::move(refusal));
     if (const auto place = parts_.forecasts->reserve(); !place) return call.respond(error_response(503, place.error()));
     const std::weak_ptr<shadow::ForecastService> service = parts_.forecasts;
     const auto give_back = [service](const Respond& respond) -> Respond {
@@ -74,10 +77,10 @@ void Api::list_forecasts(const ApiRequest& call) {
     if (!wanted) return call.respond(error_response(400, wanted.error()));
     ask(
         call, {},
-        [this, wanted = *wanted](archive::Reader& reader, archive::RunId id,
-                                 const QueryText&) -> std::optional<HttpResponse> {
+        [this, wanted = *wanted, truths = may(call.who, Right::rehearse)](
+            archive::Reader& reader, archive::RunId id, const QueryText&) -> std::optional<HttpResponse> {
             const auto& page = wanted.page;
-            const auto records = reader.forecasts(id, page.after, page.limit, page.order);
+            const auto records = reader.forecasts(id, truths, page.after, page.limit, page.order);
             if (!records) return error_response(500, records.error());
             v1::ForecastList list;
             for (const auto& record : *records) *list.add_forecasts() = parts_.forecasts->now(record);
@@ -88,33 +91,31 @@ void Api::list_forecasts(const ApiRequest& call) {
 }
 
 void Api::get_forecast(const ApiRequest& call) {
-    ask(
-        call, {},
-        [this, text = call.parts[1]](archive::Reader& reader, archive::RunId id,
-                                     const QueryText&) -> std::optional<HttpResponse> {
-            const auto number = number_of(text);
-            if (!number) return no_forecast(id, text);
-            const auto record = reader.forecast(id, *number);
-            if (!record) return error_response(500, record.error());
-            return *record ? json_response(parts_.forecasts->now(**record)) : no_forecast(id, text);
-        },
-        JobPriority::soon);
+    ask_forecast(
+        call, [this](const archive::ForecastRecord& record) { return json_response(parts_.forecasts->now(record)); });
 }
 
 void Api::cancel_forecast(const ApiRequest& call) {
+    ask_forecast(call, [this](const archive::ForecastRecord& record) {
+        return parts_.forecasts->cancel(record.run, record.number)
+                   ? json_response(parts_.forecasts->now(record), 202)
+                   : error_response(409, fmt::format("run {}, forecast {}: it neither flies nor waits",
+                                                     record.run.value, record.number));
+    });
+}
+
+void Api::ask_forecast(const ApiRequest& call,
+                       const std::function<HttpResponse(const archive::ForecastRecord&)>& answer) {
     ask(
         call, {},
-        [this, text = call.parts[1]](archive::Reader& reader, archive::RunId id,
-                                     const QueryText&) -> std::optional<HttpResponse> {
+        [answer, truths = may(call.who, Right::rehearse), text = call.parts[1]](
+            archive::Reader& reader, archive::RunId id, const QueryText&) -> std::optional<HttpResponse> {
             const auto number = number_of(text);
             if (!number) return no_forecast(id, text);
             const auto record = reader.forecast(id, *number);
             if (!record) return error_response(500, record.error());
-            if (!*record) return no_forecast(id, text);
-            if (!parts_.forecasts->cancel(id, *number))
-                return error_response(
-                    409, fmt::format("run {}, forecast {}: it neither flies nor waits", id.value, *number));
-            return json_response(parts_.forecasts->now(**record), 202);
+            if (!*record || ((*record)->truth && !truths)) return no_forecast(id, text);
+            return answer(**record);
         },
         JobPriority::soon);
 }

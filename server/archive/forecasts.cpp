@@ -10,6 +10,7 @@ ForecastRecord record_of(const sqlite::Statement& row, RunId run) {
     ForecastRecord forecast;
     forecast.run = run;
     forecast.number = static_cast<std::uint64_t>(row.integer(0));
+    forecast.truth = forecast.number % 2 == 1;
     forecast.asked = row.text(1);
     forecast.asked_by = row.text(2);
     forecast.at_e_s = row.real(3);
@@ -32,11 +33,13 @@ Result<std::uint64_t> keep_forecast(sqlite::Database& database, const ForecastRe
         return Error{"run " + std::to_string(forecast.run.value) + " is not in the archive any more"};
     auto number = forecast.number;
     if (number == 0) {
-        auto newest = database.prepare("SELECT coalesce(max(number), 0) FROM forecasts WHERE run = ?1");
+        const std::int64_t parity = forecast.truth ? 1 : 0;
+        auto newest = database.prepare("SELECT coalesce(max(number), -?2) FROM forecasts"
+                                       " WHERE run = ?1 AND number % 2 = ?2");
         if (!newest) return newest.error();
-        auto found = newest->bind(1, std::int64_t{forecast.run.value}).step();
+        auto found = newest->bind(1, std::int64_t{forecast.run.value}).bind(2, parity).step();
         if (!found) return found.error();
-        number = static_cast<std::uint64_t>(newest->integer(0)) + 1;
+        number = static_cast<std::uint64_t>(newest->integer(0) + 2);
     }
     auto row =
         database.prepare("INSERT OR REPLACE INTO forecasts (run, number, asked, asked_by, at_e_s, request, state,"
@@ -65,15 +68,20 @@ Result<std::optional<ForecastRecord>> forecast_of(sqlite::Database& database, Ru
     return *found ? std::optional{record_of(*row, run)} : std::nullopt;
 }
 
-Result<std::vector<ForecastRecord>> forecasts_of(sqlite::Database& database, RunId run, std::uint64_t after,
-                                                 std::size_t limit, Order order) {
+Result<std::vector<ForecastRecord>> forecasts_of(sqlite::Database& database, RunId run, bool truths,
+                                                 std::uint64_t after, std::size_t limit, Order order) {
     const bool newest_first = order == Order::newest_first;
     const std::string page =
         newest_first ? "(?2 = 0 OR number < ?2) ORDER BY number DESC" : "number > ?2 ORDER BY number";
-    auto rows = database.prepare(
-        (std::string{all_columns} + "'' FROM forecasts WHERE run = ?1 AND " + page + " LIMIT ?3").c_str());
+    auto rows =
+        database.prepare((std::string{all_columns} +
+                          "'' FROM forecasts WHERE run = ?1 AND (?4 OR number % 2 = 0) AND " + page + " LIMIT ?3")
+                             .c_str());
     if (!rows) return rows.error();
-    rows->bind(1, std::int64_t{run.value}).bind(2, sqlite::number(after)).bind(3, sqlite::number(limit));
+    rows->bind(1, std::int64_t{run.value})
+        .bind(2, sqlite::number(after))
+        .bind(3, sqlite::number(limit))
+        .bind(4, std::int64_t{truths ? 1 : 0});
     std::vector<ForecastRecord> forecasts;
     for (;;) {
         auto found = rows->step();

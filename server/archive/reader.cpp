@@ -121,8 +121,9 @@ Result<std::vector<AuditEntry>> Reader::audit(std::uint64_t after, std::size_t l
     return audit_entries(state_->database, after, limit, order);
 }
 
-Result<std::vector<ForecastRecord>> Reader::forecasts(RunId run, std::uint64_t after, std::size_t limit, Order order) {
-    return forecasts_of(state_->database, run, after, limit, order);
+Result<std::vector<ForecastRecord>> Reader::forecasts(RunId run, bool truths, std::uint64_t after, std::size_t limit,
+                                                      Order order) {
+    return forecasts_of(state_->database, run, truths, after, limit, order);
 }
 
 Result<std::optional<ForecastRecord>> Reader::forecast(RunId run, std::uint64_t number) {

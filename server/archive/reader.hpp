@@ -303,7 +303,8 @@ class Reader {
 
     Result<std::vector<AuditEntry>> audit(std::uint64_t after, std::size_t limit, Order order = {});
     /// A page of a run's forecasts, and one of them: see forecasts.hpp.
-    Result<std::vector<ForecastRecord>> forecasts(RunId run, std::uint64_t after, std::size_t limit, Order order);
+    Result<std::vector<ForecastRecord>> forecasts(RunId run, bool truths, std::uint64_t after, std::size_t limit,
+                                                  Order order);
     Result<std::optional<ForecastRecord>> forecast(RunId run, std::uint64_t number);
     /// The layouts of the owner, the one saved longest ago first.
     Result<std::vector<LayoutRecord>> layouts(const std::string& owner);

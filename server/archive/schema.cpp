@@ -89,7 +89,7 @@ CREATE TABLE audit (
     entry INTEGER PRIMARY KEY, at TEXT NOT NULL, who TEXT NOT NULL, peer TEXT NOT NULL, action TEXT NOT NULL,
     detail TEXT NOT NULL, outcome TEXT NOT NULL, hash TEXT NOT NULL) STRICT;
 
--- What instructors asked of a run's truth; no part of what it recorded (forecasts.hpp).
+-- What was asked of what would come of a run; no part of what it recorded (forecasts.hpp).
 CREATE TABLE forecasts (
     run INTEGER NOT NULL, number INTEGER NOT NULL, asked TEXT NOT NULL, asked_by TEXT NOT NULL, at_e_s REAL NOT NULL,
     request TEXT NOT NULL, state TEXT NOT NULL, reason TEXT NOT NULL, result TEXT NOT NULL, ended TEXT NOT NULL,

@@ -22,7 +22,7 @@ constexpr unsigned forecast_jobs_max = 256;  // chosen: each holds a landing
 
 struct ForecastOptions {
     SharedOptions shared;
-    std::string scenario, at;
+    std::string scenario, at, by = "truth";
     std::uint64_t seed = 1;
     std::uint64_t cases = 32, draw_seed = 1;
     unsigned jobs = 0;  ///< 0: one per processor
@@ -77,7 +77,9 @@ Result<simulation::Fault> fault_given(const std::string& text, const simulation:
 }
 
 /// The landing of the scenario and seed at that time, as `aeolis rehearse` flies it.
-Result<ScriptedLanding> flown_to(const ForecastOptions& options, const FlightInputs& inputs, double e_s) {
+/// @param heard  told of what ground receives meanwhile
+Result<ScriptedLanding> flown_to(const ForecastOptions& options, const FlightInputs& inputs, double e_s,
+                                 shadow::HeardFlight& heard) {
     const auto& scenario = inputs.scenario;
     if (-e_s > scenario.start_before_entry_s)
         return Error{
@@ -86,7 +88,9 @@ Result<ScriptedLanding> flown_to(const ForecastOptions& options, const FlightInp
     const auto until = scenario.entry_sclk + e_s;
     while (landing.landing().outcome() == simulation::Outcome::running && landing.landing().sclk() < until &&
            !stop_asked()) {
-        landing.hear(landing.step());
+        auto& received = landing.step();
+        landing.hear(received);
+        heard.hear(received);
         landing.take_stages();
     }
     if (landing.landing().outcome() != simulation::Outcome::running)
@@ -94,6 +98,17 @@ Result<ScriptedLanding> flown_to(const ForecastOptions& options, const FlightInp
                                  options.scenario, options.seed, name_of(landing.landing().outcome()),
                                  landing.landing().outcome_reason())};
     return landing;
+}
+
+/// The script's commands are the scenario's: ground's own flight sends them itself.
+archive::FlownRun sent_of(const ScriptedLanding& landing) {
+    archive::FlownRun run;
+    run.clock = landing.landing().correlation();
+    return run;
+}
+
+std::uint64_t cycle_of(const ScriptedLanding& landing) {
+    return landing.landing().counters().cycles;
 }
 
 int forecast(const ForecastOptions& options) {
@@ -121,15 +136,25 @@ int forecast(const ForecastOptions& options) {
     call.order.cases = options.cases;
     call.order.jobs = options.jobs > 0 ? options.jobs : std::max(1U, std::thread::hardware_concurrency());
     stop_at_interrupt();
-    Result<shadow::TruthForecast> flown = Error{};
+    Result<shadow::FlownForecast> flown = Error{};
     {
         ProgressLine line;
         line.draw("flown to " + options.at);
-        const auto landing = flown_to(options, *ready, *e_s);
+        shadow::HeardFlight heard{ready->dictionary};
+        const auto landing = flown_to(options, *ready, *e_s, heard);
         if (!landing) return failed(landing.error().message);
-        flown = shadow::forecast_from_truth(
-            *landing, ready->scenario, ready->dictionary, assumption, call.order, stop_asked(),
-            [&](const shadow::ForecastProgress& so_far) { line.draw(shadow::progress_line(so_far)); });
+        const auto tell = [&](const shadow::ForecastProgress& so_far) { line.draw(shadow::progress_line(so_far)); };
+        if (options.by == name_of(shadow::Basis::truth)) {
+            flown = shadow::forecast_from_truth(*landing, ready->scenario, ready->dictionary, assumption, call.order,
+                                                stop_asked(), tell);
+        } else {
+            const auto ground =
+                shadow::fly_by_ground(ready->scenario, landing->landing().solution(), sent_of(*landing), heard,
+                                      cycle_of(*landing), ready->dictionary, [] { return stop_asked().load(); });
+            if (!ground) return failed(ground.error().message);
+            flown = shadow::forecast_by_ground(*ground, ready->scenario, ready->dictionary, assumption, call.order,
+                                               stop_asked(), tell);
+        }
     }
     if (!flown) return failed(flown.error().message);
     const auto& limits = ready->scenario.limits;
@@ -146,10 +171,15 @@ void add_forecast_command(CLI::App& program, int& exit_code) {
     const auto options = std::make_shared<ForecastOptions>();
     auto& command = *program.add_subcommand(
         "forecast",
-        "flies a landing to a time, and from its truth there many cases to their ends: what would come of it, with and "
+        "flies a landing to a time, and from there many cases to their ends: what would come of it, with and "
         "without commands and faults that are assumed");
     command.add_option("--scenario", options->scenario, "a file, or the name of a shipped one")->required();
     command.add_option("--at", options->at, "seconds from entry at the vehicle: E-600, E+200")->required();
+    command
+        .add_option("--by", options->by,
+                    "truth: from the landing's own state, an instructor's view; telemetry: from what ground had heard")
+        ->check(CLI::IsMember({name_of(shadow::Basis::truth), name_of(shadow::Basis::telemetry)}))
+        ->capture_default_str();
     command.add_option("--seed", options->seed, "seed of the landing's errors, as of rehearse")
         ->check(whole_number())
         ->capture_default_str();

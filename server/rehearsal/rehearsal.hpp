@@ -53,6 +53,11 @@ class Rehearsal {
     /// See Landing::redraw. The Error says why nothing can be drawn anew yet.
     Result<void> redraw(std::uint64_t seed);
 
+    /// See Landing::shift.
+    void shift(const flight::NavigationShift& vehicle, const flight::NavigationShift& navigation) {
+        flight_.shift(vehicle, navigation);
+    }
+
     /// The stages since the last call, without `seq`.
     std::vector<archive::StageRecord> take_stages();
     /// Why commands of the scenario's own script were refused.

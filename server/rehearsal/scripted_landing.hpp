@@ -46,7 +46,15 @@ class ScriptedLanding {
     /// See Landing::take_case.
     void take_case(std::uint64_t case_number) { landing_.take_case(case_number); }
     /// See Landing::redraw.
-    void redraw(std::uint64_t seed, std::uint64_t case_number) { landing_.redraw(seed, case_number); }
+    void redraw(std::uint64_t seed, std::uint64_t case_number,
+                const std::optional<simulation::StateKnowledge>& knowledge = {}) {
+        landing_.redraw(seed, case_number, knowledge);
+    }
+
+    /// See Landing::shift.
+    void shift(const flight::NavigationShift& vehicle, const flight::NavigationShift& navigation) {
+        landing_.shift(vehicle, navigation);
+    }
 
     /// Equips the station to decode tones from samples, if the scenario says so, and to explain silences. Call before
     /// the first step.

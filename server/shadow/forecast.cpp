@@ -53,10 +53,11 @@ class Flight {
         commanded_.reset();
     }
 
-    void draw(std::uint64_t seed, std::uint64_t case_number) {
+    void draw(std::uint64_t seed, std::uint64_t case_number,
+              const std::optional<simulation::StateKnowledge>& knowledge) {
         const auto each = [&](auto& flown) {
-            if (landing().dispersed())
-                flown.redraw(seed, case_number);
+            if (knowledge || landing().dispersed())
+                flown.redraw(seed, case_number, knowledge);
             else
                 flown.take_case(case_number);
         };
@@ -99,8 +100,8 @@ class Flight {
 };
 
 /// SCLK at which the cases of a flight part.
-double apart_sclk(const simulation::Landing& landing, const simulation::Scenario& scenario) {
-    if (!landing.dispersed()) return scenario.entry_sclk.seconds - *scenario.disperse_before_entry_s;
+double apart_sclk(const simulation::Landing& landing, const simulation::Scenario& scenario, bool by_ground) {
+    if (!by_ground && !landing.dispersed()) return scenario.entry_sclk.seconds - *scenario.disperse_before_entry_s;
     return std::max(landing.sclk().seconds, scenario.entry_sclk.seconds - airless_before_entry_s);
 }
 
@@ -176,17 +177,16 @@ struct Side {
     std::atomic<std::uint64_t> done{0}, within{0};
 };
 
-}  // namespace
-
-Result<TruthForecast> forecast_from_truth(const ScriptedLanding& landing, const simulation::Scenario& scenario,
-                                          const dictionary::Dictionary& dictionary, const Assumption& assumption,
-                                          const ForecastOrder& order, const std::atomic<bool>& stop,
-                                          const std::function<void(const ForecastProgress&)>& tell) {
+Result<FlownForecast> fly_cases(const ScriptedLanding& landing,
+                                const std::optional<simulation::StateKnowledge>& knowledge,
+                                const simulation::Scenario& scenario, const dictionary::Dictionary& dictionary,
+                                const Assumption& assumption, const ForecastOrder& order, const std::atomic<bool>& stop,
+                                const std::function<void(const ForecastProgress&)>& tell) {
     if (landing.landing().outcome() != Outcome::running) return Error{"the landing is over: nothing is to come"};
     if (order.cases == 0 || order.cases > forecast_cases_max)
         return Error{fmt::format("cases: {} is not between 1 and {}", order.cases, forecast_cases_max)};
     const auto began = std::chrono::steady_clock::now();
-    const double apart_s = apart_sclk(landing.landing(), scenario);
+    const double apart_s = apart_sclk(landing.landing(), scenario, knowledge.has_value());
     std::array<Side, 2> sides;
     const std::size_t side_count = assumption.empty() ? 1 : 2;
     const auto guarded = [](const auto& work) -> std::string {
@@ -218,7 +218,7 @@ Result<TruthForecast> forecast_from_truth(const ScriptedLanding& landing, const 
         std::uint64_t cycles = 0;
         const std::string lost = guarded([&] {
             Flight flight{*side.shared};
-            flight.draw(order.seed, number);
+            flight.draw(order.seed, number, knowledge);
             while (flight.landing().outcome() == Outcome::running && !stop) {
                 flight.step();
                 cycles = flight.cycles();
@@ -244,7 +244,7 @@ Result<TruthForecast> forecast_from_truth(const ScriptedLanding& landing, const 
             {without.done + with.done, order.cases * side_count, without.done, with.done, without.within, with.within});
     };
 
-    TruthForecast forecast;
+    FlownForecast forecast;
     {
         Crew crew{order, side_count, fly_shared};
         crew.wait(told);
@@ -271,6 +271,32 @@ Result<TruthForecast> forecast_from_truth(const ScriptedLanding& landing, const 
     forecast.without = std::move(sides[0].cases);
     if (side_count == 2) forecast.with = std::move(sides[1].cases);
     forecast.wall_s = std::chrono::duration<double>{std::chrono::steady_clock::now() - began}.count();
+    return forecast;
+}
+
+}  // namespace
+
+const char* name_of(Basis basis) {
+    return basis == Basis::truth ? "truth" : "telemetry";
+}
+
+Result<FlownForecast> forecast_from_truth(const ScriptedLanding& landing, const simulation::Scenario& scenario,
+                                          const dictionary::Dictionary& dictionary, const Assumption& assumption,
+                                          const ForecastOrder& order, const std::atomic<bool>& stop,
+                                          const std::function<void(const ForecastProgress&)>& tell) {
+    return fly_cases(landing, {}, scenario, dictionary, assumption, order, stop, tell);
+}
+
+Result<FlownForecast> forecast_by_ground(const GroundFlight& ground, const simulation::Scenario& scenario,
+                                         const dictionary::Dictionary& dictionary, const Assumption& assumption,
+                                         const ForecastOrder& order, const std::atomic<bool>& stop,
+                                         const std::function<void(const ForecastProgress&)>& tell) {
+    auto forecast = fly_cases(ground.rehearsal->flight(), ground.knowledge, ground_scenario(scenario), dictionary,
+                              assumption, order, stop, tell);
+    if (!forecast) return forecast;
+    forecast->basis = Basis::telemetry;
+    forecast->knowledge = ground.knowledge;
+    if (ground.heard) forecast->heard_e_s = *ground.heard - scenario.entry_sclk;
     return forecast;
 }
 

@@ -6,11 +6,13 @@
 #include "dictionaries/dictionary.hpp"
 #include "server/campaign/case_result.hpp"
 #include "server/rehearsal/scripted_landing.hpp"
+#include "server/shadow/ground_flight.hpp"
 #include "simulation/scenario.hpp"
 
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
 // What would come of a landing: many cases flown from where it is, with and without what is assumed.
@@ -38,10 +40,19 @@ struct ForecastProgress {
     std::uint64_t within_without = 0, within_with = 0;  ///< and those that landed within the limits
 };
 
-/// Cases flown from the truth of a landing: an instructor's or a program's. Ground must not see it.
-struct TruthForecast {
-    double from_e_s = 0.0;   ///< the landing's present, from which the assumption acts
-    double apart_e_s = 0.0;  ///< from which the cases' errors differ
+/// From what cases begin: the truth of a landing, an instructor's or a program's, which ground must not see; or the
+/// flight that ground keeps by telemetry.
+enum class Basis : std::uint8_t { truth, telemetry };
+/// "truth", "telemetry".
+const char* name_of(Basis basis);
+
+/// Cases flown from a landing's present.
+struct FlownForecast {
+    Basis basis = Basis::truth;
+    std::optional<double> heard_e_s;  ///< by telemetry: of the state last heard; none: from ground's solution alone
+    std::optional<simulation::StateKnowledge> knowledge;  ///< by telemetry: how well that state was known
+    double from_e_s = 0.0;                                ///< the landing's present, from which the assumption acts
+    double apart_e_s = 0.0;                               ///< from which the cases' errors differ
     /// By number. The case of a number has the same errors on both sides. `with`: empty when nothing is assumed.
     std::vector<campaign::CaseResult> without, with;
     double processor_s = 0.0, wall_s = 0.0;
@@ -65,9 +76,16 @@ inline constexpr double airless_before_entry_s = 100.0;
 /// Memory   one landing a job, some megabytes
 /// Faults   an Error names a command that is refused, a check that fails before the cases part, or says that it was
 ///          stopped; a check that fails in a case ends that case as lost, with its reason
-Result<TruthForecast> forecast_from_truth(const ScriptedLanding& landing, const simulation::Scenario& scenario,
+Result<FlownForecast> forecast_from_truth(const ScriptedLanding& landing, const simulation::Scenario& scenario,
                                           const dictionary::Dictionary& dictionary, const Assumption& assumption,
                                           const ForecastOrder& order, const std::atomic<bool>& stop,
                                           const std::function<void(const ForecastProgress&)>& tell = {});
+
+/// Flies copies of the flight that ground keeps, each with a draw of all errors: of the state, by how well it is known,
+/// of air, vehicle and instruments, as large as the scenario says they may be. Otherwise as forecast_from_truth().
+Result<FlownForecast> forecast_by_ground(const GroundFlight& ground, const simulation::Scenario& scenario,
+                                         const dictionary::Dictionary& dictionary, const Assumption& assumption,
+                                         const ForecastOrder& order, const std::atomic<bool>& stop,
+                                         const std::function<void(const ForecastProgress&)>& tell = {});
 
 }  // namespace aeolis::server::shadow

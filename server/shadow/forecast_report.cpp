@@ -193,11 +193,17 @@ std::string progress_line(const ForecastProgress& progress) {
     return text;
 }
 
-std::string forecast_json(const TruthForecast& forecast, const simulation::Limits& limits, const ForecastCall& call) {
+std::string forecast_json(const FlownForecast& forecast, const simulation::Limits& limits, const ForecastCall& call) {
     const Prospect without = prospect_of(forecast.without, limits, forecast.from_e_s);
     JsonObject object;
-    object.text("from", "truth")
-        .text("scenario", call.scenario)
+    object.text("from", name_of(forecast.basis));
+    if (forecast.basis == Basis::telemetry)
+        object.raw("heard_e_s", forecast.heard_e_s ? fmt::format("{}", *forecast.heard_e_s) : "null")
+            .raw("state_known_by", JsonObject{}
+                                       .number("position_m", forecast.knowledge->position_m)
+                                       .number("velocity_mps", forecast.knowledge->velocity_mps)
+                                       .str());
+    object.text("scenario", call.scenario)
         .count("landing_seed", call.landing_seed)
         .number("from_e_s", forecast.from_e_s)
         .number("apart_e_s", forecast.apart_e_s)
@@ -214,7 +220,7 @@ std::string forecast_json(const TruthForecast& forecast, const simulation::Limit
         .str();
 }
 
-std::string forecast_table(const TruthForecast& forecast, const simulation::Limits& limits, const ForecastCall& call) {
+std::string forecast_table(const FlownForecast& forecast, const simulation::Limits& limits, const ForecastCall& call) {
     const Prospect without = prospect_of(forecast.without, limits, forecast.from_e_s);
     const bool compared = !forecast.with.empty();
     const Prospect with = prospect_of(forecast.with, limits, forecast.from_e_s);
@@ -236,7 +242,11 @@ std::string forecast_table(const TruthForecast& forecast, const simulation::Limi
     for (const campaign::LimitMargin& one : without.limits)
         table.row("margin to " + one.limit, [&](const Prospect& side) { return limit_cell(side, one.limit); });
 
-    std::string text = fmt::format("from the truth of {}, seed {}, at {}: {} cases, whose errors differ from {}\n",
+    const std::string from = forecast.basis == Basis::truth ? "the truth"
+                             : forecast.heard_e_s
+                                 ? fmt::format("what ground heard until {}", entry_time_text(*forecast.heard_e_s))
+                                 : "ground's solution alone";
+    std::string text = fmt::format("from {} of {}, seed {}, at {}: {} cases, whose errors differ from {}\n", from,
                                    call.scenario, call.landing_seed, entry_time_text(forecast.from_e_s),
                                    call.order.cases, entry_time_text(forecast.apart_e_s));
     for (const std::string& words : call.assumed) text += "assumed: " + words + "\n";

@@ -19,8 +19,8 @@ struct ForecastCall {
 
 /// A forecast as `aeolis forecast` prints it: one JSON object on one line, or a table for people. Both say that it is
 /// from the truth.
-std::string forecast_json(const TruthForecast& forecast, const simulation::Limits& limits, const ForecastCall& call);
-std::string forecast_table(const TruthForecast& forecast, const simulation::Limits& limits, const ForecastCall& call);
+std::string forecast_json(const FlownForecast& forecast, const simulation::Limits& limits, const ForecastCall& call);
+std::string forecast_table(const FlownForecast& forecast, const simulation::Limits& limits, const ForecastCall& call);
 
 /// The progress line: "12/64 flown, 6 of 6 landed within limits without, 5 of 6 with".
 std::string progress_line(const ForecastProgress& progress);

@@ -134,6 +134,7 @@ Result<ReadForecast> read_forecast(const v1::ForecastRequest& request, const v1:
     for (const auto& command : request.commands()) forecast.assumed.push_back(to_json(command));
     for (const auto& fault : request.faults()) forecast.assumed.push_back(to_json(fault));
     forecast.record.run = run.run;
+    forecast.record.truth = request.from() == v1::ForecastRequest::truth;
     forecast.record.asked = wall_clock_text();
     forecast.record.at_e_s = at->e_s;
     forecast.record.request = to_json(request);
@@ -289,12 +290,15 @@ void ForecastService::keep_ended() {
     }
 }
 
-std::string ForecastService::fly_to(ReadForecast& forecast, Rehearsal& rehearsal) {
+std::string ForecastService::fly_to(ReadForecast& forecast, Rehearsal& rehearsal, HeardFlight& heard) {
     auto reader = archive::Reader::open(file_, dictionary_);
     if (!reader) return reader.error().message;
     StoredPackets stored{std::move(*reader), forecast.run.run, forecast.goes_on};
     const FlyAgain how{forecast.cycle, forecast.now, [this] { return stop_.load(); },
-                       [&](const telemetry::Received& received) { return stored.look(received); }};
+                       [&](const telemetry::Received& received) {
+                           heard.hear(received);
+                           return stored.look(received);
+                       }};
     const auto there = fly_again(rehearsal, forecast.run, how);
     return there ? std::string{} : there.error().message;
 }
@@ -302,15 +306,23 @@ std::string ForecastService::fly_to(ReadForecast& forecast, Rehearsal& rehearsal
 void ForecastService::fly(ReadForecast& forecast) {
     const auto& run = forecast.run;
     auto& record = forecast.record;
-    const auto flown = [&]() -> Result<TruthForecast> {
+    const auto flown = [&]() -> Result<FlownForecast> {
         try {
             Rehearsal rehearsal{forecast.scenario, run.seed, run.case_number, dictionary_, {}, run.clock};
-            if (const auto why = fly_to(forecast, rehearsal); !why.empty()) return Error{why};
-            return forecast_from_truth(rehearsal.flight(), forecast.scenario, dictionary_, forecast.assumption,
-                                       forecast.order, stop_, [this](const ForecastProgress& progress) {
-                                           const std::scoped_lock lock{mutex_};
-                                           progress_ = progress;
-                                       });
+            HeardFlight heard{dictionary_};
+            if (const auto why = fly_to(forecast, rehearsal, heard); !why.empty()) return Error{why};
+            const auto tell = [this](const ForecastProgress& progress) {
+                const std::scoped_lock lock{mutex_};
+                progress_ = progress;
+            };
+            if (record.truth)
+                return forecast_from_truth(rehearsal.flight(), forecast.scenario, dictionary_, forecast.assumption,
+                                           forecast.order, stop_, tell);
+            const auto ground = fly_by_ground(forecast.scenario, rehearsal.landing().solution(), run, heard,
+                                              forecast.cycle, dictionary_, [this] { return stop_.load(); });
+            if (!ground) return ground.error();
+            return forecast_by_ground(*ground, forecast.scenario, dictionary_, forecast.assumption, forecast.order,
+                                      stop_, tell);
         } catch (const CheckFailed& bug) {
             return Error{text_of_bug(bug)};
         } catch (const std::exception& error) {

@@ -83,7 +83,7 @@ class ForecastService {
     };
 
     void work();
-    std::string fly_to(ReadForecast& forecast, Rehearsal& rehearsal);
+    std::string fly_to(ReadForecast& forecast, Rehearsal& rehearsal, HeardFlight& heard);
     void fly(ReadForecast& forecast);
     void end(archive::ForecastRecord record);
     void keep_ended();

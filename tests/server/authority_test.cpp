@@ -85,11 +85,11 @@ const Row rows[] = {
     {"GET", "/api/v1/runs/{run}/prediction", "observer", "/api/v1/runs/latest/prediction", "", 404},
     {"GET", "/api/v1/runs/{run}/samples", "observer", "/api/v1/runs/latest/samples", "", 404},
     {"GET", "/api/v1/runs/{run}/raw", "observer", "/api/v1/runs/latest/raw", "", 404},
-    {"GET", "/api/v1/runs/{run}/forecasts", "director", "/api/v1/runs/latest/forecasts", "", 404},
-    {"POST", "/api/v1/runs/{run}/forecasts", "director", "/api/v1/runs/latest/forecasts", "{", 400},
-    {"GET", "/api/v1/runs/{run}/forecasts/{forecast}", "director", "/api/v1/runs/latest/forecasts/1", "", 404},
-    {"POST", "/api/v1/runs/{run}/forecasts/{forecast}/cancel", "director", "/api/v1/runs/latest/forecasts/1/cancel", "",
-     404},
+    {"GET", "/api/v1/runs/{run}/forecasts", "observer", "/api/v1/runs/latest/forecasts", "", 404},
+    {"POST", "/api/v1/runs/{run}/forecasts", "controller", "/api/v1/runs/latest/forecasts", "{", 400},
+    {"GET", "/api/v1/runs/{run}/forecasts/{forecast}", "observer", "/api/v1/runs/latest/forecasts/1", "", 404},
+    {"POST", "/api/v1/runs/{run}/forecasts/{forecast}/cancel", "controller", "/api/v1/runs/latest/forecasts/1/cancel",
+     "", 404},
     {"GET", "/api/v1/runs/{run}/{question}", "observer", "/api/v1/runs/latest/events", "", 404},
     {"GET", "/api/v1/layouts", "observer", "/api/v1/layouts", "", 200},
     {"PUT", "/api/v1/layouts/{layout}", "observer", "/api/v1/layouts/mine", "{", 400},
@@ -482,6 +482,43 @@ TEST_CASE("what an instructor does is told to those who may rehearse, to all oth
     guarded.as["observer"] = guarded.log_in("observer", Guarded::password);
     CHECK_THAT(guarded.ask("observer", "GET", "/api/v1/runs/latest").body, Catch::Contains(R"("state":"interrupted")"));
     told_once("observer", 200, "do they see it?");
+}
+
+TEST_CASE("a forecast from the truth does not exist for who may not rehearse, and one by telemetry is everybody's",
+          "[access][forecast][R58]") {
+    Guarded guarded;
+    REQUIRE(guarded.ask("director", "POST", "/api/v1/rehearsals", R"({"scenario":"nominal_auto","pace":0})").status ==
+            201);
+    const auto wait = [&](const std::string& path, const std::string& words) {
+        for (int i = 0; i < 3'000; ++i) {
+            if (guarded.ask("director", "GET", path).body.find(words) != std::string::npos) return true;
+            std::this_thread::sleep_for(std::chrono::milliseconds{20});
+        }
+        return false;
+    };
+    REQUIRE(wait("/api/v1/runs/1", "\"finished\""));
+    const std::string all = "/api/v1/runs/1/forecasts", truth = R"({"at":"E+6:00","cases":1})",
+                      telemetry = R"({"at":"E+6:00","cases":1,"from":"telemetry"})";
+    const auto seen = [&](const char* who) {
+        return guarded.ask(who, "GET", all).body + guarded.ask(who, "GET", all + "/1").body +
+               guarded.ask(who, "POST", all + "/1/cancel", "{}").body;
+    };
+    const auto before = seen("controller");
+    REQUIRE(guarded.ask("director", "POST", all, truth).status == 201);
+    REQUIRE(guarded.ask("director", "POST", all, truth).status == 201);
+    CHECK(seen("controller") == before);
+    CHECK(guarded.ask("controller", "POST", all, truth).status == 403);
+    CHECK(guarded.ask("observer", "POST", all, telemetry).status == 403);
+
+    const auto asked = guarded.ask("controller", "POST", all, telemetry);
+    CHECK(asked.status == 201);
+    CHECK_THAT(asked.body, Catch::Contains(R"("forecast":"2")"));
+    for (const char* number : {"/1", "/2", "/3"}) REQUIRE(wait(all + number, R"("state":"ready")"));
+    CHECK(guarded.ask("observer", "GET", all + "/1").status == 404);
+    CHECK_THAT(guarded.ask("observer", "GET", all + "/2").body, Catch::Contains(R"("from":"telemetry")"));
+    CHECK_THAT(guarded.ask("observer", "GET", all).body,
+               Catch::Contains(R"("forecast":"2")") && !Catch::Contains(R"("forecast":"1")"));
+    CHECK_THAT(guarded.ask("director", "GET", all).body, Catch::Contains(R"("forecast":"3")"));
 }
 
 TEST_CASE("a stream is closed when its log-in ends", "[access][stream]") {

@@ -9,6 +9,7 @@
 #include "aeolis/v1/what_if.pb.h"
 
 #include <chrono>
+#include <cmath>
 #include <fmt/format.h>
 #include <google/protobuf/util/message_differencer.h>
 #include <thread>
@@ -111,18 +112,30 @@ TEST_CASE("a forecast of a recorded run is flown beside everything else, kept wi
     CHECK_FALSE(list.forecasts(0).has_result());
 }
 
+TEST_CASE("a forecast by telemetry says what ground had last heard, and is flown from there",
+          "[forecast][http][R58][idle]") {
+    Landed landed;
+    REQUIRE(landed.post("/runs/1/forecasts", R"({"at":"E+5:30","cases":2,"from":"telemetry"})").status == 201);
+    const auto ready = landed.ended(2);
+    INFO(ready.reason());
+    REQUIRE(ready.state() == v1::Forecast::ready);
+    CHECK(ready.result().fields().at("from").string_value() == "telemetry");
+    CHECK(std::abs(ready.result().fields().at("heard_e_s").number_value() - 330.0) < 3.0);
+    CHECK(part(ready, "without", "of") == 2.0);
+}
+
 TEST_CASE("a forecast that is cancelled, or abandoned by the end of the server, says so",
           "[forecast][http][R58][idle]") {
     Landed landed;
     for (int i = 0; i < 3; ++i)
         REQUIRE(landed.post("/runs/1/forecasts", R"({"at":"E-10:00","cases":500})").status == 201);
-    CHECK(landed.post("/runs/1/forecasts/2/cancel", "{}").status == 202);  // it waits
-    CHECK(landed.ended(2).state() == v1::Forecast::cancelled);
+    CHECK(landed.post("/runs/1/forecasts/3/cancel", "{}").status == 202);  // it waits
+    CHECK(landed.ended(3).state() == v1::Forecast::cancelled);
     CHECK(landed.post("/runs/1/forecasts/1/cancel", "{}").status == 202);  // it flies
     CHECK(landed.ended(1).state() == v1::Forecast::cancelled);
     CHECK(landed.post("/runs/1/forecasts/1/cancel", "{}").status == 409);
     landed.server().restart();
-    CHECK(landed.forecast(3).state() == v1::Forecast::abandoned);
+    CHECK(landed.forecast(5).state() == v1::Forecast::abandoned);
 }
 
 TEST_CASE("a forecast that cannot be is refused in words, or kept with the reason why it failed",

@@ -45,7 +45,8 @@ test('a landing is forked, goes on otherwise, is laid over the one that it was, 
   await page.getByTestId('forecast-from').selectOption('truth');
   await page.getByTestId('forecast-go').click();
   await waitFor(async () => (await server.get('/runs/2/forecasts/1')).state, /ready/);
-  await page.getByTestId('forecasts').getByRole('button', { name: 'show' }).last().click();
+  const byTruth = page.getByTestId('forecasts').getByRole('row').filter({ hasText: 'the truth' });
+  await byTruth.getByRole('button', { name: 'show' }).click();
   await shows(
     'forecast-result',
     /from the truth; assumed: radar A silent[^]*landed within limits \(99 % confidence\)\s+2 of 2 \(\d+ … 100 %\)/,

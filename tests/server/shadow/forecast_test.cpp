@@ -40,7 +40,7 @@ const ScriptedLanding& before_entry() {
 
 const std::atomic<bool> never{false};
 
-Result<TruthForecast> forecast(const ScriptedLanding& landing, const simulation::Scenario& scenario,
+Result<FlownForecast> forecast(const ScriptedLanding& landing, const simulation::Scenario& scenario,
                                const Assumption& assumption, std::uint64_t cases, unsigned jobs,
                                std::uint64_t seed = 1) {
     return forecast_from_truth(landing, scenario, tests::shipped_dictionary(), assumption,
@@ -48,8 +48,8 @@ Result<TruthForecast> forecast(const ScriptedLanding& landing, const simulation:
 }
 
 /// What a forecast says, without the times that it took.
-std::string said(const TruthForecast& forecast) {
-    TruthForecast timeless = forecast;
+std::string said(const FlownForecast& forecast) {
+    FlownForecast timeless = forecast;
     timeless.wall_s = timeless.processor_s = 0.0;
     return forecast_json(timeless, shipped("nominal_auto").limits, {});
 }

@@ -43,7 +43,7 @@ export const fields = computed(() => {
 });
 
 /** The command that would be sent, or why there is none. */
-const intent = computed<CommandIntent | { problem: string } | undefined>(() => {
+export const intent = computed<CommandIntent | { problem: string } | undefined>(() => {
   const command = chosen.value;
   if (!command) return undefined;
   const stray = inArguments.value?.strays[0];

@@ -4,13 +4,15 @@ import { useEffect, useLayoutEffect, useRef } from 'preact/hooks';
 import type { CommandReply, DictionaryCommand } from '../gen/aeolis/v1/run_pb';
 import { STATUS } from '../design/status';
 import { inWords } from '../run/dictionary';
-import { runNow, store } from '../run/shown';
+import { flyOut } from '../rehearsal/fly_out';
+import { modeNow, runNow, store } from '../run/shown';
 import { duration, fromEntry } from '../run/time';
 import { moved } from '../timeline/now';
 import {
   confirmation,
   fields,
   formText,
+  intent,
   intentKey,
   openCommandLine,
   previewNow,
@@ -237,6 +239,25 @@ function Told({ reply }: { reply: CommandReply }) {
               <dt>as encoded</dt>
               <dd class="encoded" tabIndex={0}>
                 {argumentsInWords(reply.arguments, rowsNow())}
+              </dd>
+            </>
+          )}
+          {reply.accepted && run.going && modeNow() === 'rehearsal' && step.value !== 'armed' && (
+            <>
+              <dt>what if</dt>
+              <dd>
+                <button
+                  type="button"
+                  class="quiet"
+                  data-testid="fly-out"
+                  title="32 landings with it and 32 without, from what ground heard until now"
+                  onClick={() => {
+                    const wanted = intent.value;
+                    if (wanted && !('problem' in wanted)) void flyOut(run.id, wanted);
+                  }}
+                >
+                  fly it out, with it and without
+                </button>
               </dd>
             </>
           )}

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Forks and forecasts of the run that is shown: another run that is this one up to some instant, what differs between
-// the two, and what would come of it, flown many times. For who may rehearse: forecasts are from the truth.
+// the two, and what would come of it, flown many times: from what ground heard, or, for who may rehearse, the truth.
 import { signal } from '@preact/signals';
 import { useEffect } from 'preact/hooks';
-import { mayRehearse } from '../access/model';
+import { mayAct, mayRehearse } from '../access/model';
 import { outcomeWords } from '../clocks/model';
 import { wordsFor } from '../run/api';
 import { isReal } from '../mode/model';
@@ -13,9 +13,21 @@ import { isGoing } from '../run/start';
 import type { RunStore } from '../run/store';
 import { fromEntry, readFromEntry } from '../run/time';
 import { FaultFields, badLength, faultWords, pickedFault } from './faults';
-import { FIGURES, assumed, eventName, laterBy, partText, stateText, timeIn, valuesText } from './what_if_model';
+import {
+  BASES,
+  FIGURES,
+  assumed,
+  basisWords,
+  eventName,
+  laterBy,
+  partText,
+  stateText,
+  timeIn,
+  valuesText,
+} from './what_if_model';
+import { asksElsewhere } from './fly_out';
 import { begin, beginProblem, whyNotBegin } from './view';
-import type { Differences, Forecast } from './what_if_model';
+import type { Basis, Differences, Forecast } from './what_if_model';
 
 const AGAIN_MS = 1000; // chosen: interval of requests for the progress of a forecast
 const CHANNELS_SHOWN = 20; // chosen: those that differ first; the rest is counted
@@ -24,6 +36,7 @@ const at = signal('');
 const seed = signal('');
 const waits = signal(true);
 const cases = signal('32');
+const basis = signal<Basis>('telemetry');
 const command = signal('');
 const breaks = signal(false);
 const problem = signal('');
@@ -36,7 +49,9 @@ const opened = signal<Forecast | undefined>(undefined); // with its result
 async function refreshForecasts(run: RunStore): Promise<void> {
   try {
     const list = await read<{ forecasts?: Forecast[] }>(`/runs/${run.id}/forecasts?limit=20`);
-    forecasts.value = { run: run.id, all: list.forecasts ?? [] };
+    // the newest first: numbers alone order those of one kind
+    const all = (list.forecasts ?? []).sort((one, other) => (one.asked < other.asked ? 1 : -1));
+    forecasts.value = { run: run.id, all };
   } catch {
     // the known list stays; the next round asks again
   }
@@ -61,6 +76,7 @@ const askForecast = (run: RunStore): Promise<void> =>
     await change(`/runs/${run.id}/forecasts`, {
       ...(at.value && { at: at.value }),
       cases: Number(cases.value),
+      from: mayRehearse() ? basis.value : 'telemetry',
       ...(typed && { commands: [{ command: typed, from_solution: true }] }),
       ...(breaks.value && { faults: [pickedFault()] }),
     });
@@ -264,7 +280,8 @@ function Result({ of }: { of: Forecast }) {
   return (
     <div data-testid="forecast-result">
       <p>
-        Run {of.run} from {fromEntry(of.at_e_s, { tenths: true })}, from the truth; assumed: {assumed(of, faultWords)}.
+        Run {of.run} at {fromEntry(of.at_e_s, { tenths: true })}, {basisWords(result)}; assumed:{' '}
+        {assumed(of, faultWords)}.
       </p>
       <table>
         <thead>
@@ -315,7 +332,7 @@ function Forecasts({ run }: { run: RunStore }) {
       if (!known || all.some((each) => each.state === 'flying' || each.state === 'queued')) void refreshForecasts(run);
     }, AGAIN_MS);
     return () => clearInterval(timer);
-  }, [run.id]);
+  }, [run.id, asksElsewhere.value]);
   const all = forecasts.value?.run === run.id ? forecasts.value.all : [];
   const bad =
     !/^[1-9]\d{0,2}$|^1000$/.test(cases.value) ||
@@ -323,55 +340,74 @@ function Forecasts({ run }: { run: RunStore }) {
     (at.value === '' ? !run.going : readFromEntry(at.value) === undefined);
   return (
     <>
-      <form
-        class="table-tools"
-        data-testid="forecast"
-        onSubmit={(event) => {
-          event.preventDefault();
-          if (!bad) void askForecast(run);
-        }}
-      >
-        <Instant run={run} />
-        <label>
-          cases{' '}
-          <input
-            class="seed"
-            value={cases.value}
-            inputMode="numeric"
-            aria-invalid={!/^[1-9]\d{0,2}$|^1000$/.test(cases.value)}
-            onInput={(event) => (cases.value = event.currentTarget.value)}
-          />
-        </label>
-        <label title="its arguments are filled in from the navigation solution">
-          with the command{' '}
-          <input
-            class="instant"
-            value={command.value}
-            placeholder="none"
-            data-testid="forecast-command"
-            onInput={(event) => (command.value = event.currentTarget.value.toUpperCase())}
-          />
-        </label>
-        <label>
-          <input
-            type="checkbox"
-            checked={breaks.value}
-            data-testid="forecast-breaks"
-            onChange={(event) => (breaks.value = event.currentTarget.checked)}
-          />{' '}
-          with a fault
-        </label>
-        {breaks.value && <FaultFields />}
-        <button type="submit" disabled={bad || busy.value} data-testid="forecast-go">
-          what if
-        </button>
-      </form>
+      {mayAct() && (
+        <form
+          class="table-tools"
+          data-testid="forecast"
+          onSubmit={(event) => {
+            event.preventDefault();
+            if (!bad) void askForecast(run);
+          }}
+        >
+          <Instant run={run} />
+          {mayRehearse() && (
+            <label>
+              from{' '}
+              <select
+                value={basis.value}
+                data-testid="forecast-from"
+                onChange={(event) => (basis.value = event.currentTarget.value as Basis)}
+              >
+                {Object.entries(BASES).map(([name, words]) => (
+                  <option key={name} value={name}>
+                    {words}
+                  </option>
+                ))}
+              </select>
+            </label>
+          )}
+          <label>
+            cases{' '}
+            <input
+              class="seed"
+              value={cases.value}
+              inputMode="numeric"
+              aria-invalid={!/^[1-9]\d{0,2}$|^1000$/.test(cases.value)}
+              onInput={(event) => (cases.value = event.currentTarget.value)}
+            />
+          </label>
+          <label title="its arguments are filled in from the navigation solution">
+            with the command{' '}
+            <input
+              class="instant"
+              value={command.value}
+              placeholder="none"
+              data-testid="forecast-command"
+              onInput={(event) => (command.value = event.currentTarget.value.toUpperCase())}
+            />
+          </label>
+          <label>
+            <input
+              type="checkbox"
+              checked={breaks.value}
+              data-testid="forecast-breaks"
+              onChange={(event) => (breaks.value = event.currentTarget.checked)}
+            />{' '}
+            with a fault
+          </label>
+          {breaks.value && <FaultFields />}
+          <button type="submit" disabled={bad || busy.value} data-testid="forecast-go">
+            what if
+          </button>
+        </form>
+      )}
       {all.length > 0 && (
         <table data-testid="forecasts">
           <thead>
             <tr>
               <th class="number">no.</th>
-              <th class="number">from</th>
+              <th class="number">at</th>
+              <th>from</th>
               <th>assumed</th>
               <th>state</th>
               <th>result</th>
@@ -382,6 +418,7 @@ function Forecasts({ run }: { run: RunStore }) {
               <tr key={each.forecast} data-state={each.state}>
                 <td class="number">{each.forecast}</td>
                 <td class="number">{fromEntry(each.at_e_s, { tenths: true })}</td>
+                <td>{BASES[each.request.from ?? 'truth']}</td>
                 <td>{assumed(each, faultWords)}</td>
                 <td>{stateText(each)}</td>
                 <td>
@@ -390,7 +427,7 @@ function Forecasts({ run }: { run: RunStore }) {
                       show
                     </button>
                   )}
-                  {(each.state === 'flying' || each.state === 'queued') && (
+                  {(each.state === 'flying' || each.state === 'queued') && mayAct() && (
                     <button
                       type="button"
                       onClick={() =>
@@ -434,12 +471,10 @@ export function WhatIf() {
             <ForkForm run={run} />
           </section>
         )}
-        {instructor && (
-          <section>
-            <h3>What would come of it, from the truth</h3>
-            <Forecasts run={run} />
-          </section>
-        )}
+        <section>
+          <h3>What would come of it</h3>
+          <Forecasts run={run} />
+        </section>
         <section>
           <h3>Laid over another run</h3>
           <Compare run={run} />

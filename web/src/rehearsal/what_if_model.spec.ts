@@ -1,6 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 import { describe, expect, it } from 'vitest';
-import { FIGURES, assumed, eventName, laterBy, partText, stateText, timeIn, valuesText } from './what_if_model';
+import {
+  FIGURES,
+  assumed,
+  basisWords,
+  eventName,
+  laterBy,
+  partText,
+  stateText,
+  timeIn,
+  valuesText,
+} from './what_if_model';
 import type { Forecast } from './what_if_model';
 
 const forecast = (more: Partial<Forecast>): Forecast => ({
@@ -25,6 +35,20 @@ describe('a difference between two runs', () => {
 });
 
 describe('a forecast', () => {
+  it('says from what it is flown: the truth, what ground heard and when, or its solution alone', () => {
+    const side = { cases: 1, within_limits: { part: 1, of: 1, low_99: 0.01, high_99: 1 } };
+    expect(
+      [
+        { from: 'truth' as const },
+        { from: 'telemetry' as const, heard_e_s: 298.5 },
+        { from: 'telemetry' as const },
+      ].map((result) => basisWords({ ...result, without: side, apart_e_s: 0 })),
+    ).toEqual([
+      'from the truth',
+      'from what ground heard, last at E+4:58.5',
+      'from ground’s solution alone: nothing was heard of where it is',
+    ]);
+  });
   it('gives a part of cases with its confidence, never as certain', () => {
     expect(partText({ part: 32, of: 32, low_99: 0.847, high_99: 1 })).toBe('32 of 32 (85 … 100 %)');
   });

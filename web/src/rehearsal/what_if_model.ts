@@ -50,7 +50,7 @@ export interface Forecast {
   state: 'queued' | 'flying' | 'ready' | 'failed' | 'cancelled' | 'abandoned';
   reason?: string;
   at_e_s: number;
-  request: { cases?: number; commands?: { command: string }[]; faults?: Fault[] };
+  request: { cases?: number; commands?: { command: string }[]; faults?: Fault[]; from?: Basis };
   asked: string;
   asked_by?: string;
   done?: string;
@@ -59,8 +59,19 @@ export interface Forecast {
   within_without?: string;
   with?: string;
   within_with?: string;
-  result?: { without: Prospect; with?: Prospect; from: string; apart_e_s: number };
+  result?: { without: Prospect; with?: Prospect; from: Basis; apart_e_s: number; heard_e_s?: number | null };
 }
+/** From what cases are flown: the vehicle as it is, or as ground expects it by what it had heard. */
+export type Basis = 'truth' | 'telemetry';
+export const BASES: Record<Basis, string> = { telemetry: 'what ground heard', truth: 'the truth' };
+
+/** From what the cases of a result began. */
+export const basisWords = ({ from, heard_e_s }: NonNullable<Forecast['result']>): string =>
+  from === 'truth'
+    ? 'from the truth'
+    : heard_e_s === undefined || heard_e_s === null
+      ? 'from ground’s solution alone: nothing was heard of where it is'
+      : `from what ground heard, last at ${fromEntry(heard_e_s, { tenths: true })}`;
 
 /** The time of an event in one run, and that it is not there. */
 export const timeIn = (e_s: number | undefined): string =>

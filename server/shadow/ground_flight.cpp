@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/shadow/ground_flight.hpp"
+
+#include "server/archive/kept_request.hpp"
+#include "server/rehearsal/kept_requests.hpp"
+#include "server/rehearsal/nominal_flight.hpp"
+#include "server/rehearsal/recorded_firings.hpp"
+#include "simulation/mars/point_mass.hpp"
+#include "simulation/vectors.hpp"
+#include "telemetry/packet_stream.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <iterator>
+#include <set>
+#include <utility>
+
+namespace aeolis::server::shadow {
+namespace {
+
+using flight::NavigationShift;
+
+// Chosen: what a velocity by radar and a height by radar leave unknown. The place on the map is left as navigated: it
+// decides no landing, and its error is that of the solution.
+constexpr double by_radar_m = 5.0, by_radar_mps = 0.1;
+constexpr double never_drawn_s = -1.0e6;  // before entry: long after the landing
+
+simulation::Quaternion quaternion(const std::array<double, 4>& q) {
+    return simulation::Quaternion{q[0], q[1], q[2], q[3]}.normalized();
+}
+
+/// From `from` to `to`, in B after the attitude.
+NavigationShift shift_to(const NavigatedState& from, const NavigatedState& to) {
+    NavigationShift by;
+    by.p_MoB_M_m = simulation::array3(simulation::vector3(to.p_MoB_M_m) - simulation::vector3(from.p_MoB_M_m));
+    by.v_MB_M_mps = simulation::array3(simulation::vector3(to.v_MB_M_mps) - simulation::vector3(from.v_MB_M_mps));
+    by.q_BB = simulation::array4(quaternion(from.q_MB).conjugate() * quaternion(to.q_MB));
+    return by;
+}
+
+NavigatedState truth_of(const simulation::Landing& landing) {
+    const auto truth = landing.truth();
+    return {truth.sclk, truth.p_MoB_M_m, truth.v_MB_M_mps, landing.inspect().q_MB};
+}
+
+/// Holds the ground's flight against what the vehicle told, cycle by cycle.
+class Holder {
+  public:
+    Holder(Rehearsal& rehearsal, const HeardFlight& heard, const dictionary::Dictionary& dictionary)
+        : rehearsal_(rehearsal), states_(heard.states()), own_(dictionary), before_(truth_of(rehearsal.landing())) {}
+
+    /// After each cycle.
+    void look() {
+        const auto recorded = rehearsal_.landing().report().recorded;
+        if (next_ < states_.size() && states_[next_].sclk == before_.sclk) {
+            telemetry::PacketStream packets{recorded};
+            while (const auto packet = packets.next()) own_.hear(*packet);
+            const auto own = own_.states();
+            const NavigatedState& state = states_[next_];
+            const bool navigates = !own.empty() && own.back().sclk == state.sclk;
+            rehearsal_.shift(shift_to(before_, state), navigates ? shift_to(own.back(), state) : NavigationShift{});
+            held_ = state.sclk;
+        }
+        while (next_ < states_.size() && states_[next_].sclk <= before_.sclk) ++next_;
+        before_ = truth_of(rehearsal_.landing());
+    }
+    std::optional<Sclk> held() const { return held_; }
+
+  private:
+    Rehearsal& rehearsal_;
+    std::vector<NavigatedState> states_;
+    std::size_t next_ = 0;
+    HeardFlight own_;        ///< what the ground's flight tells of itself
+    NavigatedState before_;  ///< the truth of that flight before the cycle
+    std::optional<Sclk> held_;
+};
+
+std::string only_in(const std::set<std::string>& a, const std::set<std::string>& b) {
+    std::vector<std::string> only;
+    std::ranges::set_difference(a, b, std::back_inserter(only));
+    return fmt::format("{}", fmt::join(only, ", "));
+}
+
+/// What the vehicle has done and the ground's flight has not, or the other way; empty: nothing.
+std::string departure(const HeardFlight& heard, const Rehearsal& flown, Sclk at, double at_e_s) {
+    std::set<std::string> own;
+    for (const auto& firing : flown.firings())
+        if (firing.fired_sclk <= at.seconds) own.insert(firing.name);
+    const auto told = heard.fired_by(at);
+    const auto words = [&](const std::string& what) {
+        return fmt::format("at E{:+.1f} s, of which ground last heard, {}: from there on nothing can be forecast by "
+                           "telemetry; ask again when the vehicle has told more",
+                           at_e_s, what);
+    };
+    if (const auto only = only_in(told, own); !only.empty())
+        return words(fmt::format("the vehicle had come to {}, and the flight that ground expects had not", only));
+    if (const auto only = only_in(own, told); !only.empty())
+        return words(
+            fmt::format("the flight that ground expects had come to {}, and the vehicle had not told it", only));
+    return {};
+}
+
+}  // namespace
+
+simulation::Scenario ground_scenario(const simulation::Scenario& scenario) {
+    simulation::Scenario ground = expected_scenario(scenario);
+    ground.name = scenario.name;
+    ground.dispersions = scenario.dispersions;  // how large errors may be: published, and drawn by the cases alone
+    ground.disperse_before_entry_s = never_drawn_s;
+    return ground;
+}
+
+Result<GroundFlight> fly_by_ground(const simulation::Scenario& scenario, const simulation::NavigationSolution& solution,
+                                   const archive::FlownRun& run, const HeardFlight& heard, std::uint64_t cycle,
+                                   const dictionary::Dictionary& dictionary, const std::function<bool()>& stop) {
+    GroundFlight flight;
+    flight.rehearsal = std::make_unique<Rehearsal>(ground_scenario(scenario), 1, 0, dictionary,
+                                                   std::shared_ptr<flight::CycleRunner>{}, run.clock);
+    Rehearsal& rehearsal = *flight.rehearsal;
+    const auto& landing = rehearsal.landing();
+    const simulation::PointMass start =
+        simulation::coast({simulation::vector3(solution.p_MoB_M_m), simulation::vector3(solution.v_MB_M_mps)},
+                          landing.sclk() - solution.epoch);
+    NavigatedState begin = truth_of(landing);
+    begin.p_MoB_M_m = simulation::array3(start.p_MoB_M);
+    begin.v_MB_M_mps = simulation::array3(start.v_MB_M);
+    rehearsal.shift(shift_to(truth_of(landing), begin), {});
+
+    archive::FlownRun sent = run;
+    std::erase_if(sent.requests, [](const archive::RequestRecord& request) {
+        const auto kept = archive::kept_request(request.request);
+        return !kept.has_command() && !kept.has_verdict();
+    });
+    Holder holder{rehearsal, heard, dictionary};
+    const FlyAgain how{cycle, true, stop, [&](const telemetry::Received&) -> Result<void> {
+                           holder.look();
+                           return {};
+                       }};
+    if (const auto there = fly_again(rehearsal, sent, how); !there) return there.error();
+
+    flight.heard = holder.held();
+    const auto& errors = scenario.dispersions;
+    flight.knowledge = {errors.knowledge_position_m, errors.knowledge_velocity_mps, 0.0};
+    if (flight.heard) {
+        if (auto why = departure(heard, rehearsal, *flight.heard, *flight.heard - scenario.entry_sclk); !why.empty())
+            return Error{std::move(why)};
+        if (heard.radar_locked_by(*flight.heard)) flight.knowledge = {by_radar_m, by_radar_mps, 0.0};
+    }
+    return flight;
+}
+
+}  // namespace aeolis::server::shadow
