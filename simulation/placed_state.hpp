@@ -47,7 +47,8 @@ struct PlacedState {
 struct StateKnowledge {
     double position_m = 0.0;
     double velocity_mps = 0.0;
-    double attitude_rad = 0.0;  ///< of the rotation about each axis
+    double attitude_rad = 0.0;         ///< of the rotation about each axis
+    std::optional<double> height_m{};  ///< along the local vertical, where it is known better than the place
 };
 
 }  // namespace aeolis::simulation

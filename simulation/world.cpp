@@ -380,7 +380,11 @@ void World::redraw(std::uint64_t seed, std::uint64_t case_number, const std::opt
     s.rover_imu = {errors, {seed, case_number, Stream::rover_imu}};
     Random random{seed, case_number, Stream::placing};
     const double by_axis = 1.0 / std::numbers::sqrt3;
-    const Vector3 by_M_m = knowledge->position_m * by_axis * vector3(random.normal3());
+    Vector3 by_M_m = knowledge->position_m * by_axis * vector3(random.normal3());
+    if (knowledge->height_m) {
+        const Vector3 up_M = s.vehicle.at().p_MoB_M.normalized();
+        by_M_m += (*knowledge->height_m * random.normal3()[2] - up_M.dot(by_M_m)) * up_M;
+    }
     const Vector3 by_M_mps = knowledge->velocity_mps * by_axis * vector3(random.normal3());
     s.vehicle.shift(by_M_m, by_M_mps, rotation(knowledge->attitude_rad * vector3(random.normal3())));
 }

@@ -170,10 +170,10 @@ std::span<const Api::Route> Api::routes() {
         {"GET", "/api/v1/runs/{run}/prediction", Right::watch, &Api::prediction, Query::own},
         {"GET", "/api/v1/runs/{run}/forecasts", Right::watch, &Api::list_forecasts, Query::own},
         {"POST", "/api/v1/runs/{run}/forecasts", Right::command, &Api::post_forecast, Query::none, "forecast",
-         Audited::all, Body::whole},
+         Audited::all, Body::whole, false},
         {"GET", "/api/v1/runs/{run}/forecasts/{forecast}", Right::watch, &Api::get_forecast},
         {"POST", "/api/v1/runs/{run}/forecasts/{forecast}/cancel", Right::command, &Api::cancel_forecast, Query::none,
-         "forecast"},
+         "forecast", Audited::all, Body::brief, false},
         {"GET", "/api/v1/runs/{run}/{question}", Right::watch, &Api::run_question, Query::own},
         {"GET", "/api/v1/layouts", Right::watch, &Api::list_layouts, Query::own},
         {"PUT", "/api/v1/layouts/{layout}", Right::watch, &Api::put_layout, Query::none, "layout"},
@@ -267,7 +267,7 @@ void Api::answer(const Route& route, ApiRequest call) {
         return call.respond(
             error_response(503, "nothing is done that the audit cannot take: " + parts_.pipeline.fault()));
     const bool of_origin = changes && (route.right == Right::command || route.right == Right::rehearse);
-    const bool asks_origin = of_origin && parts_.to_origin && route.right == Right::command;
+    const bool asks_origin = of_origin && parts_.to_origin && route.right == Right::command && route.for_origin;
     if (refused.status == 200 && of_origin && !asks_origin && !parts_.follows.empty())
         refused = error_response(409, parts_.follows);
     const bool refuses = refused.status != 200;
@@ -280,8 +280,8 @@ void Api::answer(const Route& route, ApiRequest call) {
 
 bool Api::is_for_origin(std::string_view method, std::string_view path) {
     return method != "GET" && std::ranges::any_of(routes(), [&](const Route& route) {
-               return route.right == Right::command && route.method == method && path.starts_with('/') &&
-                      parts_of(route.path, path);
+               return route.right == Right::command && route.for_origin && route.method == method &&
+                      path.starts_with('/') && parts_of(route.path, path);
            });
 }
 

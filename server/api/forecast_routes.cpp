@@ -29,14 +29,16 @@ void Api::post_forecast(const ApiRequest& call) {
     v1::ForecastRequest wanted;
     if (const auto parsed = from_json(call.request.body, wanted); !parsed)
         return call.respond(error_response(400, parsed.error()));
-    if (wanted.from() == v1::ForecastRequest::truth)
+    const bool truth = wanted.from() == v1::ForecastRequest::truth;
+    if (truth)
         if (auto refusal = refusal_of(call.who, Right::rehearse); refusal.status != 200)
             return call.respond(std::move(refusal));
-    if (const auto place = parts_.forecasts->reserve(); !place) return call.respond(error_response(503, place.error()));
+    if (const auto place = parts_.forecasts->reserve(truth); !place)
+        return call.respond(error_response(503, place.error()));
     const std::weak_ptr<shadow::ForecastService> service = parts_.forecasts;
-    const auto give_back = [service](const Respond& respond) -> Respond {
-        return [service, respond](HttpResponse response) {
-            if (const auto forecasts = service.lock()) forecasts->fill({});
+    const auto give_back = [service, truth](const Respond& respond) -> Respond {
+        return [service, truth, respond](HttpResponse response) {
+            if (const auto forecasts = service.lock()) forecasts->fill(truth, {});
             respond(std::move(response));
         };
     };
@@ -44,7 +46,7 @@ void Api::post_forecast(const ApiRequest& call) {
     asked.respond = give_back(call.respond);  // whatever is answered but by `kept`, the place is free again
     ask(
         asked, {},
-        [this, wanted, service, by = call.who.user, respond = call.respond, current = current_run()](
+        [this, wanted, service, truth, by = call.who.user, respond = call.respond, current = current_run()](
             archive::Reader& reader, archive::RunId id, const QueryText&) -> std::optional<HttpResponse> {
             auto state = reader.run(id);
             if (!state) return error_response(404, state.error());
@@ -53,16 +55,16 @@ void Api::post_forecast(const ApiRequest& call) {
             auto read = shadow::read_forecast(wanted, *state, reader);
             if (!read) return error_response(422, read.error());
             read->record.asked_by = by;
-            const auto kept = [service, read = *read, respond](const Result<std::uint64_t>& number) mutable {
+            const auto kept = [service, truth, read = *read, respond](const Result<std::uint64_t>& number) mutable {
                 const auto forecasts = service.lock();  // on the pipeline's thread, which may outlive it
                 if (!forecasts) return respond(error_response(503, "the server ends"));
                 if (!number) {
-                    forecasts->fill({});
+                    forecasts->fill(truth, {});
                     return respond(error_response(503, number.error()));
                 }
                 read.record.number = *number;
                 const auto record = read.record;
-                forecasts->fill(std::move(read));
+                forecasts->fill(truth, std::move(read));
                 respond(json_response(forecasts->now(record), 201));
             };
             if (!parts_.pipeline.keep_forecast(read->record, kept))

@@ -148,9 +148,9 @@ int forecast(const ForecastOptions& options) {
             flown = shadow::forecast_from_truth(*landing, ready->scenario, ready->dictionary, assumption, call.order,
                                                 stop_asked(), tell);
         } else {
-            const auto ground =
-                shadow::fly_by_ground(ready->scenario, landing->landing().solution(), sent_of(*landing), heard,
-                                      cycle_of(*landing), ready->dictionary, [] { return stop_asked().load(); });
+            const auto ground = shadow::fly_by_ground(ready->scenario, landing->landing().solution(), sent_of(*landing),
+                                                      heard, {cycle_of(*landing), true}, ready->dictionary,
+                                                      [] { return stop_asked().load(); });
             if (!ground) return failed(ground.error().message);
             flown = shadow::forecast_by_ground(*ground, ready->scenario, ready->dictionary, assumption, call.order,
                                                stop_asked(), tell);

@@ -193,16 +193,24 @@ std::string progress_line(const ForecastProgress& progress) {
     return text;
 }
 
+namespace {
+
+std::string known_json(const simulation::StateKnowledge& known) {
+    JsonObject object;
+    object.number("position_m", known.position_m).number("velocity_mps", known.velocity_mps);
+    if (known.height_m) object.number("height_m", *known.height_m);
+    return object.str();
+}
+
+}  // namespace
+
 std::string forecast_json(const FlownForecast& forecast, const simulation::Limits& limits, const ForecastCall& call) {
     const Prospect without = prospect_of(forecast.without, limits, forecast.from_e_s);
     JsonObject object;
     object.text("from", name_of(forecast.basis));
     if (forecast.basis == Basis::telemetry)
         object.raw("heard_e_s", forecast.heard_e_s ? fmt::format("{}", *forecast.heard_e_s) : "null")
-            .raw("state_known_by", JsonObject{}
-                                       .number("position_m", forecast.knowledge->position_m)
-                                       .number("velocity_mps", forecast.knowledge->velocity_mps)
-                                       .str());
+            .raw("state_known_by", known_json(*forecast.knowledge));
     object.text("scenario", call.scenario)
         .count("landing_seed", call.landing_seed)
         .number("from_e_s", forecast.from_e_s)

@@ -17,8 +17,8 @@ struct ForecastCall {
     std::vector<std::string> assumed;  ///< commands and faults, in words
 };
 
-/// A forecast as `aeolis forecast` prints it: one JSON object on one line, or a table for people. Both say that it is
-/// from the truth.
+/// A forecast as `aeolis forecast` prints it: one JSON object on one line, or a table for people. Both say from
+/// what it is flown.
 std::string forecast_json(const FlownForecast& forecast, const simulation::Limits& limits, const ForecastCall& call);
 std::string forecast_table(const FlownForecast& forecast, const simulation::Limits& limits, const ForecastCall& call);
 

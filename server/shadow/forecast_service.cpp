@@ -156,18 +156,19 @@ ForecastService::~ForecastService() {
     thread_.join();
 }
 
-Result<void> ForecastService::reserve() {
+Result<void> ForecastService::reserve(bool truth) {
     const std::scoped_lock lock{mutex_};
-    if (waiting_.size() + reserved_ >= waiting_max)
-        return Error{fmt::format("{} forecasts wait already: cancel one, or wait until one is ready",
-                                 waiting_.size() + reserved_)};
-    ++reserved_;
+    const auto waiting = static_cast<std::size_t>(
+        std::ranges::count_if(waiting_, [&](const ReadForecast& each) { return each.record.truth == truth; }));
+    if (waiting + reserved_[truth ? 1 : 0] >= waiting_max)
+        return Error{fmt::format("{} forecasts wait already: cancel one, or wait until one is ready", waiting_max)};
+    ++reserved_[truth ? 1 : 0];
     return {};
 }
 
-void ForecastService::fill(std::optional<ReadForecast> forecast) {
+void ForecastService::fill(bool truth, std::optional<ReadForecast> forecast) {
     const std::scoped_lock lock{mutex_};
-    --reserved_;
+    --reserved_[truth ? 1 : 0];
     if (!forecast) return;
     waiting_.push_back(std::move(*forecast));
     changed_.notify_all();
@@ -226,7 +227,7 @@ v1::Forecast ForecastService::now(const archive::ForecastRecord& stored) const {
             told.set_within_without(progress_.within_without);
             told.set_with(progress_.with);
             told.set_within_with(progress_.within_with);
-        } else if (reserved_ == 0 && std::ranges::none_of(waiting_, waits)) {
+        } else if (reserved_ == std::array<std::size_t, 2>{} && std::ranges::none_of(waiting_, waits)) {
             state = v1::Forecast::abandoned;
         }
     }
@@ -308,18 +309,23 @@ void ForecastService::fly(ReadForecast& forecast) {
     auto& record = forecast.record;
     const auto flown = [&]() -> Result<FlownForecast> {
         try {
-            Rehearsal rehearsal{forecast.scenario, run.seed, run.case_number, dictionary_, {}, run.clock};
+            std::optional<Rehearsal> rehearsal{std::in_place, forecast.scenario,
+                                               run.seed,      run.case_number,
+                                               dictionary_,   std::shared_ptr<flight::CycleRunner>{},
+                                               run.clock};
             HeardFlight heard{dictionary_};
-            if (const auto why = fly_to(forecast, rehearsal, heard); !why.empty()) return Error{why};
+            if (const auto why = fly_to(forecast, *rehearsal, heard); !why.empty()) return Error{why};
             const auto tell = [this](const ForecastProgress& progress) {
                 const std::scoped_lock lock{mutex_};
                 progress_ = progress;
             };
             if (record.truth)
-                return forecast_from_truth(rehearsal.flight(), forecast.scenario, dictionary_, forecast.assumption,
+                return forecast_from_truth(rehearsal->flight(), forecast.scenario, dictionary_, forecast.assumption,
                                            forecast.order, stop_, tell);
-            const auto ground = fly_by_ground(forecast.scenario, rehearsal.landing().solution(), run, heard,
-                                              forecast.cycle, dictionary_, [this] { return stop_.load(); });
+            const auto solution = rehearsal->landing().solution();
+            rehearsal.reset();  // from here on nothing knows the truth
+            const auto ground = fly_by_ground(forecast.scenario, solution, run, heard, {forecast.cycle, forecast.now},
+                                              dictionary_, [this] { return stop_.load(); });
             if (!ground) return ground.error();
             return forecast_by_ground(*ground, forecast.scenario, dictionary_, forecast.assumption, forecast.order,
                                       stop_, tell);

@@ -9,6 +9,7 @@
 #include "server/rehearsal/rehearsal.hpp"
 #include "server/shadow/forecast.hpp"
 
+#include <array>
 #include <atomic>
 #include <condition_variable>
 #include <deque>
@@ -51,7 +52,8 @@ Result<ReadForecast> read_forecast(const v1::ForecastRequest& request, const v1:
 ///          each second, and told from here meanwhile
 class ForecastService {
   public:
-    static constexpr std::size_t waiting_max = 8;  ///< chosen: some minutes of work
+    static constexpr std::size_t waiting_max =
+        8;  ///< of each kind, so that neither shuts the other out; chosen: minutes
 
     /// Stores a record; calls `done` later with whether it is durable, on any thread. False: not taken.
     using Keep = std::function<bool(const archive::ForecastRecord&, std::function<void(bool durable)> done)>;
@@ -62,9 +64,9 @@ class ForecastService {
     ~ForecastService();  ///< abandons what flies and what waits
 
     /// Takes a place for a forecast that is about to be kept; the Error says that there is none.
-    Result<void> reserve();
+    Result<void> reserve(bool truth);
     /// Queues a forecast, whose record has its number, at the place that was taken; none: gives the place back.
-    void fill(std::optional<ReadForecast> forecast);
+    void fill(bool truth, std::optional<ReadForecast> forecast);
     /// Ends a forecast that flies or waits. False: it does neither.
     bool cancel(archive::RunId run, std::uint64_t number);
     /// The forecast as it is now: with its progress, or its end that is not durable yet. One that should fly and is not
@@ -94,7 +96,7 @@ class ForecastService {
     std::shared_ptr<Ended> ended_ = std::make_shared<Ended>();
     mutable std::mutex mutex_;
     std::condition_variable changed_;
-    std::size_t reserved_ = 0;                       ///< under mutex_
+    std::array<std::size_t, 2> reserved_{};          ///< under mutex_; by telemetry, from the truth
     std::deque<ReadForecast> waiting_;               ///< under mutex_
     std::optional<archive::ForecastRecord> flying_;  ///< under mutex_
     ForecastProgress progress_;                      ///< under mutex_

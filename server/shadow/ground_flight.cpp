@@ -4,16 +4,12 @@
 #include "server/archive/kept_request.hpp"
 #include "server/rehearsal/kept_requests.hpp"
 #include "server/rehearsal/nominal_flight.hpp"
-#include "server/rehearsal/recorded_firings.hpp"
 #include "simulation/mars/point_mass.hpp"
 #include "simulation/vectors.hpp"
 #include "telemetry/packet_stream.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
-#include <iterator>
-#include <set>
 #include <utility>
 
 namespace aeolis::server::shadow {
@@ -21,10 +17,10 @@ namespace {
 
 using flight::NavigationShift;
 
-// Chosen: what a velocity by radar and a height by radar leave unknown. The place on the map is left as navigated: it
-// decides no landing, and its error is that of the solution.
+// Chosen: what a velocity by radar and a height by radar leave unknown. The place on the map stays as unknown as the
+// solution left it.
 constexpr double by_radar_m = 5.0, by_radar_mps = 0.1;
-constexpr double never_drawn_s = -1.0e6;  // before entry: long after the landing
+constexpr double never_drawn_s = -1.0e6;  // a negative time before entry lies after it
 
 simulation::Quaternion quaternion(const std::array<double, 4>& q) {
     return simulation::Quaternion{q[0], q[1], q[2], q[3]}.normalized();
@@ -52,12 +48,11 @@ class Holder {
 
     /// After each cycle.
     void look() {
-        const auto recorded = rehearsal_.landing().report().recorded;
+        telemetry::PacketStream packets{rehearsal_.landing().report().recorded};
+        while (const auto packet = packets.next()) own_.hear(*packet);
         if (next_ < states_.size() && states_[next_].sclk == before_.sclk) {
-            telemetry::PacketStream packets{recorded};
-            while (const auto packet = packets.next()) own_.hear(*packet);
-            const auto own = own_.states();
             const NavigatedState& state = states_[next_];
+            const auto own = own_.states();
             const bool navigates = !own.empty() && own.back().sclk == state.sclk;
             rehearsal_.shift(shift_to(before_, state), navigates ? shift_to(own.back(), state) : NavigationShift{});
             held_ = state.sclk;
@@ -66,39 +61,40 @@ class Holder {
         before_ = truth_of(rehearsal_.landing());
     }
     std::optional<Sclk> held() const { return held_; }
+    /// What the ground's flight tells of itself.
+    const HeardFlight& own() const { return own_; }
 
   private:
     Rehearsal& rehearsal_;
     std::vector<NavigatedState> states_;
     std::size_t next_ = 0;
-    HeardFlight own_;        ///< what the ground's flight tells of itself
+    HeardFlight own_;
     NavigatedState before_;  ///< the truth of that flight before the cycle
     std::optional<Sclk> held_;
 };
 
-std::string only_in(const std::set<std::string>& a, const std::set<std::string>& b) {
-    std::vector<std::string> only;
-    std::ranges::set_difference(a, b, std::back_inserter(only));
-    return fmt::format("{}", fmt::join(only, ", "));
-}
-
-/// What the vehicle has done and the ground's flight has not, or the other way; empty: nothing.
-std::string departure(const HeardFlight& heard, const Rehearsal& flown, Sclk at, double at_e_s) {
-    std::set<std::string> own;
-    for (const auto& firing : flown.firings())
-        if (firing.fired_sclk <= at.seconds) own.insert(firing.name);
-    const auto told = heard.fired_by(at);
-    const auto words = [&](const std::string& what) {
-        return fmt::format("at E{:+.1f} s, of which ground last heard, {}: from there on nothing can be forecast by "
-                           "telemetry; ask again when the vehicle has told more",
-                           at_e_s, what);
+/// What the vehicle has told and the ground's flight does not, or where their timelines stand apart; empty: nothing.
+std::string departure(const HeardFlight& heard, const HeardFlight& own, Sclk entry,
+                      const dictionary::Dictionary& dictionary) {
+    constexpr const char* therefore = ": the flight that ground expects is not the vehicle's, and nothing can be "
+                                      "forecast from it";
+    for (const auto& told : heard.warnings()) {
+        const bool expected =
+            std::ranges::any_of(own.warnings(), [&](const auto& each) { return each.name == told.name; });
+        if (!expected)
+            return fmt::format("at E{:+.1f} s the vehicle told {}, which nothing made ground expect{}",
+                               told.sclk - entry, told.name, therefore);
+    }
+    if (heard.stands().empty()) return {};
+    const TimelineStand& stand = heard.stands().back();
+    const auto expected = own.stand_at(stand.sclk);
+    if (!expected || expected->timepoint == stand.timepoint) return {};
+    const auto name = [&](std::uint16_t row) {
+        return row < dictionary.timeline.size() ? dictionary.timeline[row].name : std::string{"no timepoint"};
     };
-    if (const auto only = only_in(told, own); !only.empty())
-        return words(fmt::format("the vehicle had come to {}, and the flight that ground expects had not", only));
-    if (const auto only = only_in(own, told); !only.empty())
-        return words(
-            fmt::format("the flight that ground expects had come to {}, and the vehicle had not told it", only));
-    return {};
+    return fmt::format("at E{:+.1f} s the vehicle's timeline stood at {}, and that of the flight that ground expects "
+                       "at {}: ask again when the vehicle has told more",
+                       stand.sclk - entry, name(stand.timepoint), name(expected->timepoint));
 }
 
 }  // namespace
@@ -112,7 +108,7 @@ simulation::Scenario ground_scenario(const simulation::Scenario& scenario) {
 }
 
 Result<GroundFlight> fly_by_ground(const simulation::Scenario& scenario, const simulation::NavigationSolution& solution,
-                                   const archive::FlownRun& run, const HeardFlight& heard, std::uint64_t cycle,
+                                   const archive::FlownRun& run, const HeardFlight& heard, Instant instant,
                                    const dictionary::Dictionary& dictionary, const std::function<bool()>& stop) {
     GroundFlight flight;
     flight.rehearsal = std::make_unique<Rehearsal>(ground_scenario(scenario), 1, 0, dictionary,
@@ -133,19 +129,24 @@ Result<GroundFlight> fly_by_ground(const simulation::Scenario& scenario, const s
         return !kept.has_command() && !kept.has_verdict();
     });
     Holder holder{rehearsal, heard, dictionary};
-    const FlyAgain how{cycle, true, stop, [&](const telemetry::Received&) -> Result<void> {
+    const FlyAgain how{instant.cycle, instant.with_requests, stop, [&](const telemetry::Received&) -> Result<void> {
                            holder.look();
                            return {};
                        }};
-    if (const auto there = fly_again(rehearsal, sent, how); !there) return there.error();
+    if (const auto there = fly_again(rehearsal, sent, how); !there)
+        return Error{"the flight that ground expects: " + there.error().message};
+    if (auto why = departure(heard, holder.own(), scenario.entry_sclk, dictionary); !why.empty())
+        return Error{std::move(why)};
+    if (rehearsal.finished())
+        return Error{fmt::format("the flight that ground expects is over by then, at E{:+.1f} s: {}",
+                                 rehearsal.clocks().e_s(), rehearsal.outcome_reason())};
 
     flight.heard = holder.held();
     const auto& errors = scenario.dispersions;
-    flight.knowledge = {errors.knowledge_position_m, errors.knowledge_velocity_mps, 0.0};
-    if (flight.heard) {
-        if (auto why = departure(heard, rehearsal, *flight.heard, *flight.heard - scenario.entry_sclk); !why.empty())
-            return Error{std::move(why)};
-        if (heard.radar_locked_by(*flight.heard)) flight.knowledge = {by_radar_m, by_radar_mps, 0.0};
+    flight.knowledge = {errors.knowledge_position_m, errors.knowledge_velocity_mps};
+    if (flight.heard && heard.radar_locked_by(*flight.heard)) {
+        flight.knowledge.velocity_mps = by_radar_mps;
+        flight.knowledge.height_m = by_radar_m;
     }
     return flight;
 }

@@ -23,20 +23,25 @@ struct GroundFlight {
     std::optional<Sclk> heard;  ///< the navigated state that it was last held against; none: ground's solution alone
 };
 
+/// An instant of a run, by the cycle at the vehicle.
+struct Instant {
+    std::uint64_t cycle = 0;
+    bool with_requests = false;  ///< what was sent at that very cycle counts
+};
+
 /// What a scenario says that ground knows before the landing; of its errors only how large they may be.
 simulation::Scenario ground_scenario(const simulation::Scenario& scenario);
 
 /// Flies the landing as ground expects it, with the commands that it sent, from ground's solution on. Each state that
 /// the vehicle told is taken over: the flight is moved to it, and what its navigation believes.
 ///
-/// @param solution  ground's navigation solution, as the run began with it
+/// @param solution  ground's navigation solution
 /// @param run       whose commands were sent; faults and forks in it are the instructor's and are left out
 /// @param heard     from nothing but what ground received by the instant
-/// @param cycle     of the instant, at the vehicle
-/// Faults  an Error names a command that would be refused, what the vehicle has done by its own word and the ground's
-///         flight has not, or the other way; or says that the flight is over before, or was stopped
+/// Faults  an Error names a warning that the vehicle told and ground does not expect, or where both timelines stand when
+///         they stand apart; a command that would be refused; or says that the ground's flight is over by then, or stopped
 Result<GroundFlight> fly_by_ground(const simulation::Scenario& scenario, const simulation::NavigationSolution& solution,
-                                   const archive::FlownRun& run, const HeardFlight& heard, std::uint64_t cycle,
+                                   const archive::FlownRun& run, const HeardFlight& heard, Instant instant,
                                    const dictionary::Dictionary& dictionary, const std::function<bool()>& stop);
 
 }  // namespace aeolis::server::shadow

@@ -12,14 +12,13 @@ namespace {
 const std::vector<std::string> navigated_channels{
     "nav_position_x_m",   "nav_position_y_m", "nav_position_z_m", "nav_velocity_x_mps", "nav_velocity_y_mps",
     "nav_velocity_z_mps", "nav_attitude_w",   "nav_attitude_x",   "nav_attitude_y",     "nav_attitude_z"};
-constexpr std::string_view reversal = "BANK_REVERSAL", lock = "RADAR_LOCK";
+constexpr std::string_view lock = "RADAR_LOCK";
 
 }  // namespace
 
 HeardFlight::HeardFlight(const dictionary::Dictionary& dictionary)
-    : dictionary_(dictionary), decoder_(dictionary),
-      navigation_(fields_of(dictionary, "GncNavigation", navigated_channels)),
-      firing_(fields_of(dictionary, "TimepointFired", {"timepoint", "fired_sclk"})) {}
+    : decoder_(dictionary), navigation_(fields_of(dictionary, "GncNavigation", navigated_channels)),
+      timeline_(fields_of(dictionary, "TimelineStatus", {"timepoint_index"})) {}
 
 std::optional<HeardFlight::Fields> HeardFlight::fields_of(const dictionary::Dictionary& dictionary,
                                                           const std::string& packet,
@@ -55,18 +54,23 @@ void HeardFlight::hear(std::span<const std::uint8_t> packet) {
 void HeardFlight::take(const telemetry::DecodedPacket& decoded) {
     if (!decoded.refusal.empty()) return;
     const auto& content = decoded.content;
+    const Sclk sclk = content.header.time;
     if (decoded.event != nullptr) {
-        if (decoded.event->name == reversal) reversals_.push_back({decoded.event->name, content.header.time});
-        if (decoded.event->name == lock) locks_.push_back({decoded.event->name, content.header.time});
+        if (decoded.event->level <= dictionary::EventLevel::warning_lo)
+            warnings_.push_back({decoded.event->name, sclk});
+        if (decoded.event->name == lock && (!locked_ || sclk < *locked_)) locked_ = sclk;
         return;
     }
-    if (firing_ && content.packet == firing_->packet) {
-        const auto row = content.value[firing_->at[0]], fired = content.value[firing_->at[1]];
-        if (!row || !fired || *row < 0.0 || *row >= static_cast<double>(dictionary_.timeline.size())) return;
-        fired_.push_back({dictionary_.timeline[static_cast<std::size_t>(*row)].name, Sclk{*fired}});
-        return;
+    // What comes late, by an orbiter's memory or the recording, is no news of where it is.
+    if (timeline_ && content.packet == timeline_->packet) {
+        const auto row = content.value[timeline_->at[0]];
+        if (row && (stands_.empty() || sclk > stands_.back().sclk))
+            stands_.push_back({sclk, static_cast<std::uint16_t>(*row)});
     }
-    if (!navigation_ || content.packet != navigation_->packet) return;
+    if (navigation_ && content.packet == navigation_->packet && (!newest_ || sclk > newest_->sclk)) take_state(content);
+}
+
+void HeardFlight::take_state(const telemetry::Decoded& content) {
     std::array<double, 10> values{};
     for (std::size_t i = 0; i < values.size(); ++i) {
         const auto value = content.value[navigation_->at[i]];
@@ -78,8 +82,6 @@ void HeardFlight::take(const telemetry::DecodedPacket& decoded) {
     std::copy_n(values.begin(), 3, state.p_MoB_M_m.begin());
     std::copy_n(values.begin() + 3, 3, state.v_MB_M_mps.begin());
     std::copy_n(values.begin() + 6, 4, state.q_MB.begin());
-    // What comes late, by an orbiter's memory or the recording, is no news of where it is.
-    if (newest_ && state.sclk <= newest_->sclk) return;
     newest_ = state;
     if (states_.empty() || state.sclk - states_.back().sclk >= states_apart_s) states_.push_back(state);
 }
@@ -90,22 +92,13 @@ std::vector<NavigatedState> HeardFlight::states() const {
     return all;
 }
 
-std::set<std::string> HeardFlight::fired_by(Sclk sclk) const {
-    std::set<std::string> names;
-    for (const Told& fired : fired_)
-        if (fired.sclk <= sclk) names.insert(fired.name);
-    return names;
-}
-
-int HeardFlight::bank_reversals_by(Sclk sclk) const {
-    std::set<double> times;  // live and recorded are one
-    for (const Told& told : reversals_)
-        if (told.sclk <= sclk) times.insert(told.sclk.seconds);
-    return static_cast<int>(times.size());
+std::optional<TimelineStand> HeardFlight::stand_at(Sclk sclk) const {
+    const auto found = std::ranges::lower_bound(stands_, sclk, {}, &TimelineStand::sclk);
+    return found != stands_.end() && found->sclk == sclk ? std::optional{*found} : std::nullopt;
 }
 
 bool HeardFlight::radar_locked_by(Sclk sclk) const {
-    return std::ranges::any_of(locks_, [&](const Told& told) { return told.sclk <= sclk; });
+    return locked_ && *locked_ <= sclk;
 }
 
 }  // namespace aeolis::server::shadow

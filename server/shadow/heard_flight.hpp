@@ -3,13 +3,13 @@
 
 #include "common/time.hpp"
 #include "dictionaries/dictionary.hpp"
+#include "telemetry/decoded_packet.hpp"
 #include "telemetry/station/received.hpp"
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
-#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -24,12 +24,21 @@ struct NavigatedState {
     std::array<double, 4> q_MB{1, 0, 0, 0};
 };
 
+/// Where the timeline stood, as the vehicle told in its status.
+struct TimelineStand {
+    Sclk sclk;
+    std::uint16_t timepoint = 0;  ///< its row; beyond the timeline: none
+};
+
 /// What ground has heard of a flight's course, from nothing but what the station received.
 ///
-/// In       each cycle's Received     Out   navigated states, the newest always; what the vehicle has done by its own word
-/// Memory   a state each ten seconds; the names of what fired
+/// In       each cycle's Received, or packets
+/// Out      navigated states, the newest always; where the timeline stood; what warnings the vehicle told
+/// Memory   a state each ten seconds, each status of the timeline, each warning
 class HeardFlight {
   public:
+    static constexpr double states_apart_s = 10.0;  ///< chosen: the work of moving a flight, against what it departs by
+
     /// The dictionary must outlive this.
     explicit HeardFlight(const dictionary::Dictionary& dictionary);
 
@@ -38,34 +47,36 @@ class HeardFlight {
 
     /// By time: at least `states_apart_s` apart, but for the last, which is the newest.
     std::vector<NavigatedState> states() const;
-    /// Timepoints that had fired by then, as told by then or later.
-    std::set<std::string> fired_by(Sclk sclk) const;
-    int bank_reversals_by(Sclk sclk) const;
+    /// By time. What came late is left out.
+    const std::vector<TimelineStand>& stands() const { return stands_; }
+    std::optional<TimelineStand> stand_at(Sclk sclk) const;
+
+    struct Told {
+        std::string name;  ///< of the event
+        Sclk sclk;
+    };
+    /// Events of a warning's level and above, in the order of their arrival.
+    const std::vector<Told>& warnings() const { return warnings_; }
     /// Whether the radar had locked by then: from there on the height above ground is measured.
     bool radar_locked_by(Sclk sclk) const;
-
-    static constexpr double states_apart_s =
-        10.0;  ///< chosen: the ground's own flight departs by some metres meanwhile
 
   private:
     struct Fields {  ///< of a packet, by the names of its channels
         std::size_t packet = 0;
         std::vector<std::size_t> at;
     };
-    struct Told {
-        std::string name;
-        Sclk sclk;
-    };
     static std::optional<Fields> fields_of(const dictionary::Dictionary& dictionary, const std::string& packet,
                                            const std::vector<std::string>& names);
     void take(const telemetry::DecodedPacket& decoded);
+    void take_state(const telemetry::Decoded& content);
 
-    const dictionary::Dictionary& dictionary_;
     telemetry::PacketDecoder decoder_;
-    std::optional<Fields> navigation_, firing_;
+    std::optional<Fields> navigation_, timeline_;
     std::vector<NavigatedState> states_;
     std::optional<NavigatedState> newest_;
-    std::vector<Told> fired_, reversals_, locks_;
+    std::vector<TimelineStand> stands_;
+    std::vector<Told> warnings_;
+    std::optional<Sclk> locked_;  ///< when the radar first had
 };
 
 }  // namespace aeolis::server::shadow

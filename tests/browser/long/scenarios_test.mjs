@@ -12,7 +12,7 @@ import { comesToRest, program, root, temporaryFolder, waitFor, workplace } from 
 import { keepWhatIsWritten, notWhole } from '../texts.mjs';
 
 const { open, serve } = workplace({ scrollbars: true });
-const UNTIL_E_S = 105; // in the blackout; in second_chance the backup has just taken over
+const UNTIL_E_S = 105; // soon after the blackout; in second_chance the backup has just taken over
 
 const SCENARIOS = readdirSync(path.join(root, 'simulation/scenarios'))
   .filter((file) => file.endsWith('.textproto'))

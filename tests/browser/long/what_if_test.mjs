@@ -38,6 +38,7 @@ test('a landing is forked, goes on otherwise, is laid over the one that it was, 
   await page.getByTestId('forecast-go').click();
   await shows('what-if', /E\+360\.0 s is after the record of run 2 ends/);
   await form.getByTestId('what-if-at').fill('E+1:00');
+  await page.getByTestId('forecast-from').selectOption('telemetry');
   await page.getByTestId('forecast-go').click();
   await waitFor(async () => (await server.get('/runs/2/forecasts/2')).state, /ready/);
   await page.getByTestId('forecasts').getByRole('button', { name: 'show' }).click();

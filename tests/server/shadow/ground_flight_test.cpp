@@ -46,8 +46,8 @@ struct Followed {
     Result<GroundFlight> by_ground(const simulation::Scenario& scenario) const {
         archive::FlownRun run;
         run.clock = landing.landing().correlation();
-        return fly_by_ground(scenario, landing.landing().solution(), run, heard, cycles, tests::shipped_dictionary(),
-                             [] { return false; });
+        return fly_by_ground(scenario, landing.landing().solution(), run, heard, {cycles, true},
+                             tests::shipped_dictionary(), [] { return false; });
     }
 };
 
@@ -98,13 +98,50 @@ TEST_CASE("what differs in hidden things only gives the same flight of the groun
     CHECK(by_open->rehearsal->digest() == by_plan->rehearsal->digest());
 }
 
-TEST_CASE("a forecast by telemetry lands where the landing does, within its own spread, and says what it is from",
-          "[shadow][R58]") {
+TEST_CASE("what the vehicle tells and ground does not expect is named, and nothing is forecast from then on",
+          "[shadow][R57][R58]") {
+    const auto scenario = shipped("second_chance");
+    Followed followed{scenario, 3};
+    followed.fly_to(scenario, 90.0);
+    CHECK(followed.by_ground(scenario));
+    followed.fly_to(scenario, 150.0);
+    const auto after = followed.by_ground(scenario);
+    REQUIRE_FALSE(after);
+    CHECK_THAT(after.error().message,
+               Catch::Contains("s the vehicle told SECOND_CHANCE_TAKES_OVER, which nothing made"));
+}
+
+TEST_CASE("a timeline that does not run, or stands elsewhere, is a departure before anything is navigated",
+          "[shadow][R57][R58]") {
+    const auto begun = shipped("nominal_auto"), waits = shipped("nominal");
+    Followed followed{waits, 3};
+    followed.fly_to(waits, -650.0);
+    CHECK(followed.by_ground(waits));
+    const auto expected_to_run = followed.by_ground(begun);
+    REQUIRE_FALSE(expected_to_run);
+    CHECK_THAT(expected_to_run.error().message,
+               Catch::Contains("the vehicle's timeline stood at ") && Catch::Contains("ask again"));
+}
+
+TEST_CASE("packets that a lossy link lost, and three orbiters, leave ground's flight the vehicle's", "[shadow][R58]") {
+    const auto scenario = shipped("relay_passes");
+    Followed followed{scenario, 2};
+    for (const double e_s : {-200.0, 150.0, 300.0}) {
+        followed.fly_to(scenario, e_s);
+        const auto ground = followed.by_ground(scenario);
+        INFO("at E" << e_s << " s: " << (ground ? "" : ground.error().message));
+        CHECK(ground);
+    }
+}
+
+TEST_CASE("cases by telemetry touch down, and say how well the state is known that they are from", "[shadow][R58]") {
     const auto scenario = shipped("nominal_auto");
     Followed followed{scenario, 7};
     followed.fly_to(scenario, 330.0);
     const auto ground = followed.by_ground(scenario);
     REQUIRE(ground);
+    CHECK(ground->knowledge.height_m == 5.0);
+    CHECK(ground->knowledge.position_m == scenario.dispersions.knowledge_position_m);
     const auto forecast = forecast_by_ground(*ground, scenario, tests::shipped_dictionary(), {},
                                              {.seed = 1, .cases = 4, .jobs = 2}, never);
     REQUIRE(forecast);
@@ -112,6 +149,7 @@ TEST_CASE("a forecast by telemetry lands where the landing does, within its own 
     const auto said = forecast_json(*forecast, scenario.limits, {});
     CHECK(said.find("\"from\":\"telemetry\"") != std::string::npos);
     CHECK(said.find("\"heard_e_s\":") != std::string::npos);
+    CHECK(said.find("\"height_m\":5") != std::string::npos);
 }
 
 }  // namespace server_ground_flight_test

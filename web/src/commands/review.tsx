@@ -4,7 +4,7 @@ import { useEffect, useLayoutEffect, useRef } from 'preact/hooks';
 import type { CommandReply, DictionaryCommand } from '../gen/aeolis/v1/run_pb';
 import { STATUS } from '../design/status';
 import { inWords } from '../run/dictionary';
-import { flyOut } from '../rehearsal/fly_out';
+import { CASES, flyOut, flyingOut } from '../rehearsal/fly_out';
 import { modeNow, runNow, store } from '../run/shown';
 import { duration, fromEntry } from '../run/time';
 import { moved } from '../timeline/now';
@@ -250,7 +250,12 @@ function Told({ reply }: { reply: CommandReply }) {
                   type="button"
                   class="quiet"
                   data-testid="fly-out"
-                  title="32 landings with it and 32 without, from what ground heard until now"
+                  disabled={uplink.value.hold || flyingOut.value}
+                  title={
+                    uplink.value.hold
+                      ? 'nobody knows when it leaves: it is held'
+                      : `${CASES} landings with it and ${CASES} without, from what ground heard until now`
+                  }
                   onClick={() => {
                     const wanted = intent.value;
                     if (wanted && !('problem' in wanted)) void flyOut(run.id, wanted);

@@ -57,7 +57,7 @@ describe('events', () => {
     const told = { ...landed, subject: 'computer', sentence: 'On the backup', evidence: 'event SECOND_CHANCE' };
     const store = aStore([
       situation('2012-219T04:59:52.0', lost),
-      situation('2012-219T04:59:55.0', lost, told),
+      situation('2012-219T04:59:55.0', { ...lost, sentence: 'A fault on the ground, and Earth sets meanwhile' }, told),
       situation('2012-219T04:59:58.0', landed, over, { rank: 'waiting', subject: 'recording', sentence: 'Waiting' }),
     ]);
     const { lines, warnings } = eventLines(store, { ...all, from: 'ACTIVITY_LO' }, 10);

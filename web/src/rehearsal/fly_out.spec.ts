@@ -14,7 +14,7 @@ const intent = {
   arguments: [{ name: 'parachute_speed_mps', value: 390 }],
   fromSolution: true,
   service: '',
-  releaseAt: '',
+  releaseAt: '2012-219T05:00:00',
   hold: false,
   priority: 0,
   controller: '',
@@ -38,6 +38,7 @@ it('a reviewed command is flown out as it stands, by what ground heard, and the 
         command: 'EDL_SET_PARAMETERS',
         arguments: [{ name: 'parachute_speed_mps', value: 390 }],
         from_solution: true,
+        release_at: '2012-219T05:00:00',
       },
     ],
   });

@@ -36,7 +36,7 @@ const at = signal('');
 const seed = signal('');
 const waits = signal(true);
 const cases = signal('32');
-const basis = signal<Basis>('telemetry');
+const basis = signal<Basis>('truth'); // of who may choose
 const command = signal('');
 const breaks = signal(false);
 const problem = signal('');
@@ -48,9 +48,9 @@ const opened = signal<Forecast | undefined>(undefined); // with its result
 
 async function refreshForecasts(run: RunStore): Promise<void> {
   try {
-    const list = await read<{ forecasts?: Forecast[] }>(`/runs/${run.id}/forecasts?limit=20`);
+    const list = await read<{ forecasts?: Forecast[] }>(`/runs/${run.id}/forecasts?limit=100`);
     // the newest first: numbers alone order those of one kind
-    const all = (list.forecasts ?? []).sort((one, other) => (one.asked < other.asked ? 1 : -1));
+    const all = (list.forecasts ?? []).sort((one, other) => other.asked.localeCompare(one.asked));
     forecasts.value = { run: run.id, all };
   } catch {
     // the known list stays; the next round asks again
@@ -360,7 +360,7 @@ function Forecasts({ run }: { run: RunStore }) {
               >
                 {Object.entries(BASES).map(([name, words]) => (
                   <option key={name} value={name}>
-                    {words}
+                    {name === 'telemetry' ? `${words}; everybody sees it` : words}
                   </option>
                 ))}
               </select>

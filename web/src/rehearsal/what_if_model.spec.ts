@@ -63,7 +63,7 @@ describe('a forecast', () => {
     expect(assumed(forecast({ request }), () => 'a reset')).toBe('DO_EDL, a reset');
   });
   it('says how far it is, and why it came to nothing', () => {
-    expect(stateText(forecast({}))).toBe('waits for the one before');
+    expect(stateText(forecast({}))).toBe('waits for its turn');
     expect(stateText(forecast({ state: 'flying' }))).toBe('flies the run again up to there');
     expect(
       stateText(

@@ -63,7 +63,7 @@ export interface Forecast {
 }
 /** From what cases are flown: the vehicle as it is, or as ground expects it by what it had heard. */
 export type Basis = 'truth' | 'telemetry';
-export const BASES: Record<Basis, string> = { telemetry: 'what ground heard', truth: 'the truth' };
+export const BASES: Record<Basis, string> = { truth: 'the truth', telemetry: 'what ground heard' };
 
 /** From what the cases of a result began. */
 export const basisWords = ({ from, heard_e_s }: NonNullable<Forecast['result']>): string =>
@@ -127,7 +127,7 @@ export function stateText(forecast: Forecast): string {
       return `${forecast.done ?? 0} of ${forecast.of} flown; within limits ${side(forecast.within_without, forecast.without)}${withText}`;
     }
     case 'queued':
-      return 'waits for the one before';
+      return 'waits for its turn';
     case 'abandoned':
       return 'the server ended before it was ready';
     case 'failed':

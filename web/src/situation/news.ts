@@ -32,8 +32,10 @@ export function newsOf(run: RunStore): readonly News[] {
     of.seq = seq;
     for (const { rank, subject, sentence, evidence, sinceUs } of fact.entries) {
       if (rank !== 'danger' && rank !== 'news' && !(rank === 'lasting' && isLoss(subject))) continue;
-      if (of.said.has(sentence)) continue;
-      of.said.add(sentence);
+      // What goes on about it (what is predicted meanwhile, how often) makes no new row.
+      const what = `${subject} ${sinceUs} ${shortWords(sentence)}`;
+      if (of.said.has(what)) continue;
+      of.said.add(what);
       const since_s = sinceUs === 0n ? NaN : secondsOfErt(sinceUs);
       of.news.push({ seq, ert_s, since_s, rank, subject, sentence, evidence });
     }
