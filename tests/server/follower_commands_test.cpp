@@ -222,6 +222,8 @@ TEST_CASE("a command from a follower is its person's at the origin, and its fate
     SECTION("what is the origin's alone stays there") {
         const auto refused = follower->ask("dora", "POST", "/api/v1/rehearsals", R"({"scenario":"nominal"})");
         CHECK(refused.status == 409);
+        const auto forecast = follower->ask("dora", "POST", "/api/v1/runs/1/forecasts", R"({"from":"telemetry"})");
+        CHECK(forecast.status == 409);  // it would be kept at the origin, and nobody here could read it
         CHECK_THAT(refused.body, Catch::Contains("runs are begun there"));
     }
 }
