@@ -32,7 +32,7 @@ const SHOWN = {
   recorded: /A range of this run/,
   rehearsal: /Review of run 1/,
   campaigns: /No campaign lies beside this archive/,
-  what_if: /Go on otherwise[^]*fork run 1[^]*from the truth[^]*there is no other run/,
+  what_if: /Go on otherwise[^]*fork run 1[^]*What would come of it[^]*the truth[^]*there is no other run/,
   vehicle: /Touchdown confirmed[^]*from the target[^]*✓\s+touchdown told[^]*The recording is complete/,
   users: /This server runs without accounts/,
 };

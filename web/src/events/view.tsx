@@ -70,7 +70,7 @@ export function Events() {
             <li
               key={line.key}
               class={`event level-${line.level}`}
-              data-event={line.name}
+              data-event={line.name || undefined}
               data-menu={line.name === '' ? undefined : `timepoint ${line.name}`}
               data-at={line.e_s}
             >
