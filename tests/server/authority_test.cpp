@@ -485,7 +485,7 @@ TEST_CASE("what an instructor does is told to those who may rehearse, to all oth
 }
 
 TEST_CASE("a forecast from the truth does not exist for who may not rehearse, and one by telemetry is everybody's",
-          "[access][forecast][R58]") {
+          "[access][forecast][R58][idle]") {
     Guarded guarded;
     REQUIRE(guarded.ask("director", "POST", "/api/v1/rehearsals", R"({"scenario":"nominal_auto","pace":0})").status ==
             201);
