@@ -109,7 +109,7 @@ class Api {
         std::string_view audit{};  ///< action in the audit; empty: no change, or the handler writes it
         Audited audited = Audited::all;
         Body body = Body::brief;
-        /// Of what may be commanded: a follower hands it to its origin. Else it refuses it.
+        /// Whether a follower hands a request with the right to command to its origin; false: it refuses it.
         bool for_origin = true;
     };
     static std::span<const Route> routes();

@@ -28,7 +28,8 @@ struct ForecastRecord {
     std::string ended;
 };
 
-/// Stores a forecast under its number, or with the number 0 as the next one of its run and kind. Call within a transaction.
+/// Stores a forecast under its number, or with the number 0 as the next one of its run and kind. Call within a
+/// transaction.
 /// @return its number
 Result<std::uint64_t> keep_forecast(sqlite::Database& database, const ForecastRecord& forecast);
 Result<std::optional<ForecastRecord>> forecast_of(sqlite::Database& database, RunId run, std::uint64_t number);

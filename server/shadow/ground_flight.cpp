@@ -87,7 +87,7 @@ std::string departure(const HeardFlight& heard, const HeardFlight& own, Sclk ent
     }
     if (heard.stands().empty()) return {};
     const TimelineStand& stand = heard.stands().back();
-    const auto expected = own.stand_at(stand.sclk);
+    const auto expected = own.stand_by(stand.sclk);
     if (!expected || expected->timepoint == stand.timepoint) return {};
     const auto name = [&](std::uint16_t row) {
         return row < dictionary.timeline.size() ? dictionary.timeline[row].name : std::string{"no timepoint"};

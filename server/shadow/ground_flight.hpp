@@ -38,8 +38,9 @@ simulation::Scenario ground_scenario(const simulation::Scenario& scenario);
 /// @param solution  ground's navigation solution
 /// @param run       whose commands were sent; faults and forks in it are the instructor's and are left out
 /// @param heard     from nothing but what ground received by the instant
-/// Faults  an Error names a warning that the vehicle told and ground does not expect, or where both timelines stand when
-///         they stand apart; a command that would be refused; or says that the ground's flight is over by then, or stopped
+/// Faults  an Error names a warning that the vehicle told and ground does not expect, where both timelines stand when
+///         they stand apart, or a command that would be refused; or it says that the ground's flight is over by then, or
+///         was stopped
 Result<GroundFlight> fly_by_ground(const simulation::Scenario& scenario, const simulation::NavigationSolution& solution,
                                    const archive::FlownRun& run, const HeardFlight& heard, Instant instant,
                                    const dictionary::Dictionary& dictionary, const std::function<bool()>& stop);

@@ -5,6 +5,7 @@
 #include "telemetry/text.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 namespace aeolis::server::shadow {
 namespace {
@@ -92,9 +93,9 @@ std::vector<NavigatedState> HeardFlight::states() const {
     return all;
 }
 
-std::optional<TimelineStand> HeardFlight::stand_at(Sclk sclk) const {
-    const auto found = std::ranges::lower_bound(stands_, sclk, {}, &TimelineStand::sclk);
-    return found != stands_.end() && found->sclk == sclk ? std::optional{*found} : std::nullopt;
+std::optional<TimelineStand> HeardFlight::stand_by(Sclk sclk) const {
+    const auto later = std::ranges::upper_bound(stands_, sclk, {}, &TimelineStand::sclk);
+    return later != stands_.begin() ? std::optional{*std::prev(later)} : std::nullopt;
 }
 
 bool HeardFlight::radar_locked_by(Sclk sclk) const {

@@ -49,7 +49,8 @@ class HeardFlight {
     std::vector<NavigatedState> states() const;
     /// By time. What came late is left out.
     const std::vector<TimelineStand>& stands() const { return stands_; }
-    std::optional<TimelineStand> stand_at(Sclk sclk) const;
+    /// The newest by then.
+    std::optional<TimelineStand> stand_by(Sclk sclk) const;
 
     struct Told {
         std::string name;  ///< of the event

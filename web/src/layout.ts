@@ -15,8 +15,8 @@ export const LAYOUT = {
   seenByDoppler: 'SEEN_BY_DOPPLER',
 
   /**
-   * Plots from top to bottom. `per` converts the dictionary's unit to the displayed one. `linearBelow`, in that: the axis
-   * is linear up to there and logarithmic above, for what ends far below where it began.
+   * Plots from top to bottom. `per` converts the dictionary's unit to the displayed one. The axis is linear up to
+   * `linearBelow`, in the displayed unit, and logarithmic above: for what ends far below where it began.
    */
   plots: [
     { title: 'Altitude', channel: ['altitude_m'], unit: 'km', per: 1000, digits: 2, linearBelow: 0.1 },

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every shipped scenario at every size of a window in both themes, at one instant of its landing: nothing is cut off, and
-// it looks as stored. AEOLIS_RENEW_PICTURES=1 stores new pictures.
+// Every shipped scenario at every size of a window in both themes, at one instant of its landing: nothing is cut off,
+// and it looks as stored. AEOLIS_RENEW_PICTURES=1 stores new pictures.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { existsSync, readdirSync } from 'node:fs';

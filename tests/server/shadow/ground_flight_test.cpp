@@ -82,8 +82,7 @@ TEST_CASE("the ground's flight is where the vehicle believes to be, and as far f
     }
 }
 
-TEST_CASE("what differs in hidden things only gives the same flight of the ground, bit for bit, until it is heard",
-          "[shadow][R57]") {
+TEST_CASE("a fault that has not shown itself changes nothing of the ground's flight, bit for bit", "[shadow][R57]") {
     const auto scenario = shipped("nominal_auto");
     auto hidden = scenario;
     hidden.device_faults.push_back({});

@@ -321,7 +321,8 @@ function Plot(properties: Properties) {
       const isDifference = showsDifference(channel);
       const line = lineOf(channel, per);
       const linear_below = isDifference ? undefined : linearBelow;
-      const newShape = `${palette().name} ${run?.entryKnown} ${channel.id} ${over.map(({ id }) => id).join()} ${linear_below}`;
+      const ids = [channel, ...over].map(({ id }) => id).join();
+      const newShape = `${palette().name} ${run?.entryKnown} ${ids} ${linear_below}`;
       const changes = LIVE_LINKS.map((link) => run?.links.get(link) ?? []);
       const silences = changes.reduce((all, each) => all + each.length, 0);
       // a present silence grows with the clock, without new samples

@@ -26,7 +26,7 @@ afterEach(() => {
   for (const { id } of notices.value) dismissNotice(id);
 });
 
-it('a reviewed command is flown out as it stands, by what ground heard, and the panel with the result is shown', async () => {
+it('a reviewed command is flown out as it stands, by what ground heard, and its panel is shown', async () => {
   server.routes['POST /runs/3/forecasts'] = { status: 201, json: { forecast: '2' } };
   const before = asksElsewhere.value;
   await flyOut(3, intent);

@@ -45,7 +45,7 @@ export const LOOKS: Record<Rank, Status> = {
   calm: 'good',
   lasting: 'caution',
 };
-/** A touchdown is good news, and so is its recording; a link that is silent is silent, however calm that leaves people. */
+/** A touchdown and its recording are good news; a link that is silent is silent, however calm that leaves people. */
 export function lookOf({ rank, subject, sentence }: Pick<Line, 'rank' | 'subject' | 'sentence'>): Status {
   if (rank === 'news' && (subject === 'landed' || subject === 'recording')) return 'holds';
   return rank === 'calm' && / silent\b/.test(sentence) ? 'quiet' : LOOKS[rank];
