@@ -277,6 +277,8 @@ struct Scenario {
     double steady_wind_east_mps = 0.0;
     double steady_wind_north_mps = 0.0;
     Radio radio;
+    /// Ground keeps a flight of its own beside a run. None: the rehearsal chooses by its pace; elsewhere there is none.
+    std::optional<bool> ground_flight;
     TestVenue test_venue = TestVenue::flight_software;
     flight::Plan telemetry_plan = flight::Plan::mission;
     double parachute_speed_mps = 405.0;  ///< trigger in ground's solution

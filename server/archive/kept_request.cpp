@@ -16,7 +16,9 @@ class IgnoredErrors : public google::protobuf::io::ErrorCollector {
 
 std::string kept_text(const v1::KeptRequest& request) {
     std::string text;
-    google::protobuf::TextFormat::PrintToString(request, &text);
+    google::protobuf::TextFormat::Printer printer;
+    printer.SetUseShortRepeatedPrimitives(true);
+    printer.PrintToString(request, &text);
     return text;
 }
 

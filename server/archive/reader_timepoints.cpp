@@ -27,6 +27,13 @@ constexpr char newest_report_sql[] =
     "SELECT octets FROM packets WHERE run = ?1 AND apid = ?2 AND source = ?3 AND sclk <= ?4 AND packet = ?5"
     " AND sampled = 1 AND ert_us <= ?6 ORDER BY sclk DESC LIMIT 1";
 
+constexpr char expects_sql[] =
+    "SELECT octets FROM packets WHERE run = ?1 AND apid = ?2 AND source = ?3 AND sclk <= ?4 AND packet = ?5"
+    " AND ert_us <= ?6 ORDER BY sclk, key";
+
+// Packet in which ground says when it expects a timepoint.
+constexpr std::string_view expects_packet = "ShadowExpects";
+
 /// The limits of what is known at an instant.
 struct Cut {
     double on_board_s = std::numeric_limits<double>::infinity();  ///< SCLK
@@ -259,6 +266,44 @@ void write_expected(const dictionary::Dictionary& dictionary, dictionary::Timeli
     }
 }
 
+/// Writes when the flights of ground's plan expect the timepoints, as said last.
+Result<void> write_flights(Reader::State& reader, RunId run, const Cut& cut, v1::TimepointList& list) {
+    const auto* expects = reader.dictionary.packet(expects_packet);
+    if (expects == nullptr) return {};
+    const auto packet = static_cast<std::size_t>(expects - reader.dictionary.packets.data());
+    auto rows = reader.query(expects_sql);
+    if (!rows) return rows.error();
+    (*rows)
+        ->bind(1, std::int64_t{run.value})
+        .bind(2, std::int64_t{expects->apid.value})
+        .bind(3, static_cast<std::int64_t>(Source::realtime))
+        .bind(4, cut.on_board_s)
+        .bind(5, static_cast<std::int64_t>(packet))
+        .bind(6, cut.on_earth.microseconds);
+    const auto value = [&](std::string_view name) {
+        const auto field = telemetry::field_index(*expects, name);
+        return field ? reader.decoded.value[*field].value_or(0.0) : 0.0;
+    };
+    for (;;) {
+        auto found = (*rows)->step();
+        if (!found) return found.error();
+        if (!*found) return {};
+        if (!reader.decode((*rows)->octets(0), packet)) continue;
+        const auto row = static_cast<int>(value("expected_timepoint"));
+        if (row >= list.timepoints_size()) continue;
+        auto& written = *list.mutable_timepoints(row);
+        written.clear_flights_e_s();
+        written.clear_flights_from_e_s();
+        written.clear_flights_to_e_s();
+        written.set_flights(static_cast<std::uint32_t>(value("expected_cases")));
+        if (written.flights() == 0) continue;
+        written.set_flights_e_s(value("expected_after_entry_s"));
+        if (value("expected_interval_defined") == 0.0) continue;
+        written.set_flights_from_e_s(value("expected_from_s"));
+        written.set_flights_to_e_s(value("expected_to_s"));
+    }
+}
+
 /// Writes the timepoints whose times differ with the change.
 void write_moved(const dictionary::TimelinePrediction& with_change, const KnownFirings& firings,
                  v1::TimepointList& list) {
@@ -338,6 +383,7 @@ Result<v1::TimepointList> Reader::timepoints(RunId run, const TimepointQuery& qu
     if (known.now_e_s) list.set_known_at_e_s(*known.now_e_s);
     write(predict(dictionary, known), dictionary, list);
     write_expected(dictionary, known, list);
+    if (auto done = write_flights(*state_, run, cut, list); !done) return done.error();
     if (query.change) {
         known.changes.push_back(*query.change);
         list.set_command_moves(true);

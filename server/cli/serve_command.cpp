@@ -6,6 +6,7 @@
 #include "server/cli/shipped_paths.hpp"
 #include "server/cli/xtce_file.hpp"
 #include "server/net/console_backend.hpp"
+#include "server/shadow/forecast.hpp"
 
 #include <algorithm>
 #include <array>
@@ -47,6 +48,7 @@ struct ServeOptions {
     std::string follow_archive;          ///< of which archive, where the engine has several
     std::string follow_runs;             ///< numbers and ranges; empty: all runs
     std::filesystem::path follower_key;  ///< signs what people here ask of the origin
+    std::uint64_t plan_flights = 300;
     std::uint64_t keep_raw_mb = archive::raw_octets_kept >> 20U;  ///< of each link of a run
     std::string log_level{default_log_level}, log_format = "text";
     bool log_level_given = false;  ///< by command line or environment, before which the file gives way
@@ -239,6 +241,7 @@ int serve(const ServeOptions& options) {
                                         .web = options.web,
                                         .other = followed.model.get(),
                                         .raw_octets_kept = options.keep_raw_mb << 20U,
+                                        .plan_flights = options.plan_flights,
                                         .publish_to = engine_at(options.nats, options.publish_to),
                                         .follow_by = engine_at(options.nats, options.follow),
                                         .follow_archive = options.follow_archive,
@@ -290,6 +293,13 @@ void add_backend_options(CLI::App& command, ServeOptions& options) {
             "MB (2^20 octets) that are kept of each link of a run as received, bad frames too; the oldest beyond that "
             "are removed; 0: none")
         ->check(CLI::Range(0, 1 << 20))
+        ->capture_default_str();
+    command
+        .add_option("--plan-flights", options.plan_flights,
+                    "dispersed flights of ground's plan, made beside each run by processors that nothing else wants: "
+                    "they say when each timepoint is expected and what the vehicle may do; 0: none; below 199 no "
+                    "interval is told")
+        ->check(CLI::Range(std::uint64_t{0}, shadow::forecast_cases_max))
         ->capture_default_str();
     command.add_option("--web", options.web, "directory of the built console")->capture_default_str();
     command.add_option("--log-level", options.log_level, "least severe level that is logged to standard error")

@@ -6,6 +6,7 @@
 #include "server/base/json.hpp"
 #include "server/base/wall_clock.hpp"
 #include "server/rehearsal/again_of.hpp"
+#include "server/shadow/shadow.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -103,8 +104,11 @@ Result<std::unique_ptr<ConsoleBackend>> ConsoleBackend::open(Settings settings,
             if (!taken) done(Error{QueryThreads::busy});
         },
         self->timeline_questions(),
-        RehearsalManager::Callbacks{[self](v1::RunState state) { self->run_state(std::move(state)); },
-                                    [self](v1::Clocks clocks) { self->clocks(std::move(clocks)); }});
+        RehearsalManager::Callbacks{
+            [self](v1::RunState state) { self->run_state(std::move(state)); },
+            [self](v1::Clocks clocks) { self->clocks(std::move(clocks)); },
+            chosen.plan_flights ? shadow::make_shadows(dictionary, {.cases = *chosen.plan_flights, .idle = true})
+                                : MakeCompanion{}});
     // The last step that can fail: the first password is shown once, and only by a server that starts.
     auto access = Access::open({.file = chosen.accounts, .secure = backend->server_->secure()});
     if (!access) return access.error();

@@ -37,10 +37,12 @@ class ConsoleBackend {
         const telemetry::OtherMission* other = nullptr;
         ReadClocks clocks = read_clocks;
         std::uint64_t raw_octets_kept = archive::raw_octets_kept;  ///< of each link of a run, as they came
-        cluster::EngineAddress publish_to{};                       ///< no URL: nowhere
-        cluster::EngineAddress follow_by{};                        ///< no URL: this server follows none
-        std::string follow_archive{};                              ///< identity, or its beginning; empty: the only one
-        cluster::ChosenRuns follow_runs{};                         ///< that are followed
+        /// Ground's own flight beside a run, with so many dispersed flights of its plan; none: no such flight.
+        std::optional<std::uint64_t> plan_flights{};
+        cluster::EngineAddress publish_to{};   ///< no URL: nowhere
+        cluster::EngineAddress follow_by{};    ///< no URL: this server follows none
+        std::string follow_archive{};          ///< identity, or its beginning; empty: the only one
+        cluster::ChosenRuns follow_runs{};     ///< that are followed
         std::filesystem::path follower_key{};  ///< signs what people here ask of the origin; empty: they only watch
     };
     /// Memory blocks of this size or more are mapped separately and returned to the system when freed; chosen. So the

@@ -20,6 +20,7 @@ bool repeat(Rehearsal& rehearsal, const v1::KeptRequest& kept,
     case v1::KeptRequest::kIntervention:
         return !kept.intervention().has_fault() || rehearsal.inject(kept.intervention().fault()).ok();
     case v1::KeptRequest::kFork: return kept.fork().seed() == 0 || rehearsal.redraw(kept.fork().seed()).ok();
+    case v1::KeptRequest::kEnsemble: return true;  // of ground, not of the landing
     case v1::KeptRequest::KEPT_NOT_SET: break;
     }
     return false;

@@ -178,6 +178,7 @@ simulation::Scenario expected_scenario(simulation::Scenario scenario) {
     scenario.radio.uhf_loss_fraction = 0.0;
     scenario.radio.uplink_loss_fraction = 0.0;
     scenario.radio.delivery_restarts_after_touchdown_s.clear();
+    scenario.ground_flight.reset();             // chosen by the pace of a run, and so are:
     scenario.radio.tones_from_samples = false;  // chosen by the pace of a run
     // The same software, without the threads that measure it.
     if (scenario.test_venue == simulation::TestVenue::performance)

@@ -135,6 +135,7 @@ RehearsalRunner::Callbacks RehearsalManager::callbacks_for(Began began) {
             reanalyse();
         });
     };
+    callbacks.companion = callbacks_.companion;
     return callbacks;
 }
 

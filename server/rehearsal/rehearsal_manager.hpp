@@ -35,6 +35,7 @@ class RehearsalManager {
     struct Callbacks {
         std::function<void(v1::RunState)> on_state;
         std::function<void(v1::Clocks)> on_clocks;
+        MakeCompanion companion{};  ///< see RehearsalRunner::Callbacks
     };
     using Post = std::function<void(std::function<void()>)>;
     /// Reads, on any thread, the run that a request continues or forks: see again_of().

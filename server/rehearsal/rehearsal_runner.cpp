@@ -61,6 +61,8 @@ RehearsalRunner::RehearsalRunner(simulation::Scenario scenario, std::uint64_t se
       callbacks_(std::move(callbacks)) {
     pace_ = std::clamp(pace, 0.0, pace_max);
     scenario_.radio.tones_from_samples = from_samples(scenario_.radio, pace_);
+    const bool accompanied = pace_ > 0.0 && pace_ <= companion_pace_max;
+    scenario_.ground_flight = callbacks_.companion && scenario_.ground_flight.value_or(accompanied);
     thread_ = std::thread{[this] { run(); }};
 }
 
@@ -165,9 +167,11 @@ void RehearsalRunner::run() {
     Rehearsal rehearsal{scenario_,   seed_, again_ ? again_->run.case_number : 0,
                         dictionary_, {},    again_ ? std::optional{again_->run.clock} : std::nullopt};
     start_ = rehearsal.run_start(pace_);
+    if (callbacks_.companion) companion_ = callbacks_.companion(rehearsal);
     if (again_) start_.forked_from = again_->fork ? again_->fork : again_->run.forked_from;
     if (const auto begun = begin(rehearsal)) {
         callbacks_.on_begun(state(rehearsal));
+        if (companion_) companion_->go_live();
         fly(rehearsal);
     } else {
         callbacks_.on_begun(begun.error());
@@ -448,10 +452,12 @@ void RehearsalRunner::carry_out(Rehearsal& rehearsal, const commands::TimelineVe
 
 void RehearsalRunner::keep(const Rehearsal& rehearsal, const v1::KeptRequest& request) {
     delivery_.entries.emplace_back(archive::RequestRecord{rehearsal.cycles(), archive::kept_text(request)});
+    if (companion_) companion_->take(rehearsal.cycles(), request);
 }
 
 bool RehearsalRunner::repeat(Rehearsal& rehearsal, const std::string& request) {
     const auto kept = archive::kept_request(request);
+    if (companion_) companion_->take(rehearsal.cycles(), kept);
     return server::repeat(rehearsal, kept, [&](const v1::CommandReply& reply) {
         const std::scoped_lock lock{mutex_};
         client_ids_.accepted(kept.command(), reply.command());
@@ -459,9 +465,17 @@ bool RehearsalRunner::repeat(Rehearsal& rehearsal, const std::string& request) {
 }
 
 void RehearsalRunner::step(Rehearsal& rehearsal) {
-    delivery_.add(std::move(rehearsal.step()));
+    auto& received = rehearsal.step();
+    if (companion_) accompany(received, rehearsal);
+    delivery_.add(std::move(received));
     delivery_.pass(rehearsal.cycles(), rehearsal.landing().ert_now());
     take_stages(rehearsal);
+}
+
+void RehearsalRunner::accompany(const telemetry::Received& received, const Rehearsal& rehearsal) {
+    auto made = companion_->hear(received, rehearsal.landing().ert_now());
+    for (auto& packet : made.packets) delivery_.entries.emplace_back(std::move(packet));
+    if (made.request) keep(rehearsal, *made.request);
 }
 
 void RehearsalRunner::take_stages(Rehearsal& rehearsal) {

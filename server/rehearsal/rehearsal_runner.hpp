@@ -9,6 +9,7 @@
 #include "server/archive/records.hpp"
 #include "server/pipeline/pipeline_thread.hpp"
 #include "server/rehearsal/client_ids.hpp"
+#include "server/rehearsal/companion.hpp"
 #include "server/rehearsal/run_order.hpp"
 #include "simulation/scenario.hpp"
 
@@ -37,6 +38,8 @@ class Rehearsal;
 /// Tones    when the scenario leaves it open, decoded from a waveform up to a pace of signal_pace_max, else drawn from
 ///          the symbol error. The pace at the start decides for the whole run, so that no tone is lost or doubled when
 ///          the pace changes (decision 0019)
+/// Ground   unless the scenario says otherwise, ground keeps a flight of its own beside a run that begins at a pace of 1
+///          to companion_pace_max. That, too, holds for the whole run (decision 0063)
 /// Cut off  a run ended by a crash is flown again as fast as possible with the same seed, clock, and requests at the
 ///          same cycles. Each item is compared with the archive; after the last stored one the run continues as normal.
 ///          When an item differs, the run stays interrupted and on_begun gets the Error (decision 0021)
@@ -60,12 +63,16 @@ class RehearsalRunner {
         /// A command that changes the timeline had no effect, and this is durable: the waiting commands were analysed
         /// with it. On the pipeline's thread.
         std::function<void()> on_timeline_moved;
+        MakeCompanion companion{};  ///< none: ground keeps no flight beside the run
     };
 
     /// Whether the tones of a run that begins at `pace` are decoded from samples.
     static bool from_samples(const simulation::Radio& radio, double pace) {
         return radio.tones_from_samples.value_or(pace > 0.0 && pace <= signal_pace_max);
     }
+
+    /// Chosen: with a flight of ground's beside it a run attains some 300 times real time.
+    static constexpr double companion_pace_max = 100.0;
 
     /// Dictionary and pipeline must outlive this.
     RehearsalRunner(simulation::Scenario scenario, std::uint64_t seed, double pace,
@@ -128,6 +135,8 @@ class RehearsalRunner {
     Clock::time_point next_cycle_due(const Rehearsal& rehearsal, Clock::time_point now) const;
     void finish(Rehearsal& rehearsal);
     void leave(const Rehearsal& rehearsal);
+    /// What ground's own flight makes of the last cycle.
+    void accompany(const telemetry::Received& received, const Rehearsal& rehearsal);
     /// Repeats a request stored with this run.
     bool repeat(Rehearsal& rehearsal, const std::string& request);
     /// For each command the reply where it repeats an earlier one by its client's id, else none.
@@ -163,6 +172,7 @@ class RehearsalRunner {
     // Used by the rehearsal's thread only.
     archive::RunId run_id_;
     archive::RunStart start_;
+    std::unique_ptr<Companion> companion_;
     Delivery delivery_;
     bool timeline_moved_ = false;  ///< by a stage in delivery_
     bool paused_ = false, finished_ = false, stopped_ = false, left_ = false, archive_gave_up_ = false;

@@ -409,6 +409,7 @@ Result<Scenario> scenario_from_message(const v1::Scenario& message) {
     }
     for (const auto& row : message.air()) read(row, air_fields, scenario.air.emplace_back());
     for (const auto& row : message.winds()) read(row, wind_fields, scenario.winds.emplace_back());
+    if (message.has_ground_flight()) scenario.ground_flight = message.ground_flight();
     if (message.test_venue() != v1::TEST_VENUE_UNSPECIFIED) {
         const auto venue = named<simulation::TestVenue>(message.test_venue(),
                                                         v1::TestVenue_IsValid(message.test_venue()), "test_venue");
@@ -475,6 +476,7 @@ v1::Scenario scenario_to_message(const Scenario& scenario) {
     for (const auto& scale : scenario.density_scale) write(scale, density_fields, *message.add_density_scale());
     for (const auto& row : scenario.air) write(row, air_fields, *message.add_air());
     for (const auto& row : scenario.winds) write(row, wind_fields, *message.add_winds());
+    if (scenario.ground_flight) message.set_ground_flight(*scenario.ground_flight);
     message.set_test_venue(static_cast<v1::TestVenue>(static_cast<int>(scenario.test_venue) + 1));
     message.set_telemetry_plan(scenario.telemetry_plan == flight::Plan::wideband ? v1::TELEMETRY_PLAN_WIDEBAND
                                                                                  : v1::TELEMETRY_PLAN_MISSION);

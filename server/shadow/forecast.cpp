@@ -4,6 +4,8 @@
 #include "server/campaign/campaign_order.hpp"
 #include "server/campaign/case_flights.hpp"
 #include "server/shadow/prospect.hpp"
+#include "simulation/mars/earth.hpp"
+#include "simulation/vectors.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -20,6 +22,7 @@ namespace {
 using simulation::Outcome;
 
 constexpr std::uint64_t cycles_between_looks = 64;
+constexpr std::int64_t course_ticks = 64;  // a second
 constexpr auto tell_every = std::chrono::milliseconds{100};
 
 /// A landing under way, to be copied: with its command path until no command is on its way, then alone and unheard.
@@ -97,6 +100,31 @@ class Flight {
     std::vector<simulation::TruthEvent> events_;
     std::uint64_t cycles_ = 0;
     std::string refusal_;
+};
+
+/// Collects the seconds of a case.
+class CourseRecord {
+  public:
+    CourseRecord(Course& course, const simulation::Scenario& scenario) : course_(course), scenario_(scenario) {}
+
+    void look(const simulation::Landing& landing) {
+        if (landing.sclk().ticks() % course_ticks != 0) return;
+        const simulation::TruthState truth = landing.truth();
+        const auto p = simulation::vector3(truth.p_MoB_M_m), v = simulation::vector3(truth.v_MB_M_mps);
+        if (course_.seconds.empty()) course_.first = truth.sclk;
+        course_.seconds.push_back({static_cast<float>(p.norm() - scenario_.target.radius_m),
+                                   static_cast<float>(v.norm()),
+                                   simulation::earth_range_rate_mps(p, v, truth.sclk - scenario_.entry_sclk)});
+    }
+    void end(const RecordedFirings& firings, const dictionary::Dictionary& dictionary) {
+        course_.fired.resize(dictionary.timeline.size());
+        for (const RecordedFiring& each : firings.all())
+            if (each.row < course_.fired.size()) course_.fired[each.row] = Sclk{each.fired_sclk};
+    }
+
+  private:
+    Course& course_;
+    const simulation::Scenario& scenario_;
 };
 
 /// SCLK at which the cases of a flight part.
@@ -181,7 +209,8 @@ Result<FlownForecast> fly_cases(const ScriptedLanding& landing,
                                 const std::optional<simulation::StateKnowledge>& knowledge,
                                 const simulation::Scenario& scenario, const dictionary::Dictionary& dictionary,
                                 const Assumption& assumption, const ForecastOrder& order, const std::atomic<bool>& stop,
-                                const std::function<void(const ForecastProgress&)>& tell) {
+                                const std::function<void(const ForecastProgress&)>& tell,
+                                std::vector<Course>* courses = nullptr) {
     if (landing.landing().outcome() != Outcome::running) return Error{"the landing is over: nothing is to come"};
     if (order.cases == 0 || order.cases > forecast_cases_max)
         return Error{fmt::format("cases: {} is not between 1 and {}", order.cases, forecast_cases_max)};
@@ -219,11 +248,15 @@ Result<FlownForecast> fly_cases(const ScriptedLanding& landing,
         const std::string lost = guarded([&] {
             Flight flight{*side.shared};
             flight.draw(order.seed, number, knowledge);
+            std::optional<CourseRecord> course;
+            if (courses != nullptr) course.emplace((*courses)[number - 1], scenario);
             while (flight.landing().outcome() == Outcome::running && !stop) {
+                if (course) course->look(flight.landing());
                 flight.step();
                 cycles = flight.cycles();
             }
             if (stop) return;
+            if (course) course->end(flight.firings(), dictionary);
             result =
                 campaign::result_of(flight.landing(), flight.firings(), flight.events(), scenario, dictionary, apart_s);
             side.refusals[number - 1] = flight.refusal();
@@ -285,6 +318,18 @@ Result<FlownForecast> forecast_from_truth(const ScriptedLanding& landing, const 
                                           const ForecastOrder& order, const std::atomic<bool>& stop,
                                           const std::function<void(const ForecastProgress&)>& tell) {
     return fly_cases(landing, {}, scenario, dictionary, assumption, order, stop, tell);
+}
+
+Result<std::vector<Course>> courses_by_ground(const ScriptedLanding& landing,
+                                              const simulation::StateKnowledge& knowledge,
+                                              const simulation::Scenario& scenario,
+                                              const dictionary::Dictionary& dictionary, const ForecastOrder& order,
+                                              const std::atomic<bool>& stop) {
+    std::vector<Course> courses(order.cases);
+    const auto flown =
+        fly_cases(landing, knowledge, ground_scenario(scenario), dictionary, {}, order, stop, {}, &courses);
+    if (!flown) return flown.error();
+    return courses;
 }
 
 Result<FlownForecast> forecast_by_ground(const GroundFlight& ground, const simulation::Scenario& scenario,

@@ -46,6 +46,19 @@ enum class Basis : std::uint8_t { truth, telemetry };
 /// "truth", "telemetry".
 const char* name_of(Basis basis);
 
+/// What a case passed through, in ground's terms.
+struct Course {
+    /// Its truth at a whole second of the vehicle's clock.
+    struct Second {
+        float altitude_m = 0.0F;  ///< above the target's radius
+        float speed_mps = 0.0F;
+        double range_rate_mps = 0.0;  ///< of the distance from Earth
+    };
+    Sclk first;                              ///< of the seconds below, which follow each other
+    std::vector<Second> seconds;             ///< from where the cases part
+    std::vector<std::optional<Sclk>> fired;  ///< by row of the timeline, from the beginning of the forecast
+};
+
 /// Cases flown from a landing's present.
 struct FlownForecast {
     Basis basis = Basis::truth;
@@ -80,6 +93,13 @@ Result<FlownForecast> forecast_from_truth(const ScriptedLanding& landing, const 
                                           const dictionary::Dictionary& dictionary, const Assumption& assumption,
                                           const ForecastOrder& order, const std::atomic<bool>& stop,
                                           const std::function<void(const ForecastProgress&)>& tell = {});
+
+/// As forecast_by_ground(), without an assumption and from a flight at its present: what the cases pass through.
+Result<std::vector<Course>> courses_by_ground(const ScriptedLanding& landing,
+                                              const simulation::StateKnowledge& knowledge,
+                                              const simulation::Scenario& scenario,
+                                              const dictionary::Dictionary& dictionary, const ForecastOrder& order,
+                                              const std::atomic<bool>& stop);
 
 /// Flies copies of the flight that ground keeps, each with a draw of all errors: of the state, by how well it is known,
 /// of air, vehicle and instruments, as large as the scenario says they may be. Otherwise as forecast_from_truth().

@@ -26,25 +26,11 @@ simulation::Quaternion quaternion(const std::array<double, 4>& q) {
     return simulation::Quaternion{q[0], q[1], q[2], q[3]}.normalized();
 }
 
-/// From `from` to `to`, in B after the attitude.
-NavigationShift shift_to(const NavigatedState& from, const NavigatedState& to) {
-    NavigationShift by;
-    by.p_MoB_M_m = simulation::array3(simulation::vector3(to.p_MoB_M_m) - simulation::vector3(from.p_MoB_M_m));
-    by.v_MB_M_mps = simulation::array3(simulation::vector3(to.v_MB_M_mps) - simulation::vector3(from.v_MB_M_mps));
-    by.q_BB = simulation::array4(quaternion(from.q_MB).conjugate() * quaternion(to.q_MB));
-    return by;
-}
-
-NavigatedState truth_of(const simulation::Landing& landing) {
-    const auto truth = landing.truth();
-    return {truth.sclk, truth.p_MoB_M_m, truth.v_MB_M_mps, landing.inspect().q_MB};
-}
-
 /// Holds the ground's flight against what the vehicle told, cycle by cycle.
 class Holder {
   public:
     Holder(Rehearsal& rehearsal, const HeardFlight& heard, const dictionary::Dictionary& dictionary)
-        : rehearsal_(rehearsal), states_(heard.states()), own_(dictionary), before_(truth_of(rehearsal.landing())) {}
+        : rehearsal_(rehearsal), states_(heard.states()), own_(dictionary), before_(state_of(rehearsal.landing())) {}
 
     /// After each cycle.
     void look() {
@@ -58,7 +44,7 @@ class Holder {
             held_ = state.sclk;
         }
         while (next_ < states_.size() && states_[next_].sclk <= before_.sclk) ++next_;
-        before_ = truth_of(rehearsal_.landing());
+        before_ = state_of(rehearsal_.landing());
     }
     std::optional<Sclk> held() const { return held_; }
     /// What the ground's flight tells of itself.
@@ -107,21 +93,53 @@ simulation::Scenario ground_scenario(const simulation::Scenario& scenario) {
     return ground;
 }
 
+NavigationShift shift_to(const NavigatedState& from, const NavigatedState& to) {
+    NavigationShift by;
+    by.p_MoB_M_m = simulation::array3(simulation::vector3(to.p_MoB_M_m) - simulation::vector3(from.p_MoB_M_m));
+    by.v_MB_M_mps = simulation::array3(simulation::vector3(to.v_MB_M_mps) - simulation::vector3(from.v_MB_M_mps));
+    by.q_BB = simulation::array4(quaternion(from.q_MB).conjugate() * quaternion(to.q_MB));
+    return by;
+}
+
+NavigatedState state_of(const simulation::Landing& landing) {
+    const auto truth = landing.truth();
+    return {truth.sclk, truth.p_MoB_M_m, truth.v_MB_M_mps, landing.inspect().q_MB};
+}
+
+std::unique_ptr<Rehearsal> begin_ground_flight(const simulation::Scenario& scenario,
+                                               const simulation::NavigationSolution& solution,
+                                               const ClockCorrelation& clock,
+                                               const dictionary::Dictionary& dictionary) {
+    auto rehearsal = std::make_unique<Rehearsal>(ground_scenario(scenario), 1, 0, dictionary,
+                                                 std::shared_ptr<flight::CycleRunner>{}, clock);
+    const auto& landing = rehearsal->landing();
+    const simulation::PointMass start =
+        simulation::coast({simulation::vector3(solution.p_MoB_M_m), simulation::vector3(solution.v_MB_M_mps)},
+                          landing.sclk() - solution.epoch);
+    NavigatedState begin = state_of(landing);
+    begin.p_MoB_M_m = simulation::array3(start.p_MoB_M);
+    begin.v_MB_M_mps = simulation::array3(start.v_MB_M);
+    rehearsal->shift(shift_to(state_of(landing), begin), {});
+    return rehearsal;
+}
+
+simulation::StateKnowledge knowledge_by(const HeardFlight& heard, std::optional<Sclk> told,
+                                        const simulation::Scenario& scenario) {
+    const auto& errors = scenario.dispersions;
+    simulation::StateKnowledge knowledge{errors.knowledge_position_m, errors.knowledge_velocity_mps};
+    if (told && heard.radar_locked_by(*told)) {
+        knowledge.velocity_mps = by_radar_mps;
+        knowledge.height_m = by_radar_m;
+    }
+    return knowledge;
+}
+
 Result<GroundFlight> fly_by_ground(const simulation::Scenario& scenario, const simulation::NavigationSolution& solution,
                                    const archive::FlownRun& run, const HeardFlight& heard, Instant instant,
                                    const dictionary::Dictionary& dictionary, const std::function<bool()>& stop) {
     GroundFlight flight;
-    flight.rehearsal = std::make_unique<Rehearsal>(ground_scenario(scenario), 1, 0, dictionary,
-                                                   std::shared_ptr<flight::CycleRunner>{}, run.clock);
+    flight.rehearsal = begin_ground_flight(scenario, solution, run.clock, dictionary);
     Rehearsal& rehearsal = *flight.rehearsal;
-    const auto& landing = rehearsal.landing();
-    const simulation::PointMass start =
-        simulation::coast({simulation::vector3(solution.p_MoB_M_m), simulation::vector3(solution.v_MB_M_mps)},
-                          landing.sclk() - solution.epoch);
-    NavigatedState begin = truth_of(landing);
-    begin.p_MoB_M_m = simulation::array3(start.p_MoB_M);
-    begin.v_MB_M_mps = simulation::array3(start.v_MB_M);
-    rehearsal.shift(shift_to(truth_of(landing), begin), {});
 
     archive::FlownRun sent = run;
     std::erase_if(sent.requests, [](const archive::RequestRecord& request) {
@@ -142,12 +160,7 @@ Result<GroundFlight> fly_by_ground(const simulation::Scenario& scenario, const s
                                  rehearsal.clocks().e_s(), rehearsal.outcome_reason())};
 
     flight.heard = holder.held();
-    const auto& errors = scenario.dispersions;
-    flight.knowledge = {errors.knowledge_position_m, errors.knowledge_velocity_mps};
-    if (flight.heard && heard.radar_locked_by(*flight.heard)) {
-        flight.knowledge.velocity_mps = by_radar_mps;
-        flight.knowledge.height_m = by_radar_m;
-    }
+    flight.knowledge = knowledge_by(heard, flight.heard, scenario);
     return flight;
 }
 

@@ -32,6 +32,21 @@ struct Instant {
 /// What a scenario says that ground knows before the landing; of its errors only how large they may be.
 simulation::Scenario ground_scenario(const simulation::Scenario& scenario);
 
+/// Ground's flight at its beginning: in the scenario as ground knows it, where its solution says that the vehicle is.
+std::unique_ptr<Rehearsal> begin_ground_flight(const simulation::Scenario& scenario,
+                                               const simulation::NavigationSolution& solution,
+                                               const ClockCorrelation& clock, const dictionary::Dictionary& dictionary);
+
+/// The true state of a flight of ground's.
+NavigatedState state_of(const simulation::Landing& landing);
+
+/// What leads from one state to another, the rotation in B after the attitude of the first.
+flight::NavigationShift shift_to(const NavigatedState& from, const NavigatedState& to);
+
+/// How well the state of the vehicle is known by a state that it told; none: by ground's solution alone.
+simulation::StateKnowledge knowledge_by(const HeardFlight& heard, std::optional<Sclk> told,
+                                        const simulation::Scenario& scenario);
+
 /// Flies the landing as ground expects it, with the commands that it sent, from ground's solution on. Each state that
 /// the vehicle told is taken over: the flight is moved to it, and what its navigation believes.
 ///

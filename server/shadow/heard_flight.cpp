@@ -19,7 +19,8 @@ constexpr std::string_view lock = "RADAR_LOCK";
 
 HeardFlight::HeardFlight(const dictionary::Dictionary& dictionary)
     : decoder_(dictionary), navigation_(fields_of(dictionary, "GncNavigation", navigated_channels)),
-      timeline_(fields_of(dictionary, "TimelineStatus", {"timepoint_index"})) {}
+      timeline_(fields_of(dictionary, "TimelineStatus", {"timepoint_index"})),
+      firing_(fields_of(dictionary, "TimepointFired", {"timepoint", "fired_sclk"})) {}
 
 std::optional<HeardFlight::Fields> HeardFlight::fields_of(const dictionary::Dictionary& dictionary,
                                                           const std::string& packet,
@@ -61,6 +62,10 @@ void HeardFlight::take(const telemetry::DecodedPacket& decoded) {
             warnings_.push_back({decoded.event->name, sclk});
         if (decoded.event->name == lock && (!locked_ || sclk < *locked_)) locked_ = sclk;
         return;
+    }
+    if (firing_ && content.packet == firing_->packet) {
+        const auto row = content.value[firing_->at[0]], at = content.value[firing_->at[1]];
+        if (row && at) fired_.push_back({static_cast<std::size_t>(*row), Sclk{*at}});
     }
     // What comes late, by an orbiter's memory or the recording, is no news of where it is.
     if (timeline_ && content.packet == timeline_->packet) {

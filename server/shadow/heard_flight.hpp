@@ -33,8 +33,8 @@ struct TimelineStand {
 /// What ground has heard of a flight's course, from nothing but what the station received.
 ///
 /// In       each cycle's Received, or packets
-/// Out      navigated states, the newest always; where the timeline stood; what warnings the vehicle told
-/// Memory   a state each ten seconds, each status of the timeline, each warning
+/// Out      navigated states, the newest always; where the timeline stood; what fired; what warnings the vehicle told
+/// Memory   a state each ten seconds, each status of the timeline, each firing, each warning
 class HeardFlight {
   public:
     static constexpr double states_apart_s = 10.0;  ///< chosen: the work of moving a flight, against what it departs by
@@ -45,12 +45,20 @@ class HeardFlight {
     void hear(const telemetry::Received& received);
     void hear(std::span<const std::uint8_t> packet);
 
+    const std::optional<NavigatedState>& newest() const { return newest_; }
     /// By time: at least `states_apart_s` apart, but for the last, which is the newest.
     std::vector<NavigatedState> states() const;
     /// By time. What came late is left out.
     const std::vector<TimelineStand>& stands() const { return stands_; }
     /// The newest by then.
     std::optional<TimelineStand> stand_by(Sclk sclk) const;
+
+    /// A timepoint that was told to have fired, in the order of arrival; it may be told twice, live and recorded.
+    struct Fired {
+        std::size_t row = 0;
+        Sclk sclk;
+    };
+    const std::vector<Fired>& fired() const { return fired_; }
 
     struct Told {
         std::string name;  ///< of the event
@@ -72,10 +80,11 @@ class HeardFlight {
     void take_state(const telemetry::Decoded& content);
 
     telemetry::PacketDecoder decoder_;
-    std::optional<Fields> navigation_, timeline_;
+    std::optional<Fields> navigation_, timeline_, firing_;
     std::vector<NavigatedState> states_;
     std::optional<NavigatedState> newest_;
     std::vector<TimelineStand> stands_;
+    std::vector<Fired> fired_;
     std::vector<Told> warnings_;
     std::optional<Sclk> locked_;  ///< when the radar first had
 };

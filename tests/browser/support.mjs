@@ -28,7 +28,7 @@ export async function temporaryFolder() {
 export async function serve({ archive, port = 0, more = [], web = path.join(root, 'web/dist') }) {
   const child = spawn(
     program,
-    ['serve', '--listen', `127.0.0.1:${port}`, '--archive', archive, '--web', web, ...more],
+    ['serve', '--listen', `127.0.0.1:${port}`, '--archive', archive, '--web', web, '--plan-flights', '0', ...more],
     { stdio: ['ignore', 'pipe', 'pipe'] },
   );
   let said = '';

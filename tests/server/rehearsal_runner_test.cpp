@@ -5,6 +5,7 @@
 #include "server/archive/reader.hpp"
 #include "server/rehearsal/rehearsal.hpp"
 #include "server/scenario/scenario_text.hpp"
+#include "server/shadow/shadow.hpp"
 #include "tests/server/running_server.hpp"
 #include "tests/server/small_mission.hpp"
 #include "tests/support/acknowledged.hpp"
@@ -335,6 +336,71 @@ TEST_CASE("a kept request comes back from its text, and another text is none", "
 TEST_CASE("fifty runs that kill -9 ended at random go on as if nothing had been", "[.long][rehearsal][archive]") {
     std::mt19937_64 random{1};
     for (int i = 0; i < 50; ++i) end_and_continue(1 + random() % 60'000, 5'000, Ended::killed);
+}
+
+TEST_CASE("a run that was left goes on with the flight that ground keeps beside it, and with the flights of its plan",
+          "[rehearsal][shadow][archive][R57][release]") {
+    spdlog::set_level(spdlog::level::err);
+    test::TemporaryFolder folder;
+    const auto file = folder / "left.db";
+    const dictionary::Dictionary& dictionary = tests::shipped_dictionary();
+    auto scenario = test::shipped_scenario("nominal_auto");
+    scenario.start_before_entry_s = 900.0;
+    scenario.commands[0].send_before_entry_s = 895.0;
+    scenario.commands[1].send_before_entry_s = 885.0;
+    scenario.ground_flight = true;
+    const auto fly = [&](std::optional<archive::FlownRun> cut, double until_e_s) {
+        auto archive = archive::Archive::open(file);
+        REQUIRE(archive);
+        std::string failure;
+        std::atomic<double> e_s{-1.0e9};
+        PipelineThread pipeline{std::move(*archive), dictionary, PipelineThread::Faults::give_up, [](const auto&) {}};
+        RehearsalRunner::Callbacks callbacks;
+        callbacks.on_begun = [&](const Result<v1::RunState>& state) {
+            if (!state) failure = state.error().message;
+        };
+        callbacks.on_state = [](const auto&) {};
+        callbacks.on_clocks = [&](const v1::Clocks& clocks) { e_s = clocks.e_s(); };
+        callbacks.companion = shadow::make_shadows(dictionary, {.cases = 2});
+        const double pace = cut ? 0.0 : 200.0;
+        RehearsalRunner runner = cut ? RehearsalRunner{scenario, {.run = *cut}, pace, dictionary, pipeline, callbacks}
+                                     : RehearsalRunner{scenario, 1, pace, dictionary, pipeline, callbacks};
+        while (!runner.over() && e_s < until_e_s) std::this_thread::sleep_for(std::chrono::milliseconds{1});
+        static_cast<void>(runner.order(LeaveRun{}));
+        while (!runner.over()) std::this_thread::sleep_for(std::chrono::milliseconds{1});
+        return failure;
+    };
+    const auto cut_off = [&] {
+        REQUIRE(archive::Archive::open(file));  // finds that the run was cut off
+        auto reader = archive::Reader::open(file, dictionary);
+        REQUIRE(reader);
+        auto cut = reader->cut_off(archive::RunId{1});
+        INFO((cut ? "" : cut.error().message));
+        REQUIRE(cut);
+        return *cut;
+    };
+    CHECK(fly({}, 60.0).empty());
+    const auto first = cut_off();
+    const auto plans = [](const archive::FlownRun& run) {
+        return std::ranges::count_if(
+            run.requests, [](const auto& request) { return archive::kept_request(request.request).has_ensemble(); });
+    };
+    CHECK(plans(first) == 1);
+    CHECK(fly(first, 120.0).empty());  // each item of before is compared
+    const auto second = cut_off();
+    CHECK(plans(second) == 1);
+    auto reader = archive::Reader::open(file, dictionary);
+    const auto series = reader->series(archive::RunId{1}, {{"STA-0007", "STA-0023"}, {}, {}});
+    REQUIRE(series);
+    CHECK(series->channels(0).sclk_size() > 700);
+    CHECK(series->channels(1).value(series->channels(1).value_size() - 1) == 2.0);
+    const auto timepoints = reader->timepoints(archive::RunId{1}, {});
+    REQUIRE(timepoints);
+    const auto mortar =
+        std::ranges::find(timepoints->timepoints(), "parachute_deploy", [](const auto& row) { return row.name(); });
+    CHECK(std::abs(mortar->flights_e_s() - 256.0) < 15.0);
+    CHECK(mortar->flights() == 2);
+    CHECK_FALSE(mortar->has_flights_from_e_s());
 }
 
 TEST_CASE("a run that does not come out the same is not continued, and what it has stays as it is",

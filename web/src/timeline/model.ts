@@ -19,6 +19,10 @@ export interface Prediction {
   /** For a fired timepoint: as predicted before its anchor was heard of. */
   e_s: number;
   fired: boolean;
+  /** By the flights of ground's plan; left out: by the timeline's rule. */
+  flights?: number;
+  /** The times between which it lies in 99 of 100 landings. */
+  within?: { from_e_s: number; to_e_s: number };
   /** Whether word of it is late; left out: after 5 s. */
   overdue?: boolean;
 }

@@ -54,6 +54,18 @@ describe('the prediction of the run that is shown', () => {
     });
     expect(predictionsOf(list).map(({ e_s }) => e_s)).toEqual([239, 256]);
   });
+  it('is that of the flights of ground’s plan where they are made, with the interval that they give', () => {
+    const list = create(TimepointListSchema, {
+      timepoints: [
+        { id: 0, name: 'mortar', predictedES: 256, expectedES: 256, flights: 300, flightsES: 258.5, flightsFromES: 251, flightsToES: 266 },
+        { id: 1, name: 'shield', predictedES: 280, expectedES: 280, flights: 50, flightsES: 282 },
+      ],
+    });
+    expect(predictionsOf(list)).toEqual([
+      { id: 0, name: 'mortar', e_s: 258.5, fired: false, flights: 300, within: { from_e_s: 251, to_e_s: 266 } },
+      { id: 1, name: 'shield', e_s: 282, fired: false, flights: 50 },
+    ]);
+  });
   it('is of one run only', () => {
     store.value = aStore([], at(-100));
     answered();

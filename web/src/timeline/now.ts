@@ -13,11 +13,21 @@ export const predicted = computed<Prediction[]>(() => {
   return list ? predictionsOf(list) : [];
 });
 
-/** The times at which the server expects them: what is overdue keeps its own, since no later one is known. */
+/**
+ * The times at which the server expects them, by the flights of ground's plan where they are made: what is overdue
+ * keeps its own, since no later one is known.
+ */
 export const predictionsOf = ({ timepoints }: Pick<TimepointList, 'timepoints'>): Prediction[] =>
-  timepoints.flatMap(({ id, name, expectedES, heardBy }) =>
-    expectedES === undefined ? [] : [{ id, name, e_s: expectedES, fired: heardBy !== '' }],
-  );
+  timepoints.flatMap(({ id, name, expectedES, heardBy, flights, flightsES, flightsFromES, flightsToES }) => {
+    const e_s = flightsES ?? expectedES;
+    if (e_s === undefined) return [];
+    const within =
+      flightsFromES === undefined || flightsToES === undefined
+        ? undefined
+        : { from_e_s: flightsFromES, to_e_s: flightsToES };
+    const byFlights = flightsES === undefined ? {} : { flights, ...(within && { within }) };
+    return [{ id, name, e_s, fired: heardBy !== '', ...byFlights }];
+  });
 
 const BEHIND_S = 5; // chosen: a smaller delay is not worth a word
 

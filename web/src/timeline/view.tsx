@@ -313,8 +313,13 @@ function drawPredicted(
   now_e_s: number,
   colours: Surface['colours'],
 ): void {
-  for (const { id, e_s, fired } of predicted.value) {
+  for (const { id, e_s, fired, within } of predicted.value) {
     const px = x(e_s);
+    if (within && x(within.to_e_s) > GUTTER) {
+      // No wider than what is drawn: a bar of the interval, under the ring.
+      c.strokeStyle = colours.dim;
+      line(c, Math.max(GUTTER, x(within.from_e_s)), y, x(within.to_e_s), y);
+    }
     if (px < GUTTER - 6) continue;
     ring(c, px, y, fired ? 2.4 : 3.6, fired || e_s < now_e_s ? colours.dim : colours.accent);
     hits.push({ x: px, y, id });
@@ -596,6 +601,16 @@ function Detail() {
           <>
             <dt>{foreseen.fired ? 'was predicted' : 'predicted'}</dt>
             <dd>{at(foreseen.e_s)}</dd>
+          </>
+        )}
+        {foreseen?.flights !== undefined && (
+          <>
+            <dt>in 99 of 100</dt>
+            <dd data-testid="timepoint-within">
+              {foreseen.within
+                ? `${at(foreseen.within.from_e_s)} to ${at(foreseen.within.to_e_s)}, by ${foreseen.flights} flights of the plan`
+                : `not known: ${foreseen.flights} flights of the plan are too few`}
+            </dd>
           </>
         )}
         {row.plannedES !== undefined && (
