@@ -675,6 +675,12 @@ void SituationMonitor::add_waiting(Entries& all, Ert now) const {
         add_recording(all, now);
 }
 
+void SituationMonitor::expected(TimepointId timepoint, const std::optional<ExpectedStep>& step) {
+    if (timepoint.value >= dictionary_->timeline.size()) return;
+    expected_.resize(dictionary_->timeline.size());
+    expected_[timepoint.value] = step;
+}
+
 void SituationMonitor::add_step(Entries& all, std::size_t next, Ert now) const {
     const auto& row = dictionary_->timeline[next];
     SituationEntry entry{SituationRank::waiting,
@@ -686,10 +692,13 @@ void SituationMonitor::add_step(Entries& all, std::size_t next, Ert now) const {
                          {}};
     entry.timepoint = row.name;
     const bool live = telemetry_comes();
-    if (const auto e_s = timeline_.predicted_e_s(next); e_s && !offsets_changed_) {
+    auto step = next < expected_.size() ? expected_[next] : std::nullopt;
+    const auto by_plan = timeline_.predicted_e_s(next);
+    if (!step && by_plan && !offsets_changed_) step = ExpectedStep{*by_plan, *by_plan};
+    if (step) {
         entry.awaited = in_words(row.name);
-        entry.at = seen(*clocks_.entry + *e_s);
-        entry.overdue = seconds_from(*entry.at, now) > (live ? uhf_late_s : tone_late_s);
+        entry.at = seen(*clocks_.entry + step->e_s);
+        entry.overdue = seconds_from(seen(*clocks_.entry + step->late_e_s), now) > (live ? uhf_late_s : tone_late_s);
     }
     // An anchor's decision is that of the step at it. Of what is overdue, the condition may have been met unheard.
     const bool at_anchor = row.anchor && row.desired_offset_s == 0.0;

@@ -86,6 +86,12 @@ class SituationMonitor {
     void alarm(ChannelId channel, dictionary::Severity severity, std::string_view limit, Sclk sclk,
                const Origin& origin);
     void explained(const Explanation& explanation, const Origin& origin);
+    /// When ground's own flight expects a timepoint, in seconds from entry, and from when on it is late.
+    struct ExpectedStep {
+        double e_s = 0.0, late_e_s = 0.0;
+    };
+    /// It goes before the plan. None: ground expects it no more.
+    void expected(TimepointId timepoint, const std::optional<ExpectedStep>& step);
 
     /// The situation at `now`; one entry at least.
     std::vector<SituationEntry> at(Ert now) const;
@@ -169,6 +175,7 @@ class SituationMonitor {
     std::string prime_ = "A", backup_name_ = "B";
     std::optional<Ert> closes_;  ///< when the last command that can precede a planned step must have left
     std::optional<Held> held_;
+    std::vector<std::optional<ExpectedStep>> expected_;  ///< by timepoint
     bool offsets_changed_ = false;  ///< by command: what was predicted for a step may no longer hold
 };
 

@@ -18,6 +18,7 @@ namespace aeolis::server {
 namespace {
 
 constexpr std::array<std::string_view, 2> prediction_formats{"json", "protobuf"};
+constexpr std::array<std::string_view, 2> predicted_by{"nominal", "shadow"};
 /// With a sample a second of a flight of 40 minutes, this many channels are at most 8 MiB of JSON.
 constexpr std::size_t predicted_channels_max = 64;
 
@@ -43,6 +44,37 @@ std::string basis() {
                        "planned, parameters as built; silences by the plan, the passes and the nominal entry. It is "
                        "not the mission's own prediction",
                        version);
+}
+
+/// What the flight that ground kept beside the run has of these channels, by what was heard.
+Result<v1::Prediction> by_shadow(archive::Reader& reader, archive::RunId run, const simulation::Scenario& scenario,
+                                 const Channels& channels, const archive::SclkRange& range) {
+    v1::Prediction prediction;
+    prediction.set_state("none");
+    if (!scenario.ground_flight.value_or(false)) {
+        prediction.set_reason("ground kept no flight beside this run: it began faster than 100 times real time, or its "
+                              "scenario or the server refuses one");
+        return prediction;
+    }
+    std::vector<ChannelId> ids;
+    for (const auto* channel : channels) ids.push_back(channel->id);
+    const auto expected = reader.expected_values(run, ids, range);
+    if (!expected) return expected.error();
+    prediction.set_state("ready");
+    prediction.set_basis(fmt::format("the flight that ground kept beside the run, by Aeolis {}: by its solution, the "
+                                     "commands that were sent and what was heard until each instant; moved to each "
+                                     "state that the vehicle told, ten seconds apart at least",
+                                     version));
+    for (std::size_t i = 0; i < channels.size(); ++i) {
+        auto& series = *prediction.add_channels();
+        series.set_id(channels[i]->id.value);
+        series.set_name(channels[i]->name);
+        series.set_unit(channels[i]->type.unit);
+        series.mutable_sclk()->Add((*expected)[i].sclk_s.begin(), (*expected)[i].sclk_s.end());
+        series.mutable_value()->Add((*expected)[i].value.begin(), (*expected)[i].value.end());
+        series.set_samples((*expected)[i].sclk_s.size());
+    }
+    return prediction;
 }
 
 /// Converts seconds from entry into the texts of the run's clocks.
@@ -102,15 +134,17 @@ HttpResponse response_of(const v1::Prediction& prediction, std::string_view form
 }  // namespace
 
 void Api::prediction(const ApiRequest& call) {
-    auto query = QueryText::parse(call.request.query, {"channels", "from", "to", "format"});
+    auto query = QueryText::parse(call.request.query, {"channels", "from", "to", "by", "format"});
     if (!query) return call.respond(error_response(400, query.error()));
     auto format = query->one_of("format", prediction_formats);
     if (!format) return call.respond(error_response(400, format.error()));
+    const auto by = query->one_of("by", predicted_by);
+    if (!by) return call.respond(error_response(400, by.error()));
     auto channels = channels_of(*query, parts_.dictionary);
     if (!channels) return call.respond(error_response(400, channels.error()));
     ask(
         call, std::move(*query),
-        [this, format = std::move(*format), channels = std::move(*channels)](
+        [this, shadow = *by == "shadow", format = std::move(*format), channels = std::move(*channels)](
             archive::Reader& reader, archive::RunId id, const QueryText& asked) -> std::optional<HttpResponse> {
             const auto range = range_of(asked, reader, id);
             if (!range) return error_response(400, range.error());
@@ -128,6 +162,12 @@ void Api::prediction(const ApiRequest& call) {
             if (!text) return none(text.error());
             const auto scenario = scenario_from_text(*text, fmt::format("the scenario of run {}", id.value));
             if (!scenario) return none(scenario.error());
+            if (shadow) {
+                auto expected = by_shadow(reader, id, *scenario, channels, *range);
+                if (!expected) return error_response(500, expected.error());
+                expected->set_dictionary_id(parts_.dictionary.id);
+                return response_of(*expected, format);
+            }
             const auto predicted = parts_.predictions.prediction(*scenario);
             if (!predicted.none.empty()) return none(Error{predicted.none});
             prediction.set_basis(basis());

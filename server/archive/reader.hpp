@@ -264,6 +264,14 @@ class Reader {
     /// newest is that by its clock; in another, by reception, because its clocks may restart.
     Result<std::vector<ChannelValue>> latest(RunId run, std::optional<Sclk> at);
 
+    /// A channel as the flight that ground keeps has it, one value a second where it changes. A value that has lasted is
+    /// said again a second before it changes, so that a line between two of them is what was expected.
+    struct ExpectedSeries {
+        std::vector<double> sclk_s, value;
+    };
+    /// Of each channel, in the order given; without undefined values. Empty: ground kept no such flight.
+    Result<std::vector<ExpectedSeries>> expected_values(RunId run, const std::vector<ChannelId>& channels,
+                                                        const SclkRange& range);
     Result<v1::PacketList> packets(RunId run, const PacketQuery& query);
     /// The octets of packets of real links after `after`, as they were received. `after` becomes the last one's number.
     Result<std::vector<std::vector<std::uint8_t>>> received_octets(RunId run, Sequence& after, std::size_t limit);

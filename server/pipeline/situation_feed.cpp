@@ -32,7 +32,7 @@ SituationMonitor::Origin origin_of(const archive::ItemRecord& record,
 }  // namespace
 
 SituationFeed::SituationFeed(const dictionary::Dictionary& dictionary, const archive::RunStart& start)
-    : monitor_(dictionary, clocks_of(start)) {
+    : monitor_(dictionary, clocks_of(start)), decommutator_(dictionary), expects_(dictionary.packet("ShadowExpects")) {
     const archive::PacketColumns columns{dictionary};
     for (std::size_t packet = 0; packet < columns.packets(); ++packet) {
         TouchdownColumns found;
@@ -47,6 +47,20 @@ SituationFeed::SituationFeed(const dictionary::Dictionary& dictionary, const arc
         if (found.flag || found.rover_rate || found.live)
             touchdown_columns_.emplace(static_cast<std::uint16_t>(packet), found);
     }
+}
+
+void SituationFeed::give_expected(const archive::Batch& batch, const archive::PacketRecord& packet) {
+    const auto octets = std::span{batch.octets}.subspan(packet.octets.first, packet.octets.count);
+    if (decommutator_.decode(octets, decoded_)) return;
+    const auto value = [&](std::string_view name) {
+        const auto field = telemetry::field_index(*expects_, name);
+        return field ? decoded_.value[*field].value_or(0.0) : 0.0;
+    };
+    const TimepointId timepoint{static_cast<std::uint16_t>(value("expected_timepoint"))};
+    if (value("expected_cases") == 0.0) return monitor_.expected(timepoint, std::nullopt);
+    const double e_s = value("expected_after_entry_s");
+    monitor_.expected(timepoint, SituationMonitor::ExpectedStep{
+                                     e_s, value("expected_interval_defined") != 0.0 ? value("expected_to_s") : e_s});
 }
 
 void SituationFeed::give_touchdown(const archive::Batch& batch, const archive::SampleRecord& sample) {
@@ -71,8 +85,10 @@ void SituationFeed::follow(const archive::Batch& batch) {
                       origin_of(link));
     });
     each_new(batch.packets, followed_, [&](const archive::PacketRecord& packet) {
-        if (!packet.packet || packet.source != archive::Source::realtime || packet.link == telemetry::station_link.name)
-            return;
+        const bool of_station = packet.link == telemetry::station_link.name;
+        if (of_station && packet.packet && expects_ != nullptr && packet.apid == expects_->apid)
+            give_expected(batch, packet);
+        if (!packet.packet || packet.source != archive::Source::realtime || of_station) return;
         const bool at_once =
             packet.link == telemetry::uhf_live_link.name || packet.link == telemetry::x_band_telemetry_link.name;
         monitor_.heard(packet.sclk, at_once ? std::optional{packet.ert} : std::nullopt);

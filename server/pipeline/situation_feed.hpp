@@ -3,6 +3,7 @@
 
 #include "dictionaries/dictionary.hpp"
 #include "server/archive/records.hpp"
+#include "telemetry/decommutator.hpp"
 #include "telemetry/situation_monitor.hpp"
 
 #include <cstdint>
@@ -32,9 +33,13 @@ class SituationFeed {
     struct TouchdownColumns {
         std::optional<std::size_t> flag, rover_rate, rover_force, live;
     };
+    void give_expected(const archive::Batch& batch, const archive::PacketRecord& packet);
     void give_touchdown(const archive::Batch& batch, const archive::SampleRecord& sample);
 
     telemetry::SituationMonitor monitor_;
+    telemetry::Decommutator decommutator_;
+    telemetry::Decoded decoded_;
+    const dictionary::Packet* expects_;  ///< in which ground's own flight expects a timepoint; null: there is none
     std::map<std::uint16_t, TouchdownColumns> touchdown_columns_;  ///< by packet; of others there is nothing to tell
     archive::Sequence followed_ = 0;
     std::optional<Ert> now_;

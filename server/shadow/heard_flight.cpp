@@ -40,7 +40,7 @@ void HeardFlight::hear(const telemetry::Received& received) {
     for (const auto& packet : received.packets) {
         if (packet.link == telemetry::station_link) continue;  // what the ground itself says of it
         if (packet.decoded) {
-            take(*packet.decoded);
+            hear(*packet.decoded);
             continue;
         }
         hear(packet.octets);
@@ -50,10 +50,10 @@ void HeardFlight::hear(const telemetry::Received& received) {
 void HeardFlight::hear(std::span<const std::uint8_t> packet) {
     telemetry::DecodedPacket decoded;
     decoder_.decode(packet, decoded);
-    take(decoded);
+    hear(decoded);
 }
 
-void HeardFlight::take(const telemetry::DecodedPacket& decoded) {
+void HeardFlight::hear(const telemetry::DecodedPacket& decoded) {
     if (!decoded.refusal.empty()) return;
     const auto& content = decoded.content;
     const Sclk sclk = content.header.time;

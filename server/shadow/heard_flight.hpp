@@ -44,6 +44,7 @@ class HeardFlight {
 
     void hear(const telemetry::Received& received);
     void hear(std::span<const std::uint8_t> packet);
+    void hear(const telemetry::DecodedPacket& decoded);
 
     const std::optional<NavigatedState>& newest() const { return newest_; }
     /// By time: at least `states_apart_s` apart, but for the last, which is the newest.
@@ -76,7 +77,6 @@ class HeardFlight {
     };
     static std::optional<Fields> fields_of(const dictionary::Dictionary& dictionary, const std::string& packet,
                                            const std::vector<std::string>& names);
-    void take(const telemetry::DecodedPacket& decoded);
     void take_state(const telemetry::Decoded& content);
 
     telemetry::PacketDecoder decoder_;

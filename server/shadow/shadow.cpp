@@ -51,7 +51,9 @@ Shadow::Shadow(const simulation::Scenario& scenario, const simulation::Navigatio
     : scenario_(scenario), dictionary_(dictionary), order_(order),
       flight_(begin_ground_flight(scenario, solution, clock, dictionary)),
       lag_(static_cast<std::uint64_t>(std::ceil(scenario.radio.light_time_s / seconds_per_tick))), heard_(dictionary),
-      own_told_(dictionary), expectations_(dictionary, scenario.entry_sclk), said_(dictionary.timeline.size()),
+      own_told_(dictionary), decoder_(dictionary), second_of_(dictionary.channels.size(), -1),
+      value_said_(dictionary.channels.size()), ever_said_(dictionary.channels.size()),
+      expectations_(dictionary, scenario.entry_sclk), said_(dictionary.timeline.size()),
       said_told_(dictionary.timeline.size()), packets_(dictionary) {}
 
 void Shadow::take(std::uint64_t cycle, const v1::KeptRequest& request) {
@@ -82,10 +84,45 @@ void Shadow::step() {
     flight_->step();
     flight_->take_stages();
     telemetry::PacketStream packets{flight_->landing().report().recorded};
-    while (const auto packet = packets.next()) own_told_.hear(*packet);
+    while (const auto packet = packets.next()) {
+        telemetry::DecodedPacket decoded;
+        decoder_.decode(*packet, decoded);
+        own_told_.hear(decoded);
+        if (decoded.refusal.empty()) note_values(decoded.content);
+    }
     const auto& told = own_told_.newest();
     if (told && told->sclk == truth.sclk) own_.push_back({truth, *told});
     while (!own_.empty() && truth.sclk - own_.front().truth.sclk > own_kept_s) own_.pop_front();
+}
+
+/// The first value of each channel in each second, if it differs from the one said last.
+void Shadow::note_values(const telemetry::Decoded& decoded) {
+    const auto& fields = dictionary_.packets[decoded.packet].fields;
+    const std::int64_t second = decoded.header.time.ticks() / second_ticks;
+    for (std::size_t i = 0; i < fields.size(); ++i) {
+        if (!fields[i].channel) continue;
+        const auto channel = fields[i].channel->value;
+        if (std::exchange(second_of_[channel], second) == second) continue;
+        const auto& value = decoded.value[i];
+        if (ever_said_[channel] && value_said_[channel] == value) continue;
+        ever_said_[channel] = true;
+        value_said_[channel] = value;
+        changed_.push_back({ChannelId{channel}, decoded.header.time, value});
+    }
+}
+
+void Shadow::say_values(std::vector<ShadowPackets::Octets>& out) {
+    const auto second_of = [](const telemetry::ExpectedValue& each) { return each.at.ticks() / second_ticks; };
+    std::ranges::stable_sort(changed_, {}, second_of);  // a packet may be recorded a cycle after its time
+    for (auto first = changed_.begin(); first != changed_.end();) {
+        const auto second = second_of(*first);
+        const auto last =
+            std::find_if(first, changed_.end(), [&](const auto& each) { return second_of(each) != second; });
+        for (auto& packet : packets_.values({first, last}, Sclk::from_ticks(second * second_ticks)))
+            out.push_back(std::move(packet));
+        first = last;
+    }
+    changed_.clear();
 }
 
 void Shadow::hold_against(const NavigatedState& state, std::vector<ShadowPackets::Octets>& out) {
@@ -266,6 +303,7 @@ Companion::Made Shadow::hear(const telemetry::Received& received, Ert now) {
     expect_again(out);
     const Sclk own_now = flight_->landing().sclk();
     const bool over = !flies && cycles_ > lag_;
+    if (flies && own_now.ticks() % second_ticks == 0) say_values(out);
     if ((flies && own_now.ticks() % second_ticks == 0) || (over && !std::exchange(over_told_, true)))
         out.push_back(packets_.state(state(), own_now));
     for (auto& octets : out) made.packets.push_back({telemetry::station_link, now, std::move(octets)});

@@ -27,7 +27,7 @@ namespace aeolis::server::shadow {
 /// time, and so is where the vehicle was when it sent what arrives now; in silence it flies on.
 ///
 /// In       what ground received, what was sent; dispersed flights of the plan, once they are made
-/// Out      its state and the vehicle's residuals against it once a second, by how much it was moved, when timepoints
+/// Out      its state, the values of all its channels and the vehicle's residuals against it once a second, by how much it was moved, when timepoints
 ///          are expected, and where the vehicle departs from all flights of the plan (shadow_packets.hpp)
 /// Truth    none: a run whose hidden things differ gives the same until what is received differs. R57
 /// Cost     that of a second landing, on the run's thread
@@ -62,6 +62,8 @@ class Shadow final : public Companion {
     };
 
     void step();
+    void note_values(const telemetry::Decoded& decoded);
+    void say_values(std::vector<ShadowPackets::Octets>& out);
     void hold_against(const NavigatedState& state, std::vector<ShadowPackets::Octets>& out);
     void look_at_firings(std::vector<ShadowPackets::Octets>& out);
     void look_at_stands(std::vector<ShadowPackets::Octets>& out);
@@ -81,6 +83,12 @@ class Shadow final : public Companion {
     std::deque<Sent> sent_;           ///< not yet flown
     std::deque<Own> own_;             ///< of late
     HeardFlight heard_, own_told_;
+    telemetry::PacketDecoder decoder_;
+    /// By channel: the second of its last sample, the value as said last, and what is to be said.
+    std::vector<std::int64_t> second_of_;
+    std::vector<std::optional<double>> value_said_;
+    std::vector<bool> ever_said_;
+    std::vector<telemetry::ExpectedValue> changed_;
     std::optional<Sclk> held_, moved_;  ///< the state held against last; when the flight was moved last
     std::optional<ShadowState::Residual> residual_;
     std::optional<Sclk> residual_at_;

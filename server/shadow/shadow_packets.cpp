@@ -11,7 +11,7 @@
 namespace aeolis::server::shadow {
 namespace {
 
-constexpr Apid state_apid{0x7E3}, moved_apid{0x7E4}, expects_apid{0x7E5}, event_apid{0x7E6};
+constexpr Apid state_apid{0x7E3}, moved_apid{0x7E4}, expects_apid{0x7E5}, event_apid{0x7E6}, values_apid{0x7E7};
 constexpr std::size_t state_octets = 60, moved_octets = 12, expects_octets = 29, event_id_octets = 2;
 constexpr std::size_t timepoint_departure_octets = 35, course_departure_octets = 33;
 constexpr std::uint64_t flag = 1;
@@ -106,6 +106,16 @@ ShadowPackets::Octets ShadowPackets::departed(const CourseDeparture& departure, 
          {departure.seen_s, departure.observed, departure.range.tolerated_from(), departure.range.tolerated_to()})
         out.put_double(each);
     return event("COURSE_DEPARTED", data, at);
+}
+
+std::vector<ShadowPackets::Octets> ShadowPackets::values(std::span<const telemetry::ExpectedValue> values,
+                                                         Sclk second) {
+    std::vector<Octets> packets;
+    for (std::size_t i = 0; i < values.size(); i += telemetry::expected_values_max) {
+        const auto some = values.subspan(i, std::min(telemetry::expected_values_max, values.size() - i));
+        packets.push_back(sealed(values_apid, telemetry::pack_expected_values(some, second), second));
+    }
+    return packets;
 }
 
 ShadowPackets::Octets ShadowPackets::plan_flown(std::uint32_t cases, Sclk at) {

@@ -5,6 +5,7 @@
 #include "common/time.hpp"
 #include "dictionaries/dictionary.hpp"
 #include "server/shadow/expectations.hpp"
+#include "telemetry/station/expected_values.hpp"
 
 #include <cstdint>
 #include <map>
@@ -70,6 +71,8 @@ class ShadowPackets {
     Octets expects(std::uint16_t row, const ExpectedTime& time, bool told, Sclk at);
     Octets departed(const TimepointDeparture& departure, Sclk at);
     Octets departed(const CourseDeparture& departure, Sclk at);
+    /// As many packets as it takes, of values in the second that begins at `second`.
+    std::vector<Octets> values(std::span<const telemetry::ExpectedValue> values, Sclk second);
     Octets plan_flown(std::uint32_t cases, Sclk at);
     Octets plan_changed(Sclk at);
 

@@ -25,10 +25,21 @@ export async function temporaryFolder() {
 }
 
 /** `aeolis serve`; `port` 0 takes a free one. */
-export async function serve({ archive, port = 0, more = [], web = path.join(root, 'web/dist') }) {
+export async function serve({ archive, port = 0, planFlights = 0, more = [], web = path.join(root, 'web/dist') }) {
   const child = spawn(
     program,
-    ['serve', '--listen', `127.0.0.1:${port}`, '--archive', archive, '--web', web, '--plan-flights', '0', ...more],
+    [
+      'serve',
+      '--listen',
+      `127.0.0.1:${port}`,
+      '--archive',
+      archive,
+      '--web',
+      web,
+      '--plan-flights',
+      `${planFlights}`,
+      ...more,
+    ],
     { stdio: ['ignore', 'pipe', 'pipe'] },
   );
   let said = '';

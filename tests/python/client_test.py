@@ -33,7 +33,7 @@ class Server:
         self.folder = tempfile.TemporaryDirectory(prefix="aeolis-python-")
         archive = Path(self.folder.name) / "a.db"
         self.process = subprocess.Popen(
-            [PROGRAM, "serve", "--listen", "127.0.0.1:0", "--archive", str(archive), *options],
+            [PROGRAM, "serve", "--listen", "127.0.0.1:0", "--archive", str(archive), "--plan-flights", "0", *options],
             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
         )
         assert self.process.stdout is not None

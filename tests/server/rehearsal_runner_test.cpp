@@ -394,6 +394,13 @@ TEST_CASE("a run that was left goes on with the flight that ground keeps beside 
     REQUIRE(series);
     CHECK(series->channels(0).sclk_size() > 700);
     CHECK(series->channels(1).value(series->channels(1).value_size() - 1) == 2.0);
+    const auto altitude = dictionary.channel("altitude_m")->id, stand = dictionary.channel("timepoint_index")->id;
+    const auto expected = reader->expected_values(archive::RunId{1}, {altitude, stand}, {});
+    REQUIRE(expected);
+    CHECK((*expected)[0].sclk_s.size() > 600);  // each second from E−540 s on
+    CHECK((*expected)[1].sclk_s.size() > 5);
+    CHECK((*expected)[1].sclk_s.size() < 100);  // where it changes
+    CHECK((*expected)[0].sclk_s.back() > scenario.entry_sclk.seconds + 118.0);
     const auto timepoints = reader->timepoints(archive::RunId{1}, {});
     REQUIRE(timepoints);
     const auto mortar =

@@ -502,4 +502,30 @@ TEST_CASE("of another mission, whose entry nobody knows, times are of day, and n
     CHECK_THAT(all.front().sentence, Catch::Contains("2000-001T12:01:00.000"));
 }
 
+TEST_CASE("what ground's own flight expects goes before the plan, and is overdue only behind its interval",
+          "[situation][shadow][R57]") {
+    Ground ground;
+    ground.up(uhf_live_link, -600.0);
+    ground.event("EDL_BEGUN", -1150.0);
+    ground.fired("sufr", 239.0);
+    for (const char* balance : {"balance_1", "balance_2", "balance_3"}) ground.fired(balance, 244.0);
+    const auto& timeline = tests::shipped_dictionary().timeline;
+    const auto mortar = std::ranges::find(timeline, "parachute_deploy", &dictionary::TimelineRow::name)->id;
+    const auto waits = [&](double e_s) {
+        const auto step = ground.about("step", e_s);
+        REQUIRE(step);
+        CHECK(step->timepoint == "parachute_deploy");
+        return *step;
+    };
+    const auto by_plan = waits(245.0).at;
+    ground.monitor.expected(mortar, SituationMonitor::ExpectedStep{262.0, 270.0});
+    CHECK(waits(245.0).at == at(262.0));
+    ground.monitor.heard(sclk(274.0), at(274.0));
+    CHECK_FALSE(waits(274.0).overdue);
+    ground.monitor.heard(sclk(276.0), at(276.0));
+    CHECK(waits(276.0).overdue);
+    ground.monitor.expected(mortar, std::nullopt);
+    CHECK(waits(245.0).at == by_plan);
+}
+
 }  // namespace telemetry_situation_monitor_test

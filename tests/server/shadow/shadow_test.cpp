@@ -101,13 +101,13 @@ class Accompanied {
         REQUIRE(run_.submit(request.command()).accepted());
         shadow_.take(run_.cycles(), request);
     }
-    /// Lets the landing wait until the flights of the plan are made, and takes them.
+    /// Flies on slowly until the flights of the plan are made, and takes them.
     void await_plan() {
         shadow_.go_live();
         const auto before = kept.size();
         while (kept.size() == before) {
             step();
-            std::this_thread::sleep_for(std::chrono::milliseconds{1});
+            std::this_thread::sleep_for(std::chrono::milliseconds{20});  // hardly faster than real time
         }
     }
 
@@ -265,7 +265,7 @@ TEST_CASE("in dispersed landings that go as expected, the intervals hold 97 of 1
           "nothing departs",
           "[.long][long][shadow][R57]") {
     const auto scenario = shipped_scenario_of("nominal_auto");
-    constexpr std::uint64_t landings = 10, plan_flights = 300;
+    constexpr std::uint64_t landings = 4, plan_flights = 300;
     int fired = 0, within = 0, departures = 0, shrunk = 0, compared = 0;
     for (std::uint64_t seed = 101; seed < 101 + landings; ++seed) {
         Accompanied flown{scenario, seed, plan_flights};

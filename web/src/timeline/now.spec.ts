@@ -57,7 +57,16 @@ describe('the prediction of the run that is shown', () => {
   it('is that of the flights of ground’s plan where they are made, with the interval that they give', () => {
     const list = create(TimepointListSchema, {
       timepoints: [
-        { id: 0, name: 'mortar', predictedES: 256, expectedES: 256, flights: 300, flightsES: 258.5, flightsFromES: 251, flightsToES: 266 },
+        {
+          id: 0,
+          name: 'mortar',
+          predictedES: 256,
+          expectedES: 256,
+          flights: 300,
+          flightsES: 258.5,
+          flightsFromES: 251,
+          flightsToES: 266,
+        },
         { id: 1, name: 'shield', predictedES: 280, expectedES: 280, flights: 50, flightsES: 282 },
       ],
     });
