@@ -46,12 +46,12 @@ std::string basis() {
                        version);
 }
 
-/// What the flight that ground kept beside the run has of these channels, by what was heard.
-Result<v1::Prediction> by_shadow(archive::Reader& reader, archive::RunId run, const simulation::Scenario& scenario,
-                                 const Channels& channels, const archive::SclkRange& range) {
+/// What the flight that ground kept beside the run, if it did, has of these channels by what was heard.
+Result<v1::Prediction> by_shadow(archive::Reader& reader, archive::RunId run, bool kept, const Channels& channels,
+                                 const archive::SclkRange& range) {
     v1::Prediction prediction;
     prediction.set_state("none");
-    if (!scenario.ground_flight.value_or(false)) {
+    if (!kept) {
         prediction.set_reason("ground kept no flight beside this run: it began faster than 100 times real time, or its "
                               "scenario or the server refuses one");
         return prediction;
@@ -163,7 +163,7 @@ void Api::prediction(const ApiRequest& call) {
             const auto scenario = scenario_from_text(*text, fmt::format("the scenario of run {}", id.value));
             if (!scenario) return none(scenario.error());
             if (shadow) {
-                auto expected = by_shadow(reader, id, *scenario, channels, *range);
+                auto expected = by_shadow(reader, id, scenario->ground_flight.value_or(false), channels, *range);
                 if (!expected) return error_response(500, expected.error());
                 expected->set_dictionary_id(parts_.dictionary.id);
                 return response_of(*expected, format);

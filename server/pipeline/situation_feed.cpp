@@ -32,7 +32,8 @@ SituationMonitor::Origin origin_of(const archive::ItemRecord& record,
 }  // namespace
 
 SituationFeed::SituationFeed(const dictionary::Dictionary& dictionary, const archive::RunStart& start)
-    : monitor_(dictionary, clocks_of(start)), decommutator_(dictionary), expects_(dictionary.packet("ShadowExpects")) {
+    : monitor_(dictionary, clocks_of(start)), expects_(dictionary.packet("ShadowExpects")) {
+    if (expects_ != nullptr) decommutator_.emplace(dictionary);
     const archive::PacketColumns columns{dictionary};
     for (std::size_t packet = 0; packet < columns.packets(); ++packet) {
         TouchdownColumns found;
@@ -51,7 +52,7 @@ SituationFeed::SituationFeed(const dictionary::Dictionary& dictionary, const arc
 
 void SituationFeed::give_expected(const archive::Batch& batch, const archive::PacketRecord& packet) {
     const auto octets = std::span{batch.octets}.subspan(packet.octets.first, packet.octets.count);
-    if (decommutator_.decode(octets, decoded_)) return;
+    if (decommutator_->decode(octets, decoded_)) return;
     const auto value = [&](std::string_view name) {
         const auto field = telemetry::field_index(*expects_, name);
         return field ? decoded_.value[*field].value_or(0.0) : 0.0;

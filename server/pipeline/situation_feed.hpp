@@ -37,9 +37,9 @@ class SituationFeed {
     void give_touchdown(const archive::Batch& batch, const archive::SampleRecord& sample);
 
     telemetry::SituationMonitor monitor_;
-    telemetry::Decommutator decommutator_;
-    telemetry::Decoded decoded_;
     const dictionary::Packet* expects_;  ///< in which ground's own flight expects a timepoint; null: there is none
+    std::optional<telemetry::Decommutator> decommutator_;  ///< where there is
+    telemetry::Decoded decoded_;
     std::map<std::uint16_t, TouchdownColumns> touchdown_columns_;  ///< by packet; of others there is nothing to tell
     archive::Sequence followed_ = 0;
     std::optional<Ert> now_;

@@ -53,6 +53,9 @@ class Rehearsal {
     /// See Landing::redraw. The Error says why nothing can be drawn anew yet.
     Result<void> redraw(std::uint64_t seed);
 
+    /// See ScriptedLanding::send_solution.
+    void send_solution(const simulation::NavigationSolution& solution) { flight_.send_solution(solution); }
+
     /// See Landing::shift.
     void shift(const flight::NavigationShift& vehicle, const flight::NavigationShift& navigation) {
         flight_.shift(vehicle, navigation);

@@ -131,6 +131,10 @@ void ScriptedLanding::equip_station(const simulation::Scenario& scenario, std::u
     station_.listen_by({dictionary.mfsk, predict_hz, entry});
 }
 
+void ScriptedLanding::send_solution(const simulation::NavigationSolution& solution) {
+    gateway_.renew_solution(solution_arguments(solution));
+}
+
 telemetry::Received& ScriptedLanding::step() {
     send_script();
     for (const auto& cltu : gateway_.take_uplinks()) landing_.uplink(cltu);

@@ -51,6 +51,9 @@ class ScriptedLanding {
         landing_.redraw(seed, case_number, knowledge);
     }
 
+    /// Sends this solution, where a command takes its arguments from ground's, instead of that of the landing itself.
+    void send_solution(const simulation::NavigationSolution& solution);
+
     /// See Landing::shift.
     void shift(const flight::NavigationShift& vehicle, const flight::NavigationShift& navigation) {
         landing_.shift(vehicle, navigation);

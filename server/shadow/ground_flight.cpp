@@ -120,6 +120,7 @@ std::unique_ptr<Rehearsal> begin_ground_flight(const simulation::Scenario& scena
     begin.p_MoB_M_m = simulation::array3(start.p_MoB_M);
     begin.v_MB_M_mps = simulation::array3(start.v_MB_M);
     rehearsal->shift(shift_to(state_of(landing), begin), {});
+    rehearsal->send_solution(solution);
     return rehearsal;
 }
 

@@ -94,9 +94,10 @@ TEST_CASE("fields lie between the headers and the CRC, none on another", "[dicti
             for (unsigned bit = position; bit < position + count; ++bit) used.insert(bit);
             bits += count;
         };
+        std::set<unsigned> flags;  // fields that are defined together share one
         for (const Field& field : packet.fields) {
             claim(field.position_bits, field.type.bits);
-            if (field.validity_bit) claim(*field.validity_bit, 1);
+            if (field.validity_bit && flags.insert(*field.validity_bit).second) claim(*field.validity_bit, 1);
         }
         CHECK(used.size() == bits);
         if (!used.empty()) {

@@ -95,8 +95,8 @@ TEST_CASE("every field of the message reaches the simulation and comes back", "[
 
 TEST_CASE("no number of the schema is left out on the way to the simulation", "[scenario][R48]") {
     // What is left open is not written: that is a choice of its own.
-    const auto whole = scenario_to_message(
-        *scenario_from_text(least + "radio { tones_from_samples: false earth_set_after_entry_s: 299 }", "s"));
+    const auto whole = scenario_to_message(*scenario_from_text(
+        least + "ground_flight: true radio { tones_from_samples: false earth_set_after_entry_s: 299 }", "s"));
     const std::function<void(const google::protobuf::Message&, const std::string&)> check =
         [&](const google::protobuf::Message& message, const std::string& name) {
             const auto* descriptor = message.GetDescriptor();
