@@ -405,7 +405,7 @@ TEST_CASE("a run that was left goes on with the flight that ground keeps beside 
     REQUIRE(timepoints);
     const auto mortar =
         std::ranges::find(timepoints->timepoints(), "parachute_deploy", [](const auto& row) { return row.name(); });
-    CHECK(std::abs(mortar->flights_e_s() - 256.0) < 15.0);
+    CHECK(std::abs(mortar->flights_e_s() - 256.0) < 30.0);  // of two flights
     CHECK(mortar->flights() == 2);
     CHECK_FALSE(mortar->has_flights_from_e_s());
 }
