@@ -288,6 +288,22 @@ ShadowState Shadow::state() const {
 
 Companion::Made Shadow::hear(const telemetry::Received& received, Ert now) {
     ++cycles_;
+    if (lost_) return {};
+    try {
+        return make(received, now);
+    } catch (const CheckFailed& bug) {
+        // A bug of ground's flight is none of the run.
+        spdlog::error("the flight that ground keeps ends: {}", text_of_bug(bug));
+        lost_ = true;
+        Made made;
+        ShadowState over;
+        over.stand = Stand::over;
+        made.packets.push_back({telemetry::station_link, now, packets_.state(over, flight_->landing().sclk())});
+        return made;
+    }
+}
+
+Companion::Made Shadow::make(const telemetry::Received& received, Ert now) {
     Made made;
     std::vector<ShadowPackets::Octets> out;
     const bool flies = cycles_ > lag_ && !flight_->landing().flown() && !flight_->finished();

@@ -31,7 +31,7 @@ namespace aeolis::server::shadow {
 ///          are expected, and where the vehicle departs from all flights of the plan (shadow_packets.hpp)
 /// Truth    none: a run whose hidden things differ gives the same until what is received differs. R57
 /// Cost     that of a second landing, on the run's thread
-/// Faults   a flight that comes to its end says so and says nothing more
+/// Faults   a flight that comes to its end, or whose check fails, says so and says nothing more; the run goes on
 class Shadow final : public Companion {
   public:
     /// The dictionary must outlive this. @param order  of the plan's flights; no cases: none are made
@@ -61,6 +61,7 @@ class Shadow final : public Companion {
         bool told = false;
     };
 
+    Made make(const telemetry::Received& received, Ert now);
     void step();
     void note_values(const telemetry::Decoded& decoded);
     void say_values(std::vector<ShadowPackets::Octets>& out);
@@ -100,7 +101,7 @@ class Shadow final : public Companion {
     std::set<std::size_t> departed_rows_;
     std::optional<std::size_t> late_row_;  ///< seen late once
     std::uint16_t departures_ = 0;
-    bool over_told_ = false, live_ = false;
+    bool over_told_ = false, live_ = false, lost_ = false;
     bool pending_flown_ = false, pending_changed_ = false, expectations_changed_ = false;
     std::uint32_t plan_number_ = 0;  ///< of the last ensemble that was ordered, or should be
     bool plan_wanted_ = true;        ///< one should be ordered
