@@ -176,6 +176,7 @@ void RehearsalRunner::run() {
     } else {
         callbacks_.on_begun(begun.error());
     }
+    companion_.reset();  // here: what it has on other processors takes a moment to stop
     std::vector<RunOrder> late;
     {
         const std::scoped_lock lock{mutex_};

@@ -5,6 +5,7 @@
 #include "server/campaign/case_flights.hpp"
 #include "server/shadow/expectations.hpp"
 
+#include <exception>
 #include <memory>
 #include <utility>
 
@@ -18,11 +19,15 @@ EnsembleFlight::EnsembleFlight(ScriptedLanding landing, const simulation::StateK
     thread_ =
         std::thread{[this, from = std::move(from), knowledge, scenario = std::move(scenario), &dictionary, order] {
             if (order.idle) campaign::use_idle_priority();
-            const auto courses = courses_by_ground(*from, knowledge, scenario, dictionary, order, stop_);
-            if (courses)
-                flown_ = ensemble_of(*courses, number_, from->landing().sclk(), scenario.entry_sclk);
-            else
-                flown_ = courses.error();
+            try {
+                const auto courses = courses_by_ground(*from, knowledge, scenario, dictionary, order, stop_);
+                if (courses)
+                    flown_ = ensemble_of(*courses, number_, from->landing().sclk(), scenario.entry_sclk);
+                else
+                    flown_ = courses.error();
+            } catch (const std::exception& error) {
+                flown_ = Error{error.what()};
+            }
             ready_ = true;
         }};
 }

@@ -39,6 +39,7 @@ std::array<double, regressors_max> least_squares(const std::vector<double>& y,
     std::array<double, regressors_max> by{};
     if (x.empty()) return by;
     const double xx = covariance(x[0], x[0]), xy = covariance(x[0], y);
+    if (xx <= 0.0) return by;  // in those cases it does not differ
     by[0] = xy / xx;
     if (x.size() < 2) return by;
     const double zz = covariance(x[1], x[1]), xz = covariance(x[0], x[1]), zy = covariance(x[1], y);
@@ -77,7 +78,8 @@ v1::PlanEnsemble ensemble_of(std::span<const Course> courses, std::uint32_t orde
         auto& firings = *ensemble.add_firings();
         firings.set_row(static_cast<std::uint32_t>(row));
         for (const Course& course : courses) {
-            const bool fired = row < course.fired.size() && course.fired[row];
+            // What had fired before is the same in all cases, and says nothing of when it is to be expected.
+            const bool fired = row < course.fired.size() && course.fired[row] && *course.fired[row] > from;
             firings.add_ticks(fired ? static_cast<std::int32_t>(course.fired[row]->ticks() - entry.ticks())
                                     : never_fired);
         }

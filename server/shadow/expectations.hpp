@@ -70,7 +70,7 @@ class Expectations {
       private:
         double margin() const;
     };
-    /// Of all cases, about that time; none: beyond the time that enough of them pass through.
+    /// Of all cases, about that time; none: beyond the time at which the first of them ends.
     std::optional<Range> range(Quantity quantity, Sclk at) const;
 
   private:

@@ -241,6 +241,7 @@ Result<FlownForecast> fly_cases(const ScriptedLanding& landing,
         });
     };
     const auto fly_case = [&](std::size_t place) {
+        if (stop) return;
         Side& side = sides[place % side_count];
         const std::uint64_t number = place / side_count + 1;
         campaign::CaseResult& result = side.cases[number - 1];
@@ -329,6 +330,7 @@ Result<std::vector<Course>> courses_by_ground(const ScriptedLanding& landing,
     const auto flown =
         fly_cases(landing, knowledge, ground_scenario(scenario), dictionary, {}, order, stop, {}, &courses);
     if (!flown) return flown.error();
+    std::erase_if(courses, [](const Course& each) { return each.fired.empty(); });  // a check failed
     return courses;
 }
 

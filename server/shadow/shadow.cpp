@@ -2,11 +2,13 @@
 #include "server/shadow/shadow.hpp"
 
 #include "server/rehearsal/kept_requests.hpp"
+#include "server/shadow/prospect.hpp"
 #include "simulation/vectors.hpp"
 #include "telemetry/packet_stream.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <numbers>
 #include <spdlog/spdlog.h>
 #include <utility>
@@ -58,7 +60,7 @@ Shadow::Shadow(const simulation::Scenario& scenario, const simulation::Navigatio
 
 void Shadow::take(std::uint64_t cycle, const v1::KeptRequest& request) {
     if (request.has_ensemble()) {
-        if (request.ensemble().order() != plan_number_) return;  // of a plan that was changed since
+        if (departures_ > 0 || request.ensemble().order() != plan_number_) return;  // its plan is not flown any more
         expectations_.take(request.ensemble());
         plan_wanted_ = false;
         pending_flown_ = expectations_changed_ = true;
@@ -66,7 +68,7 @@ void Shadow::take(std::uint64_t cycle, const v1::KeptRequest& request) {
     }
     if (!request.has_command() && !request.has_verdict()) return;  // an instructor's
     sent_.push_back({cycle, request});
-    if (!request.has_command() || !moves_the_landing(request.command().command())) return;
+    if (request.has_command() && !moves_the_landing(request.command().command())) return;
     pending_changed_ = pending_changed_ || expectations_.known();
     expectations_changed_ = expectations_changed_ || expectations_.known();
     expectations_.withdraw();
@@ -178,9 +180,16 @@ void Shadow::look_at_stands(std::vector<ShadowPackets::Octets>& out) {
     }
 }
 
-void Shadow::departs(const TimepointDeparture& departure, std::vector<ShadowPackets::Octets>& out) {
-    if (!expectations_.tell_departures() || !departed_rows_.insert(departure.row).second) return;
+/// From here on the plan is not the vehicle's: nothing is expected by it.
+void Shadow::depart() {
     ++departures_;
+    expectations_.withdraw();
+    expectations_changed_ = true;
+}
+
+void Shadow::departs(const TimepointDeparture& departure, std::vector<ShadowPackets::Octets>& out) {
+    if (departure.expected.cases < values_for_99 || !departed_rows_.insert(departure.row).second) return;
+    depart();
     out.push_back(packets_.departed(departure, scenario_.entry_sclk + departure.seen_s));
 }
 
@@ -197,7 +206,7 @@ void Shadow::look_at(Quantity quantity, double value, double doubt, Sclk at, std
     const double persists = quantity == Quantity::range_rate_mps ? carrier_persists_s : persists_s;
     if (excess.told || excess.seen < persists_values || at - *excess.since < persists) return;
     excess.told = true;
-    ++departures_;
+    depart();
     out.push_back(packets_.departed(CourseDeparture{quantity, at - scenario_.entry_sclk, value, *range}, at));
 }
 
@@ -238,7 +247,7 @@ void Shadow::plan(Made& made, std::vector<ShadowPackets::Octets>& out) {
     const Sclk now = flight_->landing().sclk();
     if (std::exchange(pending_changed_, false)) out.push_back(packets_.plan_changed(now));
     if (std::exchange(pending_flown_, false)) out.push_back(packets_.plan_flown(expectations_.cases(), now));
-    if (!live_ || order_.cases == 0) return;
+    if (!live_ || order_.cases == 0 || departures_ > 0) return;
     if (ensemble_ && ensemble_->ready()) {
         auto flown = ensemble_->take();
         const bool current = ensemble_->number() == plan_number_;
@@ -291,11 +300,16 @@ Companion::Made Shadow::hear(const telemetry::Received& received, Ert now) {
     if (lost_) return {};
     try {
         return make(received, now);
-    } catch (const CheckFailed& bug) {
+    } catch (const std::exception& bug) {
         // A bug of ground's flight is none of the run.
-        spdlog::error("the flight that ground keeps ends: {}", text_of_bug(bug));
+        spdlog::error("the flight that ground keeps ends: {}", bug.what());
         lost_ = true;
         Made made;
+        for (std::size_t row = 0; row < said_.size(); ++row)
+            if (said_[row] && !said_told_[row])
+                made.packets.push_back(
+                    {telemetry::station_link, now,
+                     packets_.expects(static_cast<std::uint16_t>(row), {}, false, flight_->landing().sclk())});
         ShadowState over;
         over.stand = Stand::over;
         made.packets.push_back({telemetry::station_link, now, packets_.state(over, flight_->landing().sclk())});

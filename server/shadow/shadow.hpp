@@ -70,6 +70,7 @@ class Shadow final : public Companion {
     void look_at_stands(std::vector<ShadowPackets::Octets>& out);
     void look_at(Quantity quantity, double value, double doubt, Sclk at, std::vector<ShadowPackets::Octets>& out);
     void look_at_carrier(const telemetry::Received& received, Ert now, std::vector<ShadowPackets::Octets>& out);
+    void depart();
     void departs(const TimepointDeparture& departure, std::vector<ShadowPackets::Octets>& out);
     void expect_again(std::vector<ShadowPackets::Octets>& out);
     void plan(Made& made, std::vector<ShadowPackets::Octets>& out);

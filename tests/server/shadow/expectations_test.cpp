@@ -40,7 +40,7 @@ struct Plan {
     v1::PlanEnsemble ensemble(std::size_t cases) {
         std::vector<Course> courses;
         for (std::size_t i = 0; i < cases; ++i) courses.push_back(course());
-        return ensemble_of(courses, 0, entry, entry);
+        return ensemble_of(courses, 0, entry - 100.0, entry);
     }
 };
 
@@ -109,6 +109,16 @@ TEST_CASE("of fewer cases than an interval takes there is a time, and no interva
     CHECK(std::abs(trigger->e_s - 250.0) < 2.0);
     CHECK_FALSE(trigger->interval_99);
     CHECK(trigger->tolerated.from < 245.0);
+}
+
+TEST_CASE("of what had fired before the flights began nothing is expected", "[shadow][R57]") {
+    Plan plan;
+    std::vector<Course> courses;
+    for (int i = 0; i < 20; ++i) courses.push_back(plan.course());
+    Expectations expectations{tests::shipped_dictionary(), entry};
+    expectations.take(ensemble_of(courses, 0, entry + 100.0, entry));
+    CHECK_FALSE(expectations.expected(Plan::by_clock));
+    CHECK(expectations.expected(Plan::trigger));
 }
 
 TEST_CASE("of a plan that was changed nothing is expected", "[shadow][R57]") {
