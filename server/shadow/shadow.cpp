@@ -60,7 +60,7 @@ Shadow::Shadow(const simulation::Scenario& scenario, const simulation::Navigatio
 
 void Shadow::take(std::uint64_t cycle, const v1::KeptRequest& request) {
     if (request.has_ensemble()) {
-        if (departures_ > 0 || request.ensemble().order() != plan_number_) return;  // its plan is not flown any more
+        if (astray_ || request.ensemble().order() != plan_number_) return;  // its plan is not flown any more
         expectations_.take(request.ensemble());
         plan_wanted_ = false;
         pending_flown_ = expectations_changed_ = true;
@@ -78,8 +78,7 @@ void Shadow::take(std::uint64_t cycle, const v1::KeptRequest& request) {
 
 void Shadow::step() {
     while (!sent_.empty() && sent_.front().cycle <= flight_->cycles()) {
-        // Refused: a lost reply, or what the vehicle's own state permits; the flight then flies without it.
-        static_cast<void>(repeat(*flight_, sent_.front().request));
+        if (!repeat(*flight_, sent_.front().request)) go_astray();
         sent_.pop_front();
     }
     const NavigatedState truth = state_of(flight_->landing());
@@ -180,9 +179,14 @@ void Shadow::look_at_stands(std::vector<ShadowPackets::Octets>& out) {
     }
 }
 
-/// From here on the plan is not the vehicle's: nothing is expected by it.
 void Shadow::depart() {
     ++departures_;
+    go_astray();
+}
+
+/// From here on the plan is not the vehicle's: nothing is expected by it.
+void Shadow::go_astray() {
+    astray_ = true;
     expectations_.withdraw();
     expectations_changed_ = true;
 }
@@ -246,8 +250,9 @@ void Shadow::expect_again(std::vector<ShadowPackets::Octets>& out) {
 void Shadow::plan(Made& made, std::vector<ShadowPackets::Octets>& out) {
     const Sclk now = flight_->landing().sclk();
     if (std::exchange(pending_changed_, false)) out.push_back(packets_.plan_changed(now));
-    if (std::exchange(pending_flown_, false)) out.push_back(packets_.plan_flown(expectations_.cases(), now));
-    if (!live_ || order_.cases == 0 || departures_ > 0) return;
+    if (std::exchange(pending_flown_, false) && expectations_.tell_departures())
+        out.push_back(packets_.plan_flown(expectations_.cases(), now));
+    if (!live_ || order_.cases == 0 || astray_) return;
     if (ensemble_ && ensemble_->ready()) {
         auto flown = ensemble_->take();
         const bool current = ensemble_->number() == plan_number_;
@@ -288,7 +293,7 @@ ShadowState Shadow::state() const {
     });
     if (landing.flown())
         state.stand = Stand::over;
-    else if (departures_ > 0 || unexpected)
+    else if (astray_ || unexpected)
         state.stand = Stand::departed;
     else if (held_)
         state.stand = Stand::with_the_vehicle;

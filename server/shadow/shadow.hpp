@@ -27,11 +27,12 @@ namespace aeolis::server::shadow {
 /// time, and so is where the vehicle was when it sent what arrives now; in silence it flies on.
 ///
 /// In       what ground received, what was sent; dispersed flights of the plan, once they are made
-/// Out      its state, the values of all its channels and the vehicle's residuals against it once a second, by how much it was moved, when timepoints
-///          are expected, and where the vehicle departs from all flights of the plan (shadow_packets.hpp)
+/// Out      once a second its state, the values of its channels and the vehicle's residuals against it; by how much it
+///          was moved, when timepoints are expected, and where the vehicle departs from the plan (shadow_packets.hpp)
 /// Truth    none: a run whose hidden things differ gives the same until what is received differs. R57
 /// Cost     that of a second landing, on the run's thread
-/// Faults   a flight that comes to its end, or whose check fails, says so and says nothing more; the run goes on
+/// Faults   a flight that comes to its end, or whose check fails, says so, and the run goes on. Where a command that
+///          was sent is refused in it, it says that it departed, and nothing is expected by it any more
 class Shadow final : public Companion {
   public:
     /// The dictionary must outlive this. @param order  of the plan's flights; no cases: none are made
@@ -71,6 +72,7 @@ class Shadow final : public Companion {
     void look_at(Quantity quantity, double value, double doubt, Sclk at, std::vector<ShadowPackets::Octets>& out);
     void look_at_carrier(const telemetry::Received& received, Ert now, std::vector<ShadowPackets::Octets>& out);
     void depart();
+    void go_astray();
     void departs(const TimepointDeparture& departure, std::vector<ShadowPackets::Octets>& out);
     void expect_again(std::vector<ShadowPackets::Octets>& out);
     void plan(Made& made, std::vector<ShadowPackets::Octets>& out);
@@ -103,6 +105,7 @@ class Shadow final : public Companion {
     std::optional<std::size_t> late_row_;  ///< seen late once
     std::uint16_t departures_ = 0;
     bool over_told_ = false, live_ = false, lost_ = false;
+    bool astray_ = false;  ///< it departed, or a command that was sent is refused in this flight
     bool pending_flown_ = false, pending_changed_ = false, expectations_changed_ = false;
     std::uint32_t plan_number_ = 0;  ///< of the last ensemble that was ordered, or should be
     bool plan_wanted_ = true;        ///< one should be ordered
