@@ -64,7 +64,7 @@ Error no_user(const std::string& user) {
     return Error{fmt::format("there is no user '{}'", user)};
 }
 Error no_role(const std::string& role) {
-    return Error{fmt::format("role: '{}' is none of observer, controller, director, administrator", role)};
+    return Error{fmt::format("role: '{}' is none of observer, controller, director, instructor, administrator", role)};
 }
 
 }  // namespace
@@ -145,7 +145,7 @@ Operator Access::identify(const Credentials& credentials) {
     nobody.from = credentials.from;
     if (!accounts()) {
         nobody.accounts = false;
-        nobody.role = Role::director;
+        nobody.role = Role::instructor;
         const auto browser = cookie_value(credentials.cookie, browser_cookie());
         nobody.browser = browser.empty() ? std::string{no_browser} : secret_hash(browser);
         return nobody;

@@ -6,13 +6,14 @@
 namespace aeolis::server {
 
 std::string_view name_of(Role role) {
-    constexpr std::array<std::string_view, roles.size()> names{"observer", "controller", "director", "administrator"};
+    constexpr std::array<std::string_view, roles.size()> names{"observer", "controller", "director", "instructor",
+                                                               "administrator"};
     return names[static_cast<std::size_t>(role)];
 }
 
 std::string_view name_of(Right right) {
-    constexpr std::array<std::string_view, rights.size()> names{"open",      "watch",    "command",
-                                                                "hazardous", "rehearse", "administer"};
+    constexpr std::array<std::string_view, rights.size()> names{"open",     "watch",    "command",   "hazardous",
+                                                                "rehearse", "instruct", "administer"};
     return names[static_cast<std::size_t>(right)];
 }
 
@@ -28,6 +29,7 @@ std::optional<Role> least_role(Right right) {
     case Right::command: return Role::controller;
     case Right::hazardous:
     case Right::rehearse: return Role::director;
+    case Right::instruct: return Role::instructor;
     case Right::administer: break;
     }
     return Role::administrator;

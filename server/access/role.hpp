@@ -11,8 +11,9 @@
 namespace aeolis::server {
 
 /// The roles, in ascending order: each includes the rights of the one before.
-enum class Role : std::uint8_t { observer, controller, director, administrator };
-inline constexpr std::array roles{Role::observer, Role::controller, Role::director, Role::administrator};
+enum class Role : std::uint8_t { observer, controller, director, instructor, administrator };
+inline constexpr std::array roles{Role::observer, Role::controller, Role::director, Role::instructor,
+                                  Role::administrator};
 
 /// The right that a route, a stream message or a command requires.
 enum class Right : std::uint8_t {
@@ -21,10 +22,11 @@ enum class Right : std::uint8_t {
     command,     ///< send commands, acknowledge alarms, write notes       controller
     hazardous,   ///< send commands of significance critical and above     director
     rehearse,    ///< start, pace and stop rehearsals                      director
+    instruct,    ///< inject faults, follow a plan, read what is hidden    instructor
     administer,  ///< users, tokens, audit                                 administrator
 };
-inline constexpr std::array rights{Right::open,      Right::watch,    Right::command,
-                                   Right::hazardous, Right::rehearse, Right::administer};
+inline constexpr std::array rights{Right::open,     Right::watch,    Right::command,   Right::hazardous,
+                                   Right::rehearse, Right::instruct, Right::administer};
 
 std::string_view name_of(Role role);
 std::string_view name_of(Right right);

@@ -179,6 +179,7 @@ std::span<const Api::Route> Api::routes() {
         {"PUT", "/api/v1/layouts/{layout}", Right::watch, &Api::put_layout, Query::none, "layout"},
         {"DELETE", "/api/v1/layouts/{layout}", Right::watch, &Api::remove_layout, Query::none, "layout"},
         {"GET", "/api/v1/scenarios", Right::watch, &Api::list_scenarios, Query::own},
+        {"GET", "/api/v1/plans", Right::instruct, &Api::list_plans},
         {"GET", "/api/v1/dictionary", Right::watch, &Api::dictionary},
         {"GET", "/api/v1/openapi.yaml", Right::open, &Api::openapi},
         {"GET", "/api/v1/schema", Right::open, &Api::list_schema},
@@ -334,18 +335,19 @@ void Api::run_question(const ApiRequest& call) {
         if (const auto format = query->one_of("format", question->formats); !format)
             return respond(error_response(400, format.error()));
     const auto& dictionary = parts_.dictionary;
+    const auto& plans = parts_.plans;
     // Pace and clocks of the current run are not in the archive.
     const auto current = current_run();
     if (const auto id = run_id(run); what.empty() && id && id->value == current.run())
         return respond(json_response(current));
     ask(
         call, std::move(*query),
-        [&dictionary, &queries = parts_.queries, asker = Asker{client_of(call.who), call.request.disconnected},
-         clock = clock(), instructor = may(call.who, Right::rehearse), answer = question->answer,
+        [&dictionary, &plans, &queries = parts_.queries, asker = Asker{client_of(call.who), call.request.disconnected},
+         clock = clock(), instructor = may(call.who, Right::instruct), answer = question->answer,
          path = call.request.path,
          asked = call.request.query](archive::Reader& reader, archive::RunId id, const QueryText& asked_of) {
             const auto parts = [&queries, asker](ReadPart read) { return in_parts(queries, asker, std::move(read)); };
-            auto response = answer({dictionary, clock(id), instructor, parts}, reader, id, asked_of);
+            auto response = answer({dictionary, plans, clock(id), instructor, parts}, reader, id, asked_of);
             add_next_link(response, path, asked);
             return response;
         },
@@ -414,6 +416,11 @@ void Api::list_scenarios(const ApiRequest& call) {
                 [this](archive::Reader&, const ListRequest& wanted) {
                     return wanted.response_of_whole(parts_.scenarios.list(), {"scenarios"});
                 });
+}
+
+void Api::list_plans(const ApiRequest& call) {
+    answer_on_query_thread(
+        call, [this](archive::Reader&) { return json_response(parts_.plans.list()); }, JobPriority::in_turn);
 }
 
 void Api::dictionary(const ApiRequest& call) {

@@ -62,6 +62,7 @@ class Api {
     struct Parts {
         const dictionary::Dictionary& dictionary;
         const ScenarioLibrary& scenarios;
+        const instruction::PlanLibrary& plans;
         QueryThreads& queries;
         RehearsalManager& rehearsals;
         PredictionService& predictions;
@@ -119,6 +120,7 @@ class Api {
     void list_runs(const ApiRequest& call);
     void remove_run(const ApiRequest& call);
     void list_scenarios(const ApiRequest& call);
+    void list_plans(const ApiRequest& call);
     void dictionary(const ApiRequest& call);
     void stream(const ApiRequest& call);
     void health(const ApiRequest& call);
@@ -244,6 +246,9 @@ void name_asker(const Operator& who, v1::CommandRequest& request);
 /// Whether the operator may start this rehearsal: every command in the script of an inline scenario must be one that
 /// the operator may send.
 Result<void> may_start(const Operator& who, const dictionary::Dictionary& dictionary, const v1::StartRehearsal& start);
+/// Whether who may rehearse may control a rehearsal so: faults, notes and plans are an instructor's.
+Result<void> may_control(const Operator& who, const dictionary::Dictionary& dictionary,
+                         const v1::RehearsalControl& control);
 
 /// Signs the control message. With accounts, nobody can write in another's name.
 void sign(const Operator& who, v1::RehearsalControl& control);

@@ -93,7 +93,17 @@ Result<void> may_start(const Operator& who, const dictionary::Dictionary& dictio
         if (const auto allowed = may_send_named(who, dictionary, script[i].command(), false); !allowed)
             return Error{fmt::format("inline_scenario.commands[{}]: {}", i, allowed.error().message)};
     }
+    const bool planned = !start.plan().empty() || !start.inline_plan().empty();
+    if (planned && !may(who, Right::instruct)) return Error{"plan: this needs the right to instruct"};
     return {};
+}
+
+Result<void> may_control(const Operator& who, const dictionary::Dictionary& dictionary,
+                         const v1::RehearsalControl& control) {
+    const bool instructs = control.has_inject() || control.has_note() || control.has_plan();
+    if (instructs && !may(who, Right::instruct))
+        return Error{"inject, note and plan are an instructor's: this needs the right to instruct"};
+    return may_start(who, dictionary, control.start());
 }
 
 std::optional<Api::TooMany> Api::count_commands(const Operator& who, std::size_t commands) {

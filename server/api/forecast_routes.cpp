@@ -6,7 +6,7 @@
 #include <charconv>
 #include <fmt/format.h>
 
-// The routes of forecasts. Those from the truth of a rehearsal are for who may rehearse: to others there are none.
+// The routes of forecasts. Those from the truth of a rehearsal are for who may instruct: to others there are none.
 namespace aeolis::server {
 namespace {
 
@@ -31,7 +31,7 @@ void Api::post_forecast(const ApiRequest& call) {
         return call.respond(error_response(400, parsed.error()));
     const bool truth = wanted.from() == v1::ForecastRequest::truth;
     if (truth)
-        if (auto refusal = refusal_of(call.who, Right::rehearse); refusal.status != 200)
+        if (auto refusal = refusal_of(call.who, Right::instruct); refusal.status != 200)
             return call.respond(std::move(refusal));
     if (const auto place = parts_.forecasts->reserve(truth); !place)
         return call.respond(error_response(503, place.error()));
@@ -79,7 +79,7 @@ void Api::list_forecasts(const ApiRequest& call) {
     if (!wanted) return call.respond(error_response(400, wanted.error()));
     ask(
         call, {},
-        [this, wanted = *wanted, truths = may(call.who, Right::rehearse)](
+        [this, wanted = *wanted, truths = may(call.who, Right::instruct)](
             archive::Reader& reader, archive::RunId id, const QueryText&) -> std::optional<HttpResponse> {
             const auto& page = wanted.page;
             const auto records = reader.forecasts(id, truths, page.after, page.limit, page.order);
@@ -110,7 +110,7 @@ void Api::ask_forecast(const ApiRequest& call,
                        const std::function<HttpResponse(const archive::ForecastRecord&)>& answer) {
     ask(
         call, {},
-        [answer, truths = may(call.who, Right::rehearse), text = call.parts[1]](
+        [answer, truths = may(call.who, Right::instruct), text = call.parts[1]](
             archive::Reader& reader, archive::RunId id, const QueryText&) -> std::optional<HttpResponse> {
             const auto number = number_of(text);
             if (!number) return no_forecast(id, text);

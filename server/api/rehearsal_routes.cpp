@@ -44,7 +44,7 @@ void Api::control_rehearsal(const ApiRequest& call) {
     v1::RehearsalControl control;
     if (const auto parsed = from_json(call.request.body, control); !parsed)
         return call.respond(error_response(400, parsed.error()));
-    if (const auto allowed = may_start(call.who, parts_.dictionary, control.start()); !allowed)
+    if (const auto allowed = may_control(call.who, parts_.dictionary, control); !allowed)
         return call.respond(error_response(403, allowed.error()));
     sign(call.who, control);
     const bool going_on = parts_.rehearsals.going_on();

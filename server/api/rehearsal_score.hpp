@@ -3,6 +3,7 @@
 
 #include "aeolis/v1/score.pb.h"
 #include "server/archive/reader.hpp"
+#include "server/instruction/inject_plan.hpp"
 
 #include <optional>
 #include <string>
@@ -21,14 +22,14 @@ struct ScoreFacts {
     v1::AsFlownReport report;  ///< with all commands and notes
     std::optional<Landed> landed;
     std::vector<v1::Item> alarms;  ///< changes of alarms and actions on them, in their order
+    std::vector<v1::Item> heard;   ///< event reports and tones as received, recorded ones too
     std::vector<v1::Intervention> interventions;
+    std::optional<instruction::InjectPlan> plan;
 };
 
-/// Value of a reaction `after_s` seconds of the run, 0 … 1; none: nobody reacted.
-double promptness(std::optional<double> after_s);
-
-/// The facts in words and the points of each term, by the rule that the answer states.
-v1::Score score_of(const ScoreFacts& facts, const dictionary::Dictionary& dictionary);
+/// The facts in words and the points of each term, by the rubric.
+v1::Score score_of(const ScoreFacts& facts, const dictionary::Dictionary& dictionary,
+                   const instruction::Rubric& rubric);
 
 inline constexpr std::size_t scored_alarms_max = 200'000;  ///< chosen, some 40 MB: no landing comes near it
 
@@ -37,8 +38,11 @@ Result<v1::AsFlownReport> whole_report(archive::Reader& reader, archive::RunId r
 
 /// Whether a run has a score: it is a rehearsal that has finished.
 bool has_score(const v1::RunState& run);
+/// What the score of a run rests on, from its whole report. Fails when only a part of it could be had.
+Result<ScoreFacts> score_facts(archive::Reader& reader, v1::AsFlownReport report,
+                               const dictionary::Dictionary& dictionary);
 /// The score of a run with has_score(), from its whole report. Fails when only a part of the run could be scored.
 Result<v1::Score> rehearsal_score(archive::Reader& reader, v1::AsFlownReport report,
-                                  const dictionary::Dictionary& dictionary);
+                                  const dictionary::Dictionary& dictionary, const instruction::Rubric& rubric);
 
 }  // namespace aeolis::server

@@ -5,6 +5,7 @@
 #include "commands/timeline_change.hpp"
 #include "server/api/limits_in_force.hpp"
 #include "server/api/list_response.hpp"
+#include "server/api/plan_state.hpp"
 #include "server/api/query_text.hpp"
 #include "server/api/rehearsal_score.hpp"
 #include "server/api/series_text.hpp"
@@ -357,20 +358,30 @@ HttpResponse notes(const AnswerContext&, archive::Reader& reader, archive::RunId
                        {"notes", {"note"}});
 }
 
+/// What an instructor does is hidden from everybody else while the run goes on, or can be continued.
+std::optional<HttpResponse> hidden(const AnswerContext& context, archive::Reader& reader, archive::RunId run) {
+    if (context.instructor) return std::nullopt;
+    const auto state = reader.run(run);
+    if (!state) return error_response(400, state.error());
+    if (state->state() == v1::RunState::finished) return std::nullopt;
+    return error_response(
+        403, "what an instructor does is told when the run is over; before, it needs the right to instruct");
+}
+
 HttpResponse interventions(const AnswerContext& context, archive::Reader& reader, archive::RunId run,
                            const QueryText& query) {
-    if (!context.instructor) {
-        const auto state = reader.run(run);
-        if (!state) return error_response(400, state.error());
-        if (state->state() == v1::RunState::running)
-            return error_response(
-                403, "what an instructor does is told when the run is over; before, it needs the right to rehearse");
-    }
+    if (auto refusal = hidden(context, reader, run)) return std::move(*refusal);
     const auto page = ListPage::of(query, rows_page);
     if (!page) return error_response(400, page.error());
     return answer_rows(
         {reader, run, query}, reader.interventions(run, {page->after, page->limit, page->order}),
-        {"interventions", {"fault", "device_fault", "system_fault", "computer_reset", "station_outage", "note"}});
+        {"interventions",
+         {"fault", "device_fault", "system_fault", "computer_reset", "station_outage", "note", "skipped"}});
+}
+
+HttpResponse plan(const AnswerContext& context, archive::Reader& reader, archive::RunId run, const QueryText&) {
+    if (auto refusal = hidden(context, reader, run)) return std::move(*refusal);
+    return answer(plan_state(reader, run, context.dictionary, context.plans));
 }
 
 std::optional<double> number_in(std::string_view text) {
@@ -482,7 +493,9 @@ HttpResponse score(const AnswerContext& context, archive::Reader& reader, archiv
         return error_response(400, fmt::format("run {} has no score: it is no rehearsal that has finished", run.value));
     auto report = whole_report(reader, run);
     if (!report) return error_response(400, report.error());
-    return answer(rehearsal_score(reader, std::move(*report), context.dictionary));
+    const auto rubric = context.plans.rubric();
+    if (!rubric) return error_response(400, "no score without a rubric: " + rubric.error().message);
+    return answer(rehearsal_score(reader, std::move(*report), context.dictionary, *rubric));
 }
 
 HttpResponse recording(const AnswerContext&, archive::Reader& reader, archive::RunId run, const QueryText&) {
@@ -558,6 +571,7 @@ const std::array questions{
     RunRoute{"alarms", {"state", "after", "limit", "order", "format"}, list_formats, alarms},
     RunRoute{"notes", {"text", "after", "limit", "order", "format"}, list_formats, notes},
     RunRoute{"interventions", {"after", "limit", "order", "format"}, list_formats, interventions},
+    RunRoute{"plan", {}, {}, plan},
     RunRoute{"preconditions", {"command", "at"}, {}, preconditions},
     RunRoute{"timepoints", {"at", "recorded", "command", "arguments", "format"}, list_formats, timepoints},
     RunRoute{"explanations",

@@ -13,8 +13,9 @@ namespace aeolis::server {
 /// What an answer may need besides the archive.
 struct AnswerContext {
     const dictionary::Dictionary& dictionary;
+    const instruction::PlanLibrary& plans;
     std::optional<Ert> now;  ///< only of the current run
-    bool instructor;         ///< the operator may rehearse
+    bool instructor;         ///< the operator may instruct
     /// Of body_parts.hpp, for the client who asks.
     std::function<decltype(HttpResponse::next_part)(ReadPart)> in_parts;
 };

@@ -194,6 +194,20 @@ Result<v1::InterventionList> Reader::interventions(RunId run, const Intervention
     }
 }
 
+Result<v1::InstructorPlan> Reader::instructor_plan(RunId run) {
+    auto rows = state_->query("SELECT request FROM requests WHERE run = ? AND cycle = 0 ORDER BY position");
+    if (!rows) return rows.error();
+    auto& row = **rows;
+    row.bind(1, std::int64_t{run.value});
+    for (;;) {
+        auto found = row.step();
+        if (!found) return found.error();
+        if (!*found) return v1::InstructorPlan{};
+        const auto kept = kept_request(std::string(row.text(0)));
+        if (kept.has_plan()) return kept.plan();
+    }
+}
+
 Result<std::string> Reader::scenario_text(RunId run) {
     const auto instant = state_->instant(run);
     if (!instant) return instant.error();

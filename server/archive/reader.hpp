@@ -4,6 +4,7 @@
 #include "aeolis/v1/alarms.pb.h"
 #include "aeolis/v1/items.pb.h"
 #include "aeolis/v1/lists.pb.h"
+#include "aeolis/v1/plan.pb.h"
 #include "aeolis/v1/run.pb.h"
 #include "common/result.hpp"
 #include "dictionaries/dictionary.hpp"
@@ -298,6 +299,8 @@ class Reader {
     Result<v1::NoteList> notes(RunId run, const NoteQuery& query);
     /// The interventions of instructors in the run. Those being rehearsed see them only once the run is over.
     Result<v1::InterventionList> interventions(RunId run, const InterventionQuery& query = {});
+    /// The instructor's plan that the run began with; no text: it has none.
+    Result<v1::InstructorPlan> instructor_plan(RunId run);
     /// The timeline: planned times, firings as far as known, and predictions from what was known.
     Result<v1::TimepointList> timepoints(RunId run, const TimepointQuery& query = {});
     Result<v1::RecordingSummary> recording(RunId run);

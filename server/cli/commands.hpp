@@ -21,6 +21,7 @@ void add_ingest_command(CLI::App& program, int& exit_code);
 void add_modules_command(CLI::App& program, int& exit_code);
 void add_overlay_command(CLI::App& program, int& exit_code);
 void add_parameters_command(CLI::App& program, int& exit_code);
+void add_plan_command(CLI::App& program, int& exit_code);
 void add_procedure_command(CLI::App& program, int& exit_code);
 void add_reconstruct_command(CLI::App& program, int& exit_code);
 void add_rehearse_command(CLI::App& program, int& exit_code);

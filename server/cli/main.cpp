@@ -59,6 +59,7 @@ int main(int argc, char** argv) {
     add_dictionary_command(program, exit_code);
     add_parameters_command(program, exit_code);
     add_timeline_command(program, exit_code);
+    add_plan_command(program, exit_code);
     add_procedure_command(program, exit_code);
     add_tones_command(program, exit_code);
     add_export_command(program, exit_code);

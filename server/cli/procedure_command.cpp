@@ -3,14 +3,12 @@
 #include "server/cli/commands.hpp"
 #include "server/cli/options.hpp"
 #include "server/cli/shipped_paths.hpp"
+#include "server/instruction/plan_library.hpp"
 #include "server/procedures/procedure_reader.hpp"
 #include "server/procedures/procedure_text.hpp"
 
-#include <algorithm>
 #include <cstdio>
 #include <fmt/format.h>
-#include <fstream>
-#include <iterator>
 #include <memory>
 
 namespace aeolis::server {
@@ -26,28 +24,14 @@ struct ProcedureOptions {
     bool json = false;
 };
 
-/// The procedures of a folder, by name.
-Files procedures_in(const std::filesystem::path& folder) {
-    Files files;
-    std::error_code error;
-    for (const auto& entry : std::filesystem::directory_iterator{folder, error})
-        if (entry.path().extension() == ".yaml") files.push_back(entry.path());
-    std::ranges::sort(files);
-    return files;
-}
-
 /// Reads a file, whose watchdogs may name the procedures that lie beside it. An Error when there is no such file.
 Result<ReadProcedure> procedure_of(const std::filesystem::path& file, const dictionary::Dictionary& dictionary) {
-    std::ifstream stream{file, std::ios::binary};
-    if (!stream || std::filesystem::is_directory(file)) return Error{file.string() + ": cannot be read"};
-    // One octet more than may be read shows that there are too many.
-    std::string text(procedures::yaml_octets_max + 1, '\0');
-    stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-    text.resize(static_cast<std::size_t>(stream.gcount()));
+    const auto text = instruction::text_of_file(file);
+    if (!text) return text.error();
     std::vector<std::string> beside;
     const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path{"."};
-    for (const auto& other : procedures_in(folder)) beside.push_back(other.stem().string());
-    return procedures::read_procedure(text, file.string(), dictionary, beside);
+    for (const auto& other : instruction::yaml_files_in(folder)) beside.push_back(other.stem().string());
+    return procedures::read_procedure(*text, file.string(), dictionary, beside);
 }
 
 /// "1 step", "2 steps".
@@ -80,7 +64,8 @@ std::string procedure_json(const std::filesystem::path& file, const ReadProcedur
 int procedure_check(const ProcedureOptions& options) {
     const auto dictionary = loaded_dictionary(options.dictionary);
     if (!dictionary) return 1;
-    const Files files = options.files.empty() ? procedures_in(options.dictionary / "procedures") : options.files;
+    const Files files =
+        options.files.empty() ? instruction::yaml_files_in(options.dictionary / "procedures") : options.files;
     if (files.empty())
         return failed(fmt::format("procedure check: {} has no procedures", options.dictionary.string()), 2);
     bool sound = true;

@@ -8,6 +8,7 @@
 #include "server/cli/options.hpp"
 #include "server/cli/recorded_dictionary.hpp"
 #include "server/cli/shipped_paths.hpp"
+#include "server/instruction/plan_library.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -113,12 +114,18 @@ int print_explanations(archive::Reader& reader, archive::RunId run) {
 }
 
 Result<void> print_score(archive::Reader& reader, const v1::AsFlownReport& report,
-                         const dictionary::Dictionary& dictionary) {
-    const auto score = rehearsal_score(reader, report, dictionary);
+                         const dictionary::Dictionary& dictionary, const std::filesystem::path& folder) {
+    const auto rubric = instruction::PlanLibrary{folder, dictionary}.rubric();
+    if (!rubric) return Error{"no score without a rubric: " + rubric.error().message};
+    const auto score = rehearsal_score(reader, report, dictionary, *rubric);
     if (!score) return score.error();
     fmt::print("\nScore {:.0f} of 100\n", score->sum());
-    for (const auto& term : score->terms())
-        fmt::print("  {:<10} {:>4.1f} of {:>2.0f}  {}\n", term.name(), term.points(), term.worth(), term.why());
+    for (const auto& term : score->terms()) {
+        fmt::print("  {:<13} {:>4.1f} of {:>4.1f}  {}\n", term.name(), term.points(), term.worth(), term.why());
+        for (const auto& point : term.judged())
+            fmt::print("    {:>3.0f} %  {:>9}  {}: {}\n", 100.0 * point.share(), from_entry(point.e_s()),
+                       point.expected(), point.evidence());
+    }
     return {};
 }
 
@@ -158,7 +165,7 @@ int report(const ReportOptions& options) {
         }
     print_notes(*report);
     if (!has_score(run)) return 0;
-    const auto scored = print_score(*reader, *report, recorded->dictionary);
+    const auto scored = print_score(*reader, *report, recorded->dictionary, options.of.shared.dictionary);
     return scored ? 0 : failed(scored.error().message);
 }
 

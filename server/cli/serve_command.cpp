@@ -239,6 +239,7 @@ int serve(const ServeOptions& options) {
                                         .archive = options.archive,
                                         .scenarios = options.shared.scenarios,
                                         .web = options.web,
+                                        .dictionary = options.shared.dictionary,
                                         .other = followed.model.get(),
                                         .raw_octets_kept = options.keep_raw_mb << 20U,
                                         .plan_flights = options.plan_flights,

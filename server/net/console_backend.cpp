@@ -45,7 +45,8 @@ Result<void> check_reach(const ConsoleBackend::Settings& settings) {
 
 ConsoleBackend::ConsoleBackend(Settings settings, const dictionary::Dictionary& dictionary)
     : settings_(std::move(settings)), dictionary_(dictionary), clock_watch_(settings_.clocks),
-      timeline_check_(dictionary), scenarios_(settings_.scenarios), console_(settings_.web), predictions_(dictionary) {}
+      timeline_check_(dictionary), scenarios_(settings_.scenarios), plans_(settings_.dictionary, dictionary),
+      console_(settings_.web), predictions_(dictionary) {}
 
 Result<std::unique_ptr<ConsoleBackend>> ConsoleBackend::open(Settings settings,
                                                              const dictionary::Dictionary& dictionary) {
@@ -97,7 +98,7 @@ Result<std::unique_ptr<ConsoleBackend>> ConsoleBackend::open(Settings settings,
         [self, post](const std::string& fault) { post([self, fault] { self->hub_->archive_fault(fault); }); });
     backend->pipeline_->on_audited([self](const archive::AuditHead& head) { self->keep_audit_head(head); });
     backend->rehearsals_ = std::make_unique<RehearsalManager>(
-        backend->scenarios_, dictionary, *backend->pipeline_, post,
+        backend->scenarios_, backend->plans_, dictionary, *backend->pipeline_, post,
         [self](const v1::StartRehearsal& request, const auto& done) {
             const bool taken =
                 self->queries_->ask([request, done](archive::Reader& reader) { done(again_of(request, reader)); });
@@ -125,10 +126,10 @@ Result<std::unique_ptr<ConsoleBackend>> ConsoleBackend::open(Settings settings,
             });
         });
     backend->api_ = std::make_unique<Api>(Api::Parts{
-        dictionary, backend->scenarios_, *backend->queries_, *backend->rehearsals_, backend->predictions_,
-        *backend->campaigns_, backend->forecasts_, *backend->hub_, *backend->pipeline_, backend->console_,
-        *backend->access_, backend->server_->secure(), [self] { return self->server_->connections(); },
-        backend->clock_watch_,
+        dictionary, backend->scenarios_, backend->plans_, *backend->queries_, *backend->rehearsals_,
+        backend->predictions_, *backend->campaigns_, backend->forecasts_, *backend->hub_, *backend->pipeline_,
+        backend->console_, *backend->access_, backend->server_->secure(),
+        [self] { return self->server_->connections(); }, backend->clock_watch_,
         chosen.publish_to.url.empty() && chosen.follow_by.url.empty() ? std::function<Replication()>{}
                                                                       : [self] { return self->replication(); },
         backend->follows_,
@@ -226,7 +227,7 @@ StreamSession::Client ConsoleBackend::stream_client(const Credentials& credentia
             done(result);
         };
         if (const auto right = allowed(who, Right::rehearse); !right) return noted(right);
-        if (const auto right = may_start(who, dictionary_, control.start()); !right) return noted(right);
+        if (const auto right = may_control(who, dictionary_, control); !right) return noted(right);
         const bool starts = control.action_case() == v1::RehearsalControl::kStart;
         const auto now = rehearsals_->control(control, [noted](const Result<v1::RunState>& began) {
             noted(began ? Result<void>{} : Result<void>{began.error()});

@@ -33,6 +33,7 @@ class ConsoleBackend {
         WebServer::Settings web_server{};
         std::filesystem::path accounts{};  ///< empty: no accounts, possible on loopback only
         std::filesystem::path archive{}, scenarios{}, web{};
+        std::filesystem::path dictionary{};  ///< its folder, for the instructors' plans and the rubric; empty: none
         /// The mission of the dictionary, which must outlive this. Null: our own mission.
         const telemetry::OtherMission* other = nullptr;
         ReadClocks clocks = read_clocks;
@@ -95,6 +96,7 @@ class ConsoleBackend {
     ClockWatch clock_watch_;
     TimelineCheck timeline_check_;
     ScenarioLibrary scenarios_;
+    instruction::PlanLibrary plans_;
     StaticFiles console_;
     std::unique_ptr<Access> access_;
     std::unique_ptr<StreamHub> hub_;

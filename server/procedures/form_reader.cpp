@@ -13,6 +13,14 @@ namespace {
 
 using Kind = YamlNode::Kind;
 
+constexpr std::size_t id_characters_max = 40;  ///< chosen: it stands in a column of the print
+
+bool is_id(std::string_view text) {
+    return !text.empty() && text.size() <= id_characters_max && text.front() >= 'a' && text.front() <= 'z' &&
+           std::ranges::all_of(text,
+                               [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; });
+}
+
 constexpr std::array wheres{EntryTime::Where::vehicle, EntryTime::Where::sent, EntryTime::Where::received};
 
 std::string_view kind_name(Kind kind) {
@@ -132,6 +140,48 @@ std::span<const YamlNode> FormReader::list(const YamlNode* node, std::string_vie
     if (node->items.size() > most)
         add(node->items[most].mark, fmt::format("{} has {} entries, more than {}", what, node->items.size(), most));
     return std::span{node->items}.first(std::min(node->items.size(), most));
+}
+
+std::string FormReader::id(const YamlNode& node, std::string_view what, std::span<const std::string_view> reserved) {
+    const std::string text = words(node, what);
+    if (text.empty()) return text;
+    if (!is_id(text))
+        add(node.mark, fmt::format("{} '{}' must be of lower-case letters, digits and underscores, {} at most, and "
+                                   "begin with a letter",
+                                   what, text, id_characters_max));
+    else if (std::ranges::find(reserved, text) != reserved.end())
+        add(node.mark, fmt::format("{} '{}' has a meaning of its own as a target", what, text));
+    if (const auto [before, is_new] = ids_.try_emplace(text, node.mark); !is_new)
+        add(node.mark, fmt::format("{} '{}' is that of line {}", what, text, before->second.line));
+    return text;
+}
+
+std::string FormReader::id_of_file(const YamlNode& root, std::string_view what) {
+    const std::string text = words(root, what, fmt::format("'{}'", what));
+    if (text.empty()) return text;
+    std::string_view stem = file_;
+    if (const auto slash = stem.rfind('/'); slash != std::string_view::npos) stem.remove_prefix(slash + 1);
+    const auto ending = stem.rfind('.');
+    const Mark mark = root.member(what)->mark;
+    if (ending != std::string_view::npos && text != stem.substr(0, ending))
+        add(mark, fmt::format("{} '{}' is in a file of another name: '{}'", what, text, stem.substr(0, ending)));
+    else if (!is_id(text))
+        add(mark, fmt::format("{} '{}' must be of lower-case letters, digits and underscores, {} at most, and begin "
+                              "with a letter",
+                              what, text, id_characters_max));
+    return text;
+}
+
+std::vector<TextFinding> FormReader::all_findings() {
+    std::ranges::stable_sort(findings_, [](const TextFinding& a, const TextFinding& b) {
+        return std::pair{a.mark.line, a.mark.column} < std::pair{b.mark.line, b.mark.column};
+    });
+    if (findings_.size() > findings_max) {
+        const auto more = findings_.size() - findings_max;
+        findings_.resize(findings_max);
+        add(findings_.back().mark, fmt::format("{} more faults follow", more));
+    }
+    return std::move(findings_);
 }
 
 }  // namespace aeolis::server::procedures

@@ -5,6 +5,7 @@
 #include "server/procedures/procedure.hpp"
 
 #include <fmt/format.h>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -21,6 +22,8 @@ std::string unknown_name(std::string_view name, std::string_view what, const All
     return like.empty() ? fmt::format("'{}' is no {}", name, what)
                         : fmt::format("'{}' is no {}; the nearest name is '{}'", name, what, like);
 }
+
+inline constexpr std::size_t findings_max = 100;  ///< of one file; more are a file of another kind
 
 /// Reads the words of a form: texts, numbers, days, positions, times. What is wrong becomes a finding with its place,
 /// and reading goes on.
@@ -49,9 +52,18 @@ class FormReader {
     std::optional<EntryTime> entry_time(const YamlNode& node);
     /// The items of a list, at most `most`.
     std::span<const YamlNode> list(const YamlNode* node, std::string_view what, std::size_t most);
+    /// An id, which stands once in the text; `reserved` have another meaning.
+    std::string id(const YamlNode& node, std::string_view what, std::span<const std::string_view> reserved = {});
+    /// The document's id: the name of its file, without folder and ending. Of a text that is in no file, any.
+    std::string id_of_file(const YamlNode& root, std::string_view what);
+    /// What was found, in the order of the text, findings_max at most.
+    std::vector<TextFinding> all_findings();
 
     const std::string& file_;
     std::vector<TextFinding> findings_;
+
+  private:
+    std::map<std::string, Mark> ids_;
 };
 
 }  // namespace aeolis::server::procedures

@@ -17,21 +17,8 @@ namespace {
 
 using Kind = YamlNode::Kind;
 
-constexpr std::size_t id_characters_max = 40;  ///< chosen: it stands in a column of the print
 constexpr std::array reserved{std::string_view{"confirmation"}, std::string_view{"end"}};
 constexpr unsigned revision_max = 9'999;
-
-bool is_id(std::string_view text) {
-    return !text.empty() && text.size() <= id_characters_max && text.front() >= 'a' && text.front() <= 'z' &&
-           std::ranges::all_of(text,
-                               [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; });
-}
-
-/// The file's name without folder and ending.
-std::string_view stem(std::string_view file) {
-    if (const auto slash = file.rfind('/'); slash != std::string_view::npos) file.remove_prefix(slash + 1);
-    return file.substr(0, file.rfind('.'));
-}
 
 class ProcedureReader : public TermReader {
   public:
@@ -42,7 +29,6 @@ class ProcedureReader : public TermReader {
     ReadProcedure read(std::string_view text);
 
   private:
-    std::string id(const YamlNode& node, std::string_view what);
     void head(const YamlNode& root, Procedure& procedure);
     std::vector<Choice> choices(const YamlNode& node);
     Target target(const YamlNode& node);
@@ -55,24 +41,9 @@ class ProcedureReader : public TermReader {
     void check_order(const Procedure& procedure);
 
     std::span<const std::string> procedures_;
-    std::map<std::string, Mark> ids_;  ///< of steps and watchdogs
     /// Targets by name, until all steps are read: a number in Target::step is an index here.
     std::vector<std::pair<std::string, Mark>> named_;
 };
-
-std::string ProcedureReader::id(const YamlNode& node, std::string_view what) {
-    const std::string text = words(node, what);
-    if (text.empty()) return text;
-    if (!is_id(text))
-        add(node.mark, fmt::format("{} '{}' must be of lower-case letters, digits and underscores, {} at most, and "
-                                   "begin with a letter",
-                                   what, text, id_characters_max));
-    else if (std::ranges::find(reserved, text) != reserved.end())
-        add(node.mark, fmt::format("{} '{}' has a meaning of its own as a target", what, text));
-    if (const auto [before, is_new] = ids_.try_emplace(text, node.mark); !is_new)
-        add(node.mark, fmt::format("{} '{}' is that of line {}", what, text, before->second.line));
-    return text;
-}
 
 Target ProcedureReader::target(const YamlNode& node) {
     const std::string text = words(node, "a target");
@@ -128,7 +99,7 @@ Step ProcedureReader::step(const YamlNode& node, bool of_body) {
     if (!table(node, of_body ? "a step" : "a step outside the main body", must,
                std::span{may}.first(of_body ? may.size() : outside_body)))
         return read;
-    if (const YamlNode* name = node.member("step")) read.id = id(*name, "step");
+    if (const YamlNode* name = node.member("step")) read.id = id(*name, "step", reserved);
     read.who = position_of(node, "who");
     read.text = words(node, "do", "the text of a step");
     read.conditions = conditions(node.member("check"));
@@ -171,7 +142,7 @@ Watchdog ProcedureReader::watchdog(const YamlNode& node) {
     Watchdog read;
     read.mark = node.mark;
     if (!table(node, "a watchdog", must, may)) return read;
-    if (const YamlNode* name = node.member("watchdog")) read.id = id(*name, "watchdog");
+    if (const YamlNode* name = node.member("watchdog")) read.id = id(*name, "watchdog", reserved);
     read.who = position_of(node, "who");
     read.text = words(node, "do", "the text of a watchdog");
     read.conditions = conditions(node.member("when"));
@@ -235,15 +206,7 @@ void ProcedureReader::check_order(const Procedure& procedure) {
 }
 
 void ProcedureReader::head(const YamlNode& root, Procedure& procedure) {
-    procedure.id = words(root, "procedure", "'procedure'");
-    if (!procedure.id.empty() && procedure.id != stem(file_))
-        add(root.member("procedure")->mark,
-            fmt::format("procedure '{}' is in a file of another name: '{}'", procedure.id, stem(file_)));
-    else if (!procedure.id.empty() && !is_id(procedure.id))
-        add(root.member("procedure")->mark,
-            fmt::format("procedure '{}' must be of lower-case letters, digits and underscores, {} at most, and begin "
-                        "with a letter",
-                        procedure.id, id_characters_max));
+    procedure.id = id_of_file(root, "procedure");
     procedure.title = words(root, "title", "'title'");
     procedure.purpose = words(root, "purpose", "'purpose'");
     procedure.begin_when = words(root, "begin_when", "'begin_when'");
@@ -291,15 +254,7 @@ ReadProcedure ProcedureReader::read(std::string_view text) {
         check_order(procedure);
     }
     if (findings_.empty()) return {std::move(procedure), {}};
-    std::ranges::stable_sort(findings_, [](const TextFinding& a, const TextFinding& b) {
-        return std::pair{a.mark.line, a.mark.column} < std::pair{b.mark.line, b.mark.column};
-    });
-    if (findings_.size() > findings_max) {
-        const auto more = findings_.size() - findings_max;
-        findings_.resize(findings_max);
-        add(findings_.back().mark, fmt::format("{} more faults follow", more));
-    }
-    return {std::nullopt, std::move(findings_)};
+    return {std::nullopt, all_findings()};
 }
 
 }  // namespace

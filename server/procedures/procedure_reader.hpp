@@ -2,7 +2,7 @@
 #pragma once
 
 #include "dictionaries/dictionary.hpp"
-#include "server/procedures/procedure.hpp"
+#include "server/procedures/form_reader.hpp"
 
 #include <optional>
 #include <span>
@@ -11,8 +11,6 @@
 #include <vector>
 
 namespace aeolis::server::procedures {
-
-inline constexpr std::size_t findings_max = 100;  ///< of one file; more are a file of another kind
 
 /// A procedure, or every rule that its text breaks, in the order of the text.
 struct ReadProcedure {

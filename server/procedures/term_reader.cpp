@@ -75,7 +75,8 @@ bool TermReader::unit_is_right(const YamlNode& node, const dictionary::Channel& 
 std::optional<Condition> TermReader::channel_condition(const YamlNode& node) {
     static constexpr std::array must{std::string_view{"channel"}, std::string_view{"is"}, std::string_view{"value"}};
     static constexpr std::array may{std::string_view{"unit"}, std::string_view{"for_s"}, std::string_view{"since"}};
-    if (!table(node, "a condition on a channel", must, may)) return std::nullopt;
+    if (!table(node, "a condition on a channel", must, std::span{may}.first(in_steps_ ? may.size() : may.size() - 1)))
+        return std::nullopt;
     ChannelCondition read;
     bool whole = true;
 
@@ -144,10 +145,13 @@ std::optional<Since> TermReader::since_of(const YamlNode& node) {
 
 std::optional<Condition> TermReader::event_condition(const YamlNode& node) {
     static constexpr std::array must{std::string_view{"event"}, std::string_view{"since"}};
-    if (!table(node, "a condition on an event", must, {})) return std::nullopt;
+    if (!table(node, "a condition on an event", std::span{must}.first(in_steps_ ? must.size() : must.size() - 1), {}))
+        return std::nullopt;
     EventCondition read;
     bool whole = true;
-    if (const auto since = since_of(node))
+    if (!in_steps_)
+        read.since = Since::run;
+    else if (const auto since = since_of(node))
         read.since = *since;
     else
         whole = false;

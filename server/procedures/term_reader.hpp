@@ -23,6 +23,7 @@ class TermReader : public FormReader {
     std::optional<PreparedCommand> command(const YamlNode& node);
 
     const dictionary::Dictionary& dictionary_;
+    bool in_steps_ = true;  ///< conditions may count from a step's or procedure's beginning, and those on events say so
 
   private:
     std::optional<Condition> condition(const YamlNode& node);

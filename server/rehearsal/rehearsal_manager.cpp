@@ -43,10 +43,10 @@ std::vector<v1::CommandRequest> timeline_changes(const simulation::Scenario& sce
 
 }  // namespace
 
-RehearsalManager::RehearsalManager(const ScenarioLibrary& scenarios, const dictionary::Dictionary& dictionary,
-                                   PipelineThread& pipeline, Post post, ReadAgain read_again,
-                                   TimelineQuestions timeline, Callbacks callbacks)
-    : scenarios_(scenarios), dictionary_(dictionary), pipeline_(pipeline), post_(std::move(post)),
+RehearsalManager::RehearsalManager(const ScenarioLibrary& scenarios, const instruction::PlanLibrary& plans,
+                                   const dictionary::Dictionary& dictionary, PipelineThread& pipeline, Post post,
+                                   ReadAgain read_again, TimelineQuestions timeline, Callbacks callbacks)
+    : scenarios_(scenarios), plans_(plans), dictionary_(dictionary), pipeline_(pipeline), post_(std::move(post)),
       read_again_(std::move(read_again)), timeline_(std::move(timeline)), callbacks_(std::move(callbacks)) {}
 
 RehearsalManager::~RehearsalManager() = default;
@@ -62,6 +62,9 @@ void RehearsalManager::start(const v1::StartRehearsal& request, Began began) {
     if (const auto busy = refusal_while_going_on(); !busy) return began(busy.error());
     const auto pace = checked_pace(request.pace());
     if (!pace) return began(pace.error());
+    const bool planned = !request.plan().empty() || !request.inline_plan().empty();
+    if (planned && (request.continue_run() != 0 || request.has_fork()))
+        return began(Error{"plan: a run that is continued or forked goes on by the plan that it has"});
     if (request.continue_run() != 0 || request.has_fork())
         return read_again_(request,
                            [this, began = std::move(began), pace = *pace](Result<RehearsalRunner::Again> again) {
@@ -75,7 +78,30 @@ void RehearsalManager::start(const v1::StartRehearsal& request, Began began) {
     auto scenario = request.has_inline_scenario() ? scenario_from_message(request.inline_scenario())
                                                   : scenarios_.scenario(request.scenario());
     if (!scenario) return began(scenario.error());
-    start({std::move(*scenario), request.seed(), *pace}, std::move(began));
+    auto plan = plan_of(request, *scenario);
+    if (!plan) return began(plan.error());
+    start({std::move(*scenario), request.seed(), *pace, std::move(*plan)}, std::move(began));
+}
+
+Result<std::optional<PlannedInjects>> RehearsalManager::plan_of(const v1::StartRehearsal& request,
+                                                                const simulation::Scenario& scenario) const {
+    if (request.plan().empty() && request.inline_plan().empty()) return std::optional<PlannedInjects>{};
+    if (!request.plan().empty() && !request.inline_plan().empty())
+        return Error{"plan and inline_plan: one of them, not both"};
+    v1::InstructorPlan given;
+    given.set_name("inline_plan");
+    given.set_text(request.inline_plan());
+    if (!request.plan().empty()) {
+        auto shipped = plans_.plan(request.plan());
+        if (!shipped) return shipped.error();
+        given = std::move(*shipped);
+    }
+    auto read = instruction::read_plan(given.text(), given.name(), dictionary_, [&](const v1::FaultInjection& fault) {
+        const auto possible = fault_from_message(fault, scenario);
+        return possible ? Result<void>{} : Result<void>{possible.error()};
+    });
+    if (!read.plan) return Error{read.findings_text()};
+    return std::optional{PlannedInjects{std::move(given), std::move(*read.plan)}};
 }
 
 void RehearsalManager::start(Flight flight, Began began) {
@@ -100,7 +126,7 @@ void RehearsalManager::fly(Flight flight, Began began) {
     runner_.reset();
     phase_ = Phase::beginning;
     runner_ = std::make_unique<RehearsalRunner>(std::move(flight.scenario), flight.seed, flight.pace, dictionary_,
-                                                pipeline_, callbacks_for(std::move(began)));
+                                                pipeline_, callbacks_for(std::move(began)), std::move(flight.plan));
 }
 
 void RehearsalManager::fly_again(RehearsalRunner::Again again, double pace, Began began) {
@@ -182,7 +208,12 @@ Result<void> RehearsalManager::order_of_run(const v1::RehearsalControl& control)
         if (auto checked = check_note(control.note().text(), control.note().by()); !checked) return checked;
         *intervene.intervention.mutable_note() = control.note();
         return runner_->order(std::move(intervene));
-    default: return Error{"the control says nothing: start, pause, pace, stop, inject or note is wanted"};
+    case v1::RehearsalControl::kPlan:
+        if (control.plan().inject().empty()) return Error{"plan: the inject's id is wanted"};
+        intervene.intervention.set_inject(control.plan().inject());
+        if (control.plan().skip()) intervene.intervention.set_skipped(true);
+        return runner_->order(std::move(intervene));
+    default: return Error{"the control says nothing: start, pause, pace, stop, inject, note or plan is wanted"};
     }
 }
 

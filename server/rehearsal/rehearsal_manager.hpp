@@ -5,6 +5,7 @@
 #include "aeolis/v1/stream.pb.h"
 #include "common/result.hpp"
 #include "dictionaries/dictionary.hpp"
+#include "server/instruction/plan_library.hpp"
 #include "server/rehearsal/rehearsal_runner.hpp"
 #include "server/rehearsal/timeline_check.hpp"
 #include "server/scenario/scenario_library.hpp"
@@ -63,9 +64,9 @@ class RehearsalManager {
         bool director = false;  ///< may send hazardous commands
     };
 
-    RehearsalManager(const ScenarioLibrary& scenarios, const dictionary::Dictionary& dictionary,
-                     PipelineThread& pipeline, Post post, ReadAgain read_again, TimelineQuestions timeline,
-                     Callbacks callbacks);
+    RehearsalManager(const ScenarioLibrary& scenarios, const instruction::PlanLibrary& plans,
+                     const dictionary::Dictionary& dictionary, PipelineThread& pipeline, Post post,
+                     ReadAgain read_again, TimelineQuestions timeline, Callbacks callbacks);
     ~RehearsalManager();
 
     /// Starts a rehearsal. Fails at once when one is in progress or the scenario is unknown or impossible. Calls
@@ -75,6 +76,7 @@ class RehearsalManager {
         simulation::Scenario scenario;
         std::uint64_t seed = 1;
         double pace = 1.0;
+        std::optional<PlannedInjects> plan{};  ///< an instructor's
     };
     void start(Flight flight, Began began);
     Result<void> control(const v1::RehearsalControl& control, Began began);
@@ -112,6 +114,9 @@ class RehearsalManager {
     void fly_again(RehearsalRunner::Again again, double pace, Began began);
     RehearsalRunner::Callbacks callbacks_for(Began began);
     void begun(const Result<v1::RunState>& state, const Began& began);
+    /// The plan that the request names or brings; none: neither.
+    Result<std::optional<PlannedInjects>> plan_of(const v1::StartRehearsal& request,
+                                                  const simulation::Scenario& scenario) const;
     Result<void> order_of_run(const v1::RehearsalControl& control);
     /// The refusal of an order for a run that is not in progress.
     std::string not_going_on(std::uint64_t run) const;
@@ -133,6 +138,7 @@ class RehearsalManager {
     void tell(const TimelineCheck::Reanalysis& reanalysis);
 
     const ScenarioLibrary& scenarios_;
+    const instruction::PlanLibrary& plans_;
     const dictionary::Dictionary& dictionary_;
     PipelineThread& pipeline_;
     Post post_;

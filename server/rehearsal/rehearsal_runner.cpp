@@ -6,6 +6,7 @@
 #include "server/archive/items.hpp"
 #include "server/archive/kept_request.hpp"
 #include "server/base/wall_clock.hpp"
+#include "server/instruction/plan_reader.hpp"
 #include "server/rehearsal/command_messages.hpp"
 #include "server/rehearsal/kept_requests.hpp"
 #include "server/rehearsal/rehearsal.hpp"
@@ -42,6 +43,11 @@ bool last_counts(const RunOrder& order) {
            std::holds_alternative<StopRun>(order);
 }
 
+/// Whether a fork repeats a request of its parent; at the instant itself a fork of the parent, whose seed is its by then.
+bool comes_before(const archive::ForkPoint& fork, const archive::RequestRecord& request) {
+    return request.cycle < fork.cycle || (request.cycle == fork.cycle && is_fork(request));
+}
+
 }  // namespace
 
 void SendCommands::refuse(const std::string& reason) const {
@@ -56,9 +62,9 @@ void SendCommands::refuse(const std::string& reason) const {
 
 RehearsalRunner::RehearsalRunner(simulation::Scenario scenario, std::uint64_t seed, double pace,
                                  const dictionary::Dictionary& dictionary, PipelineThread& pipeline,
-                                 Callbacks callbacks)
+                                 Callbacks callbacks, std::optional<PlannedInjects> plan)
     : scenario_(std::move(scenario)), seed_(seed), dictionary_(dictionary), pipeline_(pipeline),
-      callbacks_(std::move(callbacks)) {
+      callbacks_(std::move(callbacks)), plan_(std::move(plan)) {
     pace_ = std::clamp(pace, 0.0, pace_max);
     scenario_.radio.tones_from_samples = from_samples(scenario_.radio, pace_);
     const bool accompanied = pace_ > 0.0 && pace_ <= companion_pace_max;
@@ -119,6 +125,11 @@ std::string RehearsalRunner::refusal_of(const RunOrder& order) const {
         if (const auto fault = fault_from_message(intervention.fault(), scenario_); !fault)
             return fault.error().message;
     if (over_ || stop_) return over_reason;
+    if (!intervention.inject().empty()) {
+        if (!conductor_) return fmt::format("plan: the run has none, and so no inject '{}'", intervention.inject());
+        const auto waiting = conductor_->waiting(intervention.inject());
+        return waiting ? "" : waiting.error().message;
+    }
     if (intervention.has_fault() && faults_taken_ == faults_max)
         return fmt::format("{} faults have been injected into this run: no more", faults_max);
     if (intervention.has_note() && notes_taken_ == notes_max)
@@ -169,7 +180,9 @@ void RehearsalRunner::run() {
     start_ = rehearsal.run_start(pace_);
     if (callbacks_.companion) companion_ = callbacks_.companion(rehearsal);
     if (again_) start_.forked_from = again_->fork ? again_->fork : again_->run.forked_from;
-    if (const auto begun = begin(rehearsal)) {
+    auto begun = follow_plan(rehearsal);
+    if (begun) begun = begin(rehearsal);
+    if (begun) {
         callbacks_.on_begun(state(rehearsal));
         if (companion_) companion_->go_live();
         fly(rehearsal);
@@ -193,7 +206,50 @@ Result<void> RehearsalRunner::begin(Rehearsal& rehearsal) {
     if (!run) return run.error();
     run_id_ = *run;
     spdlog::info("run {} begins: {} seed {} pace {}", run_id_.value, scenario_.name, seed_, pace_);
+    if (plan_) {
+        v1::KeptRequest kept;
+        *kept.mutable_plan() = plan_->given;
+        keep(rehearsal, kept);
+    }
     return {};
+}
+
+Result<void> RehearsalRunner::follow_plan(const Rehearsal& rehearsal) {
+    auto plan = plan_ ? std::optional{plan_->plan} : std::nullopt;
+    if (again_)
+        for (const auto& record : again_->run.requests) {
+            if (again_->fork && !comes_before(*again_->fork, record)) continue;
+            const auto kept = archive::kept_request(record.request);
+            if (kept.has_intervention()) settled_in_archive_.insert(kept.intervention().inject());
+            if (!kept.has_plan()) continue;
+            auto read = instruction::read_plan(kept.plan().text(), kept.plan().name(), dictionary_, {});
+            if (!read.plan)
+                return Error{fmt::format("run {}: its plan breaks the rules of this version:\n{}",
+                                         again_->run.run.value, read.findings_text())};
+            plan = std::move(*read.plan);
+        }
+    if (!plan) return {};
+    const Scet entry = rehearsal.landing().correlation().scet_of(scenario_.entry_sclk);
+    const std::scoped_lock lock{mutex_};
+    conductor_.emplace(std::move(*plan), dictionary_,
+                       procedures::EntryPrediction{entry, rehearsal.landing().light_time_s()});
+    return {};
+}
+
+void RehearsalRunner::conduct(Rehearsal& rehearsal) {
+    std::vector<const instruction::Inject*> due;
+    {
+        const std::scoped_lock lock{mutex_};
+        if (!conductor_) return;
+        due = conductor_->pass(rehearsal.landing().report().recorded, rehearsal.landing().ert_now());
+    }
+    for (const auto* inject : due) {
+        if (settled_in_archive_.contains(inject->id)) continue;  // flown again: it comes with the run's own requests
+        InterveneRun order;
+        order.intervention.set_inject(inject->id);
+        *order.intervention.mutable_fault() = inject->fault;
+        carry_out(rehearsal, order);
+    }
 }
 
 bool RehearsalRunner::stop_wanted() const {
@@ -240,9 +296,7 @@ Result<void> RehearsalRunner::catch_up(Rehearsal& rehearsal) {
 Result<void> RehearsalRunner::fork(Rehearsal& rehearsal) {
     auto& parent = again_->run;
     const auto& at = *again_->fork;
-    std::erase_if(parent.requests, [&](const archive::RequestRecord& each) {
-        return each.cycle > at.cycle || (each.cycle == at.cycle && !is_fork(each));  // its seed is the run's by then
-    });
+    std::erase_if(parent.requests, [&](const archive::RequestRecord& each) { return !comes_before(at, each); });
     const auto run = pipeline_.begin(start_, parent.run);
     if (!run) return run.error();
     run_id_ = *run;
@@ -382,7 +436,14 @@ void RehearsalRunner::carry_out(Rehearsal& /*rehearsal*/, const LeaveRun& /*orde
 }
 
 void RehearsalRunner::carry_out(Rehearsal& rehearsal, const InterveneRun& order) {
-    const auto& intervention = order.intervention;
+    auto intervention = order.intervention;
+    if (const bool by_hand = !intervention.has_fault(); by_hand && !intervention.inject().empty()) {
+        const std::scoped_lock lock{mutex_};
+        const auto waiting = conductor_->waiting(intervention.inject());
+        if (!waiting) return;  // it became due meanwhile
+        if (!intervention.skipped()) *intervention.mutable_fault() = (*waiting)->fault;
+        conductor_->settle(intervention.inject());
+    }
     if (intervention.has_fault()) {
         if (const auto injected = rehearsal.inject(intervention.fault()); !injected) {  // already checked
             spdlog::error("run {}: fault not injected: {}", run_id_.value, injected.error().message);
@@ -453,12 +514,21 @@ void RehearsalRunner::carry_out(Rehearsal& rehearsal, const commands::TimelineVe
 
 void RehearsalRunner::keep(const Rehearsal& rehearsal, const v1::KeptRequest& request) {
     delivery_.entries.emplace_back(archive::RequestRecord{rehearsal.cycles(), archive::kept_text(request)});
-    if (companion_) companion_->take(rehearsal.cycles(), request);
+    tell_companion(rehearsal, request);
+}
+
+void RehearsalRunner::tell_companion(const Rehearsal& rehearsal, const v1::KeptRequest& request) {
+    const bool hidden = request.has_intervention() || request.has_plan();
+    if (companion_ && !hidden) companion_->take(rehearsal.cycles(), request);
 }
 
 bool RehearsalRunner::repeat(Rehearsal& rehearsal, const std::string& request) {
     const auto kept = archive::kept_request(request);
-    if (companion_) companion_->take(rehearsal.cycles(), kept);
+    tell_companion(rehearsal, kept);
+    if (kept.has_intervention()) {
+        const std::scoped_lock lock{mutex_};
+        if (conductor_) conductor_->settle(kept.intervention().inject());
+    }
     return server::repeat(rehearsal, kept, [&](const v1::CommandReply& reply) {
         const std::scoped_lock lock{mutex_};
         client_ids_.accepted(kept.command(), reply.command());
@@ -471,6 +541,7 @@ void RehearsalRunner::step(Rehearsal& rehearsal) {
     delivery_.add(std::move(received));
     delivery_.pass(rehearsal.cycles(), rehearsal.landing().ert_now());
     take_stages(rehearsal);
+    conduct(rehearsal);
 }
 
 void RehearsalRunner::accompany(const telemetry::Received& received, const Rehearsal& rehearsal) {

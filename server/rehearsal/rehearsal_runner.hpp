@@ -2,11 +2,13 @@
 #pragma once
 
 #include "aeolis/v1/kept.pb.h"
+#include "aeolis/v1/plan.pb.h"
 #include "aeolis/v1/run.pb.h"
 #include "aeolis/v1/scenario.pb.h"
 #include "common/result.hpp"
 #include "dictionaries/dictionary.hpp"
 #include "server/archive/records.hpp"
+#include "server/instruction/plan_conductor.hpp"
 #include "server/pipeline/pipeline_thread.hpp"
 #include "server/rehearsal/client_ids.hpp"
 #include "server/rehearsal/companion.hpp"
@@ -21,6 +23,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <thread>
 #include <vector>
@@ -28,6 +31,12 @@
 namespace aeolis::server {
 
 class Rehearsal;
+
+/// An instructor's plan for a run: as it was given, and as it was read.
+struct PlannedInjects {
+    v1::InstructorPlan given;
+    instruction::InjectPlan plan;
+};
 
 /// Flies one rehearsal in its own thread at the ordered pace and archives all that reaches Earth.
 ///
@@ -45,6 +54,8 @@ class Rehearsal;
 ///          When an item differs, the run stays interrupted and on_begun gets the Error (decision 0021)
 /// Fork     another run is flown again up to an instant, in the same way, and stored as a new one; from there on it goes
 ///          on by itself. When an item differs, the new run ends there and on_begun gets the Error (decision 0060)
+/// Plan     an instructor's injects are carried out at the cycles at which they are due, and kept as faults by hand are:
+///          a run that is flown again has each once. Ground's own flight is told of none
 /// Faults   a run that cannot begin in the archive is not flown: on_begun gets the Error
 class RehearsalRunner {
   public:
@@ -76,7 +87,8 @@ class RehearsalRunner {
 
     /// Dictionary and pipeline must outlive this.
     RehearsalRunner(simulation::Scenario scenario, std::uint64_t seed, double pace,
-                    const dictionary::Dictionary& dictionary, PipelineThread& pipeline, Callbacks callbacks);
+                    const dictionary::Dictionary& dictionary, PipelineThread& pipeline, Callbacks callbacks,
+                    std::optional<PlannedInjects> plan = {});
     /// A run that begins as another: one that was cut off, to be continued, or with `fork` a new one.
     struct Again {
         archive::FlownRun run;
@@ -105,6 +117,10 @@ class RehearsalRunner {
     using Clock = std::chrono::steady_clock;
 
     void run();
+    /// Begins to follow the plan that the run was given, or that it was stored with.
+    Result<void> follow_plan(const Rehearsal& rehearsal);
+    /// Carries out the injects that are due after the last cycle.
+    void conduct(Rehearsal& rehearsal);
     Result<void> begin(Rehearsal& rehearsal);
     /// Flies again the part of the run that is in the archive.
     Result<void> catch_up(Rehearsal& rehearsal);
@@ -127,6 +143,8 @@ class RehearsalRunner {
     void carry_out(Rehearsal& rehearsal, const commands::TimelineVerdict& verdict);
     /// Keeps the request in the archive, with the cycle before which it was carried out.
     void keep(const Rehearsal& rehearsal, const v1::KeptRequest& request);
+    /// Tells ground's own flight of a request, unless it is an instructor's.
+    void tell_companion(const Rehearsal& rehearsal, const v1::KeptRequest& request);
     /// Why the order is refused; empty: accepted. Call with mutex_ held.
     std::string refusal_of(const RunOrder& order) const;
     std::size_t commands_waiting() const;  ///< call with mutex_ held
@@ -161,11 +179,14 @@ class RehearsalRunner {
 
     mutable std::mutex mutex_;
     std::condition_variable changed_;
-    std::vector<RunOrder> orders_;                    ///< under mutex_; for the next cycle
-    bool stop_ = false, over_ = false;                ///< under mutex_
-    std::size_t faults_taken_ = 0, notes_taken_ = 0;  ///< under mutex_; since this runner began
-    std::map<std::uint64_t, std::string> names_;      ///< under mutex_; of the run's commands, by number
-    ClientIds client_ids_;                            ///< under mutex_
+    std::vector<RunOrder> orders_;                         ///< under mutex_; for the next cycle
+    bool stop_ = false, over_ = false;                     ///< under mutex_
+    std::size_t faults_taken_ = 0, notes_taken_ = 0;       ///< under mutex_; since this runner began
+    std::map<std::uint64_t, std::string> names_;           ///< under mutex_; of the run's commands, by number
+    ClientIds client_ids_;                                 ///< under mutex_
+    std::optional<PlannedInjects> plan_;                   ///< of a run that is new
+    std::optional<instruction::PlanConductor> conductor_;  ///< under mutex_; none: the run has no plan
+    std::set<std::string> settled_in_archive_;             ///< injects that a run flown again repeats from its requests
 
     std::atomic<std::size_t> queued_{0}, at_uplink_{0};
 

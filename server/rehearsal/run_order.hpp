@@ -24,8 +24,8 @@ struct StopRun {};
 /// The server ends: nothing more is flown, and the run stays as after a crash, so that it can be continued.
 struct LeaveRun {};
 
-/// A fault to inject, or an instructor's note, which neither vehicle nor ground receives. Stored with the cycle at
-/// which it was received.
+/// A fault to inject, or an instructor's note, which neither vehicle nor ground receives; or, with neither, an inject of
+/// the run's plan by its id: now, or `skipped`. Stored with the cycle at which it was received.
 struct InterveneRun {
     v1::Intervention intervention;
 };

@@ -26,7 +26,7 @@ struct Guarded {
     Guarded() {
         as["nobody"];
         take_over("administrator", server.first_password());
-        for (const char* role : {"observer", "controller", "director"}) {
+        for (const char* role : {"observer", "controller", "director", "instructor"}) {
             const auto body =
                 std::string{R"({"user":")"} + role + R"(","role":")" + role + R"(","password":"given by another"})";
             REQUIRE(ask("administrator", "POST", "/api/v1/users", body).status == 201);
@@ -95,6 +95,7 @@ const Row rows[] = {
     {"PUT", "/api/v1/layouts/{layout}", "observer", "/api/v1/layouts/mine", "{", 400},
     {"DELETE", "/api/v1/layouts/{layout}", "observer", "/api/v1/layouts/none", "", 404},
     {"GET", "/api/v1/scenarios", "observer", "/api/v1/scenarios", "", 200},
+    {"GET", "/api/v1/plans", "instructor", "/api/v1/plans", "", 200},
     {"GET", "/api/v1/dictionary", "observer", "/api/v1/dictionary", "", 200},
     {"GET", "/api/v1/openapi.yaml", "nobody", "/api/v1/openapi.yaml", "", 200},
     {"GET", "/api/v1/schema", "nobody", "/api/v1/schema", "", 200},
@@ -113,7 +114,7 @@ const Row rows[] = {
     {"GET", "/healthz", "nobody", "/healthz", "", 200},
     {"GET", "/metrics", "observer", "/metrics", "", 200},
 };
-const char* const ladder[] = {"nobody", "observer", "controller", "director", "administrator"};
+const char* const ladder[] = {"nobody", "observer", "controller", "director", "instructor", "administrator"};
 
 }  // namespace
 
@@ -169,8 +170,9 @@ const Message messages[] = {
     {R"({"control":{"pause":true}})", "director", "no rehearsal goes on"},
     {R"({"control":{"pace":2}})", "director", "no rehearsal goes on"},
     {R"({"control":{"stop":true}})", "director", "no rehearsal goes on"},
-    {R"({"control":{"inject":{"computer_reset":true}}})", "director", "no rehearsal goes on"},
-    {R"({"control":{"note":{"text":"seen"}}})", "director", "no rehearsal goes on"},
+    {R"({"control":{"inject":{"computer_reset":true}}})", "instructor", "no rehearsal goes on"},
+    {R"({"control":{"note":{"text":"seen"}}})", "instructor", "no rehearsal goes on"},
+    {R"({"control":{"plan":{"inject":"line_down"}}})", "instructor", "no rehearsal goes on"},
     {R"({"command":{"action":"hold","number":1}})", "director", "no run goes on"},
     {R"({"command":{"action":"cancel","number":1}})", "director", "no run goes on"},
     {R"({"command":{"action":"release","number":1}})", "director", "no run goes on"},
@@ -446,14 +448,15 @@ TEST_CASE("who has not logged in sends no long body, and fills no audit", "[acce
     CHECK(count() == before);
 }
 
-TEST_CASE("what an instructor does is told to those who may rehearse, to all others when the run is over, and bears "
+TEST_CASE("what an instructor does is told to those who may instruct, to all others when the run is over, and bears "
           "the name of who is logged in",
           "[access][http][notes]") {
     Guarded guarded;
     REQUIRE(guarded.ask("director", "POST", "/api/v1/rehearsals", R"({"scenario":"nominal","pace":1})").status == 201);
     const char* const note = R"({"note":{"text":"do they see it?","by":"someone else"}})";
     CHECK(guarded.ask("controller", "POST", "/api/v1/rehearsals/current", note).status == 403);
-    REQUIRE(guarded.ask("director", "POST", "/api/v1/rehearsals/current", note).status == 202);
+    CHECK(guarded.ask("director", "POST", "/api/v1/rehearsals/current", note).status == 403);
+    REQUIRE(guarded.ask("instructor", "POST", "/api/v1/rehearsals/current", note).status == 202);
     const char* const question = "/api/v1/runs/latest/interventions";
     const auto told_once = [&](const char* role, unsigned status, const char* says) {
         WebReply reply;
@@ -465,7 +468,8 @@ TEST_CASE("what an instructor does is told to those who may rehearse, to all oth
         CHECK(reply.status == status);
         CHECK_THAT(reply.body, Catch::Contains(says) && !Catch::Contains("someone else"));
     };
-    told_once("director", 200, R"("by":"director")");
+    told_once("instructor", 200, R"("by":"instructor")");
+    told_once("director", 403, "told when the run is over");
     told_once("controller", 403, "told when the run is over");
     REQUIRE(guarded.ask("director", "POST", "/api/v1/rehearsals/current", R"({"stop":true})").status == 202);
     told_once("observer", 200, "do they see it?");
@@ -481,17 +485,17 @@ TEST_CASE("what an instructor does is told to those who may rehearse, to all oth
     guarded.server.restart();
     guarded.as["observer"] = guarded.log_in("observer", Guarded::password);
     CHECK_THAT(guarded.ask("observer", "GET", "/api/v1/runs/latest").body, Catch::Contains(R"("state":"interrupted")"));
-    told_once("observer", 200, "do they see it?");
+    told_once("observer", 403, "told when the run is over");  // it can be continued
 }
 
-TEST_CASE("a forecast from the truth does not exist for who may not rehearse, and one by telemetry is everybody's",
+TEST_CASE("a forecast from the truth does not exist for who may not instruct, and one by telemetry is everybody's",
           "[access][forecast][R58][idle]") {
     Guarded guarded;
     REQUIRE(guarded.ask("director", "POST", "/api/v1/rehearsals", R"({"scenario":"nominal_auto","pace":0})").status ==
             201);
     const auto wait = [&](const std::string& path, const std::string& words) {
         for (int i = 0; i < 3'000; ++i) {
-            if (guarded.ask("director", "GET", path).body.find(words) != std::string::npos) return true;
+            if (guarded.ask("instructor", "GET", path).body.find(words) != std::string::npos) return true;
             std::this_thread::sleep_for(std::chrono::milliseconds{20});
         }
         return false;
@@ -504,10 +508,11 @@ TEST_CASE("a forecast from the truth does not exist for who may not rehearse, an
                guarded.ask(who, "POST", all + "/1/cancel", "{}").body;
     };
     const auto before = seen("controller");
-    REQUIRE(guarded.ask("director", "POST", all, truth).status == 201);
-    REQUIRE(guarded.ask("director", "POST", all, truth).status == 201);
+    REQUIRE(guarded.ask("instructor", "POST", all, truth).status == 201);
+    REQUIRE(guarded.ask("instructor", "POST", all, truth).status == 201);
     CHECK(seen("controller") == before);
     CHECK(guarded.ask("controller", "POST", all, truth).status == 403);
+    CHECK(guarded.ask("director", "POST", all, truth).status == 403);
     CHECK(guarded.ask("observer", "POST", all, telemetry).status == 403);
 
     const auto asked = guarded.ask("controller", "POST", all, telemetry);
@@ -518,7 +523,7 @@ TEST_CASE("a forecast from the truth does not exist for who may not rehearse, an
     CHECK_THAT(guarded.ask("observer", "GET", all + "/2").body, Catch::Contains(R"("from":"telemetry")"));
     CHECK_THAT(guarded.ask("observer", "GET", all).body,
                Catch::Contains(R"("forecast":"2")") && !Catch::Contains(R"("forecast":"1")"));
-    CHECK_THAT(guarded.ask("director", "GET", all).body, Catch::Contains(R"("forecast":"3")"));
+    CHECK_THAT(guarded.ask("instructor", "GET", all).body, Catch::Contains(R"("forecast":"3")"));
 }
 
 TEST_CASE("a stream is closed when its log-in ends", "[access][stream]") {

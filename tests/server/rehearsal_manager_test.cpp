@@ -58,6 +58,7 @@ TEST_CASE(
     test::TemporaryFolder folder;
     Posted network;
     const ScenarioLibrary scenarios{test::shipped_scenarios};
+    const instruction::PlanLibrary plans{{}, tests::shipped_dictionary()};
     PipelineThread pipeline{std::move(archive::Archive::open(folder / "a.db")).value(), tests::shipped_dictionary(),
                             PipelineThread::Faults::hold, [](const auto&) {}};
     std::function<void(Result<std::string>)> analysed;  // the answer of the analysis, which takes its time
@@ -68,6 +69,7 @@ TEST_CASE(
     };
     questions.reanalyse = [](archive::RunId, const auto& done) { done(TimelineCheck::Reanalysis{}); };
     RehearsalManager rehearsals{scenarios,
+                                plans,
                                 tests::shipped_dictionary(),
                                 pipeline,
                                 [&](auto action) { network.post(std::move(action)); },

@@ -5,11 +5,14 @@
 #include "tests/server/small_mission.hpp"
 #include "tests/support/catch.hpp"
 
+#include <fmt/format.h>
+
 namespace server_rehearsal_score_test {
 
 using namespace aeolis;
 using namespace aeolis::test;
 using server::ScoreFacts;
+namespace instruction = server::instruction;
 
 namespace {
 
@@ -65,8 +68,58 @@ void add_command(ScoreFacts& facts, double e_s, const std::vector<Said>& stages)
         item.mutable_command_stage()->set_evidence(said.evidence);
     }
 }
-v1::Score score(const ScoreFacts& facts) {
-    return server::score_of(facts, small_dictionary());
+using instruction::Expectation;
+using instruction::Rubric;
+using instruction::Skill;
+
+/// Half of 100 points are the landing's, ten each skill's. A radar's fault shows by the speed.
+Rubric rubric() {
+    Rubric rubric;
+    rubric.title = "of a test";
+    rubric.landing_worth = 50.0;
+    rubric.worth.fill(10.0);
+    rubric.alarm_within_s = 30.0;
+    rubric.alarm_until_s = 300.0;
+    rubric.present_s = 600.0;
+    auto& radar = rubric.faults.emplace_back();
+    radar.kind = v1::FaultInjection::kDeviceFault;
+    radar.handling.signs = {"speed_mps"};
+    radar.handling.team = {{Skill::detection, Expectation::Act::acknowledge, {"speed_mps"}, 20.0},
+                           {Skill::diagnosis, Expectation::Act::note, {"radar"}, 60.0},
+                           {Skill::action, Expectation::Act::no_command, {}, 60.0}};
+    auto& station = rubric.faults.emplace_back();
+    station.kind = v1::FaultInjection::kStationOutage;
+    station.handling.team = {{Skill::diagnosis, Expectation::Act::note, {"station"}, 60.0}};
+    return rubric;
+}
+v1::Score score(const ScoreFacts& facts, const Rubric& by = rubric()) {
+    return server::score_of(facts, small_dictionary(), by);
+}
+void add_radar_fault(ScoreFacts& facts, double e_s, const char* inject = "") {
+    auto& intervention = facts.interventions.emplace_back();
+    intervention.set_e_s(e_s);
+    intervention.set_inject(inject);
+    auto& fault = *intervention.mutable_fault()->mutable_device_fault();
+    fault.set_device(v1::DEVICE_RADAR);
+    fault.set_unit(v1::REDUNDANT_UNIT_A);
+    fault.set_kind(v1::DEVICE_FAULT_KIND_SILENT);
+    fault.set_duration_s(10.0);
+}
+void add_note(ScoreFacts& facts, double e_s, const char* text) {
+    auto note = item_at(e_s);
+    note.mutable_note()->set_text(text);
+    note.mutable_note()->set_by("Bob");
+    *facts.report.add_notes() = note;
+}
+/// "acknowledges … within 20 s: 100", a line each.
+std::vector<std::string> points(const v1::Score& score, std::string_view of) {
+    std::vector<std::string> texts;
+    for (const auto& term : score.terms())
+        if (term.name() == of)
+            for (const auto& point : term.judged())
+                texts.push_back(
+                    fmt::format("{}: {:.0f}, {}", point.expected(), 100.0 * point.share(), point.evidence()));
+    return texts;
 }
 const v1::ScoreTerm* term(const v1::Score& score, std::string_view name) {
     for (const auto& each : score.terms())
@@ -84,25 +137,105 @@ using Stage = v1::CommandStage;
 
 }  // namespace
 
-TEST_CASE("the score leaves out what there was nothing of, and is a share of what its terms are worth", "[score]") {
+TEST_CASE("with nobody there a landing earns its own share and no more, whether or not anything was expected",
+          "[score][R59]") {
     const auto bare = score(ended());
     REQUIRE(bare.terms_size() == 1);
     CHECK(bare.terms(0).name() == "landing");
-    CHECK(bare.sum() == 100.0);
+    CHECK(bare.sum() == 50.0);
     CHECK(score(ended(v1::Landing::lost)).sum() == 0.0);
     auto facts = ended();
     facts.alarms = {limit(10.0, v1::Alarm::watch)};  // never acknowledged
-    CHECK(score(facts).sum() == 80.0);
+    CHECK(score(facts).sum() == 50.0);
     CHECK(texts(score(facts), "alarm") == Texts{"speed mps > 90 m/s; never acknowledged"});
+    add_radar_fault(facts, 8.0);
+    CHECK(score(facts).sum() == 50.0);  // restraint, too, is of somebody
+    CHECK(points(score(facts), "action") ==
+          Texts{"sends no command for 60 s: 0, nothing was sent, and nothing shows that anybody was there"});
 }
 
-TEST_CASE("a reaction counts in full within half a minute, and from five minutes on not at all", "[score]") {
-    CHECK(server::promptness(0.0) == 1.0);
-    CHECK(server::promptness(30.0) == 1.0);
-    CHECK(server::promptness(165.0) == 0.5);
-    CHECK(server::promptness(300.0) == 0.0);
-    CHECK(server::promptness(900.0) == 0.0);
-    CHECK(server::promptness({}) == 0.0);
+TEST_CASE("a team that does in time what is expected earns all, and what comes late earns less", "[score][R59]") {
+    auto facts = ended();
+    add_radar_fault(facts, 8.0);
+    facts.alarms = {limit(10.0, v1::Alarm::watch), acknowledged(20.0)};
+    add_note(facts, 30.0, "The RADAR is gone");
+    const auto good = score(facts);
+    CHECK(good.sum() == Approx(100.0));
+    CHECK(texts(good, "fault") ==
+          Texts{"radar A silent, for 10 s; 2 s later: speed_mps; first act 10 s later: Ann: acknowledge speed_mps"});
+    CHECK(points(good, "detection") ==
+          Texts{"acknowledges speed_mps within 20 s: 100, acknowledged 10 s later by Ann"});
+    CHECK(points(good, "diagnosis") ==
+          Texts{"writes of “radar” in the log within 60 s: 100, 20 s later: Bob wrote “The RADAR is gone”"});
+    facts.alarms = {limit(10.0, v1::Alarm::watch), acknowledged(40.0)};  // 30 s: half-way from 20 to 40
+    CHECK(score(facts).sum() == Approx(100.0 - 50.0 / 3.0 / 2.0));
+    facts.alarms = {limit(10.0, v1::Alarm::watch), acknowledged(50.0)};  // twice the limit
+    CHECK(score(facts).sum() == Approx(100.0 - 50.0 / 3.0));
+}
+
+TEST_CASE("acknowledging another alarm earns nothing of a fault, and a command where none is due costs its point",
+          "[score][R59]") {
+    auto facts = ended();
+    add_radar_fault(facts, 8.0);
+    auto silent = item_at(9.0);
+    silent.mutable_staleness()->set_packet("Navigation");
+    silent.mutable_staleness()->set_missing(true);
+    facts.alarms = {silent, limit(10.0, v1::Alarm::watch), acknowledged(12.0, "Navigation")};
+    CHECK(points(score(facts), "detection") ==
+          Texts{"acknowledges navigation silent: 100, acknowledged 3 s later by Ann",
+                "acknowledges speed_mps within 20 s: 0, never acknowledged"});
+    CHECK(points(score(facts), "action") ==
+          Texts{"sends no command for 60 s: 100, nothing was sent; somebody was there: Ann: acknowledge Navigation"});
+    add_command(facts, 40.0,
+                {{Stage::queued, Stage::ok},
+                 {Stage::authorised, Stage::ok, "no arming needed, by Cem"},
+                 {Stage::executed, Stage::ok}});
+    CHECK(points(score(facts), "action") == Texts{"sends no command for 60 s: 0, 30 s later: Cem: sent NO_OP"});
+}
+
+TEST_CASE("what showed nowhere is not judged, and a plan's own words come before the rubric's", "[score][R59]") {
+    auto facts = ended();
+    add_radar_fault(facts, 8.0, "mine");
+    CHECK(points(score(facts), "diagnosis").empty());
+    CHECK(texts(score(facts), "fault") == Texts{"radar A silent, for 10 s; nothing that was received showed it"});
+    instruction::Inject inject;
+    inject.id = "mine";
+    inject.handling.signs = {"MORTAR"};
+    inject.handling.team = {{Skill::action, Expectation::Act::command, {"NO_OP"}, 30.0}};
+    facts.plan.emplace().injects.push_back(inject);
+    auto heard = item_at(12.0);
+    heard.mutable_event()->set_name("MORTAR");
+    heard.mutable_event()->set_source(v1::SOURCE_RECORDED);
+    facts.heard = {heard};
+    CHECK(points(score(facts), "action").empty());  // only the recording has it
+    facts.heard[0].mutable_event()->set_source(v1::SOURCE_REALTIME);
+    CHECK(points(score(facts), "action") == Texts{"sends NO_OP within 30 s: 0, nobody did"});
+    add_command(facts, 20.0,
+                {{Stage::queued, Stage::ok},
+                 {Stage::authorised, Stage::ok, "no arming needed, by Cem"},
+                 {Stage::executed, Stage::ok}});
+    const auto judged = score(facts);
+    CHECK(points(judged, "action") == Texts{"sends NO_OP within 30 s: 100, 8 s later: Cem: sent NO_OP"});
+    REQUIRE(term(judged, "action") != nullptr);
+    CHECK(term(judged, "action")->judged(0).inject() == "mine");
+    CHECK(judged.sum() == Approx(100.0));
+}
+
+TEST_CASE("calls are judged from when what they are of was heard live, and those of what nobody heard are not",
+          "[score][R59]") {
+    auto by = rubric();
+    by.calls = {{"MORTAR", {"parachute"}, 30.0}, {"TOUCHDOWN", {"landed"}, 30.0}};
+    auto facts = ended();
+    auto heard = item_at(12.0);
+    heard.mutable_tone()->set_name("MORTAR");
+    heard.mutable_tone()->set_tone(41);
+    facts.heard = {heard};
+    add_note(facts, 5.0, "the parachute will come");  // before
+    CHECK(points(score(facts, by), "communication") ==
+          Texts{"after mortar: writes of “parachute” in the log within 30 s: 0, nobody did"});
+    add_note(facts, 20.0, "Parachute!");
+    CHECK(points(score(facts, by), "communication") ==
+          Texts{"after mortar: writes of “parachute” in the log within 30 s: 100, 8 s later: Bob wrote “Parachute!”"});
 }
 
 TEST_CASE("an alarm counts to its first acknowledgement: growing worse is not another one, coming again is",
@@ -128,30 +261,6 @@ TEST_CASE("an alarm counts to its first acknowledgement: growing worse is not an
     CHECK(texts(score(facts), "alarm") == Texts{"navigation silent; acknowledged 3 s later by Ann"});
 }
 
-TEST_CASE("the reaction to a fault is the first thing that people did from then on, never what they did before",
-          "[score]") {
-    auto facts = ended();
-    auto note = item_at(100.0);
-    note.mutable_note()->set_text("radar?");
-    note.mutable_note()->set_by("Bob");
-    *facts.report.add_notes() = note;
-    add_command(facts, 5.0, {{Stage::queued, Stage::ok}, {Stage::authorised, Stage::ok, "no arming needed, by Ann"}});
-    for (const double e_s : {10.0, 110.0}) {
-        auto& intervention = facts.interventions.emplace_back();
-        intervention.set_e_s(e_s);
-        auto& fault = *intervention.mutable_fault()->mutable_device_fault();
-        fault.set_device(v1::DEVICE_RADAR);
-        fault.set_unit(v1::REDUNDANT_UNIT_A);
-        fault.set_kind(v1::DEVICE_FAULT_KIND_SILENT);
-        fault.set_duration_s(10.0);
-    }
-    const auto judged = score(facts);
-    CHECK(texts(judged, "fault") == Texts{"radar A silent, for 10 s; 90 s later: Bob wrote “radar?”",
-                                          "radar A silent, for 10 s; nobody did anything afterwards"});
-    REQUIRE(term(judged, "faults") != nullptr);
-    CHECK(term(judged, "faults")->points() == Approx(20.0 * server::promptness(90.0) / 2.0));
-}
-
 TEST_CASE("an outage of the station is felt at once, not a light time later", "[score]") {
     auto facts = ended();
     auto& intervention = facts.interventions.emplace_back();
@@ -159,10 +268,10 @@ TEST_CASE("an outage of the station is felt at once, not a light time later", "[
     intervention.mutable_fault()->mutable_station_outage()->set_duration_s(20.0);
     facts.alarms = {acknowledged(15.0)};
     CHECK(texts(score(facts), "fault") ==
-          Texts{"the ground station brings nothing, for 20 s; 5 s later: Ann: acknowledge speed_mps"});
+          Texts{"the ground station brings nothing, for 20 s; first act 5 s later: Ann: acknowledge speed_mps"});
 }
 
-TEST_CASE("the score judges commands of people that were not cancelled, and not those of the scenario's script",
+TEST_CASE("a command of a person that failed costs a point of action, never one that was cancelled or the script's",
           "[score]") {
     auto facts = ended();
     const Said done{Stage::executed, Stage::ok};
@@ -190,9 +299,7 @@ TEST_CASE("the score judges commands of people that were not cancelled, and not 
                 "2 commands of the scenario's script: 1 carried out, 1 failed, 0 cancelled, 0 not known"});
     CHECK(texts(judged, "command") == Texts{"3 NO_OP: asked for by the scenario's script, refused: late",
                                             "5 NO_OP, by Bob: no answer", "6 NO_OP, by Cem: cancelled by Bob"});
-    REQUIRE(term(judged, "commands") != nullptr);
-    CHECK(term(judged, "commands")->points() == Approx(10.0 * 2.0 / 3.0));
-    CHECK(term(judged, "commands")->why() == "2 of 3 of people were carried out");
+    CHECK(points(judged, "action") == Texts{"sends NO_OP so that it is carried out: 0, no answer"});
 }
 
 TEST_CASE("the score says where the landing was, which timepoints are not known, and its rule", "[score]") {
@@ -206,8 +313,8 @@ TEST_CASE("the score says where the landing was, which timepoints are not known,
                                             "4.7 km from the target, by the vehicle's own navigation"});
     CHECK(judged.facts(0).e_s() == 431.0);
     CHECK(texts(judged, "timepoints") == Texts{"1 of 2 are known to have fired; not: cut cables"});
-    CHECK(term(judged, "timepoints")->points() == 10.0);
-    CHECK(judged.rule().find("Within 30 s a reaction counts in full, after 300 s not at all.") != std::string::npos);
+    CHECK_THAT(judged.rule(),
+               Catch::Contains("rubric “of a test”") && Catch::Contains("within 30 s and not at all after 300 s"));
 }
 
 }  // namespace server_rehearsal_score_test

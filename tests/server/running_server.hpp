@@ -97,6 +97,7 @@ class RunningServer {
         settings.accounts = accounts_;
         settings.archive = archive();
         settings.scenarios = shipped_scenarios;
+        settings.dictionary = AEOLIS_SOURCE_DIR "/dictionaries/msl";
         settings.web = folder_ / "web";
         settings.clocks = clocks_;
         auto backend = server::ConsoleBackend::open(settings, tests::shipped_dictionary());

@@ -153,15 +153,16 @@ const std::vector<std::pair<std::string, std::vector<std::string>>>& layers() {
         {"links", {"pipeline"}},
         {"scenario", {"base"}},
         {"procedures", {}},
+        {"instruction", {"procedures"}},
         {"venue", {"base"}},
-        {"rehearsal", {"pipeline", "scenario", "venue"}},
+        {"rehearsal", {"pipeline", "scenario", "venue", "instruction"}},
         {"campaign", {"rehearsal"}},
         {"shadow", {"campaign"}},
         {"cluster", {"campaign", "access"}},
         {"tones", {"rehearsal"}},
         {"api", {"shadow", "access"}},
         {"net", {"api", "links", "cluster"}},
-        {"cli", {"net", "cluster", "tones", "reconstruction", "procedures", "shadow"}},
+        {"cli", {"net", "cluster", "tones", "reconstruction", "instruction", "shadow"}},
     };
     return order;
 }

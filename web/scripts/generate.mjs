@@ -4,7 +4,7 @@
 import { execFileSync } from 'node:child_process';
 import { mkdirSync } from 'node:fs';
 
-const FILES = ['items', 'prediction', 'run', 'scenario', 'stream'].map((name) => `aeolis/v1/${name}.proto`);
+const FILES = ['items', 'plan', 'prediction', 'run', 'scenario', 'stream'].map((name) => `aeolis/v1/${name}.proto`);
 
 mkdirSync('src/gen', { recursive: true });
 execFileSync(

@@ -79,7 +79,7 @@ test('with accounts every route answers each role, by cookie and by token, as it
   const { wrong: unknown, statuses: nobody } = await callAll({}, once);
   assert.deepEqual(unknown, []);
   assert.equal(nobody.get('get /api/v1/runs'), 401);
-  for (const role of ['observer', 'controller', 'director', 'administrator']) {
+  for (const role of ['observer', 'controller', 'director', 'instructor', 'administrator']) {
     const user = `one_${role}`;
     assert.equal(
       (await ask('POST', '/users', { user, role, password: 'given by another' }, administrator)).status,

@@ -111,10 +111,18 @@ export function mayRehearse(now: Access = access.value): boolean {
   return now.state !== 'in' || now.rights.includes('rehearse');
 }
 
-/** Why the session may not do `what`, for lack of the right to rehearse. Empty if nothing is known. */
-export function whyNotRehearse(what: string, now: Access = access.value): string {
-  return now.state === 'in' ? `${what} need the right to rehearse; you are ${now.user}, ${now.role}` : '';
+/** Whether the user may inject faults, follow a plan of injects and read what is hidden from the others. */
+export function mayInstruct(now: Access = access.value): boolean {
+  return now.state !== 'in' || now.rights.includes('instruct');
 }
+
+/** Why the session may not do `what`, for lack of a right. Empty if nothing is known. */
+const whyNot =
+  (right: string) =>
+  (what: string, now: Access = access.value) =>
+    now.state === 'in' ? `${what} need the right to ${right}; you are ${now.user}, ${now.role}` : '';
+export const whyNotRehearse = whyNot('rehearse');
+export const whyNotInstruct = whyNot('instruct');
 
 effect(() => {
   if (turnedAway.value > 0) turnAway();

@@ -8,7 +8,17 @@ import { useForTest } from '../run/session';
 import { takesCommands } from '../run/shown';
 import { aDictionary, aStore } from '../testing/fixtures';
 import { aServer } from '../testing/server';
-import { access, choosePassword, learnAccess, logIn, mayAct, problem } from './model';
+import {
+  access,
+  choosePassword,
+  learnAccess,
+  logIn,
+  mayAct,
+  mayInstruct,
+  mayRehearse,
+  problem,
+  whyNotInstruct,
+} from './model';
 import { ExpiredBar, LogIn } from './log_in';
 import { Who } from './view';
 
@@ -66,6 +76,17 @@ describe('access', () => {
     server.routes['GET /session'] = session('ann');
     await learnAccess();
     expect(takesCommands()).toBe(true);
+  });
+  it('of a director starts rehearsals and does not instruct; an instructor’s does both, and so does everybody’s without accounts', () => {
+    const may = (rights: string[]) => {
+      access.value = { state: 'in', user: 'dan', role: 'director', rights };
+      return [mayRehearse(), mayInstruct()];
+    };
+    expect(may(['watch', 'rehearse'])).toEqual([true, false]);
+    expect(whyNotInstruct('faults')).toBe('faults need the right to instruct; you are dan, director');
+    expect(may(['watch', 'rehearse', 'instruct'])).toEqual([true, true]);
+    access.value = { state: 'open' };
+    expect([mayRehearse(), mayInstruct(), whyNotInstruct('faults')]).toEqual([true, true, '']);
   });
   it('that ends in the middle of something says so in place, and what was under way is not sent again', async () => {
     server.routes['GET /session'] = session('ann');

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // An instructor's faults and notes. The other participants may read them after the end of the rehearsal.
 import { signal } from '@preact/signals';
-import { mayRehearse } from '../access/model';
+import { mayInstruct } from '../access/model';
 import { uplink } from '../commands/line';
 import { OCTETS } from '../notes/model';
 import { Refused, wordsFor } from '../run/api';
@@ -20,18 +20,25 @@ export interface Intervention {
   e_s: number; // at the vehicle
   fault?: Fault;
   note?: { text: string; by?: string };
+  skipped?: boolean; // the inject is left out
+  inject?: string; // of the run's plan: its id; empty: none of it
 }
 
 export const interventions = signal<{ run: number; all: Intervention[] } | undefined>(undefined);
-export const message = signalOfRun<{ good: boolean; text: string } | undefined>(undefined);
+/** What came of the last request; of an order to an inject with its id. */
+export const message = signalOfRun<{ good: boolean; text: string; inject?: string } | undefined>(undefined);
 export const busy = signal(false);
+
+export const messageWords = (): string =>
+  message.value ? `${message.value.good ? '●' : '✖'} ${message.value.text}` : '';
 
 export const ofRun = (run: Pick<RunStore, 'id'>): readonly Intervention[] =>
   interventions.value?.run === run.id ? interventions.value.all : [];
 /**
- * Whether the user may read them: during the run with the right to rehearse, after its end or interruption everybody.
+ * Whether the user may read them, and the plan: during the run with the right to instruct, after its end or
+ * interruption everybody.
  */
-const mayRead = (run: Pick<RunStore, 'going'>): boolean => !run.going || mayRehearse();
+export const mayRead = (run: Pick<RunStore, 'going'>): boolean => !run.going || mayInstruct();
 
 /** Asks for the interventions. Throws the server's words, since there is no score without them. */
 export async function askInterventions(run: RunStore): Promise<readonly Intervention[]> {
@@ -58,18 +65,18 @@ export async function refreshInterventions(): Promise<void> {
   }
 }
 
-/** Requests one intervention once; true if it was accepted. */
-async function intervene(what: object, done: string): Promise<boolean> {
+/** Requests one intervention once; true if it was accepted. `of`: what its message is about. */
+export async function intervene(what: object, done: string, of: { inject?: string } = {}): Promise<boolean> {
   if (busy.value) return false;
   busy.value = true;
   message.value = undefined;
   try {
     await change('/rehearsals/current', { ...what, run: store.value?.id ?? 0 });
-    message.value = { good: true, text: done };
+    message.value = { good: true, text: done, ...of };
     await refreshInterventions();
     return true;
   } catch (error) {
-    message.value = { good: false, text: wordsFor(error) };
+    message.value = { good: false, text: wordsFor(error), ...of };
     return false;
   } finally {
     busy.value = false;

@@ -12,10 +12,32 @@ import { InstructorPanel } from './instructor_panel';
 import { faultWords, injectionOf } from './faults';
 import { Review } from './review';
 import { interventions, message, ofRun, refreshInterventions } from './instructor';
+import { refreshPlan } from './plan';
+import type { Plan } from './plan';
 
 const server = aServer();
 const silent = {
   device_fault: { device: 'DEVICE_RADAR', unit: 'REDUNDANT_UNIT_B', kind: 'DEVICE_FAULT_KIND_SILENT', duration_s: 10 },
+};
+const PLAN: Plan = {
+  name: 'radar',
+  title: 'The radar goes',
+  purpose: 'Whether the room sees it.',
+  scenario: 'nominal',
+  injects: [
+    {
+      inject: 'a',
+      title: 'Radar B silent',
+      when: 'at E+0:12',
+      does: 'radar B silent, for 10 s',
+      shows: 'no new slant ranges',
+      team: ['say so on the loop', '<b>look</b>'],
+      state: 'done',
+      e_s: 12.25,
+    },
+    { inject: 'b', title: 'Reset', when: '', does: 'the prime computer', shows: '', team: [], state: 'waiting' },
+    { inject: 'c', title: 'Outage', when: 'on link', does: '', shows: '', team: ['x'], state: 'skipped', e_s: 14 },
+  ],
 };
 let page: HTMLElement;
 const shown = (name: string) => page.querySelector<HTMLElement>(`[data-testid="${name}"]`);
@@ -124,11 +146,93 @@ describe('the instructor’s panel', () => {
     expect([field.value, shown('instructor-message')?.textContent]).toEqual(['', '● kept for the review']);
     uplink.value = { ...uplink.value, controller: '' };
   });
-  it('is not there for who may not rehearse, and what was done is not asked for before the end', async () => {
+  it('has the plan in order, what became of each inject, and buttons for those that wait', async () => {
+    server.routes['GET /runs/1/plan'] = { json: PLAN };
+    await open();
+    expect(shown('plan')?.querySelector('h3')?.textContent).toBe('Plan: The radar goes');
+    expect(shown('plan')?.textContent).toContain('Whether the room sees it.');
+    expect(
+      [...page.querySelectorAll('.injects > li')].map((each) => each.querySelector('.inject-head')?.textContent),
+    ).toEqual([
+      '▲ done E+0:12.3 Radar B silent at E+0:12 ',
+      '▷ waiting Reset by hand nowskip',
+      '– skipped E+0:14.0 Outage on link ',
+    ]);
+    const first = page.querySelector('[data-inject="a"]');
+    expect([...first!.querySelectorAll('p')].map((each) => each.textContent)).toEqual([
+      'does radar B silent, for 10 s',
+      'shows no new slant ranges',
+    ]);
+    expect([...first!.querySelectorAll('details li')].map((each) => each.textContent)).toEqual([
+      'say so on the loop',
+      '<b>look</b>',
+    ]);
+    expect(first!.querySelector('details')?.open).toBe(false);
+    expect([...page.querySelectorAll('.injects button')].map((each) => each.getAttribute('aria-label'))).toEqual([
+      'now: Reset',
+      'skip: Reset',
+    ]);
+  });
+  it('orders an inject now or not at all, keeps the keyboard at it, and says what came of it', async () => {
+    server.routes['GET /runs/1/plan'] = { json: PLAN };
+    server.routes['POST /rehearsals/current'] = { json: {} };
+    await open();
+    act(() => shown('inject-now-b')?.click());
+    expect((document.activeElement as HTMLElement).dataset.inject).toBe('b');
+    await soon();
+    expect(shown('instructor-message')?.textContent).toBe('● “Reset” is injected with the next cycle');
+    server.routes['POST /rehearsals/current'] = { status: 409, json: { error: 'b waits no more: it is done' } };
+    act(() => shown('inject-skip-b')?.click());
+    await soon();
+    expect(shown('instructor-message')?.textContent).toBe('✖ b waits no more: it is done');
+    const said = () => [...page.querySelectorAll('[data-inject] p')].filter((each) => /^[●✖]/.test(each.textContent));
+    expect(said().map((each) => [each.closest('li')?.dataset.inject, each.textContent])).toEqual([
+      ['b', '✖ b waits no more: it is done'],
+    ]);
+    await send('instructor-note'); // without a word in it: what is said then is not about the inject
+    expect([shown('instructor-message')?.textContent, said()]).toEqual(['✖ there is nothing to write down', []]);
+    expect(server.asked.filter((each) => each.method === 'POST').map((each) => each.body)).toEqual([
+      { run: 1, plan: { inject: 'b' } },
+      { run: 1, plan: { inject: 'b', skip: true } },
+    ]);
+    expect(server.asked.at(-1)?.path).toBe('/runs/1/plan');
+  });
+  it('has no plan where the run has none, and names injects in the list of what was done', async () => {
+    server.routes['GET /runs/1/plan'] = { json: { name: '', title: '', purpose: '', scenario: '', injects: [] } };
+    await open();
+    expect(shown('plan')).toBe(null);
+    server.routes['GET /runs/1/plan'] = { json: PLAN };
+    server.routes['GET /runs/1/interventions'] = {
+      json: {
+        interventions: [
+          { e_s: 12.25, fault: silent, inject: 'a' },
+          { e_s: 14, skipped: true, inject: 'c' },
+        ],
+      },
+    };
+    await act(async () => {
+      await refreshPlan();
+      await refreshInterventions();
+    });
+    expect([...page.querySelectorAll('[data-testid="interventions"] li')].map((each) => each.textContent)).toEqual([
+      'E+0:12.3 ▲ radar B silent, for 10 s as planned: Radar B silent',
+      'E+0:14.0 – skipped: Outage',
+    ]);
+  });
+  it('is not there for a director, who is told of the right and not of a plan, and nothing is asked', async () => {
+    access.value = { state: 'in', user: 'dan', role: 'director', rights: ['watch', 'rehearse'] };
+    await open();
+    await refreshPlan();
+    expect([shown('instructor'), server.asked.length]).toEqual([null, 0]);
+    expect(page.textContent).toBe(
+      '□ faults and notes of a rehearsal need the right to instruct; you are dan, director',
+    );
+  });
+  it('is not there for who may not instruct, and what was done is not asked for before the end', async () => {
     access.value = { state: 'in', user: 'olga', role: 'observer', rights: ['watch'] };
     await open();
     await refreshInterventions();
-    expect([shown('instructor'), server.asked.length]).toEqual([null, 0]);
+    expect([page.textContent, server.asked.length]).toEqual(['', 0]);
     for (const state of ['finished', 'interrupted'] as const) {
       // a cut-off run is over as well
       interventions.value = undefined;
@@ -164,6 +268,7 @@ describe('the review', () => {
   it('has no score until the server gives one, says why, and asks again when it is opened again', async () => {
     server.routes['GET /runs/1/score'] = { status: 503, json: { error: 'too much waits' } };
     server.routes['GET /runs/1/interventions'] = { json: {} };
+    server.routes['GET /runs/1/plan'] = { json: PLAN };
     expect(await shownFor(aStore([], aRun({ state: 'finished', outcome: 'touchdown' })))).toBe('✖ too much waits');
     const asked = () => server.asked.filter((each) => each.path === '/runs/1/score').length;
     expect(asked()).toBe(1);

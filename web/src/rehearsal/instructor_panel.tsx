@@ -1,29 +1,38 @@
 // SPDX-License-Identifier: Apache-2.0
-// The instructor's panel of a running rehearsal: faults to inject, a line for notes, and the list so far. It is folded
-// away, since the people rehearsed may look at the same screen.
+// The instructor's panel of a running rehearsal: faults to inject, a line for notes, the plan, and the list so far. It
+// is folded away, since the people rehearsed may look at the same screen.
 import { signal } from '@preact/signals';
 import { useEffect } from 'preact/hooks';
-import { access, mayRehearse } from '../access/model';
+import { access, mayInstruct, mayRehearse, whyNotInstruct } from '../access/model';
 import { Signature } from '../commands/signature';
+import { STATUS } from '../design/status';
 import { runNow } from '../run/shown';
 import { fromEntry } from '../run/time';
 import { FaultForm, faultWords } from './faults';
-import { busy, message, ofRun, refreshInterventions, write } from './instructor';
+import { busy, messageWords, ofRun, refreshInterventions, write } from './instructor';
 import type { Intervention } from './instructor';
+import { planOf, refreshPlan, titleOf } from './plan';
+import type { Plan } from './plan';
+import { PlanView } from './plan_view';
 
 const AGAIN_MS = 3000; // chosen: interval of requests for the entries of another instructor, while it is open
 
 const open = signal(false);
 const text = signal('');
 
-export function InterventionList({ of }: { of: readonly Intervention[] }) {
+export function InterventionList({ of, plan }: { of: readonly Intervention[]; plan?: Plan | undefined }) {
   return (
     <ul class="interventions" data-testid="interventions">
-      {of.map(({ e_s, fault, note }, i) => (
+      {of.map(({ e_s, fault, note, skipped, inject }, i) => (
         <li key={i}>
           <time>{fromEntry(e_s, { tenths: true })}</time>{' '}
           {fault ? (
-            <>▲ {faultWords(fault)}</>
+            <>
+              ▲ {faultWords(fault)}
+              {inject && <span class="status-dim"> as planned: {titleOf(plan, inject)}</span>}
+            </>
+          ) : skipped ? (
+            <>– skipped: {titleOf(plan, inject ?? '')}</>
           ) : (
             <>
               <b>{note?.by || 'unsigned'}</b> {note?.text}
@@ -66,9 +75,11 @@ function NoteForm() {
 function OpenPanel() {
   const run = runNow();
   const id = run?.id;
+  const plan = run && planOf(run);
   useEffect(() => {
-    void refreshInterventions();
-    const timer = setInterval(() => void refreshInterventions(), AGAIN_MS);
+    const refresh = () => void Promise.all([refreshInterventions(), refreshPlan()]);
+    refresh();
+    const timer = setInterval(refresh, AGAIN_MS);
     return () => clearInterval(timer);
   }, [id]);
   return (
@@ -76,21 +87,27 @@ function OpenPanel() {
       <FaultForm />
       <NoteForm />
       <p role="status" data-testid="instructor-message">
-        {message.value && `${message.value.good ? '●' : '✖'} ${message.value.text}`}
+        {messageWords()}
       </p>
-      {run && <InterventionList of={ofRun(run)} />}
+      {plan && <PlanView of={plan} going />}
+      {run && <InterventionList of={ofRun(run)} plan={plan} />}
       <p class="status-dim">
         {access.value.state === 'in'
-          ? 'Until the run is over the server tells this only to who may rehearse.'
+          ? 'Until the run is over, the server shows this only to instructors.'
           : 'Until the run is over this stands nowhere else. This server has no accounts: whoever opens this fold can read it.'}
       </p>
     </>
   );
 }
 
-/** The panel, for users with the right to rehearse; others do not see that it exists. */
+/** The panel, for users with the right to instruct. Who may only start and end a run is told of the right. */
 export function InstructorPanel() {
-  if (!mayRehearse()) return null;
+  if (!mayInstruct())
+    return mayRehearse() ? (
+      <p class="status-dim" data-testid="not-instructor">
+        {STATUS.missing.shape} {whyNotInstruct('faults and notes of a rehearsal')}
+      </p>
+    ) : null;
   return (
     <details
       class="instructor"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The review of a finished rehearsal as the server judges it: facts, the instructor's entries, then a score with its
-// rule and terms.
+// The review of a finished rehearsal as the server judges it: facts, the instructor's entries, a score with its rule,
+// terms and what these rest on, and what became of the instructor's plan.
 import { signal } from '@preact/signals';
 import { useEffect } from 'preact/hooks';
 import { isReal } from '../mode/model';
@@ -12,26 +12,42 @@ import { fromEntry } from '../run/time';
 import { InterventionList } from './instructor_panel';
 import { askInterventions, ofRun } from './instructor';
 import type { Intervention } from './instructor';
+import { askPlan, fateOf, planOf, titleOf } from './plan';
+import type { Plan } from './plan';
+import { PlanView } from './plan_view';
 
 /** The server's answer (schema/aeolis/v1/score.proto). */
 export interface Score {
   facts: readonly { of: string; text: string; e_s?: number }[];
-  terms: readonly { name: string; worth: number; points: number; why: string }[];
+  terms: readonly { name: string; worth: number; points: number; why: string; judged: readonly ScorePoint[] }[];
   sum: number; // of 100
   rule: string;
 }
+/** Something that a good team does, and what was done. */
+interface ScorePoint {
+  expected: string;
+  evidence: string;
+  share: number; // of its part of the term, 0 … 1
+  e_s?: number; // from when on it counted
+  inject: string; // of the run's plan; empty: none of it
+}
 
 const open = signal(false);
-const judged = signal<{ run: number; through: number; score: Score } | undefined>(undefined);
+/** `noPlan`: why the plan cannot be had. A version that no longer reads it still has the score. */
+const judged = signal<{ run: number; through: number; score: Score; noPlan: string } | undefined>(undefined);
 const problem = signal('');
 const copied = signal<'done' | 'by hand' | undefined>(undefined);
 
 async function judge(run: RunStore): Promise<void> {
   const through = Number(run.run.lastSeq);
   try {
-    const [score] = await Promise.all([read<Score>(`/runs/${run.id}/score`), askInterventions(run)]);
+    const [score, , noPlan] = await Promise.all([
+      read<Score>(`/runs/${run.id}/score`),
+      askInterventions(run),
+      askPlan(run).then(() => '', wordsFor),
+    ]);
     if (store.value !== run) return;
-    judged.value = { run: run.id, through, score };
+    judged.value = { run: run.id, through, score, noPlan };
     problem.value = '';
   } catch (error) {
     if (store.value === run) problem.value = wordsFor(error);
@@ -40,8 +56,19 @@ async function judge(run: RunStore): Promise<void> {
 
 const termWords = ({ points, worth }: Score['terms'][number]): string => `${points.toFixed(1)} of ${worth}`;
 
+/** "full", "half", "none", else a percentage that never says 0 or 100. */
+export function shareWords(share: number): string {
+  if (share >= 1) return 'full';
+  if (share <= 0) return 'none';
+  return share === 0.5 ? 'half' : `${Math.min(99, Math.max(1, Math.round(share * 100)))} %`;
+}
+
+/** The points in order of time; those without a time come last. */
+const inOrder = (points: readonly ScorePoint[]): readonly ScorePoint[] =>
+  points.toSorted((one, other) => (one.e_s ?? Number.MAX_VALUE) - (other.e_s ?? Number.MAX_VALUE));
+
 /** The review as text, for copying. */
-export function scoreText(title: string, of: Score, interventions: readonly Intervention[]): string {
+export function scoreText(title: string, of: Score, interventions: readonly Intervention[], plan?: Plan): string {
   const at = (e_s: number | undefined) => (e_s === undefined ? '' : `${fromEntry(e_s, { tenths: true })} `);
   return [
     title,
@@ -52,9 +79,21 @@ export function scoreText(title: string, of: Score, interventions: readonly Inte
       note ? [`instructor's note: ${at(e_s)}${note.by || 'unsigned'}: ${note.text}`] : [],
     ),
     `score: ${of.sum.toFixed(0)} of 100`,
-    ...of.terms.map((term) => `  ${term.name}: ${termWords(term)} (${term.why})`),
+    ...of.terms.flatMap((term) => [
+      `  ${term.name}: ${termWords(term)} (${term.why})`,
+      ...inOrder(term.judged).map(
+        (point) => `    ${at(point.e_s)}${shareWords(point.share)}: ${point.expected}: ${point.evidence}`,
+      ),
+    ]),
     of.rule,
     '',
+    ...(plan
+      ? [
+          `the instructor's plan: ${plan.title || plan.name}`,
+          ...plan.injects.map((each) => `  ${fateOf(each, false)}: ${each.title} (${each.when || 'by hand'})`),
+          '',
+        ]
+      : []),
   ].join('\n');
 }
 
@@ -92,8 +131,28 @@ function Copy({ text }: { text: string }) {
   );
 }
 
-function Judged({ run, of }: { run: RunStore; of: Score }) {
+/** What the points of a term rest on. */
+function Points({ of, plan }: { of: readonly ScorePoint[]; plan: Plan | undefined }) {
+  if (of.length === 0) return null;
+  return (
+    <ul class="score-points">
+      {inOrder(of).map((point, i) => (
+        <li key={i}>
+          <time>{point.e_s === undefined ? '' : fromEntry(point.e_s, { tenths: true })}</time>{' '}
+          <b>{shareWords(point.share)}</b>{' '}
+          <span>
+            {point.expected}: {point.evidence}
+            {point.inject && <span class="status-dim"> ({titleOf(plan, point.inject)})</span>}
+          </span>
+        </li>
+      ))}
+    </ul>
+  );
+}
+
+function Judged({ run, of, noPlan }: { run: RunStore; of: Score; noPlan: string }) {
   const done = ofRun(run);
+  const plan = planOf(run);
   const notes = done.filter((each) => each.note);
   const title = `Aeolis, review of run ${run.id}: ${run.run.scenario}, seed ${run.run.seed}, ${run.run.started}`;
   return (
@@ -124,15 +183,25 @@ function Judged({ run, of }: { run: RunStore; of: Score }) {
             <tr key={term.name}>
               <th scope="row">{term.name}</th>
               <td class="number">{termWords(term)}</td>
-              <td class="wraps">{term.why}</td>
+              <td class="wraps">
+                {term.why}
+                <Points of={term.judged} plan={plan} />
+              </td>
             </tr>
           ))}
         </tbody>
       </table>
       <p class="status-dim">{of.rule}</p>
       <p>
-        <Copy text={scoreText(title, of, done)} />
+        <Copy text={scoreText(title, of, done, plan)} />
       </p>
+      {noPlan ? (
+        <p class="status-alarm refused" data-testid="review-no-plan">
+          ✖ the instructor’s plan: {noPlan}
+        </p>
+      ) : (
+        plan && <PlanView of={plan} going={false} />
+      )}
     </>
   );
 }
@@ -145,14 +214,14 @@ function Opened({ run }: { run: RunStore }) {
     problem.value = '';
     if (judged.value?.run !== run.id || judged.value.through !== through) void judge(run);
   }, [run.id, through]);
-  const of = judged.value?.run === run.id ? judged.value.score : undefined;
+  const of = judged.value?.run === run.id ? judged.value : undefined;
   if (!of) return <p role="status">{problem.value ? `✖ ${problem.value}` : 'asking the server…'}</p>;
   return (
     <>
       {pastRange.value && (
         <p class="not-past">▲ The review is of the whole run, not of the past that the other panels show.</p>
       )}
-      <Judged run={run} of={of} />
+      <Judged run={run} of={of.score} noPlan={of.noPlan} />
     </>
   );
 }

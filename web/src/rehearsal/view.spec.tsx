@@ -11,6 +11,7 @@ import { aDictionary, aRun, aStore } from '../testing/fixtures';
 import { aServer } from '../testing/server';
 import { attainedText, nextPace } from './model';
 import { PaceBar, changePace, togglePause } from './pace';
+import { forgetPlan } from './plan_choice';
 import { Rehearsal } from './view';
 
 describe('the pace', () => {
@@ -178,6 +179,100 @@ describe('a rehearsal', () => {
       button('continue-1'),
       root.querySelector('[data-run="1"]')?.textContent?.includes('▲ interrupted'),
     ]).toEqual([null, true]);
+  });
+  describe('with a plan', () => {
+    const soon = () => act(() => new Promise<void>((done) => setTimeout(done, 20)));
+    const PLANS = {
+      plans: [
+        { name: 'radar', title: 'The radar goes', purpose: 'Who sees it?', scenario: 'nominal', injects: 2 },
+        { name: 'dsn', title: '', purpose: 'No station.', scenario: 'dust', injects: 1 },
+      ],
+    };
+    const choose = (value: string) =>
+      act(() => {
+        const select = button('plan-choice') as unknown as HTMLSelectElement;
+        select.value = value;
+        select.dispatchEvent(new Event('change', { bubbles: true }));
+      });
+    const press = async () => {
+      act(() => button('start-rehearsal')?.click());
+      await soon();
+    };
+    const give = async (file: File) => {
+      const field = button('plan-file') as unknown as HTMLInputElement;
+      Object.defineProperty(field, 'files', { value: [file], configurable: true });
+      act(() => void field.dispatchEvent(new Event('change', { bubbles: true })));
+      await soon();
+    };
+    const posted = () => server.asked.filter((each) => each.method === 'POST').map((each) => each.body);
+    const over = async () => {
+      shown(aRun({ state: 'finished', outcome: 'touchdown' }));
+      await soon();
+    };
+    beforeEach(() => {
+      server.routes['GET /plans'] = { json: PLANS };
+      server.routes['POST /rehearsals'] = { status: 201, json: {} };
+    });
+    afterEach(() => forgetPlan());
+    it('offers all, says for which scenario another was written, and forgets the choice once the run began', async () => {
+      await over();
+      const options = () => [...button('plan-choice')!.querySelectorAll('option')].map((each) => each.textContent);
+      expect(options()).toEqual(['none', 'The radar goes', 'dsn (written for dust)', 'a file of your own']);
+      choose('dsn');
+      expect(button('plan-chosen')?.textContent).toBe('dsn: No station. 1 inject ▲ written for dust');
+      await press();
+      expect(posted()).toEqual([{ scenario: 'nominal', seed: '1', pace: 1, plan: 'dsn' }]);
+      await over();
+      expect((button('plan-choice') as unknown as HTMLSelectElement).value).toBe('');
+    });
+    it('of a file sends its text, and shows the server’s findings line by line', async () => {
+      await over();
+      choose('/');
+      expect([button('start-rehearsal')?.disabled, root.textContent]).toEqual([
+        true,
+        expect.stringContaining('choose the file of the plan'),
+      ]);
+      await give(new File([new Uint8Array(256 * 1024 + 1)], 'long.yaml'));
+      expect([button('start-rehearsal')?.disabled, root.textContent]).toEqual([
+        true,
+        expect.stringContaining('long.yaml has 262145 octets; a plan has at most 262144'),
+      ]);
+      await give(new File([], 'none.yaml'));
+      expect([button('start-rehearsal')?.disabled, root.textContent]).toEqual([
+        true,
+        expect.stringContaining('none.yaml is empty'),
+      ]);
+      await give(new File(['title: x\n'], 'mine.yaml'));
+      expect(button('plan-file-name')?.textContent).toBe('mine.yaml');
+      const findings = 'mine.yaml:1:1: no injects\nmine.yaml:2:3: no such device';
+      server.routes['POST /rehearsals'] = { status: 422, json: { error: findings } };
+      await press();
+      const problem = button('rehearsal-problem') as HTMLElement;
+      expect([problem.textContent, getComputedStyle(problem).whiteSpace]).toEqual([`✖ ${findings}`, 'pre-line']);
+      server.routes['POST /rehearsals'] = { status: 201, json: {} };
+      await press(); // the choice is still there after a refusal
+      expect(posted()).toEqual(
+        [1, 2].map(() => ({ scenario: 'nominal', seed: '1', pace: 1, inline_plan: 'title: x\n' })),
+      );
+    });
+    it('says why none is offered, and starts without', async () => {
+      server.routes['GET /plans'] = { status: 503, json: { error: 'too much waits' } };
+      await over();
+      expect(button('plan-problem')?.textContent).toBe('✖ plans: too much waits');
+      await press();
+      expect(posted()).toEqual([{ scenario: 'nominal', seed: '1', pace: 1 }]);
+    });
+    it('is nothing that a director learns of, nor who looks while a run goes on', async () => {
+      shown();
+      await soon();
+      expect(button('plan-choice')).toBe(null);
+      act(() => {
+        access.value = { state: 'in', user: 'dan', role: 'director', rights: ['watch', 'rehearse'] };
+      });
+      await over();
+      expect([button('plan-choice'), server.asked, button('start-rehearsal')?.disabled]).toEqual([null, [], false]);
+      expect(root.textContent).not.toMatch(/plan/i);
+    });
   });
   it('gives those who may not rehearse nothing to press, and its keys do nothing', () => {
     act(() => {

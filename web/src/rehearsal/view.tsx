@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The panel of rehearsals: the runs, and the start of new ones.
 import { signal } from '@preact/signals';
-import { mayRehearse, whyNotRehearse } from '../access/model';
+import { mayInstruct, mayRehearse, whyNotRehearse } from '../access/model';
 import { outcomeWords } from '../clocks/model';
 import { openedLater } from '../design/opened_later';
 import { STATUS } from '../design/status';
@@ -13,6 +13,8 @@ import { isGoing } from '../run/start';
 import { fromEntry } from '../run/time';
 import { EndRun } from './end_run';
 import { InstructorPanel } from './instructor_panel';
+import { forgetPlan, planOrder, whyNotPlan } from './plan_choice';
+import { PlanChoice } from './plan_choice_view';
 import './style.css';
 
 const Review = openedLater(async () => (await import('./review')).Review);
@@ -75,6 +77,11 @@ export function whyNotBegin(): string {
 
 export const beginProblem = () => refused.value;
 
+async function start(plan: ReturnType<typeof planOrder>): Promise<void> {
+  await begin({ scenario: scenario.value, seed: seed.value, pace: 1, ...plan });
+  if (refused.value === '') forgetPlan();
+}
+
 export function Rehearsal() {
   const run = runNow();
   const allowed = mayRehearse();
@@ -82,14 +89,17 @@ export function Rehearsal() {
   const names = scenarios.value.length > 0 ? scenarios.value : [{ name: 'nominal', title: '' }];
   const badSeed = !/^\d{1,15}$/.test(seed.value);
   const past = pastRange.value; // a past view sends nothing and shows nothing of the present
+  const plans = allowed && mayInstruct() && !going && !past;
+  const badPlan = plans ? whyNotPlan() : '';
   const blocked = whyNotBegin() !== '';
+  const unready = blocked || badSeed || badPlan !== '';
   return (
     <div class="table-box" data-testid="rehearsal">
       <form
-        class="table-tools"
+        class="table-tools start"
         onSubmit={(event) => {
           event.preventDefault();
-          if (!badSeed && !blocked) void begin({ scenario: scenario.value, seed: seed.value, pace: 1 });
+          if (!unready) void start(plans ? planOrder() : {});
         }}
       >
         <label>
@@ -118,31 +128,34 @@ export function Rehearsal() {
             onInput={(event) => (seed.value = event.currentTarget.value)}
           />
         </label>
-        <button type="submit" disabled={badSeed || blocked} data-testid="start-rehearsal">
+        {plans && <PlanChoice scenario={scenario.value} />}
+        <button type="submit" disabled={unready} data-testid="start-rehearsal">
           start a rehearsal
         </button>
         {going && allowed && !past && !isReal(going) && (
           <EndRun run={Number(going.run)} name="stop-rehearsal" words={`end run ${going.run}`} />
         )}
-        <span>
+        <span class="start-words">
           {!allowed
             ? `${STATUS.missing.shape} ${whyNotRehearse('starting and ending')}`
             : past
               ? `${STATUS.missing.shape} from a past view nothing is started or ended; Esc leaves it`
               : badSeed
                 ? '✖ a seed is a whole number'
-                : starting.value
-                  ? '… starting'
-                  : going
-                    ? isReal(going)
-                      ? 'a real landing is followed; none is rehearsed beside it'
-                      : 'one is going on; end it to start another'
-                    : names.find((each) => each.name === scenario.value)?.title}
+                : badPlan
+                  ? `✖ ${badPlan}`
+                  : starting.value
+                    ? '… starting'
+                    : going
+                      ? isReal(going)
+                        ? 'a real landing is followed; none is rehearsed beside it'
+                        : 'one is going on; end it to start another'
+                      : names.find((each) => each.name === scenario.value)?.title}
         </span>
       </form>
       <CatchingUp />
       {refused.value && (
-        <p role="alert" class="status-alarm" data-testid="rehearsal-problem">
+        <p role="alert" class="status-alarm refused" data-testid="rehearsal-problem">
           ✖ {refused.value}
         </p>
       )}

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Forks and forecasts of the run that is shown: another run that is this one up to some instant, what differs between
-// the two, and what would come of it, flown many times: from what ground heard, or, for who may rehearse, the truth.
+// the two, and what would come of it, flown many times: from what ground heard, or, for an instructor, the truth.
 import { signal } from '@preact/signals';
 import { useEffect } from 'preact/hooks';
-import { mayAct, mayRehearse } from '../access/model';
+import { mayAct, mayInstruct, mayRehearse } from '../access/model';
 import { outcomeWords } from '../clocks/model';
 import { wordsFor } from '../run/api';
 import { isReal } from '../mode/model';
@@ -76,7 +76,7 @@ const askForecast = (run: RunStore): Promise<void> =>
     await change(`/runs/${run.id}/forecasts`, {
       ...(at.value && { at: at.value }),
       cases: Number(cases.value),
-      from: mayRehearse() ? basis.value : 'telemetry',
+      from: mayInstruct() ? basis.value : 'telemetry',
       ...(typed && { commands: [{ command: typed, from_solution: true }] }),
       ...(breaks.value && { faults: [pickedFault()] }),
     });
@@ -350,7 +350,7 @@ function Forecasts({ run }: { run: RunStore }) {
           }}
         >
           <Instant run={run} />
-          {mayRehearse() && (
+          {mayInstruct() && (
             <label>
               from{' '}
               <select
@@ -455,7 +455,6 @@ export function WhatIf() {
   void tick.value; // a store changes without a new object
   const run = store.value;
   if (!run || isReal(run.run)) return <p class="none">of a rehearsal only: none is shown</p>;
-  const instructor = mayRehearse();
   const words = problem.value || beginProblem();
   return (
     <div class="table-box what-if" data-testid="what-if">
@@ -465,7 +464,7 @@ export function WhatIf() {
             ✖ {words}
           </p>
         )}
-        {instructor && (
+        {mayRehearse() && (
           <section>
             <h3>Go on otherwise</h3>
             <ForkForm run={run} />

@@ -71,7 +71,7 @@ const wholeHistory = new WeakSet<RunStore>(); // runs whose history has arrived,
  */
 export async function startRehearsal(
   order:
-    | { scenario: string; seed: string; pace: number }
+    | { scenario: string; seed: string; pace: number; plan?: string; inline_plan?: string }
     | { continue_run: number; pace: number }
     | { fork: { run: number; at: string; seed?: string; paused: boolean }; pace: number },
   isWaitedFor = () => true,

@@ -6,7 +6,7 @@ import type { Dictionary } from '../run/dictionary';
 import { readAll } from '../run/pages';
 import { dictionary } from '../run/shown';
 
-export const ROLES = ['observer', 'controller', 'director', 'administrator'] as const;
+export const ROLES = ['observer', 'controller', 'director', 'instructor', 'administrator'] as const;
 
 interface User {
   user: string;

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/api/score_acts.hpp"
+
+#include "server/archive/items.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <fmt/format.h>
+
+namespace aeolis::server {
+namespace {
+
+constexpr std::string_view of_script = "asked for by the scenario's script";  // the gateway's words
+
+std::string or_someone(const std::string& who, const char* otherwise = "someone") {
+    return who.empty() ? otherwise : who;
+}
+
+/// The sender by the evidence of the stage authorised: "no arming needed, by Ann; left to flight: …".
+std::string signature_in(const std::string& evidence) {
+    for (const std::string_view begin : {"armed and confirmed by name, by ", "no arming needed, by "})
+        if (evidence.starts_with(begin))
+            return evidence.substr(begin.size(), evidence.find("; left to flight: ") - begin.size());
+    return {};
+}
+
+/// Reads the items of a run into ScoreActs.
+class ActReader {
+  public:
+    ActReader(const v1::AsFlownReport& report, const dictionary::Dictionary& dictionary)
+        : report_(report), dictionary_(dictionary) {}
+
+    ScoreActs read(const std::vector<v1::Item>& alarms, const std::vector<v1::Item>& heard) {
+        for (const auto& item : alarms) take_alarm(item);
+        for (const auto& command : report_.commands()) read_.commands.push_back(outcome_of(command));
+        collect_acts(alarms);
+        collect_heard(heard);
+        return std::move(read_);
+    }
+
+  private:
+    double e_s_of(const v1::Item& item) const {
+        return archive::sclk_at_ert(report_.run(), Ert{item.ert_us()}).seconds - report_.run().entry_sclk();
+    }
+
+    void take_alarm(const v1::Item& item) {
+        const double e_s = e_s_of(item);
+        if (item.has_alarm()) {
+            const auto& alarm = item.alarm();
+            const auto& name = dictionary_.channels.at(alarm.channel()).name;
+            if (alarm.severity() == v1::Alarm::none) return read_.raised.take_inside(name);
+            read_.raised.take_raised(name, alarm.limit(), alarm.sclk() - report_.run().entry_sclk());
+        } else if (item.has_link()) {
+            if (!item.link().lost()) return read_.raised.take_inside(item.link().link());
+            read_.raised.take_raised(item.link().link(), "lost", e_s);
+        } else if (item.has_staleness()) {
+            if (!item.staleness().missing()) return read_.raised.take_inside(item.staleness().packet());
+            read_.raised.take_raised(item.staleness().packet(), "silent", e_s);
+        } else if (item.has_alarm_action() && item.alarm_action().action() == v1::AlarmAction::acknowledge) {
+            read_.raised.take_acknowledged(item.alarm_action(), e_s);
+        }
+    }
+
+    /// By the last word on each stage.
+    CommandOutcome outcome_of(const v1::CommandHistory& command) const {
+        using How = CommandOutcome::How;
+        CommandOutcome outcome{.name = command.name(), .number = command.command()};
+        if (!command.stages().empty()) outcome.e_s = e_s_of(command.stages(0));
+        std::map<v1::CommandStage::Stage, const v1::CommandStage*> last;
+        bool script = false;
+        std::string signature;
+        for (const auto& item : command.stages()) {
+            const auto& stage = item.command_stage();
+            last[stage.stage()] = &stage;
+            if (stage.stage() == v1::CommandStage::queued && stage.evidence().starts_with(of_script)) script = true;
+            if (stage.stage() == v1::CommandStage::authorised && signature.empty())
+                signature = signature_in(stage.evidence());
+        }
+        const auto failed = std::ranges::find_if(
+            last, [](const auto& each) { return each.second->status() == v1::CommandStage::failed; });
+        if (failed != last.end()) {
+            outcome.why = failed->second->evidence();
+            outcome.how = outcome.why.starts_with("cancelled") ? How::cancelled : How::failed;
+        } else if (last.contains(v1::CommandStage::executed) && std::ranges::all_of(last, [](const auto& each) {
+                       return each.second->status() == v1::CommandStage::ok;
+                   })) {
+            outcome.how = How::done;
+        }
+        if (!script) outcome.sender = or_someone(signature);
+        return outcome;
+    }
+
+    void collect_acts(const std::vector<v1::Item>& alarms) {
+        using Kind = PersonsAct::Kind;
+        auto& acts = read_.acts;
+        for (const auto& item : alarms) {
+            if (!item.has_alarm_action()) continue;
+            const auto& action = item.alarm_action();
+            acts.push_back({Kind::alarm, e_s_of(item),
+                            fmt::format("{}: {} {}", or_someone(action.by()),
+                                        v1::AlarmAction::Action_Name(action.action()), action.alarm()),
+                            action.alarm()});
+        }
+        for (const auto& command : read_.commands)
+            if (command.sender && command.e_s)
+                acts.push_back(
+                    {Kind::command, *command.e_s, fmt::format("{}: sent {}", *command.sender, command.name),
+                     command.name,
+                     command.how == CommandOutcome::How::failed || command.how == CommandOutcome::How::cancelled});
+        for (const auto& item : report_.notes())
+            acts.push_back({Kind::note, e_s_of(item),
+                            fmt::format("{} wrote “{}”", or_someone(item.note().by()), item.note().text()),
+                            item.note().text()});
+        std::ranges::stable_sort(acts, {}, &PersonsAct::e_s);
+    }
+
+    void collect_heard(const std::vector<v1::Item>& heard) {
+        for (const auto& item : heard)
+            if (item.has_event() && item.event().source() == v1::SOURCE_REALTIME)
+                read_.heard[item.event().name()].push_back(e_s_of(item));
+            else if (item.has_tone() && item.tone().has_tone())
+                read_.heard[item.tone().name()].push_back(e_s_of(item));
+    }
+
+    const v1::AsFlownReport& report_;
+    const dictionary::Dictionary& dictionary_;
+    ScoreActs read_;
+};
+
+}  // namespace
+
+std::string in_words(std::string name) {
+    std::ranges::transform(name, name.begin(), [](unsigned char letter) {
+        return letter == '_' ? ' ' : static_cast<char>(std::tolower(letter));
+    });
+    return name;
+}
+
+void RaisedAlarms::take_raised(const std::string& name, std::string limit, double e_s) {
+    const auto known = open_.find(name);
+    const bool again = known != open_.end() && all[known->second].acknowledged && inside_.contains(name);
+    inside_.erase(name);
+    if (known != open_.end() && !again) return;
+    open_[name] = all.size();
+    all.push_back({name, std::move(limit), e_s});
+}
+
+void RaisedAlarms::take_acknowledged(const v1::AlarmAction& action, double e_s) {
+    const auto known = open_.find(action.alarm());
+    if (known == open_.end() || all[known->second].acknowledged) return;
+    auto& raised = all[known->second];
+    raised.acknowledged = Acknowledged{e_s - raised.e_s, or_someone(action.by(), "unsigned")};
+}
+
+ScoreActs acts_of(const v1::AsFlownReport& report, const std::vector<v1::Item>& alarms,
+                  const std::vector<v1::Item>& heard, const dictionary::Dictionary& dictionary) {
+    return ActReader{report, dictionary}.read(alarms, heard);
+}
+
+}  // namespace aeolis::server

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/instruction/plan_library.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <fstream>
+#include <spdlog/spdlog.h>
+
+namespace aeolis::server::instruction {
+
+Result<std::string> text_of_file(const std::filesystem::path& file) {
+    std::error_code error;
+    std::ifstream stream{file, std::ios::binary};
+    if (!stream || std::filesystem::is_directory(file, error)) return Error{file.string() + ": cannot be read"};
+    // One octet more than may be read shows that there are too many.
+    std::string text(procedures::yaml_octets_max + 1, '\0');
+    stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+    text.resize(static_cast<std::size_t>(stream.gcount()));
+    return text;
+}
+
+std::vector<std::filesystem::path> yaml_files_in(const std::filesystem::path& folder) {
+    std::vector<std::filesystem::path> files;
+    std::error_code error;
+    for (const auto& entry : std::filesystem::directory_iterator{folder, error})
+        if (entry.path().extension() == ".yaml") files.push_back(entry.path());
+    std::ranges::sort(files);
+    return files;
+}
+
+v1::PlanList PlanLibrary::list() const {
+    v1::PlanList list;
+    for (const auto& file : yaml_files_in(folder_ / "plans")) {
+        const auto text = text_of_file(file);
+        const auto read = text ? read_plan(*text, file.string(), dictionary_, {}) : ReadPlan{};
+        if (!read.plan) {
+            spdlog::warn("plan left out: {}", text ? read.findings_text() : text.error().message);
+            continue;
+        }
+        auto& entry = *list.add_plans();
+        entry.set_name(read.plan->id);
+        entry.set_title(read.plan->title);
+        entry.set_purpose(read.plan->purpose);
+        entry.set_scenario(read.plan->scenario);
+        entry.set_injects(static_cast<std::uint32_t>(read.plan->injects.size()));
+    }
+    return list;
+}
+
+Result<v1::InstructorPlan> PlanLibrary::plan(const std::string& name) const {
+    // The name may come from a client: it is looked up in the list and never made a path.
+    const auto files = yaml_files_in(folder_ / "plans");
+    const auto stem_of = [](const std::filesystem::path& file) { return file.stem().string(); };
+    const auto file = std::ranges::find(files, name, stem_of);
+    if (file == files.end()) {
+        std::vector<std::string> known;
+        std::ranges::transform(files, std::back_inserter(known), stem_of);
+        return Error{fmt::format("plan '{}': there is none of this name; there {}", name,
+                                 known.empty() ? "is none at all" : fmt::format("are: {}", fmt::join(known, ", ")))};
+    }
+    auto text = text_of_file(*file);
+    if (!text) return text.error();
+    v1::InstructorPlan plan;
+    plan.set_name(file->filename().string());
+    plan.set_text(std::move(*text));
+    return plan;
+}
+
+Result<Rubric> PlanLibrary::rubric() const {
+    const auto file = folder_ / "rubric.yaml";
+    const auto text = text_of_file(file);
+    if (!text) return text.error();
+    auto read = read_rubric(*text, file.string(), dictionary_);
+    if (read.rubric) return std::move(*read.rubric);
+    std::string findings;
+    for (const auto& finding : read.findings) findings += (findings.empty() ? "" : "\n") + finding.text();
+    return Error{findings};
+}
+
+}  // namespace aeolis::server::instruction

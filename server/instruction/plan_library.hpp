@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "aeolis/v1/plan.pb.h"
+#include "common/result.hpp"
+#include "server/instruction/plan_reader.hpp"
+
+#include <filesystem>
+#include <string>
+
+namespace aeolis::server::instruction {
+
+/// What a mission's instructors have: the plans in the folder `plans` of its dictionary, and its `rubric.yaml`. Read
+/// anew for each call.
+class PlanLibrary {
+  public:
+    /// @param folder  the dictionary's; empty: there is neither. The dictionary must outlive this.
+    PlanLibrary(std::filesystem::path folder, const dictionary::Dictionary& dictionary)
+        : folder_(std::move(folder)), dictionary_(dictionary) {}
+
+    /// All readable plans, by name; one that breaks a rule is left out and logged.
+    v1::PlanList list() const;
+    /// The text of the plan of that name. The Error of an unknown name lists the existing ones.
+    Result<v1::InstructorPlan> plan(const std::string& name) const;
+    /// The mission's rubric; the Error says what is wrong with it, or that there is none.
+    Result<Rubric> rubric() const;
+
+  private:
+    std::filesystem::path folder_;
+    const dictionary::Dictionary& dictionary_;
+};
+
+/// The text of a file of YAML, cut off where it is too long to be read. An Error when there is no such file.
+Result<std::string> text_of_file(const std::filesystem::path& file);
+/// The files of YAML in a folder, by name.
+std::vector<std::filesystem::path> yaml_files_in(const std::filesystem::path& folder);
+
+}  // namespace aeolis::server::instruction
