@@ -176,6 +176,8 @@ struct Landing::State {
     void read_event_reports();
     void tell(LinkTeller& teller, bool up, const std::string& reason, std::int64_t at_us);
     bool station_out() const;
+    bool orbiters_out() const;
+    double least_uhf_loss() const;  ///< 0: as the pass has it
     /// Reports a link's change to ground, as far as ground can see it: data arrive again, or no more.
     void tell(const LinkTruth& state, Ert ert);
     /// Reports the links as ground sees them during an outage of the station or its line, and after that.
@@ -286,7 +288,8 @@ void Landing::State::radiate(std::span<const std::uint8_t> pltus, std::int64_t c
         {truth.e_s, truth.altitude_m, truth.speed_mps, computer_on && world.uhf_on(), world.parachute_antenna_on()});
     OrbiterPass* live = first_in_view(false);
     for (OrbiterPass& pass : passes) {
-        if (!pass.in_view(e_s()) || (!pass.row().stored && &pass != live)) continue;
+        pass.lose_at_least(least_uhf_loss());
+        if (!pass.in_view(e_s()) || orbiters_out() || (!pass.row().stored && &pass != live)) continue;
         send_octets(telemetry::uhf_live_link, pass.hear(Traffic::realtime, left, e_s()), cycle_start_us);
     }
     const bool up = uhf.up() && live != nullptr;
@@ -315,6 +318,7 @@ void Landing::State::send_octets(const telemetry::Link& link, std::span<const st
 }
 
 OrbiterPass* Landing::State::first_in_view(bool also_stored) {
+    if (orbiters_out()) return nullptr;
     const auto found = std::ranges::find_if(
         passes, [&](const OrbiterPass& pass) { return pass.in_view(e_s()) && (also_stored || !pass.row().stored); });
     return found == passes.end() ? nullptr : &*found;
@@ -373,11 +377,22 @@ void Landing::State::receive_tone(std::optional<ToneId> sent, std::int64_t cycle
 }
 
 bool Landing::State::station_out() const {
-    const double before_entry_s = scenario.entry_sclk - sclk();
-    return std::ranges::any_of(scenario.station_outages, [&](const StationOutage& outage) {
-        return before_entry_s <= outage.begin_before_entry_s &&
-               before_entry_s > outage.begin_before_entry_s - outage.duration_s;
+    return std::ranges::any_of(scenario.station_outages, [before_entry_s = -e_s()](const StationOutage& outage) {
+        return goes_on(outage, before_entry_s);
     });
+}
+
+bool Landing::State::orbiters_out() const {
+    return std::ranges::any_of(scenario.orbiter_outages, [before_entry_s = -e_s()](const OrbiterOutage& outage) {
+        return goes_on(outage, before_entry_s);
+    });
+}
+
+double Landing::State::least_uhf_loss() const {
+    double least = 0.0;
+    for (const UhfLoss& loss : scenario.uhf_losses)
+        if (goes_on(loss, -e_s())) least = std::max(least, loss.fraction);
+    return least;
 }
 
 void Landing::State::tell(const LinkTruth& state, Ert ert) {
@@ -606,6 +621,11 @@ void Landing::forward(std::span<const std::uint8_t> pltu) {
 void Landing::inject(Fault fault) {
     State& s = *state_;
     const double before_entry_s = s.scenario.entry_sclk - s.world.sclk();
+    const auto begin_now = [&](auto spell) {
+        // By Earth's clock, which continues when the computer is off.
+        spell.begin_before_entry_s = s.scenario.entry_sclk - s.sclk();
+        return spell;
+    };
     if (std::holds_alternative<ComputerReset>(fault)) {
         s.scenario.computer_resets.push_back({before_entry_s});
     } else if (auto* const device = std::get_if<DeviceFault>(&fault)) {
@@ -614,10 +634,15 @@ void Landing::inject(Fault fault) {
     } else if (auto* const system = std::get_if<SystemFault>(&fault)) {
         system->begin_before_entry_s = before_entry_s;
         s.world.inject(*system);
+    } else if (auto* const wind = std::get_if<WindShift>(&fault)) {
+        wind->begin_before_entry_s = before_entry_s;
+        s.world.inject(*wind);
+    } else if (const auto* const outage = std::get_if<StationOutage>(&fault)) {
+        s.scenario.station_outages.push_back(begin_now(*outage));
+    } else if (const auto* const orbiter = std::get_if<OrbiterOutage>(&fault)) {
+        s.scenario.orbiter_outages.push_back(begin_now(*orbiter));
     } else {
-        // By Earth's clock, which continues when the computer is off.
-        s.scenario.station_outages.push_back(
-            {s.scenario.entry_sclk - s.sclk(), std::get<StationOutage>(fault).duration_s});
+        s.scenario.uhf_losses.push_back(begin_now(std::get<UhfLoss>(fault)));
     }
 }
 

@@ -149,6 +149,9 @@ void check_list_sizes(const Scenario& s, std::vector<std::string>& found) {
     at_most(scenario_rows_max, "device_faults", s.device_faults.size());
     at_most(scenario_rows_max, "computer_resets", s.computer_resets.size());
     at_most(scenario_rows_max, "station_outages", s.station_outages.size());
+    at_most(scenario_rows_max, "orbiter_outages", s.orbiter_outages.size());
+    at_most(scenario_rows_max, "uhf_losses", s.uhf_losses.size());
+    at_most(scenario_rows_max, "wind_shifts", s.wind_shifts.size());
     if (!found.empty()) return;
     for (std::size_t i = 0; i < s.radio.relay_passes.size(); ++i)
         at_most(scenario_rows_max, "radio.relay_passes[" + std::to_string(i) + "].rates",
@@ -339,7 +342,7 @@ void check_device_faults(const Scenario& scenario, std::vector<std::string>& fou
     }
 }
 
-/// Checks the rows of SystemFault or StationOutage.
+/// Checks the rows of whatever begins and lasts.
 template <typename Row>
 void check_spells(const Scenario& scenario, const std::vector<Row>& rows, const std::string& field,
                   std::vector<std::string>& found) {
@@ -353,6 +356,24 @@ void check_spells(const Scenario& scenario, const std::vector<Row>& rows, const 
         if (!(fault.duration_s > 0.0))
             found.push_back(name + ".duration_s: " + number(fault.duration_s) + " is not above 0");
     }
+}
+
+void check_uhf_losses(const Scenario& scenario, std::vector<std::string>& found) {
+    check_spells(scenario, scenario.uhf_losses, "uhf_losses", found);
+    for (std::size_t i = 0; i < scenario.uhf_losses.size(); ++i)
+        if (const double fraction = scenario.uhf_losses[i].fraction; !(fraction > 0.0 && fraction <= 0.9))
+            found.push_back("uhf_losses[" + std::to_string(i) + "].fraction: " + number(fraction) +
+                            " is not above 0 and up to 0.9");
+}
+
+void check_wind_shifts(const Scenario& scenario, std::vector<std::string>& found) {
+    check_spells(scenario, scenario.wind_shifts, "wind_shifts", found);
+    for (std::size_t i = 0; i < scenario.wind_shifts.size(); ++i)
+        for (const auto& [name, mps] : {std::pair{"east_mps", scenario.wind_shifts[i].east_mps},
+                                        std::pair{"north_mps", scenario.wind_shifts[i].north_mps}})
+            if (!(mps >= -100.0 && mps <= 100.0))
+                found.push_back("wind_shifts[" + std::to_string(i) + "]." + name + ": " + number(mps) +
+                                " is outside -100 … 100");
 }
 
 void check_computer_resets(const Scenario& scenario, std::vector<std::string>& found) {
@@ -453,6 +474,9 @@ std::vector<std::string> impossible_values(const Scenario& scenario) {
     check_commands(scenario, found);
     check_spells(scenario, scenario.system_faults, "system_faults", found);
     check_spells(scenario, scenario.station_outages, "station_outages", found);
+    check_spells(scenario, scenario.orbiter_outages, "orbiter_outages", found);
+    check_uhf_losses(scenario, found);
+    check_wind_shifts(scenario, found);
     check_device_faults(scenario, found);
     check_computer_resets(scenario, found);
     check_test_venue(scenario, found);

@@ -223,8 +223,36 @@ struct StationOutage {
     double duration_s = 0.0;
 };
 
+/// An orbiter in safe mode: none hears the vehicle or relays for it. By the vehicle's clock, as the two below.
+struct OrbiterOutage {
+    double begin_before_entry_s = 0.0;
+    double duration_s = 0.0;
+};
+
+/// UHF is worse for a while.
+struct UhfLoss {
+    double begin_before_entry_s = 0.0;
+    double duration_s = 0.0;
+    double fraction = 0.0;  ///< of the octets that is garbled at least, as Radio::uhf_loss_fraction
+};
+
+/// The air moves otherwise for a while, at all heights: added to the wind.
+struct WindShift {
+    double begin_before_entry_s = 0.0;
+    double duration_s = 0.0;
+    double east_mps = 0.0;
+    double north_mps = 0.0;
+};
+
+/// Whether what begins and lasts so goes on now.
+template <typename Spell>
+bool goes_on(const Spell& spell, double before_entry_s) {
+    return before_entry_s <= spell.begin_before_entry_s &&
+           before_entry_s > spell.begin_before_entry_s - spell.duration_s;
+}
+
 /// The faults that an instructor may inject during a landing.
-using Fault = std::variant<SystemFault, DeviceFault, ComputerReset, StationOutage>;
+using Fault = std::variant<SystemFault, DeviceFault, ComputerReset, StationOutage, OrbiterOutage, UhfLoss, WindShift>;
 
 /// The limits of a landing. A rover that lands outside them still stands; limits.hpp reports by how much they were
 /// exceeded.
@@ -290,6 +318,9 @@ struct Scenario {
     std::vector<DeviceFault> device_faults;
     std::vector<ComputerReset> computer_resets;
     std::vector<StationOutage> station_outages;
+    std::vector<OrbiterOutage> orbiter_outages;
+    std::vector<UhfLoss> uhf_losses;
+    std::vector<WindShift> wind_shifts;
     double bus_message_error_fraction = 1.0e-4;  ///< of the messages on the buses, at each transmission. Our assumption
 };
 

@@ -163,11 +163,13 @@ struct World::State {
     void take_pyro(flight::PyroId pyro);
     void fly_on() {
         events.clear();
+        shift_wind();
         fly_one_tick();
         buses.frame(sclk());
         obey();
         watch();
     }
+    void shift_wind();
     void fly_one_tick();
     void measure_last_tick();
     void touch_ground(const std::optional<PointMass>& rover);
@@ -216,6 +218,13 @@ void World::State::listen_to_imu(flight::Unit unit) {
     if (unit == imu_unit) return;
     imu_unit = unit;
     imus[static_cast<std::size_t>(unit)].begin_reading();
+}
+
+void World::State::shift_wind() {
+    double east_mps = 0.0, north_mps = 0.0;
+    for (const WindShift& shift : scenario.wind_shifts)
+        if (goes_on(shift, scenario.entry_sclk - sclk())) east_mps += shift.east_mps, north_mps += shift.north_mps;
+    vehicle.shift_wind(east_mps, north_mps);
 }
 
 // What a copy measures that flies ahead is, but for the change of two ticks, what the vehicle has measured.
@@ -493,6 +502,10 @@ void World::inject(const DeviceFault& fault) {
 
 void World::inject(const SystemFault& fault) {
     state_->scenario.system_faults.push_back(fault);
+}
+
+void World::inject(const WindShift& shift) {
+    state_->scenario.wind_shifts.push_back(shift);
 }
 
 void World::set_nvm(std::uint32_t used_octets, std::uint32_t capacity_octets) {

@@ -81,6 +81,7 @@ class World {
     /// Injects a fault at its own start time.
     void inject(const DeviceFault& fault);
     void inject(const SystemFault& fault);
+    void inject(const WindShift& shift);
     /// Reports the recorder's fill level to the computer.
     void set_nvm(std::uint32_t used_octets, std::uint32_t capacity_octets);
 

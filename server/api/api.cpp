@@ -179,7 +179,7 @@ std::span<const Api::Route> Api::routes() {
         {"PUT", "/api/v1/layouts/{layout}", Right::watch, &Api::put_layout, Query::none, "layout"},
         {"DELETE", "/api/v1/layouts/{layout}", Right::watch, &Api::remove_layout, Query::none, "layout"},
         {"GET", "/api/v1/scenarios", Right::watch, &Api::list_scenarios, Query::own},
-        {"GET", "/api/v1/plans", Right::instruct, &Api::list_plans},
+        {"GET", "/api/v1/plans", Right::instruct, &Api::list_plans, Query::own, "plan", Audited::refusals},
         {"GET", "/api/v1/dictionary", Right::watch, &Api::dictionary},
         {"GET", "/api/v1/openapi.yaml", Right::open, &Api::openapi},
         {"GET", "/api/v1/schema", Right::open, &Api::list_schema},
@@ -309,6 +309,12 @@ Respond Api::audited(const ApiRequest& call, std::string_view action) {
     };
 }
 
+Respond Api::refusal_audited(const ApiRequest& call, std::string_view action) {
+    return [respond = call.respond, audited = audited(call, action)](HttpResponse response) {
+        (response.status == 403 ? audited : respond)(std::move(response));
+    };
+}
+
 void Api::note(const Operator& who, std::string_view action, std::string detail, const std::string& outcome) {
     parts_.pipeline.audit(audit_record(who, action, std::move(detail), outcome));
 }
@@ -334,6 +340,8 @@ void Api::run_question(const ApiRequest& call) {
     if (!question->formats.empty())  // before the archive is queried for nothing
         if (const auto format = query->one_of("format", question->formats); !format)
             return respond(error_response(400, format.error()));
+    auto asked_by = call;
+    if (question->refused_for_instructors) asked_by.respond = refusal_audited(call, "plan");
     const auto& dictionary = parts_.dictionary;
     const auto& plans = parts_.plans;
     // Pace and clocks of the current run are not in the archive.
@@ -341,7 +349,7 @@ void Api::run_question(const ApiRequest& call) {
     if (const auto id = run_id(run); what.empty() && id && id->value == current.run())
         return respond(json_response(current));
     ask(
-        call, std::move(*query),
+        asked_by, std::move(*query),
         [&dictionary, &plans, &queries = parts_.queries, asker = Asker{client_of(call.who), call.request.disconnected},
          clock = clock(), instructor = may(call.who, Right::instruct), answer = question->answer,
          path = call.request.path,
@@ -419,6 +427,8 @@ void Api::list_scenarios(const ApiRequest& call) {
 }
 
 void Api::list_plans(const ApiRequest& call) {
+    if (const auto none = QueryText::parse(call.request.query, {}); !none)
+        return call.respond(error_response(400, none.error()));
     answer_on_query_thread(
         call, [this](archive::Reader&) { return json_response(parts_.plans.list()); }, JobPriority::in_turn);
 }

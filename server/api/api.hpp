@@ -186,6 +186,8 @@ class Api {
 
     void answer(const Route& route, ApiRequest call);
     /// Wraps the response callback so that the outcome is written to the audit.
+    /// Audits the answer where it is 403.
+    Respond refusal_audited(const ApiRequest& call, std::string_view action);
     Respond audited(const ApiRequest& call, std::string_view action);
     /// Replaces `latest` by a run number: the server's current or last run, else the newest of the archive. The same
     /// for every route.

@@ -163,9 +163,15 @@ void write(MetricsText& text, const std::map<std::string, QueryThreads::Waits>& 
                   of_client.longest_s);
 }
 
+/// Counts that change with what an instructor does are for instructors.
+bool tells_of_instructors(std::string_view route) {
+    return route.ends_with("/plans") || route.ends_with("/rehearsals/current");
+}
+
 }  // namespace
 
 void Api::metrics(const ApiRequest& call) {
+    const bool instructs = may(call.who, Right::instruct);
     MetricsText text;
     text.begin("build_info", "gauge", "1, labelled with the program's version, its archive's schema, its dictionary");
     text.line("build_info",
@@ -185,8 +191,9 @@ void Api::metrics(const ApiRequest& call) {
     {
         const std::scoped_lock lock{counts_mutex_};
         for (const auto& [of, number] : responses_)
-            text.line("http_responses_total", fmt::format("{{route=\"{}\",status=\"{}\"}}", of.first, of.second),
-                      number);
+            if (instructs || !tells_of_instructors(of.first))
+                text.line("http_responses_total", fmt::format("{{route=\"{}\",status=\"{}\"}}", of.first, of.second),
+                          number);
     }
     text.gauge("connections", "open HTTP and WebSocket connections", parts_.connections());
     text.counter("queries_total", "questions to the archive", parts_.queries.asked());

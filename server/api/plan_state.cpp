@@ -17,10 +17,7 @@ v1::PlannedInject inject_message(const Inject& inject, const dictionary::Diction
     message.set_when(instruction::when_text(inject, dictionary));
     message.set_does(instruction::text_of(inject.fault));
     message.set_shows(inject.shows);
-    const auto& handling = inject.handling.team.empty() ? rubric.handling_of(inject.fault) : inject.handling;
-    for (const auto& expectation : handling.team)
-        message.add_team(
-            fmt::format("{}: {}", instruction::name_of(expectation.of), instruction::text_of(expectation)));
+    for (auto& words : instruction::team_texts(inject, rubric)) message.add_team(std::move(words));
     return message;
 }
 
@@ -43,7 +40,7 @@ Result<v1::PlanState> plan_state(archive::Reader& reader, archive::RunId run, co
     if (!kept) return kept.error();
     v1::PlanState state;
     if (kept->text().empty()) return state;
-    const auto read = instruction::read_plan(kept->text(), kept->name(), dictionary, {});
+    const auto read = instruction::read_plan(*kept, dictionary);
     if (!read.plan)
         return Error{
             fmt::format("run {}: its plan breaks the rules of this version:\n{}", run.value, read.findings_text())};

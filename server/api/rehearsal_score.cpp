@@ -4,6 +4,7 @@
 #include "server/api/plan_state.hpp"
 #include "server/api/team_score.hpp"
 #include "server/api/touchdown.hpp"
+#include "server/archive/items.hpp"
 #include "server/instruction/plan_reader.hpp"
 #include "telemetry/text.hpp"
 
@@ -47,11 +48,14 @@ class Judge {
   public:
     Judge(const ScoreFacts& facts, const dictionary::Dictionary& dictionary, const instruction::Rubric& rubric)
         : facts_(facts), dictionary_(dictionary), rubric_(rubric),
-          acts_(acts_of(facts.report, facts.alarms, facts.heard, dictionary)) {}
+          acts_(acts_of(facts.report, facts.alarms, facts.heard, facts.end, dictionary)) {}
 
     v1::Score score() {
-        auto team = judge_team({rubric_, facts_.plan ? &*facts_.plan : nullptr, facts_.interventions, acts_,
-                                facts_.report.run().light_time_s()});
+        auto team = judge_team(team_case());
+        if (const auto& run = facts_.report.run(); run.has_forked_from())
+            add_fact(score_, "landing",
+                     fmt::format("forked from run {}: what was done before is that run's", run.forked_from().run()),
+                     run.forked_from().e_s());
         add_landing();
         add_timepoints();
         add_data();
@@ -66,15 +70,27 @@ class Judge {
             "A rule of Aeolis, no verdict on people: the rubric “{}”. The landing itself is worth {:.0f} of 100 "
             "points; "
             "the rest is the team's, over what there was to judge: if there was nothing of a kind, the others count "
-            "more, and if nothing was expected of anybody, the rest is not given. What nobody could see is not judged. "
+            "more, and if nothing was expected of anybody, the rest is not given. What nobody could see is not judged, "
+            "nor "
+            "what there was no time for, nor what people did once it was over. "
             "What comes later than its limit earns less, and after twice the limit nothing; an alarm's acknowledgement "
-            "counts in full within {:.0f} s and not at all after {:.0f} s. A line of the log is found by its words: "
-            "read it, too. Times are the run's: at 10× a second of yours is ten of them.",
+            "counts in full within {:.0f} s and not at all after {:.0f} s. A line of the log is found by its words, "
+            "and "
+            "serves one fault: read it, too. Times are the run's: at 10× a second of yours is ten of them.",
             rubric_.title, rubric_.landing_worth, rubric_.alarm_within_s, rubric_.alarm_until_s));
         return std::move(score_);
     }
 
   private:
+    TeamCase team_case() const {
+        const auto& run = facts_.report.run();
+        TeamCase judged{rubric_, facts_.plan ? &*facts_.plan : nullptr, facts_.interventions, acts_};
+        judged.light_time_s = run.light_time_s();
+        if (run.has_forked_from()) judged.from_e_s = run.forked_from().e_s();
+        if (facts_.end) judged.until_e_s = archive::sclk_at_ert(run, *facts_.end).seconds - run.entry_sclk();
+        return judged;
+    }
+
     void add_term(std::string_view name, double worth, double share, std::string why) {
         auto& term = *score_.add_terms();
         term.set_name(std::string{name});
@@ -204,17 +220,21 @@ Result<void> add_alarm_items(archive::Reader& reader, archive::RunId run, ScoreF
     }
 }
 
-/// What was received of the vehicle's own reports: events that are more than chatter, and tones.
+/// What was received of the vehicle's own reports: events but for diagnostic ones, and tones.
 Result<void> add_heard(archive::Reader& reader, archive::RunId run, ScoreFacts& facts) {
     archive::EventQuery events;
-    for (const auto level : {dictionary::EventLevel::fatal, dictionary::EventLevel::warning_hi,
-                             dictionary::EventLevel::warning_lo, dictionary::EventLevel::activity_hi})
+    for (const auto level :
+         {dictionary::EventLevel::fatal, dictionary::EventLevel::warning_hi, dictionary::EventLevel::warning_lo,
+          dictionary::EventLevel::command, dictionary::EventLevel::activity_hi, dictionary::EventLevel::activity_lo})
         events.levels.emplace_back(telemetry::name_of(level));
     events.limit = archive::rows_page_max;
     do {
         auto page = reader.events(run, events);
         if (!page) return page.error();
         facts.heard.insert(facts.heard.end(), page->events().begin(), page->events().end());
+        if (facts.heard.size() > scored_heard_max)
+            return Error{fmt::format("run {} has more than {} reports: no score is made of a part", run.value,
+                                     scored_heard_max)};
         events.after = page->next_after();
     } while (events.after != 0);
     archive::ToneQuery tones;
@@ -232,7 +252,7 @@ Result<void> add_plan(archive::Reader& reader, archive::RunId run, const diction
     const auto kept = reader.instructor_plan(run);
     if (!kept) return kept.error();
     if (kept->text().empty()) return {};
-    auto read = instruction::read_plan(kept->text(), kept->name(), dictionary, {});
+    auto read = instruction::read_plan(*kept, dictionary);
     if (!read.plan)
         return Error{
             fmt::format("run {}: its plan breaks the rules of this version:\n{}", run.value, read.findings_text())};
@@ -297,6 +317,12 @@ Result<ScoreFacts> score_facts(archive::Reader& reader, v1::AsFlownReport report
     if (auto done = add_heard(reader, run, facts); !done) return done.error();
     if (auto done = add_plan(reader, run, dictionary, facts); !done) return done.error();
     if (auto done = add_landed(reader, run, dictionary, facts); !done) return done.error();
+    const auto last = reader.last_seq(run);
+    if (!last) return last.error();
+    if (*last == 0) return facts;
+    const auto page = reader.items(run, *last - 1, 1);
+    if (!page) return page.error();
+    if (!page->items.empty()) facts.end = Ert{page->items.back().ert_us()};
     return facts;
 }
 

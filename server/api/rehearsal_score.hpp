@@ -23,6 +23,7 @@ struct ScoreFacts {
     std::optional<Landed> landed;
     std::vector<v1::Item> alarms;  ///< changes of alarms and actions on them, in their order
     std::vector<v1::Item> heard;   ///< event reports and tones as received, recorded ones too
+    std::optional<Ert> end;        ///< of the run: what people did from then on does not count
     std::vector<v1::Intervention> interventions;
     std::optional<instruction::InjectPlan> plan;
 };
@@ -31,6 +32,7 @@ struct ScoreFacts {
 v1::Score score_of(const ScoreFacts& facts, const dictionary::Dictionary& dictionary,
                    const instruction::Rubric& rubric);
 
+inline constexpr std::size_t scored_heard_max = 200'000;   ///< events and tones; chosen as the next
 inline constexpr std::size_t scored_alarms_max = 200'000;  ///< chosen, some 40 MB: no landing comes near it
 
 /// The as-flown report with all commands and notes; Reader::as_flown() has only the first page of each.

@@ -28,6 +28,7 @@
 #include <fmt/ranges.h>
 #include <functional>
 #include <limits>
+#include <map>
 
 namespace aeolis::server {
 namespace {
@@ -358,14 +359,35 @@ HttpResponse notes(const AnswerContext&, archive::Reader& reader, archive::RunId
                        {"notes", {"note"}});
 }
 
-/// What an instructor does is hidden from everybody else while the run goes on, or can be continued.
+/// Whether the run, or one that was forked from it or from which it was, may go on: all of them have one plan.
+Result<bool> may_go_on(archive::Reader& reader, archive::RunId run) {
+    std::map<std::uint64_t, v1::RunState> runs;
+    archive::RunQuery query;
+    do {
+        auto page = reader.runs(query);
+        if (!page) return page.error();
+        for (auto& each : *page->mutable_runs()) runs[each.run()] = std::move(each);
+        query.after = page->next_after();
+    } while (query.after != 0);
+    const auto root_of = [&](std::uint64_t of) {
+        for (auto known = runs.find(of); known != runs.end() && known->second.has_forked_from(); known = runs.find(of))
+            of = known->second.forked_from().run();
+        return of;
+    };
+    const auto root = root_of(run.value);
+    return std::ranges::any_of(runs, [&](const auto& each) {
+        return each.second.state() != v1::RunState::finished && root_of(each.first) == root;
+    });
+}
+
+/// What an instructor does is hidden from everybody else while the run, or a fork of it, goes on or can be continued.
 std::optional<HttpResponse> hidden(const AnswerContext& context, archive::Reader& reader, archive::RunId run) {
     if (context.instructor) return std::nullopt;
-    const auto state = reader.run(run);
-    if (!state) return error_response(400, state.error());
-    if (state->state() == v1::RunState::finished) return std::nullopt;
-    return error_response(
-        403, "what an instructor does is told when the run is over; before, it needs the right to instruct");
+    const auto going_on = may_go_on(reader, run);
+    if (!going_on) return error_response(400, going_on.error());
+    if (!*going_on) return std::nullopt;
+    return error_response(403, "what an instructor does is told when the run and its forks are over; before, it needs "
+                               "the right to instruct");
 }
 
 HttpResponse interventions(const AnswerContext& context, archive::Reader& reader, archive::RunId run,
@@ -373,10 +395,10 @@ HttpResponse interventions(const AnswerContext& context, archive::Reader& reader
     if (auto refusal = hidden(context, reader, run)) return std::move(*refusal);
     const auto page = ListPage::of(query, rows_page);
     if (!page) return error_response(400, page.error());
-    return answer_rows(
-        {reader, run, query}, reader.interventions(run, {page->after, page->limit, page->order}),
-        {"interventions",
-         {"fault", "device_fault", "system_fault", "computer_reset", "station_outage", "note", "skipped"}});
+    return answer_rows({reader, run, query}, reader.interventions(run, {page->after, page->limit, page->order}),
+                       {"interventions",
+                        {"fault", "device_fault", "system_fault", "computer_reset", "station_outage", "orbiter_outage",
+                         "uhf_loss", "wind_shift", "note", "skipped"}});
 }
 
 HttpResponse plan(const AnswerContext& context, archive::Reader& reader, archive::RunId run, const QueryText&) {
@@ -570,8 +592,8 @@ const std::array questions{
     RunRoute{"commands", {"text", "from", "to", "after", "limit", "order", "format"}, list_formats, commands},
     RunRoute{"alarms", {"state", "after", "limit", "order", "format"}, list_formats, alarms},
     RunRoute{"notes", {"text", "after", "limit", "order", "format"}, list_formats, notes},
-    RunRoute{"interventions", {"after", "limit", "order", "format"}, list_formats, interventions},
-    RunRoute{"plan", {}, {}, plan},
+    RunRoute{"interventions", {"after", "limit", "order", "format"}, list_formats, interventions, true},
+    RunRoute{"plan", {}, {}, plan, true},
     RunRoute{"preconditions", {"command", "at"}, {}, preconditions},
     RunRoute{"timepoints", {"at", "recorded", "command", "arguments", "format"}, list_formats, timepoints},
     RunRoute{"explanations",

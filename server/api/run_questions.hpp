@@ -27,6 +27,7 @@ struct RunRoute {
     std::vector<std::string_view> parameters;
     std::span<const std::string_view> formats;  ///< allowed values of the parameter "format"; empty: JSON only
     HttpResponse (*answer)(const AnswerContext&, archive::Reader&, archive::RunId, const QueryText&);
+    bool refused_for_instructors = false;  ///< it answers 403 to others while a run goes on, which is audited
 };
 
 /// Reads a parameter that names an instant, as archive::instant_of() does. None when absent.

@@ -24,14 +24,20 @@ std::string signature_in(const std::string& evidence) {
     return {};
 }
 
+std::string first_line(const std::string& text) {
+    const auto end = text.find('\n');
+    return end == std::string::npos ? text : text.substr(0, end) + " …";
+}
+
 /// Reads the items of a run into ScoreActs.
 class ActReader {
   public:
-    ActReader(const v1::AsFlownReport& report, const dictionary::Dictionary& dictionary)
-        : report_(report), dictionary_(dictionary) {}
+    ActReader(const v1::AsFlownReport& report, std::optional<Ert> end, const dictionary::Dictionary& dictionary)
+        : report_(report), end_(end), dictionary_(dictionary) {}
 
     ScoreActs read(const std::vector<v1::Item>& alarms, const std::vector<v1::Item>& heard) {
-        for (const auto& item : alarms) take_alarm(item);
+        for (const auto& item : alarms)
+            if (!item.has_alarm_action() || in_time(item)) take_alarm(item);
         for (const auto& command : report_.commands()) read_.commands.push_back(outcome_of(command));
         collect_acts(alarms);
         collect_heard(heard);
@@ -39,6 +45,7 @@ class ActReader {
     }
 
   private:
+    bool in_time(const v1::Item& item) const { return !end_ || item.ert_us() < end_->microseconds; }
     double e_s_of(const v1::Item& item) const {
         return archive::sclk_at_ert(report_.run(), Ert{item.ert_us()}).seconds - report_.run().entry_sclk();
     }
@@ -94,7 +101,7 @@ class ActReader {
         using Kind = PersonsAct::Kind;
         auto& acts = read_.acts;
         for (const auto& item : alarms) {
-            if (!item.has_alarm_action()) continue;
+            if (!item.has_alarm_action() || !in_time(item)) continue;
             const auto& action = item.alarm_action();
             acts.push_back({Kind::alarm, e_s_of(item),
                             fmt::format("{}: {} {}", or_someone(action.by()),
@@ -108,9 +115,11 @@ class ActReader {
                      command.name,
                      command.how == CommandOutcome::How::failed || command.how == CommandOutcome::How::cancelled});
         for (const auto& item : report_.notes())
-            acts.push_back({Kind::note, e_s_of(item),
-                            fmt::format("{} wrote “{}”", or_someone(item.note().by()), item.note().text()),
-                            item.note().text()});
+            if (in_time(item))
+                acts.push_back(
+                    {Kind::note, e_s_of(item),
+                     fmt::format("{} wrote “{}”", or_someone(item.note().by()), first_line(item.note().text())),
+                     item.note().text()});
         std::ranges::stable_sort(acts, {}, &PersonsAct::e_s);
     }
 
@@ -123,6 +132,7 @@ class ActReader {
     }
 
     const v1::AsFlownReport& report_;
+    std::optional<Ert> end_;
     const dictionary::Dictionary& dictionary_;
     ScoreActs read_;
 };
@@ -153,8 +163,9 @@ void RaisedAlarms::take_acknowledged(const v1::AlarmAction& action, double e_s) 
 }
 
 ScoreActs acts_of(const v1::AsFlownReport& report, const std::vector<v1::Item>& alarms,
-                  const std::vector<v1::Item>& heard, const dictionary::Dictionary& dictionary) {
-    return ActReader{report, dictionary}.read(alarms, heard);
+                  const std::vector<v1::Item>& heard, std::optional<Ert> end,
+                  const dictionary::Dictionary& dictionary) {
+    return ActReader{report, end, dictionary}.read(alarms, heard);
 }
 
 }  // namespace aeolis::server

@@ -3,6 +3,7 @@
 
 #include "aeolis/v1/items.pb.h"
 #include "aeolis/v1/run.pb.h"
+#include "common/time.hpp"
 #include "dictionaries/dictionary.hpp"
 
 #include <cstdint>
@@ -69,8 +70,9 @@ struct ScoreActs {
 
 /// @param alarms  changes of alarms and actions on them, in their order
 /// @param heard   event reports and tones; what only the recording brought does not count
+/// @param end     of the run, on Earth: what people did from then on, while they looked back, does not count
 ScoreActs acts_of(const v1::AsFlownReport& report, const std::vector<v1::Item>& alarms,
-                  const std::vector<v1::Item>& heard, const dictionary::Dictionary& dictionary);
+                  const std::vector<v1::Item>& heard, std::optional<Ert> end, const dictionary::Dictionary& dictionary);
 
 /// "PYRO_CONTROLLER_SILENT" as "pyro controller silent".
 std::string in_words(std::string name);

@@ -225,6 +225,7 @@ void StreamHub::run_state(v1::RunState state) {
         last_seq_ = state.last_seq();  // of a finished run, from the archive; of a new one 0
         forget_items();
         cache_.clear();
+        clocks_ = state.clocks();  // those of the run before are not this one's; the state tells of them
     }
     state_ = std::move(state);
     state_.set_last_seq(last_seq_);

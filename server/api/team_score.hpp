@@ -5,7 +5,7 @@
 #include "server/api/score_acts.hpp"
 #include "server/instruction/inject_plan.hpp"
 
-#include <optional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -17,6 +17,8 @@ struct TeamCase {
     const instruction::InjectPlan* plan = nullptr;  ///< null: the run had none
     const std::vector<v1::Intervention>& interventions;
     const ScoreActs& acts;
+    double from_e_s = -std::numeric_limits<double>::infinity();  ///< of a fork: what was done before is another run's
+    double until_e_s = std::numeric_limits<double>::infinity();  ///< what takes longer than the run is not judged
     double light_time_s = 0.0;  ///< an outage of the station is felt on Earth itself, not a light time later
 };
 

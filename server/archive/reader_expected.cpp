@@ -2,6 +2,7 @@
 #include "server/archive/reader_state.hpp"
 #include "telemetry/station/expected_values.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <map>
 
@@ -13,25 +14,29 @@ constexpr char values_sql[] =
     "SELECT octets, sclk FROM packets WHERE run = ?1 AND apid = ?2 AND source = ?3 ORDER BY sclk, key";
 constexpr double second_s = 1.0;
 
-/// A series under way, which ends with the channel's value at some instant.
+/// A series under way. A value holds until the next one; of each, the part within the range has its first and its last
+/// second, so that a value that does not change has both.
 class Growing {
   public:
     Growing(Reader::ExpectedSeries& series, const SclkRange& range) : series_(series), range_(range) {}
 
     void add(Sclk at, const std::optional<double>& value) {
-        if (last_ && at.seconds - last_at_s_ > second_s) put(at.seconds - second_s, *last_);
+        end(std::max(last_at_s_, at.seconds - second_s));
         last_ = value;
         last_at_s_ = at.seconds;
-        if (value) put(at.seconds, *value);
     }
-    /// The flight goes on to here without a change.
+    /// The last value holds to here.
     void end(double at_s) {
-        if (last_ && at_s > last_at_s_) put(at_s, *last_);
+        if (!last_) return;
+        const double from_s = std::max(last_at_s_, range_.from_s.value_or(last_at_s_));
+        const double to_s = std::min(at_s, range_.to_s.value_or(at_s));
+        if (from_s > to_s) return;
+        put(from_s, *last_);
+        if (to_s > from_s) put(to_s, *last_);
     }
 
   private:
     void put(double sclk_s, double value) {
-        if ((range_.from_s && sclk_s < *range_.from_s) || (range_.to_s && sclk_s > *range_.to_s)) return;
         series_.sclk_s.push_back(sclk_s);
         series_.value.push_back(value);
     }

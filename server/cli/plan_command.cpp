@@ -55,17 +55,22 @@ int plan_check(const PlanOptions& options) {
     const auto files =
         options.files.empty() ? instruction::yaml_files_in(options.shared.dictionary / "plans") : options.files;
     if (files.empty()) return failed(fmt::format("plan check: {} has no plans", options.shared.dictionary.string()), 2);
-    bool sound = true;
+    const auto library_text = instruction::PlanLibrary{options.shared.dictionary, *dictionary}.injects_text();
+    const auto read_injects = instruction::read_library(library_text, "injects.yaml", *dictionary, {});
+    bool sound = library_text.empty() || read_injects.injects.has_value();
+    if (!sound)
+        for (const auto& finding : read_injects.findings) fmt::print(stderr, "{}\n", finding.text());
+    const auto library = read_injects.injects.value_or(std::vector<instruction::Inject>{});
     std::vector<std::string> reports;
     for (const auto& file : files) {
         const auto text = instruction::text_of_file(file);
         if (!text) return failed("plan check: " + text.error().message, 2);
-        const auto first = instruction::read_plan(*text, file.string(), *dictionary, {});
+        const auto first = instruction::read_plan(*text, file.string(), *dictionary, library, {});
         const auto& of = first.plan && !first.plan->scenario.empty() ? first.plan->scenario : options.scenario;
         const auto scenario = scenario_given(of, options.shared.scenarios);
         if (!scenario) return failed("plan check: " + scenario.error().message, 2);
         const auto read =
-            instruction::read_plan(*text, file.string(), *dictionary, [&](const v1::FaultInjection& fault) {
+            instruction::read_plan(*text, file.string(), *dictionary, library, [&](const v1::FaultInjection& fault) {
                 const auto possible = fault_from_message(fault, *scenario);
                 return possible ? Result<void>{} : Result<void>{possible.error()};
             });

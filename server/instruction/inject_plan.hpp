@@ -104,6 +104,8 @@ double share_of(std::optional<double> after_s, double within_s, double none_s);
 
 std::string text_of(const v1::FaultInjection& fault);  ///< "pyro A silent, for 40 s"
 std::string text_of(const Expectation& expectation);   ///< "acknowledges uhf_live within 60 s"
+/// What a good team does, "detection: acknowledges …", by the inject's own words or the rubric's.
+std::vector<std::string> team_texts(const Inject& inject, const Rubric& rubric);
 /// "at E+1:30 vehicle, 2 s later"; empty: by hand.
 std::string when_text(const Inject& inject, const dictionary::Dictionary& dictionary);
 

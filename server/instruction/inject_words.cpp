@@ -13,6 +13,7 @@ namespace {
 
 /// "DEVICE_DESCENT_ENGINES" as "descent engines".
 std::string enumerator_words(const std::string& name, std::string_view prefix) {
+    if (!name.starts_with(prefix)) return "of another version";
     std::string words = name.substr(prefix.size());
     std::ranges::transform(words, words.begin(), [](unsigned char letter) {
         return letter == '_' ? ' ' : static_cast<char>(std::tolower(letter));
@@ -53,16 +54,29 @@ std::string text_of(const v1::FaultInjection& injected) {
     switch (injected.fault_case()) {
     case v1::FaultInjection::kDeviceFault: {
         const auto& fault = injected.device_fault();
-        return fmt::format("{} {} {}{}, for {}", enumerator_words(v1::Device_Name(fault.device()), "DEVICE_"),
-                           v1::RedundantUnit_Name(fault.unit()).back(),
-                           enumerator_words(v1::DeviceFaultKind_Name(fault.kind()), "DEVICE_FAULT_KIND_"),
-                           fault.has_late_s() ? " by " + seconds(fault.late_s()) : "", seconds(fault.duration_s()));
+        return fmt::format(
+            "{} {} {}{}, for {}", enumerator_words(v1::Device_Name(fault.device()), "DEVICE_"),
+            fault.unit() == v1::REDUNDANT_UNIT_B ? 'B' : 'A',
+            enumerator_words(v1::DeviceFaultKind_Name(fault.kind()), "DEVICE_FAULT_KIND_"),
+            fault.kind() == v1::DEVICE_FAULT_KIND_LATE && fault.has_late_s() ? " by " + seconds(fault.late_s()) : "",
+            seconds(fault.duration_s()));
     }
     case v1::FaultInjection::kStationOutage:
         return "the ground station brings nothing, for " + seconds(injected.station_outage().duration_s());
     case v1::FaultInjection::kSystemFault:
         return "a system outside EDL, for " + seconds(injected.system_fault().duration_s());
     case v1::FaultInjection::kComputerReset: return "the prime computer starts anew";
+    case v1::FaultInjection::kOrbiterOutage:
+        return "no orbiter relays, for " + seconds(injected.orbiter_outage().duration_s());
+    case v1::FaultInjection::kUhfLoss:
+        return fmt::format("UHF loses {} % of its octets at least, for {}",
+                           commands::shortest_text(100.0 * injected.uhf_loss().fraction()),
+                           seconds(injected.uhf_loss().duration_s()));
+    case v1::FaultInjection::kWindShift:
+        return fmt::format("the wind changes by {} m/s to the east and {} m/s to the north, for {}",
+                           commands::shortest_text(injected.wind_shift().east_mps()),
+                           commands::shortest_text(injected.wind_shift().north_mps()),
+                           seconds(injected.wind_shift().duration_s()));
     case v1::FaultInjection::FAULT_NOT_SET: break;
     }
     return "nothing";
@@ -80,6 +94,14 @@ std::string text_of(const Expectation& expectation) {
     case Expectation::Act::no_command: break;
     }
     return fmt::format("sends no {} for {} s", names.empty() ? "command" : any_of(names), within);
+}
+
+std::vector<std::string> team_texts(const Inject& inject, const Rubric& rubric) {
+    const auto& handling = inject.handling.team.empty() ? rubric.handling_of(inject.fault) : inject.handling;
+    std::vector<std::string> all;
+    for (const auto& expectation : handling.team)
+        all.push_back(fmt::format("{}: {}", name_of(expectation.of), text_of(expectation)));
+    return all;
 }
 
 std::string when_text(const Inject& inject, const dictionary::Dictionary& dictionary) {

@@ -29,11 +29,16 @@ std::vector<std::filesystem::path> yaml_files_in(const std::filesystem::path& fo
     return files;
 }
 
+std::string PlanLibrary::injects_text() const {
+    const auto text = text_of_file(folder_ / "injects.yaml");
+    return text ? *text : std::string{};
+}
+
 v1::PlanList PlanLibrary::list() const {
     v1::PlanList list;
     for (const auto& file : yaml_files_in(folder_ / "plans")) {
-        const auto text = text_of_file(file);
-        const auto read = text ? read_plan(*text, file.string(), dictionary_, {}) : ReadPlan{};
+        const auto text = plan(file.stem().string());
+        const auto read = text ? read_plan(*text, dictionary_) : ReadPlan{};
         if (!read.plan) {
             spdlog::warn("plan left out: {}", text ? read.findings_text() : text.error().message);
             continue;
@@ -44,6 +49,20 @@ v1::PlanList PlanLibrary::list() const {
         entry.set_purpose(read.plan->purpose);
         entry.set_scenario(read.plan->scenario);
         entry.set_injects(static_cast<std::uint32_t>(read.plan->injects.size()));
+    }
+    const auto library = injects_text();
+    if (library.empty()) return list;
+    const auto read = read_library(library, "injects.yaml", dictionary_, {});
+    for (const auto& finding : read.findings) spdlog::warn("library of injects: {}", finding.text());
+    const auto by = rubric();
+    for (const auto& inject : read.injects.value_or(std::vector<Inject>{})) {
+        auto& entry = *list.add_library();
+        entry.set_name(inject.id);
+        entry.set_title(inject.title);
+        entry.set_does(text_of(inject.fault));
+        entry.set_shows(inject.shows);
+        *entry.mutable_fault() = inject.fault;
+        for (auto& words : team_texts(inject, by ? *by : Rubric{})) entry.add_team(std::move(words));
     }
     return list;
 }
@@ -64,6 +83,7 @@ Result<v1::InstructorPlan> PlanLibrary::plan(const std::string& name) const {
     v1::InstructorPlan plan;
     plan.set_name(file->filename().string());
     plan.set_text(std::move(*text));
+    plan.set_library(injects_text());
     return plan;
 }
 

@@ -10,16 +10,18 @@
 
 namespace aeolis::server::instruction {
 
-/// What a mission's instructors have: the plans in the folder `plans` of its dictionary, and its `rubric.yaml`. Read
-/// anew for each call.
+/// What a mission's instructors have in its dictionary's folder: plans in `plans`, the library of injects
+/// `injects.yaml`, and `rubric.yaml`. Read anew for each call.
 class PlanLibrary {
   public:
     /// @param folder  the dictionary's; empty: there is neither. The dictionary must outlive this.
     PlanLibrary(std::filesystem::path folder, const dictionary::Dictionary& dictionary)
         : folder_(std::move(folder)), dictionary_(dictionary) {}
 
-    /// All readable plans, by name; one that breaks a rule is left out and logged.
+    /// All readable plans, by name, and the library; what breaks a rule is left out and logged.
     v1::PlanList list() const;
+    /// The library's text; empty: there is none.
+    std::string injects_text() const;
     /// The text of the plan of that name. The Error of an unknown name lists the existing ones.
     Result<v1::InstructorPlan> plan(const std::string& name) const;
     /// The mission's rubric; the Error says what is wrong with it, or that there is none.

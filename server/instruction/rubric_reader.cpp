@@ -61,6 +61,9 @@ FaultHandling RubricReader::fault(const YamlNode& node) {
     static constexpr std::array kinds{
         std::pair{std::string_view{"device_fault"}, v1::FaultInjection::kDeviceFault},
         std::pair{std::string_view{"station_outage"}, v1::FaultInjection::kStationOutage},
+        std::pair{std::string_view{"orbiter_outage"}, v1::FaultInjection::kOrbiterOutage},
+        std::pair{std::string_view{"uhf_loss"}, v1::FaultInjection::kUhfLoss},
+        std::pair{std::string_view{"wind_shift"}, v1::FaultInjection::kWindShift},
         std::pair{std::string_view{"system_fault"}, v1::FaultInjection::kSystemFault},
         std::pair{std::string_view{"computer_reset"}, v1::FaultInjection::kComputerReset},
     };

@@ -12,6 +12,7 @@ namespace {
 using procedures::unknown_name;
 using Act = Expectation::Act;
 
+constexpr std::size_t word_least = 3;  ///< chosen
 constexpr std::size_t names_max = 20;  ///< of alarms, words or commands that count alike; chosen
 
 /// Links are a scenario's: their names are known by how they begin.
@@ -88,7 +89,12 @@ Expectation TeamReader::expectation(const YamlNode& node) {
     for (std::size_t i = 0; i < read.names.size(); ++i) {
         const auto& name = read.names[i];
         const auto mark = names_of.items[i].mark;
-        if (name.empty() || read.act == Act::note) continue;
+        if (name.empty()) continue;
+        if (read.act == Act::note) {
+            if (name.size() < word_least)
+                add(mark, fmt::format("'{}' stands in too many words: {} characters at least", name, word_least));
+            continue;
+        }
         if (read.act == Act::acknowledge && !is_alarm(name))
             add(mark, fmt::format("'{}' is no alarm: a channel, a packet or a link", name));
         if (read.act != Act::acknowledge && dictionary_.command(name) == nullptr)

@@ -174,6 +174,9 @@ simulation::Scenario expected_scenario(simulation::Scenario scenario) {
     scenario.device_faults.clear();
     scenario.computer_resets.clear();
     scenario.station_outages.clear();
+    scenario.orbiter_outages.clear();
+    scenario.uhf_losses.clear();
+    scenario.wind_shifts.clear();
     scenario.bus_message_error_fraction = 0.0;
     scenario.radio.uhf_loss_fraction = 0.0;
     scenario.radio.uplink_loss_fraction = 0.0;

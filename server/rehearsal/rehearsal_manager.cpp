@@ -91,15 +91,19 @@ Result<std::optional<PlannedInjects>> RehearsalManager::plan_of(const v1::StartR
     v1::InstructorPlan given;
     given.set_name("inline_plan");
     given.set_text(request.inline_plan());
+    given.set_library(plans_.injects_text());
     if (!request.plan().empty()) {
         auto shipped = plans_.plan(request.plan());
         if (!shipped) return shipped.error();
         given = std::move(*shipped);
     }
-    auto read = instruction::read_plan(given.text(), given.name(), dictionary_, [&](const v1::FaultInjection& fault) {
-        const auto possible = fault_from_message(fault, scenario);
-        return possible ? Result<void>{} : Result<void>{possible.error()};
-    });
+    const instruction::CheckFault possible = [&](const v1::FaultInjection& fault) {
+        const auto checked = fault_from_message(fault, scenario);
+        return checked ? Result<void>{} : Result<void>{checked.error()};
+    };
+    auto library = instruction::read_library(given.library(), "injects.yaml", dictionary_, {});
+    auto read = instruction::read_plan(given.text(), given.name(), dictionary_,
+                                       library.injects.value_or(std::vector<instruction::Inject>{}), possible);
     if (!read.plan) return Error{read.findings_text()};
     return std::optional{PlannedInjects{std::move(given), std::move(*read.plan)}};
 }

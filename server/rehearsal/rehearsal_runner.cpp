@@ -43,9 +43,11 @@ bool last_counts(const RunOrder& order) {
            std::holds_alternative<StopRun>(order);
 }
 
-/// Whether a fork repeats a request of its parent; at the instant itself a fork of the parent, whose seed is its by then.
+/// Whether a fork repeats a request of its parent; at the instant itself its plan, and a fork of the parent, whose seed
+/// is its by then.
 bool comes_before(const archive::ForkPoint& fork, const archive::RequestRecord& request) {
-    return request.cycle < fork.cycle || (request.cycle == fork.cycle && is_fork(request));
+    if (request.cycle != fork.cycle) return request.cycle < fork.cycle;
+    return is_fork(request) || archive::kept_request(request.request).has_plan();
 }
 
 }  // namespace
@@ -222,10 +224,11 @@ Result<void> RehearsalRunner::follow_plan(const Rehearsal& rehearsal) {
             const auto kept = archive::kept_request(record.request);
             if (kept.has_intervention()) settled_in_archive_.insert(kept.intervention().inject());
             if (!kept.has_plan()) continue;
-            auto read = instruction::read_plan(kept.plan().text(), kept.plan().name(), dictionary_, {});
-            if (!read.plan)
-                return Error{fmt::format("run {}: its plan breaks the rules of this version:\n{}",
-                                         again_->run.run.value, read.findings_text())};
+            auto read = instruction::read_plan(kept.plan(), dictionary_);
+            if (!read.plan) {  // the findings are for instructors
+                spdlog::error("run {}: {}", again_->run.run.value, read.findings_text());
+                return Error{fmt::format("run {} needs another version: the log says why", again_->run.run.value)};
+            }
             plan = std::move(*read.plan);
         }
     if (!plan) return {};

@@ -158,6 +158,21 @@ const Bindings<simulation::StationOutage> outage_fields = {
     AEOLIS_BIND(StationOutage, begin_before_entry_s),
     AEOLIS_BIND(StationOutage, duration_s),
 };
+const Bindings<simulation::OrbiterOutage> orbiter_outage_fields = {
+    AEOLIS_BIND(OrbiterOutage, begin_before_entry_s),
+    AEOLIS_BIND(OrbiterOutage, duration_s),
+};
+const Bindings<simulation::UhfLoss> uhf_loss_fields = {
+    AEOLIS_BIND(UhfLoss, begin_before_entry_s),
+    AEOLIS_BIND(UhfLoss, duration_s),
+    AEOLIS_BIND(UhfLoss, fraction),
+};
+const Bindings<simulation::WindShift> wind_shift_fields = {
+    AEOLIS_BIND(WindShift, begin_before_entry_s),
+    AEOLIS_BIND(WindShift, duration_s),
+    AEOLIS_BIND(WindShift, east_mps),
+    AEOLIS_BIND(WindShift, north_mps),
+};
 const Bindings<simulation::DeviceFault> device_fault_fields = {
     AEOLIS_BIND(DeviceFault, begin_before_entry_s),
     AEOLIS_BIND(DeviceFault, duration_s),
@@ -275,6 +290,16 @@ Result<simulation::DeviceFault> device_fault_from_message(const v1::DeviceFault&
     return fault;
 }
 
+/// What begins with the next cycle and lasts.
+template <typename Spell, typename Message>
+Result<simulation::Fault> spell_now(const Message& message, const Bindings<Spell>& fields, const char* name) {
+    if (message.begin_before_entry_s() != 0.0)
+        return Error{fmt::format("{}.begin_before_entry_s: it begins now", name)};
+    Spell spell;
+    read(message, fields, spell);
+    return simulation::Fault{spell};
+}
+
 Result<simulation::Fault> read_fault(const v1::FaultInjection& message) {
     switch (message.fault_case()) {
     case v1::FaultInjection::kDeviceFault: {
@@ -284,26 +309,20 @@ Result<simulation::Fault> read_fault(const v1::FaultInjection& message) {
         if (!fault) return fault.error();
         return simulation::Fault{*fault};
     }
-    case v1::FaultInjection::kSystemFault: {
-        if (message.system_fault().begin_before_entry_s() != 0.0)
-            return Error{"system_fault.begin_before_entry_s: it begins now"};
-        simulation::SystemFault fault;
-        read(message.system_fault(), fault_fields, fault);
-        return simulation::Fault{fault};
-    }
+    case v1::FaultInjection::kSystemFault: return spell_now(message.system_fault(), fault_fields, "system_fault");
     case v1::FaultInjection::kComputerReset:
         if (!message.computer_reset()) return Error{"computer_reset: false asks for nothing"};
         return simulation::Fault{simulation::ComputerReset{}};
-    case v1::FaultInjection::kStationOutage: {
-        if (message.station_outage().begin_before_entry_s() != 0.0)
-            return Error{"station_outage.begin_before_entry_s: it begins now"};
-        simulation::StationOutage outage;
-        read(message.station_outage(), outage_fields, outage);
-        return simulation::Fault{outage};
-    }
+    case v1::FaultInjection::kStationOutage:
+        return spell_now(message.station_outage(), outage_fields, "station_outage");
+    case v1::FaultInjection::kOrbiterOutage:
+        return spell_now(message.orbiter_outage(), orbiter_outage_fields, "orbiter_outage");
+    case v1::FaultInjection::kUhfLoss: return spell_now(message.uhf_loss(), uhf_loss_fields, "uhf_loss");
+    case v1::FaultInjection::kWindShift: return spell_now(message.wind_shift(), wind_shift_fields, "wind_shift");
     case v1::FaultInjection::FAULT_NOT_SET: break;
     }
-    return Error{"the injection says nothing: device_fault, system_fault, computer_reset or station_outage is wanted"};
+    return Error{"the injection says nothing: device_fault, system_fault, computer_reset, "
+                 "station_outage, orbiter_outage, uhf_loss or wind_shift is wanted"};
 }
 
 void write_device_fault(const simulation::DeviceFault& fault, v1::DeviceFault& row) {
@@ -434,6 +453,10 @@ Result<Scenario> scenario_from_message(const v1::Scenario& message) {
     }
     for (const auto& row : message.computer_resets()) read(row, reset_fields, scenario.computer_resets.emplace_back());
     for (const auto& row : message.station_outages()) read(row, outage_fields, scenario.station_outages.emplace_back());
+    for (const auto& row : message.orbiter_outages())
+        read(row, orbiter_outage_fields, scenario.orbiter_outages.emplace_back());
+    for (const auto& row : message.uhf_losses()) read(row, uhf_loss_fields, scenario.uhf_losses.emplace_back());
+    for (const auto& row : message.wind_shifts()) read(row, wind_shift_fields, scenario.wind_shifts.emplace_back());
     const auto impossible = simulation::impossible_values(scenario);
     if (!impossible.empty()) return Error{joined(impossible, "")};
     return scenario;
@@ -447,10 +470,17 @@ Result<simulation::Fault> fault_from_message(const v1::FaultInjection& message, 
     with_it_alone.device_faults.clear();
     with_it_alone.computer_resets.clear();
     with_it_alone.station_outages.clear();
+    with_it_alone.orbiter_outages.clear();
+    with_it_alone.uhf_losses.clear();
+    with_it_alone.wind_shifts.clear();
     if (const auto* device = std::get_if<simulation::DeviceFault>(&*fault)) with_it_alone.device_faults = {*device};
     if (const auto* system = std::get_if<simulation::SystemFault>(&*fault)) with_it_alone.system_faults = {*system};
     if (const auto* reset = std::get_if<simulation::ComputerReset>(&*fault)) with_it_alone.computer_resets = {*reset};
     if (const auto* outage = std::get_if<simulation::StationOutage>(&*fault)) with_it_alone.station_outages = {*outage};
+    if (const auto* orbiter = std::get_if<simulation::OrbiterOutage>(&*fault))
+        with_it_alone.orbiter_outages = {*orbiter};
+    if (const auto* loss = std::get_if<simulation::UhfLoss>(&*fault)) with_it_alone.uhf_losses = {*loss};
+    if (const auto* shift = std::get_if<simulation::WindShift>(&*fault)) with_it_alone.wind_shifts = {*shift};
     if (const auto found = simulation::impossible_values(with_it_alone); !found.empty()) return Error{found.front()};
     return fault;
 }
@@ -496,6 +526,10 @@ v1::Scenario scenario_to_message(const Scenario& scenario) {
     for (const auto& fault : scenario.device_faults) write_device_fault(fault, *message.add_device_faults());
     for (const auto& reset : scenario.computer_resets) write(reset, reset_fields, *message.add_computer_resets());
     for (const auto& outage : scenario.station_outages) write(outage, outage_fields, *message.add_station_outages());
+    for (const auto& outage : scenario.orbiter_outages)
+        write(outage, orbiter_outage_fields, *message.add_orbiter_outages());
+    for (const auto& loss : scenario.uhf_losses) write(loss, uhf_loss_fields, *message.add_uhf_losses());
+    for (const auto& shift : scenario.wind_shifts) write(shift, wind_shift_fields, *message.add_wind_shifts());
     return message;
 }
 

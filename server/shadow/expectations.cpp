@@ -18,6 +18,9 @@ constexpr double tolerated_part = 0.25, tolerated_least_s = 1.0;
 constexpr double spread_least_s = 1.0 / 64.0;  // a cycle: what differs by less tells nothing
 constexpr double least_determinant = 1.0e-6;   // of two correlated times, relative: they say the same
 constexpr std::size_t regressors_max = 2;
+// Chosen: a case that ends so much before the others is lost, not early; so few of them say nothing of where the others
+// are at that time.
+constexpr std::size_t lost_before_s = 60, cases_per_lost = 100;
 
 double mean_of(const std::vector<double>& values) {
     double sum = 0.0;
@@ -48,6 +51,20 @@ std::array<double, regressors_max> least_squares(const std::vector<double>& y,
     by[0] = (xy * zz - zy * xz) / determinant;
     by[1] = (zy * xx - xy * xz) / determinant;
     return by;
+}
+
+/// The cases that tell of courses: all, but for a few that were lost long before the others ended.
+std::vector<const Course*> courses_to_the_end(std::span<const Course> courses) {
+    std::vector<std::size_t> lengths;
+    for (const Course& course : courses) lengths.push_back(course.seconds.size());
+    std::ranges::sort(lengths);
+    const std::size_t usual = lengths.empty() ? 0 : lengths[lengths.size() / 2];
+    std::vector<const Course*> all, flown;
+    for (const Course& course : courses) {
+        all.push_back(&course);
+        if (course.seconds.size() + lost_before_s >= usual) flown.push_back(&course);
+    }
+    return (all.size() - flown.size()) * cases_per_lost <= all.size() ? flown : all;
 }
 
 }  // namespace
@@ -85,17 +102,18 @@ v1::PlanEnsemble ensemble_of(std::span<const Course> courses, std::uint32_t orde
         }
     }
     ensemble.set_first_e_s(static_cast<std::int32_t>(first_s));
+    const auto flown = courses_to_the_end(courses);
     for (std::size_t second = 0;; ++second) {
         std::array<std::vector<double>, quantities> values;
-        for (const Course& course : courses) {
-            if (second >= course.seconds.size()) continue;
-            const Course::Second& at = course.seconds[second];
+        for (const Course* course : flown) {
+            if (second >= course->seconds.size()) continue;
+            const Course::Second& at = course->seconds[second];
             values[0].push_back(at.altitude_m);
             values[1].push_back(at.speed_mps);
             values[2].push_back(at.range_rate_mps);
         }
         // Once a case has ended, the others are those that fly longer: no sample of all.
-        if (values[0].size() < courses.size() || courses.empty()) break;
+        if (values[0].size() < flown.size() || flown.empty()) break;
         for (std::size_t i = 0; i < quantities; ++i) {
             std::ranges::sort(values[i]);
             auto& out = i == 0   ? *ensemble.mutable_altitude_m()

@@ -45,7 +45,7 @@ double OrbiterPass::range_km(double e_s) const {
 
 double OrbiterPass::loss_fraction(double e_s) const {
     const double range = range_km(e_s) / loss_range_km_;
-    return range > 0.0 ? std::min(loss_ * range * range, worst_loss_fraction) : loss_;
+    return std::max(range > 0.0 ? std::min(loss_ * range * range, worst_loss_fraction) : loss_, least_loss_);
 }
 
 double OrbiterPass::file_rate_bps(double e_s) const {

@@ -36,6 +36,8 @@ class OrbiterPass {
     double range_km(double e_s) const;
     double loss_fraction(double e_s) const;
     double file_rate_bps(double e_s) const;
+    /// From now on the link loses this part, where it would lose less; 0: as it is.
+    void lose_at_least(double fraction) { least_loss_ = fraction; }
 
     /// Receives the octets of one cycle. A bent pipe returns what Earth receives of them, valid until the next call; a
     /// recording orbiter keeps them. Error bursts follow the clock, also while the vehicle sends nothing in real time.
@@ -62,7 +64,7 @@ class OrbiterPass {
     }
 
     RelayPass row_;
-    double loss_, loss_range_km_, default_rate_bps_;
+    double loss_, loss_range_km_, default_rate_bps_, least_loss_ = 0.0;
     double realtime_octets_a_cycle_;
     std::array<ErrorBursts, 3> errors_;  ///< of both kinds of traffic and of the forward link
     std::array<Store, 2> stores_;

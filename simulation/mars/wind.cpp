@@ -32,8 +32,8 @@ Wind::Wind(double steady_east_mps, double steady_north_mps, double deviation_mps
       gusts_(gusts) {}
 
 Vector3 Wind::at(const Vector3& p, double altitude_m) const {
-    double east_mps = east_mps_;
-    double north_mps = north_mps_;
+    double east_mps = east_mps_ + shift_east_mps_;
+    double north_mps = north_mps_ + shift_north_mps_;
     if (!by_height_.empty()) {
         const WindRow row = row_at(by_height_, altitude_m);
         east_mps += row.east_mps;

@@ -29,6 +29,9 @@ class Wind {
     double east_mps() const { return east_mps_; }
     double north_mps() const { return north_mps_; }
 
+    /// From now on added at all heights.
+    void shift(double east_mps, double north_mps) { shift_east_mps_ = east_mps, shift_north_mps_ = north_mps; }
+
     /// Advances the gusts by `step_s` of flight at this position and velocity.
     void advance(const Vector3& p_MoB_M, const Vector3& v_MB_M, double altitude_m, double step_s) {
         if (gusts_.blow_at(altitude_m)) gusts_.advance(altitude_m, (v_MB_M - at(p_MoB_M, altitude_m)).norm(), step_s);
@@ -37,6 +40,7 @@ class Wind {
   private:
     double east_mps_, north_mps_, wave_mps_;
     double east_phase_rad_, north_phase_rad_;
+    double shift_east_mps_ = 0.0, shift_north_mps_ = 0.0;
     std::vector<WindRow> by_height_;
     Gusts gusts_;
 };

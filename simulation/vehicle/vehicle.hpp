@@ -51,6 +51,8 @@ class Vehicle {
     /// Sets what the drivers of thrusters, engines and bridle do from now on.
     void command(const flight::ThrusterCommand& thrusters, bool thrusters_enabled, const flight::EngineCommand& engines,
                  bool pay_out_bridle, double now_s);
+    /// From now on added to the wind at all heights.
+    void shift_wind(double east_mps, double north_mps) { wind_.shift(east_mps, north_mps); }
     /// Integrates one step of at most 5 ms.
     void step(double now_s, double step_s);
     /// Advances the jettisoned bodies by a tick of 1/64 s. Call after the vehicle has flown it.

@@ -469,8 +469,8 @@ TEST_CASE("what an instructor does is told to those who may instruct, to all oth
         CHECK_THAT(reply.body, Catch::Contains(says) && !Catch::Contains("someone else"));
     };
     told_once("instructor", 200, R"("by":"instructor")");
-    told_once("director", 403, "told when the run is over");
-    told_once("controller", 403, "told when the run is over");
+    told_once("director", 403, "told when the run and its forks are over");
+    told_once("controller", 403, "told when the run and its forks are over");
     REQUIRE(guarded.ask("director", "POST", "/api/v1/rehearsals/current", R"({"stop":true})").status == 202);
     told_once("observer", 200, "do they see it?");
 
@@ -485,7 +485,7 @@ TEST_CASE("what an instructor does is told to those who may instruct, to all oth
     guarded.server.restart();
     guarded.as["observer"] = guarded.log_in("observer", Guarded::password);
     CHECK_THAT(guarded.ask("observer", "GET", "/api/v1/runs/latest").body, Catch::Contains(R"("state":"interrupted")"));
-    told_once("observer", 403, "told when the run is over");  // it can be continued
+    told_once("observer", 403, "told when the run and its forks are over");  // it can be continued
 }
 
 TEST_CASE("a forecast from the truth does not exist for who may not instruct, and one by telemetry is everybody's",
@@ -542,8 +542,8 @@ TEST_CASE("a stream is closed when its log-in ends", "[access][stream]") {
 TEST_CASE("what was done, by whom and with what outcome, is in the audit, and no password is", "[access][audit]") {
     Guarded guarded;
     guarded.ask("controller", "POST", "/api/v1/runs/latest/commands",
-                R"({"command":"NO_OP","request":"4711","dry_run":true})");
-    guarded.ask("controller", "POST", "/api/v1/runs/latest/commands", R"({"command":"NO_OP","request":"4712"})");
+                R"({"command":"NO_OP","client_id":"only-looked","dry_run":true})");
+    guarded.ask("controller", "POST", "/api/v1/runs/latest/commands", R"({"command":"NO_OP","client_id":"was-sent"})");
     guarded.ask("controller", "POST", "/api/v1/rehearsals", R"({"scenario":"nominal","pace":1})");
     guarded.ask("director", "POST", "/api/v1/rehearsals", R"({"scenario":"nominal","pace":1})");
     CHECK(guarded.ask("controller", "PATCH", "/api/v1/users/director", R"({"role":"observer"})").status == 403);
@@ -559,7 +559,7 @@ TEST_CASE("what was done, by whom and with what outcome, is in the audit, and no
     CHECK_THAT(audit, Catch::Contains("add 'observer' as observer"));
     CHECK_THAT(audit, Catch::Contains("change 'director'\",\"outcome\":\"refused"));
     CHECK_THAT(audit, Catch::Contains("user or password is wrong"));
-    CHECK_THAT(audit, Catch::Contains("4712") && !Catch::Contains("4711"));  // a dry run is no action
+    CHECK_THAT(audit, Catch::Contains("was-sent") && !Catch::Contains("only-looked"));  // a dry run is no action
     CHECK_THAT(audit, !Catch::Contains("given by another") && !Catch::Contains(Guarded::password) &&
                           !Catch::Contains("a wrong guess"));
 }

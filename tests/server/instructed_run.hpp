@@ -22,7 +22,7 @@ inline const std::filesystem::path shipped_dictionary_folder = AEOLIS_SOURCE_DIR
 
 /// The plan of this text, which stands in p.yaml.
 inline server::PlannedInjects plan_of_text(const std::string& text) {
-    auto read = server::instruction::read_plan(text, "p.yaml", tests::shipped_dictionary(), {});
+    auto read = server::instruction::read_plan(text, "p.yaml", tests::shipped_dictionary(), {}, {});
     INFO(read.findings_text());
     REQUIRE(read.plan);
     v1::InstructorPlan given;
@@ -33,7 +33,7 @@ inline server::PlannedInjects plan_of_text(const std::string& text) {
 inline server::PlannedInjects shipped_plan(const char* name) {
     auto given =
         server::instruction::PlanLibrary{shipped_dictionary_folder, tests::shipped_dictionary()}.plan(name).value();
-    auto read = server::instruction::read_plan(given.text(), given.name(), tests::shipped_dictionary(), {});
+    auto read = server::instruction::read_plan(given, tests::shipped_dictionary());
     REQUIRE(read.plan);
     return {std::move(given), std::move(*read.plan)};
 }

@@ -105,6 +105,7 @@ class Controlled {
         v1::StartRehearsal start;
         *start.mutable_inline_scenario() = scenario_to_message(short_landing());
         start.set_seed(7);
+        start.set_pace(1.0);
         start.set_inline_plan(plan);
         const auto begun = ask("instructor", "POST", "/api/v1/rehearsals", to_json(start));
         INFO(begun.body);
@@ -121,7 +122,8 @@ class Controlled {
         std::vector<std::string> all;
         const auto add = [&](std::string_view method, const std::string& target, std::string_view body = {}) {
             const auto reply = ask("controller", method, target, body);
-            all.push_back(fmt::format("{} {} {} {}", method, target, reply.status, without_wall_clock(reply.body)));
+            all.push_back(
+                fmt::format("{} {} {}\n{} {}", method, target, body, reply.status, without_wall_clock(reply.body)));
         };
         for (const char* what : {"",
                                  "/channels?names=altitude_m",
@@ -146,7 +148,10 @@ class Controlled {
                                  "/prediction",
                                  "/samples?names=altitude_m&to=E-10:00",
                                  "/forecasts",
-                                 "/raw?link=uhf_live&format=bin"})
+                                 "/raw?link=uhf_live&format=bin",
+                                 "/score",
+                                 "/differences?with=1",
+                                 "/preconditions?command=NO_OP"})
             add("GET", std::string{"/api/v1/runs/1"} + what);
         for (const char* path : {"/api/v1/rehearsals", "/api/v1/rehearsals/current", "/api/v1/runs", "/api/v1/plans",
                                  "/api/v1/scenarios", "/api/v1/layouts"})
@@ -218,7 +223,8 @@ TEST_CASE("a controller gets the same octets with a plan and without one, until 
     CHECK(refused.body == refused_too.body);
     for (const auto& told : planned.everything()) {
         INFO(told.substr(0, 400));
-        CHECK(told.find("hidden_words") == (told.starts_with("POST ") ? told.find("hidden_words") : std::string::npos));
+        const auto asked = told.find("\n");  // what a controller asks for may say it
+        CHECK(told.find("hidden_words", asked) == std::string::npos);
     }
     for (const auto* run : {&planned, &plain}) {
         run->order(R"({"pace":0})");
@@ -258,6 +264,29 @@ TEST_CASE("of a plan that does nothing a controller gets nothing at all, over ev
         const bool of_the_plan = with[i].starts_with("GET /api/v1/runs/1/plan ");  // everybody may read it then
         CHECK((with[i] == without[i]) == !of_the_plan);
     }
+}
+
+TEST_CASE("a fork of a hidden run, which a director may make, tells nobody of the plan while either goes on",
+          "[instruction][access][R59]") {
+    Controlled run{hidden_plan};
+    const auto status = [&](const char* what) { return run.ask("controller", "GET", what).status; };
+    run.order(R"({"pace":0})");
+    run.wait_for_the_end();
+    CHECK(status("/api/v1/runs/1/plan") == 200);
+    REQUIRE(run.ask("instructor", "POST", "/api/v1/rehearsals",
+                    R"({"fork":{"run":1,"at":"E-10:00","paused":true},"pace":1})")
+                .status == 201);
+    for (const char* what : {"/api/v1/runs/1/plan", "/api/v1/runs/1/interventions", "/api/v1/runs/2/plan"})
+        CHECK(status(what) == 403);
+    const auto audit = run.ask("administrator", "GET", "/api/v1/audit").body;
+    CHECK_THAT(audit, Catch::Contains("GET /api/v1/runs/2/plan"));
+    CHECK_THAT(run.ask("controller", "GET", "/metrics").body,
+               !Catch::Contains("/api/v1/rehearsals/current") && !Catch::Contains("/api/v1/plans"));
+    run.order(R"({"stop":true})");
+    for (int i = 0; i < 500 && status("/api/v1/runs/2/plan") != 200; ++i)
+        std::this_thread::sleep_for(std::chrono::milliseconds{20});
+    for (const char* what : {"/api/v1/runs/1/plan", "/api/v1/runs/1/interventions", "/api/v1/runs/2/plan"})
+        CHECK(status(what) == 200);
 }
 
 }  // namespace server_instructed_run_test

@@ -113,6 +113,9 @@ TEST_CASE("scenarios that differ in faults, errors, losses and name are expected
     other.system_faults = {{300.0, 20.0}};
     other.computer_resets = {{-100.0}};
     other.station_outages = {{200.0, 30.0}};
+    other.orbiter_outages = {{200.0, 30.0}};
+    other.uhf_losses = {{200.0, 30.0, 0.5}};
+    other.wind_shifts = {{200.0, 30.0, 5.0, 5.0}};
     other.bus_message_error_fraction = 0.01;
     other.radio.uhf_loss_fraction = 0.5;
     other.radio.uplink_loss_fraction = 0.5;

@@ -401,6 +401,16 @@ TEST_CASE("a run that was left goes on with the flight that ground keeps beside 
     CHECK((*expected)[1].sclk_s.size() > 5);
     CHECK((*expected)[1].sclk_s.size() < 100);  // where it changes
     CHECK((*expected)[0].sclk_s.back() > scenario.entry_sclk.seconds + 118.0);
+    // Within a range in which it does not change it has the range's ends.
+    const auto& whole = (*expected)[1];
+    std::size_t held = 0;
+    while (held + 1 < whole.sclk_s.size() && whole.sclk_s[held + 1] - whole.sclk_s[held] < 5.0) ++held;
+    REQUIRE(held + 1 < whole.sclk_s.size());
+    const double from_s = whole.sclk_s[held] + 1.0, to_s = whole.sclk_s[held] + 3.0;
+    const auto within = reader->expected_values(archive::RunId{1}, {stand}, {from_s, to_s});
+    REQUIRE(within);
+    CHECK((*within)[0].sclk_s == std::vector<double>{from_s, to_s});
+    CHECK((*within)[0].value == std::vector<double>{whole.value[held], whole.value[held]});
     const auto timepoints = reader->timepoints(archive::RunId{1}, {});
     REQUIRE(timepoints);
     const auto mortar =

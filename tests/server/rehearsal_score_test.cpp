@@ -182,7 +182,7 @@ TEST_CASE("acknowledging another alarm earns nothing of a fault, and a command w
     silent.mutable_staleness()->set_missing(true);
     facts.alarms = {silent, limit(10.0, v1::Alarm::watch), acknowledged(12.0, "Navigation")};
     CHECK(points(score(facts), "detection") ==
-          Texts{"acknowledges navigation silent: 100, acknowledged 3 s later by Ann",
+          Texts{"acknowledges what else it raised, all as one: 100, 1 of 1 were acknowledged",
                 "acknowledges speed_mps within 20 s: 0, never acknowledged"});
     CHECK(points(score(facts), "action") ==
           Texts{"sends no command for 60 s: 100, nothing was sent; somebody was there: Ann: acknowledge Navigation"});
@@ -191,6 +191,52 @@ TEST_CASE("acknowledging another alarm earns nothing of a fault, and a command w
                  {Stage::authorised, Stage::ok, "no arming needed, by Cem"},
                  {Stage::executed, Stage::ok}});
     CHECK(points(score(facts), "action") == Texts{"sends no command for 60 s: 0, 30 s later: Cem: sent NO_OP"});
+}
+
+TEST_CASE("a line of the log serves one fault, names a cause by whole words, and names few", "[score][R59]") {
+    auto by = rubric();
+    for (const char* word : {"imu", "pyro", "engine", "thruster", "power"}) {
+        auto& other = by.faults.emplace_back();
+        other.kind = v1::FaultInjection::kSystemFault;
+        other.handling.team = {{Skill::diagnosis, Expectation::Act::note, {word}, 60.0}};
+    }
+    const auto diagnosed = [&](const std::vector<std::pair<double, const char*>>& notes, int faults = 1) {
+        auto facts = ended();
+        for (int i = 0; i < faults; ++i) {
+            add_radar_fault(facts, 8.0 + 2.0 * i);
+            facts.alarms.push_back(limit(10.0 + 2.0 * i, v1::Alarm::watch));
+            facts.alarms.push_back(acknowledged(10.5 + 2.0 * i));
+            facts.alarms.push_back(limit(11.0 + 2.0 * i, v1::Alarm::none));
+        }
+        for (const auto& [e_s, text] : notes) add_note(facts, e_s, text);
+        double sum = 0.0;
+        const auto judged = score(facts, by);
+        for (const auto& point : term(judged, "diagnosis")->judged()) sum += point.share();
+        return sum;
+    };
+    CHECK(diagnosed({{20.0, "the radars are gone"}}) == 1.0);
+    CHECK(diagnosed({{20.0, "radarless"}}) == 0.0);
+    CHECK(diagnosed({{20.0, "Anomaly report: the radar\nwhat the screen shows"}}) == 1.0);
+    CHECK(diagnosed({{20.0, "Anomaly report: cause not known\nwhat the screen shows: radar"}}) == 0.0);
+    CHECK(diagnosed({{20.0, "radar"}}, 2) == 1.0);
+    CHECK(diagnosed({{20.0, "radar"}, {21.0, "radar"}}, 2) == 1.0);  // said again, it says nothing new
+    CHECK(diagnosed({{20.0, "radar"}, {21.0, "and the radar once more"}}, 2) == 2.0);
+    CHECK(diagnosed({{20.0, "radar imu pyro engine thruster power"}}) == 0.0);
+}
+
+TEST_CASE("of a fork only what was done from the fork on is judged, and nothing that took longer than the run",
+          "[score][R59]") {
+    auto facts = ended();
+    add_radar_fault(facts, 8.0);
+    facts.alarms = {limit(10.0, v1::Alarm::watch), acknowledged(12.0)};
+    facts.report.mutable_run()->mutable_forked_from()->set_run(3);
+    facts.report.mutable_run()->mutable_forked_from()->set_e_s(50.0);
+    CHECK(score(facts).terms_size() == 1);
+    CHECK(texts(score(facts), "landing").front() == "forked from run 3: what was done before is that run's");
+    facts.report.mutable_run()->clear_forked_from();
+    facts.end = Ert{item_at(30.0).ert_us()};
+    CHECK(points(score(facts), "diagnosis").empty());  // 60 s were not left
+    CHECK(points(score(facts), "detection").size() == 1);
 }
 
 TEST_CASE("what showed nowhere is not judged, and a plan's own words come before the rubric's", "[score][R59]") {

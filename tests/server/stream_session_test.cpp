@@ -614,6 +614,22 @@ void next_run(Venue& venue) {
 
 }  // namespace
 
+TEST_CASE("the clocks of the run before are not those of the next, which has its own or none yet", "[stream]") {
+    Venue venue;
+    v1::Clocks clocks;
+    clocks.set_ert_us(5);
+    venue.hub.clocks(clocks);
+    CHECK(venue.hub.ert_now() == Ert{5});
+    v1::RunState next;
+    next.set_run(2);
+    venue.hub.run_state(next);
+    CHECK_FALSE(venue.hub.ert_now());  // no note of this run is of an instant of the other
+    next.set_run(3);
+    next.mutable_clocks()->set_ert_us(7);
+    venue.hub.run_state(next);
+    CHECK(venue.hub.ert_now() == Ert{7});
+}
+
 TEST_CASE("who is behind when the next run begins gets the rest of the one before, and then the next",
           "[stream][R42]") {
     Venue venue;

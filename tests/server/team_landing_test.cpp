@@ -51,7 +51,7 @@ class Team {
     explicit Team(ScoreFacts& facts) : facts_(facts) {}
 
     void acknowledge_all(double after_s) {
-        const auto raised = acts_of(facts_.report, facts_.alarms, {}, tests::shipped_dictionary()).raised.all;
+        const auto raised = acts_of(facts_.report, facts_.alarms, {}, {}, tests::shipped_dictionary()).raised.all;
         for (const auto& alarm : raised) {
             auto item = at(alarm.e_s + after_s);
             item.mutable_alarm_action()->set_alarm(alarm.name);
@@ -69,7 +69,7 @@ class Team {
     }
     /// When an event or tone of this name was first received.
     double heard(const char* name) const {
-        const auto acts = acts_of(facts_.report, {}, facts_.heard, tests::shipped_dictionary());
+        const auto acts = acts_of(facts_.report, {}, facts_.heard, {}, tests::shipped_dictionary());
         const auto times = acts.heard.find(name);
         INFO(name);
         REQUIRE(times != acts.heard.end());
@@ -121,6 +121,26 @@ TEST_CASE("of a landing with faults nobody earns 40 at most, a good team 90 at l
     INFO(in_text(good));
     CHECK(good.sum() >= 90.0);
 
+    // Who acknowledges all and writes every word there is, again and again, has understood nothing.
+    auto bot = nobody("station_and_pyro");
+    Team mindless{bot};
+    mindless.acknowledge_all(5.0);
+    for (double e_s = -880.0; e_s < 420.0; e_s += 20.0)
+        mindless.write(e_s,
+                       "station antenna line imu radar pyro engine thruster uhf power orbiter wind reset parachute "
+                       "touchdown edl begun uhf lost tones lost computer reset");
+    INFO(in_text(score(bot)));
+    CHECK(score(bot).sum() < 75.0);
+    CHECK(in_text(score(bot)).find("diagnosis 0.0 of") != std::string::npos);
+    // What is written once it is over is a look back.
+    auto late = nobody("station_and_pyro");
+    const auto before = score(late).sum();
+    REQUIRE(late.end);
+    Team afterwards{late};
+    const double end_e_s = archive::sclk_at_ert(late.report.run(), *late.end).seconds - late.report.run().entry_sclk();
+    afterwards.write(end_e_s, "Touchdown");
+    CHECK(score(late).sum() == before);
+
     auto& command = *facts.report.add_commands();
     command.set_command(9);
     command.set_name("NO_OP");
@@ -134,6 +154,19 @@ TEST_CASE("of a landing with faults nobody earns 40 at most, a good team 90 at l
             item.mutable_command_stage()->set_evidence("no arming needed, by Cem");
     }
     CHECK(score(facts).sum() <= good.sum() - 5.0);
+}
+
+TEST_CASE("what the shipped plans inject at a time or an event shows itself in what is received",
+          "[score][instruction][R59]") {
+    for (const char* plan : {"left_alone", "relay_lost"}) {
+        const auto facts = nobody(plan);
+        const auto text = in_text(score(facts));
+        INFO(plan << "\n" << text);
+        std::size_t injected = 0;
+        for (const auto& intervention : facts.interventions) injected += intervention.has_fault() ? 1 : 0;
+        CHECK(injected == 2);
+        CHECK(text.find("nothing that was received showed it") == std::string::npos);
+    }
 }
 
 }  // namespace server_team_landing_test

@@ -219,6 +219,71 @@ TEST_CASE("when the computers go off Earth hears that their links are down, not 
     CHECK_FALSE(told.contains("x_band"));         // a receiver finds the carrier or does not, and none listens
 }
 
+namespace {
+
+std::size_t uhf_octets(const CycleReport& report) {
+    std::size_t octets = 0;
+    for (const auto& received : report.earth.octets)
+        if (received.link == telemetry::uhf_live_link) octets += received.octets.size();
+    return octets;
+}
+
+}  // namespace
+
+TEST_CASE("while the orbiters are out UHF brings nothing, and while it loses octets they come garbled",
+          "[simulation][links][faults]") {
+    auto scenario = tests::gale_scenario(60.0);
+    scenario.timeout_after_entry_s = 60.0;  // nobody commands it: UHF from the start
+    Landing whole{scenario, 1}, cut{scenario, 1};
+    std::size_t lost = 0, garbled = 0, others_garbled = 0;
+    while (cut.sclk() < scenario.entry_sclk) {
+        const double e_s = cut.sclk() - scenario.entry_sclk;
+        if (e_s == -50.0) cut.inject(OrbiterOutage{0.0, 10.0});
+        if (e_s == -30.0) cut.inject(UhfLoss{0.0, 10.0, 0.5});
+        const CycleReport& seen = whole.step();
+        const CycleReport& report = cut.step();
+        CHECK(std::ranges::equal(report.recorded, seen.recorded));  // the vehicle knows nothing of either
+        const bool orbiters_out = e_s >= -50.0 && e_s < -40.0, worse = e_s >= -30.0 && e_s < -20.0;
+        if (orbiters_out) CHECK(uhf_octets(report) == 0);
+        if (orbiters_out) lost += uhf_octets(seen);
+        if (!orbiters_out) CHECK(uhf_octets(report) == uhf_octets(seen));
+        const bool same = std::ranges::equal(report.earth.octets, seen.earth.octets, {},
+                                             &telemetry::ReceivedOctets::octets, &telemetry::ReceivedOctets::octets);
+        if (!orbiters_out && !same) ++(worse ? garbled : others_garbled);
+    }
+    CHECK(lost > 1'000);
+    CHECK(garbled > 10);
+    CHECK(others_garbled <= 3);  // the last burst may outlast its cause
+}
+
+TEST_CASE("a wind that shifts carries the vehicle along, from then on and for as long", "[simulation][faults]") {
+    const auto scenario = tests::gale_scenario(60.0);
+    Landing calm{scenario, 1}, windy{scenario, 1};
+    const auto apart_m = [&] {
+        const auto a = calm.truth().p_MoB_M_m, b = windy.truth().p_MoB_M_m;
+        return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+    };
+    const auto speed_apart_mps = [&] {
+        const auto a = calm.truth().v_MB_M_mps, b = windy.truth().v_MB_M_mps;
+        return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+    };
+    const auto fly_to = [&](double e_s) {
+        while (calm.sclk() < scenario.entry_sclk + e_s) calm.step(), windy.step();
+    };
+    fly_to(80.0);
+    CHECK(apart_m() == 0.0);
+    windy.inject(WindShift{0.0, 10.0, 0.0, 50.0});
+    fly_to(90.0);
+    CHECK(speed_apart_mps() > 0.05);
+    CHECK(speed_apart_mps() < 50.0);
+    CHECK(apart_m() > 0.1);
+    Landing flown_again{scenario, 1};
+    while (flown_again.sclk() < scenario.entry_sclk + 80.0) flown_again.step();
+    flown_again.inject(WindShift{0.0, 10.0, 0.0, 50.0});
+    while (flown_again.sclk() < scenario.entry_sclk + 90.0) flown_again.step();
+    CHECK(flown_again.truth().p_MoB_M_m == windy.truth().p_MoB_M_m);
+}
+
 TEST_CASE("while the station is out nothing of what reaches Earth reaches ground; then each link is told as it is",
           "[simulation][links][faults]") {
     auto scenario = tests::gale_scenario(60.0);

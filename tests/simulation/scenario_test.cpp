@@ -116,6 +116,10 @@ TEST_CASE("each list of a scenario has a bound, and one that is too long is told
     too_long("second_person", scenario_rows_max, [](Scenario& s, std::size_t rows) { s.second_person.resize(rows); });
     too_long("system_faults", scenario_rows_max, [](Scenario& s, std::size_t rows) { s.system_faults.resize(rows); });
     too_long("device_faults", scenario_rows_max, [](Scenario& s, std::size_t rows) { s.device_faults.resize(rows); });
+    too_long("orbiter_outages", scenario_rows_max,
+             [](Scenario& s, std::size_t rows) { s.orbiter_outages.resize(rows); });
+    too_long("uhf_losses", scenario_rows_max, [](Scenario& s, std::size_t rows) { s.uhf_losses.resize(rows); });
+    too_long("wind_shifts", scenario_rows_max, [](Scenario& s, std::size_t rows) { s.wind_shifts.resize(rows); });
     too_long("station_outages", scenario_rows_max,
              [](Scenario& s, std::size_t rows) { s.station_outages.resize(rows); });
     too_long("computer_resets", scenario_rows_max,

@@ -2,6 +2,7 @@
 // The page: the whole console or, at ?panel=NAME, one panel of it for another monitor.
 import type { FunctionComponent } from 'preact';
 import { access } from './access/model';
+import { reportState } from './anomaly/opened';
 import { Channels } from './channels/view';
 import { Header } from './clocks/view';
 import { step } from './commands/line';
@@ -30,6 +31,7 @@ import { WaitingFor } from './waiting/view';
 
 const Help = openedLater(async () => (await import('./shortcuts/view')).Help);
 const LogIn = openedLater(async () => (await import('./access/log_in')).LogIn);
+const AnomalyReport = openedLater(async () => (await import('./anomaly/view')).AnomalyReport);
 const ExpiredBar = openedLater(async () => (await import('./access/log_in')).ExpiredBar);
 
 /** The tabs of the data panel. */
@@ -195,6 +197,7 @@ export function App({ panel }: { panel?: string | undefined }) {
         </main>
       )}
       {helpShown.value && <Help />}
+      {reportState.value !== 'closed' && <AnomalyReport />}
       <Menu />
     </div>
   );

@@ -40,6 +40,7 @@ const loadSoon = () =>
     import('./menu/view'),
     import('./commands/details'),
     import('./rehearsal/view'),
+    import('./anomaly/view'),
   ]).catch(() => undefined);
 
 /** Resolves once the content is known or a log-in is needed. */

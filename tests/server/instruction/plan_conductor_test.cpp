@@ -32,7 +32,7 @@ injects:
 )";
 
 instruction::InjectPlan plan() {
-    auto read = instruction::read_plan(plan_text, "p.yaml", tests::shipped_dictionary(), {});
+    auto read = instruction::read_plan(plan_text, "p.yaml", tests::shipped_dictionary(), {}, {});
     REQUIRE(read.plan);
     return std::move(*read.plan);
 }

@@ -24,10 +24,28 @@ Result<void> possible(const v1::FaultInjection& fault) {
     return checked ? Result<void>{} : Result<void>{checked.error()};
 }
 
+std::vector<Inject> library_of(const v1::InstructorPlan& plan) {
+    auto read = read_library(plan.library(), "injects.yaml", tests::shipped_dictionary(), possible);
+    REQUIRE(read.injects);
+    return std::move(*read.injects);
+}
+
+const std::vector<Inject>& library() {
+    static const auto injects = [] {
+        v1::InstructorPlan plan;
+        plan.set_library(
+            "library: injects\nsource: S\ninjects:\n"
+            "  - {inject: known, title: Known, fault: {station_outage_s: 30}, shows: All ends, signs: [x_band], "
+            "team: [{of: action, no_command: any, within_s: 60}]}\n");
+        return library_of(plan);
+    }();
+    return injects;
+}
+
 constexpr const char* head = "plan: p\ntitle: T\npurpose: P\nsource: S\ninjects:\n";  // lines 1 to 5
 
 ReadPlan read(const std::string& injects) {
-    return read_plan(head + injects, "p.yaml", tests::shipped_dictionary(), possible);
+    return read_plan(head + injects, "p.yaml", tests::shipped_dictionary(), library(), possible);
 }
 /// What reading finds in injects, which begin in line 6.
 std::string findings(const std::string& injects) {
@@ -65,7 +83,7 @@ TEST_CASE("a plan is read with its triggers, faults, signs and what a team does"
 }
 
 TEST_CASE("what is wrong in a plan is named with its line and column, all in one reading", "[instruction][R59]") {
-    CHECK(of_inject("when: by hand") == "p.yaml:6:5: an inject lacks 'fault'");
+    CHECK(of_inject("when: by hand") == "p.yaml:6:5: an inject lacks 'fault', or 'use' of one that has it");
     CHECK(of_inject("when: soon, fault: {computer_reset: true}") ==
           "p.yaml:6:33: 'when' is 'by hand', or a list of conditions");
     CHECK(of_inject("when: by hand, fault: {station_outage_s: -1}") ==
@@ -100,11 +118,59 @@ TEST_CASE("what is wrong in a plan is named with its line and column, all in one
     CHECK(findings("  - {inject: a, title: A, when: by hand, fault: {computer_reset: true}}\n"
                    "  - {inject: a, title: B, when: by hand, fault: {computer_reset: true}}\n") ==
           "p.yaml:7:14: inject 'a' is that of line 6");
-    CHECK(
-        read_plan("plan: q\ntitle: T\npurpose: P\nsource: S\ninjects: []\n", "p.yaml", tests::shipped_dictionary(), {})
-            .findings_text() ==
-        "p.yaml:1:7: plan 'q' is in a file of another name: 'p'\np.yaml:5:10: 'injects' has no inject");
-    CHECK(!read_plan("", "p.yaml", tests::shipped_dictionary(), {}).plan);
+    CHECK(read_plan("plan: q\ntitle: T\npurpose: P\nsource: S\ninjects: []\n", "p.yaml", tests::shipped_dictionary(),
+                    {}, {})
+              .findings_text() ==
+          "p.yaml:1:7: plan 'q' is in a file of another name: 'p'\np.yaml:5:10: 'injects' has no inject");
+    CHECK(!read_plan("", "p.yaml", tests::shipped_dictionary(), {}, {}).plan);
+}
+
+TEST_CASE("an inject of the library is used by its name, and each part that stands beside it replaces the library's",
+          "[instruction][R59]") {
+    const auto plan = read("  - {inject: a, use: known, when: by hand}\n"
+                           "  - {inject: b, use: known, when: by hand, title: Mine, fault: {orbiter_outage_s: 40}}\n");
+    INFO(plan.findings_text());
+    REQUIRE(plan.plan);
+    const auto& [a, b] = std::tie(plan.plan->injects.at(0), plan.plan->injects.at(1));
+    CHECK((a.id == "a" && a.title == "Known" && a.shows == "All ends"));
+    CHECK(text_of(a.fault) == "the ground station brings nothing, for 30 s");
+    CHECK(a.handling.team.size() == 1);
+    CHECK((b.id == "b" && b.title == "Mine" && b.shows == "All ends"));
+    CHECK(text_of(b.fault) == "no orbiter relays, for 40 s");
+    CHECK(findings("  - {inject: a, use: knwon, when: by hand}\n") ==
+          "p.yaml:6:22: 'knwon' is no inject of the library; the nearest name is 'known'");
+    CHECK(of_inject("when: by hand, fault: {uhf_loss: {fraction: 0.95, duration_s: 3}}")
+              .find("uhf_losses[0].fraction: 0.95") != std::string::npos);
+    CHECK(of_inject("when: by hand, fault: {wind_shift: {east_mps: 3, duration_s: 3}}").find("lacks 'north_mps'") !=
+          std::string::npos);
+    const auto of_library = [](const std::string& inject) {
+        const auto read_one = read_library("library: injects\nsource: S\ninjects:\n  - " + inject + "\n",
+                                           "injects.yaml", tests::shipped_dictionary(), {});
+        return read_one.findings.empty() ? "" : read_one.findings.front().text();
+    };
+    CHECK(of_library("{inject: a, title: A, fault: {computer_reset: true}, when: by hand}").find("'when' is no part") !=
+          std::string::npos);
+    CHECK(of_library("{inject: a, title: A}") == "injects.yaml:4:5: an inject lacks 'fault'");
+}
+
+TEST_CASE("injects at fixed times that cannot both be are refused together", "[instruction][R59]") {
+    const auto pair = [](const std::string& first, const std::string& second) {
+        return findings("  - {inject: a, title: A, " + first + "}\n  - {inject: b, title: B, " + second + "}\n");
+    };
+    const std::string silent = "fault: {device: pyro, unit: a, kind: silent, duration_s: 60}";
+    const std::string refuses = "fault: {device: pyro, unit: a, kind: refuses, duration_s: 5}";
+    CHECK(pair("when: [{from: \"E+1:00 vehicle\"}], " + silent, "when: [{from: \"E+1:30 vehicle\"}], " + refuses) ==
+          "p.yaml:7:5: injects 'a' and 'b' are faults of one unit at once");
+    CHECK(pair("when: [{from: \"E+1:00 vehicle\"}], " + silent, "when: [{from: \"E+2:30 vehicle\"}], " + refuses)
+              .empty());
+    const std::string none = "fault: {station_outage_s: 5}, team: [{of: action, no_command: any, within_s: 3600}]";
+    const std::string some = "fault: {computer_reset: true}, team: [{of: action, command: [NO_OP], within_s: 60}]";
+    CHECK(pair("when: [{from: \"E-5:00 vehicle\"}], " + none, "when: [{from: \"E-4:00 vehicle\"}], " + some) ==
+          "p.yaml:7:5: injects 'a' and 'b': of one a command is wanted while the other forbids it");
+    CHECK(of_inject("when: by hand, fault: {device: pyro, unit: a, kind: silent, duration_s: 60, late_s: 3}")
+              .find("'late_s' stands beside 'kind: late' only") != std::string::npos);
+    CHECK(of_inject("when: by hand, fault: {computer_reset: true}, team: [{of: diagnosis, note: [e], within_s: 3}]")
+              .find("'e' stands in too many words") != std::string::npos);
 }
 
 TEST_CASE("the plans and the rubric that ship break no rule, in the scenario for which each was written",
@@ -114,6 +180,12 @@ TEST_CASE("the plans and the rubric that ship break no rule, in the scenario for
     const auto list = library.list();
     CHECK(static_cast<std::size_t>(list.plans_size()) == yaml_files_in(shipped_folder / "plans").size());
     CHECK(list.plans_size() >= 3);
+    CHECK(list.library_size() >= 8);
+    for (const auto& inject : list.library()) {
+        INFO(inject.name());
+        CHECK(possible(inject.fault()).ok());
+        CHECK(inject.team_size() > 0);
+    }
     for (const auto& entry : list.plans()) {
         INFO(entry.name());
         const auto scenario = scenarios.scenario(entry.scenario().empty() ? "nominal_auto" : entry.scenario());
@@ -196,7 +268,7 @@ TEST_CASE("no text makes the reader of plans fail: a thousand mutations of those
                 else
                     text.insert(at, whole.substr(random() % whole.size(), octets));
             }
-            const auto read = read_plan(text, entry.name() + ".yaml", tests::shipped_dictionary(), possible);
+            const auto read = read_plan(text, entry.name() + ".yaml", tests::shipped_dictionary(), {}, possible);
             CHECK(read.plan.has_value() == read.findings.empty());
             if (read.plan) ++sound;
         }

@@ -161,4 +161,22 @@ TEST_CASE("a case that ends early ends the ranges for all: what flies longer is 
     CHECK(ensemble_of({}, 0, entry, entry).altitude_m().empty());
 }
 
+TEST_CASE("a hundredth of the cases that is lost long before the others ends no range, more of them do",
+          "[shadow][R57]") {
+    Plan plan;
+    std::vector<Course> courses;
+    for (int i = 0; i < 200; ++i) courses.push_back(plan.course());
+    const auto seconds = static_cast<int>(courses.front().seconds.size());
+    REQUIRE(seconds > 95);
+    courses[3].seconds.resize(30);
+    courses[90].seconds.resize(12);
+    CHECK(ensemble_of(courses, 0, entry, entry).altitude_m_size() == 3 * seconds);
+    courses[120].seconds.resize(30);
+    CHECK(ensemble_of(courses, 0, entry, entry).altitude_m_size() == 3 * 12);
+    courses.resize(100);
+    courses[3] = courses[90] = plan.course();
+    courses[50].seconds.resize(90);  // an early touchdown is no loss
+    CHECK(ensemble_of(courses, 0, entry, entry).altitude_m_size() == 3 * 90);
+}
+
 }  // namespace server_expectations_test

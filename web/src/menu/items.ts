@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What can be done with a value, from it to anything else. What cannot be done now says why.
+import { openReport } from '../anomaly/opened';
 import { CHOICES, PANELS, full, placeOf, showAt, toggleFull } from '../places/model';
 import { isFull, isInPlots, isOwnPlot, plotIt, plotOver, plotsToJoin, takeOut } from '../plots/chosen';
 import { isShown, layouts, showLayout } from '../layouts/model';
@@ -89,7 +90,7 @@ function panelItems(name: string): Items {
 function displayItems(): Items {
   const kept = layouts.value;
   return [
-    [LINK],
+    [LINK, { words: 'Anomaly report of what is on the screen', act: openReport, key: '!' }],
     SOUNDS.map((each) => ({
       words: `Call-outs: ${each === 'words' ? 'in words' : each === 'tones' ? 'by tones' : 'off'}`,
       checked: sound.value === each,

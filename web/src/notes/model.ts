@@ -60,18 +60,11 @@ export async function refreshNotes(): Promise<void> {
   }
 }
 
-/** Writes a note once; true if it was written. */
-export async function write(text: string, sclk: number | undefined): Promise<boolean> {
-  const run = store.value;
-  if (!run || writing.value) return false;
+/** Writes a note into the log of a run once. Returns why it was not written; empty: it was. */
+export async function keepNote(run: RunStore, text: string, sclk: number | undefined): Promise<string> {
   const octets = new TextEncoder().encode(text.trim()).length;
-  problem.value =
-    octets === 0
-      ? 'there is nothing to write down'
-      : octets > OCTETS
-        ? `it has ${octets} octets; a note has at most ${OCTETS}`
-        : '';
-  if (problem.value) return false;
+  if (octets === 0) return 'there is nothing to write down';
+  if (octets > OCTETS) return `it has ${octets} octets; a note has at most ${OCTETS}`;
   writing.value = true;
   try {
     await change(`/runs/${run.id}/notes`, {
@@ -80,13 +73,21 @@ export async function write(text: string, sclk: number | undefined): Promise<boo
       ...(sclk !== undefined && { sclk }),
     });
     await refreshNotes();
-    return true;
+    return '';
   } catch (error) {
-    problem.value = `it was not written down: ${wordsFor(error)}`;
-    return false;
+    return `it was not written down: ${wordsFor(error)}`;
   } finally {
     writing.value = false;
   }
+}
+
+/** Writes a note of the run shown; true if it was written. */
+export async function write(text: string, sclk: number | undefined): Promise<boolean> {
+  const run = store.value;
+  if (!run || writing.value) return false;
+  problem.value = '';
+  problem.value = await keepNote(run, text, sclk);
+  return problem.value === '';
 }
 
 /**

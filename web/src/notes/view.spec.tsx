@@ -75,4 +75,21 @@ describe('notes', () => {
     expect(root.textContent).toContain('<img src=x');
     act(() => render(null, root));
   });
+  it('of several lines are folded to their first; a search opens them', () => {
+    const text = 'Anomaly report: radar late\nAt E+4:58.0\nAlarms: none is raised';
+    notes.value = { run: 1, all: [{ seq: 1, text, by: 'Ann', ert_s: 0, sclk: 1000 }] };
+    const root = document.body.appendChild(document.createElement('div'));
+    act(() => render(<Notes />, root));
+    const folded = () => root.querySelector('details')!;
+    expect([folded().open, folded().querySelector('summary')?.textContent]).toEqual([
+      false,
+      'Anomaly report: radar late +2 lines',
+    ]);
+    expect(folded().querySelector('p')?.textContent).toBe('At E+4:58.0\nAlarms: none is raised');
+    const search = root.querySelector<HTMLInputElement>('[data-testid="note-search"]')!;
+    search.value = 'alarms';
+    act(() => void search.dispatchEvent(new Event('input', { bubbles: true })));
+    expect(folded().open).toBe(true);
+    act(() => render(null, root));
+  });
 });

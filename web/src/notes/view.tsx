@@ -15,6 +15,23 @@ const text = signal('');
 const search = signal('');
 const atInstant = signal(false);
 
+/** A note of several lines shows its first; a search opens them, since what it found may stand in any. */
+function Text({ text, isOpen }: { text: string; isOpen: boolean }) {
+  const [first, ...rest] = text.split('\n');
+  if (rest.length === 0) return <p>{text}</p>;
+  return (
+    <details open={isOpen}>
+      <summary>
+        {first}{' '}
+        <small>
+          +{rest.length} {rest.length === 1 ? 'line' : 'lines'}
+        </small>
+      </summary>
+      <p>{rest.join('\n')}</p>
+    </details>
+  );
+}
+
 export function Notes() {
   const run = runNow();
   const id = run?.id;
@@ -88,7 +105,7 @@ export function Notes() {
           >
             <time>{dayOfYear(row.ert_s, 3)}</time> <b>{row.by || 'unsigned'}</b>{' '}
             {row.sclk !== undefined && <i>on {fromEntry(row.sclk - run.entrySclk)}</i>}
-            <p>{row.text}</p>
+            <Text text={row.text} isOpen={search.value.trim() !== ''} />
           </li>
         ))}
         {shown.length === 0 && (

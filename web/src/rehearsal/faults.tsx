@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The form for injecting a fault in the next cycle, and faults in words.
 import { signal } from '@preact/signals';
+import type { Signal } from '@preact/signals';
 import { Device, DeviceFaultKind } from '../gen/aeolis/v1/scenario_pb';
 import { busy, inject } from './instructor';
 import type { Fault } from './instructor';
@@ -18,6 +19,10 @@ const KINDS = namesOf(DeviceFaultKind, 'DEVICE_FAULT_KIND_');
 const SYSTEM = 'a system outside EDL';
 const COMPUTER = 'the prime computer';
 const STATION = 'the ground station';
+const ORBITERS = 'the orbiters';
+const UHF_LOSS = 'octets on UHF';
+const WIND = 'the wind';
+const OTHERS = [SYSTEM, COMPUTER, STATION, ORBITERS, UHF_LOSS, WIND];
 const deviceWords = (name: string): string => words(name.replace('DEVICE_', ''));
 const kindWords = (name: string): string => words(name.replace('DEVICE_FAULT_KIND_', ''));
 
@@ -25,31 +30,82 @@ const what = signal(DEVICES[0] ?? SYSTEM);
 const unit = signal('A');
 const kind = signal(KINDS[0] ?? '');
 const seconds = signal('10');
+const percent = signal('20');
+const east = signal('20');
+const north = signal('0');
+
+/** Of what is no unit of a device: how much of it. */
+interface Amount {
+  fraction: number;
+  east_mps: number;
+  north_mps: number;
+}
+const NONE: Amount = { fraction: 0, east_mps: 0, north_mps: 0 };
 
 /** The fault as the server expects it. */
-export function injectionOf(device: string, of_unit: string, how: string, duration_s: number): Fault {
+export function injectionOf(device: string, of_unit: string, how: string, duration_s: number, amount = NONE): Fault {
   if (device === COMPUTER) return { computer_reset: true };
   if (device === STATION) return { station_outage: { duration_s } };
   if (device === SYSTEM) return { system_fault: { duration_s } };
+  if (device === ORBITERS) return { orbiter_outage: { duration_s } };
+  if (device === UHF_LOSS) return { uhf_loss: { duration_s, fraction: amount.fraction } };
+  if (device === WIND) return { wind_shift: { duration_s, east_mps: amount.east_mps, north_mps: amount.north_mps } };
   return { device_fault: { device, unit: `REDUNDANT_UNIT_${of_unit}`, kind: how, duration_s } };
 }
 
-export function faultWords({ device_fault: device, system_fault: system, station_outage: station }: Fault): string {
+export function faultWords(fault: Fault): string {
+  const { device_fault: device, system_fault: system, station_outage: station } = fault;
+  const { orbiter_outage: orbiter, uhf_loss: loss, wind_shift: wind } = fault;
   if (device)
     return `${deviceWords(device.device)} ${device.unit.at(-1)} ${kindWords(device.kind)}, for ${device.duration_s} s`;
   if (station) return `${STATION} brings nothing, for ${station.duration_s} s`;
+  if (orbiter) return `no orbiter relays, for ${orbiter.duration_s} s`;
+  if (loss) return `UHF loses ${+(100 * loss.fraction).toFixed(1)} % of its octets at least, for ${loss.duration_s} s`;
+  if (wind)
+    return `${WIND} changes by ${wind.east_mps} m/s to the east and ${wind.north_mps} m/s to the north, for ${wind.duration_s} s`;
   return system ? `${SYSTEM}, for ${system.duration_s} s` : `${COMPUTER} starts anew`;
 }
 
 const hasLength = () => what.value !== COMPUTER;
-export const badLength = () => hasLength() && !(Number(seconds.value) > 0);
+const within = (text: string, least: number, most: number): boolean =>
+  text.trim() !== '' && Number(text) >= least && Number(text) <= most;
+/** What is wrong with the numbers; empty: nothing. */
+export function badNumbers(): string {
+  if (hasLength() && !(Number(seconds.value) > 0)) return 'a length in seconds, above 0';
+  if (what.value === UHF_LOSS && !within(percent.value, 0.1, 90)) return 'from 0.1 to 90 % of the octets';
+  if (what.value === WIND && !(within(east.value, -100, 100) && within(north.value, -100, 100)))
+    return 'a wind of −100 to 100 m/s';
+  return '';
+}
 
 /** The fault that the fields say. */
-export const pickedFault = (): Fault => injectionOf(what.value, unit.value, kind.value, Number(seconds.value));
+export const pickedFault = (): Fault =>
+  injectionOf(what.value, unit.value, kind.value, Number(seconds.value), {
+    fraction: Number(percent.value) / 100,
+    east_mps: Number(east.value),
+    north_mps: Number(north.value),
+  });
+
+function NumberField({ of, words, unit, id }: { of: Signal<string>; words: string; unit: string; id: string }) {
+  return (
+    <label>
+      {words}{' '}
+      <input
+        class="seed"
+        value={of.value}
+        inputMode="decimal"
+        aria-invalid={badNumbers() !== ''}
+        data-testid={id}
+        onInput={(event) => (of.value = event.currentTarget.value)}
+      />{' '}
+      {unit}
+    </label>
+  );
+}
 
 /** Which fault, and for how long. */
 export function FaultFields() {
-  const device = ![SYSTEM, COMPUTER, STATION].includes(what.value);
+  const device = !OTHERS.includes(what.value);
   return (
     <>
       <label>
@@ -64,9 +120,11 @@ export function FaultFields() {
               {deviceWords(name)}
             </option>
           ))}
-          <option value={SYSTEM}>{SYSTEM}</option>
-          <option value={COMPUTER}>{COMPUTER}</option>
-          <option value={STATION}>{STATION}</option>
+          {OTHERS.map((name) => (
+            <option key={name} value={name}>
+              {name}
+            </option>
+          ))}
         </select>
       </label>
       {device && (
@@ -98,26 +156,16 @@ export function FaultFields() {
           </select>
         </label>
       )}
-      {hasLength() && (
-        <label>
-          for{' '}
-          <input
-            class="seed"
-            value={seconds.value}
-            inputMode="decimal"
-            aria-invalid={badLength()}
-            data-testid="fault-seconds"
-            onInput={(event) => (seconds.value = event.currentTarget.value)}
-          />{' '}
-          s
-        </label>
-      )}
+      {what.value === UHF_LOSS && <NumberField of={percent} words="lose" unit="%" id="fault-percent" />}
+      {what.value === WIND && <NumberField of={east} words="by" unit="m/s east" id="fault-east" />}
+      {what.value === WIND && <NumberField of={north} words="and" unit="m/s north" id="fault-north" />}
+      {hasLength() && <NumberField of={seconds} words="for" unit="s" id="fault-seconds" />}
     </>
   );
 }
 
 export function FaultForm() {
-  const bad = badLength();
+  const bad = badNumbers();
   return (
     <form
       class="table-tools"
@@ -129,10 +177,10 @@ export function FaultForm() {
       }}
     >
       <FaultFields />
-      <button type="submit" disabled={bad || busy.value} data-testid="fault-inject">
+      <button type="submit" disabled={bad !== '' || busy.value} data-testid="fault-inject">
         inject now
       </button>
-      {bad && <span class="status-alarm">✖ a length in seconds, above 0</span>}
+      {bad && <span class="status-alarm">✖ {bad}</span>}
     </form>
   );
 }

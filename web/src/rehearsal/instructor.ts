@@ -14,6 +14,9 @@ export interface Fault {
   device_fault?: { device: string; unit: string; kind: string; duration_s: number };
   system_fault?: { duration_s: number };
   station_outage?: { duration_s: number };
+  orbiter_outage?: { duration_s: number };
+  uhf_loss?: { duration_s: number; fraction: number };
+  wind_shift?: { duration_s: number; east_mps: number; north_mps: number };
   computer_reset?: boolean;
 }
 export interface Intervention {

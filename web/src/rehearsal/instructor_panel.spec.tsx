@@ -127,6 +127,55 @@ describe('the instructor’s panel', () => {
     });
     expect(shown('instructor-message')?.textContent).toContain('not possible for this device');
   });
+  it('has words for what happens to orbiters, link and wind, and asks for it with its amount', () => {
+    const amount = { fraction: 0.2, east_mps: 20, north_mps: -5 };
+    expect(['the orbiters', 'octets on UHF', 'the wind'].map((each) => injectionOf(each, 'A', '', 60, amount))).toEqual(
+      [
+        { orbiter_outage: { duration_s: 60 } },
+        { uhf_loss: { duration_s: 60, fraction: 0.2 } },
+        { wind_shift: { duration_s: 60, east_mps: 20, north_mps: -5 } },
+      ],
+    );
+    expect(
+      ['the orbiters', 'octets on UHF', 'the wind'].map((each) => faultWords(injectionOf(each, 'A', '', 60, amount))),
+    ).toEqual([
+      'no orbiter relays, for 60 s',
+      'UHF loses 20 % of its octets at least, for 60 s',
+      'the wind changes by 20 m/s to the east and -5 m/s to the north, for 60 s',
+    ]);
+  });
+  it('injects what is chosen from the library, after showing what it does and what is to be done', async () => {
+    server.routes['GET /plans'] = {
+      json: {
+        plans: [],
+        library: [
+          {
+            name: 'safe_mode',
+            title: 'The orbiter goes',
+            does: 'no orbiter relays, for 60 s',
+            shows: 'UHF ends',
+            team: ['action: sends no command for 60 s'],
+            fault: { orbiter_outage: { duration_s: 60 } },
+          },
+        ],
+      },
+    };
+    server.routes['POST /rehearsals/current'] = { json: {} };
+    await open();
+    const choice = shown('library-choice') as HTMLSelectElement;
+    await act(async () => {
+      choice.value = 'safe_mode';
+      choice.dispatchEvent(new Event('change', { bubbles: true }));
+    });
+    expect(shown('library-entry')?.textContent).toBe(
+      '▲ no orbiter relays, for 60 sUHF endsaction: sends no command for 60 s',
+    );
+    await send('library-choice');
+    expect(server.asked.find((each) => each.method === 'POST')?.body).toEqual({
+      run: 1,
+      inject: { orbiter_outage: { duration_s: 60 } },
+    });
+  });
   it('keeps a note once, in the instructor’s name, and apart from the shift log', async () => {
     uplink.value = { ...uplink.value, controller: 'Ida' };
     server.routes['POST /rehearsals/current'] = { json: {} };

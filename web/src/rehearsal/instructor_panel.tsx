@@ -9,6 +9,7 @@ import { STATUS } from '../design/status';
 import { runNow } from '../run/shown';
 import { fromEntry } from '../run/time';
 import { FaultForm, faultWords } from './faults';
+import { LibraryForm } from './library_form';
 import { busy, messageWords, ofRun, refreshInterventions, write } from './instructor';
 import type { Intervention } from './instructor';
 import { planOf, refreshPlan, titleOf } from './plan';
@@ -85,6 +86,7 @@ function OpenPanel() {
   return (
     <>
       <FaultForm />
+      <LibraryForm />
       <NoteForm />
       <p role="status" data-testid="instructor-message">
         {messageWords()}

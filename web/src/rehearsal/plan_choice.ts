@@ -2,6 +2,7 @@
 // The plan with which a rehearsal is to start: none, one that the server offers, or a file of the instructor's own.
 import { signal } from '@preact/signals';
 import { call, wordsFor } from '../run/api';
+import type { Fault } from './instructor';
 
 /** A plan on offer (schema/aeolis/v1/plan.proto). */
 export interface PlanEntry {
@@ -12,12 +13,23 @@ export interface PlanEntry {
   injects: number;
 }
 
+/** An inject of the library, by hand or by a plan. */
+export interface LibraryInject {
+  name: string;
+  title: string;
+  does: string; // the fault in words
+  shows: string;
+  team: string[];
+  fault: Fault;
+}
+
 const PLAN_OCTETS_MAX = 256 * 1024; // the server's limit
 
 export const NONE = '';
 export const OWN = '/'; // no name of a file
 
 export const offered = signal<readonly PlanEntry[]>([]);
+export const library = signal<readonly LibraryInject[]>([]);
 export const offerProblem = signal('');
 /** NONE, OWN, or the name of an offered plan. */
 export const choice = signal<string>(NONE);
@@ -25,7 +37,9 @@ export const ownPlan = signal<{ name: string; text: string } | { problem: string
 
 export async function askPlans(): Promise<void> {
   try {
-    offered.value = (await call<{ plans: PlanEntry[] }>('GET', '/plans')).plans;
+    const list = await call<{ plans: PlanEntry[]; library: LibraryInject[] }>('GET', '/plans');
+    offered.value = list.plans;
+    library.value = list.library;
     offerProblem.value = '';
   } catch (error) {
     offerProblem.value = wordsFor(error);

@@ -12,7 +12,7 @@ import { pastRange, runs, store, tick } from '../run/shown';
 import { isGoing } from '../run/start';
 import type { RunStore } from '../run/store';
 import { fromEntry, readFromEntry } from '../run/time';
-import { FaultFields, badLength, faultWords, pickedFault } from './faults';
+import { FaultFields, badNumbers, faultWords, pickedFault } from './faults';
 import {
   BASES,
   FIGURES,
@@ -336,7 +336,7 @@ function Forecasts({ run }: { run: RunStore }) {
   const all = forecasts.value?.run === run.id ? forecasts.value.all : [];
   const bad =
     !/^[1-9]\d{0,2}$|^1000$/.test(cases.value) ||
-    (breaks.value && badLength()) ||
+    (breaks.value && badNumbers() !== '') ||
     (at.value === '' ? !run.going : readFromEntry(at.value) === undefined);
   return (
     <>

@@ -320,9 +320,14 @@ export class RunStore {
     return last?.severity === 'none' ? undefined : last;
   }
 
+  /** The ground's last word by `cutoff` on whether a packet still comes. */
+  stalenessAt(packet: string, cutoff: number): Known<Staleness> | undefined {
+    return this.staleness.get(packet)?.findLast(({ ert_s }) => this.knownBy(ert_s, cutoff));
+  }
+
   /** Whether the ground had found by `cutoff` that the live values of a packet are no longer of now. */
   isStale(packet: string, cutoff: number): boolean {
-    return this.staleness.get(packet)?.findLast(({ ert_s }) => this.knownBy(ert_s, cutoff))?.fact.stale ?? false;
+    return this.stalenessAt(packet, cutoff)?.fact.stale ?? false;
   }
 
   /** Mean interval in seconds between the held samples of a channel, in the denser of its two series. */

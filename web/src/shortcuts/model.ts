@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The keys in one table, used by both the help and the page.
 import { signal } from '@preact/signals';
+import { leaveReport, openReport } from '../anomaly/opened';
 import { TABS, bringUp, closeFull, full, placeOf, toggleFull } from '../places/model';
 import type { Tab } from '../places/model';
 import { backFile, stage } from '../commands/file';
@@ -56,7 +57,7 @@ function toggleTheme(): void {
 }
 
 /** Disarms commands and files, wherever the focus is. Returns whether any was armed. */
-function takeBackArmed(): boolean {
+export function takeBackArmed(): boolean {
   const [command, file] = [step.value === 'armed', stage.value === 'armed'];
   if (command) back();
   if (file) backFile();
@@ -123,6 +124,7 @@ export const SHORTCUTS: Shortcut[] = [
     act: () => document.querySelector<HTMLElement>('[data-testid="event-search"]')?.focus(),
   },
   ...TABS.map(({ id, key, words }) => ({ keys: [key], shown: key, words, act: () => focusPanel(id) })),
+  { keys: ['!'], shown: '!', words: 'anomaly report: what is on the screen, into the shift log', act: openReport },
   { keys: ['i'], shown: 'i', words: 'values: ↑ ↓ ← → from one to the next, Enter opens its menu', act: focusValue },
   { keys: ['z'], shown: 'z', words: 'full size: the panel in focus, or under the mouse; again: back', act: zoomPanel },
   { keys: ['9'], shown: '9', words: 'this display: link, sound, layouts', act: () => openMenu('display') },
@@ -136,7 +138,7 @@ export const SHORTCUTS: Shortcut[] = [
     shown: 'Esc',
     words: 'close what is open, or leave a past view',
     act: () => {
-      if (takeBackArmed()) return;
+      if (takeBackArmed() || leaveReport()) return;
       if (helpShown.value) helpShown.value = false;
       else if (closeList() || closeCursor() || closeDetail() || closeFull()) return;
       else if (step.value !== 'type' && takesCommands()) back();
