@@ -99,6 +99,7 @@ std::string text_of(const Expectation& expectation) {
 std::vector<std::string> team_texts(const Inject& inject, const Rubric& rubric) {
     const auto& handling = inject.handling.team.empty() ? rubric.handling_of(inject.fault) : inject.handling;
     std::vector<std::string> all;
+    all.reserve(handling.team.size());
     for (const auto& expectation : handling.team)
         all.push_back(fmt::format("{}: {}", name_of(expectation.of), text_of(expectation)));
     return all;

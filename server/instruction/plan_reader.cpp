@@ -11,7 +11,6 @@ namespace aeolis::server::instruction {
 namespace {
 
 using Kind = YamlNode::Kind;
-using procedures::TextFinding;
 
 constexpr double wind_mps_max = 1'000.0;           ///< what a scenario takes is less
 constexpr double duration_s_max = 7.0 * 86'400.0;  ///< chosen: no fault lasts longer than a week
