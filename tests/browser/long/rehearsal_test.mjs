@@ -61,12 +61,13 @@ test('an instructor’s fault and note are folded away while a rehearsal goes on
     facts,
   );
   assert.match(facts, /packets heard live: 0 missing in the recording, 0 differ/);
-  assert.match(facts, /radar B silent, for 10 s; [\dm. ]+ s later: Bob wrote “radar B\?”/);
+  assert.match(facts, /radar B silent, for 10 s; nothing that was received showed it/); // it is not in use
   assert.match(
     facts,
     /1 command of people: 1 carried out, 0 failed, 0 cancelled, 0 not known\s+2 commands of the scenario's script: 2 carried out/,
   );
-  assert.match(await text('review-terms'), /commands\s+10\.0 of 10\s+1 of 1 of people/);
+  assert.match(await text('review-terms'), /landing\s+30\.0 of 30/);
+  assert.match(await text('review-terms'), /after touchdown: writes of “touchdown” or “landed”[^]*nobody did/);
   assert.match(await text('review'), /The instructor wrote\s+E−\d+:\d\d\.\d Ida do they see <b>it<\/b>\?/);
 
   const terms = (await page.locator('[data-testid="review-terms"] .number').allInnerTexts()).map((each) =>
@@ -74,7 +75,7 @@ test('an instructor’s fault and note are folded away while a rehearsal goes on
   );
   const [earned, most] = terms.reduce(([a, b], [c, d]) => [a + c, b + d], [0, 0]);
   const said = Number(/(\d+) of 100/.exec(await text('review-score'))[1]);
-  assert.ok(terms.length >= 4 && Math.abs(said - (100 * earned) / most) <= 1, `${said} of ${JSON.stringify(terms)}`);
+  assert.ok(terms.length >= 2 && Math.abs(said - (100 * earned) / most) <= 1, `${said} of ${JSON.stringify(terms)}`);
 
   await page.context().grantPermissions(['clipboard-read', 'clipboard-write']);
   await page.getByTestId('review-copy').click();
