@@ -267,9 +267,9 @@ std::vector<std::string> list_targets() {
 struct ListServer {
     ListServer(const std::filesystem::path& folder, const dictionary::Dictionary& dictionary,
                server::QueryThreads& queries, server::PipelineThread& pipeline, server::StreamHub& hub)
-        : console(folder / "web"),
+        : plans({}, dictionary), console(folder / "web"),
           rehearsals(
-              scenarios, dictionary, pipeline, [](const auto& action) { action(); },
+              scenarios, plans, dictionary, pipeline, [](const auto& action) { action(); },
               [](const v1::StartRehearsal&, const auto& done) { done(Error{"was not cut off"}); },
               {[](archive::RunId, const auto&, bool, const auto& done) { done(std::string{}); },
                [](archive::RunId, const auto& done) { done(server::TimelineCheck::Reanalysis{}); }},
@@ -278,8 +278,8 @@ struct ListServer {
           forecasts(std::make_shared<server::shadow::ForecastService>(dictionary, folder / "none.db",
                                                                       [](const auto&, const auto&) { return false; })),
           predictions(dictionary), access(std::move(server::Access::open({.file = folder / "accounts.json"})).value()),
-          api({dictionary, scenarios, queries, rehearsals, predictions, campaigns, forecasts, hub, pipeline, console,
-               *access, false, [] { return std::size_t{0}; }, clock_watch}) {
+          api({dictionary, scenarios, plans, queries, rehearsals, predictions, campaigns, forecasts, hub, pipeline,
+               console, *access, false, [] { return std::size_t{0}; }, clock_watch}) {
         for (std::size_t i = 0; i < people; ++i) {
             v1::NewUser user;
             user.set_user("person" + std::to_string(i));
@@ -297,6 +297,7 @@ struct ListServer {
     }
 
     server::ScenarioLibrary scenarios{AEOLIS_SOURCE_DIR "/simulation/scenarios"};
+    server::instruction::PlanLibrary plans;
     server::StaticFiles console;
     server::RehearsalManager rehearsals;
     server::campaign::CampaignManager campaigns;

@@ -40,6 +40,7 @@ struct Server {
 
     test::RecordedRun recorded;
     ScenarioLibrary scenarios{AEOLIS_SOURCE_DIR "/simulation/scenarios"};
+    instruction::PlanLibrary plans{{}, recorded.dictionary};
     StaticFiles console{recorded.folder / "web"};
     std::unique_ptr<QueryThreads> queries = std::move(QueryThreads::open(recorded.file(), recorded.dictionary)).value();
     PipelineThread pipeline{std::move(archive::Archive::open(recorded.file())).value(),
@@ -48,6 +49,7 @@ struct Server {
                             {}};
     StreamHub hub{recorded.dictionary.id, no_services()};
     RehearsalManager rehearsals{scenarios,
+                                plans,
                                 recorded.dictionary,
                                 pipeline,
                                 [](const auto& action) { action(); },
@@ -61,8 +63,8 @@ struct Server {
     PredictionService predictions{recorded.dictionary};
     std::unique_ptr<Access> access = std::move(Access::open({})).value();
     ClockWatch clock_watch;
-    Api api{{recorded.dictionary, scenarios, *queries, rehearsals, predictions, campaigns, forecasts, hub, pipeline,
-             console, *access, false, [] { return std::size_t{1}; }, clock_watch}};
+    Api api{{recorded.dictionary, scenarios, plans, *queries, rehearsals, predictions, campaigns, forecasts, hub,
+             pipeline, console, *access, false, [] { return std::size_t{1}; }, clock_watch}};
 };
 
 HttpResponse ask(Server& server, const HttpRequest& request) {
