@@ -36,7 +36,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         if (query.error().message.empty()) std::abort();
         return 0;
     }
-    const auto answer = question->answer({ground.recorded.dictionary, std::nullopt}, ground.reader, run, *query);
+    const server::instruction::PlanLibrary plans{{}, ground.recorded.dictionary};
+    const auto answer = question->answer({ground.recorded.dictionary, plans, std::nullopt}, ground.reader, run, *query);
     if (answer.status >= 500 || answer.body.empty()) std::abort();
     if (answer.content_type == "application/json" && answer.status == 200) {
         google::protobuf::Value parsed;
