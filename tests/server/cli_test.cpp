@@ -586,7 +586,7 @@ TEST_CASE(
     CHECK_THAT(printed.text, Catch::Contains("nominal_auto, seed 1, touchdown"));
     CHECK_THAT(printed.text, Catch::Contains("0 differ, 0 are missing in it, 0 wait for it"));
     CHECK_THAT(printed.text, Catch::Contains("Command 2 EDL_DO_EDL"));
-    CHECK_THAT(printed.text, Catch::Contains("  landing    40.0 of 40  touchdown"));
+    CHECK_THAT(printed.text, Catch::Contains("  landing       30.0 of 30.0  touchdown"));
 
     aeolis::v1::AsFlownReport report;
     const auto json = run(program(), "report --json --run 1 --archive " + archive);

@@ -257,7 +257,8 @@ TEST_CASE("while the orbiters are out UHF brings nothing, and while it loses oct
 }
 
 TEST_CASE("a wind that shifts carries the vehicle along, from then on and for as long", "[simulation][faults]") {
-    const auto scenario = tests::gale_scenario(60.0);
+    auto scenario = tests::gale_scenario(60.0);
+    scenario.test_venue = TestVenue::gnc_alone;  // it enters without commands
     Landing calm{scenario, 1}, windy{scenario, 1};
     const auto apart_m = [&] {
         const auto a = calm.truth().p_MoB_M_m, b = windy.truth().p_MoB_M_m;
