@@ -62,6 +62,20 @@ export const STATES = {
   }),
 };
 
+/** The card of a touchdown in the place of the descent, and the notes with their tools in that of the data. */
+STATES.touchdown = async (serve, t) => {
+  const server = await serve(t, 'touchdown', ['--scenario', 'nominal_auto', '--pace', '100']);
+  await flyTo(server, 441);
+  return {
+    server,
+    reach: async ({ page, shows }) => {
+      await shows('touchdown', /Touchdown reported/);
+      await page.getByTestId('tab-notes').click();
+      await shows('notes', /nothing is written down yet/);
+    },
+  };
+};
+
 /** A past view of the landed run: bar, marks and double borders take their room. */
 STATES.past = async (serve, t) => {
   const { server, reach } = await STATES.landed((of, _name, more) => serve(of, 'past', more), t);
@@ -88,29 +102,56 @@ function takeItsRow() {
   document.querySelector('.console').append(row);
 }
 
+/** What is not whole of a page at each size, in words. */
+async function measuredAt(page, state, sizes) {
+  const found = [];
+  for (const [width, height] of sizes) {
+    await page.setViewportSize({ width, height });
+    await comesToRest(page);
+    found.push(...(await page.evaluate(notWhole)).map((words) => `${state}, ${width} × ${height}: ${words}`));
+  }
+  return found;
+}
+
+/** A page in a state, with all that it has asked for. */
+async function pageIn({ open, serve }, t, state) {
+  const { server, reach } = await STATES[state](serve, t);
+  const opened = await open(server.address, { width: 1440, height: 790 }, keepWhatIsWritten);
+  await reach(opened);
+  await waitFor(
+    () => opened.page.locator('body').innerText(),
+    (all) => !/asking…|has not answered|connecting/.test(all),
+  );
+  await opened.page.evaluate(takeItsRow);
+  return opened;
+}
+
 /** What is not whole in each state at each size, in words. */
-export async function measured({ open, serve }, t, states, sizes, themes = ['dark']) {
+export async function measured(workplace, t, states, sizes, themes = ['dark']) {
   const found = [];
   for (const state of states) {
-    const { server, reach } = await STATES[state](serve, t);
-    const opened = await open(server.address, { width: 1440, height: 790 }, keepWhatIsWritten);
-    const { page, problems } = opened;
-    await reach(opened);
-    await waitFor(
-      () => page.locator('body').innerText(),
-      (all) => !/asking…|has not answered|connecting/.test(all),
-    );
-    await page.evaluate(takeItsRow);
+    const { page, problems } = await pageIn(workplace, t, state);
     for (const theme of themes) {
       await page.evaluate((name) => (document.documentElement.dataset.theme = name), theme);
-      for (const [width, height] of sizes) {
-        await page.setViewportSize({ width, height });
-        await comesToRest(page);
-        found.push(...(await page.evaluate(notWhole)).map((words) => `${state}, ${width} × ${height}: ${words}`));
-      }
+      found.push(...(await measuredAt(page, state, sizes)));
     }
     found.push(...problems);
     await page.close();
   }
   return found;
+}
+
+/** The same of each tab of the data panel, of a landing that has just touched down. */
+export async function measuredTabs(workplace, t, sizes) {
+  const { page, problems } = await pageIn(workplace, t, 'touchdown');
+  const tabs = await page.getByRole('tab').evaluateAll((all) => all.map((each) => each.dataset.testid));
+  const found = [];
+  for (const tab of tabs) {
+    await page.setViewportSize({ width: 1440, height: 790 });
+    await page.getByTestId(tab).click();
+    await page.waitForTimeout(1000); // for what it asks the server
+    found.push(...(await measuredAt(page, tab, sizes)));
+  }
+  await page.close();
+  return [...found, ...problems];
 }

@@ -114,6 +114,7 @@ export function notWhole() {
   }
   for (const canvas of document.querySelectorAll('canvas')) {
     const box = canvas.getBoundingClientRect();
+    const sight = canvas.closest('.grid')?.getBoundingClientRect() ?? box; // what is scrolled away lies over nothing
     if (box.width === 0 || hiddenBy(canvas) || !canvas.checkVisibility({ visibilityProperty: true })) continue;
     const [sx, sy] = [box.width / canvas.width, box.height / canvas.height];
     const of = canvas.dataset.testid ?? canvas.closest('[data-testid]')?.dataset.testid ?? 'canvas';
@@ -128,6 +129,7 @@ export function notWhole() {
         bottom: box.top + text.bottom * sy,
       };
       if (one.right < box.left || one.left > box.right || one.bottom < box.top || one.top > box.bottom) continue;
+      if (one.bottom < sight.top || one.top > sight.bottom) continue;
       if (
         one.left < box.left - 1.5 ||
         one.right > box.right + 1.5 ||
@@ -155,7 +157,7 @@ export function notWhole() {
         found.push(`“${one.words.slice(0, 30)}” (${one.of}) lies over “${other.words.slice(0, 30)}” (${other.of})`);
     }
   // what must always be whole
-  for (const selector of ['.header', '.situation', '.command-line input', '.armed', '.tape']) {
+  for (const selector of ['.header', '.situation', '.armed-here', '.command-line input', '.armed', '.tape']) {
     const element = document.querySelector(selector);
     if (!element) continue;
     const box = element.getBoundingClientRect();
@@ -172,6 +174,33 @@ export function notWhole() {
           found.push(`${selector} is cut off by ${around.className}`);
           break;
         }
+      }
+    }
+  }
+  // each control is whole in every box around it; only rows of a list, what stands behind the command line or under
+  // what is waited for, and the panels of a telephone are scrolled to
+  const rows = '.table-scroll, .packets, .plots-named, .fields, .offers, .panel-commands .panel-body, .waiting';
+  const scrolled = innerWidth > 1100 ? rows : `${rows}, .grid, .choices`;
+  for (const control of document.querySelectorAll('button, input, select, textarea, summary, a[href], kbd')) {
+    if (hiddenBy(control) || !control.checkVisibility({ visibilityProperty: true, opacityProperty: true })) continue;
+    const box = control.getBoundingClientRect();
+    if (box.width < 1 || box.height < 1) continue;
+    const says = (control.innerText || control.ariaLabel || control.placeholder || control.tagName).slice(0, 40);
+    for (let around = control.parentElement; around; around = around.parentElement) {
+      const style = getComputedStyle(around);
+      if (style.display === 'contents' || (style.overflowX === 'visible' && style.overflowY === 'visible')) continue;
+      if (around.matches(scrolled)) break;
+      const edge = around === document.body || around === document.documentElement;
+      const clip = edge ? { left: 0, top: 0, right: innerWidth, bottom: innerHeight } : around.getBoundingClientRect();
+      const [wide, high] = [
+        Math.max(clip.left - box.left, box.right - clip.right),
+        Math.max(clip.top - box.top, box.bottom - clip.bottom),
+      ];
+      if (wide > 1.5 || high > 1.5) {
+        found.push(
+          `${name(control)}: “${says}” is cut off by ${Math.max(wide, high).toFixed(0)} px (${around.className || around.tagName})`,
+        );
+        break;
       }
     }
   }

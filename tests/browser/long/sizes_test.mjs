@@ -3,7 +3,7 @@
 // timeline and not over it.
 import assert from 'node:assert/strict';
 import { before, test } from 'node:test';
-import { SIZES, STATES, measured } from '../sizes.mjs';
+import { SIZES, STATES, measured, measuredTabs } from '../sizes.mjs';
 import { comesToRest, landed, waitFor, workplace } from '../support.mjs';
 
 const { open, serve } = workplace();
@@ -131,8 +131,12 @@ test('what is opened stands beside the timeline, and a link’s reason takes no 
   await page.close();
 });
 
-test('at each size that people have, in four states and both themes, all texts are whole, and so are header, command line and what is armed', async (t) => {
+test('at each size that people have, in each state and both themes, all texts and controls are whole, and so are header, command line and what is armed', async (t) => {
   assert.deepEqual(await measured(withScrollbars, t, Object.keys(STATES), SIZES, ['dark', 'light']), []);
+});
+
+test('at each size the texts and controls of every tab are whole', async (t) => {
+  assert.deepEqual(await measuredTabs(withScrollbars, t, SIZES), []);
 });
 
 test('at 3 m the clock from entry and news are read: 15 mm on a screen of 24 inches from 1920 × 950 on', async () => {

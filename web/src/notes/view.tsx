@@ -81,6 +81,7 @@ export function Notes() {
         </button>
         <input
           type="search"
+          class="note-search"
           data-testid="note-search"
           aria-label="search notes"
           placeholder="search"
