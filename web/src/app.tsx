@@ -153,6 +153,11 @@ function Pictures() {
   );
 }
 
+/** By itself, since the page around it stays as it is. */
+function Keys() {
+  return helpShown.value ? <Help /> : null;
+}
+
 export function App({ panel }: { panel?: string | undefined }) {
   const mode = modeNow();
   const run = runNow();
@@ -196,7 +201,7 @@ export function App({ panel }: { panel?: string | undefined }) {
           </div>
         </main>
       )}
-      {helpShown.value && <Help />}
+      <Keys />
       {reportState.value !== 'closed' && <AnomalyReport />}
       <Menu />
     </div>

@@ -6,7 +6,7 @@ import { computed, effect, signal } from '@preact/signals';
 import type { ReadonlySignal } from '@preact/signals';
 import { rowsTick } from '../run/shown';
 
-const BLOCK = 8; // chosen: rows that are updated together
+export const BLOCK = 8; // chosen: rows that are updated and laid out together
 const TURNS = 8; // chosen: ticks in which all rows out of sight are updated once
 const REST_MS = 1000; // chosen: after this long without a tick, changes have stopped
 
@@ -35,11 +35,12 @@ export function whenDue(place: number): void {
 }
 
 /** Tracks the rows in sight of a table that scrolls in `box`. Returns a function that stops the tracking. */
-export function watchSight(box: HTMLElement, rows: HTMLTableSectionElement): () => void {
+export function watchSight(box: HTMLElement, rows: HTMLTableElement): () => void {
   const measure = () => {
-    const row_px = rows.offsetHeight / rows.rows.length;
+    const head_px = rows.tHead?.offsetHeight ?? 0;
+    const row_px = (rows.offsetHeight - head_px) / (rows.rows.length - 1);
     if (!(row_px > 0)) return;
-    const above = rows.offsetTop - box.scrollTop;
+    const above = rows.offsetTop + head_px - box.scrollTop;
     sight.value = { from: Math.floor(-above / row_px), to: Math.ceil((box.clientHeight - above) / row_px) };
   };
   const sizes = new ResizeObserver(measure);

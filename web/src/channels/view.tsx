@@ -5,7 +5,7 @@ import { SOURCES, STATUS } from '../design/status';
 import type { DictionaryChannel } from '../gen/aeolis/v1/run_pb';
 import { isLost } from '../run/connection';
 import { cutoff, dictionary, shownRun } from '../run/shown';
-import { watchSight, whenDue } from './due';
+import { BLOCK, watchSight, whenDue } from './due';
 import { channelRow, channelsShown } from './model';
 import './style.css';
 
@@ -13,6 +13,11 @@ const filter = signal('');
 const shown = computed(() =>
   dictionary.value ? channelsShown(dictionary.value, filter.value) : { channels: [], total: 0 },
 );
+
+// A cell that is clipped is painted by itself, so only those are whose text may be too long for the narrowest column.
+const NAME_FITS = 18;
+const VALUE_FITS = 15;
+const clipped = (isLong: boolean) => (isLong ? 'clipped' : '');
 
 function Row({ channel, place }: { channel: DictionaryChannel; place: number }) {
   whenDue(place);
@@ -24,11 +29,14 @@ function Row({ channel, place }: { channel: DictionaryChannel; place: number }) 
           {STATUS[row.look].shape}
         </span>
       </td>
-      <td title={[`${row.name}: ${row.text}`, row.allLimits].filter(Boolean).join('\n')}>
+      <td
+        class={clipped(row.name.length > NAME_FITS || row.whose !== undefined)}
+        title={[`${row.name}: ${row.text}`, row.allLimits].filter(Boolean).join('\n')}
+      >
         <span class="alias">{row.alias}</span> {row.name}
         {row.whose && <span class="alias">, {row.whose}</span>}
       </td>
-      <td class="number value" title={row.value}>
+      <td class={`number value ${clipped(row.value.length > VALUE_FITS)}`} title={row.value}>
         {row.value}
       </td>
       <td>{row.unit}</td>
@@ -37,7 +45,7 @@ function Row({ channel, place }: { channel: DictionaryChannel; place: number }) 
         {row.age}
         {row.recorded ? ` ${SOURCES.recording.shape}` : ''}
       </td>
-      <td class="limits" title={row.allLimits}>
+      <td class={`limits ${clipped(row.limits !== '')}`} title={row.allLimits}>
         {row.limits}
       </td>
     </tr>
@@ -46,11 +54,12 @@ function Row({ channel, place }: { channel: DictionaryChannel; place: number }) 
 
 export function Channels() {
   const box = useRef<HTMLDivElement>(null);
-  const rows = useRef<HTMLTableSectionElement>(null);
+  const rows = useRef<HTMLTableElement>(null);
   const known = dictionary.value !== undefined;
   useLayoutEffect(() => (box.current && rows.current ? watchSight(box.current, rows.current) : undefined), [known]);
   if (!dictionary.value) return null;
   const { channels, total } = shown.value;
+  const blocks = Array.from({ length: Math.ceil(channels.length / BLOCK) }, (_, i) => i * BLOCK);
   return (
     <div class="table-box">
       <div class="table-tools">
@@ -68,7 +77,7 @@ export function Channels() {
         </span>
       </div>
       <div class="table-scroll channels-scroll" ref={box} tabIndex={0} role="group" aria-label="channels">
-        <table class="channels" data-testid="channel-table">
+        <table class="channels" data-testid="channel-table" ref={rows}>
           <thead>
             <tr>
               <th>state</th>
@@ -79,11 +88,13 @@ export function Channels() {
               <th>limits</th>
             </tr>
           </thead>
-          <tbody ref={rows}>
-            {channels.map((channel, place) => (
-              <Row key={channel.id} channel={channel} place={place} />
-            ))}
-          </tbody>
+          {blocks.map((first) => (
+            <tbody key={first}>
+              {channels.slice(first, first + BLOCK).map((channel, i) => (
+                <Row key={channel.id} channel={channel} place={first + i} />
+              ))}
+            </tbody>
+          ))}
         </table>
       </div>
     </div>

@@ -26,7 +26,7 @@ export function Help() {
           close <kbd>Esc</kbd>
         </button>
       </h2>
-      <dl>
+      <dl style={{ '--rows': Math.ceil(SHORTCUTS.length / 2) }}>
         {SHORTCUTS.map((each) => (
           <div key={each.shown}>
             <dt>
