@@ -168,6 +168,8 @@ export const LAYOUT = {
     sufr_start: 'straighten up and fly right',
     x_band_tones: 'X-band tones',
   },
+  /** What a name of the vehicle's own reports is elsewhere, so that nobody takes them for two things. */
+  alsoCalled: { name: 'Second Chance', is: 'backup computer' },
   /**
    * Moments between timepoints that people wait for, each announced by an event and a tone of that name. `before`: the
    * next timepoint.

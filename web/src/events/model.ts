@@ -2,9 +2,10 @@
 // Events and their explanations, newest first.
 import { SOURCES, STATUS } from '../design/status';
 import { LAYOUT } from '../layout';
+import { alsoCalled } from '../run/dictionary';
 import type { RunStore } from '../run/store';
-import { isAmiss } from '../situation/model';
-import { newsOf } from '../situation/news';
+import { isAmiss, lookOf } from '../situation/model';
+import { firstWords, newsOf } from '../situation/news';
 
 interface EventLine {
   key: string;
@@ -12,8 +13,12 @@ interface EventLine {
   e_s: number;
   level: string;
   name: string;
+  /** What the banner calls it. */
+  named: string;
   text: string;
   why: string[];
+  /** An alarm, as the banner and the header have it. */
+  alarm: boolean;
   live: boolean;
   recorded: boolean;
   explanation: boolean;
@@ -55,6 +60,8 @@ const MINOR = new Set(['held', 'chosen', 'dropped']);
 
 const SAME_MOMENT_S = 1 / 16; // chosen: an explanation and its event leave within a few cycles
 
+const SAME_NEWS_S = 1; // chosen: the banner says since when in the event's own time, rounded by the correlation of clocks
+
 /**
  * The newest `most` of the matching lines. An explanation is shown with its event of the same moment, else on a line of
  * its own.
@@ -63,7 +70,7 @@ export function eventLines(
   store: RunStore,
   filter: EventFilter,
   most: number,
-): { lines: EventLine[]; found: number; warnings: number } {
+): { lines: EventLine[]; found: number; alarms: number; warnings: number } {
   const least = LEVELS.indexOf(filter.from);
   const words = filter.search
     .toLowerCase()
@@ -74,15 +81,23 @@ export function eventLines(
     return !filter.range || (e_s >= filter.range.from && e_s <= filter.range.to);
   };
   const matches = (line: EventLine) => {
-    const all = `${line.name} ${line.text} ${line.why.join(' ')}`.toLowerCase();
+    const all = `${line.name} ${line.named} ${line.text} ${line.why.join(' ')}`.toLowerCase();
     return words.every((word) => all.includes(word));
   };
   const lines: EventLine[] = [];
-  let warnings = 0;
+  let [alarms, warnings] = [0, 0];
+  const news = newsOf(store);
   for (const row of store.events) {
     if (!inRange(row.fact.sclk)) continue;
     const level = LEVELS.indexOf(row.fact.level);
-    if (level >= 4) ++warnings;
+    const banner = news.find(
+      (each) =>
+        each.evidence === `event ${row.fact.name}` &&
+        Math.abs(store.sclkSeenAt(each.since_s) - row.fact.sclk) <= SAME_NEWS_S,
+    );
+    const alarm = banner !== undefined && lookOf(banner) === 'alarm';
+    if (alarm) ++alarms;
+    else if (level >= LEVELS.indexOf('WARNING_LO')) ++warnings;
     if (level >= 0 && level < least) continue;
     lines.push({
       key: `e${row.seq}`,
@@ -90,8 +105,10 @@ export function eventLines(
       e_s: row.fact.sclk - store.entrySclk,
       level: row.fact.level,
       name: row.fact.name,
-      text: row.fact.text || row.fact.name,
+      named: banner ? firstWords(banner.sentence) : '',
+      text: alsoCalled(row.fact.text || row.fact.name),
       why: [],
+      alarm,
       live: row.live,
       recorded: row.recorded,
       explanation: false,
@@ -99,11 +116,13 @@ export function eventLines(
     });
   }
   // What the ground found by itself; what it repeats of an event stands in its row already.
-  for (const { seq, ert_s, rank, subject, sentence, evidence } of newsOf(store)) {
+  for (const { seq, ert_s, rank, subject, sentence, evidence } of news) {
     const sclk = store.sclkSeenAt(ert_s);
     if (evidence.startsWith('event ') || !inRange(sclk)) continue;
-    const level = rank === 'danger' ? 'WARNING_HI' : isAmiss({ rank, subject }) ? 'WARNING_LO' : 'ACTIVITY_HI';
-    if (LEVELS.indexOf(level) >= LEVELS.indexOf('WARNING_LO')) ++warnings;
+    const alarm = lookOf({ rank, subject, sentence }) === 'alarm';
+    const level = alarm ? 'WARNING_HI' : isAmiss({ rank, subject }) ? 'WARNING_LO' : 'ACTIVITY_HI';
+    if (alarm) ++alarms;
+    else if (level === 'WARNING_LO') ++warnings;
     if (LEVELS.indexOf(level) < least) continue;
     lines.push({
       key: `s${seq} ${sentence}`,
@@ -111,8 +130,10 @@ export function eventLines(
       e_s: sclk - store.entrySclk,
       level,
       name: '',
+      named: '',
       text: sentence,
       why: [],
+      alarm,
       live: true,
       recorded: false,
       explanation: false,
@@ -141,8 +162,10 @@ export function eventLines(
         e_s,
         level: 'why',
         name: row.fact.decision,
+        named: '',
         text: row.fact.text,
         why: [],
+        alarm: false,
         live: row.live,
         recorded: row.recorded,
         explanation: true,
@@ -152,7 +175,7 @@ export function eventLines(
   }
   lines.sort((a, b) => b.e_s - a.e_s || b.seq - a.seq);
   const found = lines.filter(matches);
-  return { lines: found.slice(0, most), found: found.length, warnings };
+  return { lines: found.slice(0, most), found: found.length, alarms, warnings };
 }
 
 export function sourceWords(line: Pick<EventLine, 'live' | 'recorded' | 'ground'>): {

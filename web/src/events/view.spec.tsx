@@ -60,14 +60,27 @@ describe('events', () => {
       situation('2012-219T04:59:55.0', { ...lost, sentence: 'A fault on the ground, and Earth sets meanwhile' }, told),
       situation('2012-219T04:59:58.0', landed, over, { rank: 'waiting', subject: 'recording', sentence: 'Waiting' }),
     ]);
-    const { lines, warnings } = eventLines(store, { ...all, from: 'ACTIVITY_LO' }, 10);
-    expect(warnings).toBe(1);
+    const { lines, alarms, warnings } = eventLines(store, { ...all, from: 'ACTIVITY_LO' }, 10);
+    expect([alarms, warnings]).toEqual([1, 0]);
     expect(lines.map(({ text, level, e_s }) => [text, level, Math.round(e_s)])).toEqual([
       ['Touchdown confirmed', 'ACTIVITY_HI', -102],
       ['Station was lost from E−1:50', 'ACTIVITY_HI', -102],
       ['A fault on the ground', 'WARNING_HI', -108],
     ]);
     expect(eventLines(store, { ...all, range: { from: -300, to: -105 } }, 10).lines).toHaveLength(1);
+  });
+  it('are alarms where the banner has them so, by the banner’s name; the flight’s own words follow', () => {
+    const told = event({ name: 'SECOND_CHANCE', sclk: 890, level: 'WARNING_HI', text: 'Prime is silent' });
+    const backup = {
+      rank: 'danger' as const,
+      subject: 'computer',
+      sentence: 'Flying on backup computer B since E−1:50: it took over',
+      evidence: 'event SECOND_CHANCE',
+      since: '2012-219T04:59:50.000',
+    };
+    const { lines, alarms, warnings } = eventLines(aStore([told, situation('2012-219T04:59:52.0', backup)]), all, 10);
+    expect([alarms, warnings]).toEqual([1, 0]);
+    expect(lines).toMatchObject([{ named: 'Flying on backup computer B', text: 'Prime is silent', alarm: true }]);
   });
   it('beyond what is shown are counted', () => {
     const store = aStore(['A', 'B', 'C'].map((name, i) => event({ name, sclk: 900 + i })));

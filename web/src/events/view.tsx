@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import { signal } from '@preact/signals';
 import { Panel } from '../design/panel';
+import { STATUS } from '../design/status';
 import { pastRange, runNow } from '../run/shown';
 import { fromEntry } from '../run/time';
 import { LEVELS, eventLines, levelShape, levelWords, sourceWords } from './model';
@@ -21,9 +22,9 @@ function onSearchKey(event: KeyboardEvent): void {
 
 export function Events() {
   const run = runNow();
-  const { lines, found, warnings } = run
+  const { lines, found, alarms, warnings } = run
     ? eventLines(run, { from: from.value, search: search.value, range: pastRange.value }, SHOWN)
-    : { lines: [], found: 0, warnings: 0 };
+    : { lines: [], found: 0, alarms: 0, warnings: 0 };
   return (
     <Panel
       name="events"
@@ -35,8 +36,13 @@ export function Events() {
               {found} found
             </span>
           )}
+          {alarms > 0 && (
+            <b class="status-alarm">
+              {STATUS.alarm.shape} {alarms} {alarms === 1 ? 'alarm' : 'alarms'}
+            </b>
+          )}
           {warnings > 0 && (
-            <b class={`warnings ${lines.some(({ level }) => WORST.has(level)) ? 'status-alarm' : ''}`}>
+            <b class={`warnings ${lines.some(({ level, alarm }) => !alarm && WORST.has(level)) ? 'status-alarm' : ''}`}>
               ▲ {warnings} {warnings === 1 ? 'warning' : 'warnings'}
             </b>
           )}
@@ -69,17 +75,18 @@ export function Events() {
           return (
             <li
               key={line.key}
-              class={`event level-${line.level}`}
+              class={`event level-${line.level} ${line.alarm ? 'is-alarm' : ''}`}
               data-event={line.name || undefined}
               data-menu={line.name === '' ? undefined : `timepoint ${line.name}`}
               data-at={line.e_s}
             >
               <time>{fromEntry(line.e_s, { tenths: true })}</time>
               <span class="shape" title={line.explanation ? 'explanation' : levelWords(line.level)}>
-                {levelShape(line.level)}
+                {line.alarm ? STATUS.alarm.shape : levelShape(line.level)}
               </span>
               <div>
                 {line.explanation && <small>why: </small>}
+                {line.named && <b>{line.named}</b>}
                 {line.text}
                 {line.why.map((why) => (
                   <small key={why} class="why">

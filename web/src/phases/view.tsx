@@ -9,6 +9,11 @@ import './style.css';
 
 const SHAPES = { done: '✓', now: '▶', ahead: '○' } as const;
 
+const capital = (words: string) => words.replace(/^./, (letter) => letter.toUpperCase());
+
+/** The vehicle's own word for its state has the large words where it names the phase: "Parachute descent". */
+const isNamed = ({ title, detail }: { title: string; detail: string }) => detail.includes(title.toLowerCase());
+
 export function Phases() {
   const run = runNow();
   if (!dictionary.value) return null;
@@ -26,12 +31,15 @@ export function Phases() {
           data-testid={step.state === 'now' ? 'phase-now' : undefined}
         >
           <b>
-            <span aria-hidden="true">{SHAPES[step.state]}</span> {step.title}
+            <span aria-hidden="true">{SHAPES[step.state]}</span> {isNamed(step) ? capital(step.detail) : step.title}
           </b>
           <small>
             {step.state === 'now' ? (
               <>
-                {step.detail || (step.since_e_s !== undefined && `from ${fromEntry(step.since_e_s)}`)}{' '}
+                <span>
+                  {(!isNamed(step) && step.detail) ||
+                    (step.since_e_s !== undefined && `from ${fromEntry(step.since_e_s)}`)}
+                </span>{' '}
                 <i>{nextWords(steps, seen_e_s)}</i>
               </>
             ) : step.state === 'done' ? (

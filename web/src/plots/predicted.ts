@@ -144,7 +144,11 @@ export function drawPredictedLine(plot: uPlot, line: PredictedLine, isDifference
  * Draws what is predicted after now: silences of UHF as hollow boxes, and ticks for moments. The next one is named, where
  * no limit has its name: `taken`, left, right and row of each.
  */
-export function drawAhead(plot: uPlot, now_e_s: number, taken: readonly (readonly [number, number, number])[]): void {
+export function drawAhead(
+  plot: uPlot,
+  now_e_s: number,
+  taken: readonly { from: number; to: number; y: number }[],
+): void {
   const { ctx } = plot;
   const { left, top, width, height } = plot.bbox;
   const [right, bottom] = [left + width, top + height];
@@ -200,7 +204,7 @@ export function drawAhead(plot: uPlot, now_e_s: number, taken: readonly (readonl
     const at = Math.max(left + half + 2, Math.min(right - half - 2, x(next.e_s)));
     const row = top + (TICK + 1) * ratio;
     const isFree = !taken.some(
-      ([begin, end, base]) => begin < at + half && end > at - half && base > row && base < row + 22 * ratio,
+      (name) => name.from < at + half && name.to > at - half && name.y > row && name.y < row + 22 * ratio,
     );
     ctx.globalAlpha = 1;
     ctx.strokeStyle = colours.panel; // an outline against the lines behind it

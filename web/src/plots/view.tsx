@@ -96,13 +96,28 @@ const isAhead = () => isPredicted() && !difference.value;
 /** Draws what lies under grid and samples. */
 function underlay(plot: uPlot, channel: DictionaryChannel, per: number): void {
   shadeSilence(plot);
+  limitNames.delete(plot);
   if (!lineOf(channel, per) || !showsDifference(channel)) alarmBands(plot, channel, per);
 }
-/** Draws what is predicted, over the grid and under the samples. */
+/** Draws what is predicted, over the grid and under the samples; names of limits are over both. */
 function drawPredicted(plot: uPlot, channel: DictionaryChannel, per: number): void {
   const line = lineOf(channel, per);
-  if (isAhead()) drawing?.drawAhead(plot, nowOf(), namesTaken.get(plot) ?? []);
+  const names = limitNames.get(plot) ?? [];
+  if (isAhead()) drawing?.drawAhead(plot, nowOf(), names);
   if (line) drawing?.drawPredictedLine(plot, line, showsDifference(channel));
+  const { ctx } = plot;
+  const ratio = window.devicePixelRatio || 1;
+  ctx.save();
+  ctx.font = `${TYPE.mark * ratio}px ${palette().sans}`;
+  ctx.textAlign = 'left';
+  ctx.textBaseline = 'alphabetic';
+  for (const { words, from, to, y, colour } of names) {
+    ctx.fillStyle = palette().panel; // against the lines behind it
+    ctx.fillRect(from - ratio, y - 9 * ratio, to - from + 2 * ratio, 11 * ratio);
+    ctx.fillStyle = colour;
+    ctx.fillText(words, from, y);
+  }
+  ctx.restore();
 }
 
 function options(
@@ -191,13 +206,19 @@ function shadeSilence(plot: uPlot): void {
   plot.ctx.restore();
 }
 
-/** Left, right and row of the limits' names in a plot, as drawn last. */
-type NamesTaken = [number, number, number][];
-const namesTaken = new WeakMap<uPlot, NamesTaken>();
+/** The limits' names in a plot, each with its place, as found last. */
+interface LimitName {
+  words: string;
+  from: number;
+  to: number;
+  y: number;
+  colour: string;
+}
+const limitNames = new WeakMap<uPlot, LimitName[]>();
 
 /**
- * Shades the area outside each limit while the limit was in force, with its name. The worst limit is named first, so
- * that it has its name where room is short.
+ * Shades the area outside each limit while the limit was in force, and finds a place for its name. The worst limit is
+ * named first, so that it has its name where room is short.
  */
 function alarmBands(plot: uPlot, channel: DictionaryChannel, per: number): void {
   const run = shownRun();
@@ -209,7 +230,7 @@ function alarmBands(plot: uPlot, channel: DictionaryChannel, per: number): void 
   const ratio = window.devicePixelRatio || 1;
   const { ctx } = plot;
   const named: { words: string; x: number; y: [number, number]; room: number; colour: string }[] = [];
-  const drawn: NamesTaken = []; // the limits' lines
+  const drawn: { from: number; to: number; y: number }[] = []; // the limits' lines
   ctx.save();
   for (const stretch of limitsOver(
     channel,
@@ -236,41 +257,31 @@ function alarmBands(plot: uPlot, channel: DictionaryChannel, per: number): void 
         ctx.globalAlpha = 0.8;
         ctx.fillRect(x1, Math.round(edge), x2 - x1, ratio);
         const name = `${limit.severity} ${above ? '>' : '<'} ${+(bound / per).toPrecision(4)}${stretch.context ? `, ${inWords(stretch.context)}` : ''}`;
-        drawn.push([x1, x2, edge]);
+        drawn.push({ from: x1, to: x2, y: edge });
         const [over, under] = [edge - 3 * ratio, edge + 11 * ratio];
         named.unshift({ words: name, x: x1, room: x2 - x1, y: above ? [over, under] : [under, over], colour });
       }
     }
   }
-  ctx.globalAlpha = 1;
   ctx.font = `${TYPE.mark * ratio}px ${colours.sans}`;
-  ctx.textAlign = 'left';
-  ctx.textBaseline = 'alphabetic';
-  const taken: NamesTaken = [];
-  namesTaken.set(plot, taken);
+  const names: LimitName[] = [];
+  limitNames.set(plot, names);
   for (const { words: whole, x, y, room, colour } of named.sort(
     (one, other) => Number(other.colour === colours.alarm) - Number(one.colour === colours.alarm),
   )) {
-    const short = ctx.measureText(whole).width < room - 6 * ratio ? whole : (whole.split(',')[0] as string);
-    const wide = ctx.measureText(short).width;
+    const words = ctx.measureText(whole).width < room - 6 * ratio ? whole : (whole.split(',')[0] as string);
+    const wide = ctx.measureText(words).width;
     const at = Math.max(left + 2, Math.min(right - wide - 2, x + 3));
-    const within = ([from_px, to_px]: NamesTaken[number]) => at < to_px && at + wide > from_px;
+    const within = ({ from, to }: { from: number; to: number }) => at < to && at + wide > from;
     // Beside its line, on no other line and no other name; else it has none here.
     const free = y.find(
       (each) =>
         each - 9 * ratio >= top &&
         each <= bottom &&
-        !taken.some((name) => within(name) && Math.abs(each - name[2]) < 10 * ratio) &&
-        !drawn.some((line) => within(line) && line[2] > each - 10 * ratio && line[2] < each + 2 * ratio),
+        !names.some((name) => within(name) && Math.abs(each - name.y) < 10 * ratio) &&
+        !drawn.some((line) => within(line) && line.y > each - 10 * ratio && line.y < each + 2 * ratio),
     );
-    if (free === undefined) continue;
-    taken.push([at, at + wide, free]);
-    ctx.fillStyle = colour;
-    ctx.strokeStyle = colours.panel; // an outline against the lines of other limits; the trace is drawn later, over it
-    ctx.lineWidth = 3 * ratio;
-    ctx.lineJoin = 'round';
-    ctx.strokeText(short, at, free);
-    ctx.fillText(short, at, free);
+    if (free !== undefined) names.push({ words, from: at, to: at + wide, y: free, colour });
   }
   ctx.restore();
 }
@@ -410,6 +421,11 @@ function Plot(properties: Properties) {
       ? undefined
       : differenceOf(channel, value, expected);
   const inDifference = line !== undefined && showsDifference(channel);
+  // Of the hollow dot, which stands at now whatever has been heard.
+  const foreseen =
+    line && run && at === undefined && !inDifference
+      ? predictedAt(channel, line.series, run.entrySclk + line.now_e_s, line.gap_s)
+      : undefined;
   const textOf = (of: number | undefined) =>
     of === undefined || Number.isNaN(of)
       ? '—'
@@ -463,7 +479,12 @@ function Plot(properties: Properties) {
               onClick={toggleDifference}
             >
               {PREDICTED.shape}
-              <i> {inDifference ? 'less predicted' : PREDICTED.word}</i>
+              {foreseen !== undefined && '○'}
+              <i>
+                {' '}
+                {inDifference ? 'less predicted' : PREDICTED.word}
+                {foreseen !== undefined && <b> {textOfValue(foreseen, per, digits)}</b>}
+              </i>
             </button>
           )}
         </span>

@@ -51,6 +51,10 @@ export function inWords(name: string): string {
   return (LAYOUT.words as Record<string, string>)[name] ?? name.replaceAll('_', ' ').toLowerCase();
 }
 
+/** A report's words, with what its names are elsewhere: "Second Chance (backup computer): alive". */
+export const alsoCalled = (words: string): string =>
+  words.replace(LAYOUT.alsoCalled.name, `$& (${LAYOUT.alsoCalled.is})`);
+
 /**
  * A value for display: its exact text where a number does not hold it, its label, or five significant digits with at
  * most four decimals.

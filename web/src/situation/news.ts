@@ -43,6 +43,7 @@ export function newsOf(run: RunStore): readonly News[] {
   return of.news;
 }
 
-/** The first words of a sentence: "on backup computer B". */
-export const shortWords = (sentence: string): string =>
-  (sentence.split(/ since | from |, |: /)[0] ?? sentence).replace(/^Flying on/, 'on');
+/** The first words of a sentence: "Flying on backup computer B". */
+export const firstWords = (sentence: string): string => sentence.split(/ since | from |, |: /)[0] ?? sentence;
+/** Where room is short: "on backup computer B". */
+export const shortWords = (sentence: string): string => firstWords(sentence).replace(/^Flying on/, 'on');

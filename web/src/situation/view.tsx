@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The banner: the one thing that matters most now, as a sentence, with what it counts down to.
+import { armedHere, armedLeft_s } from '../commands/armed';
 import { STATUS } from '../design/status';
 import { modeNow, runNow } from '../run/shown';
-import { fromEntry } from '../run/time';
+import { duration, fromEntry } from '../run/time';
 import { aside, listShown, lookOf, pointAt, putAside, situationNow, toggleList } from './model';
 import type { Line } from './model';
 import './style.css';
@@ -44,11 +45,25 @@ function Entry({ line }: { line: Line }) {
   );
 }
 
+/** Ahead of what the server says: what is armed here is this console's alone. */
+function ArmedHere() {
+  const names = armedHere.value;
+  if (names.length === 0) return null;
+  const left_s = armedLeft_s();
+  return (
+    <strong class="armed-here" data-testid="armed-here">
+      <span role="alert">▲ ARMED HERE: {names.join(', ')}</span>
+      {left_s !== undefined && <small>latest to send in {duration(left_s)}</small>}
+    </strong>
+  );
+}
+
 export function Situation() {
   const run = runNow();
   const { first, more } = situationNow(run);
   if (!run && !first) return null;
-  const isLong = first && first.sentence.length + first.countdown.length > ONE_LINE;
+  // What is armed here has the large words.
+  const isLong = first && (armedHere.value.length > 0 || first.sentence.length + first.countdown.length > ONE_LINE);
   // What counts down keeps one size, however long the time is written.
   const isNews = first && first.countdown === '' && first.sentence.length <= NEWS;
   const size = isLong ? 'situation-long' : isNews ? 'situation-news' : '';
@@ -62,6 +77,7 @@ export function Situation() {
       data-rank={first?.rank}
       aria-label="situation"
     >
+      <ArmedHere />
       <span class="situation-shape" aria-hidden="true">
         {STATUS[look].shape}
       </span>

@@ -351,10 +351,12 @@ function drawDoppler(
     c.strokeStyle = colours.tone;
     line(c, px, y, x(told_e_s), y);
     triangle(c, px, y, colours.tone);
-    const delay = `+${(told_e_s - e_s).toFixed(1)} s`;
+    const later = `${(told_e_s - e_s).toFixed(1)} s later`;
     const silent_e_s = lanes.toneOutages.find(({ from }) => from > e_s)?.from;
     const next_e_s = Math.min(lanes.doppler[i + 1]?.e_s ?? Infinity, silent_e_s ?? Infinity);
-    if (px + 12 + c.measureText(delay).width < Math.min(edge, x(next_e_s))) c.fillText(delay, px + 8, y + 0.5);
+    const room = Math.min(edge, x(next_e_s)) - px - 12;
+    const words = [`seen ${later}`, later].find((each) => c.measureText(each).width < room);
+    if (words !== undefined) c.fillText(words, px + 8, y + 0.5);
   }
 }
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+import { alsoCalled } from '../run/dictionary';
 import type { RunStore } from '../run/store';
 import { fromEntry, secondsOfErt } from '../run/time';
 import type { NamedLink, NamedTone } from '../stream/names';
@@ -70,7 +71,9 @@ export const isOld = (tone: NamedTone | undefined, seen_sclk: number): boolean =
 export function toneTitle(tone: NamedTone | undefined, last_e_s?: number): string {
   if (!tone) return 'Tones';
   const meaning =
-    tone.tone === undefined ? 'not decoded' : `${tone.tone} · ${tone.meaning || tone.name || 'without a meaning'}`;
+    tone.tone === undefined
+      ? 'not decoded'
+      : `${tone.tone} · ${alsoCalled(tone.meaning || tone.name || 'without a meaning')}`;
   return last_e_s === undefined ? `Tone ${meaning}` : `Last tone, ${fromEntry(last_e_s)}: ${meaning}`;
 }
 
