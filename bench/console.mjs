@@ -6,7 +6,16 @@ import { spawnSync } from 'node:child_process';
 import { cpSync, readFileSync, readdirSync, writeFileSync } from 'node:fs';
 import path from 'node:path';
 import { gzipSync } from 'node:zlib';
-import { browser, flyTo, program, root, serve, temporaryFolder, waitFor } from '../tests/browser/support.mjs';
+import {
+  browser,
+  control as controlOf,
+  flyTo,
+  program,
+  root,
+  serve,
+  temporaryFolder,
+  waitFor,
+} from '../tests/browser/support.mjs';
 import { serve as serveOpenMct } from '../web/openmct/serve.mjs';
 
 if (!globalThis.WebSocket) {
@@ -469,8 +478,7 @@ async function vehicle() {
     more: ['--scenario', 'nominal_auto', '--pace', '100'],
     web,
   });
-  const control = (body) =>
-    fetch(`${landing.address}/api/v1/rehearsals/current`, { method: 'POST', body: JSON.stringify(body) });
+  const control = (order) => controlOf(landing, order);
   try {
     for (const e_s of [-600, 0, VEHICLE_FROM_E_S]) await flyTo(landing, e_s);
     for (const [pace, seconds] of [
@@ -482,7 +490,8 @@ async function vehicle() {
       await pause(4000);
       await page.evaluate(watchFrames);
       await page.evaluate(watchShifts);
-      await control({ pause: false, pace });
+      await control({ pace });
+      await control({ pause: false });
       await cdp.send('Performance.enable');
       const busy = async () =>
         (await cdp.send('Performance.getMetrics')).metrics.find((each) => each.name === 'TaskDuration').value;

@@ -26,6 +26,7 @@ let lastStep = 0;
 let shownVersion = -1;
 let shownStore: unknown;
 let rowsDue = false;
+let isAnswering = false; // a key was pressed since the last frame
 let undrawn: { look: Look; draw: () => void }[] = []; // remaining drawings of the current draw
 
 /** Registers a drawing for the next frame and each later draw. Returns a function that removes it. */
@@ -53,6 +54,10 @@ function frame(now: number): void {
   // Numbers take as long as drawings, and rows of a long table as long again, so each has a frame of its own if there
   // is one.
   const since_ms = now - lastNumbers;
+  const answers = isAnswering;
+  isAnswering = false;
+  // The picture that answers a key comes first: numbers wait for the next frame, but not for ever while one is held.
+  if (answers && since_ms < 2 * NUMBERS_EVERY_MS) return;
   if (rowsDue && (!drew || since_ms > DRAW_EVERY_MS)) {
     rowsDue = false;
     rowsTick.value += 1;
@@ -98,5 +103,6 @@ function showNumbers(now: number): void {
 }
 
 export function startLoop(): void {
+  addEventListener('keydown', () => (isAnswering = true), true);
   requestAnimationFrame(frame);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The flight path from above: north up, one scale for east and north, around the target and its ellipse.
+import { useMemo } from 'preact/hooks';
 import { STATUS } from '../design/status';
 import type { TargetEllipse } from '../gen/aeolis/v1/prediction_pb';
 
@@ -10,7 +11,7 @@ interface Place {
 interface Properties {
   points: readonly (Place & { recorded: boolean })[];
   /** The path that is expected, dashed. */
-  predicted?: readonly (Place & { recorded: boolean })[];
+  predicted?: readonly (Place & { recorded: boolean })[] | undefined;
   /** The newest known place; undefined: not known. */
   now: Place | undefined;
   stale: boolean;
@@ -31,9 +32,15 @@ export function scaleBar_m(reach_m: number): number {
   return (STEPS.findLast((step) => step * decade <= wanted) ?? 1) * decade;
 }
 
-/** How far the picture reaches from the target: all that matters now, and no nearer than 50 m. */
-export const reachOf = (now: Place | undefined): number =>
-  Math.max(50, now ? Math.hypot(now.east_m, now.north_m) * 1.25 : 1000);
+const NEAREST_M = 50;
+const STEPS_AN_OCTAVE = 4; // chosen: between two of them the map stands still, and the paths on it are as they were
+
+/** How far the picture reaches from the target: all that matters now, in steps, and no nearer than 50 m. */
+export function reachOf(now: Place | undefined): number {
+  if (!now) return 1000;
+  const octaves = Math.log2((Math.hypot(now.east_m, now.north_m) * 1.25) / NEAREST_M);
+  return NEAREST_M * 2 ** Math.max(0, Math.ceil(octaves * STEPS_AN_OCTAVE) / STEPS_AN_OCTAVE);
+}
 
 export const lengthWords = (m: number): string => (m >= 1000 ? `${m / 1000} km` : `${m} m`);
 
@@ -63,8 +70,11 @@ function lines(points: Properties['points'], reach: number): { recorded: boolean
   return all;
 }
 
-export function Path({ points, predicted = [], now, stale, label, ellipse, least_m = 0 }: Properties) {
+const NONE: NonNullable<Properties['predicted']> = [];
+
+export function Path({ points, predicted = NONE, now, stale, label, ellipse, least_m = 0 }: Properties) {
   const reach = Math.max(reachOf(now), least_m);
+  const foreseen = useMemo(() => lines(predicted, reach), [predicted, reach]);
   const bar = scaleBar_m(reach);
   const x = (m: number) => (m / reach) * HALF;
   const from = now && Math.hypot(now.east_m, now.north_m);
@@ -88,7 +98,7 @@ export function Path({ points, predicted = [], now, stale, label, ellipse, least
           data-testid="ellipse"
         />
       )}
-      {lines(predicted, reach).map(({ d }, i) => (
+      {foreseen.map(({ d }, i) => (
         <path key={i} d={d} class="path-predicted" />
       ))}
       {lines(points, reach).map(({ recorded, d }, i) => (

@@ -4,6 +4,7 @@ import { LAYOUT } from '../layout';
 import { isPredicted, predictedEvent, predictedSeries, predictedVersion } from '../prediction/model';
 import { RunStore } from '../run/store';
 import { NAMES } from './history';
+import { pathOf } from './model';
 import type { Look } from './model';
 
 let kept: { key: string; run: RunStore } | undefined;
@@ -27,4 +28,13 @@ export function predictedLook(look: Look): Look | undefined {
     }
   }
   return { run: kept.run, words: look.words, plan: [], cutoff, lost: false };
+}
+
+let path: { of: RunStore; points: ReturnType<typeof pathOf> } | undefined;
+
+/** The whole path that is predicted, computed once: it stays while the vehicle moves along it. */
+export function predictedPath(look: Look, expected: Look): ReturnType<typeof pathOf> {
+  if (path?.of !== expected.run)
+    path = { of: expected.run, points: pathOf({ ...expected, cutoff: predictedTouchdown(look) }) };
+  return path.points;
 }

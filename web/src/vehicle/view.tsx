@@ -8,7 +8,7 @@ import { onDraw } from '../draw/loop';
 import { palette } from '../draw/palette';
 import { isPredicted, predictedVersion, prediction } from '../prediction/model';
 import { isLost } from '../run/connection';
-import { asHeard, cutoff, dictionary, pastRange, runNow, shownRun, timepoints } from '../run/shown';
+import { asHeard, cutoff, dictionary, pastRange, runNow, shownRun, tick, timepoints } from '../run/shown';
 import { fromEntry } from '../run/time';
 import { resultShown, touchedDown } from '../touchdown/shown';
 import { Touchdown } from '../touchdown/view';
@@ -18,7 +18,7 @@ import type { FromPicture, ToPicture } from './messages';
 import { missingOf, motionOf, pathOf, sceneOf, staleOf, targetOf } from './model';
 import type { Look } from './model';
 import { ellipseWords, Path } from './path';
-import { predictedLook, predictedTouchdown } from './predicted';
+import { predictedLook, predictedPath } from './predicted';
 import { channelOf, figuresOf, rowsOf } from './rows';
 import './style.css';
 
@@ -35,9 +35,10 @@ function lookNow(run = shownRun()): Look | undefined {
   const words = dictionary.value;
   return run && words && { run, words, plan: timepoints.value, cutoff: cutoff.value, lost: isLost.value };
 }
+/** Follows the numbers beside it, five times a second: attitudes come twice a second, and what lies between is eased. */
 const keyNow = () => {
   const run = shownRun();
-  return `${run?.id} ${run?.version} ${cutoff.value} ${isLost.value} ${timepoints.value.length} ${asHeard.value}`;
+  return `${run?.id} ${tick.peek()} ${cutoff.value} ${isLost.value} ${timepoints.value.length} ${asHeard.value}`;
 };
 
 function chooseFlat(): void {
@@ -212,7 +213,7 @@ function Facts({ look }: { look: Look }) {
       <figure>
         <Path
           points={pathOf(look)}
-          predicted={expected ? pathOf({ ...expected, cutoff: predictedTouchdown(look) }) : []}
+          predicted={expected && predictedPath(look, expected)}
           now={motion.over}
           stale={stale}
           label="Path from above"
