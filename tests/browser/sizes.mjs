@@ -41,6 +41,7 @@ export const STATES = {
         await shows('dry-run', /✓ It would be sent once it is armed/);
         await page.keyboard.press('Enter');
         await shows('command-armed', /ARMED/);
+        await shows('armed-here', /ARMED HERE: EDL_DO_EDL\s*latest to send in \d/);
       },
     };
   },

@@ -47,6 +47,26 @@ describe('the loop', () => {
     frames(1);
     expect(drawn).toBe(2);
   });
+  it('lets numbers wait for the frame after the one that answers a key, but not for ever while a key is held', () => {
+    frames(1);
+    run.addHistory([column(900)]);
+    frames(1);
+    const before = shown.tick.value;
+    run.addHistory([column(901)]);
+    for (let i = 0; i < 14; ++i) {
+      window.dispatchEvent(new KeyboardEvent('keydown', { key: '?' }));
+      frames(1);
+    }
+    expect(shown.tick.value).toBe(before);
+    frames(1);
+    expect(shown.tick.value).toBe(before + 1);
+    run.addHistory([column(902)]);
+    for (let i = 0; i < 30; ++i) {
+      window.dispatchEvent(new KeyboardEvent('keydown', { key: '?' }));
+      frames(1);
+    }
+    expect(shown.tick.value).toBe(before + 2);
+  });
   it('lets all look at their sizes before any draws, so that the page is laid out once', () => {
     const did: string[] = [];
     for (const name of ['a', 'b']) {

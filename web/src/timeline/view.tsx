@@ -153,10 +153,11 @@ function drawTimeline({ context: c, width: width_px, height: height_px, colours 
     c.fillText(words, (GUTTER + width) / 2, y(RECORDING) - 0.5);
   }
   marks(lanes.plan, x, y(0), (px, py) => ring(c, px, py, 3.2, colours.dim), true);
-  drawPredicted(c, x, y(1), Math.min(run.seenE, pastRange.value?.to ?? Infinity), colours);
+  const now_e_s = Math.min(run.seenE, pastRange.value?.to ?? Infinity);
+  drawPredicted(c, x, y(1), now_e_s, colours);
   marks(lanes.tones, x, y(TONE), (px, py) => box(c, px, py, 3.8, colours.tone), false);
   marks(lanes.heardByTone, x, y(TONE), (px, py) => box(c, px, py, 3.8, colours.tone), true);
-  drawDoppler(c, lanes, x, y(DOPPLER), width - 14, colours);
+  drawDoppler(c, lanes, x, y(DOPPLER), width - 14, now_e_s, colours);
   marks(
     lanes.live,
     x,
@@ -334,17 +335,25 @@ function drawPredicted(
   }
 }
 
-/** Features that the carrier's Doppler shows: each where the vehicle was, and until when ground had recognised it. */
+/**
+ * Features that the carrier's Doppler shows: each where the vehicle was, and until when ground had recognised it, in
+ * words where they meet neither the next feature nor a silence nor now.
+ */
 function drawDoppler(
   c: CanvasRenderingContext2D,
   lanes: Lanes,
   x: (e: number) => number,
   y: number,
   edge: number,
+  now_e_s: number,
   colours: Surface['colours'],
 ): void {
   c.font = `${TYPE.mark}px ${colours.sans}`;
   c.textAlign = 'left';
+  const silences = [
+    ...lanes.toneOutages.map(({ from }) => from),
+    ...windowsOf('silence', 'x_band').map((w) => w.fromES),
+  ];
   for (const [i, { e_s, told_e_s }] of lanes.doppler.entries()) {
     const px = x(e_s);
     if (px < GUTTER - 6) continue;
@@ -352,9 +361,8 @@ function drawDoppler(
     line(c, px, y, x(told_e_s), y);
     triangle(c, px, y, colours.tone);
     const later = `${(told_e_s - e_s).toFixed(1)} s later`;
-    const silent_e_s = lanes.toneOutages.find(({ from }) => from > e_s)?.from;
-    const next_e_s = Math.min(lanes.doppler[i + 1]?.e_s ?? Infinity, silent_e_s ?? Infinity);
-    const room = Math.min(edge, x(next_e_s)) - px - 12;
+    const ends = [now_e_s, lanes.doppler[i + 1]?.e_s ?? Infinity, ...silences.filter((from) => from > e_s)];
+    const room = Math.min(edge, x(Math.min(...ends))) - px - 12;
     const words = [`seen ${later}`, later].find((each) => c.measureText(each).width < room);
     if (words !== undefined) c.fillText(words, px + 8, y + 0.5);
   }
