@@ -5,6 +5,7 @@
 #include "common/crc.hpp"
 
 #include <algorithm>
+#include <array>
 
 namespace aeolis::cfdp {
 namespace {
@@ -292,8 +293,13 @@ std::size_t write(const Pdu& pdu, std::span<std::uint8_t> into) {
 }
 
 std::uint32_t modular_checksum(std::uint32_t offset, std::span<const std::uint8_t> octets) {
+    // The sum of each of the four places by itself: they are put together once, not octet by octet.
+    std::array<std::uint32_t, 4> sums{};
+    for (; octets.size() >= sums.size(); octets = octets.subspan(sums.size()))
+        for (std::size_t place = 0; place < sums.size(); ++place) sums[place] += octets[place];
+    for (std::size_t place = 0; place < octets.size(); ++place) sums[place] += octets[place];
     std::uint32_t sum = 0;
-    for (const std::uint8_t octet : octets) sum += std::uint32_t{octet} << (24 - 8 * (offset++ % 4));
+    for (const std::uint32_t of_place : sums) sum += of_place << (24 - 8 * (offset++ % 4));
     return sum;
 }
 

@@ -63,7 +63,7 @@ struct Flight {
     std::vector<Node> nodes;  ///< from where it slows down to the start of SUFR
     double ground_at_end_m = 0.0;
     double after_m = 0.0;  ///< along the ground from the start of SUFR to the landing
-    Costate at_end;        ///< derivatives of after_m by the state at the start of SUFR
+    PointMass end;         ///< state at the start of SUFR
 };
 
 double ground_step_m(const PointMass& before, const PointMass& after, double target_radius_m) {
@@ -118,6 +118,7 @@ double range_after_entry_m(const Scenario& scenario, const Atmosphere& atmospher
            load.divert_m * std::cos(load.divert_azimuth_deg * degree_rad - azimuth_rad(at));
 }
 
+/// Derivatives of range_after_entry_m by the state at the start of SUFR.
 Costate range_slopes_after_entry(const Scenario& scenario, const Atmosphere& atmosphere, const PointMass& at) {
     constexpr double dh_m = 200.0, dgamma_rad = 0.5 * degree_rad;
     const Vector3 up = at.p_MoB_M.normalized();
@@ -155,7 +156,7 @@ Flight fly(const Scenario& scenario, const EntryFlight& flight, const Atmosphere
     }
     result.ground_at_end_m = ground_m;
     result.after_m = range_after_entry_m(scenario, atmosphere, at);
-    result.at_end = range_slopes_after_entry(scenario, atmosphere, at);
+    result.end = at;
     return result;
 }
 
@@ -250,7 +251,7 @@ flight::EntryReference make_entry_reference(const Scenario& scenario) {
     // Integrates backwards along the flight by Heun's method.
     const std::vector<Node>& nodes = best.nodes;
     std::vector<Costate> costates(nodes.size());
-    costates.back() = best.at_end;
+    costates.back() = range_slopes_after_entry(scenario, atmosphere, best.end);
     const double radius_m = scenario.target.radius_m;
     for (std::size_t i = nodes.size() - 1; i > 0; --i) {
         const double dv = nodes[i - 1].velocity_mps - nodes[i].velocity_mps;

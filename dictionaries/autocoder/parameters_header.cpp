@@ -24,12 +24,6 @@ void write_members(const Dictionary& dictionary, Change change, std::ostringstre
     });
 }
 
-/// The function that transfers a table to another computer (flight/cross_string).
-void write_carry(std::ostringstream& out) {
-    out << "\n    template <typename Exchange>\n    void carry(Exchange& exchange) {\n        "
-           "exchange.doubles(*this);\n    }\n";
-}
-
 void write_specs(const Dictionary& dictionary, std::ostringstream& out) {
     out << "struct ParameterSpec {\n"
            "    double Parameters::*member = nullptr;  ///< null: fixed at build\n"
@@ -65,7 +59,6 @@ std::string parameters_header(const Dictionary& dictionary) {
            "/// What ground may change until GNC is enabled, at its defaults.\nstruct Parameters {\n";
     write_members(dictionary, Change::until_gnc, out);
     out << "\n    bool operator==(const Parameters&) const = default;\n";
-    write_carry(out);
     out << "};\n\n/// What is fixed when flight is built.\nstruct BuildParameters {\n";
     write_members(dictionary, Change::build, out);
     out << "};\ninline constexpr BuildParameters build_parameters{};\n\n";

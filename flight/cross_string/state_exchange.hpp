@@ -4,7 +4,10 @@
 #include "common/fixed_vector.hpp"
 #include "common/time.hpp"
 
+#include <algorithm>
 #include <array>
+#include <bit>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <limits>
@@ -32,17 +35,54 @@ class StateExchange {
         (carry(values), ...);
     }
 
-    /// A table of nothing but doubles, whole.
+    /// Values whose defaults both computers have: a bit for each that departs from its own, then those that do. Equal
+    /// are numbers of the same bits. `value_at(i)` gives a reference, `default_at(i)` a value.
+    template <typename ValueAt, typename DefaultAt>
+    void departures(std::size_t count, const ValueAt& value_at, const DefaultAt& default_at) {
+        for (std::size_t first = 0; first < count; first += word_bits) {
+            const std::size_t in_word = std::min(word_bits, count - first);
+            std::uint64_t departed = 0;
+            if constexpr (writing)
+                for (std::size_t i = 0; i < in_word; ++i)
+                    departed |= std::uint64_t{!same(value_at(first + i), default_at(first + i))} << i;
+            number(departed);
+            if (in_word < word_bits && departed >> in_word != 0) {
+                ok_ = false;
+                return;
+            }
+            if constexpr (!writing)
+                for (std::size_t i = 0; i < in_word; ++i) value_at(first + i) = default_at(first + i);
+            for (; departed != 0; departed &= departed - 1)
+                carry(value_at(first + static_cast<std::size_t>(std::countr_zero(departed))));
+        }
+    }
+    /// The same of a table of nothing but doubles.
     template <typename Table>
-    void doubles(Table& table) {
-        static_assert(std::is_trivially_copyable_v<Table> && alignof(Table) == alignof(double));
-        numbers(&table, 1);
+    void departures(Table& table, const Table& defaults) {
+        static_assert(std::is_trivially_copyable_v<Table> && sizeof(Table) % sizeof(double) == 0);
+        using Doubles = std::array<double, sizeof(Table) / sizeof(double)>;
+        auto values = std::bit_cast<Doubles>(table);
+        const auto default_values = std::bit_cast<Doubles>(defaults);
+        departures(
+            values.size(), [&](std::size_t i) -> double& { return values[i]; },
+            [&](std::size_t i) { return default_values[i]; });
+        if constexpr (!writing) table = std::bit_cast<Table>(values);
     }
 
     bool ok() const { return ok_; }
     std::size_t size() const { return at_; }
 
   private:
+    static constexpr std::size_t word_bits = 64;
+
+    static bool same(double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }
+    static bool same(const std::optional<double>& a, const std::optional<double>& b) {
+        return a.has_value() == b.has_value() && (!a || same(*a, *b));
+    }
+    static bool same(const MaybeTime& a, const MaybeTime& b) {
+        return a.defined() == b.defined() && (!a.defined() || same(a.get()->seconds, b.get()->seconds));
+    }
+
     template <typename T>
     void carry(T& value) {
         if constexpr (std::is_arithmetic_v<T> || std::is_enum_v<T>)
@@ -82,9 +122,11 @@ class StateExchange {
     void carry(std::optional<T>& value) {
         bool present = value.has_value();
         number(present);
-        T content = value.value_or(T{});
-        carry(content);
-        if (!writing) value = present ? std::optional{content} : std::nullopt;
+        if constexpr (!writing) {
+            value.reset();
+            if (present && ok_) value.emplace();
+        }
+        if (value) carry(*value);
     }
     void carry(MaybeTime& time) {
         std::optional<Sclk> content = time.get();

@@ -11,7 +11,7 @@
 
 namespace aeolis::flight {
 
-// Parameters::carry hands the table over as a block of doubles.
+// carry() takes the table for a block of doubles.
 static_assert(sizeof(Parameters) == sizeof(double) * std::ranges::count_if(parameter_specs, [](const auto& spec) {
                                         return spec.member != nullptr;
                                     }));

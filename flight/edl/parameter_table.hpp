@@ -68,7 +68,8 @@ class ParameterTable {
     /// State for another computer, without the built-in values, which are the same there.
     template <typename Exchange>
     void carry(Exchange& exchange) {
-        exchange(values_, version_, changes_, staged_);
+        exchange.departures(values_, Parameters{});
+        exchange(version_, changes_, staged_);
     }
 
   private:

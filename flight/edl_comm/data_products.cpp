@@ -5,6 +5,7 @@
 #include "flight/edl_comm/sensor_tables.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace aeolis::flight {
 namespace {
@@ -29,27 +30,24 @@ void AsFlown::on(const Record& firing) {
 
 void ImuBurst::on(const ImuReadings& readings) {
     for (const ImuSample& sample : readings.samples) {
-        if (complete()) return;
-        std::size_t row = rows_;
-        if (!begun_ && rows_ == rows_before) {
-            row = oldest_;
-            oldest_ = (oldest_ + 1) % rows_before;
-        } else {
-            ++rows_;
-        }
-        const auto octets = std::span{octets_}.subspan(row * row_octets, row_octets);
-        std::ranges::fill(octets, std::uint8_t{0});
-        BitWriter writer{octets};
-        row_of(sample).encode(writer);
+        if (!begun_)
+            before_[heard_++ % rows_before] = sample;
+        else if (!complete())
+            append(sample);
     }
 }
 
 void ImuBurst::begin() {
-    if (begun_) return;
-    const auto ring = std::span{octets_}.first(rows_ * row_octets);
-    std::ranges::rotate(ring, ring.begin() + static_cast<std::ptrdiff_t>(oldest_ * row_octets));
-    kept_ = rows_;
-    begun_ = true;
+    if (std::exchange(begun_, true)) return;
+    kept_ = static_cast<std::size_t>(std::min<std::uint64_t>(heard_, rows_before));
+    for (std::uint64_t row = heard_ - kept_; row < heard_; ++row) append(before_[row % rows_before]);
+}
+
+void ImuBurst::append(const ImuSample& sample) {
+    std::array<std::uint8_t, row_octets> row{};
+    BitWriter writer{row};
+    row_of(sample).encode(writer);
+    rows_.append(row);
 }
 
 void DataProducts::on(const Record& record) {

@@ -40,16 +40,18 @@ class ImuBurst {
     /// Notes that the mortar has fired: keeps the readings so far, and appends the next ones.
     void begin();
     bool begun() const { return begun_; }
-    bool complete() const { return begun_ && rows_ == kept_ + rows_after; }
-    /// Oldest first; valid once begun.
-    std::span<const std::uint8_t> content() const { return std::span{octets_}.first(rows_ * row_octets); }
+    bool complete() const { return begun_ && rows_.size() == (kept_ + rows_after) * row_octets; }
+    /// Oldest first; empty until begun.
+    std::span<const std::uint8_t> content() const { return rows_.span(); }
 
   private:
     static constexpr std::size_t row_octets = packet::ImuIncrements::octets - tm_overhead_octets;
-    std::array<std::uint8_t, (rows_before + rows_after) * row_octets> octets_{};
-    std::size_t rows_ = 0;
-    std::size_t oldest_ = 0;  // before begin() the rows form a ring
-    std::size_t kept_ = 0;    // rows from before the mortar
+    void append(const ImuSample& sample);
+
+    std::array<ImuSample, rows_before> before_{};  // a ring
+    std::uint64_t heard_ = 0;                      // until begun
+    std::size_t kept_ = 0;                         // rows from before the mortar
+    FixedVector<std::uint8_t, (rows_before + rows_after) * row_octets> rows_;
     bool begun_ = false;
 };
 

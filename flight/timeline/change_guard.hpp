@@ -31,7 +31,10 @@ class ChangeGuard {
     template <typename Exchange>
     void carry(Exchange& exchange) {
         exchange(known_.do_edl);
-        for (std::size_t row = 0; row < timepoint_count; ++row) exchange(known_.triggered[row], known_.fired[row]);
+        for (auto* times : {&known_.triggered, &known_.fired})
+            exchange.departures(
+                timepoint_count, [&](std::size_t row) -> MaybeTime& { return (*times)[row]; },
+                [](std::size_t) { return MaybeTime{}; });
     }
 
   private:

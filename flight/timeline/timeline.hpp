@@ -103,8 +103,10 @@ class Timeline {
 
     template <typename Exchange>
     void carry(Exchange& exchange) {
-        for (std::size_t i = 0; i < rows_.size(); ++i) exchange(desired_offset_s_[i], minimum_offset_s_[i]);
-        for (std::size_t i = 0; i < anchors_.size(); ++i) exchange(anchor_offset_s_[i]);
+        const auto in = [](auto& values) { return [&values](std::size_t i) -> auto& { return values[i]; }; };
+        exchange.departures(rows_.size(), in(desired_offset_s_), [&](auto i) { return rows_[i].desired_offset_s; });
+        exchange.departures(rows_.size(), in(minimum_offset_s_), [&](auto i) { return rows_[i].minimum_offset_s; });
+        exchange.departures(anchors_.size(), in(anchor_offset_s_), [&](auto i) { return anchors_[i].offset_s; });
         exchange(previous_fired_, current_, begun_, waiting_, triggered_);
         compute_anchors();
     }

@@ -13,8 +13,9 @@
 namespace aeolis::server {
 namespace {
 
-constexpr double light_mps = 299792458.0;                                // [bipm-si]
-constexpr double flown_from_before_entry_s = 700.0, coast_row_s = 10.0;  // chosen
+constexpr double light_mps = 299792458.0;  // [bipm-si]
+// Chosen: before anything of the cruise stage is cut, the first at E−608 s.
+constexpr double flown_from_before_entry_s = 620.0, coast_row_s = 10.0;
 constexpr std::int64_t flight_row_ticks = 4;
 
 struct DopplerRows {

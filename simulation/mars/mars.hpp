@@ -3,6 +3,8 @@
 
 #include "simulation/vectors.hpp"
 
+#include <cmath>
+
 // Mars as a body: gravity, spin, positions on it. Everything in frame M, fixed to the rotating planet.
 namespace aeolis::simulation {
 
@@ -13,10 +15,25 @@ inline constexpr double mars_spin_rps = 7.088218e-5;           // [iau-mars]
 
 /// Gravitational acceleration: point mass and oblateness (J2). Leaves out higher harmonics, about 2e-3 m/s² at the
 /// surface. `p_MoB_M` [m], norm above 3.0e6. Source: [konopliv-2016] constants, [vallado-2013] form.
-Vector3 gravity(const Vector3& p_MoB_M);
+inline Vector3 gravity(const Vector3& p_MoB_M) {
+    const Vector3& p = p_MoB_M;
+    const double r2 = p.squaredNorm();
+    const double r = std::sqrt(r2);
+    const double z2_by_r2 = p.z() * p.z() / r2;
+    const double j = 1.5 * mars_j2 * mars_equatorial_radius_m * mars_equatorial_radius_m / r2;
+    const double k = -mars_gm_m3ps2 / (r2 * r);
+    const double equatorial = k * (1.0 + j * (1.0 - 5.0 * z2_by_r2));
+    return {equatorial * p.x(), equatorial * p.y(), k * (1.0 + j * (3.0 - 5.0 * z2_by_r2)) * p.z()};
+}
 
 /// Acceleration without other forces, relative to rotating Mars: gravity, Coriolis and centrifugal. [m/s²] in M.
-Vector3 free_fall(const Vector3& p_MoB_M, const Vector3& v_MB_M);
+inline Vector3 free_fall(const Vector3& p_MoB_M, const Vector3& v_MB_M) {
+    constexpr double w = mars_spin_rps;
+    Vector3 a = gravity(p_MoB_M);
+    a.x() += 2.0 * w * v_MB_M.y() + w * w * p_MoB_M.x();
+    a.y() += -2.0 * w * v_MB_M.x() + w * w * p_MoB_M.y();
+    return a;
+}
 
 /// Velocity relative to inertial space, in axes M. [m/s]
 Vector3 inertial_velocity(const Vector3& p_MoB_M, const Vector3& v_MB_M);

@@ -33,15 +33,15 @@ void Imu::add_draws(std::vector<Draw>& draws) const {
     add_axes(draws, "gyro_scale", "fraction", gyro_scale_);
 }
 
-void Imu::integrate(const Vector3& specific_force_M, const Quaternion& q_MB_start, const Quaternion& q_MB_end,
-                    double step_s) {
+[[gnu::flatten]] void Imu::integrate(const Vector3& specific_force_M, const Quaternion& q_MB_start,
+                                     const Quaternion& q_MB_end, double step_s) {
     Quaternion middle{q_MB_start.coeffs() + (q_MB_start.dot(q_MB_end) < 0.0 ? -1.0 : 1.0) * q_MB_end.coeffs()};
     middle.normalize();
     delta_v_mps_ += middle.conjugate() * (specific_force_M * step_s);
     turned_ = turned_ * q_MB_start.conjugate() * rotation({0.0, 0.0, mars_spin_rps * step_s}) * q_MB_end;
 }
 
-flight::ImuSample Imu::read(std::uint32_t count) {
+[[gnu::flatten]] flight::ImuSample Imu::read(std::uint32_t count) {
     flight::ImuSample sample;
     sample.count = count;
     const Vector3 felt_mps = q_SensorsB_ * delta_v_mps_;

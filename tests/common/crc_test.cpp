@@ -33,19 +33,24 @@ TEST_CASE("octets followed by their own CRC-16 leave a remainder of zero", "[com
     CHECK(crc16(octets) == 0);
 }
 
-TEST_CASE("CRC-32 of Proximity-1 is the remainder of long division, whatever the length", "[common]") {
+TEST_CASE("CRCs are the remainders of long division, whatever the length", "[common]") {
     CHECK(crc32_proximity(std::vector<std::uint8_t>{0x12, 0x34, 0x56, 0x78}) == 0x34D74CB3);
     std::uint32_t noise = 1;
     for (std::size_t size = 0; size < 70; ++size) {
         std::vector<std::uint8_t> octets(size);
-        std::uint32_t remainder = 0;
+        std::uint32_t of_32 = 0;
+        std::uint16_t of_16 = 0xFFFF;
         for (auto& octet : octets) {
             octet = static_cast<std::uint8_t>((noise = noise * 1664525U + 1013904223U) >> 24);
-            remainder ^= std::uint32_t{octet} << 24;
-            for (int bit = 0; bit < 8; ++bit)
-                remainder = (remainder & 0x80000000U) != 0 ? (remainder << 1) ^ 0x00A00805U : remainder << 1;
+            of_32 ^= std::uint32_t{octet} << 24;
+            of_16 = static_cast<std::uint16_t>(of_16 ^ (octet << 8));
+            for (int bit = 0; bit < 8; ++bit) {
+                of_32 = (of_32 & 0x80000000U) != 0 ? (of_32 << 1) ^ 0x00A00805U : of_32 << 1;
+                of_16 = static_cast<std::uint16_t>((of_16 & 0x8000U) != 0 ? (of_16 << 1) ^ 0x1021U : of_16 << 1);
+            }
         }
-        CHECK(crc32_proximity(octets) == remainder);
+        CHECK(crc32_proximity(octets) == of_32);
+        CHECK(crc16(octets) == of_16);
     }
 }
 

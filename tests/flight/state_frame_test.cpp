@@ -5,6 +5,8 @@
 #include "tests/support/catch.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <random>
 #include <vector>
 
@@ -29,16 +31,41 @@ struct Everything {
     std::uint32_t count = 0;
     FixedVector<double, 3> some;
     struct Table {
-        double first = 0.0, second = 0.0;
-        template <typename Exchange>
-        void carry(Exchange& exchange) {
-            exchange.doubles(*this);
-        }
+        double first = 0.0, second = 1.0;
     } table;
 
     template <typename Exchange>
     void carry(Exchange& exchange) {
-        exchange(number, flag, time, anchor, offset_s, row, vector, attitude, fired, count, some, table);
+        exchange(number, flag, time, anchor, offset_s, row, vector, attitude, fired, count, some);
+        exchange.departures(table, Table{});
+    }
+};
+
+constexpr std::size_t times_max = 130;  // more than two words of bits
+
+/// Times that are undefined by default.
+struct Times {
+    std::array<MaybeTime, times_max> at{};
+    template <typename Exchange>
+    void carry(Exchange& exchange) {
+        exchange.departures(
+            at.size(), [this](std::size_t i) -> MaybeTime& { return at[i]; }, [](std::size_t) { return MaybeTime{}; });
+    }
+};
+
+/// The bits of a word of departures, and three values for which there may be three.
+struct Bits {
+    std::uint64_t departed = 0;
+    template <typename Exchange>
+    void carry(Exchange& exchange) {
+        exchange(departed);
+    }
+};
+struct Three {
+    std::array<double, 3> values{};
+    template <typename Exchange>
+    void carry(Exchange& exchange) {
+        exchange.departures(values, std::array<double, 3>{});
     }
 };
 
@@ -71,7 +98,7 @@ Everything something() {
     e.count = 77;
     e.some.push_back(7.0);
     e.some.push_back(8.0);
-    e.table = {.first = 9.0, .second = 10.0};
+    e.table.first = -0.0;  // of other bits than the default
     return e;
 }
 
@@ -90,7 +117,8 @@ TEST_CASE("a state arrives at the other computer as it left, number for number",
     CHECK(arrived->header().separated);
     CHECK(arrived->header().touchdown);
     Everything got;
-    got.offset_s = 5.0;  // must become undefined, as it was sent
+    got.offset_s = 5.0;      // must become undefined, as it was sent
+    got.table.second = 5.0;  // must become the default
     for (const double old : {1.0, 2.0, 3.0}) got.some.push_back(old);
     REQUIRE(arrived->restore(got));
     CHECK(got.number == sent.number);
@@ -104,8 +132,28 @@ TEST_CASE("a state arrives at the other computer as it left, number for number",
     CHECK(got.fired == sent.fired);
     CHECK(got.count == sent.count);
     CHECK(std::ranges::equal(got.some, sent.some));
-    CHECK(got.table.first == sent.table.first);
+    CHECK(std::signbit(got.table.first));
     CHECK(got.table.second == sent.table.second);
+}
+
+TEST_CASE("of values that both computers have, only those that depart are handed over", "[cross_string][R33]") {
+    Times none, some;
+    const std::array<std::size_t, 5> departed{0, 63, 64, 127, 129};
+    for (const std::size_t i : departed) some.at[i] = Sclk{static_cast<double>(i)};
+    const StateFrame of_none = StateFrame::of(header, none), of_some = StateFrame::of(header, some);
+    CHECK(of_some.octets().size() - of_none.octets().size() == departed.size() * (1 + sizeof(double)));
+    Times got;
+    got.at[7] = Sclk{7.0};
+    REQUIRE(of_some.restore(got));
+    for (std::size_t i = 0; i < got.at.size(); ++i) CHECK(got.at[i].get() == some.at[i].get());
+    REQUIRE(of_none.restore(got));
+    for (const MaybeTime& time : got.at) CHECK_FALSE(time.defined());
+}
+
+TEST_CASE("a state in which a value departs that does not exist is not restored", "[cross_string][R33]") {
+    Bits bits{std::uint64_t{1} << 3U};
+    Three three;
+    CHECK_FALSE(StateFrame::of(header, bits).restore(three));
 }
 
 TEST_CASE("a state that claims more values than there is room for is not restored", "[cross_string][R33]") {

@@ -31,7 +31,7 @@ void Strapdown::shift(const NavigationShift& by) {
     bias_B_mps2_ += to_vector(by.accelerometer_bias_mps2);
 }
 
-void Strapdown::step(const Vector3& delta_angle_B, const Vector3& delta_v_B, double dt_s) {
+[[gnu::flatten]] void Strapdown::step(const Vector3& delta_angle_B, const Vector3& delta_v_B, double dt_s) {
     // Over the step the frame turns by Δθ; on average half of it applies while Δv is sensed.
     const Vector3 delta_v_M = state_.q_MB * (delta_v_B + 0.5 * delta_angle_B.cross(delta_v_B));
     const Vector3 v_before = state_.v_MB_M;
