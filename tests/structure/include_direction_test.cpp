@@ -141,30 +141,27 @@ const std::vector<std::string>& simulator_folders() {
     return names;
 }
 
-/// The layers of server/, lowest first, each with those right below it. A layer reaches these, what they reach, and
-/// nothing else; the order is that of docs/architecture.md and of server/CMakeLists.txt.
+/// The layers of server/, lowest first, each with those right below it: the table in docs/architecture.md, which has the
+/// order of server/CMakeLists.txt. A layer reaches these, what they reach, and nothing else.
 const std::vector<std::pair<std::string, std::vector<std::string>>>& layers() {
-    static const std::vector<std::pair<std::string, std::vector<std::string>>> order{
-        {"base", {}},
-        {"access", {"base"}},
-        {"reconstruction", {}},
-        {"archive", {"base"}},
-        {"pipeline", {"archive"}},
-        {"links", {"pipeline"}},
-        {"scenario", {"base"}},
-        {"procedures", {}},
-        {"instruction", {"procedures"}},
-        {"venue", {"base"}},
-        {"rehearsal", {"pipeline", "scenario", "venue", "instruction"}},
-        {"campaign", {"rehearsal"}},
-        {"shadow", {"campaign"}},
-        {"cluster", {"campaign", "access"}},
-        {"tones", {"rehearsal"}},
-        {"api", {"shadow", "access"}},
-        {"net", {"api", "links", "cluster"}},
-        {"cli", {"net", "cluster", "tones", "reconstruction", "instruction", "shadow"}},
-    };
-    return order;
+    static const auto of_the_table = [] {
+        static const std::regex row{R"(^\| `(\w+)/` \|([\w, ]*)\| [^|]+\|$)"}, name{R"(\w+)"};
+        std::vector<std::pair<std::string, std::vector<std::string>>> order;
+        bool inside = false;
+        for (const std::string& line : lines_of("docs/architecture.md")) {
+            if (line == "| layer | right below it | holds |") inside = true;
+            if (line.empty()) inside = false;
+            std::smatch columns;
+            if (!inside || !std::regex_match(line, columns, row)) continue;
+            const std::string below = columns[2];
+            order.emplace_back(columns[1], std::vector<std::string>{});
+            for (auto found = std::sregex_iterator{below.begin(), below.end(), name}; found != std::sregex_iterator{};
+                 ++found)
+                order.back().second.push_back(found->str());
+        }
+        return order;
+    }();
+    return of_the_table;
 }
 
 std::string layer_of(const std::string& file) {
