@@ -3,11 +3,11 @@
 
 #include "common/ids.hpp"
 
-#include <boost/unordered/unordered_flat_map.hpp>
 #include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 namespace aeolis::telemetry {
@@ -81,7 +81,7 @@ class PacketRegister {
     };
 
     std::size_t packets_max_;
-    boost::unordered_flat_map<Key, Seen, KeyHash> seen_;
+    std::unordered_map<Key, Seen, KeyHash> seen_;
     Counts counts_;
     std::vector<PacketIdentity> differing_;
 };
