@@ -122,11 +122,9 @@ class StateExchange {
     void carry(std::optional<T>& value) {
         bool present = value.has_value();
         number(present);
-        if constexpr (!writing) {
-            value.reset();
-            if (present && ok_) value.emplace();
-        }
-        if (value) carry(*value);
+        T content = value.value_or(T{});
+        if (present) carry(content);
+        if constexpr (!writing) value = present ? std::optional{content} : std::nullopt;
     }
     void carry(MaybeTime& time) {
         std::optional<Sclk> content = time.get();
