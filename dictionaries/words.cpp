@@ -35,6 +35,13 @@ constexpr bool is_digit(char c) {
 
 }  // namespace
 
+std::string_view trimmed(std::string_view word) {
+    constexpr std::string_view white = " \t\r\n";
+    const auto first = word.find_first_not_of(white);
+    if (first == std::string_view::npos) return {};
+    return word.substr(first, word.find_last_not_of(white) - first + 1);
+}
+
 std::optional<double> to_number(std::string_view word) {
     double value = 0.0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);

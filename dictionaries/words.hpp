@@ -9,6 +9,9 @@
 // Parsing of single words in spreadsheets and XML. Nothing is guessed: the whole word must be valid.
 namespace aeolis::dictionary {
 
+/// A word without the white space around it.
+std::string_view trimmed(std::string_view word);
+
 /// A finite decimal number: "-600.046875", "1e-3".
 std::optional<double> to_number(std::string_view word);
 

@@ -16,6 +16,7 @@
 #include <limits>
 #include <ranges>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
 namespace aeolis::telemetry {
@@ -107,7 +108,8 @@ class Reading {
         }
         if (!restricted && not_known) {
             const PacketContainer& container = model_.containers[*not_known];
-            stop("whether " + container.name + " describes it is not known: its condition is not understood",
+            stop("whether " + container.name +
+                     " describes it is not known: its condition is not understood, or its value is not known",
                  container.line);
             return std::nullopt;
         }
@@ -137,24 +139,36 @@ class Reading {
         if (found_latest == latest_.end()) return nullptr;
         const Latest& latest = found_latest->second;
         const auto values = std::span{contents.values}.subspan(latest.first, latest.count);
-        if (member.empty()) return values.empty() ? nullptr : values.data();
+        if (member.empty()) return values.size() == 1 ? values.data() : nullptr;
         const auto found = std::ranges::find(values, latest.name + member, &DecodedValue::name);
         return found == values.end() ? nullptr : &*found;
     }
 
-    bool compare(const xtce::Condition& condition) const {
+    /// None: one side is not there, is undefined, or cannot be compared with the other.
+    std::optional<bool> compare(const xtce::Condition& condition) const {
         const DecodedValue* value = value_of(condition.parameter, condition.member);
-        if (value == nullptr) return false;
-        const Datum& datum = condition.calibrated ? value->calibrated : value->raw;
+        if (value == nullptr) return std::nullopt;
+        const bool is_raw_text = std::holds_alternative<std::vector<std::uint8_t>>(value->raw) &&
+                                 std::holds_alternative<std::string>(value->calibrated);
+        if (!condition.calibrated && !is_raw_text && is_no_number(*value)) return std::nullopt;
+        const Datum& datum = condition.calibrated || is_raw_text ? value->calibrated : value->raw;
         const auto wanted = compared_number(condition.value);
         if (const auto* text = std::get_if<std::string>(&datum)) {
             const auto raw = number_of(value->raw);
             // Some files compare a label by its number.
-            if (*text != condition.value && wanted && raw) return compared(*raw, condition.op, *wanted);
+            if (!condition.by_label && *text != condition.value && wanted && raw)
+                return compared(*raw, condition.op, *wanted);
             return compared(*text, condition.op, condition.value);
         }
         const auto number = number_of(datum);
-        return number && wanted && compared(*number, condition.op, *wanted);
+        if (!number) return std::nullopt;
+        if (condition.by_label) return condition.op == xtce::Condition::Operator::not_equal;  // a number without one
+        if (!wanted) return std::nullopt;
+        return compared(*number, condition.op, *wanted);
+    }
+    /// Whether the bits of a number are none, such as a decimal digit above 9.
+    bool is_no_number(const DecodedValue& value) const {
+        return no_numbers_.contains(static_cast<std::size_t>(&value - contents.values.data()));
     }
 
     /// The member of that name of the innermost aggregate that is being read and has it.
@@ -181,9 +195,9 @@ class Reading {
             const DecodedValue* known =
                 amount.parameter ? value_of(*amount.parameter, amount.member) : sibling(amount.sibling);
             if (known == nullptr) return std::nullopt;
-            auto number = number_of(amount.calibrated ? known->calibrated : known->raw);
-            if (!number) number = number_of(known->raw);
-            if (!number) return std::nullopt;
+            const bool labelled = std::holds_alternative<std::string>(known->calibrated);
+            const auto number = number_of(amount.calibrated && !labelled ? known->calibrated : known->raw);
+            if (!number || is_no_number(*known)) return std::nullopt;
             value = amount.slope * static_cast<double>(*number) + amount.intercept;
         }
         constexpr double most = 1099511627776.0, digits = 1e-9;
@@ -217,7 +231,8 @@ class Reading {
         furthest_ = std::max(furthest_, position_);  // the entry may stand before it
         const std::string where = "an entry of " + container.name;
         const auto included = judge(entry.when);
-        if (!included) return stop(where + " has a condition that is not understood", entry.line);
+        if (!included)
+            return stop(where + " has a condition that is not understood, or whose value is not known", entry.line);
         if (!*included) return true;
         if (entry.what == PacketEntry::What::unknown) return stop(where + " is not supported", entry.line);
         const auto offset = evaluate_from(std::numeric_limits<std::int64_t>::min(), entry.offset_bits);
@@ -253,12 +268,16 @@ class Reading {
                               : read_type(type, name, depth + 1);
         const std::size_t count = contents.values.size() - before;
         latest_[entry.index] = {before, count, name};
-        if (parameter.valid.form != xtce::Condition::Form::always && !holds(parameter.valid))
+        const auto valid = judge(parameter.valid);
+        if (!valid) note_unread(parameter.line);
+        if (!valid.value_or(false))
             for (auto& value : std::span{contents.values}.subspan(before, count)) value.calibrated = {};
         else if (type.kind == PacketType::Kind::time && count == 1)
             note_time(entry.index, type, contents.values.back());
         return read;
     }
+
+    void note_unread(unsigned line) { contents.unread.push_back({reading_, line}); }
 
     void note_time(std::size_t parameter, const PacketType& type, DecodedValue& value) {
         auto* seconds = std::get_if<double>(&value.calibrated);
@@ -293,6 +312,7 @@ class Reading {
         case PacketType::Kind::array: return read_array(type, type.last_indices, name, depth + 1);
         default: break;
         }
+        if (type.unread) note_unread(type.line);
         if (type.coding.form == Coding::Form::text) return read_text(type, name);
         const auto bits = evaluate(type.coding.bits);
         if (!bits) return stop("the size of " + name + " cannot be known", type.line);
@@ -355,6 +375,8 @@ class Reading {
         const std::size_t position = std::exchange(position_, position_ + bits);
         Datum raw = std::visit([](auto value) -> Datum { return value; }, number_in(field, bits, type.coding));
         if (const auto* real = std::get_if<double>(&raw); real != nullptr && !std::isfinite(*real)) {
+            no_numbers_.insert(contents.values.size());
+            if (type.coding.form == Coding::Form::bcd) note_unread(type.line);
             contents.values.push_back({name, field, {}, position, bits, reading_});
             return true;
         }
@@ -363,7 +385,7 @@ class Reading {
         return true;
     }
 
-    Datum calibrated_value(const PacketType& type, const Datum& raw) const {
+    Datum calibrated_value(const PacketType& type, const Datum& raw) {
         const long double number = number_of(raw).value_or(0);
         if (type.kind == PacketType::Kind::boolean) return number == 0 ? type.zero : type.one;
         if (type.kind == PacketType::Kind::enumerated) {
@@ -373,9 +395,13 @@ class Reading {
         }
         const auto context = std::ranges::find_if(type.coding.contexts,
                                                   [&](const auto& each) { return judge(each.when).value_or(true); });
-        if (context != type.coding.contexts.end() && !holds(context->when)) return {};  // which one holds is not known
+        const bool one_is_known = context == type.coding.contexts.end() || holds(context->when);
         const Calibration& calibration =
             context == type.coding.contexts.end() ? type.coding.calibration : context->calibration;
+        if (!one_is_known || !calibration.known) {
+            if (!type.unread) note_unread(type.line);
+            return {};
+        }
         Datum value = raw;
         if (!calibration.empty()) {
             const auto calibrated = calibrated_by(calibration, static_cast<double>(number));
@@ -422,6 +448,7 @@ class Reading {
         auto octets = take_octets(*bits);
         position_ = coding.boxed ? end : position_ + terminator_bits;
         auto text = type.kind == PacketType::Kind::octets ? std::nullopt : text_of(octets, coding.characters);
+        if (!text && type.kind != PacketType::Kind::octets) note_unread(type.line);
         Datum shown = text ? Datum{std::move(*text)} : type.kind == PacketType::Kind::octets ? Datum{octets} : Datum{};
         contents.values.push_back({name, std::move(octets), std::move(shown), begin, position_ - begin, reading_});
         return true;
@@ -430,7 +457,8 @@ class Reading {
     const PacketModel& model_;
     std::span<const std::uint8_t> packet_;
     std::unordered_map<std::size_t, Latest>
-        latest_;  ///< by parameter; only those in the packet, as a model has thousands
+        latest_;                                  ///< by parameter; only those in the packet, as a model has thousands
+    std::unordered_set<std::size_t> no_numbers_;  ///< values whose bits are no number, in contents.values
     std::size_t position_ = 0, furthest_ = 0;
     std::size_t steps_ = 0;
     std::vector<std::string> aggregates_;   ///< being read, outermost first
@@ -465,6 +493,13 @@ bool are_coarse_and_fine(const NamedPlace& coarse, const NamedPlace& fine) {
     return coarse.bits <= coarse_bits_max && fine.bits <= fine_bits_max &&
            fine.position_bits == coarse.position_bits + coarse.bits && is_named(coarse.name, "coarse") &&
            is_named(fine.name, "fine");
+}
+
+bool is_end_of_packet(std::span<const std::uint8_t> packet, std::size_t entries_end_bits) {
+    const std::size_t behind_bits = packet.size() * 8 - std::min(packet.size() * 8, entries_end_bits);
+    const auto padding_bits = static_cast<unsigned>(behind_bits % 8);
+    if (padding_bits != 0 && read_bits(packet, entries_end_bits, padding_bits) != 0) return false;
+    return behind_bits < 8 || (behind_bits / 8 == packet_crc_octets && crc16(packet) == 0);
 }
 
 std::string datum_text(const Datum& datum) {
@@ -551,8 +586,7 @@ DecodedContents ContainerDecoder::decode(std::span<const std::uint8_t> packet) c
     if (readable && contents.problem.empty() && last.abstract)
         contents.problem = "no container describes it: " + last.name + " is abstract";
     const std::size_t behind_bits = packet.size() * 8 - std::min(packet.size() * 8, reading.furthest_bits());
-    const bool error_control = behind_bits == 8 * packet_crc_octets && crc16(packet) == 0;
-    if (contents.problem.empty() && behind_bits > 0 && !error_control)
+    if (contents.problem.empty() && behind_bits > 0 && !is_end_of_packet(packet, reading.furthest_bits()))
         contents.problem = std::to_string(behind_bits) + " bits are behind the last entry of " + last.name + " (line " +
                            std::to_string(last.line) + ")";
     return contents;

@@ -35,10 +35,18 @@ struct PacketTime {
     std::string epoch;     ///< as the file names it: "UNIX"; empty: not named
 };
 
+/// A value that stands in the packet and is not understood: of an encoding, a calibrator or a condition that is not
+/// read, or whose bits its encoding has no meaning for. It is undefined, or its octets are given.
+struct UnreadValue {
+    std::size_t parameter = 0;  ///< in PacketModel::parameters
+    unsigned line = 0;          ///< of what is not read
+};
+
 struct DecodedContents {
     std::string container;             ///< the most derived one that matches
     std::size_t container_index = 0;   ///< in PacketModel::containers
     std::vector<DecodedValue> values;  ///< in the order of the packet
+    std::vector<UnreadValue> unread;
     std::optional<PacketTime> time;
     std::string problem;  ///< why the rest could not be read; empty: all was read
 };
@@ -51,6 +59,10 @@ struct NamedPlace {
 /// Whether two numbers are the counts of a clock and their binary fraction, by their names and places.
 bool are_coarse_and_fine(const NamedPlace& coarse, const NamedPlace& fine);
 
+/// Whether nothing but the end of a packet stands behind its last entry: zeros that fill its last octet, and perhaps
+/// the right CRC-16 of the packet.
+bool is_end_of_packet(std::span<const std::uint8_t> packet, std::size_t entries_end_bits);
+
 /// Decodes packets of any mission into values by the containers of its XTCE file.
 ///
 /// In       the octets of a packet, any octets      Out   values up to the end, or up to the first unreadable field and
@@ -58,8 +70,8 @@ bool are_coarse_and_fine(const NamedPlace& coarse, const NamedPlace& fine);
 /// Rule     begins with the root: a container that has no base and is part of no other. Continues with the derived
 ///          container whose restriction holds, and so on. Where several hold, one without a restriction gives way;
 ///          what is still several is not decoded further, nor is a packet that ends in an abstract container
-/// Whole    a packet is decoded when all of its octets are: what is behind the last entry is a problem, unless it is
-///          the right CRC-16 of the packet
+/// Whole    a packet is decoded when all of its octets are: what is behind the last entry is a problem, unless
+///          is_end_of_packet()
 /// Time     the first absolute time, or a later one relative to it. Without one, two whole numbers right after the
 ///          primary header, with ...coarse... and ...fine... in their names, in any case, are the spacecraft's clock as
 ///          in CUC: counts and their binary fraction. [ccsds-301.0-b-4]

@@ -2,7 +2,6 @@
 #include "telemetry/container_plan.hpp"
 
 #include "common/bytes.hpp"
-#include "common/crc.hpp"
 #include "common/space_packet.hpp"
 #include "dictionaries/words.hpp"
 #include "telemetry/container_decoder.hpp"
@@ -71,6 +70,7 @@ std::optional<double> finite(double value) {
 /// The value with which a type's number is compared; none: not as a whole number.
 std::optional<std::int64_t> compared_whole(const PacketType& type, const xtce::Condition& when) {
     const bool labelled = type.kind == PacketType::Kind::enumerated || type.kind == PacketType::Kind::boolean;
+    if (type.coding.form == Coding::Form::bcd) return std::nullopt;  // its bits may be no number
     const bool plain = type.kind == PacketType::Kind::integer && type.coding.calibration.empty();
     // A label that reads as a number would be compared as text.
     const bool is_label = type.zero == when.value || type.one == when.value ||
@@ -616,8 +616,7 @@ bool ContainerPlan::decode(std::span<const std::uint8_t> packet, dictionary::Dec
     if (!reached || reached->abstract || reached->cut) return false;
     const auto end_bits = read(reached->container, packet, into);
     if (!end_bits) return false;
-    const std::size_t behind_bits = packet.size() * 8 - *end_bits;
-    if (behind_bits != 0 && (behind_bits != 8 * packet_crc_octets || crc16(packet) != 0)) return false;
+    if (packet.size() * 8 != *end_bits && !is_end_of_packet(packet, *end_bits)) return false;
     const auto& clock = nodes_[reached->container].clock;
     into.packet = reached->container;
     into.timed = clock.has_value();

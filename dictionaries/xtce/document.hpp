@@ -51,6 +51,12 @@ class Reporter {
 
     /// The attribute as a number. None when absent; none, with a finding, when it is not a number.
     std::optional<double> number(pugi::xml_node element, const char* attribute);
+    /// These give `otherwise` when the attribute is absent; without `otherwise` it must be there. None, with a finding,
+    /// when it is not what it should be.
+    std::optional<double> number_or(pugi::xml_node element, const char* attribute, std::optional<double> otherwise);
+    std::optional<std::int64_t> integer_or(pugi::xml_node element, const char* attribute,
+                                           std::optional<std::int64_t> otherwise, std::int64_t min, std::int64_t max);
+    std::optional<bool> flag_or(pugi::xml_node element, const char* attribute, bool otherwise);
     std::optional<std::int64_t> integer(pugi::xml_node element, const char* attribute, std::int64_t min,
                                         std::int64_t max);
     unsigned line(pugi::xml_node element) const { return file_of(element).document->line(element); }
@@ -68,6 +74,9 @@ class Reporter {
 
     std::vector<File> files_;
 };
+
+/// A number's text without what XML's schema lets stand around it: white space, and a sign that says nothing.
+std::string_view number_digits(std::string_view word);
 
 inline std::string name_of(pugi::xml_node element) {
     return element.attribute("name").value();

@@ -18,7 +18,7 @@ class ContainerReader {
         PacketContainer container{.name = name_of(element),
                                   .path = symbol.path,
                                   .line = parts_.report.line(element),
-                                  .abstract = element.attribute("abstract").as_bool()};
+                                  .abstract = parts_.report.flag_or(element, "abstract", false).value_or(true)};
         if (const pugi::xml_node base = element.child("BaseContainer")) {
             container.base = index_of(symbol, base);
             container.when = parts_.condition(symbol.scope, base.child("RestrictionCriteria"));

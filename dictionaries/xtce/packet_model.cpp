@@ -5,6 +5,7 @@
 #include "dictionaries/xtce/packet_model_reader.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <memory>
 #include <string_view>
 #include <utility>
@@ -12,24 +13,14 @@
 namespace aeolis::dictionary::xtce {
 namespace {
 
-constexpr unsigned condition_depth_max = 16;  // chosen, so that a hostile file cannot exhaust the stack
-
-std::optional<Condition::Operator> operator_of(std::string_view word) {
-    using enum Condition::Operator;
-    if (word.empty() || word == "==") return equal;
-    if (word == "!=") return not_equal;
-    if (word == "<") return less;
-    if (word == "<=") return less_or_equal;
-    if (word == ">") return greater;
-    if (word == ">=") return greater_or_equal;
-    return std::nullopt;
-}
+constexpr int instance_max = std::numeric_limits<int>::max();
 
 /// Whether a reference is to a member of the aggregate around it: an extension of Yamcs, under a prefix of its own.
-bool is_of_aggregate(pugi::xml_node reference) {
-    return std::ranges::any_of(reference.attributes(), [](const pugi::xml_attribute attribute) {
-        return std::string_view{attribute.name()}.ends_with(":aggregateMember") && attribute.as_bool();
-    });
+std::optional<bool> is_of_aggregate(pugi::xml_node reference, Reporter& report) {
+    for (const pugi::xml_attribute attribute : reference.attributes())
+        if (std::string_view{attribute.name()}.ends_with(":aggregateMember"))
+            return report.flag_or(reference, attribute.name(), false);
+    return false;
 }
 
 }  // namespace
@@ -40,14 +31,14 @@ ModelParts::ModelParts(const Symbols& symbols_in, Reporter& report_in, const Rea
         if (symbol.kind == Kind::parameter) parameters_.emplace(symbol.path, parameters_.size());
 }
 
-/// Whether `path` (".flags/valid", "[2].x") leads to a part of the parameter's type.
-bool ModelParts::has_member(const Symbol& parameter, std::string_view path) const {
+/// The type at `path` (".flags/valid", "[2].x") of a parameter; null: there is no such part, or no such type.
+const Symbol* ModelParts::type_at(const Symbol& parameter, std::string_view path) const {
     const Symbol* type =
         symbols.find(Kind::parameter_type, parameter.scope, parameter.element.attribute("parameterTypeRef").value());
     while (type != nullptr && !path.empty()) {
         if (path.front() == '[') {
             const auto end = path.find(']');
-            if (end == std::string_view::npos) return false;
+            if (end == std::string_view::npos) return nullptr;
             path.remove_prefix(end + 1);
             type = symbols.find(Kind::parameter_type, type->scope, type->element.attribute("arrayTypeRef").value());
             continue;
@@ -57,11 +48,11 @@ bool ModelParts::has_member(const Symbol& parameter, std::string_view path) cons
         path.remove_prefix(name.size());
         const pugi::xml_node member =
             type->element.child("MemberList").find_child_by_attribute("Member", "name", name.c_str());
-        if (!member) return false;
+        if (!member) return nullptr;
         const char* attribute = member.attribute("typeRef") ? "typeRef" : "parameterTypeRef";
         type = symbols.find(Kind::parameter_type, type->scope, member.attribute(attribute).value());
     }
-    return type != nullptr;
+    return type;
 }
 
 std::optional<ModelParts::Reference> ModelParts::parameter(const std::string& scope, pugi::xml_node at,
@@ -72,96 +63,22 @@ std::optional<ModelParts::Reference> ModelParts::parameter(const std::string& sc
     std::size_t end = word.size();
     while (symbol == nullptr && end > 0 && (end = word.find_last_of("/.[", end - 1)) != std::string::npos && end > 0)
         symbol = symbols.find(Kind::parameter, scope, std::string_view{word}.substr(0, end));
-    if (symbol == nullptr || (end < word.size() && !has_member(*symbol, std::string_view{word}.substr(end)))) {
+    const Symbol* type =
+        symbol == nullptr ? nullptr : type_at(*symbol, std::string_view{word}.substr(std::min(end, word.size())));
+    if (symbol == nullptr || (end < word.size() && type == nullptr)) {
         report.fault(at, "there is no parameter " + in_quotes(word));
         return std::nullopt;
     }
-    const auto instance = at.attribute("instance").as_int(0);
-    if (instance != 0) {
-        report.fault(at, "instance " + std::to_string(instance) + " of " + in_quotes(word) +
+    const auto instance = report.integer_or(at, "instance", 0, std::numeric_limits<int>::min(), instance_max);
+    if (!instance) return std::nullopt;
+    if (*instance != 0) {
+        report.fault(at, "instance " + std::to_string(*instance) + " of " + in_quotes(word) +
                              ", a value of another packet, is not supported");
         return std::nullopt;
     }
     std::string member = word.substr(end);
     std::ranges::replace(member, '/', '.');
-    return Reference{parameters_.at(symbol->path), std::move(member)};
-}
-
-Condition ModelParts::comparison(const std::string& scope, pugi::xml_node element) const {
-    Condition condition{.form = Condition::Form::unknown};
-    const auto found = parameter(scope, element, "parameterRef");
-    const auto op = operator_of(element.attribute("comparisonOperator").value());
-    if (!op)
-        report.fault(element, "operator " + in_quotes(element.attribute("comparisonOperator").value()) + " is unknown");
-    if (!found || !op) return condition;
-    condition.form = Condition::Form::compare;
-    condition.parameter = found->parameter;
-    condition.member = found->member;
-    condition.op = *op;
-    condition.calibrated = element.attribute("useCalibratedValue").as_bool(true);
-    condition.value = element.attribute("value").value();
-    return condition;
-}
-
-/// Condition of a BooleanExpression: a parameter, an operator, a value.
-Condition ModelParts::condition_element(const std::string& scope, pugi::xml_node element) const {
-    Condition condition{.form = Condition::Form::unknown};
-    const pugi::xml_node reference = element.child("ParameterInstanceRef");
-    if (!element.child("Value") || reference.next_sibling("ParameterInstanceRef")) {
-        report.fault(element, "a comparison of two parameters is not supported");
-        return condition;
-    }
-    const auto found = parameter(scope, reference, "parameterRef");
-    const auto op = operator_of(element.child("ComparisonOperator").text().as_string());
-    if (!op) report.fault(element, "its operator is unknown");
-    if (!found || !op) return condition;
-    condition.form = Condition::Form::compare;
-    condition.parameter = found->parameter;
-    condition.member = found->member;
-    condition.op = *op;
-    condition.calibrated = reference.attribute("useCalibratedValue").as_bool(true);
-    condition.value = element.child("Value").text().as_string();
-    return condition;
-}
-
-Condition ModelParts::part(const std::string& scope, pugi::xml_node element, unsigned depth) const {
-    const std::string_view name = element.name();
-    if (name == "Comparison") return comparison(scope, element);
-    if (name == "Condition") return condition_element(scope, element);
-    const bool any = name == "ORedConditions";
-    if (!any && name != "ANDedConditions" && name != "ComparisonList" && name != "BooleanExpression") {
-        report.fault(element, std::string{name} + " is not supported as a condition: whether it holds is not known");
-        return {.form = Condition::Form::unknown};
-    }
-    if (depth == condition_depth_max) {
-        report.fault(element, "conditions are nested deeper than " + std::to_string(condition_depth_max));
-        return {.form = Condition::Form::unknown};
-    }
-    Condition condition{.form = any ? Condition::Form::any : Condition::Form::all};
-    for (const pugi::xml_node child : element.children())
-        if (child.type() == pugi::node_element) condition.parts.push_back(part(scope, child, depth + 1));
-    if (condition.parts.empty()) return {};  // an empty list restricts nothing
-    return condition;
-}
-
-Condition ModelParts::condition(const std::string& scope, pugi::xml_node parent) const {
-    Condition found;
-    bool one = false;
-    for (const pugi::xml_node child : parent.children()) {
-        if (child.type() != pugi::node_element) continue;
-        // It says which container follows, and restricts nothing.
-        if (one && std::string_view{child.name()} == "NextContainer") {
-            report.fault(child, "NextContainer beside another condition is not supported: it is left out");
-            continue;
-        }
-        if (std::exchange(one, true)) {
-            report.fault(child, std::string{child.name()} +
-                                    " beside another condition is not supported: whether they hold is not known");
-            return {.form = Condition::Form::unknown};
-        }
-        found = part(scope, child, 0);
-    }
-    return found;
+    return Reference{parameters_.at(symbol->path), std::move(member), type};
 }
 
 Amount ModelParts::amount(const std::string& scope, pugi::xml_node parent) const {
@@ -170,7 +87,7 @@ Amount ModelParts::amount(const std::string& scope, pugi::xml_node parent) const
     pugi::xml_node fixed = parent.child("FixedValue");
     if (!fixed) fixed = parent.child("Fixed").child("FixedValue");
     if (fixed) {
-        const auto value = to_number(fixed.text().as_string());
+        const auto value = to_number(number_digits(fixed.text().as_string()));
         if (value) return Amount::fixed(*value);
         report.fault(fixed, in_quotes(fixed.text().as_string()) + " is not a number");
         return unknown;
@@ -179,7 +96,9 @@ Amount ModelParts::amount(const std::string& scope, pugi::xml_node parent) const
         const pugi::xml_node reference = dynamic.child("ParameterInstanceRef");
         const pugi::xml_node line = dynamic.child("LinearAdjustment");
         Amount amount;
-        if (is_of_aggregate(reference)) {
+        const auto of_aggregate = is_of_aggregate(reference, report);
+        if (!of_aggregate) return unknown;
+        if (*of_aggregate) {
             amount.sibling = reference.attribute("parameterRef").value();
             std::ranges::replace(amount.sibling, '/', '.');
         } else {
@@ -188,16 +107,24 @@ Amount ModelParts::amount(const std::string& scope, pugi::xml_node parent) const
             amount.parameter = found->parameter;
             amount.member = found->member;
         }
-        amount.calibrated = reference.attribute("useCalibratedValue").as_bool(true);
-        amount.slope = line.attribute("slope").as_double(1.0);
-        amount.intercept = line.attribute("intercept").as_double(0.0);
+        const auto calibrated = report.flag_or(reference, "useCalibratedValue", true);
+        const auto slope = report.number_or(line, "slope", 1.0);
+        const auto intercept = report.number_or(line, "intercept", 0.0);
+        if (!calibrated || !slope || !intercept) return unknown;
+        amount.calibrated = *calibrated;
+        amount.slope = *slope;
+        amount.intercept = *intercept;
         return amount;
     }
     if (const pugi::xml_node list = parent.child("DiscreteLookupList")) {
         Amount amount;
-        for (const pugi::xml_node each : list.children("DiscreteLookup"))
-            amount.cases.push_back({condition(scope, each), each.attribute("value").as_double()});
-        return amount;
+        for (const pugi::xml_node each : list.children("DiscreteLookup")) {
+            const auto value = report.number_or(each, "value", std::nullopt);
+            amount.known = amount.known && value;
+            amount.cases.push_back({condition(scope, each), value.value_or(0.0)});
+        }
+        if (amount.cases.empty()) report.fault(list, "DiscreteLookupList has no DiscreteLookup");
+        return amount.cases.empty() ? unknown : amount;
     }
     report.fault(parent, std::string{parent.name()} + " says no number that is supported");
     return unknown;
@@ -208,7 +135,7 @@ std::vector<Amount> read_last_indices(const ModelParts& parts, const std::string
     for (const pugi::xml_node dimension : list.children("Dimension")) {
         last.push_back(parts.amount(scope, dimension.child("EndingIndex")));
         const pugi::xml_node start = dimension.child("StartingIndex");
-        if (!start || std::string_view{start.child("FixedValue").text().as_string()} == "0") continue;
+        if (!start || to_integer(number_digits(start.child("FixedValue").text().as_string())) == 0) continue;
         parts.report.fault(start, "an array that does not begin at 0 is not supported: packets are read up to it");
         last.back().known = false;
     }

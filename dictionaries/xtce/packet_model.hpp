@@ -34,7 +34,8 @@ struct Condition {
     std::string member{};       ///< of a composite value: ".flags.valid", as the decoder names it
     bool calibrated = true;
     Operator op = Operator::equal;
-    std::string value{};  ///< a number or a label
+    std::string value{};    ///< a number, a label or a text
+    bool by_label = false;  ///< `value` is a label of the parameter's type, even where it reads as a number
 };
 
 /// A number of bits, octets or repetitions: fixed, or computed from the packet.
@@ -128,6 +129,7 @@ struct PacketType {
     std::string name{};
     unsigned line = 0;
     Kind kind = Kind::unknown;  ///< unknown: not supported; a packet is decoded only up to such a field
+    bool unread = false;        ///< what its values are is not understood: they are octets, or undefined
     std::string unit{};         ///< the first one; empty: the file gives none
     Coding coding{};
     std::vector<Label> labels{};

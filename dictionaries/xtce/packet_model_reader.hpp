@@ -19,7 +19,8 @@ class ModelParts {
 
     struct Reference {
         std::size_t parameter = 0;
-        std::string member;  ///< ".flags.valid" for "STATUS/flags/valid"
+        std::string member;            ///< ".flags.valid" for "STATUS/flags/valid"
+        const Symbol* type = nullptr;  ///< null: there is none of that name
     };
     std::optional<Reference> parameter(const std::string& scope, pugi::xml_node at, const char* attribute) const;
     /// Reads the children of `parent`: Comparison, ComparisonList, BooleanExpression, or none.
@@ -32,7 +33,8 @@ class ModelParts {
     const ReadAgreement agreement;
 
   private:
-    bool has_member(const Symbol& parameter, std::string_view path) const;
+    const Symbol* type_at(const Symbol& parameter, std::string_view path) const;
+    void compare_with(std::string_view word, const Reference& with, pugi::xml_node at, Condition& condition) const;
     Condition part(const std::string& scope, pugi::xml_node element, unsigned depth) const;
     Condition comparison(const std::string& scope, pugi::xml_node element) const;
     Condition condition_element(const std::string& scope, pugi::xml_node element) const;
@@ -57,7 +59,7 @@ class ModelTypes {
     void read_coding(const Symbol& symbol, pugi::xml_node holder, PacketType& type);
     void read_number(const Symbol& symbol, pugi::xml_node coding, PacketType& type);
     void read_text(const Symbol& symbol, pugi::xml_node coding, PacketType& type);
-    bool read_order(pugi::xml_node coding, Coding& into);
+    bool read_order(pugi::xml_node coding, std::int64_t bits, Coding& into);
     void read_calibrations(const Symbol& symbol, pugi::xml_node coding, Coding& into);
     Calibration calibration(pugi::xml_node calibrator);
     void read_labels(pugi::xml_node element, PacketType& type);

@@ -5,13 +5,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <string_view>
 
 namespace aeolis::dictionary::xtce {
 namespace {
 
-constexpr unsigned type_depth_max = 16;    // chosen: types within types, and types of types
-constexpr std::int64_t exponent_max = 32;  // chosen: of a polynomial
+constexpr unsigned type_depth_max = 16;          // chosen: types within types, and types of types
+constexpr std::int64_t exponent_max = 32;        // chosen: of a polynomial
+constexpr std::int64_t spline_order_max = 1000;  // chosen: any order may be asked for, and is then named
 constexpr std::size_t label_values_max = 1U << 20U;
 
 /// Kind of a ParameterType or an ArgumentType.
@@ -125,8 +127,8 @@ void ModelTypes::read_valid_range(pugi::xml_node element, PacketType& type) {
     pugi::xml_node range = element.child("ValidRange");
     if (!range) range = element.child("ValidRangeSet").child("ValidRange");
     if (!range) return;
-    type.valid_min = parts_.report.number(range, "minInclusive");
-    type.valid_max = parts_.report.number(range, "maxInclusive");
+    if (range.attribute("minInclusive")) type.valid_min = parts_.report.number_or(range, "minInclusive", std::nullopt);
+    if (range.attribute("maxInclusive")) type.valid_max = parts_.report.number_or(range, "maxInclusive", std::nullopt);
 }
 
 void ModelTypes::read_coding(const Symbol& symbol, pugi::xml_node holder, PacketType& type) {
@@ -135,11 +137,14 @@ void ModelTypes::read_coding(const Symbol& symbol, pugi::xml_node holder, Packet
     if (const pugi::xml_node coding = holder.child("StringDataEncoding")) return read_text(symbol, coding, type);
     if (const pugi::xml_node coding = holder.child("BinaryDataEncoding")) {
         type.coding.form = Coding::Form::octets;
+        type.unread = type.kind != PacketType::Kind::octets;
         type.coding.bits = parts_.amount(symbol.scope, coding.child("SizeInBits"));
         for (const char* algorithm : {"FromBinaryTransformAlgorithm", "ToBinaryTransformAlgorithm"})
-            if (const pugi::xml_node found = coding.child(algorithm))
+            if (const pugi::xml_node found = coding.child(algorithm)) {
                 parts_.report.fault(found,
                                     std::string{algorithm} + " is not supported: the octets are given as they are");
+                type.unread = true;
+            }
         return;
     }
     if (symbol.element.attribute("baseType")) return;  // the base type has the encoding
@@ -149,19 +154,19 @@ void ModelTypes::read_coding(const Symbol& symbol, pugi::xml_node holder, Packet
 
 void ModelTypes::read_number(const Symbol& symbol, pugi::xml_node coding, PacketType& type) {
     const bool real = std::string_view{coding.name()} == "FloatDataEncoding";
-    const auto bits = coding.attribute("sizeInBits") ? parts_.report.integer(coding, "sizeInBits", 1, 64)
-                                                     : std::optional<std::int64_t>{real ? 32 : 8};
+    const auto bits = parts_.report.integer_or(coding, "sizeInBits", real ? 32 : 8, 1, 64);
     const std::string_view word = coding.attribute("encoding").value();
     const auto form = real ? real_form(word, bits.value_or(0)) : integer_form(word);
     if (!form)
         parts_.report.fault(coding, "encoding " + in_quotes(word) + " of " + std::to_string(bits.value_or(0)) +
                                         " bits is not supported");
     // The size is known nevertheless: fields after it can be read.
+    type.unread = !form;
     type.coding.form = form.value_or(Coding::Form::octets);
     if (!form) type.kind = PacketType::Kind::octets;
     if (!bits) type.kind = PacketType::Kind::unknown;
     type.coding.bits = Amount::fixed(static_cast<double>(bits.value_or(0)));
-    const bool ordered = read_order(coding, type.coding);
+    const bool ordered = read_order(coding, bits.value_or(0), type.coding);
     read_calibrations(symbol, coding, type.coding);
     const bool parts = type.coding.least_significant_octet_first && !type.coding.least_significant_bit_first &&
                        bits.value_or(0) % 8 != 0;
@@ -169,14 +174,19 @@ void ModelTypes::read_number(const Symbol& symbol, pugi::xml_node coding, Packet
         parts_.report.fault(coding, "least significant octet first is not supported for " +
                                         std::to_string(bits.value_or(0)) + " bits: octets are given");
     if (ordered && !parts) return;
+    type.unread = true;
     type.coding.form = Coding::Form::octets;
     if (type.kind != PacketType::Kind::unknown) type.kind = PacketType::Kind::octets;
 }
 
 /// False: the order is not supported, and no number can be read.
-bool ModelTypes::read_order(pugi::xml_node coding, Coding& into) {
-    const std::string_view bit_order = coding.attribute("bitOrder").value();
+bool ModelTypes::read_order(pugi::xml_node coding, std::int64_t bits, Coding& into) {
+    const std::string_view bit_order = coding.attribute("bitOrder").as_string("mostSignificantBitFirst");
     into.least_significant_bit_first = bit_order == "leastSignificantBitFirst";
+    if (!into.least_significant_bit_first && bit_order != "mostSignificantBitFirst") {
+        parts_.report.fault(coding, "bit order " + in_quotes(bit_order) + " is not supported: octets are given");
+        return false;
+    }
     const std::string_view order = coding.attribute("byteOrder").value();
     into.least_significant_octet_first = order == "leastSignificantByteFirst";
     if (!order.empty() && order != "leastSignificantByteFirst" && order != "mostSignificantByteFirst") {
@@ -184,10 +194,23 @@ bool ModelTypes::read_order(pugi::xml_node coding, Coding& into) {
         return false;
     }
     // XTCE 1.0 and 1.1 list the octets, each with its significance.
-    std::vector<int> octet_order;
-    for (const pugi::xml_node each : coding.child("ByteOrderList").children("Byte"))
-        octet_order.push_back(each.attribute("byteSignificance").as_int());
-    if (octet_order.size() < 2 || std::ranges::is_sorted(octet_order, std::ranges::greater{})) return true;
+    const pugi::xml_node list = coding.child("ByteOrderList");
+    if (!list || bits == 0) return true;
+    const std::int64_t octets = (bits + 7) / 8;
+    std::vector<std::int64_t> octet_order;
+    for (const pugi::xml_node each : list.children("Byte")) {
+        const auto significance = parts_.report.integer_or(each, "byteSignificance", std::nullopt, 0, octets - 1);
+        if (!significance) return false;
+        octet_order.push_back(*significance);
+    }
+    auto sorted = octet_order;
+    std::ranges::sort(sorted);
+    if (std::ssize(sorted) != octets || std::ranges::adjacent_find(sorted) != sorted.end()) {
+        parts_.report.fault(list, "ByteOrderList does not name each of " + std::to_string(octets) +
+                                      " octets once: octets are given");
+        return false;
+    }
+    if (octets < 2 || std::ranges::is_sorted(octet_order, std::ranges::greater{})) return true;
     into.least_significant_octet_first = std::ranges::is_sorted(octet_order);
     if (!into.least_significant_octet_first)
         parts_.report.fault(coding, "octets in mixed order are not supported: octets are given");
@@ -196,18 +219,22 @@ bool ModelTypes::read_order(pugi::xml_node coding, Coding& into) {
 
 void ModelTypes::read_text(const Symbol& symbol, pugi::xml_node coding, PacketType& type) {
     type.coding.form = Coding::Form::text;
+    type.unread = false;
     const std::string_view characters = coding.attribute("encoding").as_string("UTF-8");
     if (const auto known = characters_of(characters)) {
         type.coding.characters = *known;
     } else {
         parts_.report.fault(coding, "characters in " + in_quotes(characters) + " are not supported: octets are given");
+        type.unread = true;
         type.coding.characters = Coding::Characters::utf8;
         type.kind = PacketType::Kind::octets;
     }
     pugi::xml_node size = coding.child("SizeInBits");
     const pugi::xml_node variable = coding.child("Variable");
     if (!size) size = variable;
-    type.coding.bits = Amount::fixed(variable.attribute("maxSizeInBits").as_double(8.0 * 65536));
+    const auto most_bits = parts_.report.number_or(variable, "maxSizeInBits", 8.0 * 65536);
+    type.coding.bits = Amount::fixed(most_bits.value_or(0.0));
+    if (!most_bits) type.kind = PacketType::Kind::unknown;
     // XTCE 1.2 demands a size where the text itself says where it ends; in files for Yamcs this name fills the place.
     const bool delimited = size.child("LeadingSize") || size.child("TerminationChar");
     const std::string_view sized_by =
@@ -216,7 +243,9 @@ void ModelTypes::read_text(const Symbol& symbol, pugi::xml_node coding, PacketTy
                         (size.child("DynamicValue") && !(delimited && sized_by == "_yamcs_ignore"));
     if (type.coding.boxed) type.coding.bits = parts_.amount(symbol.scope, size);
     if (const pugi::xml_node leading = size.child("LeadingSize")) {
-        type.coding.leading_size_bits = leading.attribute("sizeInBitsOfSizeTag").as_uint(16);
+        const auto tag_bits = parts_.report.integer_or(leading, "sizeInBitsOfSizeTag", 16, 1, 64);
+        type.coding.leading_size_bits = static_cast<unsigned>(tag_bits.value_or(0));
+        if (!tag_bits) type.kind = PacketType::Kind::unknown;
         type.coding.leading_size_unit_bits = parts_.agreement.leading_size_unit_bits;
     }
     if (const pugi::xml_node end = size.child("TerminationChar")) {
@@ -235,10 +264,6 @@ void ModelTypes::read_text(const Symbol& symbol, pugi::xml_node coding, PacketTy
             type.kind = PacketType::Kind::unknown;
         }
     }
-    if (type.coding.leading_size_bits > 64) {
-        parts_.report.fault(size, "a leading size of more than 64 bits is not supported");
-        type.kind = PacketType::Kind::unknown;
-    }
     if (!size) {
         parts_.report.fault(coding, "type " + in_quotes(type.name) + " does not say how long its text is");
         type.kind = PacketType::Kind::unknown;
@@ -256,28 +281,38 @@ Calibration ModelTypes::calibration(pugi::xml_node calibrator) {
     Calibration result;
     if (const pugi::xml_node polynomial = calibrator.child("PolynomialCalibrator")) {
         for (const pugi::xml_node term : polynomial.children("Term")) {
-            const auto exponent = parts_.report.integer(term, "exponent", 0, exponent_max);
-            const auto coefficient = parts_.report.number(term, "coefficient");
+            const auto exponent = parts_.report.integer_or(term, "exponent", std::nullopt, 0, exponent_max);
+            const auto coefficient = parts_.report.number_or(term, "coefficient", std::nullopt);
+            result.known = result.known && exponent && coefficient;
             if (!exponent || !coefficient) continue;
             const auto power = static_cast<std::size_t>(*exponent);
             if (result.polynomial.size() <= power) result.polynomial.resize(power + 1, 0.0);
             result.polynomial[power] += *coefficient;
         }
+        if (!polynomial.child("Term")) {
+            parts_.report.fault(polynomial, "a polynomial without terms: its values are undefined");
+            result.known = false;
+        }
         return result;
     }
     if (const pugi::xml_node spline = calibrator.child("SplineCalibrator")) {
         for (const pugi::xml_node point : spline.children("SplinePoint")) {
-            const auto raw = parts_.report.number(point, "raw");
-            const auto calibrated = parts_.report.number(point, "calibrated");
+            const auto raw = parts_.report.number_or(point, "raw", std::nullopt);
+            const auto calibrated = parts_.report.number_or(point, "calibrated", std::nullopt);
+            result.known = result.known && raw && calibrated;
             if (raw && calibrated) result.spline.emplace_back(*raw, *calibrated);
         }
         std::ranges::sort(result.spline);
-        const int order = spline.attribute("order").as_int(1);
+        const auto order = parts_.report.integer_or(spline, "order", 1, 0, spline_order_max);
+        const auto extrapolate = parts_.report.flag_or(spline, "extrapolate", false);
         result.flat = order == 0;
-        result.extrapolate = spline.attribute("extrapolate").as_bool(false);
-        if (order > 1) {
-            parts_.report.fault(spline, "a spline of order " + std::to_string(order) +
+        result.extrapolate = extrapolate.value_or(false);
+        result.known = result.known && order && extrapolate && *order <= 1;
+        if (order && *order > 1)
+            parts_.report.fault(spline, "a spline of order " + std::to_string(*order) +
                                             " is not supported: its values are undefined");
+        if (!spline.child("SplinePoint")) {
+            parts_.report.fault(spline, "a spline without points: its values are undefined");
             result.known = false;
         }
         return result;
@@ -290,8 +325,9 @@ Calibration ModelTypes::calibration(pugi::xml_node calibrator) {
 
 void ModelTypes::read_labels(pugi::xml_node element, PacketType& type) {
     for (const pugi::xml_node entry : element.child("EnumerationList").children("Enumeration")) {
-        const auto first = to_integer(entry.attribute("value").value());
-        const auto last = entry.attribute("maxValue") ? to_integer(entry.attribute("maxValue").value()) : first;
+        const auto first = to_integer(number_digits(entry.attribute("value").value()));
+        const auto last =
+            entry.attribute("maxValue") ? to_integer(number_digits(entry.attribute("maxValue").value())) : first;
         if (!first || !last || *last < *first) {
             parts_.report.fault(entry, "its value is not a whole number");
             continue;
@@ -308,15 +344,23 @@ void ModelTypes::read_time(const Symbol& symbol, PacketType& type) {
         {{"seconds", 1.0}, {"picoSeconds", 1e-12}, {"days", 86400.0}}};
     const auto unit = std::ranges::find(seconds_in, units, &std::pair<std::string_view, double>::first);
     const double unit_s = unit == seconds_in.end() ? 1.0 : unit->second;
-    type.time_offset_s = unit_s * encoding.attribute("offset").as_double(0.0);
-    type.time_scale_s = unit_s * encoding.attribute("scale").as_double(1.0);
+    constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
+    type.time_offset_s = unit_s * parts_.report.number_or(encoding, "offset", 0.0).value_or(undefined);
+    auto scale = parts_.report.number_or(encoding, "scale", 1.0);
+    if (scale == 0.0) {
+        parts_.report.fault(encoding, "a time of scale 0 is undefined");
+        scale.reset();
+    }
+    type.time_scale_s = unit_s * scale.value_or(undefined);
     read_reference_time(symbol, type);
     read_coding(symbol, encoding ? encoding : symbol.element, type);
     if (unit == seconds_in.end()) {
         parts_.report.fault(encoding,
                             "time in " + in_quotes(std::string{units}) + " is not supported: it is undefined");
+        type.unread = true;
         type.coding.calibration = {.known = false};
     }
+    if (!std::isfinite(type.time_scale_s + type.time_offset_s)) type.unread = true;
     if (type.kind == PacketType::Kind::time && type.coding.form == Coding::Form::octets)
         parts_.report.fault(encoding, "a time that is no number is given as its octets");
 }

@@ -62,13 +62,15 @@ Result<telemetry::TimeKernels> time_kernels(const DecodeOptions& options) {
     return kernels;
 }
 
+constexpr std::size_t lines_max = 100;  // chosen: nobody reads more
+
 /// Prints packets, one row each, or at the end a summary with one line per container.
 class Printed {
   public:
     /// @param time  where packets hold their time; none: as the decoder finds it
-    Printed(const telemetry::ContainerDecoder& decoder, const telemetry::TimeKernels& kernels,
-            const std::optional<telemetry::TimeSource>& time, bool csv)
-        : decoder_(decoder), kernels_(kernels), time_(time), csv_(csv) {
+    Printed(const dictionary::xtce::PacketModel& model, const telemetry::ContainerDecoder& decoder,
+            const telemetry::TimeKernels& kernels, const std::optional<telemetry::TimeSource>& time, bool csv)
+        : model_(model), decoder_(decoder), kernels_(kernels), time_(time), csv_(csv) {
         if (csv_) fmt::print("index,apid,count,time,values\n");
     }
 
@@ -78,6 +80,7 @@ class Printed {
         if (time_) contents.time = time_->time_in(contents.values);
         ++kinds_[{apid, contents.container}];
         if (!contents.problem.empty()) note(contents.problem);
+        for (const auto& value : contents.unread) ++unread_[{value.parameter, value.line}];
         if (csv_) print_row(packet, apid, contents);
         ++index_;
     }
@@ -89,6 +92,16 @@ class Printed {
     }
     std::uint64_t packets() const { return index_; }
     const std::map<std::string, std::uint64_t>& problems() const { return problems_; }
+    /// Prints, for each parameter, how many of its values are not read; true when there are none.
+    bool print_unread() const {
+        std::size_t lines = 0;
+        for (const auto& [where, values] : unread_)
+            if (++lines <= lines_max)
+                fmt::print(stderr, "{} values of {} are not read (line {})\n", values,
+                           model_.parameters[where.first].name, where.second);
+        if (lines > lines_max) fmt::print(stderr, "values of {} more parameters are not read\n", lines - lines_max);
+        return unread_.empty();
+    }
 
   private:
     /// Counts a problem. Some texts name a place in the packet and so may all differ.
@@ -106,6 +119,7 @@ class Printed {
         fmt::print("\n");
     }
 
+    const dictionary::xtce::PacketModel& model_;
     const telemetry::ContainerDecoder& decoder_;
     const telemetry::TimeKernels& kernels_;
     const std::optional<telemetry::TimeSource>& time_;
@@ -114,11 +128,11 @@ class Printed {
     std::map<std::pair<std::uint64_t, std::string>, std::uint64_t> kinds_;
     static constexpr std::size_t problems_max = 50;  ///< chosen: nobody reads more
     std::map<std::string, std::uint64_t> problems_;
+    std::map<std::pair<std::size_t, unsigned>, std::uint64_t> unread_;  ///< by parameter and line
 };
 
 /// Prints the virtual channels, and what packet counts are not in order.
 void print_sequences(const telemetry::PacketSource& source) {
-    constexpr std::size_t lines_max = 100;  // chosen: nobody reads more
     std::size_t lines = 0, left = 0;
     for (const auto& [name, packets, counted] : source.sequences()) {
         if (packets && counted.missing + counted.repeated + counted.late + counted.restarts == 0) continue;
@@ -164,11 +178,12 @@ bool print_losses(const telemetry::PacketSource& source, const Printed& printed)
         fmt::print(stderr, "skipped: {} octets that are neither good frames nor fill\n", source.stray_octets());
     print_sequences(source);
     for (const auto& [problem, count] : printed.problems()) fmt::print(stderr, "{} packets: {}\n", count, problem);
+    const bool all_read = printed.print_unread();
     return link.bad_crc + link.bad_header + link.uncorrectable_frames + link.missing_frames + link.cut_frames +
                    packets.encapsulation_packets + packets.cut_packets + packets.lost_segments +
                    packets.unreadable_octets + source.stray_octets() ==
                0 &&
-           printed.problems().empty();
+           printed.problems().empty() && all_read;
 }
 
 /// Prints any mission's packets by its XTCE file; returns 0 when every octet was decoded.
@@ -198,7 +213,7 @@ int decode(const DecodeOptions& options) {
     if (!recognised->layout.empty()) fmt::print(stderr, "taken for {}\n", recognised->layout);
 
     const telemetry::ContainerDecoder decoder{*model};
-    Printed printed{decoder, *kernels, xtce.time, options.csv};
+    Printed printed{*model, decoder, *kernels, xtce.time, options.csv};
     const auto take = [&] {
         while (const auto packet = source.next()) printed.add(*packet);
     };

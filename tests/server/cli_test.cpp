@@ -845,6 +845,10 @@ TEST_CASE("decode ends with 1 and says what it left, and asks where the file lea
     using namespace std::string_literals;
     const std::string one = write("one.xml", mission(container("P")));
     const std::string two = write("two.xml", mission(container("P") + container("Q")));
+    std::string digits = mission(container("P"));
+    digits.replace(digits.find("sizeInBits='16'"), 15, "sizeInBits='16' encoding='BCD'");
+    const std::string coded = write("coded.xml", digits);
+    const std::string no_digit = write("no_digit", "\x01\x23\xC0\x00\x00\x01\x00\x0A"s);
     const std::string right = write("right", "\x01\x23\xC0\x00\x00\x01\x00\x07"s);
     const std::string longer = write("longer", "\x01\x23\xC0\x00\x00\x03\x00\x07\x00\x00"s);
     const std::string segments = write("segments", "\x01\x23\x40\x00\x00\x00\x00\x01\x23\x80\x01\x00\x00\x07"s);
@@ -860,6 +864,8 @@ TEST_CASE("decode ends with 1 and says what it left, and asks where the file lea
     };
     for (const auto& [arguments, code, says] :
          {Case{one + " --packets " + right, 0, "0,291,0,,H=1253056708609|1253056708609,W=7|7"},
+          Case{coded + " --packets " + right, 0, ",W=7|7"},
+          Case{coded + " --packets " + no_digit, 1, "1 values of W are not read (line 1)"},
           Case{one + " --packets " + longer, 1, "1 packets: 16 bits are behind the last entry of P"},
           Case{one + " --packets " + segments, 0, ",W=7|7"},
           Case{one + " --packets " + half, 1, "1 segments without the rest"},

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "common/crc.hpp"
 #include "telemetry/container_decoder.hpp"
 #include "telemetry/decommutator.hpp"
 #include "tests/support/catch.hpp"
@@ -238,6 +239,87 @@ TEST_CASE("nothing is decided by a condition that is not understood: no entry, n
     CHECK_THAT(rest.problem, Catch::StartsWith("whether Strange describes it is not known"));
 }
 
+TEST_CASE("a comparison whose value is undefined, not there yet or not comparable decides nothing",
+          "[telemetry][xtce][R54]") {
+    const std::string types =
+        "<IntegerParameterType name='bcd'><IntegerDataEncoding sizeInBits='8' encoding='BCD'/></IntegerParameterType>"
+        "<FloatParameterType name='curve'><IntegerDataEncoding sizeInBits='8'><DefaultCalibrator><SplineCalibrator>"
+        "<SplinePoint raw='10' calibrated='0'/><SplinePoint raw='20' calibrated='1'/></SplineCalibrator>"
+        "</DefaultCalibrator></IntegerDataEncoding></FloatParameterType>"
+        "<FloatParameterType name='strange'><FloatDataEncoding sizeInBits='32' encoding='IBM'/></FloatParameterType>"
+        "<EnumeratedParameterType name='mode'><IntegerDataEncoding sizeInBits='8'/><EnumerationList>"
+        "<Enumeration value='5' label='FIVE'/><Enumeration value='6' label='7'/></EnumerationList>"
+        "</EnumeratedParameterType>"
+        "<StringParameterType name='word'><StringDataEncoding><SizeInBits><Fixed><FixedValue>16</FixedValue></Fixed>"
+        "</SizeInBits></StringDataEncoding></StringParameterType>"
+        "<AggregateParameterType name='pair'><MemberList><Member name='x' typeRef='u8'/><Member name='y' typeRef='u8'/>"
+        "</MemberList></AggregateParameterType>";
+    const auto is = [](const char* op, const std::string& value, const char* more = "") {
+        return "<Comparison parameterRef='k' comparisonOperator='" + std::string{op} + "' value='" + value + "' " +
+               more + "/>";
+    };
+    const auto mission = [&](const char* type, const std::string& condition) {
+        return Mission{types,
+                       {{"k", type}, {"a", "u8"}, {"z", "u8"}},
+                       container("P", entry("k")) + container("Q", entry("a"), base("P", condition)) +
+                           container("R", entry("z"), "<BaseContainer containerRef='P'/>")};
+    };
+    const auto not_known = [&](const char* type, const std::string& condition, const char* packet) {
+        INFO(type << " " << condition);
+        const auto contents = mission(type, condition).decode(packet);
+        CHECK(contents.container == "P");
+        CHECK_THAT(contents.problem, Catch::StartsWith("whether Q describes it is not known"));
+    };
+    const auto taken_by = [&](const char* type, const std::string& condition, const char* packet) {
+        const auto read = mission(type, condition);
+        return read.findings.empty() ? read.decode(packet).container : read.findings[0].message;
+    };
+    not_known("bcd", is("==", "5"), "fa 02");
+    not_known("bcd", is("!=", "5"), "fa 02");
+    not_known("bcd", is("!=", "5", "useCalibratedValue='false'"), "fa 02");
+    not_known("curve", is("&lt;", "5"), "01 02");
+    not_known("strange", is("==", "1"), "00000001 02");
+    not_known("u8", is("==", "FIVE"), "05 02");
+    not_known("u8", is("==", "5", "useCalibratedValue='maybe'"), "05 02");
+    not_known("mode", is("==", "FIV"), "05 02");
+    not_known("mode", is("&lt;", "FIVE"), "05 02");
+    not_known("mode", is("==", "FIVE", "useCalibratedValue='false'"), "05 02");
+    not_known("pair", is("==", "5"), "0506 02");
+    CHECK(taken_by("u8", is("==", "FIVE"), "05 02") ==
+          "it compares with 'FIVE', which is neither a number nor a label of 'u8': whether it holds is not known");
+    CHECK(taken_by("bcd", is("==", "5"), "05 02") == "Q");
+    CHECK(taken_by("curve", is("&lt;", "5", "useCalibratedValue='false'"), "01 02") == "Q");
+    CHECK(taken_by("u8", is("==", " 5 "), "05 02") == "Q");
+    CHECK(taken_by("u8", is("==", "+5.0"), "05 02") == "Q");
+    CHECK(taken_by("mode", is("==", "5"), "05 02") == "Q");
+    CHECK(taken_by("mode", is("==", " FIVE "), "05 02") == "Q");
+    CHECK(taken_by("mode", is("==", "FIVE"), "08 02") == "R");  // a number without a label has not that one
+    CHECK(taken_by("mode", is("!=", "FIVE"), "08 02") == "Q");
+    CHECK(taken_by("mode", is("==", "7"), "06 02") == "Q");
+    CHECK(taken_by("mode", is("==", "7"), "07 02") == "R");  // it is the label of 6
+    CHECK(taken_by("word", is("==", "AB"), "4142 02") == "Q");
+    CHECK(taken_by("word", is("==", "AB", "useCalibratedValue='false'"), "4142 02") == "Q");
+    not_known("word", is("==", "AB"), "ff42 02");
+
+    const auto later =
+        Mission{"",
+                {{"y", "u8"}, {"z", "u8"}},
+                container("P",
+                          entry("z", "<IncludeCondition>" + when("y", "==", "0") + "</IncludeCondition>") + entry("y"))}
+            .decode("01 00");
+    CHECK(later.values.empty());
+    CHECK_THAT(later.problem, Catch::StartsWith("an entry of P has a condition that is not understood"));
+
+    // A count whose bits are no number counts nothing.
+    const Mission counted{
+        types,
+        {{"n", "bcd"}, {"a", "u8"}},
+        container("P", entry("n") + entry("a", "<RepeatEntry><Count><DynamicValue><ParameterInstanceRef "
+                                               "parameterRef='n'/></DynamicValue></Count></RepeatEntry>"))};
+    CHECK(text(counted.decode("02 0708")) == "n=2|2 a[0]=7|7 a[1]=8|8");
+    CHECK(text(counted.decode("0a 00000000000000000000")) == "n=10|undefined");
+}
+
 TEST_CASE("where several containers can begin a packet, the user says which", "[telemetry][R55]") {
     Mission mission{"", {{"a", "u8"}, {"b", "u16"}}, container("P", entry("a")) + container("Q", entry("b"))};
     CHECK(mission.decode("0102").problem ==
@@ -260,6 +342,146 @@ TEST_CASE("octets behind the last entry are told, wherever the entries stand", "
     CHECK_THAT(mission.decode("01020304050607").problem, Catch::StartsWith("32 bits are behind the last entry of P"));
     CHECK(mission.decode("010203adad").problem.empty());  // the right CRC-16
     CHECK_THAT(mission.decode("010203adac").problem, Catch::StartsWith("16 bits are behind the last entry of P"));
+}
+
+TEST_CASE("zeros that fill the last octet are the end of a packet, also before its CRC-16", "[telemetry][xtce][R54]") {
+    const std::string types =
+        "<IntegerParameterType name='u5'><IntegerDataEncoding sizeInBits='5'/></IntegerParameterType>";
+    const Mission mission{types, {{"a", "u8"}, {"b", "u5"}}, container("P", entry("a") + entry("b"))};
+    CHECK(mission.decode("01 10").problem.empty());
+    CHECK_THAT(mission.decode("01 11").problem, Catch::StartsWith("3 bits are behind the last entry of P"));
+    CHECK_THAT(mission.decode("01 10 00").problem, Catch::StartsWith("11 bits are behind the last entry of P"));
+    const auto with_crc = [](std::vector<std::uint8_t> octets) {
+        const auto crc = crc16(octets);
+        octets.push_back(static_cast<std::uint8_t>(crc >> 8));
+        octets.push_back(static_cast<std::uint8_t>(crc & 0xFF));
+        return octets;
+    };
+    const ContainerDecoder decoder{mission.model};
+    CHECK(decoder.decode(with_crc({0x01, 0x10})).problem.empty());
+    auto wrong = with_crc({0x01, 0x10});
+    wrong.back() ^= 1U;
+    CHECK_THAT(decoder.decode(wrong).problem, Catch::StartsWith("19 bits are behind the last entry of P"));
+    CHECK_FALSE(decoder.decode(with_crc({0x01, 0x12})).problem.empty());
+    CHECK_FALSE(decoder.decode(with_crc({0x01, 0x10, 0x00})).problem.empty());
+}
+
+TEST_CASE("values that are not read are counted, those that are undefined by the file's own rule are not",
+          "[telemetry][xtce][R54]") {
+    const std::string spline = "<SplineCalibrator><SplinePoint raw='10' calibrated='0'/><SplinePoint raw='20' "
+                               "calibrated='1'/></SplineCalibrator>";
+    const auto integer = [](const std::string& attributes, const std::string& inside = "") {
+        return "<IntegerParameterType name='t'><IntegerDataEncoding " + attributes + ">" + inside +
+               "</IntegerDataEncoding></IntegerParameterType>";
+    };
+    const auto real = [](const std::string& attributes) {
+        return "<FloatParameterType name='t'><FloatDataEncoding " + attributes + "/></FloatParameterType>";
+    };
+    const auto word = [](const std::string& characters, const std::string& bits) {
+        return "<StringParameterType name='t'><StringDataEncoding encoding='" + characters +
+               "'><SizeInBits><Fixed><FixedValue>" + bits + "</FixedValue></Fixed></SizeInBits></StringDataEncoding>" +
+               "</StringParameterType>";
+    };
+    const auto time = [](const std::string& encoding) {
+        return "<AbsoluteTimeParameterType name='t'><Encoding " + encoding +
+               "</Encoding><ReferenceTime><Epoch>TAI</Epoch></ReferenceTime></AbsoluteTimeParameterType>";
+    };
+    const auto calibrated = [](const std::string& calibrator) {
+        return "<DefaultCalibrator>" + calibrator + "</DefaultCalibrator>";
+    };
+    const auto unread = [](const std::string& type, std::string_view packet) {
+        INFO(type);
+        const Mission mission{
+            type, {{"a", "t"}, {"b", "t"}, {"z", "u8"}}, container("P", entry("a") + entry("b") + entry("z"))};
+        const auto contents = mission.decode(packet);
+        CHECK(contents.problem.empty());
+        for (const auto& value : contents.unread) CHECK(value.line == 1);
+        return contents.unread.size();
+    };
+    CHECK(unread(real("sizeInBits='48' encoding='MILSTD_1750A'"), "3c3c3c3c3c3c 3c3c3c3c3c3c 07") == 2);
+    CHECK(unread(real("sizeInBits='32' encoding='IBM'"), "3c3c3c3c 3c3c3c3c 07") == 2);
+    CHECK(unread(integer("sizeInBits='24'", "<ByteOrderList><Byte byteSignificance='1'/><Byte byteSignificance='2'/>"
+                                            "<Byte byteSignificance='0'/></ByteOrderList>"),
+                 "010203 040506 07") == 2);
+    CHECK(unread(integer("sizeInBits='16' bitOrder='reversed'"), "0102 0304 07") == 2);
+    CHECK(unread(integer("sizeInBits='8'", calibrated("<MathOperationCalibrator/>")), "01 02 07") == 2);
+    CHECK(unread(integer("sizeInBits='8' encoding='BCD'"), "1a 12 07") == 1);
+    CHECK(unread(word("UTF-32", "32"), "00000041 00000042 07") == 2);
+    CHECK(unread(word("UTF-8", "16"), "ff41 4142 07") == 1);
+    CHECK(unread(time("units='minutes'><IntegerDataEncoding sizeInBits='16'/>"), "0001 0002 07") == 2);
+    CHECK(unread(time("scale='0'><IntegerDataEncoding sizeInBits='16'/>"), "0001 0002 07") == 2);
+
+    CHECK(unread(integer("sizeInBits='8'", calibrated(spline)), "01 02 07") == 0);
+    CHECK(unread(integer("sizeInBits='8' encoding='BCD'"), "19 12 07") == 0);
+    CHECK(unread(real("sizeInBits='32'"), "7fc00000 7f800000 07") == 0);
+    CHECK(unread(word("UTF-8", "16"), "4141 4142 07") == 0);
+    CHECK(unread(time("scale='2'><IntegerDataEncoding sizeInBits='16'/>"), "0001 0002 07") == 0);
+}
+
+TEST_CASE("no value is calibrated, sized or timed by what is not a number", "[telemetry][xtce][R54]") {
+    const auto calibrated = [](const std::string& calibrator) {
+        return "<IntegerParameterType name='t'><IntegerDataEncoding sizeInBits='8'><DefaultCalibrator>" + calibrator +
+               "</DefaultCalibrator></IntegerDataEncoding></IntegerParameterType>";
+    };
+    const auto polynomial = [&](const std::string& terms) {
+        return calibrated("<PolynomialCalibrator>" + terms + "</PolynomialCalibrator>");
+    };
+    const auto spline = [&](const std::string& attributes, const std::string& point) {
+        return calibrated("<SplineCalibrator " + attributes + "><SplinePoint raw='0' calibrated='0'/>" + point +
+                          "<SplinePoint raw='10' calibrated='100'/></SplineCalibrator>");
+    };
+    const auto octets = [](const std::string& size) {
+        return "<BinaryParameterType name='t'><BinaryDataEncoding><SizeInBits>" + size +
+               "</SizeInBits></BinaryDataEncoding></BinaryParameterType>";
+    };
+    const auto by_n = [&](const std::string& line) {
+        return octets("<DynamicValue><ParameterInstanceRef parameterRef='n'/><LinearAdjustment " + line +
+                      "/></DynamicValue>");
+    };
+    const auto read = [](const std::string& type) {
+        const Mission mission{
+            type, {{"n", "u8"}, {"k", "t"}, {"z", "u8"}}, container("P", entry("n") + entry("k") + entry("z"))};
+        const auto contents = mission.decode("02 05 07");
+        const auto found = mission.findings.empty() ? std::string{} : mission.findings[0].message + ": ";
+        return found + (contents.problem.empty() ? text(contents) : contents.problem);
+    };
+    CHECK(read(polynomial("<Term coefficient='1' exponent='0'/><Term coefficient=' +2 ' exponent='1'/>")) ==
+          "n=2|2 k=5|11 z=7|7");
+    CHECK(read(polynomial("<Term coefficient='abc' exponent='0'/><Term coefficient='2' exponent='1'/>")) ==
+          "coefficient 'abc' is not a number: n=2|2 k=5|undefined z=7|7");
+    CHECK(read(polynomial("<Term exponent='0'/><Term coefficient='2' exponent='1'/>")) ==
+          "Term has no coefficient: n=2|2 k=5|undefined z=7|7");
+    CHECK(read(polynomial("<Term coefficient='1'/>")) == "Term has no exponent: n=2|2 k=5|undefined z=7|7");
+    CHECK(read(polynomial("<Term coefficient='1' exponent='0'/><Term coefficient='2' exponent='40'/>")) ==
+          "exponent '40' is not a whole number from 0 to 32: n=2|2 k=5|undefined z=7|7");
+    CHECK(read(polynomial("")) == "a polynomial without terms: its values are undefined: n=2|2 k=5|undefined z=7|7");
+    CHECK(read(spline("", "")) == "n=2|2 k=5|50 z=7|7");
+    CHECK(read(spline("", "<SplinePoint raw='5' calibrated='x'/>")) ==
+          "calibrated 'x' is not a number: n=2|2 k=5|undefined z=7|7");
+    CHECK(read(spline("", "<SplinePoint raw='5'/>")) == "SplinePoint has no calibrated: n=2|2 k=5|undefined z=7|7");
+    CHECK(read(spline("order='quadratic'", "")) ==
+          "order 'quadratic' is not a whole number from 0 to 1000: n=2|2 k=5|undefined z=7|7");
+    CHECK(read(spline("extrapolate='perhaps'", "")) ==
+          "extrapolate 'perhaps' is neither true nor false: n=2|2 k=5|undefined z=7|7");
+
+    const std::string no_size = "the size of k cannot be known (line 1)";
+    CHECK(read(by_n("slope='4' intercept='0'")) == "n=2|2 k=05|05 z=7|7");
+    CHECK(read(by_n("slope='eight' intercept='8'")) == "slope 'eight' is not a number: " + no_size);
+    CHECK(read(by_n("slope='8' intercept='eight'")) == "intercept 'eight' is not a number: " + no_size);
+    CHECK(
+        read(octets("<DynamicValue><ParameterInstanceRef parameterRef='n' useCalibratedValue='2'/></DynamicValue>")) ==
+        "useCalibratedValue '2' is neither true nor false: " + no_size);
+    CHECK(read(octets("<DynamicValue><ParameterInstanceRef parameterRef='n' instance='x'/></DynamicValue>")) ==
+          "instance 'x' is not a whole number from -2147483648 to 2147483647: " + no_size);
+    CHECK(read(octets("<DiscreteLookupList><DiscreteLookup value='x'><Comparison parameterRef='n' value='2'/>"
+                      "</DiscreteLookup></DiscreteLookupList>")) == "value 'x' is not a number: " + no_size);
+    CHECK(read(octets("<FixedValue>\n8\n</FixedValue>")) == "n=2|2 k=05|05 z=7|7");
+
+    const std::string list = "<ByteOrderList><Byte byteSignificance='0'/></ByteOrderList>";
+    CHECK(read("<IntegerParameterType name='t'><IntegerDataEncoding sizeInBits='16'>" + list +
+               "</IntegerDataEncoding></IntegerParameterType>") ==
+          "ByteOrderList does not name each of 2 octets once: octets are given: the packet ends before z: 8 bits at "
+          "bit 24 of 24 (line 1)");
 }
 
 TEST_CASE("a spline extends outside its points where the file says so", "[telemetry][R55]") {

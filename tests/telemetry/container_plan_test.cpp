@@ -228,4 +228,54 @@ TEST_CASE(
     CHECK(left > 2'000);
 }
 
+TEST_CASE("padding to whole octets is compiled and read alike, and what may be no number decides no container",
+          "[telemetry][xtce][R54]") {
+    const std::string text =
+        "<SpaceSystem name='S'><TelemetryMetaData><ParameterTypeSet>"
+        "<IntegerParameterType name='u8'><IntegerDataEncoding sizeInBits='8'/></IntegerParameterType>"
+        "<IntegerParameterType name='u5'><IntegerDataEncoding sizeInBits='5'/></IntegerParameterType>"
+        "<IntegerParameterType name='bcd'><IntegerDataEncoding sizeInBits='8' encoding='BCD'/></IntegerParameterType>"
+        "</ParameterTypeSet><ParameterSet><Parameter name='kind' parameterTypeRef='u8'/>"
+        "<Parameter name='digits' parameterTypeRef='bcd'/><Parameter name='five' parameterTypeRef='u5'/>"
+        "</ParameterSet><ContainerSet><SequenceContainer name='Header'><EntryList><ParameterRefEntry "
+        "parameterRef='kind'/></EntryList></SequenceContainer>"
+        "<SequenceContainer name='Short'><EntryList><ParameterRefEntry parameterRef='five'/></EntryList><BaseContainer "
+        "containerRef='Header'><RestrictionCriteria><Comparison parameterRef='kind' value='1'/></RestrictionCriteria>"
+        "</BaseContainer></SequenceContainer>"
+        "<SequenceContainer name='Digits'><EntryList><ParameterRefEntry parameterRef='digits'/></EntryList>"
+        "<BaseContainer containerRef='Header'><RestrictionCriteria><Comparison parameterRef='kind' value='2'/>"
+        "</RestrictionCriteria></BaseContainer></SequenceContainer>"
+        "<SequenceContainer name='NotFive'><EntryList/><BaseContainer containerRef='Digits'><RestrictionCriteria>"
+        "<Comparison parameterRef='digits' comparisonOperator='!=' value='5'/></RestrictionCriteria></BaseContainer>"
+        "</SequenceContainer></ContainerSet></TelemetryMetaData></SpaceSystem>";
+    std::vector<dictionary::Finding> findings;
+    dictionary::Findings into{"m.xml", findings};
+    auto model = dictionary::xtce::read_packet_model(text, into);
+    REQUIRE(model);
+    REQUIRE(findings.empty());
+    model->root = 0;
+    const std::vector<std::string> names{"kind", "digits", "five"};
+    const ContainerPlan plan{*model, std::vector<std::size_t>(model->containers.size(), names.size()),
+                             [&](std::size_t, std::size_t, const std::string& name) {
+                                 const auto found = std::ranges::find(names, name);
+                                 return std::optional{static_cast<std::size_t>(found - names.begin())};
+                             },
+                             [](std::size_t, std::size_t) { return false; }};
+    const ContainerDecoder decoder{*model};
+    dictionary::Decoded decoded;
+    const auto both = [&](std::string_view octets, bool compiled) {
+        INFO(octets);
+        const auto contents = decoder.decode(test::hex(octets));
+        CHECK(plan.decode(test::hex(octets), decoded) == compiled);
+        return contents.container + (contents.problem.empty() ? "" : "?");
+    };
+    CHECK(both("01 08", true) == "Short");
+    CHECK(decoded.value[2] == 1.0);
+    CHECK(both("01 09", false) == "Short?");
+    CHECK(both("01 08 b07b", false) == "Short?");
+    CHECK(both("02 06", false) == "NotFive");
+    CHECK(both("02 05", false) == "Digits");
+    CHECK(both("02 0a", false) == "Digits?");
+}
+
 }  // namespace telemetry_container_plan_test
