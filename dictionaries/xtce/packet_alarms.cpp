@@ -34,6 +34,8 @@ class AlarmReader {
                 report_.fault(child, std::string{name} + " of type " + in_quotes(type_.name) + " is not judged");
         }
         std::ranges::stable_sort(alarms_.ranges, {}, &AlarmRange::severity);
+        if (report_.flag_or(alarm, "disabled", false).value_or(false))
+            return {};  // the file switches it off [xtce-1.3]
         return std::move(alarms_);
     }
 

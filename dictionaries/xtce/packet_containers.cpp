@@ -27,12 +27,22 @@ class ContainerReader {
         }
         if (const pugi::xml_node size = element.child("BinaryEncoding").child("SizeInBits"))
             container.bits = parts_.amount(symbol.scope, size);
+        if (is_transformed(element.child("BinaryEncoding")))
+            container.entries.push_back({.what = PacketEntry::What::unknown, .line = container.line});
         for (const pugi::xml_node entry : element.child("EntryList").children())
             if (entry.type() == pugi::node_element) container.entries.push_back(read_entry(symbol, entry));
         return container;
     }
 
   private:
+    /// Whether a container's octets are others before they are read.
+    bool is_transformed(pugi::xml_node encoding) {
+        const pugi::xml_node algorithm = encoding.child("FromBinaryTransformAlgorithm");
+        if (algorithm)
+            parts_.report.fault(algorithm, "FromBinaryTransformAlgorithm is not supported: packets are read up to it");
+        return !parts_.has_usual_order(encoding, "packets are read up to it") || algorithm;
+    }
+
     std::optional<std::size_t> index_of(const Symbol& from, pugi::xml_node at) {
         const std::string word = at.attribute("containerRef").value();
         const Symbol* symbol = parts_.symbols.find(Kind::container, from.scope, word);

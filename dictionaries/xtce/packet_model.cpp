@@ -2,6 +2,7 @@
 #include "dictionaries/xtce/packet_model.hpp"
 
 #include "dictionaries/words.hpp"
+#include "dictionaries/xtce/packet_grammar.hpp"
 #include "dictionaries/xtce/packet_model_reader.hpp"
 
 #include <algorithm>
@@ -123,6 +124,11 @@ Amount ModelParts::amount(const std::string& scope, pugi::xml_node parent) const
             amount.known = amount.known && value;
             amount.cases.push_back({condition(scope, each), value.value_or(0.0)});
         }
+        if (list.attribute("defaultValue")) {
+            const auto otherwise = report.number_or(list, "defaultValue", std::nullopt);
+            amount.known = amount.known && otherwise;
+            amount.cases.push_back({{}, otherwise.value_or(0.0)});
+        }
         if (amount.cases.empty()) report.fault(list, "DiscreteLookupList has no DiscreteLookup");
         return amount.cases.empty() ? unknown : amount;
     }
@@ -164,6 +170,7 @@ PacketModel model_of(const std::vector<const Document*>& documents, const std::v
     Reporter report{*documents.front(), *findings.front()};
     for (std::size_t i = 1; i < documents.size(); ++i) report.add(*documents[i], *findings[i]);
     const Symbols symbols{documents, report, Symbols::Names::any};
+    for (const Document* document : documents) check_grammar(*document, report);
     const ModelParts parts{symbols, report, agreement};
     ModelTypes types{parts};
     return read_model(name_of(documents.front()->space_system()), parts, types);

@@ -27,6 +27,9 @@ class ModelParts {
     Condition condition(const std::string& scope, pugi::xml_node parent) const;
     /// Reads the child of `parent`: FixedValue, Fixed, DynamicValue or DiscreteLookupList.
     Amount amount(const std::string& scope, pugi::xml_node parent) const;
+    /// Whether the bits and octets of an encoding come the most significant first. Else a finding that says what becomes
+    /// of them.
+    bool has_usual_order(pugi::xml_node encoding, const std::string& otherwise) const;
 
     const Symbols& symbols;
     Reporter& report;
@@ -60,6 +63,7 @@ class ModelTypes {
     void read_number(const Symbol& symbol, pugi::xml_node coding, PacketType& type);
     void read_text(const Symbol& symbol, pugi::xml_node coding, PacketType& type);
     bool read_order(pugi::xml_node coding, std::int64_t bits, Coding& into);
+    void check_sign(pugi::xml_node element, const PacketType& type);
     void read_calibrations(const Symbol& symbol, pugi::xml_node coding, Coding& into);
     Calibration calibration(pugi::xml_node calibrator);
     void read_labels(pugi::xml_node element, PacketType& type);

@@ -118,15 +118,31 @@ PacketType ModelTypes::read(const Symbol& symbol) {
     default: break;
     }
     read_coding(symbol, element, type);
+    check_sign(element, type);
     read_valid_range(element, type);
     read_alarms(symbol, type);
     return type;
+}
+
+/// A type says whether its values have a sign, an encoding whether its bits have one. The encoding is read.
+void ModelTypes::check_sign(pugi::xml_node element, const PacketType& type) {
+    const pugi::xml_node coding = element.child("IntegerDataEncoding");
+    const auto has_sign = parts_.report.flag_or(element, "signed", true);
+    if (!element.attribute("signed") || !has_sign || !coding) return;
+    using enum Coding::Form;
+    const auto form = type.coding.form;
+    if (*has_sign && !coding.attribute("encoding"))
+        parts_.report.fault(coding, "signed, but no encoding says how: it is read as unsigned");
+    if (!*has_sign && (form == twos_complement || form == ones_complement || form == sign_and_magnitude) &&
+        type.coding.calibration.empty() && type.coding.contexts.empty())
+        parts_.report.fault(coding, "unsigned by its type, signed by its encoding: the encoding is read");
 }
 
 void ModelTypes::read_valid_range(pugi::xml_node element, PacketType& type) {
     pugi::xml_node range = element.child("ValidRange");
     if (!range) range = element.child("ValidRangeSet").child("ValidRange");
     if (!range) return;
+    if (range.next_sibling("ValidRange")) parts_.report.fault(range, "of several valid ranges only the first is read");
     if (range.attribute("minInclusive")) type.valid_min = parts_.report.number_or(range, "minInclusive", std::nullopt);
     if (range.attribute("maxInclusive")) type.valid_max = parts_.report.number_or(range, "maxInclusive", std::nullopt);
 }
@@ -139,6 +155,7 @@ void ModelTypes::read_coding(const Symbol& symbol, pugi::xml_node holder, Packet
         type.coding.form = Coding::Form::octets;
         type.unread = type.kind != PacketType::Kind::octets;
         type.coding.bits = parts_.amount(symbol.scope, coding.child("SizeInBits"));
+        if (!parts_.has_usual_order(coding, "the octets are given as they are")) type.unread = true;
         for (const char* algorithm : {"FromBinaryTransformAlgorithm", "ToBinaryTransformAlgorithm"})
             if (const pugi::xml_node found = coding.child(algorithm)) {
                 parts_.report.fault(found,
@@ -217,6 +234,19 @@ bool ModelTypes::read_order(pugi::xml_node coding, std::int64_t bits, Coding& in
     return into.least_significant_octet_first;
 }
 
+bool ModelParts::has_usual_order(pugi::xml_node encoding, const std::string& otherwise) const {
+    bool usual = true;
+    for (const auto& [attribute, order] :
+         {std::pair{"bitOrder", "mostSignificantBitFirst"}, std::pair{"byteOrder", "mostSignificantByteFirst"}}) {
+        const std::string_view word = encoding.attribute(attribute).as_string(order);
+        if (word == order) continue;
+        usual = false;
+        report.fault(encoding, std::string{attribute} + " " + in_quotes(word) + " of " + encoding.name() +
+                                   " is not supported: " + otherwise);
+    }
+    return usual;
+}
+
 void ModelTypes::read_text(const Symbol& symbol, pugi::xml_node coding, PacketType& type) {
     type.coding.form = Coding::Form::text;
     type.unread = false;
@@ -227,6 +257,10 @@ void ModelTypes::read_text(const Symbol& symbol, pugi::xml_node coding, PacketTy
         parts_.report.fault(coding, "characters in " + in_quotes(characters) + " are not supported: octets are given");
         type.unread = true;
         type.coding.characters = Coding::Characters::utf8;
+        type.kind = PacketType::Kind::octets;
+    }
+    if (!parts_.has_usual_order(coding, "octets are given")) {
+        type.unread = true;
         type.kind = PacketType::Kind::octets;
     }
     pugi::xml_node size = coding.child("SizeInBits");
@@ -296,14 +330,18 @@ Calibration ModelTypes::calibration(pugi::xml_node calibrator) {
         return result;
     }
     if (const pugi::xml_node spline = calibrator.child("SplineCalibrator")) {
+        const auto order = parts_.report.integer_or(spline, "order", 1, 0, spline_order_max);
         for (const pugi::xml_node point : spline.children("SplinePoint")) {
             const auto raw = parts_.report.number_or(point, "raw", std::nullopt);
             const auto calibrated = parts_.report.number_or(point, "calibrated", std::nullopt);
-            result.known = result.known && raw && calibrated;
+            const auto point_order = parts_.report.integer_or(point, "order", order.value_or(1), 0, spline_order_max);
+            if (point_order && order && point_order != order)
+                parts_.report.fault(point, "a point of another order than its spline is not supported: its values are "
+                                           "undefined");
+            result.known = result.known && raw && calibrated && point_order == order;
             if (raw && calibrated) result.spline.emplace_back(*raw, *calibrated);
         }
         std::ranges::sort(result.spline);
-        const auto order = parts_.report.integer_or(spline, "order", 1, 0, spline_order_max);
         const auto extrapolate = parts_.report.flag_or(spline, "extrapolate", false);
         result.flat = order == 0;
         result.extrapolate = extrapolate.value_or(false);

@@ -20,10 +20,12 @@ void Symbols::read_space_system(pugi::xml_node system, const std::string& outer,
         report.fault(system, "SpaceSystems are nested deeper than " + std::to_string(system_depth_max));
         return;
     }
-    report.expect(
-        system,
-        {"LongDescription", "AncillaryDataSet", "Header", "TelemetryMetaData", "CommandMetaData", "SpaceSystem"},
-        {"name", "shortDescription", "operationalStatus", "systemType", "xsi:schemaLocation"});
+    const bool ours = names_ == Names::strict;
+    report.expect(system,
+                  {"LongDescription", "AncillaryDataSet", "Header", "TelemetryMetaData", "CommandMetaData",
+                   "SpaceSystem", ours ? "" : "AliasSet"},
+                  {"name", "shortDescription", "operationalStatus", "systemType", "xsi:schemaLocation",
+                   ours ? "" : "assetType", ours ? "" : "xml:base"});
     const std::string scope = outer + "/" + name_of(system);
 
     const pugi::xml_node telemetry = system.child("TelemetryMetaData");
