@@ -154,6 +154,9 @@ void ModelTypes::read_coding(const Symbol& symbol, pugi::xml_node holder, Packet
     if (const pugi::xml_node coding = holder.child("BinaryDataEncoding")) {
         type.coding.form = Coding::Form::octets;
         type.unread = type.kind != PacketType::Kind::octets;
+        if (type.unread && type.kind != PacketType::Kind::time)  // of a time it is told with the time
+            parts_.report.fault(coding,
+                                std::string{symbol.element.name()} + " in octets is not supported: they are given");
         type.coding.bits = parts_.amount(symbol.scope, coding.child("SizeInBits"));
         if (!parts_.has_usual_order(coding, "the octets are given as they are")) type.unread = true;
         for (const char* algorithm : {"FromBinaryTransformAlgorithm", "ToBinaryTransformAlgorithm"})
@@ -178,7 +181,9 @@ void ModelTypes::read_number(const Symbol& symbol, pugi::xml_node coding, Packet
         parts_.report.fault(coding, "encoding " + in_quotes(word) + " of " + std::to_string(bits.value_or(0)) +
                                         " bits is not supported");
     // The size is known nevertheless: fields after it can be read.
-    type.unread = !form;
+    type.unread = !form || type.kind == PacketType::Kind::text;
+    if (type.kind == PacketType::Kind::text)
+        parts_.report.fault(coding, "text in a number is not supported: the number is given");
     type.coding.form = form.value_or(Coding::Form::octets);
     if (!form) type.kind = PacketType::Kind::octets;
     if (!bits) type.kind = PacketType::Kind::unknown;
@@ -250,6 +255,11 @@ bool ModelParts::has_usual_order(pugi::xml_node encoding, const std::string& oth
 void ModelTypes::read_text(const Symbol& symbol, pugi::xml_node coding, PacketType& type) {
     type.coding.form = Coding::Form::text;
     type.unread = false;
+    if (type.kind != PacketType::Kind::text && type.kind != PacketType::Kind::octets) {
+        parts_.report.fault(coding,
+                            std::string{symbol.element.name()} + " in characters is not supported: they are given");
+        type.unread = true;
+    }
     const std::string_view characters = coding.attribute("encoding").as_string("UTF-8");
     if (const auto known = characters_of(characters)) {
         type.coding.characters = *known;

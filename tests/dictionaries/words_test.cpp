@@ -24,6 +24,12 @@ TEST_CASE("whole numbers are decimal or hexadecimal", "[dictionary]") {
     }
 }
 
+TEST_CASE("a word has no white space around it", "[dictionary]") {
+    CHECK(trimmed(" \t12 34\r\n") == "12 34");
+    CHECK(trimmed(" \n").empty());
+    CHECK(trimmed("").empty());
+}
+
 TEST_CASE("a number's word reads back as the same number", "[dictionary]") {
     for (const double value : {0.0, -4.6019, 1.0 / 3.0, 397501714.997, 1e300})
         CHECK(to_number(number_word(value)) == value);

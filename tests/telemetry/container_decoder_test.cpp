@@ -344,6 +344,37 @@ TEST_CASE("octets behind the last entry are told, wherever the entries stand", "
     CHECK_THAT(mission.decode("010203adac").problem, Catch::StartsWith("16 bits are behind the last entry of P"));
 }
 
+TEST_CASE("a size that is looked up has the value of the list where no case holds", "[telemetry][xtce][R54]") {
+    const auto read = [](const std::string& otherwise) {
+        const Mission mission{"<BinaryParameterType name='t'><BinaryDataEncoding><SizeInBits><DiscreteLookupList " +
+                                  otherwise +
+                                  "><DiscreteLookup value='8'><Comparison parameterRef='n' value='1'/></DiscreteLookup>"
+                                  "</DiscreteLookupList></SizeInBits></BinaryDataEncoding></BinaryParameterType>",
+                              {{"n", "u8"}, {"k", "t"}},
+                              container("P", entry("n") + entry("k"))};
+        return text(mission.decode("01 0a")) + ", " + text(mission.decode("02 0a0b"));
+    };
+    CHECK(read("") == "n=1|1 k=0a|0a, n=2|2");
+    CHECK(read("defaultValue='16'") == "n=1|1 k=0a|0a, n=2|2 k=0a0b|0a0b");
+    CHECK(read("defaultValue='x'") == "n=1|1, n=2|2");
+}
+
+TEST_CASE("nothing is read of a container whose octets are made by an algorithm or stand in another order",
+          "[telemetry][xtce][R54]") {
+    const auto read = [](const std::string& attributes, const std::string& inside) {
+        const Mission mission{"",
+                              {{"a", "u8"}},
+                              "<SequenceContainer name='P'><BinaryEncoding " + attributes + ">" + inside +
+                                  "<SizeInBits><FixedValue>8</FixedValue></SizeInBits></BinaryEncoding><EntryList>" +
+                                  entry("a") + "</EntryList></SequenceContainer>"};
+        const auto contents = mission.decode("07");
+        return text(contents) + contents.problem;
+    };
+    CHECK(read("", "") == "a=7|7");
+    CHECK(read("bitOrder='leastSignificantBitFirst'", "") == "an entry of P is not supported (line 1)");
+    CHECK(read("", "<FromBinaryTransformAlgorithm name='x'/>") == "an entry of P is not supported (line 1)");
+}
+
 TEST_CASE("zeros that fill the last octet are the end of a packet, also before its CRC-16", "[telemetry][xtce][R54]") {
     const std::string types =
         "<IntegerParameterType name='u5'><IntegerDataEncoding sizeInBits='5'/></IntegerParameterType>";
@@ -410,6 +441,20 @@ TEST_CASE("values that are not read are counted, those that are undefined by the
     CHECK(unread(word("UTF-8", "16"), "ff41 4142 07") == 1);
     CHECK(unread(time("units='minutes'><IntegerDataEncoding sizeInBits='16'/>"), "0001 0002 07") == 2);
     CHECK(unread(time("scale='0'><IntegerDataEncoding sizeInBits='16'/>"), "0001 0002 07") == 2);
+
+    const std::string in_text =
+        "><StringDataEncoding><SizeInBits><Fixed><FixedValue>8</FixedValue></Fixed></SizeInBits>"
+        "</StringDataEncoding>";
+    CHECK(unread("<IntegerParameterType name='t'" + in_text + "</IntegerParameterType>", "31 32 07") == 2);
+    CHECK(unread("<EnumeratedParameterType name='t'" + in_text +
+                     "<EnumerationList><Enumeration value='1' label='ON'/>"
+                     "</EnumerationList></EnumeratedParameterType>",
+                 "31 32 07") == 2);
+    CHECK(
+        unread("<BooleanParameterType name='t'><BinaryDataEncoding><SizeInBits><FixedValue>8</FixedValue></SizeInBits>"
+               "</BinaryDataEncoding></BooleanParameterType>",
+               "01 00 07") == 2);
+    CHECK(unread("<StringParameterType name='t'><IntegerDataEncoding/></StringParameterType>", "41 42 07") == 2);
 
     CHECK(unread(integer("sizeInBits='8'", calibrated(spline)), "01 02 07") == 0);
     CHECK(unread(integer("sizeInBits='8' encoding='BCD'"), "19 12 07") == 0);
