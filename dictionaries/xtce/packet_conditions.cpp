@@ -16,7 +16,7 @@ constexpr unsigned base_types_max = 16;       // as of types
 std::optional<Condition::Operator> operator_of(std::string_view word) {
     using enum Condition::Operator;
     word = trimmed(word);
-    if (word.empty() || word == "==") return equal;
+    if (word == "==") return equal;
     if (word == "!=") return not_equal;
     if (word == "<") return less;
     if (word == "<=") return less_or_equal;
@@ -80,7 +80,7 @@ void ModelParts::compare_with(std::string_view word, const Reference& with, pugi
 Condition ModelParts::comparison(const std::string& scope, pugi::xml_node element) const {
     Condition condition{.form = Condition::Form::unknown};
     const auto found = parameter(scope, element, "parameterRef");
-    const auto op = operator_of(element.attribute("comparisonOperator").value());
+    const auto op = operator_of(element.attribute("comparisonOperator").as_string("=="));
     if (!op)
         report.fault(element, "operator " + in_quotes(element.attribute("comparisonOperator").value()) + " is unknown");
     const auto calibrated = report.flag_or(element, "useCalibratedValue", true);
@@ -101,7 +101,8 @@ Condition ModelParts::condition_element(const std::string& scope, pugi::xml_node
         return condition;
     }
     const auto found = parameter(scope, reference, "parameterRef");
-    const auto op = operator_of(element.child("ComparisonOperator").text().as_string());
+    const pugi::xml_node op_element = element.child("ComparisonOperator");
+    const auto op = operator_of(op_element ? op_element.text().as_string() : "==");
     if (!op) report.fault(element, "its operator is unknown");
     const auto calibrated = report.flag_or(reference, "useCalibratedValue", true);
     if (!found || !op || !calibrated) return condition;

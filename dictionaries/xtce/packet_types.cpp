@@ -40,7 +40,7 @@ PacketType::Kind model_kind_of(std::string_view element) {
 
 std::optional<Coding::Form> integer_form(std::string_view word) {
     using enum Coding::Form;
-    if (word.empty() || word == "unsigned") return unsigned_integer;
+    if (word == "unsigned") return unsigned_integer;
     if (word == "twosComplement" || word == "twosCompliment") return twos_complement;
     if (word == "onesComplement" || word == "onesCompliment") return ones_complement;
     if (word == "signMagnitude") return sign_and_magnitude;
@@ -58,11 +58,28 @@ std::optional<Coding::Characters> characters_of(std::string_view word) {
 }
 
 std::optional<Coding::Form> real_form(std::string_view word, std::int64_t bits) {
-    if (word.empty() || word == "IEEE754_1985" || word == "IEEE754")
+    if (word == "IEEE754_1985" || word == "IEEE754")
         return bits == 16 || bits == 32 || bits == 64 ? std::optional{Coding::Form::ieee754} : std::nullopt;
     if (word == "MILSTD_1750A" || word == "MIL-1750A")
         return bits == 32 ? std::optional{Coding::Form::mil1750a} : std::nullopt;
     return std::nullopt;
+}
+
+/// Whether a calibrator has nothing beside what is read of it, which might be a word that is spelled wrongly.
+bool has_only(pugi::xml_node element, std::initializer_list<std::string_view> children,
+              std::initializer_list<std::string_view> attributes) {
+    const auto is_one_of = [](std::string_view name, const auto& names) {
+        return std::ranges::find(names, name) != names.end();
+    };
+    return std::ranges::all_of(element.children(),
+                               [&](const pugi::xml_node child) {
+                                   return child.type() != pugi::node_element || is_one_of(child.name(), children) ||
+                                          std::string_view{child.name()} == "AncillaryDataSet";
+                               }) &&
+           std::ranges::all_of(element.attributes(), [&](const pugi::xml_attribute attribute) {
+               return is_one_of(attribute.name(), attributes) ||
+                      std::string_view{attribute.name()}.find(':') != std::string_view::npos;
+           });
 }
 
 }  // namespace
@@ -175,7 +192,7 @@ void ModelTypes::read_coding(const Symbol& symbol, pugi::xml_node holder, Packet
 void ModelTypes::read_number(const Symbol& symbol, pugi::xml_node coding, PacketType& type) {
     const bool real = std::string_view{coding.name()} == "FloatDataEncoding";
     const auto bits = parts_.report.integer_or(coding, "sizeInBits", real ? 32 : 8, 1, 64);
-    const std::string_view word = coding.attribute("encoding").value();
+    const std::string_view word = coding.attribute("encoding").as_string(real ? "IEEE754_1985" : "unsigned");
     const auto form = real ? real_form(word, bits.value_or(0)) : integer_form(word);
     if (!form)
         parts_.report.fault(coding, "encoding " + in_quotes(word) + " of " + std::to_string(bits.value_or(0)) +
@@ -209,9 +226,9 @@ bool ModelTypes::read_order(pugi::xml_node coding, std::int64_t bits, Coding& in
         parts_.report.fault(coding, "bit order " + in_quotes(bit_order) + " is not supported: octets are given");
         return false;
     }
-    const std::string_view order = coding.attribute("byteOrder").value();
+    const std::string_view order = coding.attribute("byteOrder").as_string("mostSignificantByteFirst");
     into.least_significant_octet_first = order == "leastSignificantByteFirst";
-    if (!order.empty() && order != "leastSignificantByteFirst" && order != "mostSignificantByteFirst") {
+    if (order != "leastSignificantByteFirst" && order != "mostSignificantByteFirst") {
         parts_.report.fault(coding, "byte order " + in_quotes(order) + " is not supported: octets are given");
         return false;
     }
@@ -333,6 +350,7 @@ Calibration ModelTypes::calibration(pugi::xml_node calibrator) {
             if (result.polynomial.size() <= power) result.polynomial.resize(power + 1, 0.0);
             result.polynomial[power] += *coefficient;
         }
+        result.known = result.known && has_only(polynomial, {"Term"}, {"name", "shortDescription"});
         if (!polynomial.child("Term")) {
             parts_.report.fault(polynomial, "a polynomial without terms: its values are undefined");
             result.known = false;
@@ -355,7 +373,8 @@ Calibration ModelTypes::calibration(pugi::xml_node calibrator) {
         const auto extrapolate = parts_.report.flag_or(spline, "extrapolate", false);
         result.flat = order == 0;
         result.extrapolate = extrapolate.value_or(false);
-        result.known = result.known && order && extrapolate && *order <= 1;
+        result.known = result.known && order && extrapolate && *order <= 1 &&
+                       has_only(spline, {"SplinePoint"}, {"order", "extrapolate", "name", "shortDescription"});
         if (order && *order > 1)
             parts_.report.fault(spline, "a spline of order " + std::to_string(*order) +
                                             " is not supported: its values are undefined");
@@ -376,12 +395,14 @@ void ModelTypes::read_labels(pugi::xml_node element, PacketType& type) {
         const auto first = to_integer(number_digits(entry.attribute("value").value()));
         const auto last =
             entry.attribute("maxValue") ? to_integer(number_digits(entry.attribute("maxValue").value())) : first;
-        if (!first || !last || *last < *first) {
-            parts_.report.fault(entry, "its value is not a whole number");
+        const std::string label = entry.attribute("label").value();
+        if (!first || !last || *last < *first || label.empty()) {
+            parts_.report.fault(entry, first && last && *last >= *first ? "a value without a label"
+                                                                        : "its value is not a whole number");
             continue;
         }
         if (type.labels.size() < label_values_max)
-            type.labels.push_back({*first, *last, entry.attribute("label").value(), parts_.report.line(entry)});
+            type.labels.push_back({*first, *last, label, parts_.report.line(entry)});
     }
 }
 

@@ -85,6 +85,14 @@ TEST_CASE("each thing that is not supported is named with its line", "[dictionar
           "</DefaultCalibrator></IntegerDataEncoding></IntegerParameterType>",
           "neither polynomial nor spline");
     found("<StringParameterType name='t'><StringDataEncoding/></StringParameterType>", "how long its text is");
+    found("<EnumeratedParameterType name='t'><IntegerDataEncoding/><EnumerationList><Enumeration value='1' label=''/>"
+          "</EnumerationList></EnumeratedParameterType>",
+          "a value without a label");
+    found("<EnumeratedParameterType name='t'><IntegerDataEncoding/><EnumerationList><Enumeration value='x' label='A'/>"
+          "</EnumerationList></EnumeratedParameterType>",
+          "its value is not a whole number");
+    found("<IntegerParameterType name='t'><IntegerDataEncoding byteOrder=''/></IntegerParameterType>",
+          "byte order '' is not supported");
 }
 
 TEST_CASE("a condition of a kind that is not supported is named with its line, wherever it stands", "[dictionary]") {

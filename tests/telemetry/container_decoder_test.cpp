@@ -437,6 +437,7 @@ TEST_CASE("values that are not read are counted, those that are undefined by the
     CHECK(unread(integer("sizeInBits='16' bitOrder='reversed'"), "0102 0304 07") == 2);
     CHECK(unread(integer("sizeInBits='8'", calibrated("<MathOperationCalibrator/>")), "01 02 07") == 2);
     CHECK(unread(integer("sizeInBits='8' encoding='BCD'"), "1a 12 07") == 1);
+    CHECK(unread(integer("sizeInBits='8' encoding=''"), "01 02 07") == 2);
     CHECK(unread(word("UTF-32", "32"), "00000041 00000042 07") == 2);
     CHECK(unread(word("UTF-8", "16"), "ff41 4142 07") == 1);
     CHECK(unread(time("units='minutes'><IntegerDataEncoding sizeInBits='16'/>"), "0001 0002 07") == 2);
@@ -500,6 +501,12 @@ TEST_CASE("no value is calibrated, sized or timed by what is not a number", "[te
     CHECK(read(polynomial("<Term coefficient='1' exponent='0'/><Term coefficient='2' exponent='40'/>")) ==
           "exponent '40' is not a whole number from 0 to 32: n=2|2 k=5|undefined z=7|7");
     CHECK(read(polynomial("")) == "a polynomial without terms: its values are undefined: n=2|2 k=5|undefined z=7|7");
+    CHECK(read(polynomial("<Term coefficient='1' exponent='0'/><Trem coefficient='2' exponent='1'/>")) ==
+          "element 'Trem' in PolynomialCalibrator is unknown or not supported: n=2|2 k=5|undefined z=7|7");
+    CHECK(read(spline("extrapolat='true'", "")) ==
+          "attribute 'extrapolat' of SplineCalibrator is unknown or not supported: n=2|2 k=5|undefined z=7|7");
+    CHECK(read(spline("", "<SplinPoint raw='5' calibrated='7'/>")) ==
+          "element 'SplinPoint' in SplineCalibrator is unknown or not supported: n=2|2 k=5|undefined z=7|7");
     CHECK(read(spline("", "")) == "n=2|2 k=5|50 z=7|7");
     CHECK(read(spline("", "<SplinePoint raw='5' calibrated='x'/>")) ==
           "calibrated 'x' is not a number: n=2|2 k=5|undefined z=7|7");
