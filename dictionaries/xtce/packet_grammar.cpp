@@ -123,12 +123,12 @@ constexpr auto grammar_rows = std::to_array<GrammarRow>({
     {"Condition", "ComparisonOperator ParameterInstanceRef Value", ""},
     {"ParameterInstanceRef", "", "instance parameterRef useCalibratedValue"},
     // Parameters and containers
-    {"ParameterSet", "*", ""},
+    {"ParameterSet", "Parameter ParameterRef", ""},
     {"Parameter", "AliasSet AncillaryDataSet LongDescription ParameterProperties",
      "initialValue name parameterTypeRef shortDescription"},
     {"ParameterProperties", "PhysicalAddressSet SystemName TimeAssociation! ValidityCondition",
      "dataSource persistence readOnly"},
-    {"ContainerSet", "*", ""},
+    {"ContainerSet", "SequenceContainer", ""},
     {"SequenceContainer",
      "AliasSet AncillaryDataSet BaseContainer BinaryEncoding DefaultRateInStream EntryList LongDescription "
      "RateInStreamSet",

@@ -185,6 +185,19 @@ TEST_CASE("what XTCE has and only describes is no finding, nor what is said of i
             .empty());
 }
 
+TEST_CASE("what stands in a set for a parameter or a container is told", "[dictionary][xtce][R54]") {
+    std::vector<Finding> findings;
+    Findings into{"t.xml", findings};
+    REQUIRE(read_packet_model("<SpaceSystem name='T'><TelemetryMetaData><ParameterTypeSet>" + integer("") +
+                                  "</ParameterTypeSet><ParameterSet>\n<Paramter name='a' parameterTypeRef='t'/>"
+                                  "</ParameterSet><ContainerSet>\n<SequenceContainr name='P'/></ContainerSet>"
+                                  "</TelemetryMetaData></SpaceSystem>",
+                              into));
+    REQUIRE(findings.size() == 2);
+    CHECK("2: " + findings[0].message == unknown_element("Paramter", "ParameterSet", 2));
+    CHECK("3: " + findings[1].message == unknown_element("SequenceContainr", "ContainerSet", 3));
+}
+
 TEST_CASE("an alarm that the file switches off is none", "[dictionary][xtce][R54]") {
     std::vector<Finding> findings;
     Findings into{"t.xml", findings};
