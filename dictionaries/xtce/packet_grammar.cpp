@@ -185,7 +185,11 @@ class GrammarCheck {
         if (depth == depth_max) return;
         const pugi::xml_node telemetry = system.child("TelemetryMetaData");
         for (const char* set : {"ParameterTypeSet", "ParameterSet", "ContainerSet"})
-            if (const pugi::xml_node found = telemetry.child(set)) check(found, 0);
+            if (const pugi::xml_node found = telemetry.child(set)) {
+                check(found, 0);
+                if (const pugi::xml_node second = found.next_sibling(set))
+                    report_.fault(second, "a second " + std::string{set} + " is not read");
+            }
         for (const pugi::xml_node inner : system.children("SpaceSystem")) check_system(inner, depth + 1);
     }
 

@@ -191,11 +191,14 @@ TEST_CASE("what stands in a set for a parameter or a container is told", "[dicti
     REQUIRE(read_packet_model("<SpaceSystem name='T'><TelemetryMetaData><ParameterTypeSet>" + integer("") +
                                   "</ParameterTypeSet><ParameterSet>\n<Paramter name='a' parameterTypeRef='t'/>"
                                   "</ParameterSet><ContainerSet>\n<SequenceContainr name='P'/></ContainerSet>"
+                                  "\n<ParameterSet/>"
                                   "</TelemetryMetaData></SpaceSystem>",
                               into));
-    REQUIRE(findings.size() == 2);
+    REQUIRE(findings.size() == 3);
     CHECK("2: " + findings[0].message == unknown_element("Paramter", "ParameterSet", 2));
-    CHECK("3: " + findings[1].message == unknown_element("SequenceContainr", "ContainerSet", 3));
+    CHECK(findings[1].line == 4);
+    CHECK(findings[1].message == "a second ParameterSet is not read");
+    CHECK("3: " + findings[2].message == unknown_element("SequenceContainr", "ContainerSet", 3));
 }
 
 TEST_CASE("an alarm that the file switches off is none", "[dictionary][xtce][R54]") {

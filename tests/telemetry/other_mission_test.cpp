@@ -93,6 +93,32 @@ TEST_CASE("a packet that cannot be read to its end gives what stands before; one
           "the XTCE file has no container to begin with");
 }
 
+TEST_CASE("live, too, a container that might be the packet's lets no other take it", "[telemetry][downlink][R54]") {
+    for (const char* wanted : {"FIVE", "6"}) {
+        const auto mission = mission_of(with_containers(
+            "<IntegerParameterType name='bcd'><IntegerDataEncoding encoding='BCD'/></IntegerParameterType>",
+            "<Parameter name='k' parameterTypeRef='bcd'/><Parameter name='y' parameterTypeRef='u8'/><Parameter "
+            "name='z' "
+            "parameterTypeRef='u8'/>",
+            "<SequenceContainer name='P'><EntryList><ParameterRefEntry parameterRef='header'/><ParameterRefEntry "
+            "parameterRef='k'/></EntryList></SequenceContainer><SequenceContainer name='Q'><EntryList>"
+            "<ParameterRefEntry parameterRef='y'/></EntryList><BaseContainer containerRef='P'><RestrictionCriteria>"
+            "<Comparison parameterRef='k' value='" +
+                std::string{wanted} +
+                "'/></RestrictionCriteria></BaseContainer></SequenceContainer><SequenceContainer name='R'><EntryList>"
+                "<ParameterRefEntry parameterRef='z'/></EntryList><BaseContainer containerRef='P'/>"
+                "</SequenceContainer>"));
+        Decoded decoded;
+        for (const char* octets : {"000100000001 fa02", "000100000001 0502"}) {
+            INFO(wanted << " " << octets);
+            REQUIRE_FALSE(mission->decode(test::hex(octets), decoded));
+            const bool known = std::string{wanted} == "6" && std::string{octets}.ends_with("0502");
+            CHECK(mission->dictionary().packets[decoded.packet].name == (known ? "R" : "P"));
+            CHECK(decoded.problem.empty() == known);
+        }
+    }
+}
+
 TEST_CASE("of lists without a known length the first are channels, and a hostile number of them is bounded",
           "[telemetry][downlink]") {
     const std::string arrays =
