@@ -5,7 +5,7 @@
 #include "common/crc.hpp"
 #include "common/space_packet.hpp"
 #include "dictionaries/words.hpp"
-#include "telemetry/characters.hpp"
+#include "dictionaries/xtce/characters.hpp"
 #include "telemetry/raw_number.hpp"
 
 #include <algorithm>

@@ -2,12 +2,16 @@
 #include "dictionaries/xtce/document.hpp"
 
 #include "dictionaries/words.hpp"
+#include "dictionaries/xtce/text_encoding.hpp"
 
 #include <algorithm>
 
 namespace aeolis::dictionary::xtce {
 
-std::unique_ptr<Document> Document::parse(const std::string& text, Findings& findings) {
+std::unique_ptr<Document> Document::parse(const std::string& in_file, Findings& findings) {
+    const auto converted = to_utf8(in_file, findings);
+    if (!converted) return nullptr;
+    const std::string& text = *converted;
     auto document = std::make_unique<Document>();
     document->line_starts_.push_back(0);
     for (std::size_t i = 0; i < text.size(); ++i)

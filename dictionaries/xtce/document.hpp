@@ -16,8 +16,8 @@ namespace aeolis::dictionary::xtce {
 /// A parsed XML file that knows the line of each of its elements.
 class Document {
   public:
-    /// None, with a finding, when the text is not XML or holds no SpaceSystem.
-    static std::unique_ptr<Document> parse(const std::string& text, Findings& findings);
+    /// None, with a finding, when the text is not XML, in an encoding that is not read, or holds no SpaceSystem.
+    static std::unique_ptr<Document> parse(const std::string& in_file, Findings& findings);
 
     pugi::xml_node space_system() const { return xml_.child("SpaceSystem"); }
     bool holds(pugi::xml_node element) const { return element.root() == xml_; }

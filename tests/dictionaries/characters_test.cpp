@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "telemetry/characters.hpp"
+#include "dictionaries/xtce/characters.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/support/octets.hpp"
 
-namespace telemetry_characters_test {
+namespace dictionaries_characters_test {
 
 using namespace aeolis;
-using namespace aeolis::telemetry;
-using Characters = dictionary::xtce::Coding::Characters;
+using namespace aeolis::dictionary::xtce;
+using Characters = Coding::Characters;
 
 TEST_CASE("text of a packet is read in its own characters, and what is none is no text", "[telemetry][R55]") {
     struct Case {
@@ -43,4 +43,4 @@ TEST_CASE("text of a packet is read in its own characters, and what is none is n
     }
 }
 
-}  // namespace telemetry_characters_test
+}  // namespace dictionaries_characters_test

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "telemetry/characters.hpp"
+#include "dictionaries/xtce/characters.hpp"
 
 #include <array>
 
-namespace aeolis::telemetry {
+namespace aeolis::dictionary::xtce {
 namespace {
 
-using Characters = dictionary::xtce::Coding::Characters;
+using Characters = Coding::Characters;
 using Octets = std::span<const std::uint8_t>;
 
 constexpr char32_t first_surrogate = 0xD800, first_low_surrogate = 0xDC00, last_surrogate = 0xDFFF;
@@ -95,4 +95,4 @@ std::optional<std::string> text_of(Octets octets, Characters characters) {
     return text;
 }
 
-}  // namespace aeolis::telemetry
+}  // namespace aeolis::dictionary::xtce
