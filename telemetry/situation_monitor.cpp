@@ -214,6 +214,7 @@ Ert SituationMonitor::last_change() const {
 // ---- facts -------------------------------------------------------------------------------------------------------
 
 void SituationMonitor::heard(Sclk sclk, std::optional<Ert> received) {
+    if (received) last_received_ = std::max(last_received_.value_or(*received), *received);
     if (!clocks_.entry) return;
     const Ert at = received ? std::max(*received, seen(sclk)) : seen(sclk);
     if (!last_heard_ || at > *last_heard_) last_heard_ = at;
@@ -382,6 +383,7 @@ void SituationMonitor::link(const LinkState& state, const Origin& origin) {
     if (state.link.name == relay_link.name && landed_)
         recording_told_ = recording_told_ || state.up || state.silence == SilenceClass::recording_complete;
     if (state.up) {
+        was_up_ = true;
         note_loss(state.link.name, row, state.ert, origin);
         row = LinkRow{};
         row.up = true;
@@ -640,9 +642,12 @@ bool SituationMonitor::add_not_heard(Entries& all, Ert now) const {
 
 void SituationMonitor::add_waiting(Entries& all, Ert now) const {
     if (!clocks_.entry || dictionary_->timeline.empty()) {
-        const bool heard = anything_up();
-        all.push_back(
-            {SituationRank::calm, "waiting", heard ? "Listening" : "Nothing comes yet", "", 0, last_change(), {}});
+        const std::string words =
+            anything_up()    ? "Listening"
+            : last_received_ ? fmt::format("Nothing comes now: the last packet came at {}", when(*last_received_))
+            : was_up_        ? "Nothing comes now"
+                             : "Nothing comes yet";
+        all.push_back({SituationRank::calm, "waiting", words, "", 0, last_change(), {}});
         return;
     }
     if (landed_) return add_recording(all, now);

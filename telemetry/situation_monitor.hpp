@@ -166,6 +166,8 @@ class SituationMonitor {
     std::optional<SituationEntry> touchdown_told_;  ///< in place of landed_: confirmed or contradicted
     bool recording_told_ = false;                   ///< after touchdown it has begun to come, or is complete
     std::optional<Ert> last_heard_;
+    std::optional<Ert> last_received_;  ///< of a link that keeps nothing back
+    bool was_up_ = false;               ///< a link, ever
     struct Pass {
         Ert rises;
         std::string words;  ///< "odyssey rises at E+2:00:00"

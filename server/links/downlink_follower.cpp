@@ -200,7 +200,9 @@ void DownlinkFollower::say(telemetry::LinkState state) {
     spdlog::log(state.lost ? spdlog::level::warn : spdlog::level::info, "downlink {}: {}", settings_.address.text(),
                 reason);
     Delivery delivery;
+    const Ert at = state.ert;
     delivery.entries.emplace_back(std::move(state));
+    delivery.entries.emplace_back(telemetry::EarthTime{at});  // the situation is judged with the link's change
     if (!pipeline_.deliver(std::move(delivery))) stop_ = true;
     on_state_(this->state(v1::RunState::running));
 }

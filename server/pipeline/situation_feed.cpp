@@ -90,8 +90,9 @@ void SituationFeed::follow(const archive::Batch& batch) {
         if (of_station && packet.packet && expects_ != nullptr && packet.apid == expects_->apid)
             give_expected(batch, packet);
         if (!packet.packet || packet.source != archive::Source::realtime || of_station) return;
-        const bool at_once =
-            packet.link == telemetry::uhf_live_link.name || packet.link == telemetry::x_band_telemetry_link.name;
+        const bool at_once = packet.link == telemetry::uhf_live_link.name ||
+                             packet.link == telemetry::x_band_telemetry_link.name ||
+                             packet.link == telemetry::downlink_link.name;
         monitor_.heard(packet.sclk, at_once ? std::optional{packet.ert} : std::nullopt);
     });
     each_new(batch.events, followed_, [&](const archive::EventRecord& event) {

@@ -271,6 +271,22 @@ TEST_CASE("a link that drops is connected again, and nothing that came is lost o
           "V,3.5,1.5,realtime\n");
 }
 
+TEST_CASE("the situation goes with the link: listening while packets come, and what was the last one when it breaks",
+          "[server][downlink][situation]") {
+    const auto mission = mission_of(small_xtce);
+    Sender sender;
+    Follower follower{
+        *mission, "tcp://127.0.0.1:" + std::to_string(sender.port), {.name = "packets", .skip = 0, .frame_octets = {}}};
+    CHECK_THAT(follower.ask_until("/runs/1/state",
+                                  [](const std::string& text) { return count_of(text, "Nothing comes yet") > 0; }),
+               Catch::Contains("Nothing comes yet"));
+    sender.give(power_packet(1, 10, 4));  // and the connection breaks
+    const auto lost = follower.ask_until(
+        "/runs/1/state", [](const std::string& text) { return count_of(text, "the last packet came at") > 0; });
+    CHECK_THAT(lost, Catch::Contains("Nothing comes now: the last packet came at 20"));
+    CHECK(count_of(lost, "Nothing comes yet") == 0);
+}
+
 TEST_CASE("each datagram stands for itself: garbage and packets of nobody are kept and named, the next is read",
           "[server][downlink]") {
     const auto mission = mission_of(small_xtce);

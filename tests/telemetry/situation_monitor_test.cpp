@@ -502,6 +502,32 @@ TEST_CASE("of another mission, whose entry nobody knows, times are of day, and n
     CHECK_THAT(all.front().sentence, Catch::Contains("2000-001T12:01:00.000"));
 }
 
+TEST_CASE("of another mission nothing comes yet until something came, and then the last packet is told",
+          "[situation]") {
+    dictionary::Dictionary other;
+    SituationMonitor monitor{other, {}};
+    const auto waiting = [&](Ert now) {
+        const auto all = monitor.at(now);
+        const auto found = std::ranges::find(all, "waiting", &SituationEntry::subject);
+        REQUIRE(found != all.end());
+        return found->sentence;
+    };
+    monitor.link({downlink_link, Ert{0}, false, "connected, no packet has come yet"}, {1, Ert{0}});
+    CHECK(waiting(Ert{0}) == "Nothing comes yet");
+    monitor.link({downlink_link, Ert{1'000'000}, true, "packets come"}, {2, Ert{1'000'000}});
+    CHECK(waiting(Ert{1'000'000}) == "Listening");
+    SituationMonitor recorded = monitor;
+    monitor.heard(Sclk{}, Ert{60'000'000});
+    monitor.heard(Sclk{}, Ert{59'000'000});
+    for (SituationMonitor* each : {&monitor, &recorded})
+        each->link({downlink_link, Ert{90'000'000}, false, "no packet since", true, {}, SilenceClass::unexplained},
+                   {4, Ert{90'000'000}});
+    CHECK(waiting(Ert{91'000'000}) == "Nothing comes now: the last packet came at 2000-001T12:01:00.000");
+    CHECK(recorded.at(Ert{91'000'000}).size() == 2);
+    monitor.link({downlink_link, Ert{95'000'000}, true, "packets come"}, {5, Ert{95'000'000}});
+    CHECK(waiting(Ert{95'000'000}) == "Listening");
+}
+
 TEST_CASE("what ground's own flight expects goes before the plan, and is overdue only behind its interval",
           "[situation][shadow][R57]") {
     Ground ground;
