@@ -5,6 +5,7 @@
 #include "server/base/wall_clock.hpp"
 #include "server/pipeline/pipeline_thread.hpp"
 #include "server/tones/doppler_file.hpp"
+#include "server/tones/reception_check.hpp"
 #include "server/tones/sample_file.hpp"
 #include "telemetry/station/ground_station.hpp"
 
@@ -37,9 +38,15 @@ Result<Ert> start_of(const IngestTonesOptions& options, const SampleRecording& r
 
 struct HeardSamples {
     std::size_t tones = 0, erasures = 0, carrier = 0, spectra = 0;
-    void add(const telemetry::Received& received) {
+    HeardRecording recording;
+    void add(const telemetry::Received& received, Ert entry) {
         for (const auto& tone : received.tones) ++(tone.tone ? tones : erasures);
         carrier += received.carrier.size();
+        for (const auto& each : received.carrier) {
+            if (!each.estimate) continue;
+            const double time_s = static_cast<double>(each.middle.microseconds - entry.microseconds) * 1.0e-6;
+            recording.add({.time_s = time_s, .lock = each.lock, .frequency_hz = each.estimate->residual_hz});
+        }
         spectra += received.spectra.size();
     }
 };
@@ -97,6 +104,7 @@ int ingest_tones(const IngestTonesOptions& options) {
     if (!run) return failed(run.error().message);
     fmt::print("run {}\n", run->value);
 
+    SampleClaims claims{rate_hz, recording->format->name(), *predict, *expected, dictionary->mfsk.symbol_s};
     telemetry::GroundStation station{0.0};
     if (!predict->empty()) station.watch_by({*predict, entry});
     station.listen_by(
@@ -126,7 +134,7 @@ int ingest_tones(const IngestTonesOptions& options) {
                 begun + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
                             std::chrono::duration<double>(static_cast<double>(passed) / rate_hz / options.pace)));
         auto& received = station.receive(downlink);
-        heard.add(received);
+        heard.add(received, entry);
         Delivery delivery;
         delivery.add(std::move(received));
         delivery.entries.emplace_back(telemetry::EarthTime{downlink.now});
@@ -138,8 +146,16 @@ int ingest_tones(const IngestTonesOptions& options) {
     if (!finished) return failed(finished.error().message);
     fmt::print("{} tones, {} erasures, {} estimates of the carrier, {} spectra\n", heard.tones, heard.erasures,
                heard.carrier, heard.spectra);
-    if (heard.carrier == 0) fmt::print(stderr, "{}: no carrier was heard\n", options.samples.string());
-    return heard.carrier > 0 && recording->told.empty() ? 0 : 1;
+    if (const auto* status = station.tone_status()) heard.recording.status = *status;
+    heard.recording.symbols = heard.tones + heard.erasures;
+    heard.recording.length_s = static_cast<double>(passed) / rate_hz;
+    heard.recording.left_over_octets = reader->left_over_octets();
+    bool is_fault = !recording->told.empty();
+    for (const auto& remark : check_reception(heard.recording, claims)) {
+        fmt::print(stderr, "{}: {}\n", options.samples.string(), remark.text);
+        is_fault = is_fault || remark.fault;
+    }
+    return is_fault ? 1 : 0;
 }
 
 }  // namespace aeolis::server

@@ -25,7 +25,7 @@ struct IngestTonesOptions {
 bool holds_samples(const std::filesystem::path& file);
 
 /// Decodes the recording as a station does: tones, carrier, spectrum and the link's state are those of a run. Returns
-/// the exit code: 1 when no carrier was heard, or when the samples contradict the file's metadata.
+/// the exit code: 1 for what check_reception() calls a fault, or when the samples contradict the file's metadata.
 int ingest_tones(const IngestTonesOptions& options);
 
 }  // namespace aeolis::server

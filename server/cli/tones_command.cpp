@@ -5,10 +5,10 @@
 #include "server/rehearsal/predicted_doppler.hpp"
 #include "server/tones/doppler_file.hpp"
 #include "server/tones/flown_signal.hpp"
+#include "server/tones/reception_check.hpp"
 #include "server/tones/sample_file.hpp"
 #include "server/tones/tone_bench.hpp"
 #include "simulation/links/x_band_channel.hpp"
-#include "telemetry/mfsk/doppler_slope.hpp"
 #include "telemetry/mfsk/tone_receiver.hpp"
 
 #include <algorithm>
@@ -16,7 +16,6 @@
 #include <fmt/format.h>
 #include <fstream>
 #include <memory>
-#include <tuple>
 
 namespace aeolis::server {
 namespace {
@@ -152,14 +151,6 @@ Result<SampleRecording> recording_of(const TonesDecodeOptions& options) {
     return looked;
 }
 
-/// What was heard in a recording.
-struct Heard {
-    telemetry::ReceiverStatus status;
-    std::size_t symbols = 0, tones = 0;
-    double length_s = 0.0;
-    std::vector<telemetry::CarrierReport> carrier;  ///< each second's first, for the slope
-};
-
 /// Adds the counts of a receiver that began anew behind a hole in the file.
 void add(const telemetry::ReceiverStatus& part, telemetry::ReceiverStatus& sum) {
     telemetry::ReceiverStatus all = part;
@@ -183,39 +174,6 @@ void write_carrier(std::ofstream& file, const telemetry::CarrierReport& report) 
         file << fmt::format("{:.4f},{},{:.3f},{:.3f},{:.2f},{:.2f}\n", report.time_s, to_text(report.lock),
                             report.frequency_hz, report.frequency_deviation_hz, report.rate_hzps,
                             report.total_c_n0_dbhz);
-}
-
-/// Lines on what is not as it should be, though tones may have been decoded. True: the exit code is 1.
-bool tell_faults(const TonesDecodeOptions& options, const Heard& heard, const TimeTable& predict_hz,
-                 const TimeTable& expected_hz) {
-    const std::string file = options.samples.string();
-    bool is_fault = false;
-    const auto tell = [&](bool fault, const std::string& line) {
-        fmt::print(stderr, "{}: {}\n", file, line);
-        is_fault = is_fault || fault;
-    };
-    const telemetry::ReceiverStatus& status = heard.status;
-    if (status.gap_s > 0.0) tell(false, fmt::format("{:.1f} s without usable samples", status.gap_s));
-    if (status.clock_error_ppm && std::abs(*status.clock_error_ppm) > 30.0)
-        tell(false, fmt::format("the samples' clock runs {} by {:.0f} ppm, which was corrected",
-                                *status.clock_error_ppm > 0.0 ? "fast" : "slow", std::abs(*status.clock_error_ppm)));
-    if (status.contradicted > 0)
-        tell(true, fmt::format("{} tones erased, as most lie between the tones' frequencies: the rate is wrong",
-                               status.contradicted));
-    for (const auto& [table, name, is_expected] :
-         {std::tuple{&predict_hz, "--predict", false}, std::tuple{&expected_hz, "--expected", true}}) {
-        const auto slope = table->empty() ? std::nullopt : telemetry::doppler_slope(heard.carrier, *table);
-        if (!slope) continue;
-        if (std::abs(*slope - 1.0) < 0.3 && !is_expected)
-            tell(true, "the Doppler of --predict is still in the samples; give it by --expected");
-        if (std::abs(*slope + 1.0) < 0.3)
-            tell(true, is_expected
-                           ? "the Doppler of --expected is no longer in the samples; give it by --predict"
-                           : "in-phase and quadrature are exchanged, and the Doppler of --predict is in the samples");
-        if (std::abs(*slope + 2.0) < 0.3)
-            tell(true, fmt::format("the carrier moves against {}: in-phase and quadrature are exchanged", name));
-    }
-    return is_fault;
 }
 
 /// Prints one line per symbol. Returns 1 for silence, no carrier, a long carrier without symbols, and whatever
@@ -256,17 +214,15 @@ int tones_decode(const TonesDecodeOptions& options) {
     };
     if (const auto begun = begin(); !begun) return failed(begun.error().message, 2);
 
-    Heard heard;
+    HeardRecording heard;
     const auto take = [&] {
         for (const telemetry::ToneReception& symbol : receiver->take()) {
             print(symbol, *dictionary, options.json);
             ++heard.symbols;
-            heard.tones += symbol.tone ? 1 : 0;
         }
         for (const telemetry::CarrierReport& report : receiver->take_carrier()) {
             if (carrier.is_open()) write_carrier(carrier, report);
-            if (heard.carrier.empty() || report.time_s >= heard.carrier.back().time_s + 1.0)
-                heard.carrier.push_back(report);
+            heard.add(report);
         }
     };
     std::vector<std::complex<float>> room(block_samples);
@@ -296,20 +252,14 @@ int tones_decode(const TonesDecodeOptions& options) {
         if (!carrier) return failed(fmt::format("{} cannot be written", options.carrier->string()));
     }
 
-    const telemetry::ReceiverStatus& status = heard.status;
-    const std::string file = options.samples.string(), format = recording->format->name();
-    const double length_s = static_cast<double>(reader->samples()) / rate_hz;
-    if (status.loudest == 0.0) return failed(fmt::format("{}: silence, {:.1f} s of it", file, length_s));
-    const bool is_fault = tell_faults(options, heard, *predict, *expected) || !recording->told.empty();
-    if (status.carrier_s == 0.0)
-        return failed(
-            fmt::format("{}: no carrier within {:.1f} s; rate {} Hz, format {}", file, length_s, rate_hz, format));
-    if (heard.symbols == 0 && length_s > dictionary->mfsk.symbol_s)
-        return failed(fmt::format("{}: a carrier for {:.1f} s, and no tone on it; is {} Hz its rate?", file,
-                                  status.carrier_s, rate_hz));
-    if (reader->left_over_octets() > 0)
-        return failed(fmt::format("{}: {} octets behind the last whole sample: truncated, or not {}", file,
-                                  reader->left_over_octets(), format));
+    heard.length_s = static_cast<double>(reader->samples()) / rate_hz;
+    heard.left_over_octets = reader->left_over_octets();
+    bool is_fault = !recording->told.empty();
+    for (const auto& remark :
+         check_reception(heard, {rate_hz, recording->format->name(), *predict, *expected, dictionary->mfsk.symbol_s})) {
+        fmt::print(stderr, "{}: {}\n", options.samples.string(), remark.text);
+        is_fault = is_fault || remark.fault;
+    }
     return is_fault ? 1 : 0;
 }
 

@@ -60,6 +60,9 @@ class GroundStation {
         return unreadable_file_octets_;
     }  ///< of whole files, behind the last packet
 
+    /// Of the receiver of X-band samples; null before the first ones.
+    const ReceiverStatus* tone_status() const { return tones_ && tones_->has_begun() ? &tones_->status() : nullptr; }
+
     /// PLTUs that the station is to send to the rover now.
     std::vector<std::vector<std::uint8_t>> take_forward() { return recording_.take_pltus(); }
 

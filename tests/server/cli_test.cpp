@@ -1251,6 +1251,18 @@ TEST_CASE("the explanations in docs are those that the program prints", "[.long]
     const aeolis::test::TemporaryFolder folder;
     const std::string archive = "'" + (folder / "landing.db").string() + "'";
     REQUIRE(run(program(), "rehearse --scenario nominal_auto --seed 1 --archive " + archive).code == 0);
+    // A carrier that bears no tone, as audio seems to have one: the run ends as decoding does.
+    const auto bare =
+        run(program(), "tones simulate --length 40 --c-n0 30 --format ci16 --rate 8192 --out" + path("b.sigmf-meta"));
+    INFO(bare.text);
+    REQUIRE(bare.code == 0);
+    for (const std::string& command :
+         {"ingest " + archive + path("b.sigmf-meta"), "tones decode --samples" + path("b.sigmf-data")}) {
+        const auto ended = run(program(), command);
+        CHECK(ended.code == 1);
+        CHECK_THAT(ended.text, Catch::Contains("and no tone on it; is 8192 Hz its rate?"));
+    }
+
     const auto printed = run(program(), "report --explanations --run 1 --archive " + archive);
     REQUIRE(printed.code == 0);
     const std::string page = AEOLIS_SOURCE_DIR "/docs/explanations.md";

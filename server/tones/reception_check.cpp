@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/tones/reception_check.hpp"
+
+#include "telemetry/mfsk/doppler_slope.hpp"
+
+#include <cmath>
+#include <fmt/format.h>
+#include <optional>
+#include <tuple>
+
+namespace aeolis::server {
+
+std::vector<ReceptionRemark> check_reception(const HeardRecording& heard, const SampleClaims& claims) {
+    std::vector<ReceptionRemark> remarks;
+    const auto tell = [&](bool fault, std::string text) { remarks.push_back({std::move(text), fault}); };
+    const telemetry::ReceiverStatus& status = heard.status;
+    if (status.loudest == 0.0) {
+        tell(true, fmt::format("silence, {:.1f} s of it", heard.length_s));
+        return remarks;
+    }
+    if (status.gap_s > 0.0) tell(false, fmt::format("{:.1f} s without usable samples", status.gap_s));
+    if (status.clock_error_ppm && std::abs(*status.clock_error_ppm) > 30.0)
+        tell(false, fmt::format("the samples' clock runs {} by {:.0f} ppm, which was corrected",
+                                *status.clock_error_ppm > 0.0 ? "fast" : "slow", std::abs(*status.clock_error_ppm)));
+    if (status.contradicted > 0)
+        tell(true, fmt::format("{} tones erased, as most lie between the tones' frequencies: the rate is wrong",
+                               status.contradicted));
+    for (const auto& [table, name, is_expected] :
+         {std::tuple{&claims.predict_hz, "--predict", false}, std::tuple{&claims.expected_hz, "--expected", true}}) {
+        const auto slope = table->empty() ? std::nullopt : telemetry::doppler_slope(heard.carrier, *table);
+        if (!slope) continue;
+        if (std::abs(*slope - 1.0) < 0.3 && !is_expected)
+            tell(true, "the Doppler of --predict is still in the samples; give it by --expected");
+        if (std::abs(*slope + 1.0) < 0.3)
+            tell(true, is_expected
+                           ? "the Doppler of --expected is no longer in the samples; give it by --predict"
+                           : "in-phase and quadrature are exchanged, and the Doppler of --predict is in the samples");
+        if (std::abs(*slope + 2.0) < 0.3)
+            tell(true, fmt::format("the carrier moves against {}: in-phase and quadrature are exchanged", name));
+    }
+    if (status.carrier_s == 0.0)
+        tell(true, fmt::format("no carrier was heard within {:.1f} s; rate {} Hz, format {}", heard.length_s,
+                               claims.rate_hz, claims.format));
+    else if (heard.symbols == 0 && heard.length_s > claims.symbol_s)
+        tell(true, fmt::format("a carrier for {:.1f} s, and no tone on it; is {} Hz its rate?", status.carrier_s,
+                               claims.rate_hz));
+    else if (heard.left_over_octets > 0)
+        tell(true, fmt::format("{} octets behind the last whole sample: truncated, or not {}", heard.left_over_octets,
+                               claims.format));
+    return remarks;
+}
+
+}  // namespace aeolis::server
