@@ -102,7 +102,9 @@ Result<TimeSource> TimeSource::parse(const PacketModel& model, const std::string
         const std::string whole = name.substr(0, end);
         std::vector<std::size_t> found;
         for (std::size_t i = 0; i < model.parameters.size(); ++i)
-            if (model.parameters[i].path == whole || model.parameters[i].name == whole) found.push_back(i);
+            if (model.parameters[i].path == whole || model.parameters[i].name == whole ||
+                model.parameters[i].path.ends_with("/" + whole))
+                found.push_back(i);
         if (found.size() > 1)
             return Error{"several parameters are called '" + whole + "': say which by its path, such as " +
                          model.parameters[found.front()].path};

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <limits>
 #include <memory>
+#include <set>
 #include <string_view>
 #include <utility>
 
@@ -164,6 +165,38 @@ PacketModel read_model(const std::string& name, const ModelParts& parts, ModelTy
 
 namespace {
 
+/// Whether a name is, or begins like, a member or an element of a composite with one of `names`: "STATUS.flags".
+bool is_within(const std::string& name, const std::set<std::string>& names) {
+    for (auto end = name.find_first_of("./["); end != std::string::npos; end = name.find_first_of("./[", end + 1))
+        if (names.contains(name.substr(0, end))) return true;
+    return false;
+}
+
+/// Qualifies names that several containers, or several parameters of packets, have: the first keeps its own, others are
+/// called by their path.
+void make_names_unique(PacketModel& model) {
+    std::set<std::string> containers;
+    for (PacketContainer& container : model.containers)
+        if (!containers.insert(container.name).second) container.name = container.path.substr(1);
+    std::vector<bool> in_packet(model.parameters.size());
+    for (const PacketContainer& container : model.containers)
+        for (const PacketEntry& entry : container.entries)
+            if (entry.what == PacketEntry::What::parameter) in_packet[entry.index] = true;
+    std::set<std::string> composite, taken;
+    for (const PacketParameter& parameter : model.parameters) {
+        const auto kind = model.types[parameter.type].kind;
+        if (kind == PacketType::Kind::aggregate || kind == PacketType::Kind::array) composite.insert(parameter.name);
+    }
+    for (const bool of_packets : {true, false})  // what no packet has takes no name from what one has
+        for (std::size_t i = 0; i < model.parameters.size(); ++i) {
+            PacketParameter& parameter = model.parameters[i];
+            if (in_packet[i] != of_packets) continue;
+            if (!is_within(parameter.name, composite) && taken.insert(parameter.name).second) continue;
+            parameter.name = parameter.path.substr(1);
+            if (!taken.insert(parameter.name).second) parameter.name = parameter.path;
+        }
+}
+
 /// @param findings  of each document
 PacketModel model_of(const std::vector<const Document*>& documents, const std::vector<Findings*>& findings,
                      const ReadAgreement& agreement) {
@@ -173,7 +206,9 @@ PacketModel model_of(const std::vector<const Document*>& documents, const std::v
     for (const Document* document : documents) check_grammar(*document, report);
     const ModelParts parts{symbols, report, agreement};
     ModelTypes types{parts};
-    return read_model(name_of(documents.front()->space_system()), parts, types);
+    PacketModel model = read_model(name_of(documents.front()->space_system()), parts, types);
+    make_names_unique(model);
+    return model;
 }
 
 }  // namespace

@@ -147,7 +147,7 @@ struct PacketType {
 };
 
 struct PacketParameter {
-    std::string name;
+    std::string name;      ///< unique in another mission's files: one that an earlier parameter has is its path
     std::string path;      ///< "/MSL/Events/opcode": unique
     std::size_t type = 0;  ///< in PacketModel::types
     Condition valid{};     ///< where it is false, the value is undefined

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Constructs of other missions' XTCE files, as their authors write them.
 #include "telemetry/container_decoder.hpp"
+#include "telemetry/other_mission.hpp"
+#include "telemetry/time_source.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/octets.hpp"
 
@@ -296,6 +298,36 @@ TEST_CASE("what a root says of itself and its name spaces is no finding", "[tele
     auto text = system_of(u8, parameter("a", "u8"), container("P", {"a"}));
     text.insert(text.find(" xmlns="), " xmlns:y='urn:some:extension' operationalStatus='unittest' systemType='bus'");
     CHECK(read({{"m.xml", text}}, "05").findings.empty());
+}
+
+TEST_CASE("names that several parameters have are unique, and the same as values, channels and times",
+          "[telemetry][xtce][R54]") {
+    const auto within = [](const std::string& name) {
+        return "<SpaceSystem name='" + name + "'><TelemetryMetaData><ParameterSet>" + parameter("TEMP", "/S/u8") +
+               parameter("SPARE", "/S/u8") + "</ParameterSet></TelemetryMetaData></SpaceSystem>";
+    };
+    std::string text = system_of(u8 + "<AggregateParameterType name='pair'><MemberList><Member name='x' typeRef='u8'/>"
+                                      "</MemberList></AggregateParameterType>",
+                                 parameter("STATUS", "pair") + parameter("STATUS.x", "u8") + parameter("SPARE", "u8"),
+                                 container("P", {"A/TEMP", "B/TEMP", "STATUS", "STATUS.x", "B/SPARE"}));
+    text.insert(text.find("</SpaceSystem>"), within("A") + within("B"));
+    CHECK(read({{"m.xml", text}}, "0102030405").values == "TEMP=1 S/B/TEMP=2 STATUS.x=3 S/STATUS.x=4 SPARE=5");
+
+    std::vector<dictionary::Finding> findings;
+    auto model = *dictionary::xtce::read_packet_model({{"m.xml", text}}, findings);
+    CHECK(findings.empty());
+    const auto ambiguous = TimeSource::parse(model, "TEMP");
+    REQUIRE_FALSE(ambiguous);
+    CHECK_THAT(ambiguous.error().message, Catch::Contains("several parameters are called 'TEMP'"));
+    for (const char* name : {"S/B/TEMP", "/S/B/TEMP", "B/TEMP"}) {
+        const auto time = TimeSource::parse(model, name);
+        REQUIRE(time);
+        CHECK(model.parameters[time->parameter].path == "/S/B/TEMP");
+    }
+    const OtherMission mission{model, std::uint16_t{1}};
+    std::vector<std::string> channels;
+    for (const auto& channel : mission.dictionary().channels) channels.push_back(channel.name);
+    CHECK(channels == std::vector<std::string>{"TEMP", "S/B/TEMP", "STATUS.x", "S/STATUS.x", "SPARE"});
 }
 
 }  // namespace telemetry_xtce_as_written_test
