@@ -91,6 +91,7 @@ class OtherMission::Builder {
             const PacketContainer& container = model_.containers[i];
             dictionary::Packet& packet = mission_.dictionary_.packets.emplace_back();
             packet.name = names_.insert("packet " + container.name).second ? container.name : container.path.substr(1);
+            packet.expected_rate_hz = container.expected_rate_hz;
             packet.apid = apid_of(i).value_or(unrestricted_apid);
             mission_.fields_.emplace_back();
             if (!container.abstract) add_container(i, 0);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dictionaries/xtce/packet_model_reader.hpp"
 
+#include <cmath>
 #include <string_view>
 
 namespace aeolis::dictionary::xtce {
@@ -29,6 +30,10 @@ class ContainerReader {
             container.bits = parts_.amount(symbol.scope, size);
         if (is_transformed(element.child("BinaryEncoding")))
             container.entries.push_back({.what = PacketEntry::What::unknown, .line = container.line});
+        if (const pugi::xml_node rate = element.child("DefaultRateInStream"))
+            container.expected_rate_hz = read_rate(rate);
+        if (const pugi::xml_node rates = element.child("RateInStreamSet"))
+            parts_.report.fault(rates, "RateInStreamSet is not read: the rate is that of DefaultRateInStream");
         for (const pugi::xml_node entry : element.child("EntryList").children())
             if (entry.type() == pugi::node_element) container.entries.push_back(read_entry(symbol, entry));
         return container;
@@ -41,6 +46,20 @@ class ContainerReader {
         if (algorithm)
             parts_.report.fault(algorithm, "FromBinaryTransformAlgorithm is not supported: packets are read up to it");
         return !parts_.has_usual_order(encoding, "packets are read up to it") || algorithm;
+    }
+    /// A greatest rate alone promises nothing.
+    std::optional<double> read_rate(pugi::xml_node rate) {
+        const std::string_view basis = rate.attribute("basis").as_string("perSecond");
+        if (basis != "perSecond") {
+            parts_.report.fault(rate, "a rate " + in_quotes(basis) + " is not read: only perSecond is");
+            return std::nullopt;
+        }
+        const auto least_hz = parts_.report.number(rate, "minimumValue");
+        const auto most_hz = parts_.report.number(rate, "maximumValue");
+        const bool usable = (!least_hz || (std::isfinite(*least_hz) && *least_hz >= 0.0)) &&
+                            (!least_hz || !most_hz || *least_hz <= *most_hz);
+        if (!usable) parts_.report.fault(rate, "its rate is no rate, and is not used");
+        return usable && least_hz && *least_hz > 0.0 ? least_hz : std::nullopt;
     }
 
     std::optional<std::size_t> index_of(const Symbol& from, pugi::xml_node at) {

@@ -178,6 +178,7 @@ struct PacketContainer {
     Condition when{};  ///< on the fields of the base
     std::vector<PacketEntry> entries{};
     std::optional<Amount> bits{};  ///< from its start to what follows it; none: up to the end of its entries
+    std::optional<double> expected_rate_hz{};  ///< at least; none: the file promises none
 };
 
 struct PacketModel {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "telemetry/alarms.hpp"
 #include "telemetry/other_mission.hpp"
+#include "telemetry/staleness.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/mission_copy.hpp"
 #include "tests/support/octets.hpp"
@@ -147,6 +148,34 @@ TEST_CASE("two parameters of one name in different systems are two channels", "[
     CHECK(mission->dictionary().channel("x") != nullptr);
     CHECK(mission->dictionary().channel("T/B/x") != nullptr);
     CHECK(mission->dictionary().packet("T/B/P") != nullptr);
+}
+
+TEST_CASE("a packet is expected at the least rate that its container promises, and at none that is no promise",
+          "[telemetry][downlink]") {
+    std::vector<dictionary::Finding> findings;
+    dictionary::Findings into{"m.xml", findings};
+    std::string containers;
+    const auto add = [&](const std::string& name, const std::string& rate) {
+        containers += "\n<SequenceContainer name='" + name + "'>" + rate +
+                      "<EntryList><ParameterRefEntry parameterRef='header'/></EntryList></SequenceContainer>";
+    };
+    add("Least", "<DefaultRateInStream basis='perSecond' minimumValue='0.1' maximumValue='2'/>");
+    add("Unsaid", "");
+    add("Most", "<DefaultRateInStream maximumValue='2'/>");
+    add("Zero", "<DefaultRateInStream minimumValue='0'/>");
+    add("Updates", "<DefaultRateInStream basis='perContainerUpdate' minimumValue='2'/>");
+    add("Negative", "<DefaultRateInStream minimumValue='-1'/>");
+    add("Exchanged", "<DefaultRateInStream minimumValue='3' maximumValue='2'/>");
+    add("Word", "<DefaultRateInStream minimumValue='often'/>");
+    auto model = dictionary::xtce::read_packet_model(with_containers("", "", containers), into);
+    REQUIRE(model);
+    std::vector<unsigned> lines;
+    for (const auto& finding : findings) lines.push_back(finding.line);
+    CHECK(lines == std::vector<unsigned>{6, 7, 8, 9});
+    const OtherMission mission{std::move(*model), std::uint16_t{1}};
+    for (const auto& packet : mission.dictionary().packets)
+        CHECK(packet.expected_rate_hz == (packet.name == "Least" ? std::optional{0.1} : std::nullopt));
+    CHECK(stale_after_s(mission.dictionary(), 0) == Approx(40.0));
 }
 
 TEST_CASE("whole numbers of 64 bits and text are channels with their exact value; undefined text is undefined",

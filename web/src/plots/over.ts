@@ -8,7 +8,7 @@ import { palette } from '../draw/palette';
 import { numberText } from '../run/dictionary';
 import { cutoff, shownRun } from '../run/shown';
 import type { RunStore } from '../run/store';
-import { align, gapOf } from './model';
+import { align, gapIn } from './model';
 
 const DASHES = [
   [6, 3],
@@ -22,7 +22,7 @@ export const overVersions = (run: RunStore | undefined, over: readonly Dictionar
 /** Time and value of each point; null breaks the line. */
 function traceOf(run: RunStore, channel: DictionaryChannel, from: number, to: number, pixels: number) {
   const { entrySclk, recorded, live } = run;
-  const gap_s = gapOf(channel.expectedRateHz);
+  const gap_s = gapIn(run, channel);
   const { id } = channel;
   const [x, , y] = align(recorded.get(id), live.get(id), [], entrySclk, from, to, cutoff.value, 1, pixels, gap_s);
   return { x, y };
