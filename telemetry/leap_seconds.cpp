@@ -74,11 +74,17 @@ std::optional<UtcInstant> LeapSeconds::utc_of_tai(double tai_s) const {
     return UtcInstant{utc_us, false};
 }
 
-std::optional<double> LeapSeconds::tdb_of_utc(const UtcInstant& utc) const {
+std::optional<double> LeapSeconds::tai_of_utc(const UtcInstant& utc) const {
     const double utc_s = static_cast<double>(utc.microseconds) * 1.0e-6;
     const auto after = std::ranges::upper_bound(steps_, utc_s, {}, &Step::utc_s);
     if (after == steps_.begin()) return std::nullopt;
-    const double tt_s = utc_s + (utc.leap_second ? 1.0 : 0.0) + std::prev(after)->tai_minus_utc_s + tt_minus_tai_s_;
+    return utc_s + (utc.leap_second ? 1.0 : 0.0) + std::prev(after)->tai_minus_utc_s;
+}
+
+std::optional<double> LeapSeconds::tdb_of_utc(const UtcInstant& utc) const {
+    const auto tai_s = tai_of_utc(utc);
+    if (!tai_s) return std::nullopt;
+    const double tt_s = *tai_s + tt_minus_tai_s_;
     return tt_s + tdb_minus_tt(tt_s);
 }
 

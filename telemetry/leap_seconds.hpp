@@ -36,6 +36,8 @@ class LeapSeconds {
     std::optional<UtcInstant> utc_of_tai(double tai_s) const;
     std::optional<UtcInstant> utc_of_tt(double tt_s) const { return utc_of_tai(tt_s - tt_minus_tai_s_); }
     std::optional<UtcInstant> utc_of_tdb(double tdb_s) const { return utc_of_tt(tdb_s - tdb_minus_tt(tdb_s)); }
+    /// The TAI of an instant, also within a leap second; none before the range.
+    std::optional<double> tai_of_utc(const UtcInstant& utc) const;
     /// The TDB of an instant, also within a leap second; none before the range.
     std::optional<double> tdb_of_utc(const UtcInstant& utc) const;
 

@@ -242,8 +242,9 @@ void add_decode_command(CLI::App& program, int& exit_code) {
         ->required();
     command.add_option("--packets", options->packets, "file of packets or frames")->required();
     add_stream_format(command, options->format);
-    auto* leap_seconds = command.add_option(
-        "--lsk", options->leap_seconds, "leap seconds (SPICE text kernel): turns packets' GPS or TAI time into UTC");
+    auto* leap_seconds =
+        command.add_option("--lsk", options->leap_seconds,
+                           "leap seconds (SPICE text kernel): turns times since GPS, TAI, J2000 or a date into UTC");
     auto* clock_kernel =
         command
             .add_option("--sclk", options->clock_kernel,
@@ -258,7 +259,8 @@ void add_decode_command(CLI::App& program, int& exit_code) {
     command.add_flag(
         "--csv", options->csv,
         "print a row per packet: index, APID, count, time, then NAME=RAW|CALIBRATED for each value. Time is "
-        "the first absolute time in the packet, seconds since its epoch (UNIX: as UTC). If the XTCE file "
+        "the first absolute time in the packet, seconds since its epoch (UNIX, and with --lsk others: as UTC). If the "
+        "XTCE file "
         "has none, it is the two numbers behind the primary header if their names contain 'coarse' "
         "and 'fine': counts and their binary fraction (CUC). Otherwise it is empty");
     command.callback([options, &exit_code] { exit_code = decode(*options); });
