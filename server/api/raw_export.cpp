@@ -18,6 +18,7 @@ Result<RawExport> RawExport::begin(archive::Reader& reader, archive::RunId run, 
     if (!links) return links.error();
     for (const auto& each : *links) {
         wanted.links_.push_back(each.link);
+        if (each.stream && !query.packets) wanted.streams_.insert(each.link);
         if (query.link.empty() || query.link == each.link) wanted.octets_removed_ += each.first;
     }
     if (!query.packets) {
@@ -58,7 +59,7 @@ Result<std::optional<std::string>> RawExport::page(archive::Reader& reader) {
         auto link = std::ranges::find(links_, piece.link);
         if (link == links_.end()) link = links_.insert(links_.end(), piece.link);
         pcap::append(text, piece.ert, static_cast<std::uint16_t>(pcap::first_port + (link - links_.begin())),
-                     piece.octets);
+                     piece.octets, streams_.contains(piece.link));
     }
     done_ = page->last;
     if (!page->pieces.empty()) after_ = std::move(page->pieces.back());

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,7 @@ class RawExport {
     archive::RawQuery query_;
     bool pcap_ = false, done_ = false;
     std::vector<std::string> links_;  ///< in the order of their ports
+    std::set<std::string> streams_;   ///< of them: whose octets are pieces of a stream
     std::uint64_t octets_removed_ = 0;
     std::optional<archive::RawPiece> after_;
 };

@@ -123,6 +123,7 @@ struct RawLink {
     std::string link;
     std::uint64_t first = 0;  ///< octets before the oldest that is kept
     std::uint64_t octets = 0;
+    bool stream = false;  ///< pieces of a stream; false: datagrams, or recorded before this was noted
 };
 
 struct RunQuery {

@@ -8,7 +8,8 @@ namespace aeolis::archive {
 namespace {
 
 constexpr char links_sql[] =
-    "SELECT link, min(first), sum(length(octets)) FROM raw_octets WHERE run = ?1 GROUP BY link ORDER BY link";
+    "SELECT link, min(first), sum(length(octets)), (SELECT word = 'stream' FROM words WHERE kind = 'octets of ' || link"
+    " AND number = ?1) FROM raw_octets WHERE run = ?1 GROUP BY link ORDER BY link";
 constexpr char octets_sql[] =
     "SELECT link, ert_us, first, octets FROM raw_octets WHERE run = ?1 AND (link, first) > (?2, ?3)"
     " AND (?4 = '' OR link = ?4) AND ert_us BETWEEN ?5 AND ?6 ORDER BY link, first LIMIT ?7";
@@ -32,7 +33,7 @@ Result<std::vector<RawLink>> Reader::raw_links(RunId run) {
         if (!*found) return links;
         const auto& row = **rows;
         links.push_back({std::string{row.text(0)}, static_cast<std::uint64_t>(row.integer(1)),
-                         static_cast<std::uint64_t>(row.integer(2))});
+                         static_cast<std::uint64_t>(row.integer(2)), !row.is_null(3) && row.integer(3) != 0});
     }
 }
 

@@ -62,6 +62,8 @@ Result<RowWriter> RowWriter::open(sqlite::Database& database) {
          "INSERT OR REPLACE INTO link_totals VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)"},
         {&RowWriter::sequence_totals_, "INSERT OR REPLACE INTO sequence_totals VALUES (?,?,?,?,?,?,?,?,?,?,?)"},
         {&RowWriter::raw_, "INSERT OR IGNORE INTO raw_octets VALUES (?,?,?,?,?)"},
+        {&RowWriter::raw_kind_, "INSERT INTO words VALUES ('octets of ' || ?1, ?2, ?3) ON CONFLICT DO UPDATE SET"
+                                " word = excluded.word WHERE word <> excluded.word AND excluded.word = 'datagrams'"},
         {&RowWriter::raw_removed_, "DELETE FROM raw_octets WHERE run = ?1 AND link = ?2 AND first < ?3"
                                    " AND first + length(octets) <= ?3"},
         {&RowWriter::request_,
@@ -283,6 +285,10 @@ Result<void> RowWriter::raw(RunId run, const RawRecord& record, std::uint64_t ke
         .bind(4, record.ert.microseconds)
         .bind_octets(5, record.octets);
     if (auto done = raw_.run(); !done) return done;
+    raw_kind_.bind(1, std::string_view(record.link))
+        .bind(2, std::int64_t{run.value})
+        .bind(3, std::string_view(record.datagram ? "datagrams" : "stream"));
+    if (auto done = raw_kind_.run(); !done) return done;
     const std::uint64_t end = record.first + record.octets.size();
     if (end <= kept) return {};
     raw_removed_.bind(1, std::int64_t{run.value})

@@ -40,7 +40,7 @@ class RowWriter {
     };
     OfItemKinds<ItemStatements> items_;
     sqlite::Statement search_, segment_number_, segment_, column_, block_number_, block_, block_column_, link_number_,
-        link_word_, totals_, link_totals_, sequence_totals_, request_, raw_, raw_removed_;
+        link_word_, totals_, link_totals_, sequence_totals_, request_, raw_, raw_kind_, raw_removed_;
     ColumnCodec codec_;
 };
 

@@ -490,7 +490,8 @@ Result<std::optional<RunStep>> RunRowsReader::next(RunId run, const v1::RunPosit
         return Error{"run " + std::to_string(run.value) + ": the engine has items up to " +
                      std::to_string(before.seq()) + ", this archive up to " + std::to_string(last) +
                      ": it was put back from an older copy"};
-    static const std::string links_sql = "SELECT * FROM words WHERE kind = 'link' AND number > 3";
+    static const std::string links_sql =
+        "SELECT * FROM words WHERE kind = 'link' AND number > 3 OR kind LIKE 'octets of %'";
     static const std::string begun_sql = "SELECT * FROM runs WHERE run = ?1";
     const bool begins = before.seq() == 0 && before.segments() == 0 && before.requests() == 0;
     if (auto done = state.add_items(run, step, last); !done) return done.error();

@@ -32,14 +32,15 @@ std::uint32_t turned(std::uint32_t value) {
     return value >> 24U | (value >> 8U & 0xFF00U) | (value << 8U & 0xFF0000U) | value << 24U;
 }
 
-void append_record(std::string& to, Ert ert, std::uint16_t port, std::span<const std::uint8_t> octets) {
+constexpr std::uint32_t from = 0xC0000201, into = 0xC0000202;  // 192.0.2.1 and .2: for documentation, never routed
+
+void append_record(std::string& to, Ert ert, std::uint16_t port, std::span<const std::uint8_t> octets, bool stream) {
     const std::int64_t us = ert.microseconds + epoch_2000_s * microseconds_a_second;
     const auto size = static_cast<std::uint32_t>(ip_octets + udp_octets + octets.size());
     put(to, static_cast<std::uint32_t>(us / microseconds_a_second), 4, false);
     put(to, static_cast<std::uint32_t>(us % microseconds_a_second), 4, false);
     put(to, size, 4, false);
     put(to, size, 4, false);
-    constexpr std::uint32_t from = 0xC0000201, into = 0xC0000202;  // 192.0.2.1 and .2: for documentation, never routed
     constexpr std::uint32_t version_and_header = 0x4500, dont_fragment = 0x4000, life_and_udp = 0x4011;
     std::uint32_t sum = version_and_header + size + dont_fragment + life_and_udp + (from >> 16U) + (from & 0xFFFFU) +
                         (into >> 16U) + (into & 0xFFFFU);
@@ -49,8 +50,8 @@ void append_record(std::string& to, Ert ert, std::uint16_t port, std::span<const
         put(to, word, 2, true);
     put(to, from, 4, true);
     put(to, into, 4, true);
-    for (const std::uint32_t word :
-         {std::uint32_t{port}, std::uint32_t{port}, static_cast<std::uint32_t>(udp_octets + octets.size()), 0U})
+    for (const std::uint32_t word : {std::uint32_t{stream ? stream_port : port}, std::uint32_t{port},
+                                     static_cast<std::uint32_t>(udp_octets + octets.size()), 0U})
         put(to, word, 2, true);  // a checksum of 0: none
     to.append(octets.begin(), octets.end());
 }
@@ -84,8 +85,12 @@ std::optional<Datagram> datagram_in(std::span<const std::uint8_t> ip) {
     const auto udp = ip.subspan(header, total - header);
     const std::size_t length = big_number(udp.subspan(4, 2));
     if (length < udp_octets || length > udp.size()) return std::nullopt;
-    return Datagram{
-        {}, static_cast<std::uint16_t>(big_number(udp.subspan(2, 2))), udp.subspan(udp_octets, length - udp_octets)};
+    const bool stream = big_number(udp.first(2)) == stream_port && big_number(ip.subspan(12, 4)) == from &&
+                        big_number(ip.subspan(16, 4)) == into;
+    return Datagram{{},
+                    static_cast<std::uint16_t>(big_number(udp.subspan(2, 2))),
+                    udp.subspan(udp_octets, length - udp_octets),
+                    stream};
 }
 
 }  // namespace
@@ -103,9 +108,9 @@ std::string head() {
     return to;
 }
 
-void append(std::string& to, Ert ert, std::uint16_t port, std::span<const std::uint8_t> octets) {
+void append(std::string& to, Ert ert, std::uint16_t port, std::span<const std::uint8_t> octets, bool stream) {
     for (std::size_t at = 0; at < octets.size(); at += datagram_octets_max)
-        append_record(to, ert, port, octets.subspan(at, std::min(datagram_octets_max, octets.size() - at)));
+        append_record(to, ert, port, octets.subspan(at, std::min(datagram_octets_max, octets.size() - at)), stream);
 }
 
 bool File::is(std::span<const std::uint8_t> beginning) {

@@ -17,23 +17,26 @@ namespace aeolis::server {
 /// Files of captured packets, as tcpdump, tshark and Wireshark write and read them.
 ///
 /// Written  pcap, link type 101 (raw IP): each piece of octets as a UDP datagram over IPv4, from 192.0.2.1 to
-///          192.0.2.2, with the UTC time of its reception to the microsecond. `tshark -d udp.port==4200,ccsds` reads
-///          space packets
+///          192.0.2.2, with the UTC time of its reception to the microsecond. Datagrams are sent from the port that they
+///          are sent to, pieces of a stream from stream_port. `tshark -d udp.port==4200,ccsds` reads space packets
 /// Read     pcap and pcapng, either order of octets, any resolution of time; link types 101, 12 and 228 (IPv4), 1
 ///          (Ethernet, with VLAN tags), 113 and 276 (Linux cooked). The data of UDP over IPv4; all else is counted
 namespace pcap {
 
-inline constexpr std::uint16_t first_port = 4200;  ///< chosen; a further link has the next
+inline constexpr std::uint16_t first_port = 4200;   ///< chosen; a further link has the next
+inline constexpr std::uint16_t stream_port = 4199;  ///< chosen: pieces of a stream are sent from it
 inline constexpr std::size_t datagram_octets_max = 65507;
 
 std::string head();
-/// Appends `octets` as records; more than a datagram holds become several.
-void append(std::string& to, Ert ert, std::uint16_t port, std::span<const std::uint8_t> octets);
+/// Appends `octets` as records; more than a datagram holds become several. `stream`: they are a piece of a stream, which
+/// their port of origin says.
+void append(std::string& to, Ert ert, std::uint16_t port, std::span<const std::uint8_t> octets, bool stream = false);
 
 struct Datagram {
     Ert ert;
     std::uint16_t port = 0;  ///< to which it was sent
     std::span<const std::uint8_t> octets;
+    bool stream = false;  ///< a piece of a stream, as append() marks it
 };
 
 /// Reads octets of a file from `at` on: as many as requested, or fewer at its end. They are valid until the next call.

@@ -146,16 +146,26 @@ class Recording {
     std::string each(const TakePiece& take) const {
         if (!capture_) return each_of_plain(take);
         auto capture = *capture_;
-        std::uint64_t other_ports = 0;
+        std::uint64_t other_ports = 0, other_streams = 0;
+        std::optional<std::uint16_t> stream_port;
         while (const auto datagram = capture.next()) {
-            if (options_->port && datagram->port != *options_->port)
+            if (options_->port && datagram->port != *options_->port) {
                 ++other_ports;
-            else if (!take({datagram->ert, datagram->octets, true}))
-                return {};
+                continue;
+            }
+            if (datagram->stream && stream_port.value_or(datagram->port) != datagram->port) {
+                ++other_streams;
+                continue;
+            }
+            if (datagram->stream) stream_port = datagram->port;
+            if (!take({datagram->ert, datagram->octets, !datagram->stream})) return {};
         }
         std::string words;
         if (capture.others() > 0) words += fmt::format("; {} packets are no whole UDP over IPv4", capture.others());
         if (other_ports > 0) words += fmt::format("; {} datagrams to other ports", other_ports);
+        if (other_streams > 0)
+            words += fmt::format("; {} pieces of other streams than that to port {}; say which by --udp-port",
+                                 other_streams, *stream_port);
         if (capture.cut()) words += "; the capture is cut off";
         return words.empty() ? words : words.substr(2);
     }

@@ -1121,6 +1121,18 @@ TEST_CASE("a landing's samples and their predict are made together, and decode r
 TEST_CASE("a fixed oscillator's Doppler is removed from SigMF samples, and options that contradict a file are told",
           "[cli][tones][R56]") {
     if (program().empty()) return;
+    // Of a stream the pieces end anywhere: exported as a capture they are marked, and make the same stream again.
+    const auto again = ingest(write("again.pcap", exported("3 --raw --format pcap")));
+    INFO(again.text);
+    CHECK(again.code == 0);
+    CHECK_THAT(again.text, Catch::Contains("300 packets of 2400 octets"));
+    std::string two = exported("3 --raw --format pcap");
+    server::pcap::append(two, Ert{397'500'099'000'000}, 4201, bad, true);
+    const auto other = ingest(write("two.pcap", two));
+    CHECK(other.code == 1);
+    CHECK_THAT(other.text,
+               Catch::Contains("1 pieces of other streams than that to port 4200; say which by --udp-port") &&
+                   Catch::Contains("300 packets of 2400 octets"));
     const aeolis::test::TemporaryFolder folder;
     std::ofstream{folder / "tones.csv"} << "start_s,tone\n3,17\n13,200\n23,99\n";
     std::ofstream{folder / "doppler.csv"} << "time_s,doppler_hz\n0,-5000\n20,4000\n40,6000\n";

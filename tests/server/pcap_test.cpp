@@ -52,6 +52,29 @@ TEST_CASE("a pcap file gives back the datagrams that were written, with their ti
     CHECK(((sum & 0xFFFFU) + (sum >> 16U)) == 0xFFFFU);
 }
 
+TEST_CASE("a piece of a stream is told from a datagram by the port and address that it is from", "[server][R55]") {
+    const std::vector<std::uint8_t> octets{1, 2, 3};
+    std::string written = pcap::head();
+    pcap::append(written, Ert{0}, 4200, octets, true);
+    pcap::append(written, Ert{0}, 4200, octets);
+    std::string elsewhere = written;
+    elsewhere[24 + 16 + 12] = '\x0A';  // 10.0.2.1: somebody's own port 4199
+    const auto streams = [](const std::string& text) {
+        const auto file = octets_of(text);
+        auto read = pcap::File::open(file);
+        REQUIRE(read);
+        std::vector<bool> found;
+        while (const auto datagram = read->next()) {
+            CHECK(datagram->port == 4200);
+            CHECK(test::copy_of(datagram->octets) == std::vector<std::uint8_t>{1, 2, 3});
+            found.push_back(datagram->stream);
+        }
+        return found;
+    };
+    CHECK(streams(written) == std::vector{true, false});
+    CHECK(streams(elsewhere) == std::vector{false, false});
+}
+
 TEST_CASE("captures of Ethernet with a VLAN, in the other order of octets and in nanoseconds, are read; what is no "
           "whole UDP is counted",
           "[server][R55]") {

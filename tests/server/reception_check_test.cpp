@@ -53,9 +53,9 @@ TEST_CASE("a carrier that still moves by the Doppler that was said to be removed
     heard.status.loudest = heard.status.carrier_s = 1.0;
     heard.symbols = 3;
     for (int second = 0; second < 100; ++second)
-        heard.add({.time_s = second * 1.0, .lock = telemetry::CarrierLock::locked, .frequency_hz = 10.0 * second});
-    heard.add({.time_s = 99.5, .lock = telemetry::CarrierLock::locked, .frequency_hz = 1.0e6});  // one a second is kept
-    const TimeTable doppler{{0.0, 100.0}, {0.0, 1000.0}};
+        heard.add({.time_s = second * 1.0, .lock = CarrierLock::locked, .frequency_hz = 10.0 * second});
+    heard.add({.time_s = 99.5, .lock = CarrierLock::locked, .frequency_hz = 1.0e6});  // one a second is kept
+    const TimeTable doppler = TimeTable::make({0.0, 100.0}, {0.0, 1000.0}).value();
     const auto remarks = check_reception(heard, {8192.0, "ci16", doppler, {}, 10.0});
     REQUIRE(remarks.size() == 1);
     CHECK(remarks.front().text == "the Doppler of --predict is still in the samples; give it by --expected");

@@ -84,6 +84,8 @@ TEST_CASE("what links brought is kept as it came, by link, with its times, and d
     REQUIRE(links);
     REQUIRE(links->size() == 2);
     CHECK(links->at(0).octets == two.size());
+    CHECK_FALSE(links->at(0).stream);
+    CHECK(links->at(1).stream);
     CHECK(links->at(1).first == 0);
 }
 
